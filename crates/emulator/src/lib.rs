@@ -1,0 +1,11 @@
+//! An emulated RoboMaster C board: the shipped firmware image boots here, unchanged.
+//!
+//! `core` runs the Cortex-M4F, `soc` holds the STM32F407's peripherals, `wiring` is the board's schematic,
+//! `machine` joins them to the world of `robot-plant`, `sim` runs scenarios on the machine.
+
+pub mod board_errors;
+pub mod core;
+pub mod machine;
+pub mod sim;
+pub mod soc;
+pub mod wiring;

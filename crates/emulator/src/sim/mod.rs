@@ -1,0 +1,1 @@
+//! Scenarios on the machine: what is asked of it, what is recorded, what is written down.

@@ -1,0 +1,8 @@
+//! The STM32F407's peripherals: registers in, wires out. One file a peripheral.
+
+pub mod clocks;
+pub mod dma_request;
+pub mod irq;
+pub mod peripheral;
+pub mod pins;
+pub mod scheduler;

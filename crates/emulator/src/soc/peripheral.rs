@@ -1,0 +1,40 @@
+//! What every register block is to the bus, and what it may reach while it works.
+
+use robot_plant::{time::Ps, world::World};
+
+use crate::{
+    board_errors::BoardErrors,
+    soc::{
+        clocks::ClockTree, dma_request::DmaRequests, irq::IrqLines, pins::PinBank, scheduler::Scheduler,
+    },
+};
+
+/// An access the model does not implement: it stops the run, with this text and the PC's function.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{register}: {what} is not modelled")]
+pub struct Unmodelled {
+    /// `"USART3.GTPR"`.
+    pub register: String,
+    /// `"write of 0x00000100"`, `"bit SCEN"`.
+    pub what: String,
+}
+
+/// Everything a peripheral may touch besides its own registers.
+pub struct Ctx<'a> {
+    pub now: Ps,
+    pub scheduler: &'a mut Scheduler,
+    pub irq: &'a mut IrqLines,
+    pub dma: &'a mut DmaRequests,
+    pub clocks: &'a mut ClockTree,
+    pub pins: &'a mut PinBank,
+    pub world: &'a mut World,
+    pub errors: &'a mut BoardErrors,
+}
+
+/// A register block. Offsets are from its base address; narrower accesses come with their size in bytes.
+pub trait Peripheral {
+    fn read(&mut self, offset: u32, size: u8, ctx: &mut Ctx<'_>) -> Result<u32, Unmodelled>;
+    fn write(&mut self, offset: u32, size: u8, value: u32, ctx: &mut Ctx<'_>) -> Result<(), Unmodelled>;
+    /// An event this block asked the scheduler for.
+    fn event(&mut self, tag: u32, ctx: &mut Ctx<'_>);
+}

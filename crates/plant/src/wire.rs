@@ -1,0 +1,39 @@
+//! What crosses a wire between the board and a device.
+
+use crate::time::Ps;
+
+/// One CAN 2.0 data frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CanFrame {
+    /// 11 bits, or 29 where `extended`.
+    pub id: u32,
+    pub extended: bool,
+    /// 0 to 8.
+    pub dlc: u8,
+    pub data: [u8; 8],
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Parity {
+    None,
+    Even,
+    Odd,
+}
+
+/// How a UART transmitter shapes a character (polarity as it arrives at the MCU pin).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LineFormat {
+    pub baud: u32,
+    pub data_bits: u8,
+    pub parity: Parity,
+    /// 1 or 2.
+    pub stop_bits: u8,
+}
+
+/// One character on a UART line, from the falling edge of its start bit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct UartChar {
+    pub start: Ps,
+    pub byte: u8,
+    pub format: LineFormat,
+}
