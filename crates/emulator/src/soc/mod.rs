@@ -1,8 +1,11 @@
 //! The STM32F407's peripherals: registers in, wires out. One file a peripheral.
 
+pub mod access;
 pub mod clocks;
 pub mod dma_request;
+pub mod guest_memory;
 pub mod irq;
 pub mod peripheral;
 pub mod pins;
+pub mod reset;
 pub mod scheduler;

@@ -37,4 +37,11 @@ pub trait Peripheral {
     fn write(&mut self, offset: u32, size: u8, value: u32, ctx: &mut Ctx<'_>) -> Result<(), Unmodelled>;
     /// An event this block asked the scheduler for.
     fn event(&mut self, tag: u32, ctx: &mut Ctx<'_>);
+    /// Registers and request lines back to their reset values (RCC reset bit or system reset). The scheduler keeps
+    /// what was asked before: the block must ignore such events when they come.
+    fn reset(&mut self, ctx: &mut Ctx<'_>);
+    /// RCC changed a frequency; `ctx.clocks` is the new tree. What ran until `ctx.now` ran at the old one.
+    fn clocks_changed(&mut self, _ctx: &mut Ctx<'_>) {}
+    /// The world was brought up to `ctx.now`: a wire into this block may have changed.
+    fn world_advanced(&mut self, _ctx: &mut Ctx<'_>) {}
 }

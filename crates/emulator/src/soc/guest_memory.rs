@@ -1,0 +1,9 @@
+//! SRAM, CCM and flash as a bus master sees them.
+
+/// The CPU owns the memories; DMA and the flash controller borrow them.
+pub trait GuestMemory {
+    /// False where no memory answers.
+    fn read(&mut self, addr: u32, out: &mut [u8]) -> bool;
+    /// False where no memory answers.
+    fn write(&mut self, addr: u32, data: &[u8]) -> bool;
+}
