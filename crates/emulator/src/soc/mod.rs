@@ -1,10 +1,14 @@
 //! The STM32F407's peripherals: registers in, wires out. One file a peripheral.
 
 pub mod access;
+pub mod absent;
+pub mod blocks;
+pub mod bus;
 pub mod clocks;
 pub mod dma_request;
 pub mod guest_memory;
 pub mod irq;
+pub mod memory_map;
 pub mod peripheral;
 pub mod pins;
 pub mod reset;

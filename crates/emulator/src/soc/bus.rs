@@ -1,0 +1,272 @@
+//! The chip's peripherals behind one address decoder, with their clocks gated, their events run and DMA served.
+
+use robot_plant::{time::Ps, world::World};
+
+use crate::{
+    board_errors::BoardErrors,
+    machine::RegisterPatch,
+    soc::{
+        blocks::Blocks,
+        clocks::ClockTree,
+        dma_request::DmaRequests,
+        guest_memory::GuestMemory,
+        irq::IrqLines,
+        memory_map::{self, Block, Bus},
+        peripheral::{Ctx, Unmodelled},
+        pins::PinBank,
+        reset::ResetCause,
+        scheduler::{Scheduler, Target},
+    },
+};
+
+mod dma_service;
+
+/// Everything of the board but the CPU, its private peripherals and the memories.
+pub struct Soc {
+    pub irq: IrqLines,
+    pub clocks: ClockTree,
+    pub errors: BoardErrors,
+    pub world: World,
+    pub pins: PinBank,
+    scheduler: Scheduler,
+    dma_requests: DmaRequests,
+    blocks: Blocks,
+    patches: Vec<RegisterPatch>,
+}
+
+/// Borrows the blocks and everything around them separately.
+macro_rules! split {
+    ($soc:expr, $now:expr) => {
+        (
+            &mut $soc.blocks,
+            Ctx {
+                now: $now,
+                scheduler: &mut $soc.scheduler,
+                irq: &mut $soc.irq,
+                dma: &mut $soc.dma_requests,
+                clocks: &mut $soc.clocks,
+                pins: &mut $soc.pins,
+                world: &mut $soc.world,
+                errors: &mut $soc.errors,
+            },
+        )
+    };
+}
+
+impl Soc {
+    /// The board at power-on, time 0.
+    pub fn new(world: World) -> Self {
+        let mut soc = Self {
+            irq: IrqLines::default(),
+            clocks: ClockTree::default(),
+            errors: BoardErrors::default(),
+            world,
+            pins: PinBank::default(),
+            scheduler: Scheduler::default(),
+            dma_requests: DmaRequests::default(),
+            blocks: Blocks::default(),
+            patches: Vec::new(),
+        };
+        soc.reset(ResetCause::PowerOn, 0);
+        soc
+    }
+
+    /// From now on every write of the image to the patch's address has the masked bits replaced.
+    pub fn add_patch(&mut self, patch: RegisterPatch) {
+        self.patches.push(patch);
+    }
+
+    /// Every register back to its reset value; RCC_CSR remembers `cause`.
+    pub fn reset(&mut self, cause: ResetCause, now: Ps) {
+        let (blocks, mut ctx) = split!(self, now);
+        for block in Block::ALL {
+            blocks.get(block).reset(&mut ctx);
+        }
+        blocks.rcc.note_reset(cause);
+        self.irq = IrqLines::default();
+        self.dma_requests = DmaRequests::default();
+        self.clocks_changed(now);
+        self.outputs_changed(now);
+    }
+
+    /// A reset that a peripheral asked for; the machine carries it out with `reset` and restarts the CPU.
+    pub fn take_reset_request(&mut self) -> Option<ResetCause> {
+        self.blocks.take_reset_request()
+    }
+
+    pub fn read(
+        &mut self,
+        addr: u32,
+        size: u8,
+        now: Ps,
+        mem: &mut dyn GuestMemory,
+    ) -> Result<u32, Unmodelled> {
+        self.run_due(now, mem)?;
+        let (block, offset) = find(addr, "read")?;
+        if !self.clocked(block, offset, "read", now) {
+            return Ok(0);
+        }
+        let (blocks, mut ctx) = split!(self, now);
+        let value = blocks.get(block).read(offset, size, &mut ctx)?;
+        self.after_access(block, now, mem)?;
+        Ok(value)
+    }
+
+    pub fn write(
+        &mut self,
+        addr: u32,
+        size: u8,
+        value: u32,
+        now: Ps,
+        mem: &mut dyn GuestMemory,
+    ) -> Result<(), Unmodelled> {
+        self.run_due(now, mem)?;
+        let (block, offset) = find(addr, "write")?;
+        if !self.clocked(block, offset, "written", now) {
+            return Ok(());
+        }
+        let value = self.patched(addr, value);
+        let (blocks, mut ctx) = split!(self, now);
+        blocks.get(block).write(offset, size, value, &mut ctx)?;
+        self.after_access(block, now, mem)
+    }
+
+    /// When something happens next without the CPU's doing, the world included.
+    pub fn next_event(&self) -> Ps {
+        self.scheduler.next().min(self.world.next_event())
+    }
+
+    /// Carries out everything due at or before `now`, in order of time.
+    pub fn run_due(&mut self, now: Ps, mem: &mut dyn GuestMemory) -> Result<(), Unmodelled> {
+        loop {
+            let world_at = self.world.next_event();
+            if world_at <= now && world_at <= self.scheduler.next() {
+                self.advance_world(world_at, mem)?;
+            } else if let Some(event) = self.scheduler.pop_due(now) {
+                self.route(event.target, event.tag, event.at, mem)?;
+            } else {
+                return Ok(());
+            }
+        }
+    }
+
+    fn advance_world(&mut self, now: Ps, mem: &mut dyn GuestMemory) -> Result<(), Unmodelled> {
+        self.world.advance(now);
+        let (blocks, mut ctx) = split!(self, now);
+        blocks.inputs_changed(&mut ctx);
+        for block in Blocks::WATCHING_THE_WORLD {
+            blocks.get(block).world_advanced(&mut ctx);
+        }
+        self.serve_dma(now, mem)
+    }
+
+    fn route(
+        &mut self,
+        target: Target,
+        tag: u32,
+        now: Ps,
+        mem: &mut dyn GuestMemory,
+    ) -> Result<(), Unmodelled> {
+        let block = match target {
+            Target::World => return self.advance_world(now, mem),
+            Target::Rcc => Block::Rcc,
+            Target::Flash => Block::Flash,
+            Target::Timer(n) => Block::Timer(n),
+            Target::Usart(n) => Block::Usart(n),
+            Target::Spi1 => Block::Spi1,
+            Target::I2c3 => Block::I2c3,
+            Target::Dma(n) => Block::Dma(n),
+            Target::CanBus(_) => Block::Can,
+            Target::Adc3 => Block::Adc,
+            Target::Iwdg => Block::Iwdg,
+            Target::Exti => Block::Exti,
+            // SysTick counts inside the core.
+            Target::SysTick => return Ok(()),
+        };
+        let (blocks, mut ctx) = split!(self, now);
+        blocks.get(block).event(tag, &mut ctx);
+        self.after_access(block, now, mem)
+    }
+
+    /// What an access or event of one block means for the others.
+    fn after_access(&mut self, block: Block, now: Ps, mem: &mut dyn GuestMemory) -> Result<(), Unmodelled> {
+        match block {
+            Block::Rcc => self.rcc_changed(now),
+            Block::Gpio(_) | Block::Timer(_) => self.outputs_changed(now),
+            Block::I2c3 => {
+                let (blocks, mut ctx) = split!(self, now);
+                blocks.inputs_changed(&mut ctx);
+            }
+            Block::Syscfg => {
+                let (blocks, mut ctx) = split!(self, now);
+                blocks.exti_sources_changed(&mut ctx);
+            }
+            _ => {}
+        }
+        self.serve_dma(now, mem)
+    }
+
+    fn rcc_changed(&mut self, now: Ps) {
+        if self.blocks.rcc.take_frequencies_changed() {
+            self.clocks_changed(now);
+        }
+        for (bus, bits) in self.blocks.rcc.take_resets() {
+            self.reset_blocks(bus, bits, now);
+        }
+    }
+
+    fn clocks_changed(&mut self, now: Ps) {
+        let (blocks, mut ctx) = split!(self, now);
+        for block in Block::ALL {
+            blocks.get(block).clocks_changed(&mut ctx);
+        }
+        blocks.check_flash_speed(&mut ctx);
+    }
+
+    /// A block is reset while its bit in the reset register is set; the rising edge does the work.
+    fn reset_blocks(&mut self, bus: Bus, bits: u32, now: Ps) {
+        let (blocks, mut ctx) = split!(self, now);
+        for block in Block::ALL {
+            if memory_map::reset_bit(block).is_some_and(|(b, bit)| b == bus && bits >> bit & 1 == 1) {
+                blocks.get(block).reset(&mut ctx);
+            }
+        }
+        self.outputs_changed(now);
+    }
+
+    fn outputs_changed(&mut self, now: Ps) {
+        let (blocks, mut ctx) = split!(self, now);
+        blocks.outputs_changed(&mut ctx);
+    }
+
+    fn clocked(&mut self, block: Block, offset: u32, access: &str, now: Ps) -> bool {
+        let Some(gate) = memory_map::clock_gate(block, offset) else {
+            return true;
+        };
+        let enables = match gate.bus {
+            Bus::Ahb1 => self.clocks.ahb1enr,
+            Bus::Apb1 => self.clocks.apb1enr,
+            Bus::Apb2 => self.clocks.apb2enr,
+        };
+        let on = enables >> gate.bit & 1 == 1;
+        if !on {
+            let name = memory_map::block_name(block);
+            self.errors.report(now, format!("{name}: registers {access} while RCC {} is 0", gate.name));
+        }
+        on
+    }
+
+    fn patched(&self, addr: u32, value: u32) -> u32 {
+        self.patches
+            .iter()
+            .filter(|p| p.address == addr)
+            .fold(value, |v, p| v & !p.mask | p.value & p.mask)
+    }
+}
+
+fn find(addr: u32, access: &str) -> Result<(Block, u32), Unmodelled> {
+    memory_map::locate(addr).ok_or_else(|| Unmodelled {
+        register: memory_map::unmodelled_name(addr),
+        what: access.to_owned(),
+    })
+}
