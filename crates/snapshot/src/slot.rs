@@ -1,0 +1,114 @@
+//! Storage for one value, written and copied in 32-bit words while another context may look.
+
+use core::mem::MaybeUninit;
+
+#[cfg(not(loom))]
+pub use target::Slot;
+
+#[cfg(loom)]
+pub use model::Slot;
+
+/// Words in a `T`; refuses a `T` that is not made of whole words.
+const fn words<T>() -> usize {
+    assert!(
+        align_of::<T>().is_multiple_of(4),
+        "a message must be aligned to four bytes: give it its ts_us or repr(align(4))"
+    );
+    size_of::<T>() / 4
+}
+
+#[cfg(not(loom))]
+mod target {
+    use super::{MaybeUninit, words};
+    use atomic_maybe_uninit::AtomicMaybeUninit;
+    use core::{cell::UnsafeCell, sync::atomic::Ordering};
+
+    pub struct Slot<T>(UnsafeCell<MaybeUninit<T>>);
+
+    impl<T: Copy> Slot<T> {
+        const WORDS: usize = words::<T>();
+
+        pub const fn new(init: T) -> Self {
+            Self(UnsafeCell::new(MaybeUninit::new(init)))
+        }
+
+        /// A copy that may mix words of several values if the slot was written meanwhile.
+        pub fn load(&self) -> MaybeUninit<T> {
+            let mut copy = MaybeUninit::<T>::uninit();
+            let to = copy.as_mut_ptr().cast::<MaybeUninit<u32>>();
+            for index in 0..Self::WORDS {
+                let word = self.word(index).load(Ordering::Relaxed);
+                // SAFETY: `index < WORDS`, so the word lies inside `copy`, and `words` has shown
+                // that `T` is aligned for it.
+                unsafe { to.add(index).write(word) };
+            }
+            copy
+        }
+
+        /// Must not run twice at a time: `Snapshot` has one writer.
+        pub fn store(&self, value: &T) {
+            let from = core::ptr::from_ref(value).cast::<MaybeUninit<u32>>();
+            for index in 0..Self::WORDS {
+                // SAFETY: `index < WORDS`, so the word lies inside `value`, is aligned as above,
+                // and as `MaybeUninit` may be padding.
+                let word = unsafe { from.add(index).read() };
+                self.word(index).store(word, Ordering::Relaxed);
+            }
+        }
+
+        /// The caller keeps `index` below `WORDS`.
+        fn word(&self, index: usize) -> &AtomicMaybeUninit<u32> {
+            debug_assert!(index < Self::WORDS);
+            let words = self.0.get().cast::<MaybeUninit<u32>>();
+            // SAFETY: both callers count up to `WORDS`, so the word lies inside the cell, which
+            // lives as long as `self` and is only ever reached through these atomics.
+            unsafe { AtomicMaybeUninit::from_ptr(words.add(index)) }
+        }
+    }
+}
+
+/// The same storage out of loom's atomics, so that the model checker sees every word.
+/// Loom has no `MaybeUninit` atomics, so a modelled `T` must have no padding.
+#[cfg(loom)]
+mod model {
+    use super::{MaybeUninit, words};
+    use core::marker::PhantomData;
+    use loom::sync::atomic::{AtomicU32, Ordering};
+
+    pub struct Slot<T> {
+        words: Vec<AtomicU32>,
+        value: PhantomData<T>,
+    }
+
+    impl<T: Copy> Slot<T> {
+        pub fn new(init: T) -> Self {
+            let words = Self::split(&init).map(AtomicU32::new).collect();
+            Self {
+                words,
+                value: PhantomData,
+            }
+        }
+
+        pub fn load(&self) -> MaybeUninit<T> {
+            let mut copy = MaybeUninit::<T>::uninit();
+            let to = copy.as_mut_ptr().cast::<u32>();
+            for (index, word) in self.words.iter().enumerate() {
+                // SAFETY: there are as many words as `T` has, and `words` has checked alignment.
+                unsafe { to.add(index).write(word.load(Ordering::Relaxed)) };
+            }
+            copy
+        }
+
+        pub fn store(&self, value: &T) {
+            for (word, new) in self.words.iter().zip(Self::split(value)) {
+                word.store(new, Ordering::Relaxed);
+            }
+        }
+
+        fn split(value: &T) -> impl Iterator<Item = u32> {
+            let from = core::ptr::from_ref(value).cast::<u32>();
+            // SAFETY: inside `value`, aligned (`words` checks), and without padding (module text).
+            (0..words::<T>()).map(move |index| unsafe { from.add(index).read() })
+        }
+    }
+}
