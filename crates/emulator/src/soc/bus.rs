@@ -193,6 +193,10 @@ impl Soc {
         match block {
             Block::Rcc => self.rcc_changed(now),
             Block::Gpio(_) | Block::Timer(_) => self.outputs_changed(now),
+            Block::Pwr => {
+                let (blocks, mut ctx) = split!(self, now);
+                blocks.power_changed(&mut ctx);
+            }
             Block::I2c3 => {
                 let (blocks, mut ctx) = split!(self, now);
                 blocks.inputs_changed(&mut ctx);
@@ -220,7 +224,7 @@ impl Soc {
         for block in Block::ALL {
             blocks.get(block).clocks_changed(&mut ctx);
         }
-        blocks.check_flash_speed(&mut ctx);
+        blocks.power_changed(&mut ctx);
     }
 
     /// A block is reset while its bit in the reset register is set; the rising edge does the work.

@@ -1,0 +1,118 @@
+//! EXTI: edges of pins to interrupts, lines 0–15 (RM0090 12.3). Lines 16–22 (PVD, RTC, USB, ETH) are not modelled.
+
+use crate::soc::{
+    access::Access,
+    irq::Irq,
+    peripheral::{Ctx, Peripheral, Unmodelled},
+    syscfg::Syscfg,
+};
+
+const PIN_LINES: u32 = 0xFFFF;
+
+#[derive(Debug, Default)]
+pub struct Exti {
+    imr: u32,
+    rtsr: u32,
+    ftsr: u32,
+    pr: u32,
+    /// Levels of the 16 lines when last looked at.
+    levels: u32,
+}
+
+impl Exti {
+    /// Looks at the pins again; edges selected by RTSR and FTSR become pending.
+    pub fn pins_changed(&mut self, syscfg: &Syscfg, ctx: &mut Ctx<'_>) {
+        let levels = line_levels(syscfg, ctx);
+        let rose = levels & !self.levels;
+        let fell = self.levels & !levels;
+        self.levels = levels;
+        self.pr |= rose & self.rtsr | fell & self.ftsr;
+        self.drive_irqs(ctx);
+    }
+
+    /// Another port on a line: its level is taken over without an edge.
+    pub fn sources_changed(&mut self, syscfg: &Syscfg, ctx: &mut Ctx<'_>) {
+        self.levels = line_levels(syscfg, ctx);
+    }
+
+    fn drive_irqs(&self, ctx: &mut Ctx<'_>) {
+        let active = self.pr & self.imr;
+        for (irq, lines) in IRQS {
+            ctx.irq.set(irq, active & lines != 0);
+        }
+    }
+
+    fn value(&self, register: u32) -> Result<u32, Unmodelled> {
+        Ok(match register {
+            0x00 => self.imr,
+            0x04 => 0,
+            0x08 => self.rtsr,
+            0x0C => self.ftsr,
+            0x10 => 0,
+            0x14 => self.pr,
+            _ => return Err(unmodelled(register, "read")),
+        })
+    }
+}
+
+/// NVIC position and lines of each EXTI vector (RM0090 table 62).
+const IRQS: [(Irq, u32); 7] = [
+    (6, 1 << 0),
+    (7, 1 << 1),
+    (8, 1 << 2),
+    (9, 1 << 3),
+    (10, 1 << 4),
+    (23, 0x03E0),
+    (40, 0xFC00),
+];
+
+fn line_levels(syscfg: &Syscfg, ctx: &Ctx<'_>) -> u32 {
+    (0..16)
+        .filter(|line| ctx.pins.level(syscfg.exti_source(*line)))
+        .fold(0, |bits, line| bits | 1 << line)
+}
+
+impl Peripheral for Exti {
+    fn read(&mut self, offset: u32, size: u8, _ctx: &mut Ctx<'_>) -> Result<u32, Unmodelled> {
+        let access = Access::new(offset, size);
+        Ok(access.read_of(self.value(access.register)?))
+    }
+
+    fn write(&mut self, offset: u32, size: u8, value: u32, ctx: &mut Ctx<'_>) -> Result<(), Unmodelled> {
+        let access = Access::new(offset, size);
+        let is_pr = access.register == 0x14;
+        let old = if is_pr { 0 } else { self.value(access.register)? };
+        let whole = access.written_over(old, value);
+        if whole & !PIN_LINES != 0 && !is_pr {
+            return Err(unmodelled(access.register, &format!("write of {whole:#010x} (line above 15)")));
+        }
+        match access.register {
+            0x00 => self.imr = whole,
+            0x08 => self.rtsr = whole,
+            0x0C => self.ftsr = whole,
+            // SWIER sets the pending bit of an unmasked line.
+            0x10 => self.pr |= whole & self.imr,
+            0x14 => self.pr &= !whole,
+            // EMR: no event is routed to the core.
+            _ if whole == 0 => {}
+            _ => return Err(unmodelled(access.register, &format!("write of {whole:#010x}"))),
+        }
+        self.drive_irqs(ctx);
+        Ok(())
+    }
+
+    fn event(&mut self, _tag: u32, _ctx: &mut Ctx<'_>) {}
+
+    fn reset(&mut self, ctx: &mut Ctx<'_>) {
+        *self = Self { levels: self.levels, ..Self::default() };
+        self.drive_irqs(ctx);
+    }
+}
+
+fn unmodelled(register: u32, what: &str) -> Unmodelled {
+    let names = ["IMR", "EMR", "RTSR", "FTSR", "SWIER", "PR"];
+    let register = names
+        .get((register / 4) as usize)
+        .map_or_else(|| format!("EXTI+{register:#x}"), |name| format!("EXTI.{name}"));
+    Unmodelled { register, what: what.to_owned() }
+}

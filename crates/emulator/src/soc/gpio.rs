@@ -1,0 +1,121 @@
+//! One GPIO port (RM0090 8.4). Modes and output levels go to the pin bank, levels come from it.
+
+use crate::soc::{
+    access::Access,
+    peripheral::{Ctx, Peripheral, Unmodelled},
+    pins::{Pin, PinMode},
+};
+
+#[derive(Debug)]
+pub struct Gpio {
+    port: u8,
+    moder: u32,
+    otyper: u32,
+    ospeedr: u32,
+    pupdr: u32,
+    odr: u32,
+    afr: [u32; 2],
+}
+
+impl Gpio {
+    /// Port A = 0 … I = 8. Ports A and B start with the debug port's pins (RM0090 8.4.1–8.4.4).
+    pub fn new(port: u8) -> Self {
+        let (moder, ospeedr, pupdr) = match port {
+            0 => (0xA800_0000, 0x0C00_0000, 0x6400_0000),
+            1 => (0x0000_0280, 0x0000_00C0, 0x0000_0100),
+            _ => (0, 0, 0),
+        };
+        Self { port, moder, otyper: 0, ospeedr, pupdr, odr: 0, afr: [0; 2] }
+    }
+
+    fn pin(&self, number: u8) -> Pin {
+        Pin { port: self.port, number }
+    }
+
+    fn mode(&self, number: u8) -> PinMode {
+        match self.moder >> (2 * number) & 3 {
+            0 => PinMode::Input,
+            1 => PinMode::Output,
+            2 => PinMode::Alternate(
+                (self.afr[usize::from(number / 8)] >> (4 * u32::from(number % 8)) & 0xF) as u8,
+            ),
+            _ => PinMode::Analog,
+        }
+    }
+
+    fn publish(&self, ctx: &mut Ctx<'_>) {
+        for number in 0..16 {
+            let pin = self.pin(number);
+            ctx.pins.set_mode(pin, self.mode(number));
+            ctx.pins.set_driven(pin, self.odr >> number & 1 == 1);
+        }
+    }
+
+    fn idr(&self, ctx: &Ctx<'_>) -> u32 {
+        (0..16)
+            .filter(|n| {
+                // An analog pin's Schmitt trigger is off and reads 0.
+                self.mode(*n) != PinMode::Analog && ctx.pins.level(self.pin(*n))
+            })
+            .fold(0, |bits, n| bits | 1 << n)
+    }
+
+    fn value(&self, register: u32, ctx: &Ctx<'_>) -> Result<u32, Unmodelled> {
+        Ok(match register {
+            0x00 => self.moder,
+            0x04 => self.otyper,
+            0x08 => self.ospeedr,
+            0x0C => self.pupdr,
+            0x10 => self.idr(ctx),
+            0x14 => self.odr,
+            // BSRR is write-only and reads 0.
+            0x18 => 0,
+            0x20 => self.afr[0],
+            0x24 => self.afr[1],
+            _ => return Err(self.unmodelled(register, "read")),
+        })
+    }
+
+    fn unmodelled(&self, register: u32, what: &str) -> Unmodelled {
+        let port = char::from(b'A' + self.port);
+        let register = match register {
+            0x1C => format!("GPIO{port}.LCKR"),
+            other => format!("GPIO{port}+{other:#x}"),
+        };
+        Unmodelled { register, what: what.to_owned() }
+    }
+}
+
+impl Peripheral for Gpio {
+    fn read(&mut self, offset: u32, size: u8, ctx: &mut Ctx<'_>) -> Result<u32, Unmodelled> {
+        let access = Access::new(offset, size);
+        Ok(access.read_of(self.value(access.register, ctx)?))
+    }
+
+    fn write(&mut self, offset: u32, size: u8, value: u32, ctx: &mut Ctx<'_>) -> Result<(), Unmodelled> {
+        let access = Access::new(offset, size);
+        let whole = access.written_over(self.value(access.register, ctx)?, value);
+        match access.register {
+            0x00 => self.moder = whole,
+            0x04 => self.otyper = whole & 0xFFFF,
+            0x08 => self.ospeedr = whole,
+            0x0C => self.pupdr = whole,
+            0x10 => {}
+            0x14 => self.odr = whole & 0xFFFF,
+            // Set wins over reset where both are asked for.
+            0x18 => self.odr = self.odr & !(whole >> 16) | whole & 0xFFFF,
+            0x20 => self.afr[0] = whole,
+            0x24 => self.afr[1] = whole,
+            _ => return Err(self.unmodelled(access.register, "write")),
+        }
+        self.publish(ctx);
+        Ok(())
+    }
+
+    fn event(&mut self, _tag: u32, _ctx: &mut Ctx<'_>) {}
+
+    fn reset(&mut self, ctx: &mut Ctx<'_>) {
+        *self = Self::new(self.port);
+        self.publish(ctx);
+    }
+}

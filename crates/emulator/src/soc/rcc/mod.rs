@@ -1,0 +1,373 @@
+//! RCC: oscillators, PLL, prescalers, clock enables, resets and reset flags (RM0090 section 7).
+
+mod frequencies;
+mod registers;
+
+use robot_plant::time::{MS, Ps, US};
+
+pub use frequencies::SystemClock;
+use frequencies::{BusClocks, HSE_HZ, HSI_HZ, Pll};
+use registers::{bdcr, cr, csr, register_name};
+
+use crate::soc::{
+    access::Access,
+    clocks::ClockTree,
+    memory_map::Bus,
+    peripheral::{Ctx, Peripheral, Unmodelled},
+    reset::ResetCause,
+    scheduler::Target,
+};
+
+/// Start-up times, datasheet STM32F407 tables 33, 36, 39 and 43: HSI typical, crystal typical, LSI typical, and a
+/// PLL lock in the middle of its range.
+const HSI_STARTUP: Ps = 2 * US + 200_000;
+const HSE_STARTUP: Ps = 2 * MS;
+const LSI_STARTUP: Ps = 15 * US;
+const PLL_LOCK: Ps = 150 * US;
+
+/// What starts up and becomes ready by itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Oscillator {
+    Hsi,
+    Hse,
+    Pll,
+    Lsi,
+}
+
+const OSCILLATORS: [Oscillator; 4] = [Oscillator::Hsi, Oscillator::Hse, Oscillator::Pll, Oscillator::Lsi];
+
+#[derive(Debug)]
+pub struct Rcc {
+    cr: u32,
+    pllcfgr: u32,
+    cfgr: u32,
+    csr: u32,
+    bdcr: u32,
+    sscgr: u32,
+    plli2scfgr: u32,
+    /// AHB1, AHB2, AHB3, –, APB1, APB2 as the registers lie.
+    resets: [u32; 6],
+    enables: [u32; 6],
+    sleep_enables: [u32; 6],
+    source: SystemClock,
+    /// Start-ups begun, by oscillator; an event of an older one is stale.
+    generation: [u32; 4],
+    frequencies_changed: bool,
+    /// PWR_CR.DBP.
+    backup_unlocked: bool,
+    risen_resets: Vec<(Bus, u32)>,
+}
+
+impl Default for Rcc {
+    fn default() -> Self {
+        Self {
+            cr: cr::RESET,
+            pllcfgr: 0x2400_3010,
+            cfgr: 0,
+            csr: 0,
+            bdcr: 0,
+            sscgr: 0,
+            plli2scfgr: 0x2000_3000,
+            resets: [0; 6],
+            enables: [0x0010_0000, 0, 0, 0, 0, 0],
+            sleep_enables: [0x7E67_91FF, 0x0000_00F1, 1, 0, 0x36FE_C9FF, 0x0007_5F33],
+            source: SystemClock::Hsi,
+            generation: [0; 4],
+            frequencies_changed: false,
+            backup_unlocked: false,
+            risen_resets: Vec::new(),
+        }
+    }
+}
+
+impl Rcc {
+    /// Adds the flag of a reset that just happened; every internal reset also pulls NRST (RM0090 figure 20).
+    pub fn note_reset(&mut self, cause: ResetCause) {
+        self.csr |= csr::PINRSTF
+            | match cause {
+                ResetCause::PowerOn => csr::PORRSTF | csr::BORRSTF,
+                ResetCause::Software => csr::SFTRSTF,
+                ResetCause::IndependentWatchdog => csr::IWDGRSTF,
+            };
+    }
+
+    /// BDCR can be written only while PWR_CR.DBP is set.
+    pub fn set_backup_unlocked(&mut self, unlocked: bool) {
+        self.backup_unlocked = unlocked;
+    }
+
+    /// True once after each change of a frequency in the tree.
+    pub fn take_frequencies_changed(&mut self) -> bool {
+        std::mem::take(&mut self.frequencies_changed)
+    }
+
+    /// Reset bits that rose since the last call.
+    pub fn take_resets(&mut self) -> Vec<(Bus, u32)> {
+        std::mem::take(&mut self.risen_resets)
+    }
+
+    fn value(&self, register: u32) -> Result<u32, Unmodelled> {
+        Ok(match register {
+            0x00 => self.cr,
+            0x04 => self.pllcfgr,
+            0x08 => self.cfgr | self.source.sws() << 2,
+            0x0C => 0,
+            0x10..=0x24 if register != 0x1C => self.resets[bank(register, 0x10)],
+            0x30..=0x44 if register != 0x3C => self.enables[bank(register, 0x30)],
+            0x50..=0x64 if register != 0x5C => self.sleep_enables[bank(register, 0x50)],
+            0x70 => self.bdcr,
+            0x74 => self.csr,
+            0x80 => self.sscgr,
+            0x84 => self.plli2scfgr,
+            _ => return Err(unmodelled(register, "read")),
+        })
+    }
+
+    fn store(&mut self, register: u32, value: u32, ctx: &mut Ctx<'_>) -> Result<(), Unmodelled> {
+        match register {
+            0x00 => return self.write_cr(value, ctx),
+            0x04 => self.write_pllcfgr(value, ctx),
+            0x08 => return self.write_cfgr(value, ctx),
+            // No ready interrupt is ever pending, so clearing flags does nothing.
+            0x0C if value & 0x0000_FF00 == 0 => {}
+            0x10..=0x24 if register != 0x1C => self.write_resets(register, value),
+            0x30..=0x44 if register != 0x3C => {
+                self.enables[bank(register, 0x30)] = value;
+                self.publish_enables(ctx.clocks);
+            }
+            0x50..=0x64 if register != 0x5C => self.sleep_enables[bank(register, 0x50)] = value,
+            0x70 if self.backup_unlocked => return self.write_bdcr(value),
+            0x70 => {
+                ctx.errors.report(ctx.now, "RCC: BDCR written while PWR_CR.DBP is 0: ignored");
+            }
+            0x74 => self.write_csr(value, ctx),
+            0x80 if value >> 31 == 0 => self.sscgr = value,
+            0x84 => self.plli2scfgr = value,
+            _ => return Err(unmodelled(register, &format!("write of {value:#010x}"))),
+        }
+        Ok(())
+    }
+
+    fn write_cr(&mut self, value: u32, ctx: &mut Ctx<'_>) -> Result<(), Unmodelled> {
+        if value & (cr::CSSON | cr::PLLI2SON) != 0 {
+            return Err(unmodelled(0x00, "bit CSSON or PLLI2SON"));
+        }
+        self.cr = self.cr & !cr::SETTINGS | value & cr::SETTINGS;
+        self.switch(Oscillator::Hsi, value & cr::HSION != 0, HSI_STARTUP, ctx);
+        self.switch_hse(value, ctx);
+        if value & cr::PLLON != 0 && self.cr & cr::PLLON == 0 {
+            self.check_pll_start(ctx);
+        }
+        self.switch(Oscillator::Pll, value & cr::PLLON != 0, PLL_LOCK, ctx);
+        Ok(())
+    }
+
+    fn switch_hse(&mut self, value: u32, ctx: &mut Ctx<'_>) {
+        let bypass = value & cr::HSEBYP != 0;
+        if bypass && value & cr::HSEON != 0 {
+            ctx.errors.report(
+                ctx.now,
+                "RCC: HSEBYP is set, but the board has a 12 MHz crystal and no clock input: HSE never gets ready",
+            );
+            self.cr |= cr::HSEON;
+            return;
+        }
+        self.switch(Oscillator::Hse, value & cr::HSEON != 0, HSE_STARTUP, ctx);
+    }
+
+    fn check_pll_start(&self, ctx: &mut Ctx<'_>) {
+        let pll = Pll::from_pllcfgr(self.pllcfgr);
+        for problem in pll.problems() {
+            ctx.errors.report(ctx.now, problem);
+        }
+        let source = if pll.from_hse() { Oscillator::Hse } else { Oscillator::Hsi };
+        if !self.ready(source) {
+            ctx.errors.report(ctx.now, format!("RCC: PLL started while its source {source:?} is not ready"));
+        }
+    }
+
+    /// Starts or stops an oscillator; what drives SYSCLK cannot be stopped (RM0090 7.3.1).
+    fn switch(&mut self, oscillator: Oscillator, on: bool, startup: Ps, ctx: &mut Ctx<'_>) {
+        let (on_bit, ready_bit) = bits(oscillator);
+        let register = self.register_of(oscillator);
+        let was_on = *register & on_bit != 0;
+        if on && !was_on {
+            *register |= on_bit;
+            let generation = &mut self.generation[oscillator as usize];
+            *generation += 1;
+            ctx.scheduler.at(ctx.now + startup, Target::Rcc, *generation << 2 | oscillator as u32);
+        } else if !on && was_on && !self.drives_sysclk(oscillator) {
+            *self.register_of(oscillator) &= !(on_bit | ready_bit);
+            self.generation[oscillator as usize] += 1;
+            ctx.clocks.lsi_on = self.csr & csr::LSIRDY != 0;
+        }
+    }
+
+    fn register_of(&mut self, oscillator: Oscillator) -> &mut u32 {
+        match oscillator {
+            Oscillator::Lsi => &mut self.csr,
+            _ => &mut self.cr,
+        }
+    }
+
+    fn ready(&self, oscillator: Oscillator) -> bool {
+        let register = if oscillator == Oscillator::Lsi { self.csr } else { self.cr };
+        register & bits(oscillator).1 != 0
+    }
+
+    fn drives_sysclk(&self, oscillator: Oscillator) -> bool {
+        let by_pll = Pll::from_pllcfgr(self.pllcfgr).from_hse();
+        match (self.source, oscillator) {
+            (SystemClock::Hsi, Oscillator::Hsi)
+            | (SystemClock::Hse, Oscillator::Hse)
+            | (SystemClock::Pll, Oscillator::Pll) => true,
+            (SystemClock::Pll, Oscillator::Hse) => by_pll,
+            (SystemClock::Pll, Oscillator::Hsi) => !by_pll,
+            _ => false,
+        }
+    }
+
+    fn write_pllcfgr(&mut self, value: u32, ctx: &mut Ctx<'_>) {
+        if self.cr & cr::PLLON == 0 {
+            self.pllcfgr = value & 0x0F43_7FFF | self.pllcfgr & 0xF0BC_8000;
+        } else if value != self.pllcfgr {
+            ctx.errors.report(ctx.now, "RCC: PLLCFGR written while the PLL is on: ignored");
+        }
+    }
+
+    fn write_cfgr(&mut self, value: u32, ctx: &mut Ctx<'_>) -> Result<(), Unmodelled> {
+        if value & 0xFFE0_0000 != 0 {
+            return Err(unmodelled(0x08, "clock output or I2S source"));
+        }
+        if SystemClock::from_sw(value).is_none() {
+            return Err(unmodelled(0x08, "SW = 3 (not allowed)"));
+        }
+        self.cfgr = value & 0x001F_FCF3;
+        self.follow_sw(ctx);
+        self.publish_frequencies(ctx);
+        Ok(())
+    }
+
+    /// SYSCLK moves to the source asked for as soon as that one is ready.
+    fn follow_sw(&mut self, _ctx: &mut Ctx<'_>) {
+        let Some(wanted) = SystemClock::from_sw(self.cfgr) else { return };
+        let oscillator = match wanted {
+            SystemClock::Hsi => Oscillator::Hsi,
+            SystemClock::Hse => Oscillator::Hse,
+            SystemClock::Pll => Oscillator::Pll,
+        };
+        if self.ready(oscillator) {
+            self.source = wanted;
+        }
+    }
+
+    fn publish_frequencies(&mut self, ctx: &mut Ctx<'_>) {
+        let sysclk_hz = match self.source {
+            SystemClock::Hsi => HSI_HZ,
+            SystemClock::Hse => HSE_HZ,
+            SystemClock::Pll => Pll::from_pllcfgr(self.pllcfgr).output_hz(),
+        };
+        let buses = BusClocks::new(sysclk_hz, self.cfgr);
+        for problem in buses.problems() {
+            ctx.errors.report(ctx.now, problem);
+        }
+        let before = *ctx.clocks;
+        ctx.clocks.hclk_hz = buses.hclk_hz;
+        ctx.clocks.pclk1_hz = buses.pclk1_hz;
+        ctx.clocks.pclk2_hz = buses.pclk2_hz;
+        ctx.clocks.tim1_hz = buses.tim1_hz;
+        ctx.clocks.tim2_hz = buses.tim2_hz;
+        self.frequencies_changed |= before != *ctx.clocks;
+    }
+
+    fn publish_enables(&self, clocks: &mut ClockTree) {
+        clocks.ahb1enr = self.enables[0];
+        clocks.ahb2enr = self.enables[1];
+        clocks.apb1enr = self.enables[4];
+        clocks.apb2enr = self.enables[5];
+    }
+
+    fn write_resets(&mut self, register: u32, value: u32) {
+        let index = bank(register, 0x10);
+        let risen = value & !self.resets[index];
+        self.resets[index] = value;
+        let bus = match index {
+            0 => Bus::Ahb1,
+            4 => Bus::Apb1,
+            5 => Bus::Apb2,
+            _ => return,
+        };
+        if risen != 0 {
+            self.risen_resets.push((bus, risen));
+        }
+    }
+
+    fn write_bdcr(&mut self, value: u32) -> Result<(), Unmodelled> {
+        if value & (bdcr::LSEON | bdcr::LSEBYP) != 0 {
+            return Err(unmodelled(0x70, "bit LSEON (no low-speed crystal)"));
+        }
+        self.bdcr = if value & bdcr::BDRST != 0 { bdcr::BDRST } else { value & (bdcr::RTCSEL | bdcr::RTCEN) };
+        Ok(())
+    }
+
+    fn write_csr(&mut self, value: u32, ctx: &mut Ctx<'_>) {
+        if value & csr::RMVF != 0 {
+            self.csr &= !csr::FLAGS;
+        }
+        self.switch(Oscillator::Lsi, value & csr::LSION != 0, LSI_STARTUP, ctx);
+    }
+}
+
+impl Peripheral for Rcc {
+    fn read(&mut self, offset: u32, size: u8, _ctx: &mut Ctx<'_>) -> Result<u32, Unmodelled> {
+        let access = Access::new(offset, size);
+        Ok(access.read_of(self.value(access.register)?))
+    }
+
+    fn write(&mut self, offset: u32, size: u8, value: u32, ctx: &mut Ctx<'_>) -> Result<(), Unmodelled> {
+        let access = Access::new(offset, size);
+        let whole = access.written_over(self.value(access.register)?, value);
+        self.store(access.register, whole, ctx)
+    }
+
+    fn event(&mut self, tag: u32, ctx: &mut Ctx<'_>) {
+        let oscillator = OSCILLATORS[(tag & 3) as usize];
+        if self.generation[oscillator as usize] != tag >> 2 {
+            return;
+        }
+        *self.register_of(oscillator) |= bits(oscillator).1;
+        ctx.clocks.lsi_on = self.csr & csr::LSIRDY != 0;
+        self.follow_sw(ctx);
+        self.publish_frequencies(ctx);
+    }
+
+    /// Reset flags and the backup domain outlive a system reset.
+    fn reset(&mut self, ctx: &mut Ctx<'_>) {
+        *self = Self {
+            csr: self.csr & csr::FLAGS,
+            bdcr: self.bdcr,
+            generation: self.generation.map(|g| g + 1),
+            ..Self::default()
+        };
+        *ctx.clocks = ClockTree::default();
+    }
+}
+
+/// On and ready bit of an oscillator in its register.
+fn bits(oscillator: Oscillator) -> (u32, u32) {
+    match oscillator {
+        Oscillator::Hsi => (cr::HSION, cr::HSIRDY),
+        Oscillator::Hse => (cr::HSEON, cr::HSERDY),
+        Oscillator::Pll => (cr::PLLON, cr::PLLRDY),
+        Oscillator::Lsi => (csr::LSION, csr::LSIRDY),
+    }
+}
+
+fn bank(register: u32, first: u32) -> usize {
+    ((register - first) / 4) as usize
+}
+
+fn unmodelled(register: u32, what: &str) -> Unmodelled {
+    Unmodelled { register: register_name(register), what: what.to_owned() }
+}
+
