@@ -1,0 +1,105 @@
+//! One run from files to files: image and scenario in; summary, recording and report out.
+
+use std::{
+    io,
+    path::{Path, PathBuf},
+    time::Instant,
+};
+
+use robot_plant::world::{World, WorldConfig, WorldError};
+
+use super::{
+    recording::{Recording, RecordingError},
+    report::{self, Report, ReportError},
+    runner::{self, Observer, RunResult},
+    scenario::Scenario,
+    summary::Summary,
+    trace::Traces,
+};
+use crate::machine::{Machine, MachineError, RegisterPatch};
+
+pub struct Job {
+    /// The firmware image, with symbols and debug information.
+    pub elf: PathBuf,
+    pub scenario: Scenario,
+    /// A recorded trial to play through the sensor models.
+    pub imu_trial: Option<PathBuf>,
+    pub patches: Vec<RegisterPatch>,
+}
+
+#[derive(Debug, thiserror::Error)]
+pub enum JobError {
+    #[error(transparent)]
+    World(#[from] WorldError),
+    #[error(transparent)]
+    Machine(#[from] MachineError),
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
+    #[error(transparent)]
+    Report(#[from] ReportError),
+    #[error("cannot write {path}: {source}")]
+    Write { path: PathBuf, source: io::Error },
+}
+
+pub struct Outcome {
+    pub result: RunResult,
+    pub summary: Summary,
+    /// What was written, in the order a user reads it.
+    pub files: Vec<PathBuf>,
+}
+
+impl Job {
+    /// The board at power-on, not yet run.
+    pub fn machine(&self) -> Result<Machine, JobError> {
+        let world = World::new(WorldConfig {
+            plant: self.scenario.plant,
+            radio: self.scenario.radio,
+            seed: self.scenario.seed,
+            imu_trial: self.imu_trial.clone(),
+        })?;
+        let mut machine = Machine::new(&self.elf, world)?;
+        for patch in &self.patches {
+            machine.patch_register(*patch);
+        }
+        Ok(machine)
+    }
+
+    /// Runs without writing anything.
+    pub fn run(&self, observers: &mut [&mut dyn Observer]) -> Result<Outcome, JobError> {
+        let mut machine = self.machine()?;
+        let started = Instant::now();
+        let result = runner::run(&mut machine, &self.scenario, observers)?;
+        let summary = Summary::new(&self.scenario, &result, started.elapsed());
+        Ok(Outcome {
+            result,
+            summary,
+            files: Vec::new(),
+        })
+    }
+
+    /// Runs and writes `report.html`, `summary.json` and `run.mcap` into `out`, made if it does not exist.
+    pub fn run_into(&self, out: &Path, watcher: &mut dyn Observer) -> Result<Outcome, JobError> {
+        let failed = |path: &Path, source| JobError::Write {
+            path: path.to_owned(),
+            source,
+        };
+        std::fs::create_dir_all(out).map_err(|e| failed(out, e))?;
+        let files = ["report.html", "summary.json", "run.mcap"].map(|name| out.join(name));
+        let [report_path, summary_path, recording_path] = &files;
+        let mut recording = Recording::create(recording_path)?;
+        let mut traces = Traces::new(self.scenario.length);
+        let mut outcome = self.run(&mut [watcher, &mut recording, &mut traces])?;
+        recording.finish()?;
+        let json = outcome.summary.to_json();
+        std::fs::write(summary_path, json).map_err(|e| failed(summary_path, e))?;
+        let html = report::render(&Report {
+            scenario: &self.scenario,
+            result: &outcome.result,
+            summary: &outcome.summary,
+            traces: &traces,
+        })?;
+        std::fs::write(report_path, html).map_err(|e| failed(report_path, e))?;
+        outcome.files = files.to_vec();
+        Ok(outcome)
+    }
+}

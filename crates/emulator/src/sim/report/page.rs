@@ -1,0 +1,215 @@
+//! The page around the plots.
+
+use std::fmt::Write;
+
+use robot_plant::time;
+
+use super::{Figure, Report};
+use crate::{
+    machine::LogLine,
+    sim::{
+        budgets::{self, Budget},
+        expectation::Verdict,
+    },
+};
+
+const LOG_LINES: usize = 200;
+
+pub fn page(report: &Report, figures: &[Figure]) -> String {
+    let name = escaped(&report.summary.scenario);
+    let parts = [
+        header(report),
+        numbers(report),
+        troubles(report),
+        figures.iter().map(figure).collect(),
+        expectations(&report.result.verdicts),
+        executors(report),
+        log_tail(report.traces.log()),
+    ];
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <title>{name}</title>\n<style>\n{style}</style>\n</head>\n<body>\n{body}</body>\n</html>\n",
+        style = include_str!("style.css"),
+        body = parts.concat(),
+    )
+}
+
+/// Text made safe inside HTML.
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+        .replace('"', "&quot;")
+}
+
+fn header(report: &Report) -> String {
+    let summary = report.summary;
+    let (class, word) = if summary.ok {
+        ("pass", "PASS")
+    } else {
+        ("fail", "FAIL")
+    };
+    format!(
+        "<header><span class=\"verdict {class}\">{word}</span><div><h1>{name}</h1>\
+         <div class=\"soft\">{held} of {all} expectations held · {seconds} s simulated in {wall:.1} s · seed {seed}</div>\
+         </div></header>\n",
+        name = escaped(&summary.scenario),
+        held = summary.expectations - summary.failed_expectations.len(),
+        all = summary.expectations,
+        seconds = summary.sim_seconds,
+        wall = summary.wall.wall_seconds,
+        seed = summary.seed,
+    )
+}
+
+fn numbers(report: &Report) -> String {
+    let mut cards = report.summary.budgets.clone();
+    cards.push(budgets::speed_budget(report.summary.wall.realtime_factor));
+    let mut html = String::from("<section class=\"numbers\">\n");
+    for Budget {
+        name,
+        limit,
+        measured,
+        ok,
+    } in cards
+    {
+        let class = if ok { "number" } else { "number over" };
+        let _ = writeln!(
+            html,
+            "<div class=\"{class}\"><span class=\"soft\">{name}</span><b>{measured}</b>\
+             <span class=\"soft\">budget {limit}</span></div>"
+        );
+    }
+    for (name, value) in extras(report) {
+        let _ = writeln!(
+            html,
+            "<div class=\"number\"><span class=\"soft\">{name}</span><b>{value}</b></div>"
+        );
+    }
+    html + "</section>\n"
+}
+
+/// Numbers without a budget.
+fn extras(report: &Report) -> Vec<(&'static str, String)> {
+    let summary = report.summary;
+    let mut extras = vec![
+        ("stack peak", format!("{} bytes", summary.stack_peak_bytes)),
+        ("resets", summary.resets.len().to_string()),
+    ];
+    if let Some(error) = &summary.attitude_error {
+        extras.push((
+            "inclination error, RMSE",
+            format!("{:.2}°", error.inclination_rmse_deg),
+        ));
+        extras.push((
+            "heading error, RMSE",
+            format!("{:.2}°", error.heading_rmse_deg),
+        ));
+    }
+    extras
+}
+
+fn troubles(report: &Report) -> String {
+    let summary = report.summary;
+    let stopped = summary
+        .stopped
+        .iter()
+        .map(|why| format!("stopped at {:.4} s: {why}", summary.sim_seconds));
+    let errors = summary
+        .board_errors
+        .iter()
+        .map(|e| format!("board error at {:.4} s ({}×): {}", e.at, e.count, e.message));
+    stopped
+        .chain(errors)
+        .map(|text| format!("<div class=\"wrong\">{}</div>\n", escaped(&text)))
+        .collect()
+}
+
+fn figure(figure: &Figure) -> String {
+    let class = if figure.svg.contains("width=\"520\"") {
+        " class=\"square\""
+    } else {
+        ""
+    };
+    format!(
+        "<h2>{}</h2>\n<figure{class}><figcaption>{}</figcaption>\n{}</figure>\n",
+        figure.title, figure.caption, figure.svg
+    )
+}
+
+fn expectations(verdicts: &[Verdict]) -> String {
+    if verdicts.is_empty() {
+        return String::new();
+    }
+    let mut html = String::from(
+        "<h2>Expectations</h2>\n<table>\n<tr><th></th><th>signal</th><th>expected</th>\
+         <th>window</th><th>decided by</th><th>because</th></tr>\n",
+    );
+    for verdict in verdicts {
+        let (class, mark) = match verdict.failure {
+            None => ("held", "✓"),
+            Some(_) => ("failed", "✗"),
+        };
+        let window = format!(
+            "{} – {} s",
+            time::to_seconds(verdict.window.start),
+            time::to_seconds(verdict.window.end)
+        );
+        let decided = match (&verdict.failure, verdict.decisive) {
+            (Some(why), _) => escaped(why),
+            (None, Some(r)) => format!("{:.4} at {:.3} s", r.value, time::to_seconds(r.at)),
+            (None, None) => String::new(),
+        };
+        let _ = writeln!(
+            html,
+            "<tr><td class=\"{class}\">{mark}</td><td>{}</td><td>{}</td>\
+             <td class=\"n\">{window}</td><td>{decided}</td><td class=\"soft\">{}</td></tr>",
+            escaped(&verdict.signal),
+            escaped(&verdict.bound.to_string()),
+            escaped(verdict.because.as_deref().unwrap_or_default()),
+        );
+    }
+    html + "</table>\n"
+}
+
+fn executors(report: &Report) -> String {
+    if report.summary.executors.is_empty() {
+        return String::new();
+    }
+    let mut html = String::from(
+        "<h2>Where the instructions go</h2>\n<table>\n<tr><th>context</th><th>share</th></tr>\n",
+    );
+    for (name, share) in &report.summary.executors {
+        let _ = writeln!(
+            html,
+            "<tr><td>{}</td><td class=\"n\">{:.2} %</td></tr>",
+            escaped(name),
+            share * 100.0
+        );
+    }
+    html + "</table>\n"
+}
+
+fn log_tail(log: &[LogLine]) -> String {
+    let skipped = log.len().saturating_sub(LOG_LINES);
+    let mut html = format!(
+        "<h2>Firmware log</h2>\n<div class=\"soft\">{} lines{}</div>\n<pre>",
+        log.len(),
+        if skipped > 0 {
+            format!(", the last {LOG_LINES} shown")
+        } else {
+            String::new()
+        }
+    );
+    for line in log.iter().skip(skipped) {
+        let level = line.level.to_uppercase();
+        let _ = writeln!(
+            html,
+            "{:>11.6} <span class=\"{level}\">{level:<5}</span> {}",
+            time::to_seconds(line.at),
+            escaped(&line.text)
+        );
+    }
+    html + "</pre>\n"
+}

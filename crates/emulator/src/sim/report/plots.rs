@@ -1,0 +1,260 @@
+//! Which plots a report shows.
+
+use robot_plant::time;
+
+use super::{
+    Figure, Report, ReportError, attitude,
+    chart::{self, BLUE, Curve, GREEN, GREY, ORANGE, PURPLE, TimePlot},
+    lanes::{self, Lane},
+};
+use plotters::style::RGBColor;
+
+/// Width of a bin of the release jitter histogram (`Stats::jitter_bins`).
+const JITTER_BIN_US: f64 = 0.5;
+
+pub fn all(report: &Report) -> Result<Vec<Figure>, ReportError> {
+    let marks: Vec<f64> = report
+        .scenario
+        .actions
+        .iter()
+        .map(|a| time::to_seconds(a.at))
+        .collect();
+    let plots = Plots { report, marks };
+    let figures = [
+        plots.sticks()?,
+        plots.wheels()?,
+        plots.currents()?,
+        plots.path()?,
+        plots.timeline()?,
+        plots.attitude()?,
+        plots.attitude_error()?,
+        plots.can_load()?,
+        plots.jitter()?,
+    ];
+    Ok(figures.into_iter().flatten().collect())
+}
+
+struct Plots<'a> {
+    report: &'a Report<'a>,
+    marks: Vec<f64>,
+}
+
+type MaybeFigure = Result<Option<Figure>, ReportError>;
+
+impl Plots<'_> {
+    fn points(&self, values: Vec<Option<f64>>) -> Vec<(f64, Option<f64>)> {
+        let times = self.report.traces.times_s();
+        times.iter().copied().zip(values).collect()
+    }
+
+    /// The curve of a signal, with every value multiplied by `scale`; empty if there is no such signal.
+    fn curve(&self, label: &str, signal: &str, scale: f64, colour: RGBColor) -> Curve {
+        let values = self.report.traces.signal(signal).unwrap_or_default();
+        let scaled = values.into_iter().map(|v| v.map(|v| v * scale)).collect();
+        Curve {
+            label: label.into(),
+            colour,
+            faint: false,
+            points: self.points(scaled),
+        }
+    }
+
+    fn time_plot(
+        &self,
+        title: &'static str,
+        caption: &'static str,
+        unit: &str,
+        height: u32,
+        curves: Vec<Curve>,
+    ) -> MaybeFigure {
+        let plot = TimePlot {
+            unit,
+            height,
+            time: 0.0..time::to_seconds(self.report.result.ran).max(1e-3),
+            marks: &self.marks,
+            curves,
+        };
+        Ok(plot.draw()?.map(|svg| Figure {
+            title,
+            caption,
+            svg,
+        }))
+    }
+
+    fn sticks(&self) -> MaybeFigure {
+        self.time_plot(
+            "Sticks",
+            "What the pilot does. Dashed lines: the scenario acts.",
+            "stick, −1 … 1",
+            200,
+            vec![
+                self.curve("forward (vx)", "radio.vx", 1.0, BLUE),
+                self.curve("turn left (wz)", "radio.wz", 1.0, ORANGE),
+            ],
+        )
+    }
+
+    fn wheels(&self) -> MaybeFigure {
+        self.time_plot(
+            "Wheel speed",
+            "True speed of each wheel's rim, forward positive.",
+            "m/s",
+            260,
+            vec![
+                self.curve("left wheel", "truth.wheel.0.speed_mps", 1.0, BLUE),
+                self.curve("right wheel", "truth.wheel.1.speed_mps", 1.0, ORANGE),
+            ],
+        )
+    }
+
+    fn currents(&self) -> MaybeFigure {
+        self.time_plot(
+            "Commanded current",
+            "As each ESC decodes it from the CAN bus. It must be 0 whenever the robot is not armed.",
+            "A",
+            260,
+            vec![
+                self.curve("left wheel", "can.m3508.0.current_ma", 1e-3, BLUE),
+                self.curve("right wheel", "can.m3508.1.current_ma", 1e-3, ORANGE),
+            ],
+        )
+    }
+
+    fn path(&self) -> MaybeFigure {
+        let signal = |name| self.report.traces.signal(name);
+        let (Some(x), Some(y)) = (signal("truth.body.x"), signal("truth.body.y")) else {
+            return Ok(None);
+        };
+        let points: Vec<(f64, f64)> = x
+            .into_iter()
+            .zip(y)
+            .filter_map(|(x, y)| Some((x?, y?)))
+            .collect();
+        if points.iter().all(|p| p.0.abs() < 1e-3 && p.1.abs() < 1e-3) {
+            return Ok(None);
+        }
+        Ok(Some(Figure {
+            title: "Path on the ground",
+            caption: "Seen from above; green: start, orange: end.",
+            svg: chart::draw_path(&points, "m")?,
+        }))
+    }
+
+    fn timeline(&self) -> MaybeFigure {
+        let points = |name: &str| Some(self.points(self.report.traces.signal(name)?));
+        let mut rows: Vec<Lane> = Vec::new();
+        for (label, signal, colour) in [
+            ("enable switch", "radio.enable", GREY),
+            ("e-stop switch", "radio.e_stop", ORANGE),
+            ("operator enabled", "diag.operator.enabled", BLUE),
+            ("estimate valid", "diag.estimate.valid", BLUE),
+            ("remote failsafe", "diag.remote_diag.failsafe", ORANGE),
+        ] {
+            if let Some(points) = points(signal) {
+                rows.push(Lane::new(label, colour, &points, |v| v != 0.0));
+            }
+        }
+        if let Some(points) = points("diag.arming.state") {
+            for state in distinct(&points) {
+                let label = format!("arming state {state}");
+                rows.push(Lane::new(label, GREEN, &points, |v| v == state as f64));
+            }
+        }
+        for (label, signal, colour) in [
+            ("arming blocker", "diag.arming.blockers", PURPLE),
+            ("safety flag", "diag.safety.flags", ORANGE),
+        ] {
+            let Some(points) = points(signal) else {
+                continue;
+            };
+            let seen = distinct(&points).into_iter().fold(0, |all, v| all | v);
+            for bit in (0..64).filter(|bit| seen >> bit & 1 == 1) {
+                let is_on = |v: f64| v as u64 >> bit & 1 == 1;
+                rows.push(Lane::new(format!("{label} {bit}"), colour, &points, is_on));
+            }
+        }
+        if rows.is_empty() {
+            return Ok(None);
+        }
+        let end = time::to_seconds(self.report.result.ran).max(1e-3);
+        Ok(Some(Figure {
+            title: "Arming and safety",
+            caption: "States, blockers and flags as the firmware's diagnostics number them; a lane is filled while it is on.",
+            svg: lanes::draw(&rows, 0.0..end, &self.marks)?,
+        }))
+    }
+
+    fn attitude(&self) -> MaybeFigure {
+        let truth = ["w", "x", "y", "z"].map(|part| format!("truth.attitude.{part}"));
+        let estimate = ["0", "1", "2", "3"].map(|part| format!("diag.estimate.q_wxyz.{part}"));
+        let mut curves = Vec::new();
+        for (names, suffix, faint) in [(truth, "truth", true), (estimate, "estimate", false)] {
+            let names = names.each_ref().map(String::as_str);
+            let Some(angles) = attitude::angles_deg(self.report.traces, names) else {
+                continue;
+            };
+            let labels = [("roll", BLUE), ("pitch", GREEN), ("yaw", ORANGE)];
+            for (values, (label, colour)) in angles.into_iter().zip(labels) {
+                curves.push(Curve {
+                    label: format!("{label}, {suffix}"),
+                    colour,
+                    faint,
+                    points: self.points(values),
+                });
+            }
+        }
+        self.time_plot(
+            "Attitude",
+            "Broad lines: the plant's truth or the recording's reference. Thin lines: the firmware's estimate.",
+            "°",
+            300,
+            curves,
+        )
+    }
+
+    fn attitude_error(&self) -> MaybeFigure {
+        self.time_plot(
+            "Attitude error",
+            "While the firmware calls its estimate valid.",
+            "°",
+            220,
+            vec![
+                self.curve("total", "emu.att_error.total_deg", 1.0, GREY),
+                self.curve("heading", "emu.att_error.heading_deg", 1.0, ORANGE),
+                self.curve("inclination", "emu.att_error.inclination_deg", 1.0, BLUE),
+            ],
+        )
+    }
+
+    fn can_load(&self) -> MaybeFigure {
+        self.time_plot(
+            "CAN load",
+            "Share of time each bus is busy, over 100 ms; budget 80 %.",
+            "%",
+            200,
+            vec![
+                self.curve("CAN1", "emu.can1.load", 100.0, BLUE),
+                self.curve("CAN2", "emu.can2.load", 100.0, ORANGE),
+            ],
+        )
+    }
+
+    fn jitter(&self) -> MaybeFigure {
+        let bins = &self.report.result.stats.jitter_bins;
+        if bins.iter().all(|n| *n == 0) {
+            return Ok(None);
+        }
+        Ok(Some(Figure {
+            title: "Release jitter of the control tick",
+            caption: "How late each 1 kHz tick starts; budget 10 µs.",
+            svg: chart::draw_histogram(bins, JITTER_BIN_US, "µs late")?,
+        }))
+    }
+}
+
+/// The whole numbers a signal takes, in order.
+fn distinct(points: &[(f64, Option<f64>)]) -> Vec<u64> {
+    let values = points.iter().filter_map(|p| p.1);
+    let whole: std::collections::BTreeSet<u64> = values.map(|v| v as u64).collect();
+    whole.into_iter().collect()
+}

@@ -1,0 +1,265 @@
+//! The TOML of a scenario and its checks.
+
+use robot_plant::{
+    time::{self, Ps},
+    world::{PlantKind, RadioKind, RemoteInput, World},
+};
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::{Action, Deed, Scenario, ScenarioError};
+use crate::sim::{
+    expectation::{Bound, Expectation, Window},
+    signals::nearest,
+};
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    name: String,
+    seconds: Spanned<f64>,
+    plant: Plant,
+    #[serde(default)]
+    radio: Radio,
+    #[serde(default)]
+    seed: u64,
+    #[serde(default)]
+    allow_board_errors: Vec<String>,
+    #[serde(default)]
+    at: Vec<Spanned<At>>,
+    #[serde(default)]
+    expect: Vec<Spanned<Expect>>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Plant {
+    Stand,
+    Rolling,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Radio {
+    #[default]
+    Sbus,
+    Dbus,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct At {
+    t: f64,
+    remote: Option<Remote>,
+    fault: Option<String>,
+    end_fault: Option<String>,
+    duration: Option<f64>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Remote {
+    enable: Option<bool>,
+    e_stop: Option<bool>,
+    vx: Option<f64>,
+    wz: Option<f64>,
+    mode: Option<u8>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Expect {
+    signal: String,
+    from: Option<f64>,
+    to: Option<f64>,
+    at: Option<f64>,
+    max_abs: Option<f64>,
+    min: Option<f64>,
+    max: Option<f64>,
+    equals: Option<f64>,
+    within: Option<[f64; 2]>,
+    rises_above: Option<f64>,
+    falls_below: Option<f64>,
+    because: Option<String>,
+}
+
+/// Turns positions in the text into errors that name file and line.
+struct Source<'a> {
+    file: &'a str,
+    text: &'a str,
+}
+
+impl Source<'_> {
+    fn wrong(&self, offset: usize, what: impl Into<String>) -> ScenarioError {
+        let before = self.text.as_bytes().iter().take(offset);
+        ScenarioError::Wrong {
+            file: self.file.to_owned(),
+            line: 1 + before.filter(|&&b| b == b'\n').count(),
+            what: what.into(),
+        }
+    }
+}
+
+pub(super) fn parse(text: &str, file: &str) -> Result<Scenario, ScenarioError> {
+    let source = Source { file, text };
+    let raw: File = toml::from_str(text).map_err(|e| {
+        let offset = e.span().map_or(0, |s| s.start);
+        source.wrong(offset, e.message())
+    })?;
+    let seconds = *raw.seconds.get_ref();
+    if !(seconds > 0.0 && seconds <= 3600.0) {
+        let what = format!("`seconds` is {seconds}; write a length between 0 and 3600");
+        return Err(source.wrong(raw.seconds.span().start, what));
+    }
+    let mut actions = Vec::new();
+    for at in &raw.at {
+        read_at(at.get_ref(), seconds, &mut actions)
+            .map_err(|what| source.wrong(at.span().start, what))?;
+    }
+    actions.sort_by_key(|a| a.at);
+    let expectations = raw
+        .expect
+        .into_iter()
+        .map(|expect| {
+            let offset = expect.span().start;
+            read_expect(expect.into_inner(), seconds).map_err(|what| source.wrong(offset, what))
+        })
+        .collect::<Result<_, _>>()?;
+    Ok(Scenario {
+        name: raw.name,
+        length: time::from_seconds(seconds),
+        plant: match raw.plant {
+            Plant::Stand => PlantKind::Stand,
+            Plant::Rolling => PlantKind::Rolling,
+        },
+        radio: match raw.radio {
+            Radio::Sbus => RadioKind::Sbus,
+            Radio::Dbus => RadioKind::Dbus,
+        },
+        seed: raw.seed,
+        actions,
+        expectations,
+        allow_board_errors: raw.allow_board_errors,
+    })
+}
+
+fn instant(name: &str, t: f64, seconds: f64) -> Result<Ps, String> {
+    if (0.0..=seconds).contains(&t) {
+        Ok(time::from_seconds(t))
+    } else {
+        Err(format!(
+            "`{name}` is {t} s, outside the run; write a time from 0 to {seconds} or raise `seconds`"
+        ))
+    }
+}
+
+fn read_at(at: &At, seconds: f64, actions: &mut Vec<Action>) -> Result<(), String> {
+    let start = instant("t", at.t, seconds)?;
+    if at.remote.is_none() && at.fault.is_none() && at.end_fault.is_none() {
+        return Err(
+            "this [[at]] does nothing; add `remote`, `fault` or `end_fault`, or remove it".into(),
+        );
+    }
+    if let Some(remote) = &at.remote {
+        actions.push(Action {
+            at: start,
+            what: Deed::Remote(read_remote(remote)?),
+        });
+    }
+    if let Some(name) = &at.fault {
+        actions.push(Action {
+            at: start,
+            what: Deed::StartFault(known_fault(name)?),
+        });
+    }
+    if let Some(name) = &at.end_fault {
+        actions.push(Action {
+            at: start,
+            what: Deed::EndFault(known_fault(name)?),
+        });
+    }
+    match (&at.fault, at.duration) {
+        (Some(name), Some(duration)) if duration > 0.0 => actions.push(Action {
+            at: instant("t + duration", at.t + duration, seconds)?,
+            what: Deed::EndFault(name.clone()),
+        }),
+        (_, None) => {}
+        (None, Some(_)) => return Err("`duration` belongs to a `fault`; name the fault".into()),
+        (_, Some(duration)) => {
+            return Err(format!("`duration` is {duration}; write seconds above 0"));
+        }
+    }
+    Ok(())
+}
+
+fn read_remote(remote: &Remote) -> Result<RemoteInput, String> {
+    for (name, value) in [("vx", remote.vx), ("wz", remote.wz)] {
+        if value.is_some_and(|v| !(-1.0..=1.0).contains(&v)) {
+            return Err(format!("`{name}` is a stick: write −1 to 1"));
+        }
+    }
+    if remote.mode.is_some_and(|m| m > 2) {
+        return Err("`mode` is a three-position switch: write 0, 1 or 2".into());
+    }
+    Ok(RemoteInput {
+        enable: remote.enable,
+        e_stop: remote.e_stop,
+        vx: remote.vx,
+        wz: remote.wz,
+        mode: remote.mode,
+    })
+}
+
+fn known_fault(name: &str) -> Result<String, String> {
+    let faults = World::faults();
+    if faults.iter().any(|f| f.name == name) {
+        return Ok(name.to_owned());
+    }
+    let hint = nearest(name, faults.iter().map(|f| f.name))
+        .map_or(String::new(), |n| format!(" did you mean `{n}`?"));
+    Err(format!(
+        "no fault is named `{name}`;{hint} `cargo xtask sim --list-faults` lists them"
+    ))
+}
+
+fn read_expect(raw: Expect, seconds: f64) -> Result<Expectation, String> {
+    let window = match (raw.from, raw.to, raw.at) {
+        (Some(from), Some(to), None) => {
+            let (start, end) = (instant("from", from, seconds)?, instant("to", to, seconds)?);
+            if end < start {
+                return Err(format!("`from` {from} comes after `to` {to}; swap them"));
+            }
+            Window { start, end }
+        }
+        (None, None, Some(at)) => Window::instant(instant("at", at, seconds)?),
+        _ => return Err("write either `from` and `to`, or `at`".into()),
+    };
+    let bounds: Vec<Bound> = [
+        raw.max_abs.map(Bound::MaxAbs),
+        raw.min.map(Bound::Min),
+        raw.max.map(Bound::Max),
+        raw.equals.map(Bound::Equals),
+        raw.within
+            .map(|[value, tolerance]| Bound::Within { value, tolerance }),
+        raw.rises_above.map(Bound::RisesAbove),
+        raw.falls_below.map(Bound::FallsBelow),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    if bounds.is_empty() {
+        return Err("nothing is expected of the signal; add one of `max_abs`, `min`, `max`, `equals`, `within = [value, tolerance]`, `rises_above`, `falls_below`".into());
+    }
+    if bounds.iter().any(|b| !b.is_usable()) {
+        return Err("a bound is not finite or a tolerance is negative; write plain numbers".into());
+    }
+    Ok(Expectation {
+        signal: raw.signal,
+        window,
+        bounds,
+        because: raw.because,
+    })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,89 @@
+use robot_plant::time::{MS, SECOND};
+
+use super::*;
+
+const HEAD: &str = "name = \"n\"\nseconds = 4.0\nplant = \"stand\"\n";
+
+fn error_of(body: &str) -> String {
+    Scenario::parse(&format!("{HEAD}{body}"), "s.toml")
+        .expect_err("must be refused")
+        .to_string()
+}
+
+#[test]
+fn reads_the_example_of_the_design() {
+    let text = r#"
+        name = "remote loss stops the wheels"
+        seconds = 4
+        plant = "rolling"
+        radio = "dbus"
+        [[at]]
+        t = 2.0
+        remote = { vx = 0.0 }
+        [[at]]
+        t = 0.5
+        remote = { enable = true, vx = 0.4 }
+        [[expect]]
+        signal = "can.m3508.0.current_ma"
+        from = 2.15
+        to = 4.0
+        max_abs = 0
+    "#;
+    let s = Scenario::parse(text, "s.toml").unwrap();
+    assert_eq!(s.length, 4 * SECOND);
+    assert_eq!((s.plant, s.radio), (PlantKind::Rolling, RadioKind::Dbus));
+    assert_eq!(s.actions[0].at, 500 * MS, "sorted by time");
+    assert_eq!(
+        s.actions[0].what,
+        Deed::Remote(RemoteInput {
+            enable: Some(true),
+            vx: Some(0.4),
+            ..RemoteInput::default()
+        })
+    );
+    assert_eq!(s.expectations[0].bounds, [Bound::MaxAbs(0.0)]);
+    assert_eq!(s.expectations[0].window.start, 2_150 * MS);
+}
+
+#[test]
+fn errors_name_the_line() {
+    assert!(error_of("bogus = 1\n").starts_with("s.toml:4: unknown field `bogus`"));
+    let late = error_of("[[at]]\nt = 1\nremote = {}\n[[at]]\nt = 9\nremote = {}\n");
+    assert!(late.starts_with("s.toml:7: `t` is 9 s"), "{late}");
+    let typo = error_of("[[expect]]\nsignal = \"x\"\nfrom = 0\nto = 1\nmaxabs = 0\n");
+    assert!(
+        typo.starts_with("s.toml:8: unknown field `maxabs`"),
+        "{typo}"
+    );
+}
+
+#[test]
+fn what_cannot_be_judged_is_refused() {
+    for (body, part) in [
+        (
+            "[[expect]]\nsignal = \"x\"\nfrom = 0\nmin = 1\n",
+            "`from` and `to`",
+        ),
+        (
+            "[[expect]]\nsignal = \"x\"\nat = 1\n",
+            "nothing is expected",
+        ),
+        (
+            "[[expect]]\nsignal = \"x\"\nfrom = 2\nto = 1\nmin = 1\n",
+            "swap",
+        ),
+        (
+            "[[expect]]\nsignal = \"x\"\nat = 1\nmin = nan\n",
+            "not finite",
+        ),
+        ("[[at]]\nt = 1\n", "does nothing"),
+        ("[[at]]\nt = 1\nremote = { vx = 1.5 }\n", "stick"),
+        (
+            "[[at]]\nt = 1\nfault = \"no-such-fault\"\n",
+            "--list-faults",
+        ),
+    ] {
+        let error = error_of(body);
+        assert!(error.contains(part), "{error} lacks {part}");
+    }
+}

@@ -1,0 +1,72 @@
+//! A scenario: which robot and radio, what the pilot and the faults do when, and what must hold.
+
+mod file;
+
+use std::path::{Path, PathBuf};
+
+use robot_plant::{
+    time::Ps,
+    world::{PlantKind, RadioKind, RemoteInput},
+};
+
+use super::expectation::Expectation;
+
+/// A checked scenario: every time lies inside the run, every fault exists, every expectation has a window and a bound.
+#[derive(Clone, Debug)]
+pub struct Scenario {
+    pub name: String,
+    /// Length of the run.
+    pub length: Ps,
+    pub plant: PlantKind,
+    pub radio: RadioKind,
+    pub seed: u64,
+    /// In order of time; what was written first comes first at equal times.
+    pub actions: Vec<Action>,
+    pub expectations: Vec<Expectation>,
+    /// Board errors whose message contains one of these do not fail the run.
+    pub allow_board_errors: Vec<String>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Action {
+    pub at: Ps,
+    pub what: Deed,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum Deed {
+    Remote(RemoteInput),
+    StartFault(String),
+    EndFault(String),
+}
+
+/// What is wrong with a scenario file, where, and what to write instead.
+#[derive(Debug, thiserror::Error)]
+pub enum ScenarioError {
+    #[error("cannot read the scenario {path}: {source}")]
+    Read {
+        path: PathBuf,
+        source: std::io::Error,
+    },
+    #[error("{file}:{line}: {what}")]
+    Wrong {
+        file: String,
+        line: usize,
+        what: String,
+    },
+}
+
+impl Scenario {
+    pub fn read(path: &Path) -> Result<Self, ScenarioError> {
+        let text = std::fs::read_to_string(path).map_err(|source| ScenarioError::Read {
+            path: path.to_owned(),
+            source,
+        })?;
+        Self::parse(&text, &path.display().to_string())
+    }
+
+    /// Parses the text of a scenario; `file` names it in errors.
+    pub fn parse(text: &str, file: &str) -> Result<Self, ScenarioError> {
+        file::parse(text, file)
+    }
+}

@@ -1,0 +1,91 @@
+//! The names of everything a scenario can look at, and the values at one instant.
+
+/// Names of all signals of a run: the world's, then the firmware's diagnostics, then the run's own.
+#[derive(Clone, Debug)]
+pub struct SignalTable {
+    names: Vec<String>,
+    world: usize,
+    diag: usize,
+}
+
+/// One value of each signal; `None` where it has none at this instant (firmware not up, gap of a reference).
+pub type Values = Vec<Option<f64>>;
+
+impl SignalTable {
+    pub fn new(world: &[String], diag: &[String], run: &[&str]) -> Self {
+        let names = world.iter().chain(diag).cloned();
+        Self {
+            names: names.chain(run.iter().map(|n| n.to_string())).collect(),
+            world: world.len(),
+            diag: diag.len(),
+        }
+    }
+
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    pub fn index(&self, name: &str) -> Option<usize> {
+        self.names.iter().position(|n| n == name)
+    }
+
+    /// Where the firmware's diagnostics stand.
+    pub fn diag_range(&self) -> std::ops::Range<usize> {
+        self.world..self.world + self.diag
+    }
+
+    /// Where the run's own signals begin.
+    pub fn run_start(&self) -> usize {
+        self.world + self.diag
+    }
+
+    /// Says that a signal does not exist, and which one may have been meant.
+    pub fn missing(&self, name: &str) -> String {
+        let hint = nearest(name, self.names.iter().map(String::as_str))
+            .map_or(String::new(), |n| format!("; did you mean `{n}`?"));
+        format!("no signal is named `{name}`{hint} (`--list-signals` lists them)")
+    }
+}
+
+/// The candidate a mistyped name most likely meant, if one is close.
+pub fn nearest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    candidates
+        .map(|c| (edit_distance(name, c), c))
+        .min()
+        .filter(|(distance, _)| *distance <= name.len() / 3 + 1)
+        .map(|(_, candidate)| candidate)
+}
+
+/// Levenshtein distance over bytes.
+fn edit_distance(a: &str, b: &str) -> usize {
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, ca) in a.bytes().enumerate() {
+        let mut diagonal = i;
+        row[0] = i + 1;
+        for (j, cb) in b.bytes().enumerate() {
+            let substituted = diagonal + usize::from(ca != cb);
+            diagonal = row[j + 1];
+            row[j + 1] = substituted.min(diagonal + 1).min(row[j] + 1);
+        }
+    }
+    row[b.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn edit_distance_of_known_pairs() {
+        assert_eq!(edit_distance("kitten", "sitting"), 3);
+        assert_eq!(edit_distance("", "abc"), 3);
+        assert_eq!(edit_distance("flaw", "lawn"), 2);
+    }
+
+    #[test]
+    fn a_missing_signal_suggests_a_near_one_only() {
+        let table = SignalTable::new(&["truth.body.x".into()], &[], &["emu.resets"]);
+        assert!(table.missing("truth.bodi.x").contains("`truth.body.x`?"));
+        assert!(!table.missing("q").contains("did you mean"));
+    }
+}
