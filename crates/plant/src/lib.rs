@@ -5,3 +5,14 @@
 pub mod time;
 pub mod wire;
 pub mod world;
+
+mod attitude;
+mod bmi088;
+mod body;
+mod faults;
+mod ist8310;
+mod m3508;
+mod radio;
+mod random;
+mod recording;
+mod supply;

@@ -1,9 +1,32 @@
 //! The whole world as the board sees it: one object, advanced in time, with one method a wire.
 
+mod advance;
+mod board_wires;
+mod can_buses;
+mod scenario;
+mod signals;
+
 use crate::{
-    time::Ps,
-    wire::{CanFrame, UartChar},
+    bmi088::{Bmi088, MotionSource},
+    body::Body,
+    faults::ActiveFaults,
+    ist8310::Ist8310,
+    m3508::C620,
+    radio::Receiver,
+    random::{Random, Stream},
+    recording::Playback,
+    supply::Battery,
+    time::{Ps, US, to_seconds},
 };
+
+/// Mechanics and analogue signals move on this grid; a command takes effect at its next point.
+pub(crate) const PHYSICS_STEP: Ps = 250 * US;
+
+pub(crate) const STANDARD_GRAVITY_MPS2: f64 = 9.80665;
+
+pub(crate) fn physics_step_s() -> f64 {
+    to_seconds(PHYSICS_STEP)
+}
 
 /// Which robot stands around the board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,7 +58,10 @@ pub enum WorldError {
     #[error("no fault is named `{0}`; `cargo xtask sim --list-faults` lists them")]
     UnknownFault(String),
     #[error("cannot read the recorded trial {path}: {why}")]
-    Trial { path: std::path::PathBuf, why: String },
+    Trial {
+        path: std::path::PathBuf,
+        why: String,
+    },
 }
 
 /// Sticks and switches of the pilot; an unset field keeps its value.
@@ -78,122 +104,61 @@ pub enum CanBusId {
     Can2,
 }
 
+/// What the board drives beside its buses.
+#[derive(Clone, Copy, Debug, Default)]
+struct Indicators {
+    /// Blue, green, red, 0 … 1.
+    leds_bgr: [f64; 3],
+    /// 0 = silent.
+    buzzer_hz: f64,
+}
+
 pub struct World {
-    config: WorldConfig,
+    now: Ps,
+    next_step: Ps,
+    body: Body,
+    /// Left, right.
+    escs: [C620; 2],
+    battery: Battery,
+    imu: Bmi088,
+    mag: Ist8310,
+    radio: Receiver,
+    playback: Option<Playback>,
+    indicators: Indicators,
+    faults: ActiveFaults,
+    signal_names: Vec<String>,
+    wire_events: Vec<WireEvent>,
 }
 
 impl World {
+    /// Everything powered on at time 0, sticks centred, switches off.
     pub fn new(config: WorldConfig) -> Result<Self, WorldError> {
-        Ok(Self { config })
-    }
-
-    /// The next instant at which something happens here by itself (physics step, radio character, motor feedback).
-    pub fn next_event(&self) -> Ps {
-        let _ = &self.config;
-        Ps::MAX
-    }
-
-    /// Brings the world up to `now`; never called with an earlier time than before.
-    pub fn advance(&mut self, _now: Ps) {}
-
-    pub fn set_remote(&mut self, _input: RemoteInput) {}
-
-    pub fn set_fault(&mut self, name: &str, _active: bool) -> Result<(), WorldError> {
-        Err(WorldError::UnknownFault(name.to_owned()))
-    }
-
-    pub fn faults() -> &'static [FaultInfo] {
-        &[]
-    }
-
-    /// Names of every signal: `truth.*` from the plant, `can.*` as decoded from the wire, `radio.*`.
-    pub fn signal_names(&self) -> &[String] {
-        &[]
-    }
-
-    /// Present value of every signal, in the order of `signal_names`.
-    pub fn sample(&self, _out: &mut Vec<f64>) {}
-
-    /// Wire-level changes since the last call (every received actuator command is one).
-    pub fn drain_wire_events(&mut self, _out: &mut Vec<WireEvent>) {}
-
-    /// Attitude error of `q_wxyz` (body → ENU earth) against truth or the recording's reference, in degrees:
-    /// `[total, heading, inclination]`; `None` in a gap of the reference.
-    pub fn attitude_error_deg(&self, _q_wxyz: [f64; 4]) -> Option<[f64; 3]> {
-        None
-    }
-
-    // SPI1: BMI088
-    pub fn spi_select(&mut self, _device: SpiSelect, _selected: bool, _now: Ps) {}
-    /// Exchanges one byte with the selected device; 0xFF (pulled up) where none is.
-    /// `sck_hz` and the SPI mode come from the chip's registers; a device out of its limits answers garbage.
-    pub fn spi_transfer(&mut self, _mosi: u8, _sck_hz: u32, _mode: u8, _now: Ps) -> u8 {
-        0xFF
-    }
-
-    // I2C3: IST8310
-    /// START and address byte; true = acknowledged.
-    pub fn i2c_address(&mut self, _addr7: u8, _read: bool, _scl_hz: u32, _now: Ps) -> bool {
-        false
-    }
-    pub fn i2c_write(&mut self, _byte: u8, _now: Ps) -> bool {
-        false
-    }
-    pub fn i2c_read(&mut self, _ack: bool, _now: Ps) -> u8 {
-        0xFF
-    }
-    pub fn i2c_stop(&mut self, _now: Ps) {}
-    /// True where a device holds SDA or SCL low.
-    pub fn i2c_bus_held(&self) -> bool {
-        false
-    }
-
-    // Plain pins
-    /// IST8310 RSTN (PG6): level seen by the chip.
-    pub fn set_mag_reset_pin(&mut self, _high: bool, _now: Ps) {}
-    /// IST8310 DRDY (PG3).
-    pub fn mag_drdy_pin(&self) -> bool {
-        true
-    }
-    /// Mean on-fraction of the heater FET (PF6), 0 … 1.
-    pub fn set_heater_duty(&mut self, _duty: f64, _now: Ps) {}
-    /// LED brightness, blue, green, red, 0 … 1.
-    pub fn set_leds(&mut self, _bgr: [f64; 3], _now: Ps) {}
-    /// Buzzer drive: frequency and duty; duty 0 = silent.
-    pub fn set_buzzer(&mut self, _hz: f64, _duty: f64, _now: Ps) {}
-    /// Volts at PF10 (battery behind the 200 k / 22 k divider).
-    pub fn battery_adc_volts(&self) -> f64 {
-        24.0 * 22.0 / 222.0
-    }
-    /// PA0, active low.
-    pub fn user_key_pin(&self) -> bool {
-        true
-    }
-
-    // UART
-    /// The next character on the USART3 RX line (radio) whose start bit falls at or before `now`.
-    pub fn radio_char(&mut self, _now: Ps) -> Option<UartChar> {
-        None
-    }
-
-    // CAN. The bus model asks every node at each start of frame; nodes are numbered from 0 on each bus.
-    pub fn can_nodes(&self, _bus: CanBusId) -> usize {
-        0
-    }
-    /// A node that is unpowered or unplugged neither sends nor acknowledges.
-    pub fn can_present(&self, _bus: CanBusId, _node: usize) -> bool {
-        false
-    }
-    /// The frame this node wants on the bus now.
-    pub fn can_pending(&self, _bus: CanBusId, _node: usize, _now: Ps) -> Option<CanFrame> {
-        None
-    }
-    /// Its pending frame went out and was acknowledged.
-    pub fn can_sent(&mut self, _bus: CanBusId, _node: usize, _now: Ps) {}
-    /// A frame of another node ended without error (called once for each present node but the sender).
-    pub fn can_received(&mut self, _bus: CanBusId, _node: usize, _frame: &CanFrame, _now: Ps) {}
-    /// True while a fault cuts or shorts this bus for everybody.
-    pub fn can_broken(&self, _bus: CanBusId) -> bool {
-        false
+        let playback = match &config.imu_trial {
+            Some(path) => Some(Playback::open(path)?),
+            None => None,
+        };
+        let source = match playback {
+            Some(_) => MotionSource::Recording,
+            None => MotionSource::Physics,
+        };
+        let seed = config.seed;
+        Ok(Self {
+            now: 0,
+            next_step: PHYSICS_STEP,
+            body: Body::new(config.plant),
+            escs: [
+                C620::new(1, Random::new(seed, Stream::LeftMotor)),
+                C620::new(2, Random::new(seed, Stream::RightMotor)),
+            ],
+            battery: Battery::default(),
+            imu: Bmi088::new(seed, source),
+            mag: Ist8310::new(seed, source),
+            radio: Receiver::new(config.radio, seed),
+            signal_names: signals::names(playback.is_some()),
+            playback,
+            indicators: Indicators::default(),
+            faults: ActiveFaults::default(),
+            wire_events: Vec::new(),
+        })
     }
 }

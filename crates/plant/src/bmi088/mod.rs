@@ -1,0 +1,215 @@
+//! BMI088 inertial sensor: two dies in one package, each an SPI device of its own (Bosch BST-BMI088-DS000 rev 1.8,
+//! hardware.md section 4).
+
+mod accel;
+mod gyro;
+mod low_pass;
+mod sample_clock;
+mod thermal;
+
+use crate::{
+    random::{Random, Stream},
+    time::Ps,
+    world::SpiSelect,
+};
+use accel::AccelDie;
+use gyro::GyroDie;
+use thermal::Thermal;
+
+/// Fastest serial clock of both dies.
+const MAX_SCK_HZ: u32 = 10_000_000;
+
+/// What the package feels: specific force and angular rate in sensor axes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Motion {
+    /// m/s², +9.8 on the axis pointing up at rest.
+    pub accel_mps2: [f64; 3],
+    /// rad/s.
+    pub gyro_rps: [f64; 3],
+}
+
+/// Where the motion comes from, and so how the dies' own analogue chain treats it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum MotionSource {
+    /// True motion: offset, noise and filter of the dies apply.
+    Physics,
+    /// The output of another sensor, whose noise and filter are in it already: only range and quantisation apply.
+    Recording,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct ImuFaults {
+    /// No supply: nothing answers, and all settings are lost.
+    pub gone: bool,
+    /// The data registers never change again.
+    pub frozen: bool,
+}
+
+/// Register file seen over SPI by one die.
+trait Die {
+    /// Bytes between the address and the first data byte of a read.
+    const DUMMY_BYTES: usize;
+    fn read(&mut self, register: u8, now: Ps) -> u8;
+    fn write(&mut self, register: u8, value: u8, now: Ps);
+    /// The chip select rises.
+    fn deselected(&mut self, now: Ps);
+    /// False where the die leaves MISO to the pull-up.
+    fn drives_miso(&self) -> bool;
+}
+
+/// State of one chip select: bytes seen since it fell.
+#[derive(Clone, Copy, Debug, Default)]
+struct Transaction {
+    selected: bool,
+    bytes: usize,
+    address: u8,
+}
+
+impl Transaction {
+    fn exchange<D: Die>(&mut self, die: &mut D, mosi: u8, now: Ps) -> u8 {
+        const READ: u8 = 0x80;
+        let index = self.bytes;
+        self.bytes += 1;
+        if index == 0 {
+            self.address = mosi;
+            return 0xFF;
+        }
+        let register = self.address & !READ;
+        if self.address & READ == 0 {
+            // The datasheet knows single-byte writes only.
+            if index == 1 {
+                die.write(register, mosi, now);
+            }
+            return 0xFF;
+        }
+        match index.checked_sub(1 + D::DUMMY_BYTES) {
+            Some(offset) if die.drives_miso() => {
+                die.read(register.wrapping_add(offset as u8) & 0x7F, now)
+            }
+            _ => 0xFF,
+        }
+    }
+}
+
+pub(crate) struct Bmi088 {
+    accel: AccelDie,
+    gyro: GyroDie,
+    accel_wire: Transaction,
+    gyro_wire: Transaction,
+    thermal: Thermal,
+    faults: ImuFaults,
+    garbage: Random,
+    gyro_data_read_at: Option<Ps>,
+}
+
+impl Bmi088 {
+    pub(crate) fn new(seed: u64, source: MotionSource) -> Self {
+        Self {
+            accel: AccelDie::new(Random::new(seed, Stream::Accel), source),
+            gyro: GyroDie::new(Random::new(seed, Stream::Gyro), source),
+            accel_wire: Transaction::default(),
+            gyro_wire: Transaction::default(),
+            thermal: Thermal::default(),
+            faults: ImuFaults::default(),
+            garbage: Random::new(seed, Stream::SpiGarbage),
+            gyro_data_read_at: None,
+        }
+    }
+
+    pub(crate) fn set_faults(&mut self, faults: ImuFaults, now: Ps) {
+        if self.faults.gone && !faults.gone {
+            self.accel.power_on(now);
+            self.gyro.power_on(now);
+        }
+        self.faults = faults;
+    }
+
+    pub(crate) fn set_heater_duty(&mut self, duty: f64) {
+        self.thermal.heater_duty = duty.clamp(0.0, 1.0);
+    }
+
+    pub(crate) fn temperature_c(&self) -> f64 {
+        self.thermal.temperature_c()
+    }
+
+    /// Writes that came too soon after another and were lost.
+    pub(crate) fn lost_writes(&self) -> u64 {
+        self.accel.lost_writes() + self.gyro.lost_writes()
+    }
+
+    /// One step of the analogue chain, ending at `now`.
+    pub(crate) fn step(&mut self, motion: Motion, now: Ps, dt_s: f64) {
+        self.thermal.step(dt_s);
+        if self.faults.gone || self.faults.frozen {
+            return;
+        }
+        self.accel.step(
+            motion.accel_mps2,
+            self.thermal.temperature_c(),
+            self.accel_wire.selected,
+            now,
+        );
+        self.gyro
+            .step(motion.gyro_rps, self.gyro_wire.selected, now);
+    }
+
+    /// Puts both output clocks on a common grid that begins at `at`.
+    pub(crate) fn align_sampling(&mut self, at: Ps) {
+        self.accel.align_sampling(at);
+        self.gyro.align_sampling(at);
+    }
+
+    /// Instant of the last read of the gyro's data registers, once.
+    pub(crate) fn take_gyro_data_read(&mut self) -> Option<Ps> {
+        self.gyro_data_read_at.take()
+    }
+
+    pub(crate) fn select(&mut self, device: SpiSelect, selected: bool, now: Ps) {
+        let wire = match device {
+            SpiSelect::Accel => &mut self.accel_wire,
+            SpiSelect::Gyro => &mut self.gyro_wire,
+        };
+        if wire.selected == selected {
+            return;
+        }
+        *wire = Transaction {
+            selected,
+            ..Transaction::default()
+        };
+        if !selected {
+            match device {
+                SpiSelect::Accel => self.accel.deselected(now),
+                SpiSelect::Gyro => self.gyro.deselected(now),
+            }
+        }
+    }
+
+    pub(crate) fn transfer(&mut self, mosi: u8, sck_hz: u32, mode: u8, now: Ps) -> u8 {
+        if self.faults.gone || !(self.accel_wire.selected || self.gyro_wire.selected) {
+            return 0xFF;
+        }
+        if sck_hz > MAX_SCK_HZ || !matches!(mode, 0 | 3) {
+            return self.garbage.byte();
+        }
+        let mut miso = 0xFF;
+        // Two dies selected at once fight over MISO; the low driver wins.
+        if self.accel_wire.selected {
+            miso &= self.accel_wire.exchange(&mut self.accel, mosi, now);
+        }
+        if self.gyro_wire.selected {
+            if self.gyro_wire.bytes == 1 && self.gyro_wire.address == 0x80 | gyro::RATE_X_LSB {
+                self.gyro_data_read_at = Some(now);
+            }
+            miso &= self.gyro_wire.exchange(&mut self.gyro, mosi, now);
+        }
+        miso
+    }
+}
+
+/// Rounds to the nearest code and clips at the ends of an `i16`, as the converter does.
+fn quantise(counts: f64) -> i16 {
+    counts.round() as i16
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,257 @@
+use super::*;
+use crate::{
+    time::{MS, US},
+    world::{PHYSICS_STEP, physics_step_s},
+};
+
+const SCK_HZ: u32 = 5_250_000;
+const LEVEL: Motion = Motion {
+    accel_mps2: [0.0, 0.0, 9.80665],
+    gyro_rps: [0.0; 3],
+};
+
+/// A sensor and its clock, driven register by register.
+struct Bench {
+    imu: Bmi088,
+    now: Ps,
+    motion: Motion,
+}
+
+impl Bench {
+    fn new(source: MotionSource) -> Self {
+        Self {
+            imu: Bmi088::new(7, source),
+            now: 0,
+            motion: LEVEL,
+        }
+    }
+
+    /// Started as the datasheet says: dummy read, soft resets, power up, then range and rate.
+    fn configured(source: MotionSource) -> Self {
+        let mut bench = Self::new(source);
+        bench.wait(30 * MS);
+        bench.read::<3>(SpiSelect::Accel, 0x00);
+        bench.write(SpiSelect::Accel, 0x7C, 0x00);
+        bench.wait(500 * US);
+        bench.write(SpiSelect::Accel, 0x7D, 0x04);
+        bench.wait(MS);
+        for (register, value) in [(0x40, 0x9A), (0x41, 0x02)] {
+            bench.write(SpiSelect::Accel, register, value);
+            bench.wait(10 * US);
+        }
+        for (register, value) in [(0x0F, 0x00), (0x10, 0x83)] {
+            bench.write(SpiSelect::Gyro, register, value);
+            bench.wait(10 * US);
+        }
+        bench.wait(100 * MS);
+        bench
+    }
+
+    fn wait(&mut self, time: Ps) {
+        let end = self.now + time;
+        let mut step = (self.now / PHYSICS_STEP + 1) * PHYSICS_STEP;
+        while step <= end {
+            self.imu.step(self.motion, step, physics_step_s());
+            step += PHYSICS_STEP;
+        }
+        self.now = end;
+    }
+
+    /// Bytes that come back after the address byte.
+    fn read<const N: usize>(&mut self, device: SpiSelect, register: u8) -> [u8; N] {
+        self.imu.select(device, true, self.now);
+        self.imu.transfer(0x80 | register, SCK_HZ, 3, self.now);
+        let bytes = std::array::from_fn(|_| self.imu.transfer(0, SCK_HZ, 3, self.now));
+        self.imu.select(device, false, self.now);
+        bytes
+    }
+
+    fn write(&mut self, device: SpiSelect, register: u8, value: u8) {
+        self.imu.select(device, true, self.now);
+        self.imu.transfer(register, SCK_HZ, 3, self.now);
+        self.imu.transfer(value, SCK_HZ, 3, self.now);
+        self.imu.select(device, false, self.now);
+    }
+
+    fn accel_counts(&mut self) -> [i16; 3] {
+        let [_, bytes @ ..] = self.read::<7>(SpiSelect::Accel, 0x12);
+        counts(bytes)
+    }
+
+    fn gyro_counts(&mut self) -> [i16; 3] {
+        let bytes = self.read::<6>(SpiSelect::Gyro, 0x02);
+        counts(bytes)
+    }
+}
+
+fn counts(bytes: [u8; 6]) -> [i16; 3] {
+    std::array::from_fn(|axis| i16::from_le_bytes([bytes[2 * axis], bytes[2 * axis + 1]]))
+}
+
+fn mean_and_deviation(samples: &[f64]) -> (f64, f64) {
+    let n = samples.len() as f64;
+    let mean = samples.iter().sum::<f64>() / n;
+    let variance = samples.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / n;
+    (mean, variance.sqrt())
+}
+
+#[test]
+fn accelerometer_speaks_spi_only_after_its_chip_select_rose_once() {
+    let mut bench = Bench::new(MotionSource::Physics);
+    bench.wait(10 * MS);
+    assert_eq!(bench.read::<2>(SpiSelect::Accel, 0x00), [0xFF, 0xFF]);
+    assert_eq!(bench.read::<2>(SpiSelect::Accel, 0x00)[1], 0x1E);
+    bench.write(SpiSelect::Accel, 0x7E, 0xB6);
+    bench.wait(2 * MS);
+    assert_eq!(bench.read::<2>(SpiSelect::Accel, 0x00)[1], 0xFF);
+    assert_eq!(bench.read::<2>(SpiSelect::Accel, 0x00)[1], 0x1E);
+}
+
+#[test]
+fn gyro_answers_without_dummy_byte_but_not_in_its_first_30_ms() {
+    let mut bench = Bench::new(MotionSource::Physics);
+    bench.wait(29 * MS);
+    assert_ne!(bench.read::<1>(SpiSelect::Gyro, 0x00), [0x0F]);
+    bench.wait(MS);
+    assert_eq!(bench.read::<1>(SpiSelect::Gyro, 0x00), [0x0F]);
+    bench.write(SpiSelect::Gyro, 0x10, 0x03);
+    assert_eq!(bench.read::<1>(SpiSelect::Gyro, 0x10), [0x83]);
+}
+
+#[test]
+fn suspended_accelerometer_measures_nothing_and_loses_hurried_writes() {
+    let mut bench = Bench::new(MotionSource::Physics);
+    bench.wait(30 * MS);
+    bench.read::<2>(SpiSelect::Accel, 0x00);
+    assert_eq!(bench.accel_counts(), [0; 3]);
+    bench.write(SpiSelect::Accel, 0x7C, 0x00);
+    bench.wait(100 * US);
+    bench.write(SpiSelect::Accel, 0x7D, 0x04);
+    assert_eq!(bench.read::<2>(SpiSelect::Accel, 0x7D)[1], 0x00);
+    assert_eq!(bench.imu.lost_writes(), 1);
+    bench.wait(450 * US);
+    bench.write(SpiSelect::Accel, 0x7D, 0x04);
+    bench.wait(50 * MS);
+    assert_eq!(bench.read::<2>(SpiSelect::Accel, 0x7D)[1], 0x04);
+    assert!(bench.accel_counts()[2] > 5_000);
+}
+
+#[test]
+fn too_fast_a_clock_or_a_wrong_mode_gives_garbage() {
+    let mut bench = Bench::configured(MotionSource::Physics);
+    for (sck_hz, mode) in [(10_500_000, 3), (SCK_HZ, 1), (SCK_HZ, 2)] {
+        let ids: Vec<u8> = (0..8)
+            .map(|_| {
+                bench.imu.select(SpiSelect::Gyro, true, bench.now);
+                bench.imu.transfer(0x80, sck_hz, mode, bench.now);
+                let id = bench.imu.transfer(0, sck_hz, mode, bench.now);
+                bench.imu.select(SpiSelect::Gyro, false, bench.now);
+                id
+            })
+            .collect();
+        assert!(ids.iter().any(|&id| id != 0x0F));
+    }
+}
+
+#[test]
+fn gravity_and_turn_rate_come_out_in_datasheet_counts() {
+    let mut bench = Bench::configured(MotionSource::Recording);
+    bench.motion.gyro_rps = [1.0, -2.0, 0.5];
+    bench.wait(10 * MS);
+    // ±12 g: 2730 LSB/g; ±2000 °/s: 16.384 LSB/(°/s).
+    assert!((f64::from(bench.accel_counts()[2]) - 2_730.0).abs() <= 1.5);
+    let expected = [938.7, -1_877.5, 469.4];
+    for (count, expected) in bench.gyro_counts().into_iter().zip(expected) {
+        assert!((f64::from(count) - expected).abs() <= 1.0);
+    }
+    bench.motion = Motion {
+        accel_mps2: [500.0, -500.0, 0.0],
+        gyro_rps: [100.0, -100.0, 0.0],
+    };
+    bench.wait(10 * MS);
+    assert_eq!(bench.accel_counts(), [32_767, -32_768, 0]);
+    assert_eq!(bench.gyro_counts(), [32_767, -32_768, 0]);
+}
+
+#[test]
+fn noise_and_offset_stay_within_the_datasheet() {
+    let mut bench = Bench::configured(MotionSource::Physics);
+    let (mut accel_mg, mut gyro_dps) = (Vec::new(), Vec::new());
+    for _ in 0..4_000 {
+        bench.wait(5 * MS);
+        accel_mg.push(f64::from(bench.accel_counts()[0]) * 12_000.0 / 32_768.0);
+        gyro_dps.push(f64::from(bench.gyro_counts()[0]) / 16.384);
+    }
+    // White noise through a second-order filter: density · √(1.11 · bandwidth), plus 1/√12 LSB of rounding.
+    let (offset_mg, accel_noise_mg) = mean_and_deviation(&accel_mg);
+    let expected_mg = (0.160_f64 * 0.160 * 1.11 * 75.0 + 0.366 * 0.366 / 12.0).sqrt();
+    assert!(
+        (accel_noise_mg / expected_mg - 1.0).abs() < 0.1,
+        "{accel_noise_mg} mg"
+    );
+    assert!(offset_mg.abs() <= 20.0 && offset_mg != 0.0);
+    let (offset_dps, gyro_noise_dps) = mean_and_deviation(&gyro_dps);
+    let expected_dps = (0.014_f64 * 0.014 * 1.11 * 47.0 + 0.061 * 0.061 / 12.0).sqrt();
+    assert!(
+        (gyro_noise_dps / expected_dps - 1.0).abs() < 0.1,
+        "{gyro_noise_dps} °/s"
+    );
+    assert!(offset_dps.abs() <= 1.0 && offset_dps != 0.0);
+}
+
+#[test]
+fn data_ready_comes_at_the_output_rate_and_goes_with_the_read() {
+    let mut bench = Bench::configured(MotionSource::Physics);
+    let mut ready = 0;
+    for _ in 0..1_000 {
+        bench.wait(MS);
+        if bench.read::<1>(SpiSelect::Gyro, 0x0A)[0] & 0x80 != 0 {
+            ready += 1;
+            bench.gyro_counts();
+            assert_eq!(bench.read::<1>(SpiSelect::Gyro, 0x0A)[0] & 0x80, 0);
+        }
+    }
+    assert!((399..=401).contains(&ready), "{ready} samples in a second");
+}
+
+#[test]
+fn sensor_time_counts_39_us_and_temperature_follows_the_heater() {
+    let mut bench = Bench::configured(MotionSource::Physics);
+    let time = |bench: &mut Bench| {
+        let [_, low, middle, high] = bench.read::<4>(SpiSelect::Accel, 0x18);
+        u32::from_le_bytes([low, middle, high, 0])
+    };
+    let before = time(&mut bench);
+    bench.wait(1_000 * MS);
+    assert_eq!(time(&mut bench) - before, 25_600);
+    let celsius = |bench: &mut Bench| {
+        let [_, msb, lsb] = bench.read::<3>(SpiSelect::Accel, 0x22);
+        let u = i32::from(msb) * 8 + i32::from(lsb) / 32;
+        23.0 + 0.125 * f64::from(if u > 1_023 { u - 2_048 } else { u })
+    };
+    let cold_c = celsius(&mut bench);
+    bench.imu.set_heater_duty(1.0);
+    bench.wait(20_000 * MS);
+    let warm_c = celsius(&mut bench);
+    assert!((29.0..31.0).contains(&cold_c), "{cold_c}");
+    assert!((45.0..56.0).contains(&warm_c), "{warm_c}");
+    assert!((warm_c - bench.imu.temperature_c()).abs() < 2.0);
+}
+
+#[test]
+fn lost_supply_reads_all_ones_and_forgets_the_settings() {
+    let mut bench = Bench::configured(MotionSource::Physics);
+    bench.imu.set_faults(
+        ImuFaults {
+            gone: true,
+            frozen: false,
+        },
+        bench.now,
+    );
+    assert_eq!(bench.gyro_counts(), [-1; 3]);
+    bench.imu.set_faults(ImuFaults::default(), bench.now);
+    bench.wait(40 * MS);
+    assert_eq!(bench.read::<1>(SpiSelect::Gyro, 0x10), [0x80]);
+    bench.read::<2>(SpiSelect::Accel, 0x00);
+    assert_eq!(bench.read::<2>(SpiSelect::Accel, 0x7D)[1], 0);
+}

@@ -1,0 +1,85 @@
+//! The robot's mechanics. Body axes: x forward, y left, z up; wheel 0 = left, 1 = right.
+
+mod rolling;
+mod stand;
+
+use crate::{bmi088::Motion, m3508::Friction, world::PlantKind};
+use rolling::Rolling;
+use stand::Stand;
+
+/// Wheel radius in m.
+pub(crate) const WHEEL_RADIUS_M: f64 = 0.06;
+/// Distance between the wheels in m.
+pub(crate) const TRACK_M: f64 = 0.42;
+/// Wheel with reflected rotor inertia, kg·m².
+const WHEEL_INERTIA_KGM2: f64 = 0.0105;
+
+/// Torque of each motor on its wheel, right-hand about the body's y axis (positive drives forward).
+pub(crate) type WheelTorques = [f64; 2];
+
+/// Where the body is, in the ENU earth frame and in its own axes.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Pose {
+    pub x_m: f64,
+    pub y_m: f64,
+    /// From east, counter-clockwise.
+    pub yaw_rad: f64,
+    /// Forward speed of the body.
+    pub vx_mps: f64,
+    pub wz_rps: f64,
+}
+
+pub(crate) enum Body {
+    Stand(Stand),
+    Rolling(Rolling),
+}
+
+impl Body {
+    pub(crate) fn new(kind: PlantKind) -> Self {
+        match kind {
+            PlantKind::Stand => Self::Stand(Stand::default()),
+            PlantKind::Rolling => Self::Rolling(Rolling::default()),
+        }
+    }
+
+    pub(crate) fn step(&mut self, torques_nm: WheelTorques, friction: Friction, dt_s: f64) {
+        match self {
+            Self::Stand(stand) => stand.step(torques_nm, friction, dt_s),
+            Self::Rolling(rolling) => rolling.step(torques_nm, friction, dt_s),
+        }
+    }
+
+    /// Wheel speeds in rad/s, forward positive.
+    pub(crate) fn wheel_rps(&self) -> [f64; 2] {
+        match self {
+            Self::Stand(stand) => stand.wheel_rps(),
+            Self::Rolling(rolling) => rolling.wheel_rps(),
+        }
+    }
+
+    pub(crate) fn pose(&self) -> Pose {
+        match self {
+            Self::Stand(_) => Pose::default(),
+            Self::Rolling(rolling) => rolling.pose(),
+        }
+    }
+
+    /// What a sensor in the body feels.
+    pub(crate) fn motion(&self) -> Motion {
+        match self {
+            Self::Stand(stand) => stand.motion(),
+            Self::Rolling(rolling) => rolling.motion(),
+        }
+    }
+}
+
+/// Speed after one step of a shaft under a driving torque, with friction that stops it but never turns it round.
+fn turn_shaft(rps: f64, torque_nm: f64, friction: Friction, inertia_kgm2: f64, dt_s: f64) -> f64 {
+    let driven = rps + (torque_nm - friction.viscous_nm_per_rps * rps) * dt_s / inertia_kgm2;
+    let brake = friction.dry_nm * dt_s / inertia_kgm2;
+    if driven.abs() <= brake {
+        0.0
+    } else {
+        driven - brake.copysign(driven)
+    }
+}

@@ -1,0 +1,10 @@
+//! One wheel drive: M3508 geared motor with its C620 controller on CAN (hardware.md section 7).
+
+mod c620;
+mod motor;
+
+pub(crate) use c620::{C620, EscFaults};
+pub(crate) use motor::{Friction, M3508};
+
+/// Rotor turns a turn of the output shaft.
+pub(crate) const GEAR: f64 = 3591.0 / 187.0;

@@ -1,0 +1,88 @@
+//! Torque, friction and heat of the M3508 at its output shaft.
+
+/// N·m at the output shaft per ampere of torque current.
+const TORQUE_NM_PER_A: f64 = 0.3;
+/// Datasheet: 482 rpm and 0.78 A without load at 24 V.
+const NO_LOAD_RPS: f64 = 482.0 * std::f64::consts::TAU / 60.0;
+const NO_LOAD_A: f64 = 0.78;
+const RATED_V: f64 = 24.0;
+/// Datasheet phase resistance.
+const RESISTANCE_OHM: f64 = 0.194;
+/// Back-EMF seen by the supply per output speed, so that 24 V end at the no-load point.
+const BACK_EMF_V_PER_RPS: f64 = (RATED_V - RESISTANCE_OHM * NO_LOAD_A) / NO_LOAD_RPS;
+/// Share of the no-load torque that is dry friction of gear and seals; the rest grows with speed.
+const DRY_SHARE: f64 = 0.6;
+const AMBIENT_C: f64 = 30.0;
+/// Winding to air; no source gives them: 10 A continuous ends near 90 °C.
+const KELVIN_PER_WATT: f64 = 3.0;
+const HEAT_CAPACITY_J_PER_K: f64 = 120.0;
+
+/// Torque that always opposes the motion of a shaft.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Friction {
+    pub dry_nm: f64,
+    pub viscous_nm_per_rps: f64,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct M3508 {
+    current_a: f64,
+    winding_c: f64,
+}
+
+impl Default for M3508 {
+    fn default() -> Self {
+        Self {
+            current_a: 0.0,
+            winding_c: AMBIENT_C,
+        }
+    }
+}
+
+impl M3508 {
+    pub(crate) fn friction() -> Friction {
+        let no_load_nm = TORQUE_NM_PER_A * NO_LOAD_A;
+        Friction {
+            dry_nm: DRY_SHARE * no_load_nm,
+            viscous_nm_per_rps: (1.0 - DRY_SHARE) * no_load_nm / NO_LOAD_RPS,
+        }
+    }
+
+    /// Torque current in A.
+    pub(crate) fn current_a(&self) -> f64 {
+        self.current_a
+    }
+
+    /// Electromagnetic torque at the output shaft, before friction.
+    pub(crate) fn torque_nm(&self) -> f64 {
+        self.current_a * TORQUE_NM_PER_A
+    }
+
+    pub(crate) fn temperature_c(&self) -> f64 {
+        self.winding_c
+    }
+
+    /// Current follows `wanted_a` as a first-order loop, as far as the supply can push it against the back-EMF.
+    pub(crate) fn step(
+        &mut self,
+        wanted_a: f64,
+        shaft_rps: f64,
+        supply_v: f64,
+        follow: f64,
+        dt_s: f64,
+    ) {
+        let back_emf_v = BACK_EMF_V_PER_RPS * shaft_rps;
+        let most_a = (supply_v - back_emf_v) / RESISTANCE_OHM;
+        let least_a = (-supply_v - back_emf_v) / RESISTANCE_OHM;
+        let goal_a = wanted_a.clamp(least_a, most_a.max(least_a));
+        self.current_a += (goal_a - self.current_a) * follow;
+        let loss_w = self.current_a * self.current_a * RESISTANCE_OHM;
+        let cooling_w = (self.winding_c - AMBIENT_C) / KELVIN_PER_WATT;
+        self.winding_c += (loss_w - cooling_w) * dt_s / HEAT_CAPACITY_J_PER_K;
+    }
+
+    /// Supply cut: the winding is open.
+    pub(crate) fn cut(&mut self) {
+        self.current_a = 0.0;
+    }
+}

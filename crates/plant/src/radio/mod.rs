@@ -1,0 +1,135 @@
+//! The receiver on the DBUS connector and the pilot behind it.
+
+pub(crate) mod dbus;
+mod line_noise;
+pub(crate) mod pilot;
+pub(crate) mod sbus;
+
+use std::collections::VecDeque;
+
+use crate::{
+    random::{Random, Stream},
+    time::Ps,
+    wire::{LineFormat, UartChar},
+    world::{RadioKind, RemoteInput},
+};
+use line_noise::LineNoise;
+use pilot::Pilot;
+
+/// What is wrong with the radio link at the moment.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct RadioFaults {
+    /// Receiver unplugged: not a character more, not even the rest of a frame.
+    pub silent: bool,
+    /// Receiver has lost the transmitter for long.
+    pub failsafe: bool,
+    /// Receiver missed the last radio packet.
+    pub frame_lost: bool,
+    /// Bit errors and stray bytes on the line.
+    pub noise: bool,
+}
+
+/// Sends one frame a period from power-on, with the sticks as they stand at the frame's first bit.
+pub(crate) struct Receiver {
+    kind: RadioKind,
+    pilot: Pilot,
+    next_frame: Ps,
+    on_the_line: VecDeque<UartChar>,
+    noise: LineNoise,
+}
+
+impl Receiver {
+    pub(crate) fn new(kind: RadioKind, seed: u64) -> Self {
+        Self {
+            kind,
+            pilot: Pilot::default(),
+            next_frame: 0,
+            on_the_line: VecDeque::new(),
+            noise: LineNoise::new(Random::new(seed, Stream::RadioLine)),
+        }
+    }
+
+    pub(crate) fn pilot(&self) -> &Pilot {
+        &self.pilot
+    }
+
+    pub(crate) fn set_remote(&mut self, input: RemoteInput) {
+        self.pilot.apply(input);
+    }
+
+    pub(crate) fn next_frame(&self) -> Ps {
+        self.next_frame
+    }
+
+    /// Start of the first character after `now`, or of the next frame.
+    pub(crate) fn next_event(&self, now: Ps) -> Ps {
+        self.on_the_line
+            .iter()
+            .map(|character| character.start)
+            .find(|&start| start > now)
+            .unwrap_or(Ps::MAX)
+            .min(self.next_frame)
+    }
+
+    /// Puts the frame due at `next_frame` on the line.
+    pub(crate) fn start_frame(&mut self, faults: RadioFaults) {
+        let start = self.next_frame;
+        let (frame, format, period) = match self.kind {
+            RadioKind::Sbus => (
+                Some(sbus::frame(&self.pilot, faults).to_vec()),
+                sbus::FORMAT,
+                sbus::PERIOD,
+            ),
+            RadioKind::Dbus => (
+                dbus::frame(&self.pilot, faults).map(|frame| frame.to_vec()),
+                dbus::FORMAT,
+                dbus::PERIOD,
+            ),
+        };
+        self.next_frame = start + period;
+        if faults.silent {
+            return;
+        }
+        // What nobody fetched within two periods is gone: a line has no memory.
+        self.on_the_line
+            .retain(|character| character.start + 2 * period > start);
+        let character_time = character_time(format);
+        let mut characters: Vec<UartChar> = frame
+            .into_iter()
+            .flatten()
+            .enumerate()
+            .map(|(index, byte)| UartChar {
+                start: start + index as Ps * character_time,
+                byte,
+                format,
+            })
+            .collect();
+        if faults.noise {
+            self.noise
+                .disturb(&mut characters, start, period, character_time, format);
+        }
+        self.on_the_line.extend(characters);
+    }
+
+    /// Cuts off every character that has not started yet.
+    pub(crate) fn unplug(&mut self, now: Ps) {
+        self.on_the_line.retain(|character| character.start <= now);
+    }
+
+    pub(crate) fn take(&mut self, now: Ps) -> Option<UartChar> {
+        if self.on_the_line.front()?.start > now {
+            return None;
+        }
+        self.on_the_line.pop_front()
+    }
+}
+
+/// Start bit, data, parity, stop bits.
+fn character_time(format: LineFormat) -> Ps {
+    let parity = match format.parity {
+        crate::wire::Parity::None => 0,
+        crate::wire::Parity::Even | crate::wire::Parity::Odd => 1,
+    };
+    let bits = 1 + u64::from(format.data_bits) + parity + u64::from(format.stop_bits);
+    bits * crate::time::SECOND / u64::from(format.baud)
+}

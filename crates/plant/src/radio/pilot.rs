@@ -1,0 +1,26 @@
+//! Sticks and switches in the pilot's hands.
+
+use crate::world::RemoteInput;
+
+/// Sticks in −1 … 1, switches as set. Starts disabled, centred, mode 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Pilot {
+    pub enable: bool,
+    pub e_stop: bool,
+    /// Forward positive.
+    pub vx: f64,
+    /// Left turn positive.
+    pub wz: f64,
+    /// 0, 1 or 2.
+    pub mode: u8,
+}
+
+impl Pilot {
+    pub(crate) fn apply(&mut self, input: RemoteInput) {
+        self.enable = input.enable.unwrap_or(self.enable);
+        self.e_stop = input.e_stop.unwrap_or(self.e_stop);
+        self.vx = input.vx.unwrap_or(self.vx).clamp(-1.0, 1.0);
+        self.wz = input.wz.unwrap_or(self.wz).clamp(-1.0, 1.0);
+        self.mode = input.mode.unwrap_or(self.mode).min(2);
+    }
+}

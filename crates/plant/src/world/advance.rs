@@ -1,0 +1,111 @@
+//! The passage of time.
+
+use super::{PHYSICS_STEP, World, physics_step_s};
+use crate::{attitude, bmi088::Motion, faults::Fault, m3508::M3508, radio::RadioFaults, time::Ps};
+
+/// Earth's field in ENU, µT: 22 north, 42 into the ground.
+const EARTH_FIELD_UT: [f64; 3] = [0.0, 22.0, -42.0];
+/// Right-hand turn about the outward shaft against forward rolling: left, right.
+pub(super) const SHAFT_SIGN: [f64; 2] = [1.0, -1.0];
+
+impl World {
+    /// The next instant at which something happens here that the board could see by itself: a character on the radio
+    /// line, motor feedback, the end of a magnetometer conversion. Mechanics in between need no visit.
+    pub fn next_event(&self) -> Ps {
+        self.escs
+            .iter()
+            .map(|esc| esc.next_feedback())
+            .chain([self.radio.next_event(self.now), self.mag.next_event()])
+            .min()
+            .unwrap_or(Ps::MAX)
+    }
+
+    /// Brings the world up to `now`; never called with an earlier time than before.
+    pub fn advance(&mut self, now: Ps) {
+        while let Some((at, due)) = self.first_due(now) {
+            match due {
+                Due::Step => self.step(at),
+                Due::Feedback(wheel) => {
+                    let shaft_rps = self.shaft_rps();
+                    self.escs[wheel].prepare_feedback(shaft_rps[wheel]);
+                }
+                Due::Frame => self.radio.start_frame(self.radio_faults()),
+                Due::Conversion => {
+                    let field_ut = self.field_ut(at);
+                    self.mag.convert(field_ut);
+                }
+            }
+        }
+        self.now = self.now.max(now);
+    }
+
+    /// The earliest thing to do up to `now`; mechanics first among equals, so that all else sees them up to date.
+    fn first_due(&self, now: Ps) -> Option<(Ps, Due)> {
+        [
+            (self.next_step, Due::Step),
+            (self.escs[0].next_feedback(), Due::Feedback(0)),
+            (self.escs[1].next_feedback(), Due::Feedback(1)),
+            (self.radio.next_frame(), Due::Frame),
+            (self.mag.next_event(), Due::Conversion),
+        ]
+        .into_iter()
+        .min_by_key(|(at, _)| *at)
+        .filter(|(at, _)| *at <= now)
+    }
+
+    fn step(&mut self, at: Ps) {
+        self.next_step += PHYSICS_STEP;
+        let shaft_rps = self.shaft_rps();
+        let supply_v = self.battery.volts();
+        let mut torques_nm = [0.0; 2];
+        let mut power_w = 0.0;
+        for (wheel, esc) in self.escs.iter_mut().enumerate() {
+            esc.step(shaft_rps[wheel], supply_v);
+            torques_nm[wheel] = SHAFT_SIGN[wheel] * esc.motor.torque_nm();
+            power_w += esc.motor.torque_nm() * shaft_rps[wheel];
+        }
+        self.battery.set_spent(self.faults.has(Fault::BatteryLow));
+        self.battery.load(power_w);
+        self.body
+            .step(torques_nm, M3508::friction(), physics_step_s());
+        self.imu.step(self.motion(at), at, physics_step_s());
+    }
+
+    /// Output shafts in their own sense of rotation, rad/s.
+    pub(super) fn shaft_rps(&self) -> [f64; 2] {
+        let wheel_rps = self.body.wheel_rps();
+        [SHAFT_SIGN[0] * wheel_rps[0], SHAFT_SIGN[1] * wheel_rps[1]]
+    }
+
+    /// What the IMU feels.
+    pub(super) fn motion(&self, at: Ps) -> Motion {
+        match &self.playback {
+            Some(playback) => playback.motion(at),
+            None => self.body.motion(),
+        }
+    }
+
+    fn field_ut(&self, at: Ps) -> [f64; 3] {
+        match &self.playback {
+            Some(playback) => playback.field_ut(at),
+            None => attitude::to_body(attitude::from_yaw(self.body.pose().yaw_rad), EARTH_FIELD_UT),
+        }
+    }
+
+    fn radio_faults(&self) -> RadioFaults {
+        RadioFaults {
+            silent: self.faults.has(Fault::SbusSilent),
+            failsafe: self.faults.has(Fault::SbusFailsafe),
+            frame_lost: self.faults.has(Fault::SbusFrameLost),
+            noise: self.faults.has(Fault::SbusNoise),
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Due {
+    Step,
+    Feedback(usize),
+    Frame,
+    Conversion,
+}

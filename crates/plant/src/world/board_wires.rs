@@ -1,0 +1,109 @@
+//! Every wire of the board but CAN.
+
+use super::{SpiSelect, World};
+use crate::{time::Ps, wire::UartChar};
+
+/// SPI1: BMI088.
+impl World {
+    /// Level of a chip select; `selected` means low.
+    pub fn spi_select(&mut self, device: SpiSelect, selected: bool, now: Ps) {
+        self.advance(now);
+        self.imu.select(device, selected, now);
+    }
+
+    /// Exchanges one byte with the selected device; 0xFF (pulled up) where none is.
+    /// `sck_hz` and the SPI mode come from the chip's registers; a device out of its limits answers garbage.
+    pub fn spi_transfer(&mut self, mosi: u8, sck_hz: u32, mode: u8, now: Ps) -> u8 {
+        self.advance(now);
+        let miso = self.imu.transfer(mosi, sck_hz, mode, now);
+        if let (Some(read_at), Some(playback)) =
+            (self.imu.take_gyro_data_read(), &mut self.playback)
+            && let Some(origin) = playback.lock_to_read(read_at)
+        {
+            self.imu.align_sampling(origin);
+        }
+        miso
+    }
+}
+
+/// I2C3: IST8310.
+impl World {
+    /// START and address byte; true = acknowledged.
+    pub fn i2c_address(&mut self, addr7: u8, read: bool, scl_hz: u32, now: Ps) -> bool {
+        self.advance(now);
+        self.mag.address(addr7, read, scl_hz, now)
+    }
+
+    /// Data byte to the device; true = acknowledged.
+    pub fn i2c_write(&mut self, byte: u8, now: Ps) -> bool {
+        self.advance(now);
+        self.mag.write(byte, now)
+    }
+
+    /// Data byte from the device; a refused acknowledge ends nothing here: the STOP that follows does.
+    pub fn i2c_read(&mut self, _ack: bool, now: Ps) -> u8 {
+        self.advance(now);
+        self.mag.read(now)
+    }
+
+    pub fn i2c_stop(&mut self, now: Ps) {
+        self.advance(now);
+        self.mag.stop();
+    }
+
+    /// True where a device holds SDA or SCL low.
+    pub fn i2c_bus_held(&self) -> bool {
+        self.mag.bus_held()
+    }
+}
+
+/// Plain pins.
+impl World {
+    /// IST8310 RSTN (PG6): level seen by the chip.
+    pub fn set_mag_reset_pin(&mut self, high: bool, now: Ps) {
+        self.advance(now);
+        self.mag.set_reset_pin(high, now);
+    }
+
+    /// IST8310 DRDY (PG3).
+    pub fn mag_drdy_pin(&self) -> bool {
+        self.mag.drdy_pin()
+    }
+
+    /// Mean on-fraction of the heater FET (PF6), 0 … 1.
+    pub fn set_heater_duty(&mut self, duty: f64, now: Ps) {
+        self.advance(now);
+        self.imu.set_heater_duty(duty);
+    }
+
+    /// LED brightness, blue, green, red, 0 … 1.
+    pub fn set_leds(&mut self, bgr: [f64; 3], now: Ps) {
+        self.advance(now);
+        self.indicators.leds_bgr = bgr;
+    }
+
+    /// Buzzer drive: frequency and duty; duty 0 = silent.
+    pub fn set_buzzer(&mut self, hz: f64, duty: f64, now: Ps) {
+        self.advance(now);
+        self.indicators.buzzer_hz = if duty > 0.0 { hz } else { 0.0 };
+    }
+
+    /// Volts at PF10 (battery behind the 200 k / 22 k divider).
+    pub fn battery_adc_volts(&self) -> f64 {
+        self.battery.adc_volts()
+    }
+
+    /// PA0, active low: nobody presses it.
+    pub fn user_key_pin(&self) -> bool {
+        true
+    }
+}
+
+/// USART3: radio.
+impl World {
+    /// The next character on the USART3 RX line (radio) whose start bit falls at or before `now`.
+    pub fn radio_char(&mut self, now: Ps) -> Option<UartChar> {
+        self.advance(now);
+        self.radio.take(now)
+    }
+}
