@@ -1,1 +1,53 @@
+//! The pure logic of the robot: everything between bytes received and bytes to send.
+//!
+//! No clock, no register, no static: time is an argument (`now_us`, microseconds since boot) and every stage is a
+//! struct with one `step`, `feed` or `decode` method. Folders follow the data:
+//!
+//! | folder | in → out |
+//! |---|---|
+//! | [`domain`] | the types all stages share, plain `repr(C)` data in SI units unless the name says otherwise |
+//! | [`input`] | radio bytes → `RemoteUpdate` (stick and switch state, operator state, link diagnostics) |
+//! | [`sensing`] | sensor register bytes → calibrated `ImuState`, `MagState`; the bring-up sequences as data |
+//! | [`estimation`] | IMU, magnetometer, wheels → `StateEstimate` |
+//! | [`logic`] | remote → `LogicBus` (high-level command) |
+//! | [`control`] | `LogicBus` and estimate → `ChassisCommand`; `control/user_controller.rs` is where a user writes theirs |
+//! | [`safety`] | health → flags and verdict; arming; the permit without which no current leaves the board |
+//! | [`motor`] | CAN frames ↔ motors; zero-current frames; the bus budget |
+//! | [`diagnostics`] | one `DiagnosticsSnapshot` of all of the above |
+//! | [`tick`] | the 1 kHz tick: all stages from CAN frames in to CAN frames out |
+//!
+//! # How the firmware uses it
+//! - sbus task: `input::RemoteReceiver::feed(bytes, ts_us, |update| publish)`.
+//! - sensor task: walk `sensing::bmi088::INIT` and `sensing::ist8310::INIT`; then every 5 ms transfer
+//!   `bmi088::ACCEL_READ`/`GYRO_READ` and hand both answers to `sensing::ImuPipeline::process`; every 20 ms write
+//!   `ist8310::START_SINGLE_SHOT`, wait `ist8310::MEASUREMENT_US`, read `ist8310::READ_LEN` bytes from
+//!   `ist8310::READ_FROM` and hand them to `sensing::MagPipeline::process`.
+//! - logic task, 100 Hz: `logic::LogicStage::step`.
+//! - control task, 1 kHz: `tick::ControlLoop::on_can_frame` for each received frame, then
+//!   `tick::ControlLoop::tick(&inputs, now_us)`; send `outputs.frames`, publish the rest.
+//! - boot, panic and fault handlers: send `motor::safe_frames()` raw.
+
 #![cfg_attr(not(test), no_std)]
+#![forbid(unsafe_code)]
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::unwrap_used,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::indexing_slicing,
+        clippy::arithmetic_side_effects
+    )
+)]
+
+pub mod control;
+pub mod diagnostics;
+pub mod domain;
+pub mod estimation;
+pub mod input;
+pub mod logic;
+mod math;
+pub mod motor;
+pub mod safety;
+pub mod sensing;
+pub mod tick;

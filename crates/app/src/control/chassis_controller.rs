@@ -1,0 +1,30 @@
+//! The interface of a controller (seed section 3.4).
+
+use crate::domain::{
+    ChassisCommand, HighLevelCommand, OperatorState, SensorsSnapshot, StateEstimate,
+    WheelControllerConfig, WheelOdomConfig,
+};
+
+/// All a controller may look at in one tick.
+#[derive(Clone, Copy, Debug)]
+pub struct ChassisControllerInput<'a> {
+    pub sensors: &'a SensorsSnapshot,
+    pub estimate: &'a StateEstimate,
+    pub wheel_odom_cfg: &'a WheelOdomConfig,
+    pub wheel_ctrl_cfg: &'a WheelControllerConfig,
+    pub operator_state: &'a OperatorState,
+    pub hl_cmd: HighLevelCommand,
+}
+
+/// What it wants. Not valid = zero on every actuator.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ChassisControllerOutput {
+    pub cmd: ChassisCommand,
+    pub cmd_valid: bool,
+}
+
+/// A control algorithm, called at 1 kHz while a high-level command is valid. Whatever it returns is limited and may be
+/// cut to zero by the safety policy.
+pub trait ChassisController {
+    fn step(&mut self, input: &ChassisControllerInput<'_>) -> ChassisControllerOutput;
+}

@@ -1,0 +1,11 @@
+//! High-level command and measurements → actuator command.
+//!
+//! To write your own algorithm, edit `user_controller.rs`.
+
+mod chassis_controller;
+mod default_controller;
+mod user_controller;
+
+pub use chassis_controller::{ChassisController, ChassisControllerInput, ChassisControllerOutput};
+pub use default_controller::DefaultController;
+pub use user_controller::UserController;

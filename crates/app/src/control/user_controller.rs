@@ -1,0 +1,19 @@
+//! The place for your own control algorithm.
+//!
+//! Write it in `step`: read `input`, set `cmd.wheels[0]` (left) and `[1]` (right) in mA, set `cmd_valid`. State goes
+//! into the struct. As shipped it delegates to the default controller.
+
+use super::{
+    ChassisController, ChassisControllerInput, ChassisControllerOutput, DefaultController,
+};
+
+#[derive(Clone, Copy, Debug, Default)]
+pub struct UserController {
+    default: DefaultController,
+}
+
+impl ChassisController for UserController {
+    fn step(&mut self, input: &ChassisControllerInput<'_>) -> ChassisControllerOutput {
+        self.default.step(input)
+    }
+}

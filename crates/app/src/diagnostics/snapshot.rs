@@ -1,0 +1,38 @@
+//! `DiagnosticsSnapshot`, ROBOT_CPP's LiveWatch structure (seed section 0.7).
+
+use super::TickStats;
+use crate::{
+    domain::{
+        BusHealth, ChassisCommand, ImuState, MagState, MotorFeedback, OperatorState,
+        RemoteDiagnostics, RemoteState, ResetCause, SensorHealth, StateEstimate,
+    },
+    logic::LogicBus,
+    safety::{ArmingStatus, SafetyStatus},
+};
+
+/// Plain data, so that a debugger or the emulator can read every field by its name.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct DiagnosticsSnapshot {
+    pub ts_us: u64,
+    pub remote: RemoteState,
+    pub operator: OperatorState,
+    pub remote_diag: RemoteDiagnostics,
+    pub imu: ImuState,
+    pub mag: MagState,
+    pub motor: MotorFeedback,
+    pub estimate: StateEstimate,
+    pub logic: LogicBus,
+    /// What left the board in this tick, after limits and safety.
+    pub command: ChassisCommand,
+    pub arming: ArmingStatus,
+    pub safety: SafetyStatus,
+    /// Index = `BusId`.
+    pub can: [BusHealth; 2],
+    pub imu_health: SensorHealth,
+    pub mag_health: SensorHealth,
+    pub imu_calibrated: bool,
+    pub tick: TickStats,
+    pub reset_cause: ResetCause,
+    pub battery_v: f32,
+}

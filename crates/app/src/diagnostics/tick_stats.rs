@@ -1,0 +1,51 @@
+//! How regularly the control tick runs.
+
+use crate::domain::age_us;
+
+/// The tick's nominal period.
+const PERIOD_US: u32 = 1_000;
+
+/// Times as the control task sees them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(C)]
+pub struct TickStats {
+    pub count: u32,
+    /// Since the tick before.
+    pub dt_us: u32,
+    /// Distance of `dt_us` from the period.
+    pub jitter_us: u32,
+    pub max_jitter_us: u32,
+    /// Whole periods in which no tick ran.
+    pub missed: u32,
+    pub ts_us: u64,
+}
+
+impl TickStats {
+    pub fn tick(&mut self, now_us: u64) {
+        if self.count > 0 {
+            self.dt_us = age_us(self.ts_us, now_us);
+            self.jitter_us = self.dt_us.abs_diff(PERIOD_US);
+            self.max_jitter_us = self.max_jitter_us.max(self.jitter_us);
+            let periods = self.dt_us.saturating_add(PERIOD_US / 2) / PERIOD_US;
+            self.missed = self.missed.saturating_add(periods.saturating_sub(1));
+        }
+        self.count = self.count.wrapping_add(1);
+        self.ts_us = now_us;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_skipped_tick_is_counted_once() {
+        let mut stats = TickStats::default();
+        for now_us in [1_000, 2_000, 3_004, 6_001, 7_001] {
+            stats.tick(now_us);
+        }
+        assert_eq!((stats.count, stats.missed), (5, 2));
+        assert_eq!((stats.dt_us, stats.jitter_us), (1_000, 0));
+        assert_eq!(stats.max_jitter_us, 1_997);
+    }
+}

@@ -1,0 +1,73 @@
+//! Commands on their way from the pilot to the motors.
+
+/// What the pilot or a planner wants, normalised (seed section 3.3).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct HighLevelCommand {
+    /// Forward, −1 … 1.
+    pub vx: f32,
+    /// Turn, −1 … 1, counter-clockwise from above positive.
+    pub wz: f32,
+}
+
+/// Requested current of one wheel motor. Not yet limited: see [`MotorCurrent`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct WheelCommand {
+    pub current_ma: f32,
+}
+
+/// Commands of all actuators, wheel 0 = left, 1 = right.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct ChassisCommand {
+    pub wheels: [WheelCommand; 2],
+}
+
+/// A motor current that may leave the board: finite and inside the limit it was made with.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MotorCurrent {
+    ma: f32,
+}
+
+impl MotorCurrent {
+    pub const ZERO: Self = Self { ma: 0.0 };
+    /// Full scale of the C620 (datasheet): ±20 A.
+    pub const FULL_SCALE_MA: f32 = 20_000.0;
+
+    /// Clamps to ±`limit_ma`, and the limit itself to 0 … 20 A; NaN on either side gives zero.
+    pub fn clamped(requested_ma: f32, limit_ma: f32) -> Self {
+        if requested_ma.is_nan() || limit_ma.is_nan() {
+            return Self::ZERO;
+        }
+        let limit = limit_ma.clamp(0.0, Self::FULL_SCALE_MA);
+        Self {
+            ma: requested_ma.clamp(-limit, limit),
+        }
+    }
+
+    pub const fn ma(self) -> f32 {
+        self.ma
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn current_is_always_finite_and_limited() {
+        let cases = [
+            (f32::NAN, 8_000.0, 0.0),
+            (1.0, f32::NAN, 0.0),
+            (f32::INFINITY, 8_000.0, 8_000.0),
+            (f32::NEG_INFINITY, 8_000.0, -8_000.0),
+            (9_000.0, -1.0, 0.0),
+            (-30_000.0, f32::INFINITY, -20_000.0),
+            (123.0, 8_000.0, 123.0),
+        ];
+        for (requested, limit, expected) in cases {
+            assert_eq!(MotorCurrent::clamped(requested, limit).ma(), expected);
+        }
+    }
+}

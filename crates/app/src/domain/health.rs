@@ -1,0 +1,75 @@
+//! What the platform knows about its parts: filled by the firmware, judged by `safety`.
+
+/// Fault confinement state of a CAN controller (ISO 11898-1).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[repr(u8)]
+pub enum BusErrorState {
+    #[default]
+    Active = 0,
+    Passive = 1,
+    BusOff = 2,
+}
+
+/// Counters of one CAN bus, all since boot unless the name says otherwise.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(C)]
+pub struct BusHealth {
+    pub state: BusErrorState,
+    pub transmit_errors: u8,
+    pub receive_errors: u8,
+    pub tx_frames: u32,
+    /// Frames taken back because they had not left within their tick.
+    pub tx_aborted: u32,
+    /// Of those, how many since the last one that did leave.
+    pub tx_failures_in_row: u32,
+    pub rx_frames: u32,
+    /// Frames lost in the controller's FIFOs.
+    pub rx_overruns: u32,
+    /// Frames lost because the queue to the control tick was full.
+    pub rx_queue_full: u32,
+    pub bus_off_count: u32,
+}
+
+/// Health of one sensor, kept by the sensor task.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(C)]
+pub struct SensorHealth {
+    /// Brought up and answering.
+    pub ready: bool,
+    pub samples: u32,
+    /// Bus errors and rejected samples since boot.
+    pub errors: u32,
+    pub reinits: u32,
+}
+
+/// Why the chip started (RM0090, RCC_CSR).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[repr(u8)]
+pub enum ResetCause {
+    #[default]
+    Unknown = 0,
+    PowerOn = 1,
+    Pin = 2,
+    BrownOut = 3,
+    Software = 4,
+    IndependentWatchdog = 5,
+    WindowWatchdog = 6,
+    LowPower = 7,
+}
+
+/// Everything the safety policy needs to know about the platform.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct SystemHealth {
+    /// Index = `BusId`.
+    pub can: [BusHealth; 2],
+    pub imu: SensorHealth,
+    pub mag: SensorHealth,
+    /// Start-up gyro calibration finished.
+    pub imu_calibrated: bool,
+    pub reset_cause: ResetCause,
+    /// 0 while not measured.
+    pub battery_v: f32,
+}

@@ -1,0 +1,27 @@
+//! Types shared by all stages. Plain `repr(C)` data, so that a debugger or the emulator can read them by name.
+
+mod can;
+mod command;
+mod config;
+mod estimate;
+mod health;
+mod remote;
+mod sensors;
+
+pub use can::{BusId, CanFrame, StandardId};
+pub use command::{ChassisCommand, HighLevelCommand, MotorCurrent, WheelCommand};
+pub use config::{
+    ImuCalibration, MagCalibration, SafetyConfig, WheelControllerConfig, WheelOdomConfig,
+};
+pub use estimate::StateEstimate;
+pub use health::{BusErrorState, BusHealth, ResetCause, SensorHealth, SystemHealth};
+pub use remote::{OperatorState, RemoteDiagnostics, RemoteState, RemoteUpdate};
+pub use sensors::{ImuState, MagState, MotorFeedback, SensorsSnapshot, WheelFeedback};
+
+/// Microseconds from `then_us` to `now_us`, saturating at both ends; a `then_us` of 0 means never and gives `u32::MAX`.
+pub fn age_us(then_us: u64, now_us: u64) -> u32 {
+    if then_us == 0 {
+        return u32::MAX;
+    }
+    u32::try_from(now_us.saturating_sub(then_us)).unwrap_or(u32::MAX)
+}

@@ -1,0 +1,86 @@
+//! What the pilot's radio says.
+
+use super::age_us;
+
+/// Sticks and switches, normalised.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct RemoteState {
+    /// −1 … 1 each.
+    pub channels: [f32; 16],
+    /// Forward stick, −1 … 1, forward positive.
+    pub vx: f32,
+    /// Turn stick, −1 … 1, left turn positive.
+    pub wz: f32,
+    /// Last frame that really came over the air; 0 = none yet.
+    pub ts_us: u64,
+}
+
+/// What the pilot asks for with the switches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C)]
+pub struct OperatorState {
+    pub enabled: bool,
+    pub e_stop: bool,
+    /// Three-position switch: 0, 1, 2.
+    pub mode: u8,
+    pub ts_us: u64,
+}
+
+impl Default for OperatorState {
+    /// Until a frame says otherwise the operator wants a stop.
+    fn default() -> Self {
+        Self {
+            enabled: false,
+            e_stop: true,
+            mode: 0,
+            ts_us: 0,
+        }
+    }
+}
+
+/// Quality of the radio link.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct RemoteDiagnostics {
+    /// Frames a second on the wire, smoothed.
+    pub frame_rate_hz: f32,
+    /// Fraction of the last 64 frames without the frame-lost flag; frames before the first count as good.
+    pub quality: f32,
+    /// Accepted frames, with or without the frame-lost flag.
+    pub frames: u32,
+    /// Frames that carried the frame-lost flag (the receiver repeats old values in them).
+    pub lost_frames: u32,
+    /// Bytes that belonged to no accepted frame.
+    pub discarded_bytes: u32,
+    /// The receiver itself says that the radio is gone.
+    pub failsafe: bool,
+    /// Age of the last frame that came over the air; `u32::MAX` before the first.
+    pub age_us: u32,
+    /// Last frame on the wire, 0 = none yet.
+    pub frame_ts_us: u64,
+    /// Last frame that came over the air, 0 = none yet.
+    pub good_ts_us: u64,
+}
+
+impl RemoteDiagnostics {
+    /// The same link seen at `now_us`: ages grow and the rate falls when frames stay away.
+    #[must_use]
+    pub fn at(mut self, now_us: u64) -> Self {
+        self.age_us = age_us(self.good_ts_us, now_us);
+        let silence_us = age_us(self.frame_ts_us, now_us);
+        if silence_us > 0 {
+            self.frame_rate_hz = self.frame_rate_hz.min(2_000_000.0 / silence_us as f32);
+        }
+        self
+    }
+}
+
+/// One decoded frame: all that the radio stage publishes, together so that it is always consistent.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct RemoteUpdate {
+    pub state: RemoteState,
+    pub operator: OperatorState,
+    pub diagnostics: RemoteDiagnostics,
+}

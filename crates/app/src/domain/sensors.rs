@@ -1,0 +1,73 @@
+//! Measurements in physical units (seed section 3.1).
+
+/// One calibrated IMU sample in the body frame (x forward, y left, z up).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct ImuState {
+    /// Specific force: +9.8 on z at rest.
+    pub accel_mps2: [f32; 3],
+    /// Offset taken out.
+    pub gyro_dps: [f32; 3],
+    /// The offset that was taken out.
+    pub gyro_bias_dps: [f32; 3],
+    pub temperature_c: f32,
+    /// 0 = no sample yet.
+    pub ts_us: u64,
+}
+
+/// One calibrated magnetometer sample in the body frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct MagState {
+    pub mag_ut: [f32; 3],
+    /// 0 = no sample yet.
+    pub ts_us: u64,
+}
+
+/// Last report of one M3508.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct WheelFeedback {
+    /// Rotor angle, 0 … 8191 a turn.
+    pub rotor_angle: u16,
+    /// Rotor speed before the gear, right-hand rule about the outward shaft.
+    pub rpm: i16,
+    /// Torque current.
+    pub current_ma: f32,
+    pub temperature_c: u8,
+    /// `u32::MAX` before the first report.
+    pub age_us: u32,
+    /// 0 = no report yet.
+    pub ts_us: u64,
+}
+
+impl Default for WheelFeedback {
+    fn default() -> Self {
+        Self {
+            rotor_angle: 0,
+            rpm: 0,
+            current_ma: 0.0,
+            temperature_c: 0,
+            age_us: u32::MAX,
+            ts_us: 0,
+        }
+    }
+}
+
+/// All motors; wheel 0 = left, 1 = right.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct MotorFeedback {
+    pub wheels: [WheelFeedback; 2],
+    pub ts_us: u64,
+}
+
+/// What control sees of the world in one tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct SensorsSnapshot {
+    pub imu: ImuState,
+    pub mag: MagState,
+    pub motor: MotorFeedback,
+    pub ts_us: u64,
+}

@@ -1,0 +1,174 @@
+//! DJI DBUS (DT7/DR16): 18 bytes at 100 kbaud 8E1 every 14 ms, no header and no checksum (hardware.md section 6.2).
+//!
+//! A frame is exactly 18 bytes after silence, with every field inside its range; anything else up to the next silence
+//! is dropped.
+
+use super::channels;
+
+const FRAME_LEN: usize = 18;
+/// 11 bit at 100 kbaud.
+const BYTE_US: u64 = 110;
+/// Longer silence than any inside a frame, shorter than the 12 ms between frames.
+const GAP_US: u64 = 2_000;
+const CENTRE: u16 = 1024;
+/// DJI rejects anything further from the centre (the sticks end at ±660).
+const MAX_OFFSET: u16 = 700;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum DbusSwitch {
+    Up,
+    Middle,
+    Down,
+}
+
+impl DbusSwitch {
+    fn parse(bits: u8) -> Option<Self> {
+        match bits & 0x03 {
+            1 => Some(Self::Up),
+            3 => Some(Self::Middle),
+            2 => Some(Self::Down),
+            _ => None,
+        }
+    }
+}
+
+/// One frame as received. Mouse and keyboard are checked but not kept: nothing uses them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DbusFrame {
+    /// Right horizontal, right vertical, left horizontal, left vertical: 364 / 1024 / 1684.
+    pub sticks: [u16; 4],
+    pub right_switch: DbusSwitch,
+    pub left_switch: DbusSwitch,
+    /// 364 / 1024 / 1684.
+    pub wheel: u16,
+}
+
+impl DbusFrame {
+    /// `None` if a field is outside what the receiver can send.
+    pub fn parse(bytes: &[u8; FRAME_LEN]) -> Option<Self> {
+        let [packed @ .., _, _, wheel_low, wheel_high] = bytes;
+        let [
+            _,
+            _,
+            _,
+            _,
+            _,
+            switches,
+            _,
+            _,
+            _,
+            _,
+            _,
+            _,
+            left_button,
+            right_button,
+        ] = packed;
+        if *left_button > 1 || *right_button > 1 {
+            return None;
+        }
+        let mut sticks = [0; 4];
+        for (index, stick) in (0u8..).zip(sticks.iter_mut()) {
+            *stick = channels::channel(packed, index);
+        }
+        let wheel = u16::from_le_bytes([*wheel_low, *wheel_high]);
+        let in_range = |value: &u16| value.abs_diff(CENTRE) <= MAX_OFFSET;
+        if !sticks.iter().all(in_range) || !in_range(&wheel) {
+            return None;
+        }
+        Some(Self {
+            sticks,
+            right_switch: DbusSwitch::parse(switches >> 4)?,
+            left_switch: DbusSwitch::parse(switches >> 6)?,
+            wheel,
+        })
+    }
+}
+
+/// Finds frames in a byte stream.
+#[derive(Clone, Debug)]
+pub struct DbusParser {
+    window: [u8; FRAME_LEN],
+    filled: usize,
+    /// More bytes than a frame came without silence.
+    overrun: bool,
+    last_byte_us: Option<u64>,
+    discarded_bytes: u32,
+}
+
+impl Default for DbusParser {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl DbusParser {
+    pub const fn new() -> Self {
+        Self {
+            window: [0; FRAME_LEN],
+            filled: 0,
+            overrun: false,
+            last_byte_us: None,
+            discarded_bytes: 0,
+        }
+    }
+
+    /// Bytes since boot that belonged to no delivered frame.
+    pub const fn discarded_bytes(&self) -> u32 {
+        self.discarded_bytes
+    }
+
+    /// Takes the bytes that arrived up to `ts_us` (the time of the last one) in chunks of any length.
+    pub fn feed(&mut self, bytes: &[u8], ts_us: u64, mut sink: impl FnMut(DbusFrame)) {
+        if bytes.is_empty() {
+            return;
+        }
+        self.notice_silence(bytes.len(), ts_us);
+        for &byte in bytes {
+            self.push(byte);
+        }
+        self.last_byte_us = Some(ts_us);
+        if !self.overrun && self.filled == FRAME_LEN {
+            match DbusFrame::parse(&self.window) {
+                Some(frame) => {
+                    self.filled = 0;
+                    sink(frame);
+                }
+                None => self.drop_window(),
+            }
+            // Whatever follows without silence is not a frame.
+            self.overrun = true;
+        }
+    }
+
+    fn notice_silence(&mut self, arrived: usize, ts_us: u64) {
+        let first_byte_us = ts_us.saturating_sub((arrived as u64).saturating_mul(BYTE_US));
+        let silent = match self.last_byte_us {
+            None => true,
+            Some(last) => first_byte_us.saturating_sub(last) >= GAP_US,
+        };
+        if silent {
+            self.drop_window();
+            self.overrun = false;
+        }
+    }
+
+    fn push(&mut self, byte: u8) {
+        match self.window.get_mut(self.filled) {
+            Some(slot) if !self.overrun => {
+                *slot = byte;
+                self.filled = self.filled.saturating_add(1);
+            }
+            _ => {
+                self.overrun = true;
+                self.drop_window();
+                self.discarded_bytes = self.discarded_bytes.wrapping_add(1);
+            }
+        }
+    }
+
+    fn drop_window(&mut self) {
+        self.discarded_bytes = self.discarded_bytes.wrapping_add(self.filled as u32);
+        self.filled = 0;
+    }
+}

@@ -1,0 +1,105 @@
+//! Which channel means what.
+
+use super::{DbusFrame, DbusSwitch, SbusFrame, channels};
+use crate::domain::{OperatorState, RemoteState};
+
+/// Index of an SBUS channel, 0 to 15.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ChannelIndex(u8);
+
+impl ChannelIndex {
+    /// `None` above 15.
+    pub const fn new(index: u8) -> Option<Self> {
+        if index < 16 { Some(Self(index)) } else { None }
+    }
+
+    fn of(self, channels: &[f32; 16]) -> f32 {
+        channels.get(usize::from(self.0)).copied().unwrap_or(0.0)
+    }
+}
+
+/// SBUS channel assignment. DBUS needs none: its switches and sticks are labelled on the transmitter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RemoteMapping {
+    /// Stick right = positive = turn right, so `wz` is its negative.
+    pub steering: ChannelIndex,
+    pub drive: ChannelIndex,
+    /// High = enabled.
+    pub enable: ChannelIndex,
+    /// Low, middle, high = 0, 1, 2.
+    pub mode: ChannelIndex,
+    /// Low = run; anything else stops.
+    pub e_stop: ChannelIndex,
+}
+
+impl Default for RemoteMapping {
+    fn default() -> Self {
+        Self {
+            steering: ChannelIndex(0),
+            drive: ChannelIndex(1),
+            enable: ChannelIndex(4),
+            mode: ChannelIndex(5),
+            e_stop: ChannelIndex(6),
+        }
+    }
+}
+
+/// A switch is taken as thrown beyond half way.
+const SWITCH_THRESHOLD: f32 = 0.5;
+
+pub(super) fn from_sbus(
+    frame: &SbusFrame,
+    mapping: &RemoteMapping,
+    ts_us: u64,
+) -> (RemoteState, OperatorState) {
+    let channels = frame
+        .channels
+        .map(|raw| channels::normalise(raw, 172, 992, 1811));
+    let state = RemoteState {
+        vx: mapping.drive.of(&channels),
+        wz: -mapping.steering.of(&channels),
+        channels,
+        ts_us,
+    };
+    let operator = OperatorState {
+        enabled: mapping.enable.of(&channels) > SWITCH_THRESHOLD,
+        e_stop: mapping.e_stop.of(&channels) > -SWITCH_THRESHOLD,
+        mode: match mapping.mode.of(&channels) {
+            low if low < -SWITCH_THRESHOLD => 0,
+            high if high > SWITCH_THRESHOLD => 2,
+            _ => 1,
+        },
+        ts_us,
+    };
+    (state, operator)
+}
+
+pub(super) fn from_dbus(frame: &DbusFrame, ts_us: u64) -> (RemoteState, OperatorState) {
+    let stick = |raw| channels::normalise(raw, 364, 1024, 1684);
+    let [right_h, right_v, left_h, left_v] = frame.sticks.map(stick);
+    let mut channels = [0.0; 16];
+    for (channel, value) in
+        channels
+            .iter_mut()
+            .zip([right_h, right_v, left_h, left_v, stick(frame.wheel)])
+    {
+        *channel = value;
+    }
+    let state = RemoteState {
+        vx: right_v,
+        wz: -right_h,
+        channels,
+        ts_us,
+    };
+    let operator = OperatorState {
+        enabled: frame.right_switch == DbusSwitch::Up,
+        e_stop: frame.right_switch == DbusSwitch::Down,
+        mode: match frame.left_switch {
+            DbusSwitch::Up => 0,
+            DbusSwitch::Middle => 1,
+            DbusSwitch::Down => 2,
+        },
+        ts_us,
+    };
+    (state, operator)
+}

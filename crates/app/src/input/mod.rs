@@ -1,0 +1,12 @@
+//! Radio bytes → sticks, switches and link quality.
+
+mod channels;
+mod dbus;
+mod mapping;
+mod receiver;
+mod sbus;
+
+pub use dbus::{DbusFrame, DbusParser, DbusSwitch};
+pub use mapping::{ChannelIndex, RemoteMapping};
+pub use receiver::{RemoteFormat, RemoteReceiver};
+pub use sbus::{SbusFrame, SbusParser};

@@ -1,0 +1,160 @@
+//! SBUS: 25 bytes at 100 kbaud 8E2, header 0x0F, 16 × 11 bit, flags, footer (hardware.md section 6.1).
+//!
+//! A header byte may also appear inside a frame, so header and footer alone do not tell where a frame starts.
+//! A candidate is trusted if it starts after silence on the line, or right where the frame before it ended. Any other
+//! candidate is not delivered; if it looks like a frame it only makes the next one trusted, so a stream without
+//! silence is found again at its second frame.
+
+use super::channels;
+
+const FRAME_LEN: usize = 25;
+const HEADER: u8 = 0x0F;
+/// 12 bit at 100 kbaud.
+const BYTE_US: u64 = 120;
+/// Longer silence than any inside a frame, shorter than the shortest between frames (3 ms at a 6 ms period).
+const GAP_US: u64 = 2_000;
+
+/// One frame as received.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SbusFrame {
+    /// 0 … 2047, 172 / 992 / 1811 at −100 / 0 / +100 %.
+    pub channels: [u16; 16],
+    pub channel_17: bool,
+    pub channel_18: bool,
+    pub frame_lost: bool,
+    pub failsafe: bool,
+}
+
+impl SbusFrame {
+    /// `None` unless header and footer are those of SBUS or SBUS2.
+    pub fn parse(bytes: &[u8; FRAME_LEN]) -> Option<Self> {
+        let [header, payload @ .., flags, footer] = bytes;
+        if *header != HEADER || !is_footer(*footer) {
+            return None;
+        }
+        let mut channels = [0; 16];
+        for (index, value) in (0u8..).zip(channels.iter_mut()) {
+            *value = channels::channel(payload, index);
+        }
+        Some(Self {
+            channels,
+            channel_17: flags & 0x01 != 0,
+            channel_18: flags & 0x02 != 0,
+            frame_lost: flags & 0x04 != 0,
+            failsafe: flags & 0x08 != 0,
+        })
+    }
+}
+
+/// 0x00, or the SBUS2 telemetry slots.
+const fn is_footer(byte: u8) -> bool {
+    matches!(byte, 0x00 | 0x04 | 0x14 | 0x24 | 0x34)
+}
+
+/// Finds frames in a byte stream.
+#[derive(Clone, Debug)]
+pub struct SbusParser {
+    window: [u8; FRAME_LEN],
+    filled: usize,
+    /// The byte at the head of the window is where a frame must start.
+    aligned: bool,
+    last_byte_us: Option<u64>,
+    discarded_bytes: u32,
+}
+
+impl Default for SbusParser {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl SbusParser {
+    pub const fn new() -> Self {
+        Self {
+            window: [0; FRAME_LEN],
+            filled: 0,
+            aligned: false,
+            last_byte_us: None,
+            discarded_bytes: 0,
+        }
+    }
+
+    /// Bytes since boot that belonged to no delivered frame.
+    pub const fn discarded_bytes(&self) -> u32 {
+        self.discarded_bytes
+    }
+
+    /// Takes the bytes that arrived up to `ts_us` (the time of the last one) in chunks of any length.
+    pub fn feed(&mut self, bytes: &[u8], ts_us: u64, mut sink: impl FnMut(SbusFrame)) {
+        if bytes.is_empty() {
+            return;
+        }
+        self.notice_silence(bytes.len(), ts_us);
+        for &byte in bytes {
+            if let Some(frame) = self.push(byte) {
+                sink(frame);
+            }
+        }
+        self.last_byte_us = Some(ts_us);
+    }
+
+    fn notice_silence(&mut self, arrived: usize, ts_us: u64) {
+        let line_time_us = (arrived as u64).saturating_mul(BYTE_US);
+        let first_byte_us = ts_us.saturating_sub(line_time_us);
+        let silent = match self.last_byte_us {
+            None => true,
+            Some(last) => first_byte_us.saturating_sub(last) >= GAP_US,
+        };
+        if silent {
+            self.discard(self.filled);
+            self.aligned = true;
+        }
+    }
+
+    fn push(&mut self, byte: u8) -> Option<SbusFrame> {
+        if let Some(slot) = self.window.get_mut(self.filled) {
+            *slot = byte;
+            self.filled = self.filled.saturating_add(1);
+        }
+        self.skip_to_header();
+        if self.filled < FRAME_LEN {
+            return None;
+        }
+        let frame = SbusFrame::parse(&self.window);
+        if frame.is_none() {
+            self.aligned = false;
+            self.discard(1);
+            self.skip_to_header();
+            return None;
+        }
+        let trusted = self.aligned;
+        if trusted {
+            self.filled = 0;
+        } else {
+            self.discard(FRAME_LEN);
+        }
+        self.aligned = true;
+        frame.filter(|_| trusted)
+    }
+
+    fn skip_to_header(&mut self) {
+        let start = self
+            .window
+            .iter()
+            .take(self.filled)
+            .position(|&byte| byte == HEADER)
+            .unwrap_or(self.filled);
+        if start > 0 {
+            self.aligned = false;
+            self.discard(start);
+        }
+    }
+
+    /// Drops `count` bytes at the head of the window.
+    fn discard(&mut self, count: usize) {
+        let count = count.min(self.filled);
+        self.window.copy_within(count..self.filled, 0);
+        self.filled = self.filled.saturating_sub(count);
+        self.discarded_bytes = self.discarded_bytes.wrapping_add(count as u32);
+    }
+}

@@ -1,0 +1,138 @@
+//! Unit quaternions.
+
+use super::{
+    scalar,
+    vector::{self, Vector3},
+};
+
+/// A rotation of body vectors into the frame named by the owner.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quaternion {
+    pub w: f32,
+    pub x: f32,
+    pub y: f32,
+    pub z: f32,
+}
+
+impl Quaternion {
+    pub const IDENTITY: Self = Self {
+        w: 1.0,
+        x: 0.0,
+        y: 0.0,
+        z: 0.0,
+    };
+
+    /// Rotation by the vector `angle_rad` (axis times angle), whose length must stay below 1 rad.
+    pub fn from_small_rotation(angle_rad: Vector3) -> Self {
+        let squared = vector::dot(angle_rad, angle_rad);
+        let inverse = scalar::inverse_sqrt(squared);
+        let (sin, w) = scalar::sin_cos_small(0.5 * squared * inverse);
+        let [x, y, z] = vector::scale(angle_rad, sin * inverse);
+        Self { w, x, y, z }
+    }
+
+    /// Rotation about the vertical axis given cos and sin of the half angle.
+    pub const fn about_z(cos_half: f32, sin_half: f32) -> Self {
+        Self {
+            w: cos_half,
+            x: 0.0,
+            y: 0.0,
+            z: sin_half,
+        }
+    }
+
+    /// First `right`, then `self`.
+    #[must_use]
+    pub fn then_after(self, right: Self) -> Self {
+        let (a, b) = (self, right);
+        Self {
+            w: a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z,
+            x: a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+            y: a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
+            z: a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w,
+        }
+    }
+
+    /// Back to unit length; the identity if nothing is left to scale.
+    #[must_use]
+    pub fn normalised(self) -> Self {
+        let squared = self.w * self.w + self.x * self.x + self.y * self.y + self.z * self.z;
+        let inverse = scalar::inverse_sqrt(squared);
+        if inverse == 0.0 {
+            return Self::IDENTITY;
+        }
+        Self {
+            w: self.w * inverse,
+            x: self.x * inverse,
+            y: self.y * inverse,
+            z: self.z * inverse,
+        }
+    }
+
+    pub fn rotate(self, v: Vector3) -> Vector3 {
+        let rows = self.rotation_matrix();
+        rows.map(|row| vector::dot(row, v))
+    }
+
+    /// Rows of the matrix that does what the quaternion does.
+    pub fn rotation_matrix(self) -> [Vector3; 3] {
+        let Self { w, x, y, z } = self;
+        let (xx, yy, zz) = (2.0 * x * x, 2.0 * y * y, 2.0 * z * z);
+        let (xy, xz, yz) = (2.0 * x * y, 2.0 * x * z, 2.0 * y * z);
+        let (wx, wy, wz) = (2.0 * w * x, 2.0 * w * y, 2.0 * w * z);
+        [
+            [1.0 - yy - zz, xy - wz, xz + wy],
+            [xy + wz, 1.0 - xx - zz, yz - wx],
+            [xz - wy, yz + wx, 1.0 - xx - yy],
+        ]
+    }
+
+    /// Roll, pitch, yaw (rotations about x, then y, then z of the fixed frame).
+    pub fn roll_pitch_yaw(self) -> Vector3 {
+        let Self { w, x, y, z } = self;
+        let roll = scalar::atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y));
+        let pitch = scalar::asin(2.0 * (w * y - z * x));
+        let yaw = scalar::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z));
+        [roll, pitch, yaw]
+    }
+
+    pub const fn to_wxyz(self) -> [f32; 4] {
+        [self.w, self.x, self.y, self.z]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Quarter turns whose result is known by hand.
+    #[test]
+    fn a_quarter_turn_to_the_left_moves_x_to_y() {
+        let half = core::f32::consts::FRAC_1_SQRT_2;
+        let left = Quaternion::about_z(half, half);
+        let [x, y, z] = left.rotate([1.0, 0.0, 0.0]);
+        assert!(x.abs() < 1e-6 && (y - 1.0).abs() < 1e-6 && z.abs() < 1e-6);
+        let [_, _, yaw] = left.roll_pitch_yaw();
+        assert!((yaw - core::f32::consts::FRAC_PI_2).abs() < 1e-6);
+    }
+
+    #[test]
+    fn small_rotations_add_up_to_a_full_turn() {
+        let step = Quaternion::from_small_rotation([0.0, 0.0, core::f32::consts::TAU / 1000.0]);
+        let mut q = Quaternion::IDENTITY;
+        for _ in 0..1000 {
+            q = q.then_after(step).normalised();
+        }
+        assert!((q.w.abs() - 1.0).abs() < 1e-6 && q.z.abs() < 1e-4);
+    }
+
+    #[test]
+    fn nose_up_is_negative_pitch_about_left_axis() {
+        // Right-hand rule about y (left): positive pitch turns x (forward) towards −z (down).
+        let q = Quaternion::from_small_rotation([0.0, 0.2, 0.0]);
+        let [_, _, z] = q.rotate([1.0, 0.0, 0.0]);
+        assert!((z + 0.2f32.sin()).abs() < 1e-6);
+        let [roll, pitch, yaw] = q.roll_pitch_yaw();
+        assert!(roll.abs() < 1e-6 && (pitch - 0.2).abs() < 1e-6 && yaw.abs() < 1e-6);
+    }
+}

@@ -1,0 +1,106 @@
+//! What is wrong, as bits whose positions never change: recordings and the PC link carry them.
+
+/// A set of conditions.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(transparent)]
+pub struct SafetyFlags(u32);
+
+impl SafetyFlags {
+    pub const NONE: Self = Self(0);
+    /// No frame over the air within the time limit.
+    pub const REMOTE_LOST: Self = Self(1 << 0);
+    /// The receiver reports the loss of the radio.
+    pub const REMOTE_FAILSAFE: Self = Self(1 << 1);
+    /// Too many of the last frames were lost.
+    pub const REMOTE_QUALITY: Self = Self(1 << 2);
+    pub const E_STOP: Self = Self(1 << 3);
+    pub const ESTIMATE_INVALID: Self = Self(1 << 4);
+    pub const IMU_STALE: Self = Self(1 << 5);
+    /// Too many bus errors or rejected samples (SPI).
+    pub const IMU_ERRORS: Self = Self(1 << 6);
+    /// Too many bus errors or rejected samples (I2C).
+    pub const MAG_ERRORS: Self = Self(1 << 7);
+    pub const CAN1_FAULT: Self = Self(1 << 8);
+    pub const CAN2_FAULT: Self = Self(1 << 9);
+    pub const CAN1_CONGESTED: Self = Self(1 << 10);
+    pub const CAN2_CONGESTED: Self = Self(1 << 11);
+    /// No feedback of the left wheel within the time limit; control falls back to open loop.
+    pub const WHEEL_LEFT_SILENT: Self = Self(1 << 12);
+    pub const WHEEL_RIGHT_SILENT: Self = Self(1 << 13);
+    /// Neither kind of command on the logic bus is fresh.
+    pub const COMMAND_STALE: Self = Self(1 << 14);
+
+    /// Any of these stops every actuator.
+    pub const GLOBAL_STOP: Self = Self(
+        Self::REMOTE_LOST.0
+            | Self::REMOTE_FAILSAFE.0
+            | Self::REMOTE_QUALITY.0
+            | Self::E_STOP.0
+            | Self::ESTIMATE_INVALID.0
+            | Self::IMU_STALE.0
+            | Self::IMU_ERRORS.0
+            | Self::MAG_ERRORS.0,
+    );
+
+    const NAMES: [(Self, &'static str); 15] = [
+        (Self::REMOTE_LOST, "remote-lost"),
+        (Self::REMOTE_FAILSAFE, "remote-failsafe"),
+        (Self::REMOTE_QUALITY, "remote-quality"),
+        (Self::E_STOP, "e-stop"),
+        (Self::ESTIMATE_INVALID, "estimate-invalid"),
+        (Self::IMU_STALE, "imu-stale"),
+        (Self::IMU_ERRORS, "imu-errors"),
+        (Self::MAG_ERRORS, "mag-errors"),
+        (Self::CAN1_FAULT, "can1-fault"),
+        (Self::CAN2_FAULT, "can2-fault"),
+        (Self::CAN1_CONGESTED, "can1-congested"),
+        (Self::CAN2_CONGESTED, "can2-congested"),
+        (Self::WHEEL_LEFT_SILENT, "wheel-left-silent"),
+        (Self::WHEEL_RIGHT_SILENT, "wheel-right-silent"),
+        (Self::COMMAND_STALE, "command-stale"),
+    ];
+
+    pub const fn bits(self) -> u32 {
+        self.0
+    }
+
+    pub const fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+
+    /// True if the two sets share a condition.
+    pub const fn intersects(self, other: Self) -> bool {
+        self.0 & other.0 != 0
+    }
+
+    #[must_use]
+    pub const fn and(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    pub(super) fn set(&mut self, flag: Self, active: bool) {
+        if active {
+            self.0 |= flag.0;
+        }
+    }
+
+    /// Names of the conditions in the set, lowest bit first.
+    pub fn names(self) -> impl Iterator<Item = &'static str> {
+        Self::NAMES
+            .into_iter()
+            .filter(move |(flag, _)| self.intersects(*flag))
+            .map(|(_, name)| name)
+    }
+}
+
+#[cfg(feature = "defmt")]
+impl defmt::Format for SafetyFlags {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        if self.is_empty() {
+            defmt::write!(f, "none");
+        }
+        for name in self.names() {
+            defmt::write!(f, "{=str} ", name);
+        }
+    }
+}

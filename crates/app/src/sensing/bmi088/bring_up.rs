@@ -1,0 +1,157 @@
+//! The bring-up sequence (hardware.md section 4.2, in the order of Bosch's own driver).
+
+use super::registers::{READ, SOFT_RESET_COMMAND, accel, gyro};
+
+/// Which chip select.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum SpiTarget {
+    Accel,
+    Gyro,
+}
+
+/// What a failed check says about the sensor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum InitCheck {
+    AccelMissing,
+    AccelPowerNotKept,
+    AccelFilterNotKept,
+    AccelRangeNotKept,
+    GyroMissing,
+    GyroRangeNotKept,
+    GyroBandwidthNotKept,
+}
+
+/// One step of the sequence, to be carried out in order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum InitStep {
+    /// Read a register and ignore it: the rising chip select switches the accelerometer from I2C to SPI.
+    DummyRead { target: SpiTarget, register: u8 },
+    /// Send [`write_command`].
+    Write {
+        target: SpiTarget,
+        register: u8,
+        value: u8,
+    },
+    /// Send [`read_command`]; the last byte received must be `expected` or the bring-up has failed.
+    Check {
+        target: SpiTarget,
+        register: u8,
+        expected: u8,
+        failure: InitCheck,
+    },
+    /// Leave the sensor alone for this long.
+    Wait { us: u32 },
+}
+
+/// Bytes to send for a register write.
+pub const fn write_command(register: u8, value: u8) -> [u8; 2] {
+    [register & !READ, value]
+}
+
+/// Bytes to send for a one-byte register read, and how many of the three to send: the accelerometer answers one
+/// byte later than the gyro. The value is the last byte received.
+pub const fn read_command(target: SpiTarget, register: u8) -> ([u8; 3], usize) {
+    let len = match target {
+        SpiTarget::Accel => 3,
+        SpiTarget::Gyro => 2,
+    };
+    ([register | READ, 0, 0], len)
+}
+
+const fn accel_write(register: u8, value: u8) -> InitStep {
+    InitStep::Write {
+        target: SpiTarget::Accel,
+        register,
+        value,
+    }
+}
+
+const fn accel_check(register: u8, expected: u8, failure: InitCheck) -> InitStep {
+    InitStep::Check {
+        target: SpiTarget::Accel,
+        register,
+        expected,
+        failure,
+    }
+}
+
+const fn gyro_write(register: u8, value: u8) -> InitStep {
+    InitStep::Write {
+        target: SpiTarget::Gyro,
+        register,
+        value,
+    }
+}
+
+const fn gyro_check(register: u8, expected: u8, failure: InitCheck) -> InitStep {
+    InitStep::Check {
+        target: SpiTarget::Gyro,
+        register,
+        expected,
+        failure,
+    }
+}
+
+const SELECT_SPI: InitStep = InitStep::DummyRead {
+    target: SpiTarget::Accel,
+    register: accel::CHIP_ID,
+};
+
+/// Takes about 130 ms, nearly all of it waiting. Also right for a sensor that is already running.
+pub const INIT: &[InitStep] = &[
+    // Accelerometer: start-up after reset takes 1 ms.
+    SELECT_SPI,
+    accel_write(accel::SOFT_RESET, SOFT_RESET_COMMAND),
+    InitStep::Wait { us: 2_000 },
+    SELECT_SPI,
+    InitStep::Wait { us: 100 },
+    accel_check(
+        accel::CHIP_ID,
+        accel::CHIP_ID_VALUE,
+        InitCheck::AccelMissing,
+    ),
+    // Out of suspend: 450 µs between writes until active, 5 ms as Bosch's driver waits.
+    accel_write(accel::PWR_CONF, accel::PWR_CONF_ACTIVE),
+    InitStep::Wait { us: 5_000 },
+    accel_write(accel::PWR_CTRL, accel::PWR_CTRL_ON),
+    InitStep::Wait { us: 5_000 },
+    accel_write(accel::CONF, accel::CONF_400HZ_OSR2),
+    InitStep::Wait { us: 40_000 },
+    accel_write(accel::RANGE, accel::RANGE_12G),
+    InitStep::Wait { us: 100 },
+    accel_check(
+        accel::PWR_CTRL,
+        accel::PWR_CTRL_ON,
+        InitCheck::AccelPowerNotKept,
+    ),
+    accel_check(
+        accel::CONF,
+        accel::CONF_400HZ_OSR2,
+        InitCheck::AccelFilterNotKept,
+    ),
+    accel_check(accel::RANGE, accel::RANGE_12G, InitCheck::AccelRangeNotKept),
+    // Gyro: no traffic for 30 ms after reset.
+    gyro_write(gyro::SOFT_RESET, SOFT_RESET_COMMAND),
+    InitStep::Wait { us: 40_000 },
+    gyro_check(gyro::CHIP_ID, gyro::CHIP_ID_VALUE, InitCheck::GyroMissing),
+    gyro_write(gyro::POWER, gyro::POWER_NORMAL),
+    InitStep::Wait { us: 30_000 },
+    gyro_write(gyro::RANGE, gyro::RANGE_2000_DPS),
+    InitStep::Wait { us: 100 },
+    gyro_write(gyro::BANDWIDTH, gyro::BANDWIDTH_400HZ_47HZ),
+    InitStep::Wait { us: 100 },
+    gyro_check(
+        gyro::RANGE,
+        gyro::RANGE_2000_DPS,
+        InitCheck::GyroRangeNotKept,
+    ),
+    gyro_check(
+        gyro::BANDWIDTH,
+        gyro::BANDWIDTH_400HZ_47HZ,
+        InitCheck::GyroBandwidthNotKept,
+    ),
+    // First filtered samples.
+    InitStep::Wait { us: 5_000 },
+];

@@ -1,0 +1,37 @@
+//! Register addresses and the settings used here.
+
+/// Bit 7 of the first byte of a transfer.
+pub const READ: u8 = 0x80;
+
+pub mod accel {
+    pub const CHIP_ID: u8 = 0x00;
+    pub const CHIP_ID_VALUE: u8 = 0x1E;
+    /// First of X, Y, Z; sensor time follows at 0x18, temperature at 0x22.
+    pub const DATA: u8 = 0x12;
+    pub const CONF: u8 = 0x40;
+    /// 400 Hz, OSR2: 75 Hz bandwidth, below the 100 Hz that polling at 200 Hz can see.
+    pub const CONF_400HZ_OSR2: u8 = 0x9A;
+    pub const RANGE: u8 = 0x41;
+    pub const RANGE_12G: u8 = 0x02;
+    pub const PWR_CONF: u8 = 0x7C;
+    pub const PWR_CONF_ACTIVE: u8 = 0x00;
+    pub const PWR_CTRL: u8 = 0x7D;
+    pub const PWR_CTRL_ON: u8 = 0x04;
+    pub const SOFT_RESET: u8 = 0x7E;
+}
+
+pub mod gyro {
+    pub const CHIP_ID: u8 = 0x00;
+    pub const CHIP_ID_VALUE: u8 = 0x0F;
+    pub const RANGE: u8 = 0x0F;
+    pub const RANGE_2000_DPS: u8 = 0x00;
+    pub const BANDWIDTH: u8 = 0x10;
+    /// 400 Hz with 47 Hz bandwidth; bit 7 always reads 1.
+    pub const BANDWIDTH_400HZ_47HZ: u8 = 0x83;
+    pub const POWER: u8 = 0x11;
+    pub const POWER_NORMAL: u8 = 0x00;
+    pub const SOFT_RESET: u8 = 0x14;
+}
+
+/// Written to either `SOFT_RESET`.
+pub const SOFT_RESET_COMMAND: u8 = 0xB6;

@@ -1,0 +1,12 @@
+//! Sensor offsets and scales.
+
+mod startup_gyro_bias;
+
+pub use startup_gyro_bias::StartupGyroBias;
+
+use crate::math::{Vector3, vector};
+
+/// (raw − bias) · scale, axis by axis.
+pub(super) fn correct(raw: Vector3, bias: Vector3, scale: Vector3) -> Vector3 {
+    vector::multiply(vector::sub(raw, bias), scale)
+}

@@ -1,0 +1,191 @@
+//! The gyro offset, averaged over the first second in which the robot stands still.
+
+use crate::{
+    domain::age_us,
+    math::{Vector3, vector},
+};
+
+const MIN_SAMPLES: u16 = 200;
+const MIN_SPAN_US: u32 = 1_000_000;
+/// A pause in the samples longer than this starts the second anew.
+const MAX_PAUSE_US: u32 = 50_000;
+/// Standing still: the BMI088 shows 0.1 °/s rms at 47 Hz bandwidth.
+const MAX_GYRO_STD_DPS: f32 = 0.4;
+const MAX_GYRO_EXCURSION_DPS: f32 = 3.0;
+/// Largest zero-rate offset that is taken for an offset (datasheet: ±1 °/s typical).
+const MAX_BIAS_DPS: f32 = 5.0;
+const GRAVITY_MPS2: f32 = 9.806_65;
+const MAX_GRAVITY_ERROR_MPS2: f32 = 1.0;
+const MAX_ACCEL_EXCURSION_MPS2: f32 = 0.7;
+
+/// Feed it every sample; the first still second fixes the offset for good.
+#[derive(Clone, Debug, Default)]
+pub struct StartupGyroBias {
+    window: Option<Window>,
+    bias_dps: Option<Vector3>,
+}
+
+/// Sums relative to the first sample, so that single precision is enough.
+#[derive(Clone, Debug)]
+struct Window {
+    start_us: u64,
+    last_us: u64,
+    samples: u16,
+    first_gyro_dps: Vector3,
+    first_accel_mps2: Vector3,
+    sum_dps: Vector3,
+    sum_squares: Vector3,
+}
+
+impl StartupGyroBias {
+    pub const fn new() -> Self {
+        Self {
+            window: None,
+            bias_dps: None,
+        }
+    }
+
+    /// °/s, once known.
+    pub const fn bias_dps(&self) -> Option<Vector3> {
+        self.bias_dps
+    }
+
+    /// 0 … 1.
+    pub fn progress(&self) -> f32 {
+        match (&self.bias_dps, &self.window) {
+            (Some(_), _) => 1.0,
+            (None, Some(window)) => {
+                f32::from(window.samples) / f32::from(MIN_SAMPLES.max(window.samples))
+            }
+            (None, None) => 0.0,
+        }
+    }
+
+    /// `gyro_dps` with its offset still in it.
+    pub fn feed(&mut self, gyro_dps: Vector3, accel_mps2: Vector3, ts_us: u64) {
+        if self.bias_dps.is_some() {
+            return;
+        }
+        let window = match self.window.take() {
+            Some(window) if window.continues_with(gyro_dps, accel_mps2, ts_us) => window,
+            _ => Window::starting_with(gyro_dps, accel_mps2, ts_us),
+        };
+        let window = window.with(gyro_dps, ts_us);
+        if window.samples < MIN_SAMPLES || age_us(window.start_us, ts_us) < MIN_SPAN_US {
+            self.window = Some(window);
+        } else {
+            self.bias_dps = window.still_mean_dps();
+        }
+    }
+}
+
+impl Window {
+    fn starting_with(gyro_dps: Vector3, accel_mps2: Vector3, ts_us: u64) -> Self {
+        Self {
+            start_us: ts_us,
+            last_us: ts_us,
+            samples: 0,
+            first_gyro_dps: gyro_dps,
+            first_accel_mps2: accel_mps2,
+            sum_dps: [0.0; 3],
+            sum_squares: [0.0; 3],
+        }
+    }
+
+    fn continues_with(&self, gyro_dps: Vector3, accel_mps2: Vector3, ts_us: u64) -> bool {
+        let gravity_error = (vector::norm(accel_mps2) - GRAVITY_MPS2).abs();
+        within(gyro_dps, self.first_gyro_dps, MAX_GYRO_EXCURSION_DPS)
+            && within(accel_mps2, self.first_accel_mps2, MAX_ACCEL_EXCURSION_MPS2)
+            && gravity_error < MAX_GRAVITY_ERROR_MPS2
+            && age_us(self.last_us, ts_us) < MAX_PAUSE_US
+            && ts_us > self.last_us
+    }
+
+    fn with(mut self, gyro_dps: Vector3, ts_us: u64) -> Self {
+        let offset = vector::sub(gyro_dps, self.first_gyro_dps);
+        self.sum_dps = vector::add(self.sum_dps, offset);
+        self.sum_squares = vector::add(self.sum_squares, vector::multiply(offset, offset));
+        self.samples = self.samples.saturating_add(1);
+        self.last_us = ts_us;
+        self
+    }
+
+    /// The mean rate, if its spread and size say that the robot stood still.
+    fn still_mean_dps(&self) -> Option<Vector3> {
+        let inverse = 1.0 / f32::from(self.samples);
+        let mean_offset = vector::scale(self.sum_dps, inverse);
+        let variance = vector::sub(
+            vector::scale(self.sum_squares, inverse),
+            vector::multiply(mean_offset, mean_offset),
+        );
+        let mean = vector::add(self.first_gyro_dps, mean_offset);
+        let quiet = variance
+            .iter()
+            .all(|&value| value < MAX_GYRO_STD_DPS * MAX_GYRO_STD_DPS);
+        let plausible = mean.iter().all(|value| value.abs() < MAX_BIAS_DPS);
+        (quiet && plausible).then_some(mean)
+    }
+}
+
+fn within(a: Vector3, b: Vector3, limit: f32) -> bool {
+    vector::sub(a, b).iter().all(|value| value.abs() < limit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LEVEL: Vector3 = [0.0, 0.0, 9.81];
+
+    fn feed_still(bias: &mut StartupGyroBias, samples: u64, from_us: u64, rate: Vector3) {
+        for index in 0..samples {
+            let ripple = if index % 2 == 0 { 0.1 } else { -0.1 };
+            bias.feed(
+                vector::add(rate, [ripple, -ripple, ripple]),
+                LEVEL,
+                from_us + index * 5_000,
+            );
+        }
+    }
+
+    #[test]
+    fn one_still_second_gives_the_mean() {
+        let mut bias = StartupGyroBias::new();
+        feed_still(&mut bias, 200, 1, [0.5, -0.7, 0.2]);
+        assert_eq!(bias.bias_dps(), None, "0.995 s are not a second");
+        assert!(bias.progress() > 0.99);
+        feed_still(&mut bias, 1, 1 + 200 * 5_000, [0.5, -0.7, 0.2]);
+        let found = bias.bias_dps().unwrap();
+        for (got, expected) in found.iter().zip([0.5, -0.7, 0.2]) {
+            assert!((got - expected).abs() < 2e-3, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn a_bump_starts_the_second_anew() {
+        let mut bias = StartupGyroBias::new();
+        feed_still(&mut bias, 150, 1, [0.0; 3]);
+        bias.feed([10.0, 0.0, 0.0], LEVEL, 1 + 150 * 5_000);
+        feed_still(&mut bias, 199, 1 + 151 * 5_000, [0.0; 3]);
+        assert_eq!(bias.bias_dps(), None);
+        feed_still(&mut bias, 3, 1 + 350 * 5_000, [0.0; 3]);
+        assert!(bias.bias_dps().is_some());
+    }
+
+    #[test]
+    fn a_shaking_or_falling_or_turning_robot_is_not_still() {
+        let mut shaking = StartupGyroBias::new();
+        let mut falling = StartupGyroBias::new();
+        let mut turning = StartupGyroBias::new();
+        for index in 0..2_000u64 {
+            let ts_us = 1 + index * 5_000;
+            let swing = if index % 2 == 0 { 1.0 } else { -1.0 };
+            shaking.feed([swing, 0.0, 0.0], LEVEL, ts_us);
+            falling.feed([0.0; 3], [0.0, 0.0, 0.5], ts_us);
+            turning.feed([0.0, 0.0, 20.0], LEVEL, ts_us);
+        }
+        assert_eq!(shaking.bias_dps(), None);
+        assert_eq!(falling.bias_dps(), None);
+        assert_eq!(turning.bias_dps(), None);
+    }
+}

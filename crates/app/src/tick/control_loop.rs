@@ -1,0 +1,199 @@
+//! All stages in the order in which data flows.
+
+use heapless::Vec;
+
+use crate::{
+    control::{ChassisController, ChassisControllerInput, UserController},
+    diagnostics::{DiagnosticsSnapshot, TickStats},
+    domain::{
+        BusId, CanFrame, ChassisCommand, ImuState, MagState, RemoteUpdate, SafetyConfig,
+        SensorsSnapshot, StateEstimate, SystemHealth, WheelControllerConfig, WheelOdomConfig,
+        age_us,
+    },
+    estimation::InsEstimator,
+    logic::LogicBus,
+    motor::MotorManager,
+    safety::{Arming, ArmingInputs, SafetyInputs, SafetyPolicy, TorquePermit},
+};
+
+/// What fits the tick to one robot.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ControlConfig {
+    pub wheel_odom: WheelOdomConfig,
+    pub wheel_ctrl: WheelControllerConfig,
+    pub safety: SafetyConfig,
+}
+
+/// The latest snapshot of each producer.
+#[derive(Clone, Copy, Debug)]
+pub struct ControlInputs<'a> {
+    pub remote: &'a RemoteUpdate,
+    pub imu: &'a ImuState,
+    pub mag: &'a MagState,
+    pub logic: &'a LogicBus,
+    pub health: &'a SystemHealth,
+}
+
+/// What one tick produced.
+#[derive(Clone, Copy, Debug)]
+pub struct ControlOutputs<'a> {
+    /// To be sent now, or never: the next tick brings newer ones.
+    pub frames: &'a [(BusId, CanFrame)],
+    pub sensors: &'a SensorsSnapshot,
+    pub estimate: &'a StateEstimate,
+    pub diagnostics: &'a DiagnosticsSnapshot,
+}
+
+/// State of all stages of the tick. Same calls, same results, bit for bit.
+#[derive(Clone, Debug)]
+pub struct ControlLoop<C: ChassisController = UserController> {
+    config: ControlConfig,
+    controller: C,
+    motors: MotorManager,
+    estimator: InsEstimator,
+    policy: SafetyPolicy,
+    arming: Arming,
+    tick: TickStats,
+    sensors: SensorsSnapshot,
+    diagnostics: DiagnosticsSnapshot,
+    frames: Vec<(BusId, CanFrame), 8>,
+}
+
+impl<C: ChassisController> ControlLoop<C> {
+    pub fn new(config: ControlConfig, controller: C) -> Self {
+        Self {
+            config,
+            controller,
+            motors: MotorManager::default(),
+            estimator: InsEstimator::new(config.wheel_odom),
+            policy: SafetyPolicy::new(config.safety),
+            arming: Arming::new(config.safety),
+            tick: TickStats::default(),
+            sensors: SensorsSnapshot::default(),
+            diagnostics: DiagnosticsSnapshot::default(),
+            frames: Vec::new(),
+        }
+    }
+
+    /// Every frame received since the last tick, in order of arrival.
+    pub fn on_can_frame(&mut self, bus: BusId, frame: &CanFrame, now_us: u64) {
+        self.motors.route_frame(bus, frame, now_us);
+    }
+
+    /// One tick; `now_us` is when it began.
+    pub fn tick(&mut self, inputs: &ControlInputs<'_>, now_us: u64) -> ControlOutputs<'_> {
+        self.tick.tick(now_us);
+        self.sense(inputs, now_us);
+        let permit = self.judge(inputs, now_us);
+        self.act(inputs, permit.as_ref(), now_us);
+        self.record(inputs, now_us);
+        ControlOutputs {
+            frames: &self.frames,
+            sensors: &self.sensors,
+            estimate: &self.diagnostics.estimate,
+            diagnostics: &self.diagnostics,
+        }
+    }
+
+    fn sense(&mut self, inputs: &ControlInputs<'_>, now_us: u64) {
+        let sensors = &mut self.sensors;
+        sensors.imu = *inputs.imu;
+        sensors.mag = *inputs.mag;
+        sensors.motor = *self.motors.feedback(now_us);
+        sensors.ts_us = now_us;
+        self.diagnostics.estimate =
+            *self
+                .estimator
+                .step(&sensors.imu, &sensors.mag, &sensors.motor, now_us);
+    }
+
+    fn judge(&mut self, inputs: &ControlInputs<'_>, now_us: u64) -> Option<TorquePermit> {
+        let diagnostics = &mut self.diagnostics;
+        diagnostics.remote_diag = inputs.remote.diagnostics.at(now_us);
+        diagnostics.safety = self.policy.evaluate(
+            &SafetyInputs {
+                remote: &diagnostics.remote_diag,
+                operator: &inputs.remote.operator,
+                imu_ts_us: inputs.imu.ts_us,
+                estimate: &diagnostics.estimate,
+                motor: &self.sensors.motor,
+                motor_timeout_us: self.config.wheel_ctrl.feedback_timeout_us,
+                command_ts_us: inputs.logic.ts_us,
+                health: inputs.health,
+            },
+            now_us,
+        );
+        let (status, token) = self.arming.step(
+            &ArmingInputs {
+                remote: &inputs.remote.state,
+                remote_age_us: diagnostics.remote_diag.age_us,
+                operator: &inputs.remote.operator,
+                estimate_valid: diagnostics.estimate.valid,
+                calibrated: inputs.health.imu_calibrated,
+                safety: &diagnostics.safety,
+            },
+            now_us,
+        );
+        diagnostics.arming = status;
+        token.map(|token| TorquePermit::new(token, &diagnostics.safety))
+    }
+
+    /// Without a permit no controller runs: one with memory must not wind up against a standing robot.
+    fn act(&mut self, inputs: &ControlInputs<'_>, permit: Option<&TorquePermit>, now_us: u64) {
+        let wanted = match permit {
+            Some(_) => self.wanted_command(inputs, now_us),
+            None => ChassisCommand::default(),
+        };
+        let limit_ma = self.config.wheel_ctrl.current_limit_ma;
+        let (frame, sent) = self.motors.compose(&wanted, permit, limit_ma);
+        self.frames.clear();
+        // One frame, room for eight.
+        let _ = self.frames.push(frame);
+        self.diagnostics.command = sent;
+    }
+
+    fn wanted_command(&mut self, inputs: &ControlInputs<'_>, now_us: u64) -> ChassisCommand {
+        let logic = inputs.logic;
+        if age_us(logic.ts_us, now_us) > self.config.safety.command_timeout_us {
+            return ChassisCommand::default();
+        }
+        if logic.cmd_valid {
+            return logic.cmd;
+        }
+        if !logic.hl_valid {
+            return ChassisCommand::default();
+        }
+        let output = self.controller.step(&ChassisControllerInput {
+            sensors: &self.sensors,
+            estimate: &self.diagnostics.estimate,
+            wheel_odom_cfg: &self.config.wheel_odom,
+            wheel_ctrl_cfg: &self.config.wheel_ctrl,
+            operator_state: &inputs.remote.operator,
+            hl_cmd: logic.hl_cmd,
+        });
+        if output.cmd_valid {
+            output.cmd
+        } else {
+            ChassisCommand::default()
+        }
+    }
+
+    fn record(&mut self, inputs: &ControlInputs<'_>, now_us: u64) {
+        let diagnostics = &mut self.diagnostics;
+        let health = inputs.health;
+        diagnostics.ts_us = now_us;
+        diagnostics.remote = inputs.remote.state;
+        diagnostics.operator = inputs.remote.operator;
+        diagnostics.imu = self.sensors.imu;
+        diagnostics.mag = self.sensors.mag;
+        diagnostics.motor = self.sensors.motor;
+        diagnostics.logic = *inputs.logic;
+        diagnostics.can = health.can;
+        diagnostics.imu_health = health.imu;
+        diagnostics.mag_health = health.mag;
+        diagnostics.imu_calibrated = health.imu_calibrated;
+        diagnostics.tick = self.tick;
+        diagnostics.reset_cause = health.reset_cause;
+        diagnostics.battery_v = health.battery_v;
+    }
+}

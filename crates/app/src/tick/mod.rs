@@ -1,0 +1,5 @@
+//! The 1 kHz tick: CAN frames and snapshots in, CAN frames and snapshots out, nothing else.
+
+mod control_loop;
+
+pub use control_loop::{ControlConfig, ControlInputs, ControlLoop, ControlOutputs};
