@@ -20,6 +20,7 @@ pub enum DmaRequest {
 #[derive(Debug, Default)]
 pub struct DmaRequests {
     level: u32,
+    last: u32,
 }
 
 impl DmaRequests {
@@ -34,6 +35,20 @@ impl DmaRequests {
 
     pub fn get(&self, request: DmaRequest) -> bool {
         self.level >> (request as u32) & 1 == 1
+    }
+
+    /// The end-of-transfer wire back to the peripheral: the stream serving `request` has one item left (EOT_1).
+    pub fn set_last(&mut self, request: DmaRequest, last: bool) {
+        let bit = 1u32 << request as u32;
+        if last {
+            self.last |= bit;
+        } else {
+            self.last &= !bit;
+        }
+    }
+
+    pub fn last(&self, request: DmaRequest) -> bool {
+        self.last >> (request as u32) & 1 == 1
     }
 
     pub fn any(&self) -> bool {

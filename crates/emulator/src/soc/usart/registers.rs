@@ -55,7 +55,11 @@ pub fn check_write(number: u8, register: u32, value: u32) -> Result<(), Unmodell
     };
     let beyond = value & !modelled;
     if beyond != 0 || register > 0x18 {
-        return Err(unmodelled(number, register, format!("write of {value:#010x}")));
+        return Err(unmodelled(
+            number,
+            register,
+            format!("write of {value:#010x}"),
+        ));
     }
     Ok(())
 }
@@ -63,5 +67,8 @@ pub fn check_write(number: u8, register: u32, value: u32) -> Result<(), Unmodell
 pub fn unmodelled(number: u8, register: u32, what: String) -> Unmodelled {
     const NAMES: [&str; 7] = ["SR", "DR", "BRR", "CR1", "CR2", "CR3", "GTPR"];
     let name = NAMES.get((register / 4) as usize).copied().unwrap_or("?");
-    Unmodelled { register: format!("USART{number}.{name} (+{register:#x})"), what }
+    Unmodelled {
+        register: format!("USART{number}.{name} (+{register:#x})"),
+        what,
+    }
 }

@@ -82,11 +82,26 @@ mod tests {
     #[test]
     fn an_sbus_header_byte_draws_its_twelve_bits() {
         // 0x0F, 8E2 at 10 µs a bit: start 0, data 1111 0000 (LSB first), even parity of four ones 0, stop 11.
-        let format = LineFormat { baud: 100_000, data_bits: 8, parity: Parity::Even, stop_bits: 2 };
+        let format = LineFormat {
+            baud: 100_000,
+            data_bits: 8,
+            parity: Parity::Even,
+            stop_bits: 2,
+        };
         let mut line = Waveform::default();
-        line.push(UartChar { start: 100 * US, byte: 0x0F, format });
+        line.push(UartChar {
+            start: 100 * US,
+            byte: 0x0F,
+            format,
+        });
         let seen: String = (0..12)
-            .map(|bit| if line.is_high(100 * US + bit * 10 * US + 5 * US) { '1' } else { '0' })
+            .map(|bit| {
+                if line.is_high(100 * US + bit * 10 * US + 5 * US) {
+                    '1'
+                } else {
+                    '0'
+                }
+            })
             .collect();
         assert_eq!(seen, "011110000011");
         assert_eq!(line.falling_edge_after(99 * US), Some(100 * US));

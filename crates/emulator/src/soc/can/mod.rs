@@ -1,0 +1,236 @@
+//! CAN1 and CAN2 (bxCAN, RM0090 chapter 32): one block at CAN1's base, CAN2 at 0x400, with the bus of each.
+
+use robot_plant::{time::Ps, world::CanBusId};
+
+use self::{
+    bit_timing::BitTiming,
+    controller::{Controller, Mode, ier, mcr, msr},
+    filter::Filters,
+};
+use crate::soc::{
+    access::Access,
+    can_bus::{CanBus, CanBusStats},
+    peripheral::{Ctx, Peripheral, Unmodelled},
+    scheduler::Target,
+};
+
+mod bit_timing;
+pub mod controller;
+pub mod errors;
+mod fifo;
+pub mod filter;
+mod mailboxes;
+
+/// What an event is for, above the bus number in bit 0.
+const BUS_PHASE: u32 = 0;
+const QUIET_BUS: u32 = 1;
+
+/// BTR without its reserved bits and LBKM.
+const BTR_MODELLED: u32 = 0x837F_03FF;
+
+/// Both controllers, their shared filters, their buses.
+#[derive(Debug)]
+pub struct Can {
+    controllers: [Controller; 2],
+    filters: Filters,
+    buses: [CanBus; 2],
+}
+
+impl Can {
+    pub fn new() -> Self {
+        Self {
+            controllers: [Controller::new(0), Controller::new(1)],
+            filters: Filters::new(),
+            buses: [CanBus::new(CanBusId::Can1), CanBus::new(CanBusId::Can2)],
+        }
+    }
+
+    /// Counters of the bus of CAN1 (0) or CAN2 (1).
+    pub fn stats(&self, bus: usize) -> CanBusStats {
+        self.buses[bus].stats
+    }
+
+    /// Registers of CAN1 (0) or CAN2 (1) back to their reset values; the filters are CAN1's.
+    pub fn reset_controller(&mut self, index: usize, ctx: &mut Ctx<'_>) {
+        self.controllers[index] = Controller::new(index);
+        self.buses[index].board_reset();
+        if index == 0 {
+            self.filters = Filters::new();
+        }
+        self.controllers[index].update_lines(ctx);
+    }
+
+    fn wake_at(&self, at: Option<Ps>, purpose: u32, index: usize, ctx: &mut Ctx<'_>) {
+        if let Some(at) = at {
+            ctx.scheduler
+                .at(at, Target::CanBus(index as u8), purpose << 1 | index as u32);
+        }
+    }
+
+    /// Lets controller and bus `index` go as far as they can at this instant.
+    fn settle(&mut self, index: usize, ctx: &mut Ctx<'_>) {
+        let in_frame = self.buses[index].in_frame();
+        let synchronised_at = self.controllers[index].follow_requests(in_frame, ctx);
+        self.wake_at(synchronised_at, QUIET_BUS, index, ctx);
+        let ends_at = self.buses[index].start_if_idle(&mut self.controllers[index], ctx);
+        self.wake_at(ends_at, BUS_PHASE, index, ctx);
+        self.controllers[index].update_lines(ctx);
+    }
+
+    fn quiet_for_long(&mut self, index: usize, ctx: &mut Ctx<'_>) {
+        let controller = &mut self.controllers[index];
+        if let Mode::Synchronising(until) = controller.mode {
+            if until <= ctx.now {
+                controller.synchronised(ctx);
+            } else if until != Ps::MAX {
+                self.wake_at(Some(until), QUIET_BUS, index, ctx);
+                return;
+            }
+        }
+        self.controllers[index].recover_if_due(ctx.now);
+        self.wake_at(self.controllers[index].recovers_at, QUIET_BUS, index, ctx);
+    }
+
+    fn read_controller(&self, index: usize, register: u32) -> Option<u32> {
+        let can = &self.controllers[index];
+        Some(match register {
+            0x00 => can.mcr,
+            0x04 => can.status(),
+            0x08 => can.mailboxes.status(can.by_request_order()),
+            0x0C => can.fifos[0].status(),
+            0x10 => can.fifos[1].status(),
+            0x14 => can.ier,
+            0x18 => can.errors.register(),
+            0x1C => can.timing.0,
+            0x180..0x1B0 => {
+                let (mailbox, word) = cluster_word(register - 0x180);
+                can.mailboxes.read(mailbox, word)
+            }
+            0x1B0..0x1D0 => {
+                let (fifo, word) = cluster_word(register - 0x1B0);
+                can.fifos[fifo].front()[word]
+            }
+            _ => return None,
+        })
+    }
+
+    fn write_controller(
+        &mut self,
+        index: usize,
+        register: u32,
+        value: u32,
+        ctx: &mut Ctx<'_>,
+    ) -> Result<(), Unmodelled> {
+        let refuse = |what: &str| Err(unmodelled(index, register, what));
+        let can = &mut self.controllers[index];
+        match register {
+            0x00 if value & mcr::RESET != 0 => self.reset_controller(index, ctx),
+            0x00 => can.mcr = value & mcr::KEPT,
+            0x04 => can.msr_flags &= !(value & msr::CLEARED_BY_1),
+            0x08 => can.mailboxes.write_status(value),
+            0x0C => can.fifos[0].write_status(value),
+            0x10 => can.fifos[1].write_status(value),
+            0x14 => can.ier = value & ier::ALL,
+            0x18 => can.errors.write_lec((value >> 4) as u8),
+            0x1C if value & !BTR_MODELLED != 0 => return refuse("loop back mode"),
+            0x1C if can.mode == Mode::Initialization => can.timing = BitTiming(value),
+            0x1C => {
+                let message = format!(
+                    "{}: BTR written outside initialization mode: ignored",
+                    can.name()
+                );
+                ctx.errors.report(ctx.now, message);
+            }
+            0x180..0x1B0 => {
+                let (mailbox, word) = cluster_word(register - 0x180);
+                if word == 0 && value & 0b11 == 0b11 {
+                    return refuse("sending a remote frame");
+                }
+                if !can.mailboxes.write(mailbox, word, value) {
+                    let message = format!(
+                        "{}: mailbox {mailbox} written while its frame waits: ignored",
+                        can.name()
+                    );
+                    ctx.errors.report(ctx.now, message);
+                }
+            }
+            _ => return refuse(&format!("write of {value:#010x}")),
+        }
+        Ok(())
+    }
+}
+
+/// Which mailbox of a register cluster, and which of its four words.
+fn cluster_word(offset: u32) -> (usize, usize) {
+    ((offset / 0x10) as usize, (offset % 0x10 / 4) as usize)
+}
+
+fn unmodelled(index: usize, register: u32, what: &str) -> Unmodelled {
+    Unmodelled {
+        register: format!("CAN{}+{register:#x}", index + 1),
+        what: what.to_owned(),
+    }
+}
+
+impl Peripheral for Can {
+    fn read(&mut self, offset: u32, size: u8, _ctx: &mut Ctx<'_>) -> Result<u32, Unmodelled> {
+        let access = Access::new(offset, size);
+        let (index, register) = ((access.register / 0x400) as usize, access.register % 0x400);
+        let value = self
+            .read_controller(index, register)
+            .or_else(|| self.filters.read(register).filter(|_| index == 0))
+            .ok_or_else(|| unmodelled(index, register, "read"))?;
+        Ok(access.read_of(value))
+    }
+
+    fn write(
+        &mut self,
+        offset: u32,
+        size: u8,
+        value: u32,
+        ctx: &mut Ctx<'_>,
+    ) -> Result<(), Unmodelled> {
+        let access = Access::new(offset, size);
+        let (index, register) = ((access.register / 0x400) as usize, access.register % 0x400);
+        if index == 0 && register >= 0x200 {
+            let old = self.filters.read(register).unwrap_or(0);
+            return self
+                .filters
+                .write(register, access.written_over(old, value), ctx)
+                .ok_or_else(|| unmodelled(index, register, &format!("write of {value:#010x}")));
+        }
+        // Status registers are cleared by ones: the bytes a narrow write leaves alone count as zeros there.
+        let old = match register {
+            0x04..=0x10 => 0,
+            _ => self.read_controller(index, register).unwrap_or(0),
+        };
+        self.write_controller(index, register, access.written_over(old, value), ctx)?;
+        self.settle(index, ctx);
+        Ok(())
+    }
+
+    fn event(&mut self, tag: u32, ctx: &mut Ctx<'_>) {
+        let index = (tag & 1) as usize;
+        if tag >> 1 == BUS_PHASE {
+            let controller = &mut self.controllers[index];
+            let again_at = self.buses[index].phase_ended(controller, &self.filters, ctx);
+            self.wake_at(again_at, BUS_PHASE, index, ctx);
+            self.wake_at(self.controllers[index].recovers_at, QUIET_BUS, index, ctx);
+        } else {
+            self.quiet_for_long(index, ctx);
+        }
+        self.settle(index, ctx);
+    }
+
+    fn reset(&mut self, ctx: &mut Ctx<'_>) {
+        for index in 0..2 {
+            self.reset_controller(index, ctx);
+        }
+    }
+
+    fn world_advanced(&mut self, ctx: &mut Ctx<'_>) {
+        for index in 0..2 {
+            self.settle(index, ctx);
+        }
+    }
+}

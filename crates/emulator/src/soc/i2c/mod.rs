@@ -1,0 +1,163 @@
+//! I2C3 as the only master of its bus (RM0090 chapter 27); the IST8310 hangs on it.
+
+use crate::soc::{
+    access::Access,
+    dma_request::DmaRequest,
+    peripheral::{Ctx, Peripheral, Unmodelled},
+};
+
+mod master;
+mod registers;
+
+use master::{Master, Phase};
+use registers::{cr1, cr2, sr1, sr2};
+
+const IRQ_EVENT: u8 = 72;
+const IRQ_ERROR: u8 = 73;
+
+/// I2C3's registers around the bus master.
+#[derive(Debug, Default)]
+pub struct I2c {
+    master: Master,
+    oar: [u32; 2],
+    trise: u32,
+    /// SR1 was read since these flags rose: the second half of their clear sequence may come.
+    shown: u32,
+}
+
+impl I2c {
+    pub fn new() -> Self {
+        Self {
+            trise: 2,
+            ..Self::default()
+        }
+    }
+
+    fn read_sr1(&mut self) -> u32 {
+        self.shown = self.master.sr1;
+        self.master.sr1
+    }
+
+    fn read_sr2(&mut self, ctx: &mut Ctx<'_>) -> u32 {
+        let master = self.master.owns_bus();
+        let value = if master { sr2::MSL } else { 0 }
+            | if master || ctx.world.i2c_bus_held() {
+                sr2::BUSY
+            } else {
+                0
+            }
+            | if master && self.master.transmitter {
+                sr2::TRA
+            } else {
+                0
+            };
+        if self.shown & sr1::ADDR != 0 {
+            self.shown &= !sr1::ADDR;
+            self.master.address_acknowledged_seen(ctx);
+        }
+        value
+    }
+
+    fn write_dr(&mut self, byte: u8, ctx: &mut Ctx<'_>) {
+        match self.master.phase {
+            Phase::Started if self.shown & sr1::SB != 0 => {
+                self.shown &= !sr1::SB;
+                self.master.send_address(byte, ctx);
+            }
+            Phase::Started => ctx.errors.report(
+                ctx.now,
+                "I2C3: DR written after START without reading SR1: the address is not sent",
+            ),
+            _ => self.master.write(byte, ctx),
+        }
+    }
+
+    fn write_cr1(&mut self, value: u32, ctx: &mut Ctx<'_>) {
+        let was = self.master.cr1;
+        if value & cr1::SWRST != 0 {
+            self.master.release_bus(ctx);
+            *self = Self::new();
+            self.master.cr1 = value & cr1::SWRST;
+            return;
+        }
+        if was & cr1::PE != 0 && value & cr1::PE == 0 {
+            self.master.release_bus(ctx);
+        }
+        self.master.cr1 = value;
+        self.master.requests_changed(ctx);
+    }
+
+    fn update_lines(&self, ctx: &mut Ctx<'_>) {
+        let flags = self.master.sr1;
+        let has = |bits| flags & bits != 0;
+        let wants = |bit| self.master.cr2 & bit != 0;
+        let event =
+            has(sr1::SB | sr1::ADDR | sr1::BTF) || wants(cr2::ITBUFEN) && has(sr1::TXE | sr1::RXNE);
+        ctx.irq.set(IRQ_EVENT, wants(cr2::ITEVTEN) && event);
+        ctx.irq
+            .set(IRQ_ERROR, wants(cr2::ITERREN) && has(sr1::ERRORS));
+        let sending = self.master.phase == Phase::Transmitting;
+        ctx.dma.set(
+            DmaRequest::I2c3Tx,
+            wants(cr2::DMAEN) && sending && has(sr1::TXE),
+        );
+        ctx.dma
+            .set(DmaRequest::I2c3Rx, wants(cr2::DMAEN) && has(sr1::RXNE));
+    }
+}
+
+impl Peripheral for I2c {
+    fn read(&mut self, offset: u32, size: u8, ctx: &mut Ctx<'_>) -> Result<u32, Unmodelled> {
+        let access = Access::new(offset, size);
+        let value = match access.register {
+            0x00 => self.master.cr1,
+            0x04 => self.master.cr2,
+            0x08 => self.oar[0],
+            0x0C => self.oar[1],
+            0x10 => u32::from(self.master.read(ctx)),
+            0x14 => self.read_sr1(),
+            0x18 => self.read_sr2(ctx),
+            0x1C => self.master.ccr,
+            0x20 => self.trise,
+            other => return Err(registers::unmodelled(other, "read".to_owned())),
+        };
+        self.update_lines(ctx);
+        Ok(access.read_of(value))
+    }
+
+    fn write(
+        &mut self,
+        offset: u32,
+        size: u8,
+        value: u32,
+        ctx: &mut Ctx<'_>,
+    ) -> Result<(), Unmodelled> {
+        let access = Access::new(offset, size);
+        let over = |old| access.written_over(old, value);
+        registers::check_write(access.register, over(0))?;
+        match access.register {
+            0x00 => self.write_cr1(over(self.master.cr1), ctx),
+            0x04 => self.master.cr2 = over(self.master.cr2),
+            0x08 => self.oar[0] = over(self.oar[0]),
+            0x0C => self.oar[1] = over(self.oar[1]),
+            0x10 => self.write_dr(over(0) as u8, ctx),
+            0x14 => self.master.sr1 &= over(u32::MAX) | !sr1::ERRORS,
+            0x1C => self.master.ccr = over(self.master.ccr),
+            0x20 => self.trise = over(self.trise),
+            _ => {}
+        }
+        self.update_lines(ctx);
+        Ok(())
+    }
+
+    fn event(&mut self, _tag: u32, ctx: &mut Ctx<'_>) {
+        self.master.event(ctx);
+        self.update_lines(ctx);
+    }
+
+    fn reset(&mut self, ctx: &mut Ctx<'_>) {
+        self.master.release_bus(ctx);
+        *self = Self::new();
+        self.update_lines(ctx);
+    }
+}

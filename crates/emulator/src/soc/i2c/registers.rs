@@ -1,0 +1,68 @@
+//! Bits of the I2C registers (RM0090 27.6), and which of them the model has.
+
+use crate::soc::peripheral::Unmodelled;
+
+pub mod cr1 {
+    pub const PE: u32 = 1;
+    pub const START: u32 = 1 << 8;
+    pub const STOP: u32 = 1 << 9;
+    pub const ACK: u32 = 1 << 10;
+    pub const SWRST: u32 = 1 << 15;
+    pub const MODELLED: u32 = PE | START | STOP | ACK | SWRST;
+}
+
+pub mod cr2 {
+    pub const FREQ: u32 = 0x3F;
+    pub const ITERREN: u32 = 1 << 8;
+    pub const ITEVTEN: u32 = 1 << 9;
+    pub const ITBUFEN: u32 = 1 << 10;
+    pub const DMAEN: u32 = 1 << 11;
+    pub const LAST: u32 = 1 << 12;
+    pub const MODELLED: u32 = FREQ | ITERREN | ITEVTEN | ITBUFEN | DMAEN | LAST;
+}
+
+pub mod sr1 {
+    pub const SB: u32 = 1;
+    pub const ADDR: u32 = 1 << 1;
+    pub const BTF: u32 = 1 << 2;
+    pub const RXNE: u32 = 1 << 6;
+    pub const TXE: u32 = 1 << 7;
+    pub const AF: u32 = 1 << 10;
+    /// BERR, ARLO, AF, OVR, PECERR, TIMEOUT and SMBALERT: cleared by writing 0.
+    pub const ERRORS: u32 = 0xDF00;
+}
+
+pub mod sr2 {
+    pub const MSL: u32 = 1;
+    pub const BUSY: u32 = 1 << 1;
+    pub const TRA: u32 = 1 << 2;
+}
+
+/// The bits of a write that ask for something the model lacks (slave, SMBus, PEC, POS, 10-bit own addresses …).
+pub fn check_write(register: u32, value: u32) -> Result<(), Unmodelled> {
+    let modelled = match register {
+        0x00 => cr1::MODELLED,
+        0x04 => cr2::MODELLED,
+        // Own addresses may be set; without slave mode nobody asks for them. Bit 14 of OAR1 is kept 1 by software.
+        0x08 | 0x0C => 0x43FE,
+        0x10 | 0x14 | 0x18 => u32::MAX,
+        0x1C => 0xCFFF,
+        0x20 => 0x3F,
+        _ => 0,
+    };
+    if value & !modelled != 0 || register > 0x24 {
+        return Err(unmodelled(register, format!("write of {value:#010x}")));
+    }
+    Ok(())
+}
+
+pub fn unmodelled(register: u32, what: String) -> Unmodelled {
+    const NAMES: [&str; 10] = [
+        "CR1", "CR2", "OAR1", "OAR2", "DR", "SR1", "SR2", "CCR", "TRISE", "FLTR",
+    ];
+    let name = NAMES.get((register / 4) as usize).copied().unwrap_or("?");
+    Unmodelled {
+        register: format!("I2C3.{name} (+{register:#x})"),
+        what,
+    }
+}

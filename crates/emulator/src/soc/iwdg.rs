@@ -1,0 +1,187 @@
+//! The independent watchdog (RM0090 chapter 21), on its own 32 kHz oscillator.
+
+use robot_plant::time::Ps;
+
+use crate::soc::{
+    access::Access,
+    clocks::cycles_to_ps,
+    peripheral::{Ctx, Peripheral, Unmodelled},
+    scheduler::Target,
+};
+
+const LSI_HZ: u32 = 32_000;
+/// A write to PR or RLR takes up to five LSI cycles to cross into the watchdog's clock domain.
+const UPDATE_CYCLES: u64 = 5;
+const RELOAD_AFTER_RESET: u32 = 0xFFF;
+
+/// A register written on the bus side and taken over by the LSI side later.
+#[derive(Clone, Copy, Debug)]
+struct Crossing {
+    value: u32,
+    /// Until when `value` is still on its way, and what counts until then.
+    pending: Option<(Ps, u32)>,
+}
+
+impl Crossing {
+    fn at(value: u32) -> Self {
+        Self {
+            value,
+            pending: None,
+        }
+    }
+
+    fn busy(&self, now: Ps) -> bool {
+        self.pending.is_some_and(|(until, _)| now < until)
+    }
+
+    fn effective(&self, now: Ps) -> u32 {
+        self.pending
+            .filter(|(until, _)| now < *until)
+            .map_or(self.value, |(_, old)| old)
+    }
+
+    fn write(&mut self, value: u32, now: Ps) {
+        let old = self.effective(now);
+        *self = Self {
+            value,
+            pending: Some((now + cycles_to_ps(UPDATE_CYCLES, LSI_HZ), old)),
+        };
+    }
+}
+
+/// IWDG: once started, only a system reset stops it.
+#[derive(Debug)]
+pub struct Iwdg {
+    prescaler: Crossing,
+    reload: Crossing,
+    unlocked: bool,
+    /// When the counter reaches zero; none before the start.
+    expires_at: Option<Ps>,
+    /// An event is on its way; it moves itself on when the counter was reloaded meanwhile.
+    watched: bool,
+    bitten: bool,
+}
+
+impl Iwdg {
+    pub fn new() -> Self {
+        Self {
+            prescaler: Crossing::at(0),
+            reload: Crossing::at(RELOAD_AFTER_RESET),
+            unlocked: false,
+            expires_at: None,
+            watched: false,
+            bitten: false,
+        }
+    }
+
+    /// True once after the counter ran out.
+    pub fn take_reset_request(&mut self) -> bool {
+        std::mem::take(&mut self.bitten)
+    }
+
+    /// The counter starts again at `from`; it passes zero after one period more (RM0090 table 107: RLR = 0 is one
+    /// period).
+    fn count_from(&mut self, from: u32, ctx: &mut Ctx<'_>) {
+        let divider = 4u64 << self.prescaler.effective(ctx.now).min(6);
+        let at = ctx.now + cycles_to_ps((u64::from(from) + 1) * divider, LSI_HZ);
+        self.expires_at = Some(at);
+        if !self.watched {
+            self.watched = true;
+            ctx.scheduler.at(at, Target::Iwdg, 0);
+        }
+    }
+
+    fn key(&mut self, key: u32, ctx: &mut Ctx<'_>) {
+        self.unlocked = key == 0x5555;
+        match key {
+            0xCCCC if self.expires_at.is_none() => {
+                ctx.clocks.lsi_on = true;
+                self.count_from(RELOAD_AFTER_RESET, ctx);
+            }
+            0xAAAA if self.expires_at.is_some() => {
+                self.count_from(self.reload.effective(ctx.now), ctx);
+            }
+            _ => {}
+        }
+    }
+
+    fn write_guarded(&mut self, name: &str, value: u32, ctx: &mut Ctx<'_>) {
+        let register = if name == "PR" {
+            &mut self.prescaler
+        } else {
+            &mut self.reload
+        };
+        let refused = if !self.unlocked {
+            Some("without the key 0x5555")
+        } else if register.busy(ctx.now) {
+            Some("while its last update is still under way")
+        } else {
+            None
+        };
+        match refused {
+            Some(why) => ctx
+                .errors
+                .report(ctx.now, format!("IWDG: {name} written {why}: ignored")),
+            None => register.write(value, ctx.now),
+        }
+    }
+}
+
+impl Peripheral for Iwdg {
+    fn read(&mut self, offset: u32, size: u8, ctx: &mut Ctx<'_>) -> Result<u32, Unmodelled> {
+        let access = Access::new(offset, size);
+        let value = match access.register {
+            0x0 => 0,
+            0x4 => self.prescaler.value,
+            0x8 => self.reload.value,
+            0xC => {
+                u32::from(self.prescaler.busy(ctx.now)) | u32::from(self.reload.busy(ctx.now)) << 1
+            }
+            other => return Err(unmodelled(other, "read".to_owned())),
+        };
+        Ok(access.read_of(value))
+    }
+
+    fn write(
+        &mut self,
+        offset: u32,
+        size: u8,
+        value: u32,
+        ctx: &mut Ctx<'_>,
+    ) -> Result<(), Unmodelled> {
+        let access = Access::new(offset, size);
+        let value = access.written_over(0, value);
+        match access.register {
+            0x0 => self.key(value & 0xFFFF, ctx),
+            0x4 => self.write_guarded("PR", value & 7, ctx),
+            0x8 => self.write_guarded("RLR", value & 0xFFF, ctx),
+            0xC => {}
+            other => return Err(unmodelled(other, format!("write of {value:#010x}"))),
+        }
+        Ok(())
+    }
+
+    fn event(&mut self, _tag: u32, ctx: &mut Ctx<'_>) {
+        let Some(at) = self.expires_at.filter(|_| self.watched) else {
+            return;
+        };
+        if at <= ctx.now {
+            self.watched = false;
+            self.expires_at = None;
+            self.bitten = true;
+        } else {
+            ctx.scheduler.at(at, Target::Iwdg, 0);
+        }
+    }
+
+    fn reset(&mut self, _ctx: &mut Ctx<'_>) {
+        *self = Self::new();
+    }
+}
+
+fn unmodelled(register: u32, what: String) -> Unmodelled {
+    Unmodelled {
+        register: format!("IWDG+{register:#x}"),
+        what,
+    }
+}
