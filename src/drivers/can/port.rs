@@ -1,0 +1,100 @@
+//! One CAN bus as the control tick sees it.
+
+use embassy_stm32::pac::can::Can;
+use robot_app::domain::{BusErrorState, BusHealth, BusId, CanFrame};
+
+use super::link::Link;
+use super::receive::FrameSource;
+use super::transmit::{self, Outcomes};
+
+/// Receive queues, transmit mailboxes and link state of one bus.
+pub struct CanPort {
+    bus: BusId,
+    can: Can,
+    sources: [FrameSource; 2],
+    link: Link,
+    health: BusHealth,
+}
+
+impl CanPort {
+    pub(super) fn new(bus: BusId, can: Can, sources: [FrameSource; 2]) -> Self {
+        Self {
+            bus,
+            can,
+            sources,
+            link: Link::join(can),
+            health: BusHealth::default(),
+        }
+    }
+
+    pub fn bus(&self) -> BusId {
+        self.bus
+    }
+
+    pub fn health(&self) -> BusHealth {
+        self.health
+    }
+
+    /// Whether the peripheral takes part in bus traffic.
+    pub fn is_up(&self) -> bool {
+        self.link.is_up()
+    }
+
+    /// Advances the link, takes back the last tick's leftovers and reads the error state. Never waits.
+    pub fn begin_tick(&mut self, now_us: u64) {
+        self.link.step(now_us);
+        let outcomes = transmit::retire_old_frames(self.can);
+        self.count_outcomes(outcomes);
+        self.read_error_state();
+    }
+
+    /// Passes every received frame with its arrival time to `sink`.
+    pub fn drain(&mut self, mut sink: impl FnMut(&CanFrame, u64)) {
+        for source in &mut self.sources {
+            while let Some(received) = source.queue.dequeue() {
+                self.health.rx_frames = self.health.rx_frames.wrapping_add(1);
+                sink(&received.frame, received.ts_us);
+            }
+        }
+    }
+
+    /// Queues a frame for this tick; one that finds no place counts as taken back.
+    pub fn send(&mut self, frame: &CanFrame) {
+        if !self.link.is_up() || transmit::send(self.can, frame).is_err() {
+            self.count_outcomes(Outcomes {
+                sent: 0,
+                expired: 1,
+            });
+        }
+    }
+
+    fn count_outcomes(&mut self, outcomes: Outcomes) {
+        let health = &mut self.health;
+        health.tx_frames = health.tx_frames.wrapping_add(outcomes.sent);
+        health.tx_aborted = health.tx_aborted.wrapping_add(outcomes.expired);
+        health.tx_failures_in_row = if outcomes.sent > 0 {
+            0
+        } else {
+            health.tx_failures_in_row.saturating_add(outcomes.expired)
+        };
+    }
+
+    fn read_error_state(&mut self) {
+        let errors = self.can.esr().read();
+        let health = &mut self.health;
+        health.transmit_errors = errors.tec();
+        health.receive_errors = errors.rec();
+        health.bus_off_count = self.link.bus_off_count();
+        health.state = if self.link.is_bus_off() {
+            BusErrorState::BusOff
+        } else if errors.epvf() {
+            BusErrorState::Passive
+        } else {
+            BusErrorState::Active
+        };
+        let [fifo0, fifo1] = &self.sources;
+        let (fifo0, fifo1) = (fifo0.losses(), fifo1.losses());
+        health.rx_overruns = fifo0.overruns.wrapping_add(fifo1.overruns);
+        health.rx_queue_full = fifo0.queue_full.wrapping_add(fifo1.queue_full);
+    }
+}

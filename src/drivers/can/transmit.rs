@@ -1,0 +1,78 @@
+//! Transmit mailboxes: a frame goes out within its control tick or not at all.
+
+use embassy_stm32::pac::can::{Can, regs};
+use robot_app::domain::CanFrame;
+
+/// Mailboxes of a bxCAN peripheral (RM0090 32.7.1).
+const MAILBOXES: core::ops::Range<usize> = 0..3;
+
+/// What became of the frames of earlier ticks.
+#[derive(Clone, Copy, Default)]
+pub struct Outcomes {
+    pub sent: u32,
+    /// Aborted because their tick was over, or lost to a bus error.
+    pub expired: u32,
+}
+
+/// Every mailbox was still occupied.
+pub struct MailboxesFull;
+
+/// Collects the outcome of earlier frames and asks for the abortion of those still waiting.
+///
+/// Does not wait: the hardware drops a waiting frame at once and lets a frame that is on the wire finish.
+pub fn retire_old_frames(can: Can) -> Outcomes {
+    let status = can.tsr().read();
+    let mut outcomes = Outcomes::default();
+    let mut command = regs::Tsr(0);
+    for mailbox in MAILBOXES {
+        if status.rqcp(mailbox) {
+            command.set_rqcp(mailbox, true);
+            let counter = if status.txok(mailbox) {
+                &mut outcomes.sent
+            } else {
+                &mut outcomes.expired
+            };
+            *counter = counter.wrapping_add(1);
+        }
+        if !status.tme(mailbox) {
+            command.set_abrq(mailbox, true);
+        }
+    }
+    can.tsr().write_value(command);
+    outcomes
+}
+
+/// Hands a frame to a free mailbox. The bus picks among waiting frames by identifier.
+pub fn send(can: Can, frame: &CanFrame) -> Result<(), MailboxesFull> {
+    let status = can.tsr().read();
+    let mailbox = MAILBOXES
+        .into_iter()
+        .find(|&mailbox| status.tme(mailbox))
+        .ok_or(MailboxesFull)?;
+    let payload = frame.payload();
+    let mut data = [0; 8];
+    for (byte, &value) in data.iter_mut().zip(payload) {
+        *byte = value;
+    }
+    let [d0, d1, d2, d3, d4, d5, d6, d7] = data;
+    let registers = can.tx(mailbox);
+    // A CAN frame holds at most 8 bytes, so the length fits.
+    registers.tdtr().write(|w| w.set_dlc(payload.len() as u8));
+    registers
+        .tdlr()
+        .write_value(regs::Tdlr(u32::from_le_bytes([d0, d1, d2, d3])));
+    registers
+        .tdhr()
+        .write_value(regs::Tdhr(u32::from_le_bytes([d4, d5, d6, d7])));
+    registers.tir().write(|w| {
+        w.set_stid(frame.id().raw());
+        w.set_txrq(true);
+    });
+    Ok(())
+}
+
+/// Whether no frame waits or is on the wire.
+pub fn is_idle(can: Can) -> bool {
+    let status = can.tsr().read();
+    MAILBOXES.into_iter().all(|mailbox| status.tme(mailbox))
+}

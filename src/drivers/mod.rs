@@ -1,0 +1,10 @@
+//! Drivers: they move bytes by the tables of `robot_app` and know no formulas.
+
+pub mod battery;
+pub mod bmi088;
+pub mod can;
+pub mod ist8310;
+pub mod radio_uart;
+pub mod reset_cause;
+pub mod status_led;
+pub mod watchdog;

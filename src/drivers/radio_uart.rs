@@ -1,0 +1,183 @@
+//! The receiver input: USART3, receive only, by circular DMA with an idle-line interrupt.
+//!
+//! The HAL's ring-buffered receiver stops on every line error and throws the buffer away; a radio link has
+//! errors all day. Here an error is counted and reception goes on.
+
+use core::future::poll_fn;
+use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use core::task::Poll;
+
+use embassy_stm32::dma::{Channel, ReadableRingBuffer, Request, TransferOptions};
+use embassy_stm32::interrupt::typelevel::{Handler, Interrupt};
+use embassy_stm32::pac::usart::{Usart, vals};
+use embassy_sync::waitqueue::AtomicWaker;
+use robot_app::input::RemoteFormat;
+
+use crate::exchange::RADIO_LINE;
+
+/// SBUS and DBUS both run at 100 kBd.
+const BAUD: u32 = 100_000;
+
+/// Line events since boot. Written by the interrupt, read by the task.
+pub struct RadioLine {
+    idle: AtomicBool,
+    waker: AtomicWaker,
+    parity: AtomicU32,
+    framing: AtomicU32,
+    noise: AtomicU32,
+    overrun: AtomicU32,
+}
+
+/// Line errors since boot.
+#[derive(Clone, Copy, Default, PartialEq, Eq)]
+pub struct LineErrors {
+    pub parity: u32,
+    pub framing: u32,
+    pub noise: u32,
+    pub overrun: u32,
+}
+
+impl RadioLine {
+    pub const fn new() -> Self {
+        Self {
+            idle: AtomicBool::new(false),
+            waker: AtomicWaker::new(),
+            parity: AtomicU32::new(0),
+            framing: AtomicU32::new(0),
+            noise: AtomicU32::new(0),
+            overrun: AtomicU32::new(0),
+        }
+    }
+
+    pub fn errors(&self) -> LineErrors {
+        LineErrors {
+            parity: self.parity.load(Ordering::Relaxed),
+            framing: self.framing.load(Ordering::Relaxed),
+            noise: self.noise.load(Ordering::Relaxed),
+            overrun: self.overrun.load(Ordering::Relaxed),
+        }
+    }
+}
+
+fn increment(counter: &AtomicU32) {
+    counter.fetch_add(1, Ordering::Relaxed);
+}
+
+/// Interrupt handler of the receiver's UART.
+pub struct RadioInterrupt;
+
+impl<I: Interrupt> Handler<I> for RadioInterrupt {
+    unsafe fn on_interrupt() {
+        let uart = crate::board::RADIO_UART;
+        let status = uart.sr().read();
+        let line = &RADIO_LINE;
+        if !(status.idle() || status.pe() || status.fe() || status.ne() || status.ore()) {
+            return;
+        }
+        // Reading DR after SR clears the flags (RM0090 30.6.1). DMA has taken the byte long before idle; after
+        // an error the byte is worthless.
+        let _ = uart.dr().read();
+        for (flag, counter) in [
+            (status.pe(), &line.parity),
+            (status.fe(), &line.framing),
+            (status.ne(), &line.noise),
+            (status.ore(), &line.overrun),
+        ] {
+            if flag {
+                increment(counter);
+            }
+        }
+        if status.idle() {
+            line.idle.store(true, Ordering::Release);
+            line.waker.wake();
+        }
+    }
+}
+
+/// The receiver's byte stream.
+pub struct RadioUart {
+    ring: ReadableRingBuffer<'static, u8>,
+}
+
+impl RadioUart {
+    /// Starts reception. The clock must run, the pin be muxed, and `uart` be the one [`RadioInterrupt`] serves.
+    pub fn start(
+        uart: Usart,
+        clock_hz: u32,
+        format: RemoteFormat,
+        dma: Channel<'static>,
+        request: Request,
+        buffer: &'static mut [u8],
+    ) -> Self {
+        let data_register = uart.dr().as_ptr().cast::<u8>();
+        // SAFETY: `request` routes this UART's receive requests to `dma` (board.rs), the data register stays
+        // valid, and `buffer` is static memory in SRAM that nobody else uses.
+        let mut ring = unsafe {
+            ReadableRingBuffer::new(
+                dma,
+                request,
+                data_register,
+                buffer,
+                TransferOptions::default(),
+            )
+        };
+        configure(uart, clock_hz, format);
+        ring.start();
+        uart.cr1().modify(|w| w.set_re(true));
+        Self { ring }
+    }
+
+    /// Waits for bytes: until the line falls idle, or half of the ring is full.
+    pub async fn read(&mut self, bytes: &mut [u8]) -> usize {
+        loop {
+            self.wait().await;
+            match self.ring.read(bytes) {
+                Ok((0, _)) => {}
+                Ok((count, _)) => return count,
+                // Overwritten before it was read: the HAL has emptied the ring, the parser resynchronises.
+                Err(_) => increment(&RADIO_LINE.overrun),
+            }
+        }
+    }
+
+    async fn wait(&mut self) {
+        poll_fn(|cx| {
+            RADIO_LINE.waker.register(cx.waker());
+            self.ring.set_waker(cx.waker());
+            let half = self.ring.capacity() / 2;
+            let filling = self.ring.len().is_ok_and(|len| len < half);
+            if RADIO_LINE.idle.swap(false, Ordering::Acquire) || !filling {
+                Poll::Ready(())
+            } else {
+                Poll::Pending
+            }
+        })
+        .await;
+    }
+}
+
+/// SBUS is 8E2, DBUS 8E1 (`hardware.md` 6).
+fn configure(uart: Usart, clock_hz: u32, format: RemoteFormat) {
+    // With 16-fold oversampling BRR is the divider in sixteenths: clock / baud (RM0090 30.3.4).
+    uart.brr()
+        .write_value(embassy_stm32::pac::usart::regs::Brr(clock_hz / BAUD));
+    uart.cr2().write(|w| {
+        w.set_stop(match format {
+            RemoteFormat::Sbus => vals::Stop::STOP2,
+            RemoteFormat::Dbus => vals::Stop::STOP1,
+        });
+    });
+    uart.cr3().write(|w| {
+        w.set_dmar(true);
+        w.set_eie(true);
+    });
+    uart.cr1().write(|w| {
+        // Nine bits to the shift register: eight data bits and parity.
+        w.set_m0(vals::M0::BIT9);
+        w.set_pce(true);
+        w.set_ps(vals::Ps::EVEN);
+        w.set_idleie(true);
+        w.set_peie(true);
+        w.set_ue(true);
+    });
+}

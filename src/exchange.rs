@@ -1,0 +1,90 @@
+//! Every static through which tasks meet.
+//!
+//! | where | written by | read by | rate |
+//! |---|---|---|---|
+//! | [`Exchange::imu`] | imu task | control | 200 Hz |
+//! | [`Exchange::mag`] | mag task | control | 50 Hz |
+//! | [`Exchange::remote`] | sbus task | logic, control | each radio frame, 70 to 143 Hz |
+//! | [`Exchange::logic_bus`] | logic task | control | 100 Hz |
+//! | [`Exchange::battery_v`] | status task | control | 4 Hz |
+//! | [`Exchange::diagnostics`] | control task | status | 100 Hz |
+//! | [`RADIO_LINE`] | radio UART interrupt | sbus, status | each radio frame |
+//! | `drivers/can/receive.rs`, queues | CAN receive interrupts | control | each CAN frame |
+//! | `deadlines.rs`, check-ins | every task below control | control | at least 100 Hz |
+//! | `debugger_view.rs` | control task | a debugger | 1 kHz |
+
+use robot_app::diagnostics::DiagnosticsSnapshot;
+use robot_app::domain::{ImuState, MagState, RemoteUpdate, SensorHealth};
+use robot_app::logic::LogicBus;
+use robot_snapshot::{Snapshot, Writer};
+use static_cell::StaticCell;
+
+use crate::drivers::radio_uart::RadioLine;
+
+/// The newest IMU sample and how the sensor fares.
+#[derive(Clone, Copy, Default)]
+pub struct ImuReport {
+    pub state: ImuState,
+    pub health: SensorHealth,
+    /// Start-up gyro calibration finished.
+    pub calibrated: bool,
+}
+
+/// The newest magnetometer sample and how the sensor fares.
+#[derive(Clone, Copy, Default)]
+pub struct MagReport {
+    pub state: MagState,
+    pub health: SensorHealth,
+}
+
+/// The newest value of each message between tasks.
+pub struct Exchange {
+    pub imu: Snapshot<ImuReport>,
+    pub mag: Snapshot<MagReport>,
+    pub remote: Snapshot<RemoteUpdate>,
+    pub logic_bus: Snapshot<LogicBus>,
+    /// 0 while not measured.
+    pub battery_v: Snapshot<f32>,
+    pub diagnostics: Snapshot<DiagnosticsSnapshot>,
+}
+
+static EXCHANGE: StaticCell<Exchange> = StaticCell::new();
+
+/// Events of the receiver's line.
+pub static RADIO_LINE: RadioLine = RadioLine::new();
+
+/// The one writing end of each snapshot.
+pub struct Writers {
+    pub imu: Writer<'static, ImuReport>,
+    pub mag: Writer<'static, MagReport>,
+    pub remote: Writer<'static, RemoteUpdate>,
+    pub logic_bus: Writer<'static, LogicBus>,
+    pub battery_v: Writer<'static, f32>,
+    pub diagnostics: Writer<'static, DiagnosticsSnapshot>,
+}
+
+impl Exchange {
+    /// Call once, at boot: a second call panics. Every message starts with its default, which stops the robot.
+    pub fn init() -> &'static Self {
+        EXCHANGE.init_with(|| Self {
+            imu: Snapshot::new(ImuReport::default()),
+            mag: Snapshot::new(MagReport::default()),
+            remote: Snapshot::new(RemoteUpdate::default()),
+            logic_bus: Snapshot::new(LogicBus::default()),
+            battery_v: Snapshot::new(0.0),
+            diagnostics: Snapshot::new(DiagnosticsSnapshot::default()),
+        })
+    }
+
+    /// `None` after the first call.
+    pub fn take_writers(&'static self) -> Option<Writers> {
+        Some(Writers {
+            imu: self.imu.writer()?,
+            mag: self.mag.writer()?,
+            remote: self.remote.writer()?,
+            logic_bus: self.logic_bus.writer()?,
+            battery_v: self.battery_v.writer()?,
+            diagnostics: self.diagnostics.writer()?,
+        })
+    }
+}

@@ -1,0 +1,118 @@
+//! 1 kHz: CAN frames and snapshots in, CAN frames out. The one task that feeds the watchdog.
+
+use embassy_time::{Duration, Instant, Ticker};
+use robot_app::control::UserController;
+use robot_app::diagnostics::DiagnosticsSnapshot;
+use robot_app::domain::{ResetCause, SystemHealth};
+use robot_app::tick::{ControlConfig, ControlInputs, ControlLoop};
+use robot_snapshot::Writer;
+
+use crate::deadlines;
+use crate::debugger_view::g_robotapp_diag;
+use crate::drivers::can::CanPort;
+use crate::drivers::watchdog::Watchdog;
+use crate::exchange::Exchange;
+
+const PERIOD: Duration = Duration::from_hz(1_000);
+/// Diagnostics go to the status task every tenth tick.
+const DIAGNOSTICS_DIVIDER: u32 = 10;
+
+/// Everything the control tick owns.
+pub struct ControlContext {
+    exchange: &'static Exchange,
+    ports: [CanPort; 2],
+    watchdog: Watchdog,
+    reset_cause: ResetCause,
+    control_loop: ControlLoop<UserController>,
+    diagnostics: Writer<'static, DiagnosticsSnapshot>,
+}
+
+impl ControlContext {
+    pub fn new(
+        exchange: &'static Exchange,
+        ports: [CanPort; 2],
+        watchdog: Watchdog,
+        reset_cause: ResetCause,
+        diagnostics: Writer<'static, DiagnosticsSnapshot>,
+    ) -> Self {
+        Self {
+            exchange,
+            ports,
+            watchdog,
+            reset_cause,
+            control_loop: ControlLoop::new(ControlConfig::default(), UserController::default()),
+            diagnostics,
+        }
+    }
+}
+
+#[embassy_executor::task]
+pub async fn run(mut context: ControlContext) -> ! {
+    let mut ticker = Ticker::every(PERIOD);
+    loop {
+        ticker.next().await;
+        robotapp_control_tick(&mut context);
+    }
+}
+
+/// One tick. A symbol of its own, so that tools can find its entry.
+#[unsafe(no_mangle)]
+#[inline(never)]
+pub fn robotapp_control_tick(context: &mut ControlContext) {
+    let now_us = Instant::now().as_micros();
+    let ControlContext {
+        exchange,
+        ports,
+        watchdog,
+        reset_cause,
+        control_loop,
+        diagnostics,
+    } = context;
+
+    for port in ports.iter_mut() {
+        port.begin_tick(now_us);
+        let bus = port.bus();
+        port.drain(|frame, ts_us| control_loop.on_can_frame(bus, frame, ts_us));
+    }
+
+    let imu = exchange.imu.latest();
+    let mag = exchange.mag.latest();
+    let remote = exchange.remote.latest();
+    let logic = exchange.logic_bus.latest();
+    let health = SystemHealth {
+        can: ports.each_ref().map(CanPort::health),
+        imu: imu.health,
+        mag: mag.health,
+        imu_calibrated: imu.calibrated,
+        reset_cause: *reset_cause,
+        battery_v: exchange.battery_v.latest(),
+    };
+    let inputs = ControlInputs {
+        remote: &remote,
+        imu: &imu.state,
+        mag: &mag.state,
+        logic: &logic,
+        health: &health,
+    };
+    let outputs = control_loop.tick(&inputs, now_us);
+
+    for (bus, frame) in outputs.frames {
+        if let Some(port) = ports.iter_mut().find(|port| port.bus() == *bus) {
+            port.send(frame);
+        }
+    }
+
+    // SAFETY: this task is the only caller.
+    unsafe { g_robotapp_diag.show(outputs.diagnostics) };
+    if outputs
+        .diagnostics
+        .tick
+        .count
+        .is_multiple_of(DIAGNOSTICS_DIVIDER)
+    {
+        diagnostics.publish(outputs.diagnostics);
+    }
+    if deadlines::missed().is_none() {
+        watchdog.feed();
+    }
+}

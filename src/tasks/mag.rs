@@ -1,0 +1,88 @@
+//! 50 Hz: IST8310 → calibrated magnetometer samples. A lost sensor is brought up again for as long as it takes.
+
+use embassy_time::{Duration, Instant, Ticker};
+use robot_app::domain::MagCalibration;
+use robot_app::sensing::MagPipeline;
+use robot_snapshot::Writer;
+
+use crate::board::MagBus;
+use crate::deadlines::{Watched, sleep_checking_in};
+use crate::drivers::ist8310::Ist8310;
+use crate::exchange::MagReport;
+
+/// 50 Hz in two halves, so that the task meets its deadline in between.
+const HALF_PERIOD: Duration = Duration::from_millis(10);
+/// Bad samples in a row after which the sensor counts as lost.
+const LOST_AFTER: u32 = 5;
+const RETRY_PAUSE: Duration = Duration::from_millis(200);
+
+struct MagTask {
+    pipeline: MagPipeline,
+    report: MagReport,
+    output: Writer<'static, MagReport>,
+}
+
+#[embassy_executor::task]
+pub async fn run(mut bus: MagBus, output: Writer<'static, MagReport>) -> ! {
+    let mut task = MagTask {
+        pipeline: MagPipeline::new(MagCalibration::default()),
+        report: MagReport::default(),
+        output,
+    };
+    loop {
+        let mut sensor = bus.open();
+        if sensor.bring_up().await.is_ok() {
+            task.sample_until_lost(&mut sensor).await;
+        } else {
+            task.count_error();
+        }
+        task.report.health.reinits = task.report.health.reinits.wrapping_add(1);
+        task.publish_ready(false);
+        sleep_checking_in(Watched::Mag, RETRY_PAUSE).await;
+    }
+}
+
+impl MagTask {
+    async fn sample_until_lost(&mut self, sensor: &mut Ist8310<'_>) {
+        let mut ticker = Ticker::every(HALF_PERIOD);
+        let mut bad_in_row = 0;
+        while bad_in_row < LOST_AFTER {
+            ticker.next().await;
+            Watched::Mag.check_in();
+            if self.sample(sensor).await {
+                bad_in_row = 0;
+            } else {
+                bad_in_row = bad_in_row.saturating_add(1);
+            }
+            ticker.next().await;
+            Watched::Mag.check_in();
+        }
+    }
+
+    /// Measures and publishes one sample; false if there was none.
+    async fn sample(&mut self, sensor: &mut Ist8310<'_>) -> bool {
+        let ts_us = Instant::now().as_micros();
+        let state = match sensor.measure().await {
+            Ok(answer) => self.pipeline.process(&answer, ts_us).ok(),
+            Err(_) => None,
+        };
+        if let Some(state) = state {
+            self.report.state = state;
+            self.report.health.samples = self.report.health.samples.wrapping_add(1);
+            self.publish_ready(true);
+        } else {
+            self.count_error();
+            self.output.publish(&self.report);
+        }
+        state.is_some()
+    }
+
+    fn count_error(&mut self) {
+        self.report.health.errors = self.report.health.errors.wrapping_add(1);
+    }
+
+    fn publish_ready(&mut self, ready: bool) {
+        self.report.health.ready = ready;
+        self.output.publish(&self.report);
+    }
+}
