@@ -66,3 +66,67 @@ impl LineNoise {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        radio::sbus,
+        random::Stream,
+        time::{MS, US},
+    };
+
+    const SENT: u8 = 0x5A;
+    const CHARACTER: Ps = 120 * US;
+
+    fn disturbed_frames(count: usize) -> Vec<Vec<UartChar>> {
+        let mut noise = LineNoise::new(Random::new(3, Stream::RadioLine));
+        (0..count)
+            .map(|_| {
+                let mut characters: Vec<UartChar> = (0..25)
+                    .map(|index| UartChar {
+                        start: index * CHARACTER,
+                        byte: SENT,
+                        format: sbus::FORMAT,
+                    })
+                    .collect();
+                noise.disturb(&mut characters, 0, 7 * MS, CHARACTER, sbus::FORMAT);
+                characters
+            })
+            .collect()
+    }
+
+    #[test]
+    fn parity_betrays_one_flipped_bit_but_not_two() {
+        let frames = disturbed_frames(4_000);
+        let (mut single, mut double) = (0, 0);
+        // Stray characters start off the grid of the sent ones.
+        let sent = |c: &&UartChar| c.start % CHARACTER == 0 && c.start < 25 * CHARACTER;
+        for character in frames.iter().flatten().filter(sent) {
+            match (
+                (character.byte ^ SENT).count_ones(),
+                character.format.parity,
+            ) {
+                (0, Parity::Even) => {}
+                (1, Parity::Odd) => single += 1,
+                (2, Parity::Even) => double += 1,
+                other => panic!("{other:?}"),
+            }
+        }
+        // 2 % and 1 % of 100,000 characters.
+        assert!((1_700..2_300).contains(&single), "{single}");
+        assert!((800..1_200).contains(&double), "{double}");
+    }
+
+    #[test]
+    fn characters_never_overlap_nor_reach_into_the_next_frame() {
+        for frame in disturbed_frames(1_000) {
+            assert!(
+                frame
+                    .windows(2)
+                    .all(|w| w[0].start + CHARACTER <= w[1].start)
+            );
+            assert!(frame.iter().all(|c| c.start + CHARACTER <= 7 * MS));
+        }
+    }
+}

@@ -22,8 +22,10 @@ const ROW_BEFORE_READ: Ps = 300 * US;
 
 pub(crate) struct Playback {
     trial: Trial,
-    /// Simulated time of row 0.
-    origin: Ps,
+    /// Instant at which row 0 enters the sensors' registers.
+    rows_from: Ps,
+    /// Instant that counts as the end of row 0's interval, where its reference belongs: the board's read of it.
+    reference_from: Ps,
     locked: bool,
 }
 
@@ -31,33 +33,35 @@ impl Playback {
     pub(crate) fn open(header: &Path) -> Result<Self, WorldError> {
         Ok(Self {
             trial: Trial::load(header)?,
-            origin: LEAD_IN,
+            rows_from: LEAD_IN,
+            reference_from: LEAD_IN,
             locked: false,
         })
     }
 
     /// Puts row 0 just before the board's first read after the lead-in, and returns that instant, once.
     ///
-    /// A row is the average over the 5 ms that end with it, so a board that samples at the record's rate sees each row
-    /// once, and sees it when it is new. Without this, the unknown phase between record and board would count as
-    /// an attitude error of up to 5 ms of rotation.
+    /// A row is the average over the 5 ms that end with it, and its reference is the attitude at their end. So a board
+    /// that samples at the record's rate sees each row once, and the reference runs from the instant it read row 0.
+    /// Without this, the unknown phase between record and board would count as up to 5 ms of rotation.
     pub(crate) fn lock_to_read(&mut self, read_at: Ps) -> Option<Ps> {
         if self.locked || read_at < LEAD_IN {
             return None;
         }
         self.locked = true;
-        self.origin = (read_at - ROW_BEFORE_READ) / PHYSICS_STEP * PHYSICS_STEP;
-        Some(self.origin)
+        self.reference_from = read_at;
+        self.rows_from = (read_at - ROW_BEFORE_READ) / PHYSICS_STEP * PHYSICS_STEP;
+        Some(self.rows_from)
     }
 
-    /// Seconds since row 0, negative in the lead-in.
+    /// Time in the record in s, negative in the lead-in.
     pub(crate) fn time_s(&self, now: Ps) -> f64 {
-        to_seconds(now) - to_seconds(self.origin)
+        to_seconds(now) - to_seconds(self.reference_from)
     }
 
     /// Held from one row to the next; before the record it runs backwards, after it the last row stays.
     fn row(&self, now: Ps) -> Row {
-        let since = now.abs_diff(self.origin);
+        let since = now.abs_diff(self.rows_from);
         let index = self.trial.index_at(since);
         self.trial.row(index)
     }
@@ -76,12 +80,12 @@ impl Playback {
 
     /// True in the part of the record that is scored.
     pub(crate) fn scored(&self, now: Ps) -> bool {
-        now >= self.origin && self.row(now).moving
+        now >= self.rows_from && self.row(now).moving
     }
 
     /// Reference attitude between its two neighbouring rows; `None` in a gap of the cameras and outside the record.
     pub(crate) fn reference(&self, now: Ps) -> Option<Quaternion> {
-        let since = now.checked_sub(self.origin)?;
+        let since = now.checked_sub(self.reference_from)?;
         let (index, share) = self.trial.position_at(since)?;
         let here = self.trial.row(index).reference;
         if share < 1e-6 {
