@@ -101,7 +101,7 @@ mod tests {
         let frames = disturbed_frames(4_000);
         let (mut single, mut double) = (0, 0);
         // Stray characters start off the grid of the sent ones.
-        let sent = |c: &&UartChar| c.start % CHARACTER == 0 && c.start < 25 * CHARACTER;
+        let sent = |c: &&UartChar| c.start.is_multiple_of(CHARACTER) && c.start < 25 * CHARACTER;
         for character in frames.iter().flatten().filter(sent) {
             match (
                 (character.byte ^ SENT).count_ones(),
