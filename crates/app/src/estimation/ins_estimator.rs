@@ -1,30 +1,118 @@
 //! The estimator of the main chain (seed section 0.4).
 
-use crate::domain::{ImuState, MagState, MotorFeedback, StateEstimate, WheelOdomConfig};
+use super::{attitude::AttitudeFilter, wheel_odometry::WheelOdometry};
+use crate::{
+    domain::{ImuState, MagState, MotorFeedback, StateEstimate, WheelOdomConfig, age_us},
+    math::{Vector3, vector},
+};
 
-/// Called at 1 kHz with the latest samples.
+/// An IMU sample older than this says nothing about the attitude now.
+const MAX_IMU_AGE_US: u32 = 25_000;
+/// Samples further apart than this leave a gap that cannot be bridged.
+const MAX_SAMPLE_GAP_US: u32 = 100_000;
+/// Samples in a row before the estimate counts.
+const SETTLING_SAMPLES: u16 = 100;
+/// A tick further from the last than this is a jump in time.
+const MAX_TICK_US: u32 = 20_000;
+
+/// Called at 1 kHz with the latest samples; uses each sample once and carries the attitude on between them.
 #[derive(Clone, Debug)]
 pub struct InsEstimator {
-    odometry: WheelOdomConfig,
+    attitude: AttitudeFilter,
+    odometry: WheelOdometry,
+    imu_ts_us: u64,
+    mag_ts_us: u64,
+    applied_bias_dps: Vector3,
+    settled_samples: u16,
     estimate: StateEstimate,
 }
 
 impl InsEstimator {
     pub fn new(odometry: WheelOdomConfig) -> Self {
         Self {
-            odometry,
+            attitude: AttitudeFilter::new(),
+            odometry: WheelOdometry::new(&odometry),
+            imu_ts_us: 0,
+            mag_ts_us: 0,
+            applied_bias_dps: [0.0; 3],
+            settled_samples: 0,
             estimate: StateEstimate::default(),
         }
     }
 
     pub fn step(
         &mut self,
-        _imu: &ImuState,
-        _mag: &MagState,
-        _motor: &MotorFeedback,
+        imu: &ImuState,
+        mag: &MagState,
+        motor: &MotorFeedback,
         now_us: u64,
     ) -> &StateEstimate {
-        self.estimate.ts_us = now_us;
+        let tick_us = age_us(self.estimate.ts_us, now_us);
+        let first = self.estimate.ts_us == 0;
+        let in_time = first || (now_us > self.estimate.ts_us && tick_us <= MAX_TICK_US);
+        if !in_time {
+            self.settled_samples = 0;
+        }
+        if imu.ts_us != self.imu_ts_us && imu.ts_us != 0 {
+            self.take_imu(imu);
+        }
+        if mag.ts_us != self.mag_ts_us && mag.ts_us != 0 {
+            self.mag_ts_us = mag.ts_us;
+            self.take_mag(mag);
+        }
+        let dt_s = if first || !in_time {
+            0.0
+        } else {
+            seconds(tick_us)
+        };
+        self.publish(motor, dt_s, now_us);
         &self.estimate
     }
+
+    fn take_imu(&mut self, imu: &ImuState) {
+        let gap_us = age_us(self.imu_ts_us, imu.ts_us);
+        let continuous = imu.ts_us > self.imu_ts_us && gap_us <= MAX_SAMPLE_GAP_US;
+        self.imu_ts_us = imu.ts_us;
+        if !vector::is_finite(imu.gyro_dps) || !vector::is_finite(imu.accel_mps2) {
+            self.settled_samples = 0;
+            return;
+        }
+        if self.applied_bias_dps != imu.gyro_bias_dps {
+            self.applied_bias_dps = imu.gyro_bias_dps;
+            self.attitude.restart_bias();
+        }
+        if !continuous {
+            self.settled_samples = 0;
+            self.attitude.restart_smoothing();
+        }
+        let dt_s = if continuous { seconds(gap_us) } else { 0.0 };
+        let gyro_rps = imu.gyro_dps.map(f32::to_radians);
+        self.attitude.feed_imu(gyro_rps, imu.accel_mps2, dt_s);
+        self.settled_samples = self.settled_samples.saturating_add(1);
+    }
+
+    fn take_mag(&mut self, mag: &MagState) {
+        if self.settled_samples > 0 && vector::is_finite(mag.mag_ut) {
+            self.attitude.feed_mag(mag.mag_ut);
+        }
+    }
+
+    fn publish(&mut self, motor: &MotorFeedback, dt_s: f32, now_us: u64) {
+        let imu_age_us = age_us(self.imu_ts_us, now_us);
+        let ahead_us = imu_age_us.min(MAX_IMU_AGE_US);
+        let orientation = self.attitude.orientation(seconds(ahead_us));
+        self.odometry.step(motor, orientation, dt_s);
+        let estimate = &mut self.estimate;
+        estimate.q_wxyz = orientation.to_wxyz();
+        estimate.rpy_rad = orientation.roll_pitch_yaw();
+        estimate.vel_mps = self.odometry.velocity_mps();
+        estimate.pos_m = self.odometry.position_m();
+        estimate.gyro_bias_rps = self.attitude.bias_rps();
+        estimate.ts_us = now_us;
+        estimate.valid = imu_age_us <= MAX_IMU_AGE_US && self.settled_samples >= SETTLING_SAMPLES;
+    }
+}
+
+fn seconds(us: u32) -> f32 {
+    us as f32 * 1e-6
 }
