@@ -72,10 +72,12 @@ fn write_gyro(world: &mut World, register: u8, value: u8, now: Ps) {
 
 fn read_gyro(world: &mut World, now: Ps) -> [i16; 3] {
     world.spi_select(SpiSelect::Gyro, true, now);
-    world.spi_transfer(0x82, 5_250_000, 3, now);
-    let bytes: [u8; 6] = std::array::from_fn(|_| world.spi_transfer(0, 5_250_000, 3, now));
+    world.spi_transfer(0x80, 5_250_000, 3, now);
+    // One burst from the chip id on.
+    let bytes: [u8; 8] = std::array::from_fn(|_| world.spi_transfer(0, 5_250_000, 3, now));
     world.spi_select(SpiSelect::Gyro, false, now);
-    std::array::from_fn(|axis| i16::from_le_bytes([bytes[2 * axis], bytes[2 * axis + 1]]))
+    assert_eq!(bytes[0], 0x0F);
+    std::array::from_fn(|axis| i16::from_le_bytes([bytes[2 * axis + 2], bytes[2 * axis + 3]]))
 }
 
 /// Boots a 200 Hz sampler that is `phase` off any grid, and hands over every sample after the lead-in.

@@ -22,8 +22,6 @@ mod register {
     pub const SELF_TEST: u8 = 0x3C;
 }
 
-pub(super) const RATE_X_LSB: u8 = register::X_LSB;
-
 const CHIP_ID: u8 = 0x0F;
 const SOFTRESET: u8 = 0xB6;
 const DATA_READY: u8 = 1 << 7;
@@ -52,6 +50,7 @@ pub(super) struct GyroDie {
     filter: LowPass,
     data: [i16; 3],
     data_ready: bool,
+    data_read_at: Option<Ps>,
     self_test_done_at: Option<Ps>,
 }
 
@@ -93,6 +92,7 @@ impl GyroDie {
             filter: LowPass::new(bandwidth_hz, rate_of_steps_hz()),
             data: [0; 3],
             data_ready: false,
+            data_read_at: None,
             self_test_done_at: None,
         }
     }
@@ -114,6 +114,10 @@ impl GyroDie {
 
     pub(super) fn align_sampling(&mut self, at: Ps) {
         self.clock.align(at);
+    }
+
+    pub(super) fn data_read_at(&self) -> Option<Ps> {
+        self.data_read_at
     }
 
     fn suspended(&self) -> bool {
@@ -177,6 +181,7 @@ impl Die for GyroDie {
             register::CHIP_ID => CHIP_ID,
             register::X_LSB..=register::Z_MSB => {
                 self.data_ready = false;
+                self.data_read_at = Some(now);
                 let offset = usize::from(register - register::X_LSB);
                 self.data[offset / 2].to_le_bytes()[offset % 2]
             }

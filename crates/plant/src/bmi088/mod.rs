@@ -99,7 +99,6 @@ pub(crate) struct Bmi088 {
     thermal: Thermal,
     faults: ImuFaults,
     garbage: Random,
-    gyro_data_read_at: Option<Ps>,
 }
 
 impl Bmi088 {
@@ -112,7 +111,6 @@ impl Bmi088 {
             thermal: Thermal::default(),
             faults: ImuFaults::default(),
             garbage: Random::new(seed, Stream::SpiGarbage),
-            gyro_data_read_at: None,
         }
     }
 
@@ -159,9 +157,9 @@ impl Bmi088 {
         self.gyro.align_sampling(at);
     }
 
-    /// Instant of the last read of the gyro's data registers, once.
-    pub(crate) fn take_gyro_data_read(&mut self) -> Option<Ps> {
-        self.gyro_data_read_at.take()
+    /// Instant of the last read of the gyro's data registers.
+    pub(crate) fn gyro_data_read_at(&self) -> Option<Ps> {
+        self.gyro.data_read_at()
     }
 
     pub(crate) fn select(&mut self, device: SpiSelect, selected: bool, now: Ps) {
@@ -197,9 +195,6 @@ impl Bmi088 {
             miso &= self.accel_wire.exchange(&mut self.accel, mosi, now);
         }
         if self.gyro_wire.selected {
-            if self.gyro_wire.bytes == 1 && self.gyro_wire.address == 0x80 | gyro::RATE_X_LSB {
-                self.gyro_data_read_at = Some(now);
-            }
             miso &= self.gyro_wire.exchange(&mut self.gyro, mosi, now);
         }
         miso

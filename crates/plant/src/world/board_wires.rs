@@ -16,11 +16,10 @@ impl World {
     pub fn spi_transfer(&mut self, mosi: u8, sck_hz: u32, mode: u8, now: Ps) -> u8 {
         self.advance(now);
         let miso = self.imu.transfer(mosi, sck_hz, mode, now);
-        if let (Some(read_at), Some(playback)) =
-            (self.imu.take_gyro_data_read(), &mut self.playback)
-            && let Some(origin) = playback.lock_to_read(read_at)
+        if let (Some(playback), Some(read_at)) = (&mut self.playback, self.imu.gyro_data_read_at())
+            && let Some(rows_from) = playback.lock_to_read(read_at)
         {
-            self.imu.align_sampling(origin);
+            self.imu.align_sampling(rows_from);
         }
         miso
     }
