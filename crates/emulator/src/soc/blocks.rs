@@ -1,18 +1,29 @@
 //! Every modelled register block of the chip, and the wires between them that do not pass a bus.
 
+use robot_plant::time::Ps;
+
 use crate::{
+    board_errors::BoardErrors,
     soc::{
-        absent::Absent,
+        adc::Adc,
+        can::Can,
+        can_bus::CanBusStats,
+        dma::{Beat, Dma, request_map::RequestLine, unserved::Unserved},
+        dma_request::DmaRequests,
         exti::Exti,
         flash::Flash,
         gpio::Gpio,
+        i2c::I2c,
+        iwdg::Iwdg,
         memory_map::Block,
         peripheral::{Ctx, Peripheral},
         pwr::Pwr,
         rcc::Rcc,
         reset::ResetCause,
+        spi::Spi,
         syscfg::Syscfg,
         timer::Timer,
+        usart::Usart,
     },
     wiring::{self, Outputs, PwmTimers},
 };
@@ -29,7 +40,17 @@ pub struct Blocks {
     tim4: Timer,
     tim5: Timer,
     tim10: Timer,
-    absent: Absent,
+    dma1: Dma,
+    dma2: Dma,
+    unserved: Unserved,
+    usart1: Usart,
+    usart3: Usart,
+    usart6: Usart,
+    spi1: Spi,
+    i2c3: I2c,
+    can: Can,
+    adc: Adc,
+    iwdg: Iwdg,
     outputs: Outputs,
 }
 
@@ -47,7 +68,17 @@ impl Default for Blocks {
             tim4: Timer::new(4),
             tim5: Timer::new(5),
             tim10: Timer::new(10),
-            absent: Absent("other"),
+            dma1: Dma::new(1),
+            dma2: Dma::new(2),
+            unserved: Unserved::default(),
+            usart1: Usart::new(1),
+            usart3: Usart::new(3),
+            usart6: Usart::new(6),
+            spi1: Spi::new(),
+            i2c3: I2c::new(),
+            can: Can::new(),
+            adc: Adc::new(),
+            iwdg: Iwdg::new(),
             outputs: Outputs::default(),
         }
     }
@@ -70,12 +101,49 @@ impl Blocks {
             Block::Timer(4) => &mut self.tim4,
             Block::Timer(5) => &mut self.tim5,
             Block::Timer(_) => &mut self.tim10,
-            _ => &mut self.absent,
+            Block::Dma(n) => self.dma(n),
+            Block::Usart(1) => &mut self.usart1,
+            Block::Usart(3) => &mut self.usart3,
+            Block::Usart(_) => &mut self.usart6,
+            Block::Spi1 => &mut self.spi1,
+            Block::I2c3 => &mut self.i2c3,
+            Block::Can => &mut self.can,
+            Block::Adc => &mut self.adc,
+            Block::Iwdg => &mut self.iwdg,
         }
     }
 
+    /// The two CAN controllers share a block, but each has its own RCC reset bit.
+    pub fn reset_can(&mut self, index: usize, ctx: &mut Ctx<'_>) {
+        self.can.reset_controller(index, ctx);
+    }
+
+    /// 1 or 2.
+    pub fn dma(&mut self, number: u8) -> &mut Dma {
+        if number == 1 { &mut self.dma1 } else { &mut self.dma2 }
+    }
+
+    /// The next item to move, and the controller whose stream moves it.
+    pub fn next_dma_beat(&self, requests: &DmaRequests) -> Option<(u8, Beat)> {
+        let first = self.dma1.next_beat(requests).map(|beat| (1, beat));
+        first.or_else(|| self.dma2.next_beat(requests).map(|beat| (2, beat)))
+    }
+
+    pub fn note_dma_served(&mut self, line: &RequestLine) {
+        self.unserved.note_served(line);
+    }
+
+    pub fn check_unserved(&mut self, requests: &DmaRequests, now: Ps, errors: &mut BoardErrors) {
+        self.unserved.check(requests, [&self.dma1, &self.dma2], now, errors);
+    }
+
     pub fn take_reset_request(&mut self) -> Option<ResetCause> {
-        None
+        self.iwdg.take_reset_request().then_some(ResetCause::IndependentWatchdog)
+    }
+
+    /// Frames and load of CAN1 (0) or CAN2 (1).
+    pub fn can_stats(&self, bus: usize) -> CanBusStats {
+        self.can.stats(bus)
     }
 
     /// A device drives a pin differently, or may.

@@ -7,6 +7,7 @@ use crate::{
     machine::RegisterPatch,
     soc::{
         blocks::Blocks,
+        can_bus::CanBusStats,
         clocks::ClockTree,
         dma_request::DmaRequests,
         guest_memory::GuestMemory,
@@ -18,8 +19,6 @@ use crate::{
         scheduler::{Scheduler, Target},
     },
 };
-
-mod dma_service;
 
 /// Everything of the board but the CPU, its private peripherals and the memories.
 pub struct Soc {
@@ -52,6 +51,8 @@ macro_rules! split {
         )
     };
 }
+
+mod dma_service;
 
 impl Soc {
     /// The board at power-on, time 0.
@@ -92,6 +93,11 @@ impl Soc {
     /// A reset that a peripheral asked for; the machine carries it out with `reset` and restarts the CPU.
     pub fn take_reset_request(&mut self) -> Option<ResetCause> {
         self.blocks.take_reset_request()
+    }
+
+    /// Frames and load of CAN1 (0) or CAN2 (1).
+    pub fn can_stats(&self, bus: usize) -> CanBusStats {
+        self.blocks.can_stats(bus)
     }
 
     pub fn read(
@@ -227,12 +233,18 @@ impl Soc {
         blocks.power_changed(&mut ctx);
     }
 
-    /// A block is reset while its bit in the reset register is set; the rising edge does the work.
+    /// The rising edge of a reset bit does the work; the image lowers it again at once.
     fn reset_blocks(&mut self, bus: Bus, bits: u32, now: Ps) {
+        let rose = |reset: (Bus, u8)| reset.0 == bus && bits >> reset.1 & 1 == 1;
         let (blocks, mut ctx) = split!(self, now);
-        for block in Block::ALL {
-            if memory_map::reset_bit(block).is_some_and(|(b, bit)| b == bus && bits >> bit & 1 == 1) {
+        for block in Block::ALL.into_iter().filter(|block| *block != Block::Can) {
+            if memory_map::reset_bit(block).is_some_and(rose) {
                 blocks.get(block).reset(&mut ctx);
+            }
+        }
+        for (index, bit) in memory_map::CAN_RESETS.into_iter().enumerate() {
+            if rose(bit) {
+                blocks.reset_can(index, &mut ctx);
             }
         }
         self.outputs_changed(now);

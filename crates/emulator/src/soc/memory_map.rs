@@ -156,6 +156,9 @@ pub fn reset_bit(block: Block) -> Option<(Bus, u8)> {
     }
 }
 
+/// RCC reset bits of CAN1 and CAN2, which are one block here.
+pub const CAN_RESETS: [(Bus, u8); 2] = [(Bus::Apb1, 25), (Bus::Apb1, 26)];
+
 /// Name of the block as error messages give it.
 pub fn block_name(block: Block) -> String {
     match block {

@@ -1,0 +1,62 @@
+//! Notices request lines that wait for a stream which was never set up for them.
+
+use robot_plant::time::{Ps, US};
+
+use super::{
+    Dma,
+    request_map::{LINES, RequestLine},
+};
+use crate::{board_errors::BoardErrors, soc::dma_request::DmaRequests};
+
+/// Drivers raise a request shortly before they enable its stream; waiting longer is a mistake.
+const PATIENCE: Ps = 50 * US;
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Waiting {
+    since: Option<Ps>,
+    /// A stream has served this line since reset: one that ended leaves the line high, and rightly so.
+    served_before: bool,
+}
+
+#[derive(Debug, Default)]
+pub struct Unserved {
+    lines: [Waiting; LINES.len()],
+}
+
+impl Unserved {
+    pub fn note_served(&mut self, line: &RequestLine) {
+        self.lines[line.request as usize] = Waiting { since: None, served_before: true };
+    }
+
+    /// Looks at the lines that are high now although every ready stream has been served.
+    pub fn check(&mut self, requests: &DmaRequests, dma: [&Dma; 2], now: Ps, errors: &mut BoardErrors) {
+        for (line, waiting) in LINES.iter().zip(&mut self.lines) {
+            if !requests.get(line.request) {
+                waiting.since = None;
+            } else if !waiting.served_before {
+                let since = *waiting.since.get_or_insert(now);
+                if now - since >= PATIENCE {
+                    errors.report(now, complaint(line, dma));
+                    waiting.since = Some(now);
+                }
+            }
+        }
+    }
+}
+
+fn complaint(line: &RequestLine, dma: [&Dma; 2]) -> String {
+    let places: Vec<_> = line
+        .slots
+        .iter()
+        .map(|slot| {
+            let stream = dma[usize::from(slot.controller == 2)].stream(slot.stream);
+            let state = if !stream.enabled() {
+                "which is not enabled".to_owned()
+            } else {
+                format!("which is set to channel {}", stream.channel())
+            };
+            format!("DMA{} stream {} channel {}, {state}", slot.controller, slot.stream, slot.channel)
+        })
+        .collect();
+    format!("{} requests on {}", line.name, places.join("; or "))
+}
