@@ -255,3 +255,22 @@ fn lost_supply_reads_all_ones_and_forgets_the_settings() {
     bench.read::<2>(SpiSelect::Accel, 0x00);
     assert_eq!(bench.read::<2>(SpiSelect::Accel, 0x7D)[1], 0);
 }
+
+/// hardware.md 4.4: 24 g, 1600 Hz, both polarities; they differ by at least 1000, 1000 and 500 mg.
+#[test]
+fn accelerometer_self_test_moves_every_axis_as_far_as_the_datasheet_asks() {
+    let mut bench = Bench::configured(MotionSource::Physics);
+    bench.write(SpiSelect::Accel, 0x41, 0x03);
+    bench.wait(10 * US);
+    bench.write(SpiSelect::Accel, 0x40, 0xAC);
+    bench.wait(3 * MS);
+    let [positive, negative] = [0x0D, 0x09].map(|polarity| {
+        bench.write(SpiSelect::Accel, 0x6D, polarity);
+        bench.wait(60 * MS);
+        bench.accel_counts()
+    });
+    for axis in 0..3 {
+        let difference = positive[axis] - negative[axis];
+        assert!(difference >= [1_365, 1_365, 682][axis], "{difference}");
+    }
+}

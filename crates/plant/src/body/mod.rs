@@ -24,6 +24,8 @@ pub(crate) struct Pose {
     pub y_m: f64,
     /// From east, counter-clockwise.
     pub yaw_rad: f64,
+    /// Way along the body's own forward axis so far, backward counted negative.
+    pub path_m: f64,
     /// Forward speed of the body.
     pub vx_mps: f64,
     pub wz_rps: f64,

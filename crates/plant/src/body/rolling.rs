@@ -85,6 +85,7 @@ impl Rolling {
         self.vy_mps += (self.accel_mps2[1] - wz * vx) * dt_s;
         pose.wz_rps += self.yaw_accel_rps2 * dt_s;
         pose.yaw_rad += pose.wz_rps * dt_s;
+        pose.path_m += pose.vx_mps * dt_s;
         let (sin, cos) = pose.yaw_rad.sin_cos();
         pose.x_m += (pose.vx_mps * cos - self.vy_mps * sin) * dt_s;
         pose.y_m += (pose.vx_mps * sin + self.vy_mps * cos) * dt_s;
@@ -165,6 +166,10 @@ mod tests {
             rolling.pose.wz_rps
         );
         assert!((rolling.pose.vx_mps - 0.5).abs() < 0.01);
+        // Three seconds less the run-up, at speeds whose ratio is the radius of the circle.
+        let pose = rolling.pose;
+        assert!((1.35..1.5).contains(&pose.path_m), "{}", pose.path_m);
+        assert!((pose.path_m / pose.yaw_rad - 0.5 / 0.476).abs() < 0.05);
         let motion = rolling.motion();
         assert!((motion.gyro_rps[2] - rolling.pose.wz_rps).abs() < 1e-12);
         // Centripetal: v·wz to the left plus the lever −wz²·0.02; −wz²·0.05 backward.

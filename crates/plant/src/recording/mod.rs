@@ -78,8 +78,8 @@ impl Playback {
         self.row(now).field_ut
     }
 
-    /// True in the part of the record that is scored.
-    pub(crate) fn scored(&self, now: Ps) -> bool {
+    /// True in the movement phase, which is the part that is scored.
+    pub(crate) fn moving(&self, now: Ps) -> bool {
         now >= self.rows_from && self.row(now).moving
     }
 

@@ -24,10 +24,11 @@ const FIXED: &[&str] = &[
     "radio.enable",
     "radio.e_stop",
     "radio.mode",
-    // ENU earth, m and rad; body speeds in m/s and rad/s.
+    // ENU earth, m and rad (full turns add up); way and speed along the body's forward axis, m and m/s; rad/s.
     "truth.body.x",
     "truth.body.y",
     "truth.body.yaw",
+    "truth.body.path_m",
     "truth.body.vx",
     "truth.body.wz",
     // Body → ENU, not a number in a gap of a recording's reference.
@@ -61,8 +62,8 @@ const FIXED: &[&str] = &[
     "truth.buzzer.hz",
 ];
 
-/// Only while a recording plays: seconds since its row 0, and 1 in its scored part.
-const RECORDING: &[&str] = &["truth.trial.t", "truth.trial.scored"];
+/// Only while a recording plays: seconds since its row 0, and 1 in its scored movement phase.
+const RECORDING: &[&str] = &["truth.trial.t", "truth.trial.mov"];
 
 pub(super) fn names(recording: bool) -> Vec<String> {
     let extra = if recording { RECORDING } else { &[] };
@@ -110,7 +111,7 @@ impl World {
         if let Some(playback) = &self.playback {
             out.extend([
                 playback.time_s(self.now),
-                f64::from(playback.scored(self.now)),
+                f64::from(playback.moving(self.now)),
             ]);
         }
     }
