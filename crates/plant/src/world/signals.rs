@@ -95,7 +95,14 @@ impl World {
             f64::from(pilot.mode),
         ]);
         let pose = self.body.pose();
-        out.extend([pose.x_m, pose.y_m, pose.yaw_rad, pose.vx_mps, pose.wz_rps]);
+        out.extend([
+            pose.x_m,
+            pose.y_m,
+            pose.yaw_rad,
+            pose.path_m,
+            pose.vx_mps,
+            pose.wz_rps,
+        ]);
         out.extend(self.true_attitude().unwrap_or([f64::NAN; 4]));
         self.sample_wheels(out);
         let motion = self.motion(self.now);
