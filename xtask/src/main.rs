@@ -1,1 +1,41 @@
-fn main() {}
+//! The developer commands: `cargo xtask sim` and `cargo xtask test`.
+
+mod emulator;
+mod firmware;
+mod job;
+mod prerequisites;
+mod sim;
+mod test;
+mod tool;
+mod workspace;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// Developer commands of the robot firmware. Each installs or explains what it lacks.
+#[derive(Parser)]
+#[command(name = "cargo xtask")]
+struct Args {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Build the release image, boot it in the emulated C board and run a scenario.
+    Sim(sim::Args),
+    /// Everything CI runs: format, clippy, host tests, loom, image checks, emulator tests.
+    Test,
+}
+
+fn main() -> ExitCode {
+    let outcome = match Args::parse().command {
+        Command::Sim(args) => sim::run(&args),
+        Command::Test => test::run(),
+    };
+    outcome.unwrap_or_else(|error| {
+        eprintln!("error: {error:#}");
+        ExitCode::FAILURE
+    })
+}

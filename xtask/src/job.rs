@@ -1,0 +1,141 @@
+//! Builds that run side by side, shown as one status line instead of interleaved output.
+
+use std::{
+    fs::{self, File},
+    io::{IsTerminal, Write, stderr},
+    path::PathBuf,
+    process::{Child, Command, Stdio},
+    thread,
+    time::{Duration, Instant},
+};
+
+use anyhow::{Context, bail};
+
+use crate::workspace;
+
+/// How long a build may be silent on a terminal that cannot redraw a line.
+const PLAIN_STATUS_EVERY: Duration = Duration::from_secs(20);
+const POLL_EVERY: Duration = Duration::from_millis(100);
+/// A build shorter than this was up to date and is not worth a line.
+const WORTH_A_LINE: Duration = Duration::from_secs(2);
+const LOG_TAIL_LINES: usize = 60;
+
+pub struct Job {
+    pub name: &'static str,
+    pub command: Command,
+}
+
+struct Running {
+    name: &'static str,
+    child: Child,
+    log: PathBuf,
+    started: Instant,
+}
+
+/// Runs all jobs to their end. The first that failed is reported with the end of its output.
+pub fn run_all(jobs: Vec<Job>) -> anyhow::Result<()> {
+    let mut running = Vec::new();
+    for job in jobs {
+        running.push(start(job)?);
+    }
+    let mut status = Status::new();
+    let mut failed = Vec::new();
+    while !running.is_empty() {
+        let mut unfinished = Vec::new();
+        for mut job in running {
+            match job.child.try_wait()? {
+                None => unfinished.push(job),
+                Some(exit) if exit.success() => status.finished(&job),
+                Some(_) => failed.push(job),
+            }
+        }
+        running = unfinished;
+        status.show(&running);
+        thread::sleep(POLL_EVERY);
+    }
+    status.clear();
+    match failed.first() {
+        None => Ok(()),
+        Some(job) => {
+            eprintln!("{}", log_tail(job)?);
+            bail!(
+                "building the {} failed (whole output: {})",
+                job.name,
+                job.log.display()
+            )
+        }
+    }
+}
+
+fn start(mut job: Job) -> anyhow::Result<Running> {
+    fs::create_dir_all(workspace::log_dir()).context("cannot create the folder for logs")?;
+    let log = workspace::log_dir().join(format!("{}.log", job.name));
+    let output = File::create(&log).with_context(|| format!("cannot write {}", log.display()))?;
+    let child = job
+        .command
+        .stdin(Stdio::null())
+        .stdout(output.try_clone()?)
+        .stderr(output)
+        .spawn()
+        .with_context(|| format!("cannot start the build of the {}", job.name))?;
+    Ok(Running {
+        name: job.name,
+        child,
+        log,
+        started: Instant::now(),
+    })
+}
+
+fn log_tail(job: &Running) -> anyhow::Result<String> {
+    let text = fs::read_to_string(&job.log)?;
+    let lines: Vec<_> = text.lines().collect();
+    let tail = lines.len().saturating_sub(LOG_TAIL_LINES);
+    Ok(lines.get(tail..).unwrap_or_default().join("\n"))
+}
+
+/// One redrawn line on a terminal, a line now and then elsewhere.
+struct Status {
+    redraws: bool,
+    last_shown: Instant,
+}
+
+impl Status {
+    fn new() -> Self {
+        Self {
+            redraws: stderr().is_terminal(),
+            last_shown: Instant::now(),
+        }
+    }
+
+    fn show(&mut self, running: &[Running]) {
+        let due = self.redraws || self.last_shown.elapsed() >= PLAIN_STATUS_EVERY;
+        if running.is_empty() || !due {
+            return;
+        }
+        self.last_shown = Instant::now();
+        let parts: Vec<_> = running
+            .iter()
+            .map(|job| format!("{} ({} s)", job.name, job.started.elapsed().as_secs()))
+            .collect();
+        self.clear();
+        eprint!("building {}", parts.join(", "));
+        if !self.redraws {
+            eprintln!();
+        }
+        stderr().flush().ok();
+    }
+
+    fn finished(&mut self, job: &Running) {
+        let took = job.started.elapsed();
+        if took >= WORTH_A_LINE {
+            self.clear();
+            eprintln!("built {} in {} s", job.name, took.as_secs());
+        }
+    }
+
+    fn clear(&self) {
+        if self.redraws {
+            eprint!("\r\x1b[2K");
+        }
+    }
+}

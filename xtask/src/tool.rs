@@ -1,0 +1,75 @@
+//! Child processes with a known environment.
+
+use std::{env, ffi::OsStr, process::Command};
+
+use anyhow::{Context, bail};
+
+use crate::workspace;
+
+/// What `cargo run` and the rustup proxies leave in the environment for the program they start.
+/// A build must not depend on whether it was started from another build, and the distribution's
+/// compiler must not meet rustup's libraries.
+fn is_leftover(name: &str) -> bool {
+    const NAMES: [&str; 8] = [
+        "CARGO",
+        "CARGO_BIN_NAME",
+        "CARGO_CRATE_NAME",
+        "CARGO_PRIMARY_PACKAGE",
+        "LD_LIBRARY_PATH",
+        "RUSTC",
+        "RUSTDOC",
+        "RUST_RECURSION_COUNT",
+    ];
+    NAMES.contains(&name)
+        || name.starts_with("CARGO_PKG_")
+        || name.starts_with("CARGO_MANIFEST_")
+        || name.starts_with("DEP_")
+}
+
+/// `program` in the repository root, without leftovers of the cargo that started us.
+pub fn command(program: impl AsRef<OsStr>) -> Command {
+    let mut command = Command::new(program);
+    command.current_dir(workspace::root());
+    for (name, _) in env::vars_os() {
+        if name.to_str().is_some_and(is_leftover) {
+            command.env_remove(name);
+        }
+    }
+    command
+}
+
+/// The cargo that started us.
+pub fn cargo() -> Command {
+    command(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+}
+
+/// Whether `program` exists and exits with success; it prints nothing.
+pub fn succeeds(mut command: Command) -> bool {
+    command.output().is_ok_and(|output| output.status.success())
+}
+
+/// What `program` prints, without the line end.
+pub fn printed_by(mut command: Command) -> anyhow::Result<String> {
+    let name = command.get_program().to_string_lossy().into_owned();
+    let output = command
+        .output()
+        .with_context(|| format!("cannot start {name}"))?;
+    if !output.status.success() {
+        bail!(
+            "{name} failed: {}",
+            String::from_utf8_lossy(&output.stderr).trim()
+        );
+    }
+    Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
+}
+
+/// Target triple of this machine.
+pub fn host_triple() -> anyhow::Result<String> {
+    let mut rustc = command("rustc");
+    rustc.arg("-vV");
+    printed_by(rustc)?
+        .lines()
+        .find_map(|line| line.strip_prefix("host: "))
+        .map(str::to_owned)
+        .context("rustc -vV names no host")
+}

@@ -1,0 +1,33 @@
+//! Where things lie.
+
+use std::{
+    env,
+    path::{Path, PathBuf},
+};
+
+/// Target triple of the firmware.
+pub const BOARD: &str = "thumbv7em-none-eabihf";
+
+/// Root of the repository.
+pub fn root() -> PathBuf {
+    let xtask = Path::new(env!("CARGO_MANIFEST_DIR"));
+    xtask.parent().unwrap_or(xtask).to_path_buf()
+}
+
+/// Target folder of everything that runs on this machine.
+pub fn host_target_dir() -> PathBuf {
+    match env::var_os("CARGO_TARGET_DIR") {
+        Some(dir) => env::current_dir().unwrap_or_else(|_| root()).join(dir),
+        None => root().join("target"),
+    }
+}
+
+/// Its own folder, so that the image and the emulator can be built at the same time.
+pub fn firmware_target_dir() -> PathBuf {
+    host_target_dir().join("firmware")
+}
+
+/// Logs of finished builds.
+pub fn log_dir() -> PathBuf {
+    host_target_dir().join("xtask")
+}
