@@ -1,7 +1,9 @@
-//! Named values for reports and expectations.
+//! Named values for reports and expectations: each name stands beside what it reads.
 
 use super::{WireEvent, World, advance::SHAFT_SIGN};
-use crate::body::WHEEL_RADIUS_M;
+use crate::{body::WHEEL_RADIUS_M, recording::Playback};
+
+type Signal = (&'static str, fn(&World) -> f64);
 
 /// Signals decoded from CAN come first, two a motor, so that wire events can point at them.
 pub(super) fn motor_current_ma(wheel: usize) -> usize {
@@ -12,65 +14,92 @@ pub(super) fn motor_rpm(wheel: usize) -> usize {
     2 * wheel + 1
 }
 
-const FIXED: &[&str] = &[
-    // As commanded on the wire; rotor speed as fed back, in the motor's own sense.
-    "can.m3508.0.current_ma",
-    "can.m3508.0.rpm",
-    "can.m3508.1.current_ma",
-    "can.m3508.1.rpm",
-    // What the pilot does, −1 … 1 and switches as 0, 1, 2.
-    "radio.vx",
-    "radio.wz",
-    "radio.enable",
-    "radio.e_stop",
-    "radio.mode",
-    // ENU earth, m and rad (full turns add up); way and speed along the body's forward axis, m and m/s; rad/s.
-    "truth.body.x",
-    "truth.body.y",
-    "truth.body.yaw",
-    "truth.body.path_m",
-    "truth.body.vx",
-    "truth.body.wz",
-    // Body → ENU, not a number in a gap of a recording's reference.
-    "truth.attitude.w",
-    "truth.attitude.x",
-    "truth.attitude.y",
-    "truth.attitude.z",
-    // Forward positive; torque of the motor on the wheel, current in the coil.
-    "truth.wheel.0.speed_mps",
-    "truth.wheel.0.speed_rps",
-    "truth.wheel.0.torque_nm",
-    "truth.wheel.0.current_ma",
-    "truth.wheel.1.speed_mps",
-    "truth.wheel.1.speed_rps",
-    "truth.wheel.1.torque_nm",
-    "truth.wheel.1.current_ma",
-    // What the IMU feels before its own errors, rad/s and m/s².
-    "truth.imu.gx",
-    "truth.imu.gy",
-    "truth.imu.gz",
-    "truth.imu.ax",
-    "truth.imu.ay",
-    "truth.imu.az",
-    "truth.imu.temperature_c",
-    // Register writes that came sooner after another than the BMI088 allows.
-    "truth.imu.lost_writes",
-    "truth.battery_v",
-    "truth.led.r",
-    "truth.led.g",
-    "truth.led.b",
-    "truth.buzzer.hz",
+/// Current as commanded on the wire; rotor speed as fed back. Both in the motor's own sense of rotation.
+const CAN: &[Signal] = &[
+    ("can.m3508.0.current_ma", |w| w.escs[0].commanded_ma()),
+    ("can.m3508.0.rpm", |w| w.escs[0].fed_back_rpm()),
+    ("can.m3508.1.current_ma", |w| w.escs[1].commanded_ma()),
+    ("can.m3508.1.rpm", |w| w.escs[1].fed_back_rpm()),
 ];
 
-/// Only while a recording plays: seconds since its row 0, and 1 in its scored movement phase.
-const RECORDING: &[&str] = &["truth.trial.t", "truth.trial.mov"];
+/// What the pilot does: sticks −1 … 1, switches as 0, 1, 2.
+const RADIO: &[Signal] = &[
+    ("radio.vx", |w| w.radio.pilot().vx),
+    ("radio.wz", |w| w.radio.pilot().wz),
+    ("radio.enable", |w| f64::from(w.radio.pilot().enable)),
+    ("radio.e_stop", |w| f64::from(w.radio.pilot().e_stop)),
+    ("radio.mode", |w| f64::from(w.radio.pilot().mode)),
+];
+
+/// x, y, yaw in the ENU earth frame, m and rad (full turns add up); path and speed along the body's forward axis, m
+/// and m/s. Attitude body → ENU, not a number in a gap of a recording's reference.
+const BODY: &[Signal] = &[
+    ("truth.body.x", |w| w.body.pose().x_m),
+    ("truth.body.y", |w| w.body.pose().y_m),
+    ("truth.body.yaw", |w| w.body.pose().yaw_rad),
+    ("truth.body.path_m", |w| w.body.pose().path_m),
+    ("truth.body.vx", |w| w.body.pose().vx_mps),
+    ("truth.body.wz", |w| w.body.pose().wz_rps),
+    ("truth.attitude.w", |w| attitude(w, 0)),
+    ("truth.attitude.x", |w| attitude(w, 1)),
+    ("truth.attitude.y", |w| attitude(w, 2)),
+    ("truth.attitude.z", |w| attitude(w, 3)),
+];
+
+/// Speed and torque of the motor on the wheel, forward positive; current in the coil, in the motor's own sense.
+const WHEELS: &[Signal] = &[
+    ("truth.wheel.0.speed_mps", |w| rim_mps(w, 0)),
+    ("truth.wheel.0.speed_rps", |w| w.body.wheel_rps()[0]),
+    ("truth.wheel.0.torque_nm", |w| torque_nm(w, 0)),
+    ("truth.wheel.0.current_ma", |w| coil_ma(w, 0)),
+    ("truth.wheel.1.speed_mps", |w| rim_mps(w, 1)),
+    ("truth.wheel.1.speed_rps", |w| w.body.wheel_rps()[1]),
+    ("truth.wheel.1.torque_nm", |w| torque_nm(w, 1)),
+    ("truth.wheel.1.current_ma", |w| coil_ma(w, 1)),
+];
+
+/// What the IMU feels before its own errors, rad/s and m/s²; register writes that came sooner after another than the
+/// BMI088 allows.
+const IMU: &[Signal] = &[
+    ("truth.imu.gx", |w| w.motion(w.now).gyro_rps[0]),
+    ("truth.imu.gy", |w| w.motion(w.now).gyro_rps[1]),
+    ("truth.imu.gz", |w| w.motion(w.now).gyro_rps[2]),
+    ("truth.imu.ax", |w| w.motion(w.now).accel_mps2[0]),
+    ("truth.imu.ay", |w| w.motion(w.now).accel_mps2[1]),
+    ("truth.imu.az", |w| w.motion(w.now).accel_mps2[2]),
+    ("truth.imu.temperature_c", |w| w.imu.temperature_c()),
+    ("truth.imu.lost_writes", |w| w.imu.lost_writes() as f64),
+];
+
+/// Battery terminals in V, brightness 0 … 1, buzzer 0 while silent.
+const BOARD: &[Signal] = &[
+    ("truth.battery_v", |w| w.battery.volts()),
+    ("truth.led.r", |w| w.indicators.leds_bgr[2]),
+    ("truth.led.g", |w| w.indicators.leds_bgr[1]),
+    ("truth.led.b", |w| w.indicators.leds_bgr[0]),
+    ("truth.buzzer.hz", |w| w.indicators.buzzer_hz),
+];
+
+/// Only while a recording plays: time in it in s, negative in the lead-in; 1 in its movement phase, which is scored.
+const RECORDING: &[Signal] = &[
+    ("truth.trial.t", |w| {
+        played(w, |playback| playback.time_s(w.now))
+    }),
+    ("truth.trial.mov", |w| {
+        played(w, |playback| f64::from(playback.moving(w.now)))
+    }),
+];
+
+fn signals(recording: bool) -> impl Iterator<Item = &'static Signal> {
+    let extra = if recording { RECORDING } else { &[] };
+    [CAN, RADIO, BODY, WHEELS, IMU, BOARD, extra]
+        .into_iter()
+        .flatten()
+}
 
 pub(super) fn names(recording: bool) -> Vec<String> {
-    let extra = if recording { RECORDING } else { &[] };
-    FIXED
-        .iter()
-        .chain(extra)
-        .map(|name| (*name).to_owned())
+    signals(recording)
+        .map(|(name, _)| (*name).to_owned())
         .collect()
 }
 
@@ -83,59 +112,48 @@ impl World {
     /// Present value of every signal, in the order of `signal_names`; replaces what `out` held.
     pub fn sample(&self, out: &mut Vec<f64>) {
         out.clear();
-        for esc in &self.escs {
-            out.extend([esc.commanded_ma(), esc.fed_back_rpm()]);
-        }
-        let pilot = self.radio.pilot();
-        out.extend([
-            pilot.vx,
-            pilot.wz,
-            f64::from(pilot.enable),
-            f64::from(pilot.e_stop),
-            f64::from(pilot.mode),
-        ]);
-        let pose = self.body.pose();
-        out.extend([
-            pose.x_m,
-            pose.y_m,
-            pose.yaw_rad,
-            pose.path_m,
-            pose.vx_mps,
-            pose.wz_rps,
-        ]);
-        out.extend(self.true_attitude().unwrap_or([f64::NAN; 4]));
-        self.sample_wheels(out);
-        let motion = self.motion(self.now);
-        out.extend(motion.gyro_rps);
-        out.extend(motion.accel_mps2);
-        out.extend([
-            self.imu.temperature_c(),
-            self.imu.lost_writes() as f64,
-            self.battery.volts(),
-        ]);
-        let [blue, green, red] = self.indicators.leds_bgr;
-        out.extend([red, green, blue, self.indicators.buzzer_hz]);
-        if let Some(playback) = &self.playback {
-            out.extend([
-                playback.time_s(self.now),
-                f64::from(playback.moving(self.now)),
-            ]);
-        }
-    }
-
-    fn sample_wheels(&self, out: &mut Vec<f64>) {
-        for ((rps, esc), sign) in self.body.wheel_rps().iter().zip(&self.escs).zip(SHAFT_SIGN) {
-            out.extend([
-                rps * WHEEL_RADIUS_M,
-                *rps,
-                sign * esc.motor.torque_nm(),
-                esc.motor.current_a() * 1_000.0,
-            ]);
-        }
+        out.extend(signals(self.playback.is_some()).map(|(_, read)| read(self)));
     }
 
     /// Moves wire-level changes since the last call (every received actuator command is one) to the end of `out`.
     pub fn drain_wire_events(&mut self, out: &mut Vec<WireEvent>) {
         out.append(&mut self.wire_events);
+    }
+}
+
+fn attitude(world: &World, part: usize) -> f64 {
+    world.true_attitude().map_or(f64::NAN, |q| q[part])
+}
+
+fn rim_mps(world: &World, wheel: usize) -> f64 {
+    world.body.wheel_rps()[wheel] * WHEEL_RADIUS_M
+}
+
+fn torque_nm(world: &World, wheel: usize) -> f64 {
+    SHAFT_SIGN[wheel] * world.escs[wheel].motor.torque_nm()
+}
+
+fn coil_ma(world: &World, wheel: usize) -> f64 {
+    world.escs[wheel].motor.current_a() * 1_000.0
+}
+
+fn played(world: &World, read: impl Fn(&Playback) -> f64) -> f64 {
+    world.playback.as_ref().map_or(f64::NAN, read)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wire_events_point_at_their_signals() {
+        let names = names(false);
+        for wheel in 0..2 {
+            assert_eq!(
+                names[motor_current_ma(wheel)],
+                format!("can.m3508.{wheel}.current_ma")
+            );
+            assert_eq!(names[motor_rpm(wheel)], format!("can.m3508.{wheel}.rpm"));
+        }
     }
 }
