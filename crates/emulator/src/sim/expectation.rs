@@ -40,6 +40,10 @@ pub enum Bound {
         value: f64,
         tolerance: f64,
     },
+    /// Bit `n` of the signal, a set of flags, is set throughout.
+    HasBit(u8),
+    /// Bit `n` of the signal, a set of flags, is clear throughout.
+    LacksBit(u8),
     /// At some instant of the window the signal goes from at or below this to above it.
     RisesAbove(f64),
     /// At some instant of the window the signal goes from at or above this to below it.
@@ -55,6 +59,7 @@ impl Bound {
             }
             Self::Min(v) | Self::Max(v) | Self::Equals(v) => v.is_finite(),
             Self::RisesAbove(v) | Self::FallsBelow(v) => v.is_finite(),
+            Self::HasBit(n) | Self::LacksBit(n) => n < 32,
         }
     }
 
@@ -69,6 +74,8 @@ impl Bound {
                 value: wanted,
                 tolerance,
             } => (value - wanted).abs() - tolerance,
+            Self::HasBit(n) => f64::from(!has_bit(value, n)),
+            Self::LacksBit(n) => f64::from(has_bit(value, n)),
             Self::RisesAbove(_) | Self::FallsBelow(_) => 0.0,
         };
         if value.is_nan() {
@@ -91,6 +98,10 @@ impl Bound {
     }
 }
 
+fn has_bit(value: f64, bit: u8) -> bool {
+    value as u64 >> bit & 1 == 1
+}
+
 impl std::fmt::Display for Bound {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
@@ -99,6 +110,8 @@ impl std::fmt::Display for Bound {
             Self::Max(v) => write!(f, "≤ {v}"),
             Self::Equals(v) => write!(f, "= {v}"),
             Self::Within { value, tolerance } => write!(f, "{value} ± {tolerance}"),
+            Self::HasBit(n) => write!(f, "has bit {n}"),
+            Self::LacksBit(n) => write!(f, "lacks bit {n}"),
             Self::RisesAbove(v) => write!(f, "rises above {v}"),
             Self::FallsBelow(v) => write!(f, "falls below {v}"),
         }
@@ -193,7 +206,7 @@ impl Judge {
             Bound::Min(_) => v,
             Bound::Max(_) => -v,
             Bound::Equals(wanted) | Bound::Within { value: wanted, .. } => -(v - wanted).abs(),
-            Bound::RisesAbove(_) | Bound::FallsBelow(_) => 0.0,
+            _ => 0.0,
         };
         margin(a) < margin(b)
     }
@@ -229,6 +242,11 @@ impl Judge {
         }
         (self.readings == 0).then(|| "the signal had no value in this window".into())
     }
+}
+
+/// Six significant digits are enough to see what is wrong.
+pub fn readable(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
 }
 
 /// The verdict on a signal that does not exist.
@@ -291,6 +309,23 @@ mod tests {
         ] {
             let verdict = run(bound, (1, 3), &values);
             assert_eq!(verdict.failure.is_none(), holds, "{bound}: {verdict:?}");
+        }
+    }
+
+    #[test]
+    fn flags_are_judged_by_their_bit() {
+        let flags = [0.0, 5.0, 4.0, 6.0, 0.0];
+        for (bound, holds) in [
+            (Bound::HasBit(2), true),
+            (Bound::HasBit(0), false),
+            (Bound::LacksBit(3), true),
+            (Bound::LacksBit(1), false),
+        ] {
+            assert_eq!(
+                run(bound, (1, 3), &flags).failure.is_none(),
+                holds,
+                "{bound}"
+            );
         }
     }
 

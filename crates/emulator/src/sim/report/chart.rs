@@ -8,7 +8,7 @@ use plotters::{
     style::text_anchor::{HPos, Pos, VPos},
 };
 
-use super::ReportError;
+use super::{Legend, ReportError};
 
 pub const WIDTH: u32 = 980;
 
@@ -61,6 +61,17 @@ pub struct TimePlot<'a> {
 }
 
 impl TimePlot<'_> {
+    pub fn legend(&self) -> Vec<Legend> {
+        let drawn = self.curves.iter().filter(|c| c.has_points());
+        drawn
+            .map(|curve| Legend {
+                label: curve.label.clone(),
+                colour: curve.colour,
+                faint: curve.faint,
+            })
+            .collect()
+    }
+
     /// `None` if no curve has a value.
     pub fn draw(&self) -> Result<Option<String>, ReportError> {
         if !self.curves.iter().any(Curve::has_points) {
@@ -107,23 +118,11 @@ impl TimePlot<'_> {
         for curve in &self.curves {
             let (width, opacity) = if curve.faint { (4, 0.35) } else { (2, 1.0) };
             let style = curve.colour.mix(opacity).stroke_width(width);
-            let mut legend = Some(curve.label.clone());
             for piece in curve.pieces() {
-                let drawn = chart.draw_series(LineSeries::new(piece, style))?;
-                if let Some(label) = legend.take() {
-                    drawn
-                        .label(label)
-                        .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], style));
-                }
+                chart.draw_series(LineSeries::new(piece, style))?;
             }
         }
-        chart
-            .configure_series_labels()
-            .position(SeriesLabelPosition::UpperRight)
-            .background_style(WHITE.mix(0.85))
-            .border_style(GRID)
-            .label_font(label_style())
-            .draw()
+        Ok(())
     }
 }
 

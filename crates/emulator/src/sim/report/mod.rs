@@ -6,6 +6,11 @@ mod lanes;
 mod page;
 mod plots;
 
+#[cfg(test)]
+mod tests;
+
+use plotters::style::RGBColor;
+
 use super::{runner::RunResult, scenario::Scenario, summary::Summary, trace::Traces};
 
 /// What a report is made of.
@@ -31,7 +36,14 @@ struct Figure {
     title: &'static str,
     /// What the reader should look for.
     caption: &'static str,
+    legend: Vec<Legend>,
     svg: String,
+}
+
+struct Legend {
+    label: String,
+    colour: RGBColor,
+    faint: bool,
 }
 
 pub fn render(report: &Report) -> Result<String, ReportError> {

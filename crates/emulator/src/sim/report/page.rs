@@ -4,12 +4,12 @@ use std::fmt::Write;
 
 use robot_plant::time;
 
-use super::{Figure, Report};
+use super::{Figure, Legend, Report};
 use crate::{
     machine::LogLine,
     sim::{
         budgets::{self, Budget},
-        expectation::Verdict,
+        expectation::{Verdict, readable},
     },
 };
 
@@ -133,8 +133,20 @@ fn figure(figure: &Figure) -> String {
         ""
     };
     format!(
-        "<h2>{}</h2>\n<figure{class}><figcaption>{}</figcaption>\n{}</figure>\n",
-        figure.title, figure.caption, figure.svg
+        "<h2>{}</h2>\n<figure{class}><figcaption>{}{}</figcaption>\n{}</figure>\n",
+        figure.title,
+        figure.caption,
+        figure.legend.iter().map(legend).collect::<String>(),
+        figure.svg
+    )
+}
+
+fn legend(entry: &Legend) -> String {
+    let plotters::style::RGBColor(r, g, b) = entry.colour;
+    let class = if entry.faint { "key faint" } else { "key" };
+    format!(
+        " <span class=\"{class}\" style=\"color: rgb({r} {g} {b})\">{}</span>",
+        escaped(&entry.label)
     )
 }
 
@@ -158,7 +170,7 @@ fn expectations(verdicts: &[Verdict]) -> String {
         );
         let decided = match (&verdict.failure, verdict.decisive) {
             (Some(why), _) => escaped(why),
-            (None, Some(r)) => format!("{:.4} at {:.3} s", r.value, time::to_seconds(r.at)),
+            (None, Some(r)) => format!("{} at {:.3} s", readable(r.value), time::to_seconds(r.at)),
             (None, None) => String::new(),
         };
         let _ = writeln!(

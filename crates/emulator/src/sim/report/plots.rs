@@ -77,6 +77,7 @@ impl Plots<'_> {
         Ok(plot.draw()?.map(|svg| Figure {
             title,
             caption,
+            legend: plot.legend(),
             svg,
         }))
     }
@@ -136,6 +137,7 @@ impl Plots<'_> {
         Ok(Some(Figure {
             title: "Path on the ground",
             caption: "Seen from above; green: start, orange: end.",
+            legend: Vec::new(),
             svg: chart::draw_path(&points, "m")?,
         }))
     }
@@ -180,6 +182,7 @@ impl Plots<'_> {
         Ok(Some(Figure {
             title: "Arming and safety",
             caption: "States, blockers and flags as the firmware's diagnostics number them; a lane is filled while it is on.",
+            legend: Vec::new(),
             svg: lanes::draw(&rows, 0.0..end, &self.marks)?,
         }))
     }
@@ -247,6 +250,7 @@ impl Plots<'_> {
         Ok(Some(Figure {
             title: "Release jitter of the control tick",
             caption: "How late each 1 kHz tick starts; budget 10 µs.",
+            legend: Vec::new(),
             svg: chart::draw_histogram(bins, JITTER_BIN_US, "µs late")?,
         }))
     }

@@ -78,6 +78,8 @@ struct Expect {
     max: Option<f64>,
     equals: Option<f64>,
     within: Option<[f64; 2]>,
+    has_bit: Option<u8>,
+    lacks_bit: Option<u8>,
     rises_above: Option<f64>,
     falls_below: Option<f64>,
     because: Option<String>,
@@ -241,6 +243,8 @@ fn read_expect(raw: Expect, seconds: f64) -> Result<Expectation, String> {
         raw.equals.map(Bound::Equals),
         raw.within
             .map(|[value, tolerance]| Bound::Within { value, tolerance }),
+        raw.has_bit.map(Bound::HasBit),
+        raw.lacks_bit.map(Bound::LacksBit),
         raw.rises_above.map(Bound::RisesAbove),
         raw.falls_below.map(Bound::FallsBelow),
     ]
@@ -248,10 +252,10 @@ fn read_expect(raw: Expect, seconds: f64) -> Result<Expectation, String> {
     .flatten()
     .collect();
     if bounds.is_empty() {
-        return Err("nothing is expected of the signal; add one of `max_abs`, `min`, `max`, `equals`, `within = [value, tolerance]`, `rises_above`, `falls_below`".into());
+        return Err("nothing is expected of the signal; add one of `max_abs`, `min`, `max`, `equals`, `within = [value, tolerance]`, `has_bit`, `lacks_bit`, `rises_above`, `falls_below`".into());
     }
     if bounds.iter().any(|b| !b.is_usable()) {
-        return Err("a bound is not finite or a tolerance is negative; write plain numbers".into());
+        return Err("a bound is not finite, a tolerance is negative or a bit is above 31; write plain numbers".into());
     }
     Ok(Expectation {
         signal: raw.signal,

@@ -1,0 +1,88 @@
+//! One wrong line of `board.rs`, and the run must fail and say what is wrong (register addresses: RM0090).
+
+mod support;
+
+use robot_emulator::{machine::RegisterPatch, sim::scenario::Scenario};
+
+const QUIET: &str = "name = \"strictness\"\nseconds = 1.5\nplant = \"stand\"\n";
+
+/// All that a run with these register bits overridden complains of.
+fn complaints(patches: &[RegisterPatch]) -> Vec<String> {
+    let mut job = support::job(Scenario::parse(QUIET, "strictness").expect("it parses"));
+    job.patches = patches.to_vec();
+    let outcome = job.run(&mut []).expect("the machine starts");
+    let errors = outcome.summary.board_errors.into_iter().map(|e| e.message);
+    let all: Vec<String> = errors.chain(outcome.summary.stopped).collect();
+    assert_eq!(outcome.summary.ok, all.is_empty());
+    all
+}
+
+/// The run fails, and one complaint has all of `parts` in it.
+fn must_complain(patch: RegisterPatch, parts: &[&str]) {
+    let all = complaints(&[patch]);
+    let telling = |message: &String| parts.iter().all(|part| message.contains(part));
+    assert!(
+        all.iter().any(telling),
+        "no complaint names {parts:?}: {all:#?}"
+    );
+}
+
+#[test]
+fn the_image_as_shipped_gives_no_complaint() {
+    assert_eq!(complaints(&[]), Vec::<String>::new());
+}
+
+/// PB3 on AF6 (SPI3) instead of AF5 (SPI1): GPIOB_AFRL bits 15:12.
+#[test]
+fn wrong_alternate_function_of_the_imu_clock() {
+    let patch = RegisterPatch {
+        address: 0x4002_0420,
+        mask: 0xF000,
+        value: 0x6000,
+    };
+    must_complain(patch, &["SPI1", "PB3"]);
+}
+
+/// USART3_RX sits on DMA1 stream 1 channel 4; channel 5 is TIM2's there: DMA1_S1CR bits 27:25.
+#[test]
+fn wrong_dma_channel_of_the_radio() {
+    let patch = RegisterPatch {
+        address: 0x4002_6028,
+        mask: 7 << 25,
+        value: 5 << 25,
+    };
+    must_complain(patch, &["DMA1"]);
+}
+
+/// Prescaler 6 instead of 3 halves the bit rate: CAN1_BTR bits 9:0.
+#[test]
+fn wrong_can_bit_timing() {
+    let patch = RegisterPatch {
+        address: 0x4000_641C,
+        mask: 0x3FF,
+        value: 5,
+    };
+    must_complain(patch, &["CAN1"]);
+}
+
+/// N = 100 instead of 168 gives 100 MHz: every rate derived from the clock tree is wrong. RCC_PLLCFGR bits 14:6.
+#[test]
+fn wrong_pll_multiplier() {
+    let patch = RegisterPatch {
+        address: 0x4002_3804,
+        mask: 0x1FF << 6,
+        value: 100 << 6,
+    };
+    must_complain(patch, &["USART3"]);
+}
+
+/// 8N1 instead of 8E2: USART3_CR1 bits M (12) and PCE (10) cleared.
+#[test]
+fn radio_without_parity() {
+    let patch = RegisterPatch {
+        address: 0x4000_480C,
+        mask: 1 << 12 | 1 << 10,
+        value: 0,
+    };
+    must_complain(patch, &["USART3"]);
+}
