@@ -254,3 +254,39 @@ fn a_seed_fixes_every_random_number() {
     assert_eq!(trace(1), trace(1));
     assert_ne!(trace(1), trace(2));
 }
+
+/// The robot must be drivable: a plain proportional loop, 30 A per m/s and at most 8 A, on the speeds that come back
+/// over the bus.
+#[test]
+fn a_proportional_loop_over_the_bus_settles_on_both_plants() {
+    for plant in [PlantKind::Stand, PlantKind::Rolling] {
+        let mut world = world(plant, RadioKind::Sbus);
+        let mut rim_mps = [0.0; 2];
+        let mut settled: Vec<[f64; 2]> = Vec::new();
+        for tick in 1..=3_000 {
+            let now = tick * MS;
+            world.advance(now);
+            for (id, rpm) in take_feedback(&mut world, now) {
+                let wheel_rps = f64::from(rpm) / (3_591.0 / 187.0) * std::f64::consts::TAU / 60.0;
+                rim_mps[(id - 0x201) as usize] = wheel_rps * 0.06;
+            }
+            // Left 0.5 m/s forward; the right motor forward is negative, 0.7 m/s.
+            let raw = |wanted_mps: f64, is_mps: f64| {
+                let amperes = (30.0 * (wanted_mps - is_mps)).clamp(-8.0, 8.0);
+                (amperes * 16_384.0 / 20.0) as i16
+            };
+            let (left, right) = (raw(0.5, rim_mps[0]), raw(-0.7, rim_mps[1]));
+            command(&mut world, left, right, now);
+            if tick > 2_000 {
+                settled.push(rim_mps);
+            }
+        }
+        for speeds in settled {
+            assert!((speeds[0] / 0.5 - 1.0).abs() < 0.05, "{plant:?} {speeds:?}");
+            assert!(
+                (speeds[1] / -0.7 - 1.0).abs() < 0.05,
+                "{plant:?} {speeds:?}"
+            );
+        }
+    }
+}
