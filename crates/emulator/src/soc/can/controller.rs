@@ -144,10 +144,10 @@ impl Controller {
     }
 
     /// Moves towards the mode INRQ and SLEEP ask for; a frame it takes part in goes on to its end first.
-    /// Returns when a synchronisation now begun ends.
-    pub fn follow_requests(&mut self, in_frame: bool, ctx: &mut Ctx<'_>) -> Option<Ps> {
+    /// True where it now begins to wait for a quiet bus.
+    pub fn follow_requests(&mut self, in_frame: bool, ctx: &mut Ctx<'_>) -> bool {
         if in_frame && self.mode == Mode::Normal {
-            return None;
+            return false;
         }
         let asleep = self.mode == Mode::Sleep;
         let sleep = self.mcr & mcr::SLEEP != 0;
@@ -161,12 +161,13 @@ impl Controller {
             }
             self.mode = Mode::Sleep;
         } else if matches!(self.mode, Mode::Sleep | Mode::Initialization) {
-            return self.synchronise(ctx);
+            self.synchronise(ctx);
+            return true;
         }
-        None
+        false
     }
 
-    fn synchronise(&mut self, ctx: &mut Ctx<'_>) -> Option<Ps> {
+    fn synchronise(&mut self, ctx: &mut Ctx<'_>) {
         self.msr_flags &= !(msr::SLAK | msr::INAK);
         self.msr_flags |= if self.mode == Mode::Sleep {
             msr::SLAK
@@ -174,13 +175,12 @@ impl Controller {
             msr::INAK
         };
         // Without its RX pin the controller sees a dominant line forever.
-        if !self.hears_bus(ctx) {
-            self.mode = Mode::Synchronising(Ps::MAX);
-            return None;
-        }
-        let until = ctx.now + 11 * self.bit(ctx);
+        let until = if self.hears_bus(ctx) {
+            ctx.now + 11 * self.bit(ctx)
+        } else {
+            Ps::MAX
+        };
         self.mode = Mode::Synchronising(until);
-        Some(until)
     }
 
     /// Eleven recessive bits have passed.

@@ -70,25 +70,38 @@ impl Can {
     /// Lets controller and bus `index` go as far as they can at this instant.
     fn settle(&mut self, index: usize, ctx: &mut Ctx<'_>) {
         let in_frame = self.buses[index].in_frame();
-        let synchronised_at = self.controllers[index].follow_requests(in_frame, ctx);
-        self.wake_at(synchronised_at, QUIET_BUS, index, ctx);
+        if self.controllers[index].follow_requests(in_frame, ctx) {
+            self.wake_when_quiet(index, ctx);
+        }
         let ends_at = self.buses[index].start_if_idle(&mut self.controllers[index], ctx);
         self.wake_at(ends_at, BUS_PHASE, index, ctx);
         self.controllers[index].update_lines(ctx);
     }
 
+    /// When the bus will have been quiet for as long as the controller waits for.
+    fn wake_when_quiet(&self, index: usize, ctx: &mut Ctx<'_>) {
+        let controller = &self.controllers[index];
+        let joins_at = match controller.mode {
+            Mode::Synchronising(until) if until != Ps::MAX => Some(until),
+            _ => controller.recovers_at,
+        };
+        self.wake_at(joins_at, QUIET_BUS, index, ctx);
+    }
+
     fn quiet_for_long(&mut self, index: usize, ctx: &mut Ctx<'_>) {
-        let controller = &mut self.controllers[index];
-        if let Mode::Synchronising(until) = controller.mode {
-            if until <= ctx.now {
-                controller.synchronised(ctx);
-            } else if until != Ps::MAX {
-                self.wake_at(Some(until), QUIET_BUS, index, ctx);
-                return;
-            }
+        // A frame breaks the silence; its end starts the count anew.
+        if self.buses[index].in_frame() {
+            return;
         }
-        self.controllers[index].recover_if_due(ctx.now);
-        self.wake_at(self.controllers[index].recovers_at, QUIET_BUS, index, ctx);
+        let controller = &mut self.controllers[index];
+        match controller.mode {
+            Mode::Synchronising(until) if until <= ctx.now => {
+                controller.synchronised(ctx);
+                self.wake_when_quiet(index, ctx);
+            }
+            Mode::Synchronising(_) => {}
+            _ => controller.recover_if_due(ctx.now),
+        }
     }
 
     fn read_controller(&self, index: usize, register: u32) -> Option<u32> {
@@ -215,7 +228,7 @@ impl Peripheral for Can {
             let controller = &mut self.controllers[index];
             let again_at = self.buses[index].phase_ended(controller, &self.filters, ctx);
             self.wake_at(again_at, BUS_PHASE, index, ctx);
-            self.wake_at(self.controllers[index].recovers_at, QUIET_BUS, index, ctx);
+            self.wake_when_quiet(index, ctx);
         } else {
             self.quiet_for_long(index, ctx);
         }

@@ -80,3 +80,45 @@ fn crc_next(crc: u16, bit: bool) -> u16 {
     let shifted = crc << 1 & 0x7FFF;
     if feedback { shifted ^ CRC15 } else { shifted }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn frame(id: u32, extended: bool, data: &[u8]) -> CanFrame {
+        let mut bytes = [0; 8];
+        bytes[..data.len()].copy_from_slice(data);
+        CanFrame {
+            id,
+            extended,
+            dlc: data.len() as u8,
+            data: bytes,
+        }
+    }
+
+    #[test]
+    fn stuff_bits_counted_by_hand() {
+        // 34 dominant bits from start of frame to the CRC (the CRC of zeros is zero): one stuff bit after each five.
+        assert_eq!(length(&frame(0, false, &[])), 34 + 6 + 10);
+        // 0 11111111111 000 1000 1…1 (64) 100110010001001: two stuff bits in the identifier, twelve in the data, and
+        // one where the last four data bits meet the CRC's first.
+        assert_eq!(length(&frame(0x7FF, false, &[0xFF; 8])), 98 + 15 + 10);
+    }
+
+    #[test]
+    fn lengths_agree_with_a_polynomial_division_done_elsewhere() {
+        let command = [0x12, 0x34, 0xFE, 0xDC, 0, 0, 0, 0];
+        assert_eq!(length(&frame(0x200, false, &command)), 119);
+        assert_eq!(length(&frame(0x555, false, &[0x55; 8])), 109);
+        assert_eq!(length(&frame(0x18DA_F110, true, &[2, 0x10, 3])), 93);
+    }
+
+    #[test]
+    fn lower_identifiers_and_standard_frames_win() {
+        let key = |id, extended| arbitration_key(&frame(id, extended, &[]));
+        assert!(key(0x200, false) < key(0x201, false));
+        // The same eleven bits first: the standard frame's RTR and IDE are dominant.
+        assert!(key(0x200, false) < key(0x200 << 18, true));
+        assert!(key(0x1FF << 18 | 0x3_FFFF, true) < key(0x200, false));
+    }
+}

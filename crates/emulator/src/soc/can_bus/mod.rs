@@ -189,7 +189,7 @@ impl CanBus {
             return board_sender;
         }
         let mut best = board_sender;
-        for node in self.present_nodes(ctx) {
+        for node in 0..ctx.world.can_nodes(self.id) {
             let Some(frame) = ctx.world.can_pending(self.id, node, ctx.now) else {
                 continue;
             };
@@ -340,3 +340,6 @@ fn bits_until_end(transmission: &Transmission) -> Ps {
         Outcome::Misread => MISREAD_BITS + ERROR_FRAME_BITS,
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,134 @@
+//! A chip of one peripheral for unit tests: clocks of the C board, a world around it, time passing.
+
+use robot_plant::{
+    time::Ps,
+    world::{PlantKind, RadioKind, World, WorldConfig},
+};
+
+use super::{
+    clocks::ClockTree,
+    dma_request::DmaRequests,
+    irq::IrqLines,
+    peripheral::{Ctx, Peripheral},
+    pins::{Pin, PinBank, PinMode},
+    scheduler::Scheduler,
+};
+use crate::board_errors::BoardErrors;
+
+pub struct Bench {
+    pub now: Ps,
+    pub scheduler: Scheduler,
+    pub irq: IrqLines,
+    pub dma: DmaRequests,
+    pub clocks: ClockTree,
+    pub pins: PinBank,
+    pub world: World,
+    pub errors: BoardErrors,
+}
+
+impl Bench {
+    /// 168 MHz, APB1 at 42 MHz, APB2 at 84 MHz; every wire of the board muxed.
+    pub fn new() -> Self {
+        let config = WorldConfig {
+            plant: PlantKind::Stand,
+            radio: RadioKind::Sbus,
+            seed: 1,
+            imu_trial: None,
+        };
+        let mut bench = Self {
+            now: 0,
+            scheduler: Scheduler::default(),
+            irq: IrqLines::default(),
+            dma: DmaRequests::default(),
+            clocks: ClockTree {
+                hclk_hz: 168_000_000,
+                pclk1_hz: 42_000_000,
+                pclk2_hz: 84_000_000,
+                ..ClockTree::default()
+            },
+            pins: PinBank::default(),
+            world: World::new(config).expect("no recording is asked for"),
+            errors: BoardErrors::default(),
+        };
+        // hardware.md 1.2 and 1.3.
+        for (port, number, af) in [
+            ('B', 3, 5),
+            ('B', 4, 5),
+            ('A', 7, 5),
+            ('A', 8, 4),
+            ('C', 9, 4),
+            ('C', 11, 7),
+            ('D', 0, 9),
+            ('D', 1, 9),
+            ('B', 5, 9),
+            ('B', 6, 9),
+        ] {
+            bench
+                .pins
+                .set_mode(Pin::new(port, number), PinMode::Alternate(af));
+        }
+        bench.pins.set_mode(Pin::new('F', 10), PinMode::Analog);
+        bench
+    }
+
+    pub fn ctx(&mut self) -> Ctx<'_> {
+        Ctx {
+            now: self.now,
+            scheduler: &mut self.scheduler,
+            irq: &mut self.irq,
+            dma: &mut self.dma,
+            clocks: &mut self.clocks,
+            pins: &mut self.pins,
+            world: &mut self.world,
+            errors: &mut self.errors,
+        }
+    }
+
+    pub fn read(&mut self, block: &mut dyn Peripheral, offset: u32) -> u32 {
+        block
+            .read(offset, 4, &mut self.ctx())
+            .expect("a modelled register")
+    }
+
+    pub fn write(&mut self, block: &mut dyn Peripheral, offset: u32, value: u32) {
+        block
+            .write(offset, 4, value, &mut self.ctx())
+            .expect("a modelled register");
+    }
+
+    /// Lets world and peripheral live until `until`.
+    pub fn run(&mut self, block: &mut dyn Peripheral, until: Ps) {
+        self.run_while(block, until, |_| true);
+    }
+
+    /// The same, until `go_on` says no after an event.
+    pub fn run_while(
+        &mut self,
+        block: &mut dyn Peripheral,
+        until: Ps,
+        go_on: impl Fn(&mut Self) -> bool,
+    ) {
+        while go_on(self) {
+            let world_at = self.world.next_event();
+            if world_at <= until && world_at <= self.scheduler.next() {
+                self.now = world_at;
+                self.world.advance(world_at);
+                block.world_advanced(&mut self.ctx());
+            } else if let Some(event) = self.scheduler.pop_due(until) {
+                self.now = event.at;
+                block.event(event.tag, &mut self.ctx());
+            } else {
+                self.now = until;
+                return;
+            }
+        }
+    }
+
+    pub fn error_texts(&self) -> Vec<&str> {
+        self.errors
+            .list()
+            .iter()
+            .map(|e| e.message.as_str())
+            .collect()
+    }
+}
