@@ -2,9 +2,33 @@
 
 use std::{collections::BTreeMap, path::Path};
 
-use robot_plant::{time::Ps, world::World};
+use robot_plant::{
+    time::{MS, Ps, to_seconds},
+    world::World,
+};
 
-use crate::board_errors::BoardError;
+use crate::{
+    board_errors::BoardError,
+    core::{
+        cpu::{Cpu, Halt, Pause},
+        image::Image,
+    },
+    soc::{bus::Soc, reset::ResetCause},
+};
+
+mod diagnostics;
+mod log;
+mod rtt;
+mod stack;
+
+use diagnostics::Diagnostics;
+use log::DefmtLog;
+use rtt::Rtt;
+use stack::StackWatch;
+
+/// Symbols of the image that the machine looks for.
+const CONTROL_TICK: &str = "robotapp_control_tick";
+const RTT_CONTROL_BLOCK: &str = "_SEGGER_RTT";
 
 #[derive(Debug, thiserror::Error)]
 pub enum MachineError {
@@ -68,43 +92,119 @@ pub struct CanStats {
     pub errors: u64,
 }
 
-pub struct Machine {}
+/// CPU, chip, board and world, and what is known of the image that runs on them.
+pub struct Machine {
+    cpu: Cpu,
+    image: Image,
+    rtt: Option<Rtt>,
+    log: Option<DefmtLog>,
+    diagnostics: Diagnostics,
+    stack: StackWatch,
+    resets: Vec<String>,
+}
+
+/// The log ring is emptied at least this often.
+const LOG_POLL: Ps = MS;
 
 impl Machine {
     /// Powers the board on at time 0 with `elf` in flash.
-    pub fn new(_elf: &Path, _world: World) -> Result<Self, MachineError> {
-        Ok(Self {})
+    pub fn new(elf: &Path, world: World) -> Result<Self, MachineError> {
+        let bytes = std::fs::read(elf).map_err(|e| MachineError::Image(format!("{}: {e}", elf.display())))?;
+        let image = Image::parse(&bytes).map_err(|e| MachineError::Image(e.to_string()))?;
+        let cpu = Cpu::new(&image.segments, image.symbol(CONTROL_TICK), Soc::new(world))
+            .map_err(|e| MachineError::Image(format!("the engine refuses: {e:?}")))?;
+        Ok(Self {
+            rtt: image.symbol(RTT_CONTROL_BLOCK).map(Rtt::new),
+            log: DefmtLog::new(&bytes)?,
+            diagnostics: Diagnostics::find(&bytes, &image).map_err(MachineError::Image)?,
+            stack: StackWatch::of(&image),
+            resets: Vec::new(),
+            cpu,
+            image,
+        })
     }
 
-    pub fn patch_register(&mut self, _patch: RegisterPatch) {}
+    pub fn patch_register(&mut self, patch: RegisterPatch) {
+        self.cpu.with_soc(|soc, _| soc.add_patch(patch));
+    }
 
-    pub fn run_until(&mut self, _until: Ps) -> Result<(), MachineError> {
+    /// Runs on until `until`; a block of code may carry it a fraction of a microsecond past it.
+    pub fn run_until(&mut self, until: Ps) -> Result<(), MachineError> {
+        while self.cpu.now() < until {
+            let step = until.min((self.cpu.now() / LOG_POLL + 1) * LOG_POLL);
+            match self.cpu.run(step).map_err(|halt| self.stopped(halt))? {
+                Pause::Limit => self.poll_log(),
+                Pause::Asleep { thread } => {
+                    self.poll_log();
+                    if thread {
+                        self.diagnostics.copy_from(&self.cpu);
+                    }
+                }
+                Pause::Reset(cause) => self.reset(cause),
+            }
+        }
         Ok(())
     }
 
-    pub fn with_world<R>(&mut self, _f: impl FnOnce(&mut World) -> R) -> R {
-        unreachable!("filled in by the machine")
+    fn stopped(&self, halt: Halt) -> MachineError {
+        let seconds = to_seconds(self.cpu.now());
+        let place = self.image.describe(halt.pc);
+        MachineError::Stopped(format!("{} at {place}, {seconds:.6} s", halt.what))
     }
 
+    fn reset(&mut self, cause: ResetCause) {
+        self.poll_log();
+        self.resets.push(format!("{cause:?}"));
+        self.diagnostics.forget();
+        self.cpu.with_soc(|soc, now| soc.reset(cause, now));
+        self.cpu.reset();
+    }
+
+    fn poll_log(&mut self) {
+        let (Some(rtt), Some(log)) = (&self.rtt, &mut self.log) else { return };
+        let mut bytes = Vec::new();
+        rtt.drain(&mut self.cpu, &mut bytes);
+        log.received(&bytes, self.cpu.now());
+    }
+
+    /// Lets the caller look at the world or change it; the chip notices what changed.
+    pub fn with_world<R>(&mut self, f: impl FnOnce(&mut World) -> R) -> R {
+        self.cpu.with_soc(|soc, _| f(&mut soc.world))
+    }
+
+    /// Lines since the last call.
     pub fn take_log(&mut self) -> Vec<LogLine> {
-        Vec::new()
+        self.log.as_mut().map(DefmtLog::take).unwrap_or_default()
     }
 
     /// Names of the firmware's diagnostics, `diag.*`, read from the image's debug information.
     pub fn diag_names(&self) -> &[String] {
-        &[]
+        self.diagnostics.names()
     }
 
-    /// Present values, in the order of `diag_names`; false while the snapshot cannot be read whole.
-    pub fn sample_diag(&mut self, _out: &mut Vec<f64>) -> bool {
-        false
+    /// Values in the order of `diag_names` as they stood when the thread executor last went to sleep; false while it
+    /// has not since boot.
+    pub fn sample_diag(&mut self, out: &mut Vec<f64>) -> bool {
+        self.diagnostics.sample(out)
     }
 
     pub fn stats(&self) -> Stats {
-        Stats::default()
+        let run = self.cpu.stats();
+        Stats {
+            ticks: run.tick_count(),
+            missed: run.missed_ticks(),
+            tick_instructions: run.tick_instructions(),
+            release_jitter_us: run.release_jitter_us(),
+            jitter_bins: run.jitter_bins(),
+            cpu_load: run.cpu_load(),
+            executors: run.shares(),
+            stack_peak_bytes: self.stack.peak(&self.cpu),
+            resets: self.resets.clone(),
+            can: Vec::new(),
+        }
     }
 
     pub fn board_errors(&self) -> Vec<BoardError> {
-        Vec::new()
+        self.cpu.soc().errors.list().to_vec()
     }
 }

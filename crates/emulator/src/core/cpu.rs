@@ -1,0 +1,376 @@
+//! The processor: runs the image until something asks for attention, takes exceptions, sleeps.
+//!
+//! Time stands still inside a block of code: a register access sees the instant its block began, and an interrupt is
+//! taken at the first block boundary after its request.
+
+use robot_plant::time::Ps;
+use unicorn_engine::{Arch, ArmCpuModel, Mode, RegisterARM, Unicorn, uc_error};
+
+use crate::{
+    core::{
+        clock::CycleClock,
+        exception::Exception,
+        faults::{Fault, HFSR_FORCED},
+        image::Segment,
+        memory::{self, EngineMemory, FLASH},
+        nvic::Masks,
+        stats::Execution,
+        system::System,
+    },
+    soc::{bus::Soc, peripheral::Unmodelled, reset::ResetCause},
+};
+
+mod block_costs;
+mod context;
+mod hooks;
+
+use block_costs::BlockCosts;
+use hooks::with_soc;
+
+/// Why `Cpu::run` came back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pause {
+    /// The asked-for time is reached.
+    Limit,
+    /// WFE or WFI found nothing to do; `thread` when no handler is active.
+    Asleep { thread: bool },
+    /// The chip must be reset, then `Cpu::reset` called.
+    Reset(ResetCause),
+}
+
+/// The run cannot go on.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Halt {
+    pub what: String,
+    pub pc: u32,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum SleepKind {
+    Event,
+    Interrupt,
+}
+
+/// Why the engine was asked to come out of translated code.
+#[derive(Clone, Debug)]
+enum Stop {
+    Interrupt,
+    Limit,
+    ExceptionReturn(u32),
+    SupervisorCall,
+    Fault(Fault),
+    Reset(ResetCause),
+    Unmodelled(Unmodelled),
+    Engine(String),
+}
+
+/// The block of code being run.
+#[derive(Clone, Copy, Debug, Default)]
+struct Block {
+    start: u32,
+    end: u32,
+    /// Not yet added to the counters.
+    instructions: u16,
+    cycles: u16,
+}
+
+/// What the engine's hooks share with the run loop.
+pub struct State {
+    clock: CycleClock,
+    /// Out only while it works on the memories through the engine.
+    soc: Option<Box<Soc>>,
+    system: System,
+    stats: Execution,
+    costs: BlockCosts,
+    block: Block,
+    /// `Soc::next_event` as last seen, and the cycle at which it or anything else is due.
+    soc_event: Ps,
+    due_cycle: u64,
+    limit_cycle: u64,
+    /// An interrupt may be deliverable: look at the next block boundary.
+    attention: bool,
+    /// The event register of WFE.
+    event: bool,
+    stop: Option<Stop>,
+    /// Entry of the function whose calls are counted as control ticks.
+    tick_entry: Option<u32>,
+}
+
+/// CPU, memories and chip.
+pub struct Cpu {
+    engine: Unicorn<'static, State>,
+    asleep: Option<SleepKind>,
+}
+
+const ENTRY_CYCLES: u64 = 12;
+const RETURN_CYCLES: u64 = 12;
+const TAIL_CHAIN_CYCLES: u64 = 6;
+/// S0–S15 and FPSCR; lazy stacking would defer them, not save them when the handler uses the FPU.
+const FP_FRAME_CYCLES: u64 = 17;
+
+impl Cpu {
+    /// The chip powered on with `segments` in flash, out of reset.
+    pub fn new(segments: &[Segment], tick_entry: Option<u32>, soc: Soc) -> Result<Self, uc_error> {
+        let state = State {
+            clock: CycleClock::new(soc.clocks.hclk_hz),
+            soc: Some(Box::new(soc)),
+            system: System::default(),
+            stats: Execution::default(),
+            costs: BlockCosts::default(),
+            block: Block::default(),
+            soc_event: 0,
+            due_cycle: 0,
+            limit_cycle: 0,
+            attention: false,
+            event: false,
+            stop: None,
+            tick_entry,
+        };
+        let mut engine = Unicorn::new_with_data(Arch::ARM, Mode::THUMB | Mode::MCLASS, state)?;
+        engine.ctl_set_cpu_model(ArmCpuModel::CORTEX_M4 as i32)?;
+        memory::map(&mut engine)?;
+        hooks::install(&mut engine)?;
+        let mut cpu = Self { engine, asleep: None };
+        for segment in segments {
+            let offset = segment.address - FLASH.base;
+            for base in [FLASH, memory::FLASH_ALIAS] {
+                cpu.engine.mem_write(u64::from(base.base + offset), &segment.data)?;
+            }
+        }
+        cpu.boot();
+        Ok(cpu)
+    }
+
+    /// System reset: the chip has been reset; the core starts again from its vector table, memories as they are.
+    pub fn reset(&mut self) {
+        self.engine.get_data_mut().stats.rebooted();
+        self.boot();
+    }
+
+    fn boot(&mut self) {
+        self.asleep = None;
+        let state = self.engine.get_data_mut();
+        state.system.reset();
+        state.attention = false;
+        state.event = false;
+        state.stop = None;
+        self.reset_registers();
+        self.soc_changed();
+    }
+
+    pub fn now(&self) -> Ps {
+        self.state().clock.now()
+    }
+
+    pub fn soc(&self) -> &Soc {
+        self.state().soc.as_ref().expect("the chip is away only inside a register access")
+    }
+
+    /// The chip, to be changed from outside between two runs.
+    pub fn with_soc<R>(&mut self, change: impl FnOnce(&mut Soc, Ps) -> R) -> R {
+        with_soc(&mut self.engine, |soc, now, _| change(soc, now))
+    }
+
+    pub fn stats(&self) -> &Execution {
+        &self.state().stats
+    }
+
+    /// False where no memory answers.
+    pub fn read_memory(&self, addr: u32, out: &mut [u8]) -> bool {
+        self.engine.mem_read(addr.into(), out).is_ok()
+    }
+
+    pub fn memory(&mut self) -> EngineMemory<'_, 'static, State> {
+        EngineMemory(&mut self.engine)
+    }
+
+    fn state(&self) -> &State {
+        self.engine.get_data()
+    }
+
+    fn state_mut(&mut self) -> &mut State {
+        self.engine.get_data_mut()
+    }
+
+    fn soc_changed(&mut self) {
+        self.with_soc(|_, _| ());
+    }
+
+    /// Runs on until `until`, sleep, or a reset. Blocks are not split: the limit may be passed by one.
+    pub fn run(&mut self, until: Ps) -> Result<Pause, Halt> {
+        let state = self.state_mut();
+        state.limit_cycle = state.clock.cycle_at(until);
+        state.refresh_due();
+        loop {
+            if let Some(kind) = self.asleep {
+                if let Some(pause) = self.sleep(kind)? {
+                    return Ok(pause);
+                }
+                self.asleep = None;
+            }
+            if self.state().clock.cycles >= self.state().limit_cycle {
+                return Ok(Pause::Limit);
+            }
+            self.take_deliverable()?;
+            if let Some(pause) = self.execute()? {
+                return Ok(pause);
+            }
+        }
+    }
+
+    /// Lets translated code run once, then does what it stopped for.
+    fn execute(&mut self) -> Result<Option<Pause>, Halt> {
+        let pc = self.pc();
+        let result = self.engine.emu_start(u64::from(pc | 1), 0, 0, 0);
+        let state = self.state_mut();
+        state.settle();
+        let stop = state.stop.take();
+        match (stop, result) {
+            (Some(Stop::Interrupt | Stop::Limit), _) => Ok(None),
+            (Some(Stop::ExceptionReturn(code)), _) => self.return_from_exception(code).map(|()| None),
+            (Some(Stop::SupervisorCall), _) => {
+                self.state_mut().system.nvic.pend(Exception::SV_CALL);
+                Ok(None)
+            }
+            (Some(Stop::Fault(fault)), _) => self.raise(fault).map(|()| None),
+            (Some(Stop::Reset(cause)), _) => Ok(Some(Pause::Reset(cause))),
+            (Some(Stop::Unmodelled(access)), _) => Err(self.halt_in_block(access.to_string())),
+            (Some(Stop::Engine(what)), _) => Err(self.halt(what)),
+            (None, Ok(())) => Ok(self.fall_asleep(SleepKind::Interrupt)),
+            (None, Err(uc_error::INSN_INVALID)) => self.hint_or_undefined(),
+            (None, Err(uc_error::EXCEPTION)) => self.raise(Fault::InvalidState).map(|()| None),
+            (None, Err(error)) => Err(self.halt(format!("the engine stopped: {error:?}"))),
+        }
+    }
+
+    /// WFE and YIELD end their block and leave the PC past it; an undefined instruction leaves the PC on itself.
+    fn hint_or_undefined(&mut self) -> Result<Option<Pause>, Halt> {
+        const WFE: u16 = 0xBF20;
+        const WFE_W: u16 = 0x8002;
+        const YIELD: u16 = 0xBF10;
+        const YIELD_W: u16 = 0x8001;
+        let pc = self.pc();
+        let mut before = [0; 2];
+        let at_block_end = pc == self.state().block.end && self.read_memory(pc - 2, &mut before);
+        match u16::from_le_bytes(before) {
+            WFE | WFE_W if at_block_end => Ok(self.wait_for_event()),
+            YIELD | YIELD_W if at_block_end => Ok(None),
+            _ => self.raise(Fault::UndefinedInstruction).map(|()| None),
+        }
+    }
+
+    fn wait_for_event(&mut self) -> Option<Pause> {
+        if std::mem::take(&mut self.state_mut().event) {
+            return None;
+        }
+        self.fall_asleep(SleepKind::Event)
+    }
+
+    fn fall_asleep(&mut self, kind: SleepKind) -> Option<Pause> {
+        self.asleep = Some(kind);
+        Some(Pause::Asleep { thread: self.state().system.nvic.current() == Exception::THREAD })
+    }
+
+    /// Passes idle time in one step from event to event; `None` when the core wakes.
+    fn sleep(&mut self, kind: SleepKind) -> Result<Option<Pause>, Halt> {
+        let masks = context::masks(&self.engine);
+        loop {
+            hooks::run_due(&mut self.engine);
+            let state = self.state_mut();
+            match state.stop.take() {
+                Some(Stop::Reset(cause)) => return Ok(Some(Pause::Reset(cause))),
+                Some(Stop::Unmodelled(access)) => return Err(self.halt_in_block(access.to_string())),
+                _ => {}
+            }
+            if state.wakes(kind, masks) {
+                return Ok(None);
+            }
+            if state.clock.cycles >= state.limit_cycle {
+                return Ok(Some(Pause::Limit));
+            }
+            state.skip_idle();
+        }
+    }
+
+    /// Takes the exception that beats the running code, if there is one.
+    fn take_deliverable(&mut self) -> Result<(), Halt> {
+        while let Some(exception) = {
+            let masks = context::masks(&self.engine);
+            self.state().system.deliverable(masks)
+        } {
+            self.enter(exception)?;
+        }
+        Ok(())
+    }
+
+    /// A synchronous fault: its own exception if that may run now, else HardFault, else lock-up.
+    fn raise(&mut self, fault: Fault) -> Result<(), Halt> {
+        let masks = context::masks(&self.engine);
+        let state = self.state_mut();
+        state.system.faults.record(fault);
+        let direct = fault.exception().filter(|&e| state.system.nvic.can_take(e, masks));
+        let exception = match direct {
+            Some(exception) => exception,
+            None if state.system.nvic.execution_priority(masks) <= -1 => {
+                return Err(self.halt(format!("lock-up: {fault:?} inside HardFault or NMI")));
+            }
+            None => {
+                if fault.exception().is_some() {
+                    state.system.faults.hfsr |= HFSR_FORCED;
+                }
+                Exception::HARD_FAULT
+            }
+        };
+        self.enter(exception)
+    }
+
+    fn pc(&self) -> u32 {
+        self.register(RegisterARM::PC)
+    }
+
+    fn halt(&self, what: String) -> Halt {
+        Halt { what, pc: self.pc() }
+    }
+
+    /// For register accesses: the engine knows the PC inside a block only at its ends.
+    fn halt_in_block(&self, what: String) -> Halt {
+        Halt { what, pc: self.state().block.start }
+    }
+}
+
+impl State {
+    /// Adds the cost of the block that has run.
+    fn settle(&mut self) {
+        let Block { instructions, cycles, .. } = self.block;
+        self.clock.cycles += u64::from(cycles);
+        self.stats.ran(self.system.nvic.current(), instructions, cycles);
+        self.block.instructions = 0;
+        self.block.cycles = 0;
+    }
+
+    fn spend(&mut self, cycles: u64) {
+        self.clock.cycles += cycles;
+        self.stats.busy_cycles += cycles;
+    }
+
+    fn refresh_due(&mut self) {
+        self.due_cycle = self
+            .clock
+            .cycle_at(self.soc_event)
+            .min(self.system.systick.next_cycle())
+            .min(self.limit_cycle);
+    }
+
+    fn skip_idle(&mut self) {
+        let cycles = self.due_cycle.saturating_sub(self.clock.cycles);
+        self.clock.cycles += cycles;
+        self.stats.idle_cycles += cycles;
+    }
+
+    fn wakes(&mut self, kind: SleepKind, masks: Masks) -> bool {
+        match kind {
+            SleepKind::Event => std::mem::take(&mut self.event) || self.system.deliverable(masks).is_some(),
+            SleepKind::Interrupt => self.system.nvic.wakes_from_wfi(masks),
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! The firmware image: what goes into flash, and the symbols that name what runs.
+
+use std::collections::BTreeMap;
+
+use object::{
+    Object, ObjectSymbol, SymbolKind,
+    elf::FileHeader32,
+    read::elf::{ElfFile, FileHeader, ProgramHeader},
+};
+
+use crate::core::memory::{FLASH, FLASH_ALIAS};
+
+/// Bytes at their load addresses in flash.
+#[derive(Debug)]
+pub struct Segment {
+    pub address: u32,
+    pub data: Vec<u8>,
+}
+
+#[derive(Debug)]
+struct Function {
+    start: u32,
+    size: u32,
+    name: String,
+}
+
+/// A parsed ELF file.
+#[derive(Debug)]
+pub struct Image {
+    pub segments: Vec<Segment>,
+    symbols: BTreeMap<String, u32>,
+    functions: Vec<Function>,
+}
+
+#[derive(Debug, thiserror::Error)]
+pub enum ImageError {
+    #[error("not a 32-bit little-endian ELF file: {0}")]
+    Elf(#[from] object::Error),
+    #[error("segment of {size} bytes at 0x{address:08X} is not in the 1 MiB flash")]
+    OutsideFlash { address: u32, size: usize },
+}
+
+impl Image {
+    pub fn parse(elf: &[u8]) -> Result<Self, ImageError> {
+        let file = ElfFile::<FileHeader32<object::Endianness>>::parse(elf)?;
+        let mut segments = Vec::new();
+        let endian = file.endian();
+        for header in file.elf_header().program_headers(endian, elf)? {
+            let data = header.data(endian, elf).unwrap_or_default();
+            if header.p_type(endian) != object::elf::PT_LOAD || data.is_empty() {
+                continue;
+            }
+            let address = header.p_paddr(endian);
+            if !FLASH.contains(address, data.len() as u32) {
+                return Err(ImageError::OutsideFlash { address, size: data.len() });
+            }
+            segments.push(Segment { address, data: data.to_vec() });
+        }
+        Ok(Self { segments, symbols: symbols(&file), functions: functions(&file) })
+    }
+
+    /// Address of a symbol, without the Thumb bit.
+    pub fn symbol(&self, name: &str) -> Option<u32> {
+        self.symbols.get(name).copied()
+    }
+
+    /// The function that holds `pc`, with the offset in it: `main+0x12`; the bare address where none does.
+    pub fn describe(&self, pc: u32) -> String {
+        let pc = if FLASH_ALIAS.contains(pc, 1) { pc + FLASH.base } else { pc };
+        let after = self.functions.partition_point(|f| f.start <= pc);
+        match after.checked_sub(1).map(|i| &self.functions[i]) {
+            Some(f) if pc - f.start < f.size.max(1) => format!("{}+0x{:x} (0x{pc:08X})", f.name, pc - f.start),
+            _ => format!("0x{pc:08X}"),
+        }
+    }
+}
+
+type Elf<'d> = ElfFile<'d, FileHeader32<object::Endianness>>;
+
+fn symbols(file: &Elf<'_>) -> BTreeMap<String, u32> {
+    file.symbols()
+        .filter(|s| s.is_definition() || s.kind() == SymbolKind::Unknown)
+        .filter_map(|s| Some((s.name().ok()?.to_owned(), s.address() as u32 & !u32::from(s.kind() == SymbolKind::Text))))
+        .collect()
+}
+
+fn functions(file: &Elf<'_>) -> Vec<Function> {
+    let mut list: Vec<Function> = file
+        .symbols()
+        .filter(|s| s.kind() == SymbolKind::Text)
+        .filter_map(|s| {
+            let name = format!("{:#}", rustc_demangle::demangle(s.name().ok()?));
+            Some(Function { start: s.address() as u32 & !1, size: s.size() as u32, name })
+        })
+        .collect();
+    list.sort_by_key(|f| f.start);
+    list
+}

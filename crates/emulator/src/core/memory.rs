@@ -1,0 +1,84 @@
+//! Flash, SRAM, CCM and system memory as the CPU and the other bus masters see them (RM0090 2.3).
+
+use unicorn_engine::{Prot, Unicorn, uc_error};
+
+use crate::soc::guest_memory::GuestMemory;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Region {
+    pub base: u32,
+    pub size: u32,
+}
+
+impl Region {
+    pub fn contains(self, addr: u32, len: u32) -> bool {
+        addr >= self.base && u64::from(addr) + u64::from(len) <= u64::from(self.base) + u64::from(self.size)
+    }
+}
+
+pub const FLASH: Region = Region { base: 0x0800_0000, size: 0x10_0000 };
+/// BOOT0 = 0 shows the flash at address 0 too.
+pub const FLASH_ALIAS: Region = Region { base: 0, size: 0x10_0000 };
+pub const CCM: Region = Region { base: 0x1000_0000, size: 0x1_0000 };
+/// SRAM1 and SRAM2.
+pub const SRAM: Region = Region { base: 0x2000_0000, size: 0x2_0000 };
+/// System bootloader, OTP and device signature.
+const SYSTEM_MEMORY: Region = Region { base: 0x1FFF_0000, size: 0x8000 };
+const UNIQUE_ID: u32 = 0x1FFF_7A10;
+const FLASH_SIZE_KIB: u32 = 0x1FFF_7A22;
+
+/// Maps the memories and fills them as they are at power-on: flash and OTP erased, RAM full of noise.
+pub fn map<D>(engine: &mut Unicorn<'_, D>) -> Result<(), uc_error> {
+    for (region, rights) in [
+        (FLASH, Prot::READ | Prot::EXEC),
+        (FLASH_ALIAS, Prot::READ | Prot::EXEC),
+        (SYSTEM_MEMORY, Prot::READ),
+        (SRAM, Prot::ALL),
+        (CCM, Prot::READ | Prot::WRITE),
+    ] {
+        engine.mem_map(region.base.into(), region.size.into(), rights)?;
+    }
+    for region in [FLASH, FLASH_ALIAS, SYSTEM_MEMORY] {
+        engine.mem_write(region.base.into(), &vec![0xFF; region.size as usize])?;
+    }
+    for region in [SRAM, CCM] {
+        engine.mem_write(region.base.into(), &power_on_noise(region))?;
+    }
+    engine.mem_write(UNIQUE_ID.into(), b"EMULATEDBRD1")?;
+    engine.mem_write(FLASH_SIZE_KIB.into(), &1024_u16.to_le_bytes())
+}
+
+/// RAM after power-on: the same on every run, and no value a program could count on.
+pub fn power_on_noise(region: Region) -> Vec<u8> {
+    let mut state = region.base | 1;
+    let mut word = || {
+        state ^= state << 13;
+        state ^= state >> 17;
+        state ^= state << 5;
+        state
+    };
+    (0..region.size / 4).flat_map(|_| word().to_le_bytes()).collect()
+}
+
+/// The memories as DMA and the flash controller reach them through the engine.
+pub struct EngineMemory<'u, 'a, D>(pub &'u mut Unicorn<'a, D>);
+
+impl<D> GuestMemory for EngineMemory<'_, '_, D> {
+    fn read(&mut self, addr: u32, out: &mut [u8]) -> bool {
+        is_memory(addr, out.len()) && self.0.mem_read(addr.into(), out).is_ok()
+    }
+
+    fn write(&mut self, addr: u32, data: &[u8]) -> bool {
+        if FLASH.contains(addr, data.len() as u32) {
+            let alias = addr - FLASH.base + FLASH_ALIAS.base;
+            if self.0.mem_write(alias.into(), data).is_err() {
+                return false;
+            }
+        }
+        is_memory(addr, data.len()) && self.0.mem_write(addr.into(), data).is_ok()
+    }
+}
+
+fn is_memory(addr: u32, len: usize) -> bool {
+    [FLASH, SRAM, CCM, SYSTEM_MEMORY].iter().any(|r| r.contains(addr, len as u32))
+}

@@ -1,0 +1,267 @@
+//! Nested vectored interrupt controller: what is pending, enabled and active, and which exception goes first.
+
+use crate::{
+    core::exception::{EXCEPTION_COUNT, Exception},
+    soc::irq::IRQ_COUNT,
+};
+
+/// Group priority as the processor compares it; lower runs first. Reset −3, NMI −2, HardFault −1, thread 256.
+pub type Priority = i16;
+
+const THREAD_PRIORITY: Priority = 256;
+/// The STM32F407 keeps the upper four bits of every priority.
+const PRIORITY_BITS: u8 = 0xF0;
+const IRQ_BITS: u128 = ((1 << IRQ_COUNT) - 1) << 16;
+
+/// PRIMASK, FAULTMASK and BASEPRI.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Masks {
+    pub primask: bool,
+    pub faultmask: bool,
+    pub basepri: u8,
+}
+
+/// One bit an exception in each set, by exception number.
+#[derive(Debug)]
+pub struct Nvic {
+    pending: u128,
+    enabled: u128,
+    active: u128,
+    priority: [u8; EXCEPTION_COUNT],
+    /// AIRCR.PRIGROUP.
+    group: u8,
+    /// Innermost active exception: what IPSR reads.
+    current: Exception,
+}
+
+impl Default for Nvic {
+    /// After reset: interrupts and configurable faults disabled, the rest of the system exceptions enabled.
+    fn default() -> Self {
+        let always = [Exception::NMI, Exception::HARD_FAULT, Exception::SV_CALL, Exception::PEND_SV, Exception::SYS_TICK];
+        Self {
+            pending: 0,
+            enabled: always.into_iter().map(bit).fold(0, |a, b| a | b),
+            active: 0,
+            priority: [0; EXCEPTION_COUNT],
+            group: 0,
+            current: Exception::THREAD,
+        }
+    }
+}
+
+fn bit(exception: Exception) -> u128 {
+    1 << exception.number()
+}
+
+impl Nvic {
+    pub fn current(&self) -> Exception {
+        self.current
+    }
+
+    pub fn pend(&mut self, exception: Exception) {
+        self.pending |= bit(exception);
+    }
+
+    pub fn unpend(&mut self, exception: Exception) {
+        self.pending &= !bit(exception);
+    }
+
+    pub fn is_pending(&self, exception: Exception) -> bool {
+        self.pending & bit(exception) != 0
+    }
+
+    pub fn is_active(&self, exception: Exception) -> bool {
+        self.active & bit(exception) != 0
+    }
+
+    pub fn is_enabled(&self, exception: Exception) -> bool {
+        self.enabled & bit(exception) != 0
+    }
+
+    pub fn set_enabled(&mut self, exception: Exception, enabled: bool) {
+        if enabled {
+            self.enabled |= bit(exception);
+        } else {
+            self.enabled &= !bit(exception);
+        }
+    }
+
+    /// Request lines that rose; true when one of them became pending now.
+    pub fn lines_rose(&mut self, irqs: u128) -> bool {
+        let before = self.pending;
+        self.pending |= irqs << 16 & IRQ_BITS;
+        self.pending != before
+    }
+
+    /// Interrupts 32·`word` … 32·`word` + 31 of the pending, enabled or active set.
+    pub fn pending_word(&self, word: u32) -> u32 {
+        irq_word(self.pending, word)
+    }
+
+    pub fn enabled_word(&self, word: u32) -> u32 {
+        irq_word(self.enabled, word)
+    }
+
+    pub fn active_word(&self, word: u32) -> u32 {
+        irq_word(self.active, word)
+    }
+
+    pub fn set_pending_word(&mut self, word: u32, bits: u32) {
+        self.pending |= irq_bits(word, bits);
+    }
+
+    /// A request whose line (`levels`, by interrupt number) is still high stays pending.
+    pub fn clear_pending_word(&mut self, word: u32, bits: u32, levels: impl Fn(u8) -> bool) {
+        for i in (0..32).filter(|i| bits >> i & 1 == 1) {
+            let Some(exception) = Exception::from_number(16 + 32 * word + i) else { continue };
+            let held = exception.irq().is_some_and(&levels) && !self.is_active(exception);
+            if !held {
+                self.unpend(exception);
+            }
+        }
+    }
+
+    pub fn enable_word(&mut self, word: u32, bits: u32) {
+        self.enabled |= irq_bits(word, bits);
+    }
+
+    pub fn disable_word(&mut self, word: u32, bits: u32) {
+        self.enabled &= !irq_bits(word, bits);
+    }
+
+    pub fn priority_register(&self, exception: Exception) -> u8 {
+        self.priority[exception.index()]
+    }
+
+    pub fn set_priority_register(&mut self, exception: Exception, value: u8) {
+        self.priority[exception.index()] = value & PRIORITY_BITS;
+    }
+
+    pub fn priority_group(&self) -> u8 {
+        self.group
+    }
+
+    pub fn set_priority_group(&mut self, group: u8) {
+        self.group = group & 7;
+    }
+
+    /// The part of a priority that decides on preemption (ARMv7-M ARM B1.5.4).
+    fn group_priority(&self, value: u8) -> Priority {
+        Priority::from(value) & (0xFF << (self.group + 1))
+    }
+
+    fn priority_of(&self, exception: Exception) -> Priority {
+        match exception {
+            Exception::NMI => -2,
+            Exception::HARD_FAULT => -1,
+            _ => self.group_priority(self.priority[exception.index()]),
+        }
+    }
+
+    /// Priority of the innermost active code before masks.
+    pub fn active_priority(&self) -> Priority {
+        numbers(self.active).map(|e| self.priority_of(e)).min().unwrap_or(THREAD_PRIORITY)
+    }
+
+    /// The priority an exception must beat to be taken (ARMv7-M ARM `ExecutionPriority`).
+    pub fn execution_priority(&self, masks: Masks) -> Priority {
+        let mut boosted = THREAD_PRIORITY;
+        if masks.basepri != 0 {
+            boosted = self.group_priority(masks.basepri);
+        }
+        if masks.primask {
+            boosted = 0;
+        }
+        if masks.faultmask {
+            boosted = -1;
+        }
+        boosted.min(self.active_priority())
+    }
+
+    /// True when `exception` would be taken at once if it were raised now.
+    pub fn can_take(&self, exception: Exception, masks: Masks) -> bool {
+        self.is_enabled(exception) && self.priority_of(exception) < self.execution_priority(masks)
+    }
+
+    /// The pending, enabled exception that goes first: group priority, then subpriority, then number.
+    fn first_pending(&self) -> Option<Exception> {
+        numbers(self.pending & self.enabled)
+            .min_by_key(|&e| (self.priority_of(e), self.priority[e.index()], e.number()))
+    }
+
+    /// What the processor takes now.
+    pub fn deliverable(&self, masks: Masks) -> Option<Exception> {
+        self.first_pending().filter(|&e| self.priority_of(e) < self.execution_priority(masks))
+    }
+
+    /// Something pending beats the active code, masks aside: the masks decide.
+    pub fn waits_for_masks_only(&self) -> bool {
+        self.deliverable(Masks::default()).is_some()
+    }
+
+    /// What ends a WFI: a pending exception that PRIMASK alone may hold back (ARMv7-M ARM B1.5.19).
+    pub fn wakes_from_wfi(&self, masks: Masks) -> bool {
+        self.deliverable(Masks { primask: false, ..masks }).is_some()
+    }
+
+    /// The processor begins to run `exception`.
+    pub fn activate(&mut self, exception: Exception) {
+        self.unpend(exception);
+        self.active |= bit(exception);
+        self.current = exception;
+    }
+
+    /// The handler of the current exception is over; `line_high` tells whether its request is still raised.
+    pub fn retire(&mut self, line_high: bool) {
+        let ended = self.current;
+        self.active &= !bit(ended);
+        if line_high {
+            self.pend(ended);
+        }
+    }
+
+    /// IPSR as unstacked by an exception return.
+    pub fn resume(&mut self, exception: Exception) {
+        self.current = exception;
+    }
+
+    /// ICSR.VECTPENDING.
+    pub fn vect_pending(&self) -> u32 {
+        self.first_pending().map_or(0, Exception::number)
+    }
+
+    /// ICSR.ISRPENDING.
+    pub fn irq_pending(&self) -> bool {
+        self.pending & IRQ_BITS != 0
+    }
+
+    /// ICSR.RETTOBASE: no other exception is active.
+    pub fn returns_to_base(&self) -> bool {
+        self.active & !bit(self.current) == 0
+    }
+}
+
+fn irq_bits(word: u32, bits: u32) -> u128 {
+    if word < 3 { u128::from(bits) << (32 * word + 16) & IRQ_BITS } else { 0 }
+}
+
+fn irq_word(set: u128, word: u32) -> u32 {
+    if word < 3 { ((set & IRQ_BITS) >> (32 * word + 16)) as u32 } else { 0 }
+}
+
+fn numbers(set: u128) -> impl Iterator<Item = Exception> {
+    let mut rest = set;
+    std::iter::from_fn(move || {
+        let number = rest.trailing_zeros();
+        rest &= rest.wrapping_sub(1);
+        Exception::from_number(number)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const A: Exception = Exception(20 + 16);
+    const B: Exception = Exception(30 + 16);
+}

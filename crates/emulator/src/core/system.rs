@@ -1,0 +1,179 @@
+//! The core's private peripherals at 0xE000_0000: NVIC, SCB, SysTick, DWT and the debug registers firmware touches.
+
+use crate::{
+    core::{
+        exception::Exception,
+        faults::FaultStatus,
+        nvic::{Masks, Nvic},
+        systick::SysTick,
+    },
+    soc::{access::Access, peripheral::Unmodelled},
+};
+
+mod debug_registers;
+mod nvic_registers;
+mod scb_registers;
+
+use debug_registers::Debug;
+
+/// What the registers of the private peripheral bus hold.
+#[derive(Debug)]
+pub struct System {
+    pub nvic: Nvic,
+    pub systick: SysTick,
+    pub faults: FaultStatus,
+    debug: Debug,
+    vtor: u32,
+    scr: u32,
+    ccr: u32,
+    cpacr: u32,
+    fpccr: u32,
+    actlr: u32,
+    reset_requested: bool,
+}
+
+const CCR_STKALIGN: u32 = 1 << 9;
+const CCR_DIV_0_TRP: u32 = 1 << 4;
+const CCR_UNALIGN_TRP: u32 = 1 << 3;
+const SCR_SEVONPEND: u32 = 1 << 4;
+const CPACR_FPU: u32 = 0xF << 20;
+/// ASPEN and LSPEN: automatic state preservation, lazily.
+const FPCCR_RESET: u32 = 0xC000_0000;
+
+impl Default for System {
+    fn default() -> Self {
+        Self {
+            nvic: Nvic::default(),
+            systick: SysTick::default(),
+            faults: FaultStatus::default(),
+            debug: Debug::default(),
+            vtor: 0,
+            scr: 0,
+            ccr: CCR_STKALIGN,
+            cpacr: 0,
+            fpccr: FPCCR_RESET,
+            actlr: 0,
+            reset_requested: false,
+        }
+    }
+}
+
+/// What an access needs to know of the rest of the machine.
+pub struct Surroundings<'a> {
+    pub cycles: u64,
+    /// Level of each interrupt's request line.
+    pub line_high: &'a dyn Fn(u8) -> bool,
+}
+
+impl System {
+    /// Everything a system reset resets; debug registers keep their values (only power-on clears them).
+    pub fn reset(&mut self) {
+        let debug = std::mem::take(&mut self.debug);
+        *self = Self { debug, ..Self::default() };
+    }
+
+    pub fn read(&mut self, addr: u32, size: u8, around: &Surroundings<'_>) -> Result<u32, Unmodelled> {
+        let access = Access::new(addr, size);
+        let word = match access.register {
+            0xE000_E004 => 2, // ICTR: 96 interrupt lines
+            0xE000_E008 => self.actlr,
+            0xE000_E010 => self.systick.read_ctrl(),
+            0xE000_E014 => self.systick.reload(),
+            0xE000_E018 => self.systick.value(around.cycles),
+            0xE000_E01C => 0, // CALIB: no calibration value is promised
+            r @ 0xE000_E100..=0xE000_E4EF => self.read_nvic(r).ok_or_else(|| unmodelled(r, "read"))?,
+            r @ (0xE000_ED00..=0xE000_ED94 | 0xE000_EF34..=0xE000_EF44) => {
+                self.read_scb(r).ok_or_else(|| unmodelled(r, "read"))?
+            }
+            r => self.debug.read(r, around.cycles).ok_or_else(|| unmodelled(r, "read"))?,
+        };
+        Ok(access.read_of(word))
+    }
+
+    pub fn write(&mut self, addr: u32, size: u8, value: u32, around: &Surroundings<'_>) -> Result<(), Unmodelled> {
+        let access = Access::new(addr, size);
+        let refused = || unmodelled(access.register, &format!("write of 0x{value:08X}"));
+        let done = match access.register {
+            0xE000_E008 => {
+                self.actlr = access.written_over(self.actlr, value);
+                true
+            }
+            0xE000_E010 => {
+                self.systick.write_ctrl(value, around.cycles);
+                true
+            }
+            0xE000_E014 => {
+                self.systick.write_reload(value);
+                true
+            }
+            0xE000_E018 => {
+                self.systick.write_value(around.cycles);
+                true
+            }
+            r @ (0xE000_E100..=0xE000_E4EF | 0xE000_EF00) => self.write_nvic(r, access, value, around),
+            r @ (0xE000_ED00..=0xE000_ED94 | 0xE000_EF34..=0xE000_EF44) => self.write_scb(r, access, value),
+            r => self.debug.write(r, value, around.cycles),
+        };
+        if done { Ok(()) } else { Err(refused()) }
+    }
+
+    pub fn vector_table(&self) -> u32 {
+        self.vtor
+    }
+
+    /// CCR.STKALIGN: exception frames start at multiples of eight.
+    pub fn aligns_stack(&self) -> bool {
+        self.ccr & CCR_STKALIGN != 0
+    }
+
+    /// SCR.SEVONPEND: a new pending interrupt is an event.
+    pub fn pending_is_event(&self) -> bool {
+        self.scr & SCR_SEVONPEND != 0
+    }
+
+    /// CPACR gives full access to coprocessors 10 and 11.
+    pub fn fpu_on(&self) -> bool {
+        self.cpacr & CPACR_FPU == CPACR_FPU
+    }
+
+    /// SYSRESETREQ since the last call.
+    pub fn take_reset_request(&mut self) -> bool {
+        std::mem::take(&mut self.reset_requested)
+    }
+
+    /// SysTick up to `cycles`; true when something became pending.
+    pub fn run_due(&mut self, cycles: u64) -> bool {
+        let due = self.systick.run_due(cycles);
+        if due {
+            self.nvic.pend(Exception::SYS_TICK);
+        }
+        due
+    }
+
+    pub fn deliverable(&self, masks: Masks) -> Option<Exception> {
+        self.nvic.deliverable(masks)
+    }
+}
+
+fn unmodelled(register: u32, what: &str) -> Unmodelled {
+    Unmodelled { register: register_name(register), what: what.to_owned() }
+}
+
+fn register_name(addr: u32) -> String {
+    let block = match addr {
+        0xE000_0000..=0xE000_0FFF => "ITM",
+        0xE000_1000..=0xE000_1FFF => "DWT",
+        0xE000_2000..=0xE000_2FFF => "FPB",
+        0xE000_E010..=0xE000_E0FF => "SysTick",
+        0xE000_E100..=0xE000_E4FF => "NVIC",
+        0xE000_ED90..=0xE000_EDB8 => "MPU",
+        0xE000_ED00..=0xE000_EDEF => "SCB",
+        0xE000_EDF0..=0xE000_EDFF => "CoreDebug",
+        0xE000_EF30..=0xE000_EF4F => "FPU",
+        0xE004_0000..=0xE004_0FFF => "TPIU",
+        0xE004_1000..=0xE004_1FFF => "ETM",
+        0xE004_2000..=0xE004_2FFF => "DBGMCU",
+        _ => "private peripheral bus",
+    };
+    format!("{block} 0x{addr:08X}")
+}

@@ -1,0 +1,264 @@
+//! Layout of the record inside a static, from the image's DWARF.
+
+use std::borrow::Cow;
+
+use gimli::{AttributeValue, DebuggingInformationEntry, Dwarf, EndianSlice, LittleEndian, Unit, UnitOffset, constants};
+use object::{Object, ObjectSection};
+
+type Slice<'d> = EndianSlice<'d, LittleEndian>;
+type Die<'d> = DebuggingInformationEntry<Slice<'d>, usize>;
+
+/// One number of the record.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Leaf {
+    /// Fields and array indices joined by dots.
+    pub name: String,
+    offset: u32,
+    kind: Kind,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Unsigned(u8),
+    Signed(u8),
+    Float(u8),
+}
+
+/// The record: where it lies in its static, how long it is, and its numbers.
+#[derive(Debug)]
+pub struct Record {
+    pub offset: u32,
+    pub size: u32,
+    pub leaves: Vec<Leaf>,
+}
+
+impl Leaf {
+    /// The number out of a copy of the whole record.
+    pub fn read(&self, record: &[u8]) -> f64 {
+        let at = self.offset as usize;
+        let bytes = |len: u8| {
+            let mut word = [0; 8];
+            word[..usize::from(len)].copy_from_slice(&record[at..at + usize::from(len)]);
+            u64::from_le_bytes(word)
+        };
+        match self.kind {
+            Kind::Unsigned(len) => bytes(len) as f64,
+            Kind::Signed(len) => {
+                let unused = 64 - 8 * u32::from(len);
+                ((bytes(len) << unused) as i64 >> unused) as f64
+            }
+            Kind::Float(4) => f64::from(f32::from_bits(bytes(4) as u32)),
+            Kind::Float(_) => f64::from_bits(bytes(8)),
+        }
+    }
+}
+
+/// The record of type `record` inside the static `name`, through whatever cells wrap it.
+pub fn of_static(elf: &[u8], name: &str, record: &str) -> Result<Record, String> {
+    let file = object::File::parse(elf).map_err(|e| e.to_string())?;
+    let section = |id: gimli::SectionId| -> Result<Cow<'_, [u8]>, gimli::Error> {
+        let data = file.section_by_name(id.name()).and_then(|s| s.uncompressed_data().ok());
+        Ok(data.unwrap_or_default())
+    };
+    let sections = gimli::DwarfSections::load(section).map_err(|e| e.to_string())?;
+    let dwarf = sections.borrow(|bytes| EndianSlice::new(bytes, LittleEndian));
+    let types = Types::load(&dwarf).map_err(|e| e.to_string())?;
+    let variable = types
+        .variable(name)
+        .map_err(|e| e.to_string())?
+        .ok_or_else(|| format!("`{name}` has no debug information"))?;
+    let (place, offset) =
+        types.find(variable, record, 0)?.ok_or_else(|| format!("`{name}` holds no `{record}`"))?;
+    let mut leaves = Vec::new();
+    types.flatten(place, 0, "", &mut leaves)?;
+    Ok(Record { offset, size: types.size(place)?, leaves })
+}
+
+/// A type: its unit and its entry in it.
+#[derive(Clone, Copy)]
+struct Place {
+    unit: usize,
+    entry: UnitOffset,
+}
+
+struct Types<'d> {
+    dwarf: &'d Dwarf<Slice<'d>>,
+    units: Vec<Unit<Slice<'d>>>,
+}
+
+struct Member {
+    name: String,
+    offset: u32,
+    place: Place,
+}
+
+impl<'d> Types<'d> {
+    fn load(dwarf: &'d Dwarf<Slice<'d>>) -> gimli::Result<Self> {
+        let mut units = Vec::new();
+        let mut headers = dwarf.units();
+        while let Some(header) = headers.next()? {
+            units.push(dwarf.unit(header)?);
+        }
+        Ok(Self { dwarf, units })
+    }
+
+    /// Type of the static `name`.
+    fn variable(&self, name: &str) -> gimli::Result<Option<Place>> {
+        for (index, unit) in self.units.iter().enumerate() {
+            let mut entries = unit.entries();
+            while let Some(entry) = entries.next_dfs()? {
+                let is_it = entry.tag() == constants::DW_TAG_variable
+                    && [constants::DW_AT_linkage_name, constants::DW_AT_name]
+                        .iter()
+                        .any(|&at| self.text(index, entry, at).is_some_and(|text| text == name));
+                if is_it && let Some(place) = self.type_of(index, entry) {
+                    return Ok(Some(place));
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    fn text(&self, unit: usize, entry: &Die<'d>, at: constants::DwAt) -> Option<String> {
+        let text = self.dwarf.attr_string(&self.units[unit], entry.attr_value(at)?).ok()?;
+        Some(text.to_string_lossy().into_owned())
+    }
+
+    fn type_of(&self, unit: usize, entry: &Die<'d>) -> Option<Place> {
+        match entry.attr_value(constants::DW_AT_type)? {
+            AttributeValue::UnitRef(entry) => Some(Place { unit, entry }),
+            AttributeValue::DebugInfoRef(offset) => {
+                (0..).zip(&self.units).find_map(|(unit, u)| {
+                    let entry = offset.to_unit_offset(&u.header)?;
+                    Some(Place { unit, entry })
+                })
+            }
+            _ => None,
+        }
+    }
+
+    fn entry(&self, place: Place) -> Result<Die<'d>, String> {
+        self.units[place.unit].entry(place.entry).map_err(|e| e.to_string())
+    }
+
+    fn size(&self, place: Place) -> Result<u32, String> {
+        number(&self.entry(place)?, constants::DW_AT_byte_size).ok_or_else(|| "a type has no size".to_owned())
+    }
+
+    fn children(&self, place: Place) -> Result<Vec<Die<'d>>, String> {
+        let unit = &self.units[place.unit];
+        let mut tree = unit.entries_tree(Some(place.entry)).map_err(|e| e.to_string())?;
+        let mut children = tree.root().map_err(|e| e.to_string())?.children();
+        let mut all = Vec::new();
+        while let Some(child) = children.next().map_err(|e| e.to_string())? {
+            all.push(child.entry().clone());
+        }
+        Ok(all)
+    }
+
+    fn members(&self, place: Place) -> Result<Vec<Member>, String> {
+        let children = self.children(place)?;
+        let members = children.iter().filter(|c| c.tag() == constants::DW_TAG_member).filter_map(|c| {
+            Some(Member {
+                name: self.text(place.unit, c, constants::DW_AT_name)?,
+                offset: number(c, constants::DW_AT_data_member_location).unwrap_or(0),
+                place: self.type_of(place.unit, c)?,
+            })
+        });
+        Ok(members.collect())
+    }
+
+    /// The struct named `record` at or below `place`, with its offset.
+    fn find(&self, place: Place, record: &str, offset: u32) -> Result<Option<(Place, u32)>, String> {
+        let entry = self.entry(place)?;
+        if !matches!(entry.tag(), constants::DW_TAG_structure_type | constants::DW_TAG_union_type) {
+            return Ok(None);
+        }
+        if self.text(place.unit, &entry, constants::DW_AT_name).is_some_and(|name| name == record) {
+            return Ok(Some((place, offset)));
+        }
+        for member in self.members(place)? {
+            if let Some(found) = self.find(member.place, record, offset + member.offset)? {
+                return Ok(Some(found));
+            }
+        }
+        Ok(None)
+    }
+
+    fn flatten(&self, place: Place, offset: u32, name: &str, leaves: &mut Vec<Leaf>) -> Result<(), String> {
+        let entry = self.entry(place)?;
+        match entry.tag() {
+            constants::DW_TAG_structure_type => self.flatten_struct(place, offset, name, leaves),
+            constants::DW_TAG_array_type => self.flatten_array(place, &entry, offset, name, leaves),
+            constants::DW_TAG_base_type | constants::DW_TAG_enumeration_type => {
+                let kind = scalar(&entry).ok_or_else(|| format!("{name}: no plain number"))?;
+                leaves.push(Leaf { name: name.to_owned(), offset, kind });
+                Ok(())
+            }
+            tag => Err(format!("{name}: {tag} cannot be read as numbers")),
+        }
+    }
+
+    fn flatten_struct(&self, place: Place, offset: u32, name: &str, leaves: &mut Vec<Leaf>) -> Result<(), String> {
+        if self.children(place)?.iter().any(|c| c.tag() == constants::DW_TAG_variant_part) {
+            return Err(format!("{name}: an enum with fields cannot be read as numbers"));
+        }
+        let members = self.members(place)?;
+        let is_newtype = members.len() == 1 && members[0].name == "__0";
+        for member in members {
+            let full = if is_newtype {
+                name.to_owned()
+            } else {
+                join(name, member.name.strip_prefix("__").unwrap_or(&member.name))
+            };
+            self.flatten(member.place, offset + member.offset, &full, leaves)?;
+        }
+        Ok(())
+    }
+
+    fn flatten_array(
+        &self,
+        place: Place,
+        entry: &Die<'d>,
+        offset: u32,
+        name: &str,
+        leaves: &mut Vec<Leaf>,
+    ) -> Result<(), String> {
+        let element = self.type_of(place.unit, entry).ok_or_else(|| format!("{name}: array of nothing"))?;
+        let ranges = self.children(place)?;
+        let count = ranges.iter().find_map(|range| {
+            number(range, constants::DW_AT_count)
+                .or_else(|| number(range, constants::DW_AT_upper_bound).map(|last| last + 1))
+        });
+        let stride = self.size(element)?;
+        for i in 0..count.unwrap_or(0) {
+            self.flatten(element, offset + i * stride, &join(name, &i.to_string()), leaves)?;
+        }
+        Ok(())
+    }
+}
+
+fn join(prefix: &str, name: &str) -> String {
+    if prefix.is_empty() { name.to_owned() } else { format!("{prefix}.{name}") }
+}
+
+fn number(entry: &Die<'_>, at: constants::DwAt) -> Option<u32> {
+    u32::try_from(entry.attr_value(at)?.udata_value()?).ok()
+}
+
+fn scalar(entry: &Die<'_>) -> Option<Kind> {
+    let size = number(entry, constants::DW_AT_byte_size)? as u8;
+    if entry.tag() == constants::DW_TAG_enumeration_type {
+        return Some(Kind::Unsigned(size));
+    }
+    let Some(AttributeValue::Encoding(encoding)) = entry.attr_value(constants::DW_AT_encoding) else { return None };
+    match encoding {
+        constants::DW_ATE_float => Some(Kind::Float(size)),
+        constants::DW_ATE_signed | constants::DW_ATE_signed_char => Some(Kind::Signed(size)),
+        constants::DW_ATE_unsigned | constants::DW_ATE_unsigned_char | constants::DW_ATE_boolean => {
+            Some(Kind::Unsigned(size))
+        }
+        _ => None,
+    }
+    .filter(|_| size <= 8)
+}
