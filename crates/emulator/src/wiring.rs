@@ -38,25 +38,93 @@ struct Route {
 
 fn route(signal: Signal) -> Route {
     let (name, pin, mode, consequence) = match signal {
-        Signal::Spi1Sck => ("SPI1_SCK", Pin::new('B', 3), af(5), "the BMI088 gets no clock"),
-        Signal::Spi1Miso => ("SPI1_MISO", Pin::new('B', 4), af(5), "nothing of the BMI088 is heard"),
-        Signal::Spi1Mosi => ("SPI1_MOSI", Pin::new('A', 7), af(5), "the BMI088 gets no data"),
-        Signal::I2c3Scl => ("I2C3_SCL", Pin::new('A', 8), af(4), "the IST8310 gets no clock"),
-        Signal::I2c3Sda => ("I2C3_SDA", Pin::new('C', 9), af(4), "the IST8310 is not connected"),
+        Signal::Spi1Sck => (
+            "SPI1_SCK",
+            Pin::new('B', 3),
+            af(5),
+            "the BMI088 gets no clock",
+        ),
+        Signal::Spi1Miso => (
+            "SPI1_MISO",
+            Pin::new('B', 4),
+            af(5),
+            "nothing of the BMI088 is heard",
+        ),
+        Signal::Spi1Mosi => (
+            "SPI1_MOSI",
+            Pin::new('A', 7),
+            af(5),
+            "the BMI088 gets no data",
+        ),
+        Signal::I2c3Scl => (
+            "I2C3_SCL",
+            Pin::new('A', 8),
+            af(4),
+            "the IST8310 gets no clock",
+        ),
+        Signal::I2c3Sda => (
+            "I2C3_SDA",
+            Pin::new('C', 9),
+            af(4),
+            "the IST8310 is not connected",
+        ),
         Signal::Usart1Tx => ("USART1_TX", Pin::new('A', 9), af(7), "the PC hears nothing"),
         Signal::Usart1Rx => ("USART1_RX", Pin::new('B', 7), af(7), "the PC is not heard"),
-        Signal::Usart3Rx => ("USART3_RX", Pin::new('C', 11), af(7), "the radio is not heard"),
-        Signal::Usart6Tx => ("USART6_TX", Pin::new('G', 14), af(8), "nothing leaves the 3-pin UART"),
-        Signal::Usart6Rx => ("USART6_RX", Pin::new('G', 9), af(8), "the 3-pin UART is not heard"),
-        Signal::Can1Tx => ("CAN1_TX", Pin::new('D', 1), af(9), "CAN1 hears nothing of the board"),
-        Signal::Can1Rx => ("CAN1_RX", Pin::new('D', 0), af(9), "the board hears nothing of CAN1"),
-        Signal::Can2Tx => ("CAN2_TX", Pin::new('B', 6), af(9), "CAN2 hears nothing of the board"),
-        Signal::Can2Rx => ("CAN2_RX", Pin::new('B', 5), af(9), "the board hears nothing of CAN2"),
-        Signal::Adc3In8 => {
-            ("ADC3_IN8", Pin::new('F', 10), PinMode::Analog, "the battery voltage is not seen")
-        }
+        Signal::Usart3Rx => (
+            "USART3_RX",
+            Pin::new('C', 11),
+            af(7),
+            "the radio is not heard",
+        ),
+        Signal::Usart6Tx => (
+            "USART6_TX",
+            Pin::new('G', 14),
+            af(8),
+            "nothing leaves the 3-pin UART",
+        ),
+        Signal::Usart6Rx => (
+            "USART6_RX",
+            Pin::new('G', 9),
+            af(8),
+            "the 3-pin UART is not heard",
+        ),
+        Signal::Can1Tx => (
+            "CAN1_TX",
+            Pin::new('D', 1),
+            af(9),
+            "CAN1 hears nothing of the board",
+        ),
+        Signal::Can1Rx => (
+            "CAN1_RX",
+            Pin::new('D', 0),
+            af(9),
+            "the board hears nothing of CAN1",
+        ),
+        Signal::Can2Tx => (
+            "CAN2_TX",
+            Pin::new('B', 6),
+            af(9),
+            "CAN2 hears nothing of the board",
+        ),
+        Signal::Can2Rx => (
+            "CAN2_RX",
+            Pin::new('B', 5),
+            af(9),
+            "the board hears nothing of CAN2",
+        ),
+        Signal::Adc3In8 => (
+            "ADC3_IN8",
+            Pin::new('F', 10),
+            PinMode::Analog,
+            "the battery voltage is not seen",
+        ),
     };
-    Route { name, pin, mode, consequence }
+    Route {
+        name,
+        pin,
+        mode,
+        consequence,
+    }
 }
 
 const fn af(number: u8) -> PinMode {
@@ -145,7 +213,8 @@ impl Outputs {
     pub fn update(&mut self, pins: &PinBank, timers: &PwmTimers<'_>, world: &mut World, now: Ps) {
         let levels = Levels::read(pins, timers);
         let before = self.last.replace(levels);
-        let changed = |field: fn(&Levels) -> bool| before.as_ref().map(field) != Some(field(&levels));
+        let changed =
+            |field: fn(&Levels) -> bool| before.as_ref().map(field) != Some(field(&levels));
         if changed(|l| l.accel_selected) {
             world.spi_select(SpiSelect::Accel, levels.accel_selected, now);
         }
@@ -171,7 +240,10 @@ impl Outputs {
 fn drive(pins: &PinBank, pin: Pin, timer_af: u8, timer: &Timer, channel: usize) -> Wave {
     let off = Wave { hz: 0.0, duty: 0.0 };
     match pins.mode(pin) {
-        PinMode::Output => Wave { hz: 0.0, duty: f64::from(u8::from(pins.level(pin))) },
+        PinMode::Output => Wave {
+            hz: 0.0,
+            duty: f64::from(u8::from(pins.level(pin))),
+        },
         PinMode::Alternate(number) if number == timer_af => timer.wave(channel).unwrap_or(off),
         _ => off,
     }

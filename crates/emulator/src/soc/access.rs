@@ -16,7 +16,11 @@ impl Access {
             2 => 0xFFFF << shift,
             _ => u32::MAX,
         };
-        Self { register: offset & !3, shift, mask }
+        Self {
+            register: offset & !3,
+            shift,
+            mask,
+        }
     }
 
     /// The accessed part of a register's value.
@@ -39,7 +43,13 @@ mod tests {
         let upper_half = Access::new(0x1A, 2);
         assert_eq!(upper_half.register, 0x18);
         assert_eq!(upper_half.read_of(0xABCD_1234), 0xABCD);
-        assert_eq!(upper_half.written_over(0x1111_2222, 0xFFFF_BEEF), 0xBEEF_2222);
-        assert_eq!(Access::new(0x19, 1).written_over(0x1111_2222, 0x33), 0x1111_3322);
+        assert_eq!(
+            upper_half.written_over(0x1111_2222, 0xFFFF_BEEF),
+            0xBEEF_2222
+        );
+        assert_eq!(
+            Access::new(0x19, 1).written_over(0x1111_2222, 0x33),
+            0x1111_3322
+        );
     }
 }

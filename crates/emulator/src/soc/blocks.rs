@@ -120,7 +120,11 @@ impl Blocks {
 
     /// 1 or 2.
     pub fn dma(&mut self, number: u8) -> &mut Dma {
-        if number == 1 { &mut self.dma1 } else { &mut self.dma2 }
+        if number == 1 {
+            &mut self.dma1
+        } else {
+            &mut self.dma2
+        }
     }
 
     /// The next item to move, and the controller whose stream moves it.
@@ -134,11 +138,14 @@ impl Blocks {
     }
 
     pub fn check_unserved(&mut self, requests: &DmaRequests, now: Ps, errors: &mut BoardErrors) {
-        self.unserved.check(requests, [&self.dma1, &self.dma2], now, errors);
+        self.unserved
+            .check(requests, [&self.dma1, &self.dma2], now, errors);
     }
 
     pub fn take_reset_request(&mut self) -> Option<ResetCause> {
-        self.iwdg.take_reset_request().then_some(ResetCause::IndependentWatchdog)
+        self.iwdg
+            .take_reset_request()
+            .then_some(ResetCause::IndependentWatchdog)
     }
 
     /// Frames and load of CAN1 (0) or CAN2 (1).
@@ -154,7 +161,11 @@ impl Blocks {
 
     /// A port or a timer drives a pin differently, or may.
     pub fn outputs_changed(&mut self, ctx: &mut Ctx<'_>) {
-        let timers = PwmTimers { tim4: &self.tim4, tim5: &self.tim5, tim10: &self.tim10 };
+        let timers = PwmTimers {
+            tim4: &self.tim4,
+            tim5: &self.tim5,
+            tim10: &self.tim10,
+        };
         self.outputs.update(ctx.pins, &timers, ctx.world, ctx.now);
         self.exti.pins_changed(&self.syscfg, ctx);
     }

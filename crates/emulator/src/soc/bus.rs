@@ -195,10 +195,15 @@ impl Soc {
     }
 
     /// What an access or event of one block means for the others.
-    fn after_access(&mut self, block: Block, now: Ps, mem: &mut dyn GuestMemory) -> Result<(), Unmodelled> {
+    fn after_access(
+        &mut self,
+        block: Block,
+        now: Ps,
+        mem: &mut dyn GuestMemory,
+    ) -> Result<(), Unmodelled> {
         match block {
             Block::Rcc => self.rcc_changed(now),
-            Block::Gpio(_) | Block::Timer(_) => self.outputs_changed(now),
+            Block::Gpio(_) | Block::Timer(4 | 5 | 10) => self.outputs_changed(now),
             Block::Pwr => {
                 let (blocks, mut ctx) = split!(self, now);
                 blocks.power_changed(&mut ctx);
@@ -267,7 +272,10 @@ impl Soc {
         let on = enables >> gate.bit & 1 == 1;
         if !on {
             let name = memory_map::block_name(block);
-            self.errors.report(now, format!("{name}: registers {access} while RCC {} is 0", gate.name));
+            self.errors.report(
+                now,
+                format!("{name}: registers {access} while RCC {} is 0", gate.name),
+            );
         }
         on
     }
@@ -286,3 +294,6 @@ fn find(addr: u32, access: &str) -> Result<(Block, u32), Unmodelled> {
         what: access.to_owned(),
     })
 }
+
+#[cfg(test)]
+mod tests;

@@ -78,13 +78,26 @@ impl Peripheral for Exti {
         Ok(access.read_of(self.value(access.register)?))
     }
 
-    fn write(&mut self, offset: u32, size: u8, value: u32, ctx: &mut Ctx<'_>) -> Result<(), Unmodelled> {
+    fn write(
+        &mut self,
+        offset: u32,
+        size: u8,
+        value: u32,
+        ctx: &mut Ctx<'_>,
+    ) -> Result<(), Unmodelled> {
         let access = Access::new(offset, size);
         let is_pr = access.register == 0x14;
-        let old = if is_pr { 0 } else { self.value(access.register)? };
+        let old = if is_pr {
+            0
+        } else {
+            self.value(access.register)?
+        };
         let whole = access.written_over(old, value);
         if whole & !PIN_LINES != 0 && !is_pr {
-            return Err(unmodelled(access.register, &format!("write of {whole:#010x} (line above 15)")));
+            return Err(unmodelled(
+                access.register,
+                &format!("write of {whole:#010x} (line above 15)"),
+            ));
         }
         match access.register {
             0x00 => self.imr = whole,
@@ -95,7 +108,12 @@ impl Peripheral for Exti {
             0x14 => self.pr &= !whole,
             // EMR: no event is routed to the core.
             _ if whole == 0 => {}
-            _ => return Err(unmodelled(access.register, &format!("write of {whole:#010x}"))),
+            _ => {
+                return Err(unmodelled(
+                    access.register,
+                    &format!("write of {whole:#010x}"),
+                ));
+            }
         }
         self.drive_irqs(ctx);
         Ok(())
@@ -104,15 +122,22 @@ impl Peripheral for Exti {
     fn event(&mut self, _tag: u32, _ctx: &mut Ctx<'_>) {}
 
     fn reset(&mut self, ctx: &mut Ctx<'_>) {
-        *self = Self { levels: self.levels, ..Self::default() };
+        *self = Self {
+            levels: self.levels,
+            ..Self::default()
+        };
         self.drive_irqs(ctx);
     }
 }
 
 fn unmodelled(register: u32, what: &str) -> Unmodelled {
     let names = ["IMR", "EMR", "RTSR", "FTSR", "SWIER", "PR"];
-    let register = names
-        .get((register / 4) as usize)
-        .map_or_else(|| format!("EXTI+{register:#x}"), |name| format!("EXTI.{name}"));
-    Unmodelled { register, what: what.to_owned() }
+    let register = names.get((register / 4) as usize).map_or_else(
+        || format!("EXTI+{register:#x}"),
+        |name| format!("EXTI.{name}"),
+    );
+    Unmodelled {
+        register,
+        what: what.to_owned(),
+    }
 }

@@ -21,7 +21,11 @@ pub struct Flash {
 impl Flash {
     /// Files a board error where `hclk_hz` asks for more wait states than set.
     pub fn check_speed(&self, ctx: &mut Ctx<'_>) {
-        let needed = ctx.clocks.hclk_hz.div_ceil(HZ_PER_WAIT_STATE).saturating_sub(1);
+        let needed = ctx
+            .clocks
+            .hclk_hz
+            .div_ceil(HZ_PER_WAIT_STATE)
+            .saturating_sub(1);
         let set = self.acr & LATENCY;
         if set < needed {
             let hclk_hz = ctx.clocks.hclk_hz;
@@ -42,14 +46,23 @@ impl Peripheral for Flash {
         }
     }
 
-    fn write(&mut self, offset: u32, size: u8, value: u32, ctx: &mut Ctx<'_>) -> Result<(), Unmodelled> {
+    fn write(
+        &mut self,
+        offset: u32,
+        size: u8,
+        value: u32,
+        ctx: &mut Ctx<'_>,
+    ) -> Result<(), Unmodelled> {
         let access = Access::new(offset, size);
         if access.register != 0 {
             return Err(unmodelled(offset, &format!("write of {value:#010x}")));
         }
         let whole = access.written_over(self.acr, value) & ACR;
         if whole & RESET_CACHES != 0 && self.acr & ICEN_DCEN != 0 {
-            ctx.errors.report(ctx.now, "FLASH: ACR cache reset while the caches are on: ignored");
+            ctx.errors.report(
+                ctx.now,
+                "FLASH: ACR cache reset while the caches are on: ignored",
+            );
         }
         self.acr = whole;
         self.check_speed(ctx);
@@ -65,8 +78,12 @@ impl Peripheral for Flash {
 
 fn unmodelled(offset: u32, what: &str) -> Unmodelled {
     let names = ["ACR", "KEYR", "OPTKEYR", "SR", "CR", "OPTCR"];
-    let register = names
-        .get((offset / 4) as usize)
-        .map_or_else(|| format!("FLASH+{offset:#x}"), |name| format!("FLASH.{name}"));
-    Unmodelled { register, what: what.to_owned() }
+    let register = names.get((offset / 4) as usize).map_or_else(
+        || format!("FLASH+{offset:#x}"),
+        |name| format!("FLASH.{name}"),
+    );
+    Unmodelled {
+        register,
+        what: what.to_owned(),
+    }
 }

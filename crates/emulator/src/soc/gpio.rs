@@ -25,11 +25,22 @@ impl Gpio {
             1 => (0x0000_0280, 0x0000_00C0, 0x0000_0100),
             _ => (0, 0, 0),
         };
-        Self { port, moder, otyper: 0, ospeedr, pupdr, odr: 0, afr: [0; 2] }
+        Self {
+            port,
+            moder,
+            otyper: 0,
+            ospeedr,
+            pupdr,
+            odr: 0,
+            afr: [0; 2],
+        }
     }
 
     fn pin(&self, number: u8) -> Pin {
-        Pin { port: self.port, number }
+        Pin {
+            port: self.port,
+            number,
+        }
     }
 
     fn mode(&self, number: u8) -> PinMode {
@@ -82,7 +93,10 @@ impl Gpio {
             0x1C => format!("GPIO{port}.LCKR"),
             other => format!("GPIO{port}+{other:#x}"),
         };
-        Unmodelled { register, what: what.to_owned() }
+        Unmodelled {
+            register,
+            what: what.to_owned(),
+        }
     }
 }
 
@@ -92,7 +106,13 @@ impl Peripheral for Gpio {
         Ok(access.read_of(self.value(access.register, ctx)?))
     }
 
-    fn write(&mut self, offset: u32, size: u8, value: u32, ctx: &mut Ctx<'_>) -> Result<(), Unmodelled> {
+    fn write(
+        &mut self,
+        offset: u32,
+        size: u8,
+        value: u32,
+        ctx: &mut Ctx<'_>,
+    ) -> Result<(), Unmodelled> {
         let access = Access::new(offset, size);
         let whole = access.written_over(self.value(access.register, ctx)?, value);
         match access.register {

@@ -94,14 +94,20 @@ pub fn locate(addr: u32) -> Option<(Block, u32)> {
         0x4001_3800 => (Block::Syscfg, 0x400),
         0x4001_3C00 => (Block::Exti, 0x400),
         0x4001_4400 => (Block::Timer(10), 0x400),
-        base @ 0x4002_0000..=0x4002_2000 => (Block::Gpio(((base - 0x4002_0000) >> 10) as u8), 0x400),
+        base @ 0x4002_0000..=0x4002_2000 => {
+            (Block::Gpio(((base - 0x4002_0000) >> 10) as u8), 0x400)
+        }
         0x4002_3800 => (Block::Rcc, 0x400),
         0x4002_3C00 => (Block::Flash, 0x400),
         0x4002_6000 => (Block::Dma(1), 0x400),
         0x4002_6400 => (Block::Dma(2), 0x400),
         _ => return None,
     };
-    let base = if block == Block::Can { 0x4000_6400 } else { addr & !(size - 1) };
+    let base = if block == Block::Can {
+        0x4000_6400
+    } else {
+        addr & !(size - 1)
+    };
     Some((block, addr - base))
 }
 
@@ -127,7 +133,11 @@ pub fn clock_gate(block: Block, offset: u32) -> Option<ClockGate> {
             _ => (Bus::Apb2, 10, "APB2ENR.ADC3EN"),
         },
         Block::Syscfg => (Bus::Apb2, 14, "APB2ENR.SYSCFGEN"),
-        Block::Gpio(port) => (Bus::Ahb1, port, GPIO_ENABLES.get(usize::from(port)).copied()?),
+        Block::Gpio(port) => (
+            Bus::Ahb1,
+            port,
+            GPIO_ENABLES.get(usize::from(port)).copied()?,
+        ),
         Block::Dma(1) => (Bus::Ahb1, 21, "AHB1ENR.DMA1EN"),
         Block::Dma(_) => (Bus::Ahb1, 22, "AHB1ENR.DMA2EN"),
         Block::Rcc | Block::Flash | Block::Exti | Block::Iwdg => return None,
@@ -184,7 +194,10 @@ pub fn unmodelled_name(addr: u32) -> String {
     UNMODELLED
         .iter()
         .find(|(base, size, _)| (*base..base + size).contains(&addr))
-        .map_or_else(|| format!("{addr:#010x}"), |(base, _, name)| format!("{name}+{:#x}", addr - base))
+        .map_or_else(
+            || format!("{addr:#010x}"),
+            |(base, _, name)| format!("{name}+{:#x}", addr - base),
+        )
 }
 
 /// The blocks of the chip that nothing on the board uses, by address and size.

@@ -5,7 +5,8 @@ use robot_plant::{time::Ps, world::World};
 use crate::{
     board_errors::BoardErrors,
     soc::{
-        clocks::ClockTree, dma_request::DmaRequests, irq::IrqLines, pins::PinBank, scheduler::Scheduler,
+        clocks::ClockTree, dma_request::DmaRequests, irq::IrqLines, pins::PinBank,
+        scheduler::Scheduler,
     },
 };
 
@@ -34,7 +35,13 @@ pub struct Ctx<'a> {
 /// A register block. Offsets are from its base address; narrower accesses come with their size in bytes.
 pub trait Peripheral {
     fn read(&mut self, offset: u32, size: u8, ctx: &mut Ctx<'_>) -> Result<u32, Unmodelled>;
-    fn write(&mut self, offset: u32, size: u8, value: u32, ctx: &mut Ctx<'_>) -> Result<(), Unmodelled>;
+    fn write(
+        &mut self,
+        offset: u32,
+        size: u8,
+        value: u32,
+        ctx: &mut Ctx<'_>,
+    ) -> Result<(), Unmodelled>;
     /// An event this block asked the scheduler for.
     fn event(&mut self, tag: u32, ctx: &mut Ctx<'_>);
     /// Registers and request lines back to their reset values (RCC reset bit or system reset). The scheduler keeps

@@ -7,6 +7,8 @@ use crate::soc::{
 
 const DBP: u32 = 1 << 8;
 const VOS: u32 = 1 << 14;
+/// Second scale bit of the F42x; reserved here, and written by drivers that serve both.
+const RESERVED_VOS: u32 = 1 << 15;
 /// Read-only: the regulator has reached its scale.
 const VOSRDY: u32 = 1 << 14;
 
@@ -24,7 +26,11 @@ impl Default for Pwr {
 impl Pwr {
     /// Highest HCLK of the regulator's scale, Hz (datasheet table 14).
     pub fn max_hclk_hz(&self) -> u32 {
-        if self.cr & VOS != 0 { 168_000_000 } else { 144_000_000 }
+        if self.cr & VOS != 0 {
+            168_000_000
+        } else {
+            144_000_000
+        }
     }
 
     /// True while RCC_BDCR may be written.
@@ -43,13 +49,19 @@ impl Peripheral for Pwr {
         }
     }
 
-    fn write(&mut self, offset: u32, size: u8, value: u32, _ctx: &mut Ctx<'_>) -> Result<(), Unmodelled> {
+    fn write(
+        &mut self,
+        offset: u32,
+        size: u8,
+        value: u32,
+        _ctx: &mut Ctx<'_>,
+    ) -> Result<(), Unmodelled> {
         let access = Access::new(offset, size);
         let whole = access.written_over(self.cr, value);
-        if access.register != 0 || whole & !(DBP | VOS) != 0 {
+        if access.register != 0 || whole & !(DBP | VOS | RESERVED_VOS) != 0 {
             return Err(unmodelled(offset, &format!("write of {value:#010x}")));
         }
-        self.cr = whole;
+        self.cr = whole & !RESERVED_VOS;
         Ok(())
     }
 
@@ -66,5 +78,8 @@ fn unmodelled(offset: u32, what: &str) -> Unmodelled {
         0x04 => "PWR.CSR".to_owned(),
         other => format!("PWR+{other:#x}"),
     };
-    Unmodelled { register, what: what.to_owned() }
+    Unmodelled {
+        register,
+        what: what.to_owned(),
+    }
 }

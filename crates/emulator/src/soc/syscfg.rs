@@ -15,7 +15,10 @@ impl Syscfg {
     /// The pin behind an EXTI line 0–15.
     pub fn exti_source(&self, line: u8) -> Pin {
         let port = self.exticr[usize::from(line / 4)] >> (4 * u32::from(line % 4)) & 0xF;
-        Pin { port: (port as u8).min(8), number: line }
+        Pin {
+            port: (port as u8).min(8),
+            number: line,
+        }
     }
 }
 
@@ -30,7 +33,13 @@ impl Peripheral for Syscfg {
         }
     }
 
-    fn write(&mut self, offset: u32, size: u8, value: u32, _ctx: &mut Ctx<'_>) -> Result<(), Unmodelled> {
+    fn write(
+        &mut self,
+        offset: u32,
+        size: u8,
+        value: u32,
+        _ctx: &mut Ctx<'_>,
+    ) -> Result<(), Unmodelled> {
         let access = Access::new(offset, size);
         match access.register {
             0x08..=0x14 => {
@@ -56,5 +65,8 @@ fn unmodelled(offset: u32, what: &str) -> Unmodelled {
         0x20 => "SYSCFG.CMPCR".to_owned(),
         other => format!("SYSCFG+{other:#x}"),
     };
-    Unmodelled { register, what: what.to_owned() }
+    Unmodelled {
+        register,
+        what: what.to_owned(),
+    }
 }

@@ -17,18 +17,26 @@ const STUCK: usize = 1000;
 
 impl Soc {
     /// Serves every high request line that has a ready stream.
-    pub(super) fn serve_dma(&mut self, now: Ps, mem: &mut dyn GuestMemory) -> Result<(), Unmodelled> {
+    pub(super) fn serve_dma(
+        &mut self,
+        now: Ps,
+        mem: &mut dyn GuestMemory,
+    ) -> Result<(), Unmodelled> {
         for _ in 0..STUCK {
             if !self.dma_requests.any() {
                 return Ok(());
             }
             let Some((controller, beat)) = self.blocks.next_dma_beat(&self.dma_requests) else {
-                self.blocks.check_unserved(&self.dma_requests, now, &mut self.errors);
+                self.blocks
+                    .check_unserved(&self.dma_requests, now, &mut self.errors);
                 return Ok(());
             };
             self.carry_out(controller, &beat, now, mem)?;
         }
-        Err(Unmodelled { register: "DMA".to_owned(), what: "a request that never falls".to_owned() })
+        Err(Unmodelled {
+            register: "DMA".to_owned(),
+            what: "a request that never falls".to_owned(),
+        })
     }
 
     fn carry_out(
@@ -46,8 +54,12 @@ impl Soc {
         match problem {
             None => blocks.dma(controller).beat_done(beat.stream, &mut ctx),
             Some(problem) => {
-                let place = format!("DMA{controller} stream {} ({})", beat.stream, beat.line.name);
-                ctx.errors.report(now, format!("{place}: {problem}: transfer error"));
+                let place = format!(
+                    "DMA{controller} stream {} ({})",
+                    beat.stream, beat.line.name
+                );
+                ctx.errors
+                    .report(now, format!("{place}: {problem}: transfer error"));
                 blocks.dma(controller).beat_failed(beat.stream, &mut ctx);
             }
         }
@@ -81,7 +93,12 @@ impl Soc {
     }
 
     /// Reads the data register, or writes `value` to it.
-    fn dma_peripheral(&mut self, item: &Item, value: Option<u32>, now: Ps) -> Result<u32, Unmodelled> {
+    fn dma_peripheral(
+        &mut self,
+        item: &Item,
+        value: Option<u32>,
+        now: Ps,
+    ) -> Result<u32, Unmodelled> {
         let (block, offset) = super::find(item.peripheral_addr, "DMA access")?;
         if !self.clocked(block, offset, "moved by DMA", now) {
             return Ok(0);
@@ -90,14 +107,21 @@ impl Soc {
         let peripheral = blocks.get(block);
         match value {
             None => peripheral.read(offset, item.size, &mut ctx),
-            Some(value) => peripheral.write(offset, item.size, value, &mut ctx).map(|()| 0),
+            Some(value) => peripheral
+                .write(offset, item.size, value, &mut ctx)
+                .map(|()| 0),
         }
     }
 }
 
 /// What keeps this item from being moved on silicon.
 fn problem(beat: &Beat) -> Option<String> {
-    let Item { peripheral_addr, memory_addr, size, .. } = beat.item;
+    let Item {
+        peripheral_addr,
+        memory_addr,
+        size,
+        ..
+    } = beat.item;
     if peripheral_addr != beat.line.data_register {
         return Some(format!(
             "PAR is {peripheral_addr:#010x}, the data register is {:#010x}",
@@ -105,15 +129,19 @@ fn problem(beat: &Beat) -> Option<String> {
         ));
     }
     if memory_addr % u32::from(size) != 0 {
-        return Some(format!("memory address {memory_addr:#010x} is not aligned to {size} bytes"));
+        return Some(format!(
+            "memory address {memory_addr:#010x} is not aligned to {size} bytes"
+        ));
     }
     match memory_addr {
         0x2000_0000..0x2002_0000 => None,
         // Flash can be read only.
         0x0800_0000..0x0810_0000 if beat.item.direction == Direction::MemoryToPeripheral => None,
-        0x1000_0000..0x1001_0000 => {
-            Some(format!("memory address {memory_addr:#010x} is in CCM, which DMA cannot reach"))
-        }
-        _ => Some(format!("memory address {memory_addr:#010x} is no memory DMA can reach")),
+        0x1000_0000..0x1001_0000 => Some(format!(
+            "memory address {memory_addr:#010x} is in CCM, which DMA cannot reach"
+        )),
+        _ => Some(format!(
+            "memory address {memory_addr:#010x} is no memory DMA can reach"
+        )),
     }
 }

@@ -38,7 +38,10 @@ pub struct Dma {
 impl Dma {
     /// 1 or 2.
     pub fn new(number: u8) -> Self {
-        Self { number, streams: [Stream::default(); 8] }
+        Self {
+            number,
+            streams: [Stream::default(); 8],
+        }
     }
 
     pub fn stream(&self, index: u8) -> &Stream {
@@ -47,18 +50,30 @@ impl Dma {
 
     /// The most urgent item that some high request line asks for: highest PL first, then the lowest stream.
     pub fn next_beat(&self, requests: &DmaRequests) -> Option<Beat> {
-        let waiting = self.streams.iter().enumerate().filter_map(|(index, stream)| {
-            let line = self.line_served_by(index)?;
-            (stream.ready() && requests.get(line.request)).then_some((index, stream, line))
-        });
-        let (index, stream, line) =
-            waiting.max_by_key(|(index, stream, _)| (stream.priority(), std::cmp::Reverse(*index)))?;
-        Some(Beat { stream: index, line, item: stream.next_item() })
+        let waiting = self
+            .streams
+            .iter()
+            .enumerate()
+            .filter_map(|(index, stream)| {
+                let line = self.line_served_by(index)?;
+                (stream.ready() && requests.get(line.request)).then_some((index, stream, line))
+            });
+        let (index, stream, line) = waiting
+            .max_by_key(|(index, stream, _)| (stream.priority(), std::cmp::Reverse(*index)))?;
+        Some(Beat {
+            stream: index,
+            line,
+            item: stream.next_item(),
+        })
     }
 
     fn line_served_by(&self, index: usize) -> Option<&'static RequestLine> {
         let channel = self.streams[index].channel();
-        request_map::line_of(Slot { controller: self.number, stream: index as u8, channel })
+        request_map::line_of(Slot {
+            controller: self.number,
+            stream: index as u8,
+            channel,
+        })
     }
 
     pub fn beat_done(&mut self, stream: usize, ctx: &mut Ctx<'_>) {
@@ -70,7 +85,8 @@ impl Dma {
     /// Tells the peripheral whether the next item is the last one (EOT_1).
     fn announce_last(&self, stream: usize, ctx: &mut Ctx<'_>) {
         if let Some(line) = self.line_served_by(stream) {
-            ctx.dma.set_last(line.request, self.streams[stream].register(1) == Some(1));
+            ctx.dma
+                .set_last(line.request, self.streams[stream].register(1) == Some(1));
         }
     }
 
@@ -80,19 +96,26 @@ impl Dma {
     }
 
     fn drive_irq(&self, stream: usize, ctx: &mut Ctx<'_>) {
-        ctx.irq.set(self.irq(stream), self.streams[stream].interrupts());
+        ctx.irq
+            .set(self.irq(stream), self.streams[stream].interrupts());
     }
 
     /// RM0090 table 62.
     fn irq(&self, stream: usize) -> Irq {
         const DMA1: [Irq; 8] = [11, 12, 13, 14, 15, 16, 17, 47];
         const DMA2: [Irq; 8] = [56, 57, 58, 59, 60, 68, 69, 70];
-        if self.number == 1 { DMA1[stream] } else { DMA2[stream] }
+        if self.number == 1 {
+            DMA1[stream]
+        } else {
+            DMA2[stream]
+        }
     }
 
     fn status(&self, high: bool) -> u32 {
         let first = if high { 4 } else { 0 };
-        (0..4).fold(0, |bits, n| bits | self.streams[first + n].flags << FLAG_SHIFTS[n])
+        (0..4).fold(0, |bits, n| {
+            bits | self.streams[first + n].flags << FLAG_SHIFTS[n]
+        })
     }
 
     fn clear_flags(&mut self, high: bool, bits: u32, ctx: &mut Ctx<'_>) {
@@ -111,7 +134,9 @@ impl Dma {
             _ => {
                 let (stream, index) =
                     stream_register(register).ok_or_else(|| self.unmodelled(register, "read"))?;
-                self.streams[stream].register(index).ok_or_else(|| self.unmodelled(register, "read"))
+                self.streams[stream]
+                    .register(index)
+                    .ok_or_else(|| self.unmodelled(register, "read"))
             }
         }
     }
@@ -151,7 +176,10 @@ impl Dma {
             );
         }
         if !stream.ready() {
-            ctx.errors.report(ctx.now, format!("DMA{number} stream {index}: enabled with NDTR = 0"));
+            ctx.errors.report(
+                ctx.now,
+                format!("DMA{number} stream {index}: enabled with NDTR = 0"),
+            );
         }
     }
 
@@ -162,7 +190,10 @@ impl Dma {
             Some((stream, index)) => format!("DMA{number}.S{stream}{}", NAMES[index as usize]),
             None => format!("DMA{number}+{register:#x}"),
         };
-        Unmodelled { register, what: what.to_owned() }
+        Unmodelled {
+            register,
+            what: what.to_owned(),
+        }
     }
 }
 
@@ -179,7 +210,13 @@ impl Peripheral for Dma {
         Ok(access.read_of(self.value(access.register)?))
     }
 
-    fn write(&mut self, offset: u32, size: u8, value: u32, ctx: &mut Ctx<'_>) -> Result<(), Unmodelled> {
+    fn write(
+        &mut self,
+        offset: u32,
+        size: u8,
+        value: u32,
+        ctx: &mut Ctx<'_>,
+    ) -> Result<(), Unmodelled> {
         let access = Access::new(offset, size);
         let whole = access.written_over(self.value(access.register)?, value);
         self.store(access.register, whole, ctx)

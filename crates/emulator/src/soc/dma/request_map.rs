@@ -23,11 +23,19 @@ pub struct RequestLine {
 }
 
 const fn dma1(stream: u8, channel: u8) -> Slot {
-    Slot { controller: 1, stream, channel }
+    Slot {
+        controller: 1,
+        stream,
+        channel,
+    }
 }
 
 const fn dma2(stream: u8, channel: u8) -> Slot {
-    Slot { controller: 2, stream, channel }
+    Slot {
+        controller: 2,
+        stream,
+        channel,
+    }
 }
 
 macro_rules! line {

@@ -59,7 +59,16 @@ pub struct Stream {
 
 impl Default for Stream {
     fn default() -> Self {
-        Self { cr: 0, ndtr: 0, par: 0, m0ar: 0, m1ar: 0, fcr: 1, reload: 0, flags: 0 }
+        Self {
+            cr: 0,
+            ndtr: 0,
+            par: 0,
+            m0ar: 0,
+            m1ar: 0,
+            fcr: 1,
+            reload: 0,
+            flags: 0,
+        }
     }
 }
 
@@ -79,7 +88,9 @@ impl Stream {
 
     pub fn interrupts(&self) -> bool {
         let enabled = [(TEIE, flag::TEIF), (HTIE, flag::HTIF), (TCIE, flag::TCIF)];
-        enabled.iter().any(|(enable, flag)| self.cr & enable != 0 && self.flags & flag != 0)
+        enabled
+            .iter()
+            .any(|(enable, flag)| self.cr & enable != 0 && self.flags & flag != 0)
     }
 
     pub fn register(&self, index: u32) -> Option<u32> {
@@ -143,7 +154,10 @@ impl Stream {
             None if packs && self.cr & MINC == 0 => "packing without memory increment",
             None => return Ok(()),
         };
-        Err(Unmodelled { register: "DMA stream CR".to_owned(), what: what.to_owned() })
+        Err(Unmodelled {
+            register: "DMA stream CR".to_owned(),
+            what: what.to_owned(),
+        })
     }
 
     fn item_size(&self) -> u8 {

@@ -1,6 +1,6 @@
 //! Notices request lines that wait for a stream which was never set up for them.
 
-use robot_plant::time::{Ps, US};
+use robot_plant::time::{MS, Ps};
 
 use super::{
     Dma,
@@ -9,7 +9,7 @@ use super::{
 use crate::{board_errors::BoardErrors, soc::dma_request::DmaRequests};
 
 /// Drivers raise a request shortly before they enable its stream; waiting longer is a mistake.
-const PATIENCE: Ps = 50 * US;
+const PATIENCE: Ps = MS;
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Waiting {
@@ -25,11 +25,20 @@ pub struct Unserved {
 
 impl Unserved {
     pub fn note_served(&mut self, line: &RequestLine) {
-        self.lines[line.request as usize] = Waiting { since: None, served_before: true };
+        self.lines[line.request as usize] = Waiting {
+            since: None,
+            served_before: true,
+        };
     }
 
     /// Looks at the lines that are high now although every ready stream has been served.
-    pub fn check(&mut self, requests: &DmaRequests, dma: [&Dma; 2], now: Ps, errors: &mut BoardErrors) {
+    pub fn check(
+        &mut self,
+        requests: &DmaRequests,
+        dma: [&Dma; 2],
+        now: Ps,
+        errors: &mut BoardErrors,
+    ) {
         for (line, waiting) in LINES.iter().zip(&mut self.lines) {
             if !requests.get(line.request) {
                 waiting.since = None;
@@ -55,7 +64,10 @@ fn complaint(line: &RequestLine, dma: [&Dma; 2]) -> String {
             } else {
                 format!("which is set to channel {}", stream.channel())
             };
-            format!("DMA{} stream {} channel {}, {state}", slot.controller, slot.stream, slot.channel)
+            format!(
+                "DMA{} stream {} channel {}, {state}",
+                slot.controller, slot.stream, slot.channel
+            )
         })
         .collect();
     format!("{} requests on {}", line.name, places.join("; or "))

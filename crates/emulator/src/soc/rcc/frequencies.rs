@@ -49,7 +49,7 @@ impl Pll {
         }
     }
 
-    pub fn from_hse(self) -> bool {
+    pub fn uses_hse(self) -> bool {
         self.from_hse
     }
 
@@ -84,7 +84,10 @@ impl Pll {
             ));
         }
         if self.q < 2 {
-            problems.push(format!("RCC: PLLQ = {} is not allowed, must be 2 to 15", self.q));
+            problems.push(format!(
+                "RCC: PLLQ = {} is not allowed, must be 2 to 15",
+                self.q
+            ));
         }
         problems
     }
@@ -105,15 +108,27 @@ impl BusClocks {
         let hclk_hz = sysclk_hz / ahb_divider(cfgr >> 4 & 0xF);
         let (pclk1_hz, tim1_hz) = apb(hclk_hz, cfgr >> 10 & 7);
         let (pclk2_hz, tim2_hz) = apb(hclk_hz, cfgr >> 13 & 7);
-        Self { hclk_hz, pclk1_hz, pclk2_hz, tim1_hz, tim2_hz }
+        Self {
+            hclk_hz,
+            pclk1_hz,
+            pclk2_hz,
+            tim1_hz,
+            tim2_hz,
+        }
     }
 
     pub fn problems(self) -> Vec<String> {
-        [("HCLK", self.hclk_hz, 168), ("PCLK1", self.pclk1_hz, 42), ("PCLK2", self.pclk2_hz, 84)]
-            .into_iter()
-            .filter(|(_, hz, max_mhz)| *hz > max_mhz * 1_000_000)
-            .map(|(name, hz, max_mhz)| format!("RCC: {name} is {hz} Hz, more than the {max_mhz} MHz allowed"))
-            .collect()
+        [
+            ("HCLK", self.hclk_hz, 168),
+            ("PCLK1", self.pclk1_hz, 42),
+            ("PCLK2", self.pclk2_hz, 84),
+        ]
+        .into_iter()
+        .filter(|(_, hz, max_mhz)| *hz > max_mhz * 1_000_000)
+        .map(|(name, hz, max_mhz)| {
+            format!("RCC: {name} is {hz} Hz, more than the {max_mhz} MHz allowed")
+        })
+        .collect()
     }
 }
 

@@ -34,7 +34,12 @@ enum Oscillator {
     Lsi,
 }
 
-const OSCILLATORS: [Oscillator; 4] = [Oscillator::Hsi, Oscillator::Hse, Oscillator::Pll, Oscillator::Lsi];
+const OSCILLATORS: [Oscillator; 4] = [
+    Oscillator::Hsi,
+    Oscillator::Hse,
+    Oscillator::Pll,
+    Oscillator::Lsi,
+];
 
 #[derive(Debug)]
 pub struct Rcc {
@@ -138,7 +143,8 @@ impl Rcc {
             0x50..=0x64 if register != 0x5C => self.sleep_enables[bank(register, 0x50)] = value,
             0x70 if self.backup_unlocked => return self.write_bdcr(value),
             0x70 => {
-                ctx.errors.report(ctx.now, "RCC: BDCR written while PWR_CR.DBP is 0: ignored");
+                ctx.errors
+                    .report(ctx.now, "RCC: BDCR written while PWR_CR.DBP is 0: ignored");
             }
             0x74 => self.write_csr(value, ctx),
             0x80 if value >> 31 == 0 => self.sscgr = value,
@@ -180,9 +186,16 @@ impl Rcc {
         for problem in pll.problems() {
             ctx.errors.report(ctx.now, problem);
         }
-        let source = if pll.from_hse() { Oscillator::Hse } else { Oscillator::Hsi };
+        let source = if pll.uses_hse() {
+            Oscillator::Hse
+        } else {
+            Oscillator::Hsi
+        };
         if !self.ready(source) {
-            ctx.errors.report(ctx.now, format!("RCC: PLL started while its source {source:?} is not ready"));
+            ctx.errors.report(
+                ctx.now,
+                format!("RCC: PLL started while its source {source:?} is not ready"),
+            );
         }
     }
 
@@ -195,7 +208,11 @@ impl Rcc {
             *register |= on_bit;
             let generation = &mut self.generation[oscillator as usize];
             *generation += 1;
-            ctx.scheduler.at(ctx.now + startup, Target::Rcc, *generation << 2 | oscillator as u32);
+            ctx.scheduler.at(
+                ctx.now + startup,
+                Target::Rcc,
+                *generation << 2 | oscillator as u32,
+            );
         } else if !on && was_on && !self.drives_sysclk(oscillator) {
             *self.register_of(oscillator) &= !(on_bit | ready_bit);
             self.generation[oscillator as usize] += 1;
@@ -211,12 +228,16 @@ impl Rcc {
     }
 
     fn ready(&self, oscillator: Oscillator) -> bool {
-        let register = if oscillator == Oscillator::Lsi { self.csr } else { self.cr };
+        let register = if oscillator == Oscillator::Lsi {
+            self.csr
+        } else {
+            self.cr
+        };
         register & bits(oscillator).1 != 0
     }
 
     fn drives_sysclk(&self, oscillator: Oscillator) -> bool {
-        let by_pll = Pll::from_pllcfgr(self.pllcfgr).from_hse();
+        let by_pll = Pll::from_pllcfgr(self.pllcfgr).uses_hse();
         match (self.source, oscillator) {
             (SystemClock::Hsi, Oscillator::Hsi)
             | (SystemClock::Hse, Oscillator::Hse)
@@ -231,7 +252,8 @@ impl Rcc {
         if self.cr & cr::PLLON == 0 {
             self.pllcfgr = value & 0x0F43_7FFF | self.pllcfgr & 0xF0BC_8000;
         } else if value != self.pllcfgr {
-            ctx.errors.report(ctx.now, "RCC: PLLCFGR written while the PLL is on: ignored");
+            ctx.errors
+                .report(ctx.now, "RCC: PLLCFGR written while the PLL is on: ignored");
         }
     }
 
@@ -250,7 +272,9 @@ impl Rcc {
 
     /// SYSCLK moves to the source asked for as soon as that one is ready.
     fn follow_sw(&mut self, _ctx: &mut Ctx<'_>) {
-        let Some(wanted) = SystemClock::from_sw(self.cfgr) else { return };
+        let Some(wanted) = SystemClock::from_sw(self.cfgr) else {
+            return;
+        };
         let oscillator = match wanted {
             SystemClock::Hsi => Oscillator::Hsi,
             SystemClock::Hse => Oscillator::Hse,
@@ -306,7 +330,11 @@ impl Rcc {
         if value & (bdcr::LSEON | bdcr::LSEBYP) != 0 {
             return Err(unmodelled(0x70, "bit LSEON (no low-speed crystal)"));
         }
-        self.bdcr = if value & bdcr::BDRST != 0 { bdcr::BDRST } else { value & (bdcr::RTCSEL | bdcr::RTCEN) };
+        self.bdcr = if value & bdcr::BDRST != 0 {
+            bdcr::BDRST
+        } else {
+            value & (bdcr::RTCSEL | bdcr::RTCEN)
+        };
         Ok(())
     }
 
@@ -324,7 +352,13 @@ impl Peripheral for Rcc {
         Ok(access.read_of(self.value(access.register)?))
     }
 
-    fn write(&mut self, offset: u32, size: u8, value: u32, ctx: &mut Ctx<'_>) -> Result<(), Unmodelled> {
+    fn write(
+        &mut self,
+        offset: u32,
+        size: u8,
+        value: u32,
+        ctx: &mut Ctx<'_>,
+    ) -> Result<(), Unmodelled> {
         let access = Access::new(offset, size);
         let whole = access.written_over(self.value(access.register)?, value);
         self.store(access.register, whole, ctx)
@@ -368,6 +402,8 @@ fn bank(register: u32, first: u32) -> usize {
 }
 
 fn unmodelled(register: u32, what: &str) -> Unmodelled {
-    Unmodelled { register: register_name(register), what: what.to_owned() }
+    Unmodelled {
+        register: register_name(register),
+        what: what.to_owned(),
+    }
 }
-

@@ -65,8 +65,8 @@ const NAMES: [(u32, &str); 25] = [
 ];
 
 pub fn register_name(offset: u32) -> String {
-    NAMES
-        .iter()
-        .find(|(at, _)| *at == offset)
-        .map_or_else(|| format!("RCC+{offset:#x}"), |(_, name)| format!("RCC.{name}"))
+    NAMES.iter().find(|(at, _)| *at == offset).map_or_else(
+        || format!("RCC+{offset:#x}"),
+        |(_, name)| format!("RCC.{name}"),
+    )
 }

@@ -49,7 +49,10 @@ impl Counter {
             update_disabled: false,
             one_pulse: false,
             prescaler: Shadowed::default(),
-            reload: Shadowed { written: max, active: max },
+            reload: Shadowed {
+                written: max,
+                active: max,
+            },
             compare: [Shadowed::default(); 4],
             count: 0,
             phase: 0,
@@ -133,7 +136,11 @@ impl Counter {
 
     /// Where the count turns to 0: past the auto-reload value or, when already beyond it, at the counter's end.
     fn wrap_at(&self) -> u64 {
-        let last = if self.count <= self.reload.active { self.reload.active } else { self.max };
+        let last = if self.count <= self.reload.active {
+            self.reload.active
+        } else {
+            self.max
+        };
         u64::from(last) + 1
     }
 
@@ -191,10 +198,19 @@ mod tests {
     /// PSC and ARR loaded, running from cycle 0.
     fn running(psc: u32, arr: u32, ccr: [u32; 2]) -> Counter {
         let mut counter = Counter::new(0xFFFF);
-        counter.prescaler = Shadowed { written: psc, active: psc };
-        counter.reload = Shadowed { written: arr, active: arr };
+        counter.prescaler = Shadowed {
+            written: psc,
+            active: psc,
+        };
+        counter.reload = Shadowed {
+            written: arr,
+            active: arr,
+        };
         for (compare, value) in counter.compare.iter_mut().zip(ccr) {
-            *compare = Shadowed { written: value, active: value };
+            *compare = Shadowed {
+                written: value,
+                active: value,
+            };
         }
         counter.enabled = true;
         counter

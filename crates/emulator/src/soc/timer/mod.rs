@@ -46,7 +46,11 @@ pub struct Timer {
 impl Timer {
     /// 2, 3, 4, 5 or 10.
     pub fn new(number: u8) -> Self {
-        let max = if matches!(number, 2 | 5) { u32::MAX } else { 0xFFFF };
+        let max = if matches!(number, 2 | 5) {
+            u32::MAX
+        } else {
+            0xFFFF
+        };
         Self {
             number,
             counter: Counter::new(max),
@@ -66,7 +70,13 @@ impl Timer {
     pub fn wave(&self, channel: usize) -> Option<Wave> {
         let enable = self.ccer >> (4 * channel);
         (enable & 1 == 1).then(|| {
-            output::wave(&self.counter, channel, self.ocm(channel), enable & 2 != 0, self.clock_hz)
+            output::wave(
+                &self.counter,
+                channel,
+                self.ocm(channel),
+                enable & 2 != 0,
+                self.clock_hz,
+            )
         })
     }
 
@@ -111,7 +121,8 @@ impl Timer {
         if self.scheduled.is_none_or(|earlier| at < earlier) {
             self.generation += 1;
             self.scheduled = Some(at);
-            ctx.scheduler.at(at, Target::Timer(self.number), self.generation);
+            ctx.scheduler
+                .at(at, Target::Timer(self.number), self.generation);
         }
     }
 
@@ -203,14 +214,18 @@ impl Timer {
 
     fn unmodelled(&self, register: u32, what: &str) -> Unmodelled {
         const NAMES: [&str; 21] = [
-            "CR1", "CR2", "SMCR", "DIER", "SR", "EGR", "CCMR1", "CCMR2", "CCER", "CNT", "PSC", "ARR", "RCR",
-            "CCR1", "CCR2", "CCR3", "CCR4", "BDTR", "DCR", "DMAR", "OR",
+            "CR1", "CR2", "SMCR", "DIER", "SR", "EGR", "CCMR1", "CCMR2", "CCER", "CNT", "PSC",
+            "ARR", "RCR", "CCR1", "CCR2", "CCR3", "CCR4", "BDTR", "DCR", "DMAR", "OR",
         ];
         let number = self.number;
-        let register = NAMES
-            .get((register / 4) as usize)
-            .map_or_else(|| format!("TIM{number}+{register:#x}"), |name| format!("TIM{number}.{name}"));
-        Unmodelled { register, what: what.to_owned() }
+        let register = NAMES.get((register / 4) as usize).map_or_else(
+            || format!("TIM{number}+{register:#x}"),
+            |name| format!("TIM{number}.{name}"),
+        );
+        Unmodelled {
+            register,
+            what: what.to_owned(),
+        }
     }
 }
 
@@ -223,11 +238,21 @@ impl Peripheral for Timer {
         Ok(access.read_of(value))
     }
 
-    fn write(&mut self, offset: u32, size: u8, value: u32, ctx: &mut Ctx<'_>) -> Result<(), Unmodelled> {
+    fn write(
+        &mut self,
+        offset: u32,
+        size: u8,
+        value: u32,
+        ctx: &mut Ctx<'_>,
+    ) -> Result<(), Unmodelled> {
         let access = Access::new(offset, size);
         self.catch_up(ctx.now);
         // Bits of SR outside a narrow access keep their flags.
-        let old = if access.register == 0x10 { u32::MAX } else { self.value(access.register)? };
+        let old = if access.register == 0x10 {
+            u32::MAX
+        } else {
+            self.value(access.register)?
+        };
         self.store(access.register, access.written_over(old, value))?;
         self.settle(ctx);
         Ok(())
@@ -264,10 +289,13 @@ impl Peripheral for Timer {
 
 /// TIM2–5 hang on APB1, TIM10 on APB2.
 fn clock_hz(number: u8, clocks: &ClockTree) -> u32 {
-    if number == 10 { clocks.tim2_hz } else { clocks.tim1_hz }
+    if number == 10 {
+        clocks.tim2_hz
+    } else {
+        clocks.tim1_hz
+    }
 }
 
 fn compare_index(register: u32) -> usize {
     ((register - 0x34) / 4) as usize
 }
-

@@ -32,7 +32,10 @@ pub fn wave(counter: &Counter, channel: usize, ocm: u32, inverted: bool, clock_h
         PWM2 => 1.0 - below,
         _ => 0.0,
     };
-    Wave { hz, duty: if inverted { 1.0 - duty } else { duty } }
+    Wave {
+        hz,
+        duty: if inverted { 1.0 - duty } else { duty },
+    }
 }
 
 /// Fraction of the period with CNT < CCR; a standing counter gives all or nothing.

@@ -1,0 +1,70 @@
+use super::*;
+
+const GPIOD: u32 = 0x4002_0C00;
+const GPIOH: u32 = 0x4002_1C00;
+const TIM4: u32 = 0x4000_0800;
+const TIM5: u32 = 0x4000_0C00;
+/// PWM mode 1 with preload, channel 1 or 3 of its register.
+const PWM1: u32 = 0x68;
+
+fn board() -> Bench {
+    let mut bench = Bench::new();
+    bench.clock_up();
+    bench.set_bits(AHB1ENR, 0x1FF);
+    bench.set_bits(APB1ENR, 1 << 2 | 1 << 3);
+    bench
+}
+
+fn truth(bench: &Bench, name: &str) -> f64 {
+    let names = bench.soc.world.signal_names();
+    let index = names.iter().position(|n| n == name).expect(name);
+    let mut values = Vec::new();
+    bench.soc.world.sample(&mut values);
+    values[index]
+}
+
+#[test]
+fn an_led_follows_its_port_pin() {
+    let mut bench = board();
+    // PH12 is red, active high.
+    bench.write(GPIOH + 0x18, 1 << 12);
+    assert_eq!(truth(&bench, "truth.led.r"), 0.0);
+    bench.write(GPIOH, 0b01 << 24);
+    assert_eq!(truth(&bench, "truth.led.r"), 1.0);
+    bench.write(GPIOH + 0x18, 1 << 28);
+    assert_eq!(truth(&bench, "truth.led.r"), 0.0);
+}
+
+#[test]
+fn an_led_is_dimmed_by_its_timer() {
+    let mut bench = board();
+    // PH10 is blue, TIM5_CH1 on AF2: 250 of 1000 steps.
+    bench.write(GPIOH, 0b10 << 20);
+    bench.write(GPIOH + 0x24, 2 << 8);
+    bench.write(TIM5 + 0x2C, 999);
+    bench.write(TIM5 + 0x18, PWM1);
+    bench.write(TIM5 + 0x34, 250);
+    bench.write(TIM5 + 0x20, 1);
+    bench.write(TIM5 + 0x14, 1);
+    bench.write(TIM5, 1);
+    assert_eq!(truth(&bench, "truth.led.b"), 0.25);
+    // On another alternate function the timer does not reach the pin.
+    bench.write(GPIOH + 0x24, 3 << 8);
+    assert_eq!(truth(&bench, "truth.led.b"), 0.0);
+}
+
+#[test]
+fn the_buzzer_sounds_at_the_timers_rate() {
+    let mut bench = board();
+    // PD14, TIM4_CH3 on AF2: 84 MHz / 84 / 250 = 4 kHz.
+    bench.write(GPIOD, 0b10 << 28);
+    bench.write(GPIOD + 0x24, 2 << 24);
+    bench.write(TIM4 + 0x28, 83);
+    bench.write(TIM4 + 0x2C, 249);
+    bench.write(TIM4 + 0x1C, PWM1);
+    bench.write(TIM4 + 0x3C, 125);
+    bench.write(TIM4 + 0x20, 1 << 8);
+    bench.write(TIM4 + 0x14, 1);
+    bench.write(TIM4, 1);
+    assert_eq!(truth(&bench, "truth.buzzer.hz"), 4000.0);
+}

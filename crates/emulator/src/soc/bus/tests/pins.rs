@@ -1,0 +1,59 @@
+use super::*;
+use crate::soc::pins::{Pin, PinMode};
+
+const GPIOA: u32 = 0x4002_0000;
+const GPIOB: u32 = 0x4002_0400;
+const GPIOG: u32 = 0x4002_1800;
+const EXTI: u32 = 0x4001_3C00;
+const SYSCFG: u32 = 0x4001_3800;
+
+fn ports_on() -> Bench {
+    let mut bench = Bench::new();
+    bench.set_bits(AHB1ENR, 0x1FF);
+    bench
+}
+
+#[test]
+fn debug_pins_start_on_their_alternate_function() {
+    let mut bench = ports_on();
+    // RM0090 8.4.1.
+    assert_eq!(bench.read(GPIOA), 0xA800_0000);
+    assert_eq!(bench.read(GPIOB), 0x0000_0280);
+    assert_eq!(bench.soc.pins.mode(Pin::new('B', 3)), PinMode::Alternate(0));
+}
+
+#[test]
+fn setting_wins_over_resetting_in_bsrr() {
+    let mut bench = ports_on();
+    bench.write(GPIOA, 0b01 << 8 | 0xA800_0000);
+    bench.write(GPIOA + 0x18, 1 << 4 | 1 << 20);
+    assert!(bench.soc.pins.level(Pin::new('A', 4)));
+    assert_eq!(bench.read(GPIOA + 0x10) >> 4 & 1, 1);
+    bench.write(GPIOA + 0x18, 1 << 20);
+    assert!(!bench.soc.pins.level(Pin::new('A', 4)));
+}
+
+#[test]
+fn alternate_functions_reach_the_pin() {
+    let mut bench = ports_on();
+    bench.write(GPIOA, 0b10 << 14 | 0xA800_0000);
+    bench.write(GPIOA + 0x20, 5 << 28);
+    assert_eq!(bench.soc.pins.mode(Pin::new('A', 7)), PinMode::Alternate(5));
+}
+
+#[test]
+fn an_edge_on_the_selected_port_raises_exti3() {
+    let mut bench = ports_on();
+    bench.set_bits(APB2ENR, 1 << 14);
+    // EXTI3 from port G (6), falling edge, unmasked (RM0090 9.2.3, 12.3).
+    bench.write(SYSCFG + 0x08, 6 << 12);
+    bench.write(EXTI + 0x0C, 1 << 3);
+    bench.write(EXTI, 1 << 3);
+    bench.write(GPIOG + 0x18, 1 << 3);
+    bench.write(GPIOG, 0b01 << 6);
+    assert!(!bench.soc.irq.level(9));
+    bench.write(GPIOG + 0x18, 1 << 19);
+    assert!(bench.soc.irq.level(9));
+    bench.write(EXTI + 0x14, 1 << 3);
+    assert!(!bench.soc.irq.level(9));
+}
