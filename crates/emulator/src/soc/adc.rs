@@ -259,3 +259,6 @@ fn unmodelled(register: &str, what: &str) -> Unmodelled {
         what: what.to_owned(),
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -57,9 +57,15 @@ pub struct Iwdg {
     unlocked: bool,
     /// When the counter reaches zero; none before the start.
     expires_at: Option<Ps>,
-    /// An event is on its way; it moves itself on when the counter was reloaded meanwhile.
-    watched: bool,
+    /// When the next look at the counter comes; it moves itself on when the counter was reloaded meanwhile.
+    watched_at: Option<Ps>,
     bitten: bool,
+}
+
+impl Default for Iwdg {
+    fn default() -> Self {
+        Self::new()
+    }
 }
 
 impl Iwdg {
@@ -69,7 +75,7 @@ impl Iwdg {
             reload: Crossing::at(RELOAD_AFTER_RESET),
             unlocked: false,
             expires_at: None,
-            watched: false,
+            watched_at: None,
             bitten: false,
         }
     }
@@ -85,10 +91,14 @@ impl Iwdg {
         let divider = 4u64 << self.prescaler.effective(ctx.now).min(6);
         let at = ctx.now + cycles_to_ps((u64::from(from) + 1) * divider, LSI_HZ);
         self.expires_at = Some(at);
-        if !self.watched {
-            self.watched = true;
-            ctx.scheduler.at(at, Target::Iwdg, 0);
+        if self.watched_at.is_none_or(|watched| at < watched) {
+            self.watch(at, ctx);
         }
+    }
+
+    fn watch(&mut self, at: Ps, ctx: &mut Ctx<'_>) {
+        self.watched_at = Some(at);
+        ctx.scheduler.at(at, Target::Iwdg, 0);
     }
 
     fn key(&mut self, key: u32, ctx: &mut Ctx<'_>) {
@@ -162,15 +172,13 @@ impl Peripheral for Iwdg {
     }
 
     fn event(&mut self, _tag: u32, ctx: &mut Ctx<'_>) {
-        let Some(at) = self.expires_at.filter(|_| self.watched) else {
-            return;
-        };
+        let Some(at) = self.expires_at else { return };
         if at <= ctx.now {
-            self.watched = false;
             self.expires_at = None;
+            self.watched_at = None;
             self.bitten = true;
-        } else {
-            ctx.scheduler.at(at, Target::Iwdg, 0);
+        } else if self.watched_at.is_some_and(|watched| watched <= ctx.now) {
+            self.watch(at, ctx);
         }
     }
 
@@ -185,3 +193,6 @@ fn unmodelled(register: u32, what: String) -> Unmodelled {
         what,
     }
 }
+
+#[cfg(test)]
+mod tests;

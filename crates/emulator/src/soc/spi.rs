@@ -68,6 +68,12 @@ pub struct Spi {
     shifting: Option<Shifting>,
 }
 
+impl Default for Spi {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl Spi {
     pub fn new() -> Self {
         Self {
@@ -301,3 +307,6 @@ impl Peripheral for Spi {
         self.update_lines(ctx);
     }
 }
+
+#[cfg(test)]
+mod tests;

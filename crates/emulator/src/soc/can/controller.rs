@@ -237,7 +237,7 @@ impl Controller {
             return;
         };
         let time = if self.mcr & mcr::TTCM != 0 {
-            started / self.bit(ctx) & 0xFFFF
+            (started / self.bit(ctx)) & 0xFFFF
         } else {
             0
         };

@@ -38,6 +38,12 @@ struct Filter {
     mask: u32,
 }
 
+impl Default for Filters {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl Filters {
     pub fn new() -> Self {
         Self {

@@ -36,6 +36,12 @@ pub struct Can {
     buses: [CanBus; 2],
 }
 
+impl Default for Can {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl Can {
     pub fn new() -> Self {
         Self {

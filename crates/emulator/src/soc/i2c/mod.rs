@@ -161,3 +161,6 @@ impl Peripheral for I2c {
         self.update_lines(ctx);
     }
 }
+
+#[cfg(test)]
+mod tests;

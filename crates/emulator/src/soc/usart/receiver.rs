@@ -65,8 +65,8 @@ pub struct Receiver {
     last_char: Option<UartChar>,
     /// Start edge of the character being received.
     start: Option<Ps>,
-    /// Start edges at or before this are history.
-    searched_to: Ps,
+    /// Start edges before this are history.
+    search_from: Ps,
 }
 
 impl Receiver {
@@ -80,19 +80,17 @@ impl Receiver {
         self.last_char
     }
 
-    /// Drops what was being received; edges up to `now` no longer count.
+    /// Drops what was being received; edges before `now` no longer count.
     pub fn restart(&mut self, now: Ps) {
         self.start = None;
-        self.searched_to = now;
+        self.search_from = now;
     }
 
     /// When the character now beginning or going on will be complete; none while no start edge is known.
     pub fn completes_at(&mut self, framing: &Framing) -> Option<Ps> {
         if self.start.is_none() {
-            self.line.forget_before(self.searched_to);
-            self.start = self
-                .line
-                .falling_edge_after(self.searched_to.saturating_sub(1));
+            self.line.forget_before(self.search_from);
+            self.start = self.line.falling_edge_from(self.search_from);
         }
         Some(self.start? + framing.completion())
     }
@@ -103,7 +101,7 @@ impl Receiver {
         let sample = |index: u8| self.sample(start, framing, index);
         let (start_bit, start_noise) = sample(0);
         if start_bit {
-            self.searched_to = start + framing.bit / 2;
+            self.search_from = start + framing.bit / 2;
             return None;
         }
         let bits: Vec<(bool, bool)> = (1..=framing.word_bits).map(sample).collect();
@@ -118,7 +116,7 @@ impl Receiver {
             Parity::Odd => data.count_ones() % 2 == 0,
         };
         let noise = start_noise || stop_noise || bits.iter().any(|(_, noisy)| *noisy);
-        self.searched_to = start + framing.completion();
+        self.search_from = start + framing.completion();
         Some((
             start,
             Received {

@@ -29,12 +29,12 @@ impl Waveform {
         self.chars.iter().all(|c| level(c, at))
     }
 
-    /// The first change from high to low after `from`, among the characters known.
-    pub fn falling_edge_after(&self, from: Ps) -> Option<Ps> {
+    /// The first change from high to low at or after `from`, among the characters known.
+    pub fn falling_edge_from(&self, from: Ps) -> Option<Ps> {
         self.chars
             .iter()
             .flat_map(|c| (0..bits(c)).map(|bit| edge(c, bit)))
-            .find(|&at| at > from && !self.is_high(at) && self.is_high(at - 1))
+            .find(|&at| at >= from && !self.is_high(at) && self.is_high(at.wrapping_sub(1)))
     }
 }
 
@@ -104,8 +104,8 @@ mod tests {
             })
             .collect();
         assert_eq!(seen, "011110000011");
-        assert_eq!(line.falling_edge_after(99 * US), Some(100 * US));
-        assert_eq!(line.falling_edge_after(100 * US), Some(150 * US));
-        assert_eq!(line.falling_edge_after(150 * US), None);
+        assert_eq!(line.falling_edge_from(100 * US), Some(100 * US));
+        assert_eq!(line.falling_edge_from(100 * US + 1), Some(150 * US));
+        assert_eq!(line.falling_edge_from(150 * US + 1), None);
     }
 }

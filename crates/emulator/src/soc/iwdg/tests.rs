@@ -1,0 +1,79 @@
+//! Times from RM0090 table 107 (LSI at 32 kHz) and the update delay of PR and RLR.
+
+use robot_plant::time::{MS, US};
+
+use super::Iwdg;
+use crate::soc::test_bench::Bench;
+
+const KR: u32 = 0;
+const PR: u32 = 4;
+const RLR: u32 = 8;
+const SR: u32 = 12;
+
+#[test]
+fn the_shortest_and_longest_times_of_the_table() {
+    // Prescaler /4: RLR 0 = 0.125 ms, RLR 0xFFF = 512 ms; /256: 0xFFF = 32768 ms.
+    for (pr, rlr, time) in [
+        (0, 0, 125 * US),
+        (0, 0xFFF, 512 * MS),
+        (6, 0xFFF, 32_768 * MS),
+    ] {
+        let (mut bench, mut iwdg) = (Bench::new(), Iwdg::new());
+        bench.write(&mut iwdg, KR, 0x5555);
+        bench.write(&mut iwdg, PR, pr);
+        bench.write(&mut iwdg, RLR, rlr);
+        assert_eq!(bench.read(&mut iwdg, SR), 3);
+        bench.run(&mut iwdg, 200 * US);
+        assert_eq!(bench.read(&mut iwdg, SR), 0);
+        bench.write(&mut iwdg, KR, 0xCCCC);
+        bench.write(&mut iwdg, KR, 0xAAAA);
+        let start = bench.now;
+        // The world has nothing to do with it: only the watchdog's own events.
+        while bench.scheduler.next() < start + time {
+            step(&mut bench, &mut iwdg);
+        }
+        assert!(!iwdg.take_reset_request());
+        step(&mut bench, &mut iwdg);
+        // After the start the counter ran from 0xFFF, whose event may come first.
+        while !iwdg.take_reset_request() {
+            step(&mut bench, &mut iwdg);
+        }
+        assert_eq!(bench.now, start + time);
+    }
+}
+
+fn step(bench: &mut Bench, iwdg: &mut Iwdg) {
+    use crate::soc::peripheral::Peripheral;
+    let event = bench
+        .scheduler
+        .pop_due(u64::MAX)
+        .expect("a running watchdog");
+    bench.now = event.at;
+    iwdg.event(event.tag, &mut bench.ctx());
+}
+
+#[test]
+fn reloading_in_time_keeps_it_quiet() {
+    let (mut bench, mut iwdg) = (Bench::new(), Iwdg::new());
+    bench.write(&mut iwdg, KR, 0x5555);
+    // 144 periods of 125 µs: 18 ms.
+    bench.write(&mut iwdg, RLR, 143);
+    bench.write(&mut iwdg, KR, 0xCCCC);
+    for _ in 0..20 {
+        let until = bench.now + 17 * MS;
+        bench.run(&mut iwdg, until);
+        bench.write(&mut iwdg, KR, 0xAAAA);
+        assert!(!iwdg.take_reset_request());
+    }
+    let until = bench.now + 18 * MS;
+    bench.run(&mut iwdg, until);
+    assert!(iwdg.take_reset_request());
+}
+
+#[test]
+fn registers_are_locked_without_the_key() {
+    let (mut bench, mut iwdg) = (Bench::new(), Iwdg::new());
+    bench.write(&mut iwdg, RLR, 1);
+    assert_eq!(bench.read(&mut iwdg, RLR), 0xFFF);
+    assert!(bench.error_texts()[0].starts_with("IWDG: RLR"));
+}
