@@ -124,6 +124,9 @@ impl Rcc {
             0x74 => self.csr,
             0x80 => self.sscgr,
             0x84 => self.plli2scfgr,
+            // DCKCFGR exists from the F42x on; here it is reserved, and drivers for the family touch it.
+            0x8C => 0,
+            DCKCFGR_ABSENT => 0,
             _ => return Err(unmodelled(register, "read")),
         })
     }
@@ -149,6 +152,8 @@ impl Rcc {
             0x74 => self.write_csr(value, ctx),
             0x80 if value >> 31 == 0 => self.sscgr = value,
             0x84 => self.plli2scfgr = value,
+            0x8C => {}
+            DCKCFGR_ABSENT => {}
             _ => return Err(unmodelled(register, &format!("write of {value:#010x}"))),
         }
         Ok(())
@@ -386,6 +391,9 @@ impl Peripheral for Rcc {
         *ctx.clocks = ClockTree::default();
     }
 }
+
+/// DCKCFGR of the F42x, which drivers for the whole family touch; reserved on the F407.
+const DCKCFGR_ABSENT: u32 = 0x8C;
 
 /// On and ready bit of an oscillator in its register.
 fn bits(oscillator: Oscillator) -> (u32, u32) {
