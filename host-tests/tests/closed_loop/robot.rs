@@ -1,0 +1,351 @@
+//! The whole app without a chip: every wire of the simulated world runs into the app's own decoders.
+
+use robot_app::{
+    control::UserController,
+    diagnostics::DiagnosticsSnapshot,
+    domain::{
+        BusId, CanFrame, ImuCalibration, ImuState, MagCalibration, MagState, RemoteUpdate,
+        SafetyConfig, StandardId, SystemHealth,
+    },
+    input::{RemoteFormat, RemoteMapping, RemoteReceiver},
+    logic::{LogicBus, LogicStage},
+    safety::ArmingState,
+    sensing::{
+        ImuPipeline, MagPipeline,
+        bmi088::{self, ACCEL_READ, GYRO_READ},
+        ist8310,
+    },
+    tick::{ControlConfig, ControlInputs, ControlLoop},
+};
+use robot_plant::{
+    time::{MS, Ps, US},
+    wire::CanFrame as WireFrame,
+    world::{
+        CanBusId, PlantKind, RadioKind, RemoteInput, SpiSelect, WireEvent, World, WorldConfig,
+    },
+};
+
+const SCK_HZ: u32 = 5_250_000;
+const SPI_MODE: u8 = 3;
+const SCL_HZ: u32 = 400_000;
+
+pub struct Robot {
+    world: World,
+    now: Ps,
+    receiver: RemoteReceiver,
+    imu_pipeline: ImuPipeline,
+    mag_pipeline: MagPipeline,
+    logic_stage: LogicStage,
+    control: ControlLoop<UserController>,
+    remote: RemoteUpdate,
+    imu: ImuState,
+    mag: MagState,
+    logic: LogicBus,
+    health: SystemHealth,
+    diagnostics: DiagnosticsSnapshot,
+    wheel_currents_ma: [f64; 2],
+    mag_started_at: Option<Ps>,
+    /// Every byte sent on CAN so far, folded into one number.
+    pub sent_digest: u64,
+}
+
+impl Robot {
+    /// Powered on, sensors brought up, time somewhat above zero.
+    pub fn new(plant: PlantKind, radio: RadioKind) -> Self {
+        let world = World::new(WorldConfig {
+            plant,
+            radio,
+            seed: 7,
+            imu_trial: None,
+        })
+        .expect("no recording to load");
+        let format = match radio {
+            RadioKind::Sbus => RemoteFormat::Sbus,
+            RadioKind::Dbus => RemoteFormat::Dbus,
+        };
+        let mut robot = Self {
+            world,
+            now: 0,
+            receiver: RemoteReceiver::new(format, RemoteMapping::default()),
+            imu_pipeline: ImuPipeline::new(ImuCalibration::default()),
+            mag_pipeline: MagPipeline::new(MagCalibration::default()),
+            logic_stage: LogicStage::new(&SafetyConfig::default()),
+            control: ControlLoop::new(ControlConfig::default(), UserController::default()),
+            remote: RemoteUpdate::default(),
+            imu: ImuState::default(),
+            mag: MagState::default(),
+            logic: LogicBus::default(),
+            health: SystemHealth::default(),
+            diagnostics: DiagnosticsSnapshot::default(),
+            wheel_currents_ma: [0.0; 2],
+            mag_started_at: None,
+            sent_digest: 0,
+        };
+        robot.bring_up_imu();
+        robot.bring_up_mag();
+        robot.now = robot.now.next_multiple_of(20 * MS);
+        robot
+    }
+
+    pub fn remote(&mut self, input: RemoteInput) {
+        self.world.set_remote(input);
+    }
+
+    pub fn fault(&mut self, name: &str, active: bool) {
+        self.world.set_fault(name, active).expect("a known fault");
+    }
+
+    pub fn seconds(&self) -> f64 {
+        self.now as f64 / (1_000.0 * MS as f64)
+    }
+
+    /// Runs until `seconds` after power-on, looking at the robot after each tick.
+    pub fn run_until(&mut self, seconds: f64, mut look: impl FnMut(&Self)) {
+        while self.seconds() < seconds {
+            self.tick();
+            look(self);
+        }
+    }
+
+    pub fn armed(&self) -> bool {
+        self.diagnostics.arming.state == ArmingState::Armed
+    }
+
+    pub fn diagnostics(&self) -> &DiagnosticsSnapshot {
+        &self.diagnostics
+    }
+
+    /// As the speed controllers read it off the wire; in the motors' own sense.
+    pub fn wheel_currents_ma(&self) -> [f64; 2] {
+        self.wheel_currents_ma
+    }
+
+    pub fn signal(&self, name: &str) -> f64 {
+        let names = self.world.signal_names();
+        let index = names.iter().position(|known| known == name);
+        let mut values = Vec::new();
+        self.world.sample(&mut values);
+        values[index.unwrap_or_else(|| panic!("no signal {name}"))]
+    }
+
+    pub fn attitude_error_deg(&self) -> [f64; 3] {
+        let q = self.diagnostics.estimate.q_wxyz.map(f64::from);
+        self.world.attitude_error_deg(q).expect("truth has no gaps")
+    }
+
+    fn now_us(&self) -> u64 {
+        self.now / US
+    }
+
+    fn tick(&mut self) {
+        self.now += MS;
+        self.world.advance(self.now);
+        self.hear_radio();
+        self.receive_can();
+        if self.now.is_multiple_of(5 * MS) {
+            self.read_imu();
+        }
+        self.serve_mag();
+        if self.now.is_multiple_of(10 * MS) {
+            self.logic = self.logic_stage.step(&self.remote, self.now_us());
+        }
+        self.control_tick();
+    }
+
+    fn hear_radio(&mut self) {
+        let mut bytes = Vec::new();
+        let mut last_us = self.now_us();
+        while let Some(character) = self.world.radio_char(self.now) {
+            bytes.push(character.byte);
+            last_us = (character.start + 120 * US) / US;
+        }
+        let remote = &mut self.remote;
+        self.receiver
+            .feed(&bytes, last_us, |update| *remote = update);
+    }
+
+    fn receive_can(&mut self) {
+        for (bus, wire) in [(BusId::Can1, CanBusId::Can1), (BusId::Can2, CanBusId::Can2)] {
+            for node in 0..self.world.can_nodes(wire) {
+                if let Some(frame) = self.world.can_pending(wire, node, self.now) {
+                    self.world.can_sent(wire, node, self.now);
+                    let id = StandardId::new(frame.id as u16).expect("11 bits");
+                    let frame = CanFrame::from_payload(id, &frame.data[..frame.dlc.into()]);
+                    let frame = frame.expect("at most eight bytes");
+                    self.control.on_can_frame(bus, &frame, self.now_us());
+                }
+            }
+        }
+    }
+
+    fn control_tick(&mut self) {
+        self.health.imu_calibrated = self.imu_pipeline.calibrated();
+        let now_us = self.now_us();
+        let outputs = self.control.tick(
+            &ControlInputs {
+                remote: &self.remote,
+                imu: &self.imu,
+                mag: &self.mag,
+                logic: &self.logic,
+                health: &self.health,
+            },
+            now_us,
+        );
+        for (bus, frame) in outputs.frames {
+            let wire = match bus {
+                BusId::Can1 => CanBusId::Can1,
+                BusId::Can2 => CanBusId::Can2,
+            };
+            let mut data = [0; 8];
+            data[..frame.payload().len()].copy_from_slice(frame.payload());
+            let sent = WireFrame {
+                id: frame.id().raw().into(),
+                extended: false,
+                dlc: frame.payload().len() as u8,
+                data,
+            };
+            for node in 0..self.world.can_nodes(wire) {
+                if self.world.can_present(wire, node) {
+                    self.world.can_received(wire, node, &sent, self.now);
+                }
+            }
+            for byte in data {
+                self.sent_digest = self.sent_digest.rotate_left(5) ^ u64::from(byte);
+            }
+        }
+        self.diagnostics = *outputs.diagnostics;
+        self.follow_wire();
+    }
+
+    fn follow_wire(&mut self) {
+        let mut events: Vec<WireEvent> = Vec::new();
+        self.world.drain_wire_events(&mut events);
+        let names = self.world.signal_names();
+        for event in events {
+            match names[event.signal].as_str() {
+                "can.m3508.0.current_ma" => self.wheel_currents_ma[0] = event.value,
+                "can.m3508.1.current_ma" => self.wheel_currents_ma[1] = event.value,
+                _ => {}
+            }
+        }
+    }
+
+    fn spi(&mut self, device: SpiSelect, bytes: &mut [u8]) {
+        self.world.spi_select(device, true, self.now);
+        for byte in bytes {
+            *byte = self.world.spi_transfer(*byte, SCK_HZ, SPI_MODE, self.now);
+        }
+        self.world.spi_select(device, false, self.now);
+    }
+
+    fn wait_us(&mut self, us: u32) {
+        self.now += u64::from(us) * US;
+        self.world.advance(self.now);
+    }
+
+    fn bring_up_imu(&mut self) {
+        let select = |target| match target {
+            bmi088::SpiTarget::Accel => SpiSelect::Accel,
+            bmi088::SpiTarget::Gyro => SpiSelect::Gyro,
+        };
+        for step in bmi088::INIT {
+            match *step {
+                bmi088::InitStep::DummyRead { target, register } => {
+                    let (mut bytes, len) = bmi088::read_command(target, register);
+                    self.spi(select(target), &mut bytes[..len]);
+                }
+                bmi088::InitStep::Write {
+                    target,
+                    register,
+                    value,
+                } => {
+                    let mut bytes = bmi088::write_command(register, value);
+                    self.spi(select(target), &mut bytes);
+                }
+                bmi088::InitStep::Check {
+                    target,
+                    register,
+                    expected,
+                    failure,
+                } => {
+                    let (mut bytes, len) = bmi088::read_command(target, register);
+                    self.spi(select(target), &mut bytes[..len]);
+                    assert_eq!(bytes[len - 1], expected, "{failure:?}");
+                }
+                bmi088::InitStep::Wait { us } => self.wait_us(us),
+            }
+        }
+    }
+
+    fn read_imu(&mut self) {
+        let (mut accel, mut gyro) = (ACCEL_READ, GYRO_READ);
+        self.spi(SpiSelect::Accel, &mut accel);
+        self.spi(SpiSelect::Gyro, &mut gyro);
+        match self.imu_pipeline.process(&accel, &gyro, self.now_us()) {
+            Ok(state) => self.imu = state,
+            Err(_) => self.health.imu.errors += 1,
+        }
+    }
+
+    /// False where the device does not acknowledge.
+    fn i2c_write(&mut self, bytes: &[u8]) -> bool {
+        let now = self.now;
+        let mut acknowledged = self.world.i2c_address(ist8310::ADDRESS, false, SCL_HZ, now);
+        for byte in bytes {
+            acknowledged = acknowledged && self.world.i2c_write(*byte, now);
+        }
+        self.world.i2c_stop(now);
+        acknowledged
+    }
+
+    fn i2c_read(&mut self, register: u8, bytes: &mut [u8]) -> bool {
+        let now = self.now;
+        let acknowledged = self.i2c_write(&[register])
+            && self.world.i2c_address(ist8310::ADDRESS, true, SCL_HZ, now);
+        for byte in bytes {
+            *byte = self.world.i2c_read(true, now);
+        }
+        self.world.i2c_stop(now);
+        acknowledged
+    }
+
+    fn bring_up_mag(&mut self) {
+        for step in ist8310::INIT {
+            match *step {
+                ist8310::InitStep::ResetPin { high } => {
+                    self.world.set_mag_reset_pin(high, self.now);
+                }
+                ist8310::InitStep::Write { register, value } => {
+                    assert!(self.i2c_write(&[register, value]));
+                }
+                ist8310::InitStep::Check {
+                    register,
+                    expected,
+                    failure,
+                } => {
+                    let mut value = [0];
+                    assert!(self.i2c_read(register, &mut value));
+                    assert_eq!(value[0], expected, "{failure:?}");
+                }
+                ist8310::InitStep::Wait { us } => self.wait_us(us),
+            }
+        }
+    }
+
+    fn serve_mag(&mut self) {
+        if self.now.is_multiple_of(20 * MS) {
+            self.i2c_write(&ist8310::START_SINGLE_SHOT);
+            self.mag_started_at = Some(self.now);
+        }
+        let due = |started: Ps| self.now - started >= u64::from(ist8310::MEASUREMENT_US) * US;
+        if self.mag_started_at.is_some_and(due) {
+            self.mag_started_at = None;
+            let mut answer = [0; ist8310::READ_LEN];
+            let read = self.i2c_read(ist8310::READ_FROM, &mut answer);
+            match self.mag_pipeline.process(&answer, self.now_us()) {
+                Ok(state) if read => self.mag = state,
+                _ => self.health.mag.errors += 1,
+            }
+        }
+    }
+}
