@@ -1,12 +1,12 @@
 //! RCC: oscillators, PLL, prescalers, clock enables, resets and reset flags (RM0090 section 7).
 
 mod frequencies;
+mod oscillator;
 mod registers;
-
-use robot_plant::time::{MS, Ps, US};
 
 pub use frequencies::SystemClock;
 use frequencies::{BusClocks, HSE_HZ, HSI_HZ, Pll};
+use oscillator::Oscillator;
 use registers::{bdcr, cr, csr, register_name};
 
 use crate::soc::{
@@ -17,29 +17,6 @@ use crate::soc::{
     reset::ResetCause,
     scheduler::Target,
 };
-
-/// Start-up times, datasheet STM32F407 tables 33, 36, 39 and 43: HSI typical, crystal typical, LSI typical, and a
-/// PLL lock in the middle of its range.
-const HSI_STARTUP: Ps = 2 * US + 200_000;
-const HSE_STARTUP: Ps = 2 * MS;
-const LSI_STARTUP: Ps = 15 * US;
-const PLL_LOCK: Ps = 150 * US;
-
-/// What starts up and becomes ready by itself.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Oscillator {
-    Hsi,
-    Hse,
-    Pll,
-    Lsi,
-}
-
-const OSCILLATORS: [Oscillator; 4] = [
-    Oscillator::Hsi,
-    Oscillator::Hse,
-    Oscillator::Pll,
-    Oscillator::Lsi,
-];
 
 #[derive(Debug)]
 pub struct Rcc {
@@ -124,8 +101,6 @@ impl Rcc {
             0x74 => self.csr,
             0x80 => self.sscgr,
             0x84 => self.plli2scfgr,
-            // DCKCFGR exists from the F42x on; here it is reserved, and drivers for the family touch it.
-            0x8C => 0,
             DCKCFGR_ABSENT => 0,
             _ => return Err(unmodelled(register, "read")),
         })
@@ -152,7 +127,6 @@ impl Rcc {
             0x74 => self.write_csr(value, ctx),
             0x80 if value >> 31 == 0 => self.sscgr = value,
             0x84 => self.plli2scfgr = value,
-            0x8C => {}
             DCKCFGR_ABSENT => {}
             _ => return Err(unmodelled(register, &format!("write of {value:#010x}"))),
         }
@@ -164,12 +138,12 @@ impl Rcc {
             return Err(unmodelled(0x00, "bit CSSON or PLLI2SON"));
         }
         self.cr = self.cr & !cr::SETTINGS | value & cr::SETTINGS;
-        self.switch(Oscillator::Hsi, value & cr::HSION != 0, HSI_STARTUP, ctx);
+        self.switch(Oscillator::Hsi, value & cr::HSION != 0, ctx);
         self.switch_hse(value, ctx);
         if value & cr::PLLON != 0 && self.cr & cr::PLLON == 0 {
             self.check_pll_start(ctx);
         }
-        self.switch(Oscillator::Pll, value & cr::PLLON != 0, PLL_LOCK, ctx);
+        self.switch(Oscillator::Pll, value & cr::PLLON != 0, ctx);
         Ok(())
     }
 
@@ -183,7 +157,7 @@ impl Rcc {
             self.cr |= cr::HSEON;
             return;
         }
-        self.switch(Oscillator::Hse, value & cr::HSEON != 0, HSE_STARTUP, ctx);
+        self.switch(Oscillator::Hse, value & cr::HSEON != 0, ctx);
     }
 
     fn check_pll_start(&self, ctx: &mut Ctx<'_>) {
@@ -205,8 +179,8 @@ impl Rcc {
     }
 
     /// Starts or stops an oscillator; what drives SYSCLK cannot be stopped (RM0090 7.3.1).
-    fn switch(&mut self, oscillator: Oscillator, on: bool, startup: Ps, ctx: &mut Ctx<'_>) {
-        let (on_bit, ready_bit) = bits(oscillator);
+    fn switch(&mut self, oscillator: Oscillator, on: bool, ctx: &mut Ctx<'_>) {
+        let (on_bit, ready_bit) = oscillator.bits();
         let register = self.register_of(oscillator);
         let was_on = *register & on_bit != 0;
         if on && !was_on {
@@ -214,7 +188,7 @@ impl Rcc {
             let generation = &mut self.generation[oscillator as usize];
             *generation += 1;
             ctx.scheduler.at(
-                ctx.now + startup,
+                ctx.now + oscillator.startup(),
                 Target::Rcc,
                 *generation << 2 | oscillator as u32,
             );
@@ -238,7 +212,7 @@ impl Rcc {
         } else {
             self.cr
         };
-        register & bits(oscillator).1 != 0
+        register & oscillator.bits().1 != 0
     }
 
     fn drives_sysclk(&self, oscillator: Oscillator) -> bool {
@@ -347,7 +321,7 @@ impl Rcc {
         if value & csr::RMVF != 0 {
             self.csr &= !csr::FLAGS;
         }
-        self.switch(Oscillator::Lsi, value & csr::LSION != 0, LSI_STARTUP, ctx);
+        self.switch(Oscillator::Lsi, value & csr::LSION != 0, ctx);
     }
 }
 
@@ -370,11 +344,11 @@ impl Peripheral for Rcc {
     }
 
     fn event(&mut self, tag: u32, ctx: &mut Ctx<'_>) {
-        let oscillator = OSCILLATORS[(tag & 3) as usize];
+        let oscillator = Oscillator::ALL[(tag & 3) as usize];
         if self.generation[oscillator as usize] != tag >> 2 {
             return;
         }
-        *self.register_of(oscillator) |= bits(oscillator).1;
+        *self.register_of(oscillator) |= oscillator.bits().1;
         ctx.clocks.lsi_on = self.csr & csr::LSIRDY != 0;
         self.follow_sw(ctx);
         self.publish_frequencies(ctx);
@@ -394,16 +368,6 @@ impl Peripheral for Rcc {
 
 /// DCKCFGR of the F42x, which drivers for the whole family touch; reserved on the F407.
 const DCKCFGR_ABSENT: u32 = 0x8C;
-
-/// On and ready bit of an oscillator in its register.
-fn bits(oscillator: Oscillator) -> (u32, u32) {
-    match oscillator {
-        Oscillator::Hsi => (cr::HSION, cr::HSIRDY),
-        Oscillator::Hse => (cr::HSEON, cr::HSERDY),
-        Oscillator::Pll => (cr::PLLON, cr::PLLRDY),
-        Oscillator::Lsi => (csr::LSION, csr::LSIRDY),
-    }
-}
 
 fn bank(register: u32, first: u32) -> usize {
     ((register - first) / 4) as usize
