@@ -23,6 +23,15 @@ const FORWARD: RemoteInput = RemoteInput {
     ..ENABLE
 };
 
+fn sticks(vx: f64, wz: f64) -> RemoteInput {
+    RemoteInput {
+        vx: Some(vx),
+        wz: Some(wz),
+        enable: None,
+        ..ENABLE
+    }
+}
+
 fn assert_still(robot: &Robot) {
     assert_eq!(
         robot.wheel_currents_ma(),
@@ -170,35 +179,28 @@ fn a_stick_off_centre_does_not_arm() {
     assert_eq!(blockers(&robot), ["sticks-not-centred"]);
 }
 
-/// Truth from the plant; what the firmware believes from its estimate.
+/// Truth from the plant; what the firmware believes from its estimate. The accelerometer's offset (20 mg by the
+/// datasheet) alone tilts the horizon by 1.1°.
 #[test]
 fn rolling_covers_the_commanded_way_and_turn() {
     let mut robot = Robot::new(PlantKind::Rolling, RadioKind::Sbus);
     robot.run_until(2.5, assert_still);
     robot.remote(ENABLE);
     robot.run_until(3.0, |_| ());
-    let boot_yaw = robot.signal("truth.body.yaw");
     robot.remote(FORWARD);
     robot.run_until(5.0, |_| ());
-    robot.remote(RemoteInput {
-        vx: Some(0.0),
-        wz: Some(0.25),
-        enable: None,
-        ..ENABLE
-    });
+    robot.remote(sticks(0.0, 0.0));
     robot.run_until(6.0, |_| ());
-    robot.remote(RemoteInput {
-        wz: Some(0.0),
-        enable: None,
-        ..ENABLE
-    });
-    robot.run_until(7.0, |_| ());
+    robot.remote(sticks(0.0, 0.3));
+    robot.run_until(8.0, |_| ());
+    robot.remote(sticks(0.0, 0.0));
+    robot.run_until(9.0, |_| ());
     let way = robot
         .signal("truth.body.x")
         .hypot(robot.signal("truth.body.y"));
-    let turn = robot.signal("truth.body.yaw") - boot_yaw;
+    let turn = robot.signal("truth.body.yaw");
     assert!((way / 1.2 - 1.0).abs() < 0.1, "{way} m of 1.2 m");
-    assert!((turn - 1.0).abs() < 0.1, "{turn} rad of 1 rad");
+    assert!((turn / 2.4 - 1.0).abs() < 0.1, "{turn} rad of 2.4 rad");
 
     let estimate = robot.diagnostics().estimate;
     let believed = f64::from(estimate.pos_m[0].hypot(estimate.pos_m[1]));
@@ -208,7 +210,7 @@ fn rolling_covers_the_commanded_way_and_turn() {
     );
     let [total_deg, _, inclination_deg] = robot.attitude_error_deg();
     assert!(
-        total_deg < 5.0 && inclination_deg < 1.0,
+        total_deg < 5.0 && inclination_deg < 2.0,
         "{total_deg}° {inclination_deg}°"
     );
 }

@@ -82,25 +82,25 @@ mod tests {
         output.cmd.wheels.map(|wheel| wheel.current_ma)
     }
 
-    /// By hand: 0.1 · 1.5 m/s = 0.15 m/s, times 30 A per m/s = 4.5 A; the right motor sits mirrored.
+    /// By hand: 0.05 · 1.5 m/s = 0.075 m/s, times 60 A per m/s = 4.5 A; the right motor sits mirrored.
     #[test]
     fn driving_forward_pushes_both_wheels_forward() {
-        let [left, right] = step(HighLevelCommand { vx: 0.1, wz: 0.0 }, [0, 0], 0);
+        let [left, right] = step(HighLevelCommand { vx: 0.05, wz: 0.0 }, [0, 0], 0);
         assert!((left - 4_500.0).abs() < 0.5 && (right + 4_500.0).abs() < 0.5);
     }
 
-    /// By hand: 0.05 · 4 rad/s · 0.21 m = 0.042 m/s, times 30 A per m/s = 1.26 A; left wheel back, right wheel forward.
+    /// By hand: 0.05 · 4 rad/s · 0.21 m = 0.042 m/s, times 60 A per m/s = 2.52 A; left wheel back, right wheel forward.
     #[test]
     fn a_left_turn_drives_the_right_wheel_forward() {
         let [left, right] = step(HighLevelCommand { vx: 0.0, wz: 0.05 }, [0, 0], 0);
-        assert!((left + 1_260.0).abs() < 0.5 && (right + 1_260.0).abs() < 0.5);
+        assert!((left + 2_520.0).abs() < 0.5 && (right + 2_520.0).abs() < 0.5);
     }
 
     /// 0.6 m/s is 10 rad/s of a 0.06 m wheel, 95.49 rpm there and 1833.8 rpm at the rotor.
     #[test]
     fn at_the_wanted_speed_hardly_any_current_is_left() {
         let [left, right] = step(HighLevelCommand { vx: 0.4, wz: 0.0 }, [1834, -1834], 0);
-        assert!(left.abs() < 10.0 && right.abs() < 10.0, "{left} {right}");
+        assert!(left.abs() < 20.0 && right.abs() < 20.0, "{left} {right}");
     }
 
     #[test]

@@ -60,7 +60,7 @@ impl Default for WheelControllerConfig {
         Self {
             max_vx_mps: 1.5,
             max_wz_rps: 4.0,
-            kp_ma_per_mps: 30_000.0,
+            kp_ma_per_mps: 60_000.0,
             current_limit_ma: 8_000.0,
             open_loop_ma_per_mps: 1_000.0,
             feedback_timeout_us: 50_000,
