@@ -307,7 +307,8 @@ fn a_controller_that_asks_for_nan_gets_zero() {
 /// Each of these ends the drive, and the robot does not start again when it is over.
 #[test]
 fn every_cause_disarms_until_the_switch_moves() {
-    let causes: [(&str, fn(&mut Phase)); 8] = [
+    type Cause = fn(&mut Phase);
+    let causes: [(&str, Cause); 8] = [
         ("switch", |phase| phase.enabled = false),
         ("e-stop", |phase| phase.e_stop = true),
         ("failsafe", |phase| phase.failsafe = true),
