@@ -10,9 +10,15 @@ use robot_plant::{
 
 fn main() -> anyhow::Result<()> {
     let mut args = std::env::args().skip(1);
-    let (Some(elf), Some(seconds)) = (args.next(), args.next()) else { anyhow::bail!("usage: boot ELF SECONDS") };
-    let world =
-        World::new(WorldConfig { plant: PlantKind::Stand, radio: RadioKind::Sbus, seed: 1, imu_trial: None })?;
+    let (Some(elf), Some(seconds)) = (args.next(), args.next()) else {
+        anyhow::bail!("usage: boot ELF SECONDS")
+    };
+    let world = World::new(WorldConfig {
+        plant: PlantKind::Stand,
+        radio: RadioKind::Sbus,
+        seed: 1,
+        imu_trial: None,
+    })?;
     let mut machine = Machine::new(Path::new(&elf), world)?;
     let end = time::from_seconds(seconds.parse()?);
     let (mut at, mut stopped) = (0, Ok(()));
@@ -20,11 +26,21 @@ fn main() -> anyhow::Result<()> {
         at = (at + 100 * MS).min(end);
         stopped = machine.run_until(at);
         for line in machine.take_log() {
-            println!("{:12.6} {:5} {}", time::to_seconds(line.at), line.level, line.text);
+            println!(
+                "{:12.6} {:5} {}",
+                time::to_seconds(line.at),
+                line.level,
+                line.text
+            );
         }
     }
     for error in machine.board_errors() {
-        println!("{:12.6} board {} ({}x)", time::to_seconds(error.at), error.message, error.count);
+        println!(
+            "{:12.6} board {} ({}x)",
+            time::to_seconds(error.at),
+            error.message,
+            error.count
+        );
     }
     println!("{:#?}", machine.stats());
     Ok(stopped?)

@@ -109,7 +109,8 @@ const LOG_POLL: Ps = MS;
 impl Machine {
     /// Powers the board on at time 0 with `elf` in flash.
     pub fn new(elf: &Path, world: World) -> Result<Self, MachineError> {
-        let bytes = std::fs::read(elf).map_err(|e| MachineError::Image(format!("{}: {e}", elf.display())))?;
+        let bytes = std::fs::read(elf)
+            .map_err(|e| MachineError::Image(format!("{}: {e}", elf.display())))?;
         let image = Image::parse(&bytes).map_err(|e| MachineError::Image(e.to_string()))?;
         let cpu = Cpu::new(&image.segments, image.symbol(CONTROL_TICK), Soc::new(world))
             .map_err(|e| MachineError::Image(format!("the engine refuses: {e:?}")))?;
@@ -161,7 +162,9 @@ impl Machine {
     }
 
     fn poll_log(&mut self) {
-        let (Some(rtt), Some(log)) = (&self.rtt, &mut self.log) else { return };
+        let (Some(rtt), Some(log)) = (&self.rtt, &mut self.log) else {
+            return;
+        };
         let mut bytes = Vec::new();
         rtt.drain(&mut self.cpu, &mut bytes);
         log.received(&bytes, self.cpu.now());
@@ -200,7 +203,17 @@ impl Machine {
             executors: run.shares(),
             stack_peak_bytes: self.stack.peak(&self.cpu),
             resets: self.resets.clone(),
-            can: Vec::new(),
+            can: [0, 1].map(|bus| self.can_stats(bus)).to_vec(),
+        }
+    }
+
+    fn can_stats(&self, bus: usize) -> CanStats {
+        let counted = self.cpu.soc().can_stats(bus);
+        CanStats {
+            tx: counted.tx,
+            rx: counted.rx,
+            load: counted.busy as f64 / self.cpu.now().max(1) as f64,
+            errors: counted.errors,
         }
     }
 

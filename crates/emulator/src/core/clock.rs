@@ -14,7 +14,12 @@ pub struct CycleClock {
 
 impl CycleClock {
     pub fn new(hz: u32) -> Self {
-        Self { cycles: 0, hz, anchor_cycles: 0, anchor_ps: 0 }
+        Self {
+            cycles: 0,
+            hz,
+            anchor_cycles: 0,
+            anchor_ps: 0,
+        }
     }
 
     pub fn hz(&self) -> u32 {
@@ -29,7 +34,8 @@ impl CycleClock {
     pub fn cycle_at(&self, at: Ps) -> u64 {
         let since = u128::from(at.saturating_sub(self.anchor_ps));
         let cycles = (since * u128::from(self.hz)).div_ceil(u128::from(SECOND));
-        self.anchor_cycles.saturating_add(u64::try_from(cycles).unwrap_or(u64::MAX))
+        self.anchor_cycles
+            .saturating_add(u64::try_from(cycles).unwrap_or(u64::MAX))
     }
 
     /// From now on a cycle lasts 1/`hz`.

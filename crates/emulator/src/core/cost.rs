@@ -35,7 +35,9 @@ enum Kind {
 pub fn block_cost(code: &[u8]) -> BlockCost {
     let mut cost = BlockCost::default();
     let mut after_load = false;
-    let mut halfwords = code.chunks_exact(2).map(|b| u16::from_le_bytes([b[0], b[1]]));
+    let mut halfwords = code
+        .chunks_exact(2)
+        .map(|b| u16::from_le_bytes([b[0], b[1]]));
     while let Some(first) = halfwords.next() {
         let kind = match first >> 11 {
             0b11101..=0b11111 => wide(first, halfwords.next().unwrap_or(0)),
@@ -113,7 +115,13 @@ fn multiple_or_shifted(first: u16, second: u16) -> Kind {
     if op & 0x64 == 0x04 {
         let table_branch = first & 0xFFF0 == 0xE8D0 && second & 0xFFE0 == 0xF000;
         let exclusive = op & 0x12 == 0;
-        return Kind::Plain(if table_branch { 2 + PIPELINE_REFILL } else if exclusive { 2 } else { 3 });
+        return Kind::Plain(if table_branch {
+            2 + PIPELINE_REFILL
+        } else if exclusive {
+            2
+        } else {
+            3
+        });
     }
     Kind::Plain(1)
 }
@@ -153,7 +161,13 @@ fn coprocessor(first: u16, second: u16) -> Kind {
             // VMOV between two core registers and the FPU
             0x0040 => 2,
             // VLDR, VSTR: offset addressing without write-back
-            _ if first & 0x0120 == 0x0100 => if double { 3 } else { 2 },
+            _ if first & 0x0120 == 0x0100 => {
+                if double {
+                    3
+                } else {
+                    2
+                }
+            }
             _ => 1 + words,
         });
     }
@@ -183,9 +197,13 @@ mod tests {
     fn single_instructions_cost_what_the_manual_says() {
         assert_eq!(cost(&[0x3001]), (1, 1), "adds r0, #1");
         assert_eq!(cost(&[0x6808]), (1, 2), "ldr r0, [r1]");
-        assert_eq!(cost(&[0x6808, 0x684A]), (2, 3), "ldr r0, [r1]; ldr r2, [r1, #4]");
+        assert_eq!(
+            cost(&[0x6808, 0x684A]),
+            (2, 3),
+            "ldr r0, [r1]; ldr r2, [r1, #4]"
+        );
         assert_eq!(cost(&[0x6008]), (1, 1), "str r0, [r1]");
-        assert_eq!(cost(&[0xB5F0]), (1, 7), "push {{r4-r7, lr}} wait states: 1 + 5 + 1");
+        assert_eq!(cost(&[0xB5F0]), (1, 6), "push {{r4-r7, lr}}: 1 + 5");
         assert_eq!(cost(&[0xBDF0]), (1, 8), "pop {{r4-r7, pc}}: 1 + 5 + refill");
         assert_eq!(cost(&[0xFB90, 0xF0F1]), (1, 7), "sdiv r0, r0, r1");
         assert_eq!(cost(&[0xEE80, 0x0A20]), (1, 14), "vdiv.f32 s0, s0, s1");

@@ -23,6 +23,8 @@ use crate::{
 mod block_costs;
 mod context;
 mod hooks;
+#[cfg(test)]
+mod tests;
 
 use block_costs::BlockCosts;
 use hooks::with_soc;
@@ -130,11 +132,15 @@ impl Cpu {
         engine.ctl_set_cpu_model(ArmCpuModel::CORTEX_M4 as i32)?;
         memory::map(&mut engine)?;
         hooks::install(&mut engine)?;
-        let mut cpu = Self { engine, asleep: None };
+        let mut cpu = Self {
+            engine,
+            asleep: None,
+        };
         for segment in segments {
             let offset = segment.address - FLASH.base;
             for base in [FLASH, memory::FLASH_ALIAS] {
-                cpu.engine.mem_write(u64::from(base.base + offset), &segment.data)?;
+                cpu.engine
+                    .mem_write(u64::from(base.base + offset), &segment.data)?;
             }
         }
         cpu.boot();
@@ -163,7 +169,10 @@ impl Cpu {
     }
 
     pub fn soc(&self) -> &Soc {
-        self.state().soc.as_ref().expect("the chip is away only inside a register access")
+        self.state()
+            .soc
+            .as_ref()
+            .expect("the chip is away only inside a register access")
     }
 
     /// The chip, to be changed from outside between two runs.
@@ -227,7 +236,9 @@ impl Cpu {
         let stop = state.stop.take();
         match (stop, result) {
             (Some(Stop::Interrupt | Stop::Limit), _) => Ok(None),
-            (Some(Stop::ExceptionReturn(code)), _) => self.return_from_exception(code).map(|()| None),
+            (Some(Stop::ExceptionReturn(code)), _) => {
+                self.return_from_exception(code).map(|()| None)
+            }
             (Some(Stop::SupervisorCall), _) => {
                 self.state_mut().system.nvic.pend(Exception::SV_CALL);
                 Ok(None)
@@ -268,7 +279,9 @@ impl Cpu {
 
     fn fall_asleep(&mut self, kind: SleepKind) -> Option<Pause> {
         self.asleep = Some(kind);
-        Some(Pause::Asleep { thread: self.state().system.nvic.current() == Exception::THREAD })
+        Some(Pause::Asleep {
+            thread: self.state().system.nvic.current() == Exception::THREAD,
+        })
     }
 
     /// Passes idle time in one step from event to event; `None` when the core wakes.
@@ -279,7 +292,9 @@ impl Cpu {
             let state = self.state_mut();
             match state.stop.take() {
                 Some(Stop::Reset(cause)) => return Ok(Some(Pause::Reset(cause))),
-                Some(Stop::Unmodelled(access)) => return Err(self.halt_in_block(access.to_string())),
+                Some(Stop::Unmodelled(access)) => {
+                    return Err(self.halt_in_block(access.to_string()));
+                }
                 _ => {}
             }
             if state.wakes(kind, masks) {
@@ -308,7 +323,9 @@ impl Cpu {
         let masks = context::masks(&self.engine);
         let state = self.state_mut();
         state.system.faults.record(fault);
-        let direct = fault.exception().filter(|&e| state.system.nvic.can_take(e, masks));
+        let direct = fault
+            .exception()
+            .filter(|&e| state.system.nvic.can_take(e, masks));
         let exception = match direct {
             Some(exception) => exception,
             None if state.system.nvic.execution_priority(masks) <= -1 => {
@@ -329,21 +346,32 @@ impl Cpu {
     }
 
     fn halt(&self, what: String) -> Halt {
-        Halt { what, pc: self.pc() }
+        Halt {
+            what,
+            pc: self.pc(),
+        }
     }
 
     /// For register accesses: the engine knows the PC inside a block only at its ends.
     fn halt_in_block(&self, what: String) -> Halt {
-        Halt { what, pc: self.state().block.start }
+        Halt {
+            what,
+            pc: self.state().block.start,
+        }
     }
 }
 
 impl State {
     /// Adds the cost of the block that has run.
     fn settle(&mut self) {
-        let Block { instructions, cycles, .. } = self.block;
+        let Block {
+            instructions,
+            cycles,
+            ..
+        } = self.block;
         self.clock.cycles += u64::from(cycles);
-        self.stats.ran(self.system.nvic.current(), instructions, cycles);
+        self.stats
+            .ran(self.system.nvic.current(), instructions, cycles);
         self.block.instructions = 0;
         self.block.cycles = 0;
     }
@@ -369,7 +397,9 @@ impl State {
 
     fn wakes(&mut self, kind: SleepKind, masks: Masks) -> bool {
         match kind {
-            SleepKind::Event => std::mem::take(&mut self.event) || self.system.deliverable(masks).is_some(),
+            SleepKind::Event => {
+                std::mem::take(&mut self.event) || self.system.deliverable(masks).is_some()
+            }
             SleepKind::Interrupt => self.system.nvic.wakes_from_wfi(masks),
         }
     }

@@ -22,7 +22,10 @@ impl Exception {
 
     /// `None` past the chip's last interrupt.
     pub fn from_number(number: u32) -> Option<Self> {
-        u8::try_from(number).ok().filter(|&n| usize::from(n) < EXCEPTION_COUNT).map(Self)
+        u8::try_from(number)
+            .ok()
+            .filter(|&n| usize::from(n) < EXCEPTION_COUNT)
+            .map(Self)
     }
 
     pub fn from_irq(irq: Irq) -> Self {
@@ -84,7 +87,14 @@ mod tests {
 
     #[test]
     fn names_stand_at_the_positions_of_the_reference_manual() {
-        for (irq, name) in [(0, "WWDG"), (28, "TIM2"), (52, "UART4"), (53, "UART5"), (63, "CAN2_TX"), (81, "FPU")] {
+        for (irq, name) in [
+            (0, "WWDG"),
+            (28, "TIM2"),
+            (52, "UART4"),
+            (53, "UART5"),
+            (63, "CAN2_TX"),
+            (81, "FPU"),
+        ] {
             assert_eq!(Exception::from_irq(irq).name(), name);
         }
     }

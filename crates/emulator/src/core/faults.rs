@@ -7,7 +7,9 @@ use crate::core::exception::Exception;
 pub enum Fault {
     /// Load or store where nothing answers. Stores are reported as precisely as loads, which a real write buffer
     /// does not always manage.
-    DataBus { address: u32 },
+    DataBus {
+        address: u32,
+    },
     /// Instruction fetch where nothing answers.
     FetchBus,
     /// Instruction fetch from memory that may not hold code.
@@ -26,11 +28,9 @@ pub enum Fault {
     NoCoprocessor,
     /// BKPT without a debugger: straight to HardFault.
     Breakpoint,
-    /// The vector of an exception could not be read.
-    VectorRead,
 }
 
-/// CFSR, HFSR, BFAR and MMFAR.
+/// CFSR, HFSR and BFAR; MMFAR is never valid without an MPU.
 #[derive(Debug, Default)]
 pub struct FaultStatus {
     pub cfsr: u32,
@@ -39,22 +39,23 @@ pub struct FaultStatus {
 }
 
 const BFAR_VALID: u32 = 1 << 15;
-pub const HFSR_VECTTBL: u32 = 1 << 1;
 pub const HFSR_FORCED: u32 = 1 << 30;
-pub const HFSR_DEBUGEVT: u32 = 1 << 31;
+const HFSR_DEBUGEVT: u32 = 1 << 31;
 
 impl Fault {
     /// The configurable exception it raises; `None` goes to HardFault directly.
     pub fn exception(self) -> Option<Exception> {
         match self {
-            Self::DataBus { .. } | Self::FetchBus | Self::Stacking | Self::Unstacking => Some(Exception::BUS_FAULT),
+            Self::DataBus { .. } | Self::FetchBus | Self::Stacking | Self::Unstacking => {
+                Some(Exception::BUS_FAULT)
+            }
             Self::FetchForbidden => Some(Exception::MEM_MANAGE),
             Self::UndefinedInstruction
             | Self::InvalidState
             | Self::InvalidReturn
             | Self::Unaligned
             | Self::NoCoprocessor => Some(Exception::USAGE_FAULT),
-            Self::Breakpoint | Self::VectorRead => None,
+            Self::Breakpoint => None,
         }
     }
 }
@@ -75,12 +76,10 @@ impl FaultStatus {
             Fault::InvalidReturn => 1 << 18,
             Fault::NoCoprocessor => 1 << 19,
             Fault::Unaligned => 1 << 24,
-            Fault::Breakpoint | Fault::VectorRead => 0,
+            Fault::Breakpoint => 0,
         };
-        self.hfsr |= match fault {
-            Fault::Breakpoint => HFSR_DEBUGEVT,
-            Fault::VectorRead => HFSR_VECTTBL,
-            _ => 0,
-        };
+        if fault == Fault::Breakpoint {
+            self.hfsr |= HFSR_DEBUGEVT;
+        }
     }
 }

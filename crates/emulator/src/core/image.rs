@@ -52,11 +52,21 @@ impl Image {
             }
             let address = header.p_paddr(endian);
             if !FLASH.contains(address, data.len() as u32) {
-                return Err(ImageError::OutsideFlash { address, size: data.len() });
+                return Err(ImageError::OutsideFlash {
+                    address,
+                    size: data.len(),
+                });
             }
-            segments.push(Segment { address, data: data.to_vec() });
+            segments.push(Segment {
+                address,
+                data: data.to_vec(),
+            });
         }
-        Ok(Self { segments, symbols: symbols(&file), functions: functions(&file) })
+        Ok(Self {
+            segments,
+            symbols: symbols(&file),
+            functions: functions(&file),
+        })
     }
 
     /// Address of a symbol, without the Thumb bit.
@@ -66,10 +76,16 @@ impl Image {
 
     /// The function that holds `pc`, with the offset in it: `main+0x12`; the bare address where none does.
     pub fn describe(&self, pc: u32) -> String {
-        let pc = if FLASH_ALIAS.contains(pc, 1) { pc + FLASH.base } else { pc };
+        let pc = if FLASH_ALIAS.contains(pc, 1) {
+            pc + FLASH.base
+        } else {
+            pc
+        };
         let after = self.functions.partition_point(|f| f.start <= pc);
         match after.checked_sub(1).map(|i| &self.functions[i]) {
-            Some(f) if pc - f.start < f.size.max(1) => format!("{}+0x{:x} (0x{pc:08X})", f.name, pc - f.start),
+            Some(f) if pc - f.start < f.size.max(1) => {
+                format!("{}+0x{:x} (0x{pc:08X})", f.name, pc - f.start)
+            }
             _ => format!("0x{pc:08X}"),
         }
     }
@@ -80,7 +96,12 @@ type Elf<'d> = ElfFile<'d, FileHeader32<object::Endianness>>;
 fn symbols(file: &Elf<'_>) -> BTreeMap<String, u32> {
     file.symbols()
         .filter(|s| s.is_definition() || s.kind() == SymbolKind::Unknown)
-        .filter_map(|s| Some((s.name().ok()?.to_owned(), s.address() as u32 & !u32::from(s.kind() == SymbolKind::Text))))
+        .filter_map(|s| {
+            Some((
+                s.name().ok()?.to_owned(),
+                s.address() as u32 & !u32::from(s.kind() == SymbolKind::Text),
+            ))
+        })
         .collect()
 }
 
@@ -90,7 +111,11 @@ fn functions(file: &Elf<'_>) -> Vec<Function> {
         .filter(|s| s.kind() == SymbolKind::Text)
         .filter_map(|s| {
             let name = format!("{:#}", rustc_demangle::demangle(s.name().ok()?));
-            Some(Function { start: s.address() as u32 & !1, size: s.size() as u32, name })
+            Some(Function {
+                start: s.address() as u32 & !1,
+                size: s.size() as u32,
+                name,
+            })
         })
         .collect();
     list.sort_by_key(|f| f.start);

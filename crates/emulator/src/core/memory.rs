@@ -12,18 +12,34 @@ pub struct Region {
 
 impl Region {
     pub fn contains(self, addr: u32, len: u32) -> bool {
-        addr >= self.base && u64::from(addr) + u64::from(len) <= u64::from(self.base) + u64::from(self.size)
+        addr >= self.base
+            && u64::from(addr) + u64::from(len) <= u64::from(self.base) + u64::from(self.size)
     }
 }
 
-pub const FLASH: Region = Region { base: 0x0800_0000, size: 0x10_0000 };
+pub const FLASH: Region = Region {
+    base: 0x0800_0000,
+    size: 0x10_0000,
+};
 /// BOOT0 = 0 shows the flash at address 0 too.
-pub const FLASH_ALIAS: Region = Region { base: 0, size: 0x10_0000 };
-pub const CCM: Region = Region { base: 0x1000_0000, size: 0x1_0000 };
+pub const FLASH_ALIAS: Region = Region {
+    base: 0,
+    size: 0x10_0000,
+};
+pub const CCM: Region = Region {
+    base: 0x1000_0000,
+    size: 0x1_0000,
+};
 /// SRAM1 and SRAM2.
-pub const SRAM: Region = Region { base: 0x2000_0000, size: 0x2_0000 };
+pub const SRAM: Region = Region {
+    base: 0x2000_0000,
+    size: 0x2_0000,
+};
 /// System bootloader, OTP and device signature.
-const SYSTEM_MEMORY: Region = Region { base: 0x1FFF_0000, size: 0x8000 };
+const SYSTEM_MEMORY: Region = Region {
+    base: 0x1FFF_0000,
+    size: 0x8000,
+};
 const UNIQUE_ID: u32 = 0x1FFF_7A10;
 const FLASH_SIZE_KIB: u32 = 0x1FFF_7A22;
 
@@ -57,7 +73,9 @@ pub fn power_on_noise(region: Region) -> Vec<u8> {
         state ^= state << 5;
         state
     };
-    (0..region.size / 4).flat_map(|_| word().to_le_bytes()).collect()
+    (0..region.size / 4)
+        .flat_map(|_| word().to_le_bytes())
+        .collect()
 }
 
 /// The memories as DMA and the flash controller reach them through the engine.
@@ -80,5 +98,7 @@ impl<D> GuestMemory for EngineMemory<'_, '_, D> {
 }
 
 fn is_memory(addr: u32, len: usize) -> bool {
-    [FLASH, SRAM, CCM, SYSTEM_MEMORY].iter().any(|r| r.contains(addr, len as u32))
+    [FLASH, SRAM, CCM, SYSTEM_MEMORY]
+        .iter()
+        .any(|r| r.contains(addr, len as u32))
 }

@@ -37,7 +37,13 @@ pub struct Nvic {
 impl Default for Nvic {
     /// After reset: interrupts and configurable faults disabled, the rest of the system exceptions enabled.
     fn default() -> Self {
-        let always = [Exception::NMI, Exception::HARD_FAULT, Exception::SV_CALL, Exception::PEND_SV, Exception::SYS_TICK];
+        let always = [
+            Exception::NMI,
+            Exception::HARD_FAULT,
+            Exception::SV_CALL,
+            Exception::PEND_SV,
+            Exception::SYS_TICK,
+        ];
         Self {
             pending: 0,
             enabled: always.into_iter().map(bit).fold(0, |a, b| a | b),
@@ -113,7 +119,9 @@ impl Nvic {
     /// A request whose line (`levels`, by interrupt number) is still high stays pending.
     pub fn clear_pending_word(&mut self, word: u32, bits: u32, levels: impl Fn(u8) -> bool) {
         for i in (0..32).filter(|i| bits >> i & 1 == 1) {
-            let Some(exception) = Exception::from_number(16 + 32 * word + i) else { continue };
+            let Some(exception) = Exception::from_number(16 + 32 * word + i) else {
+                continue;
+            };
             let held = exception.irq().is_some_and(&levels) && !self.is_active(exception);
             if !held {
                 self.unpend(exception);
@@ -160,7 +168,10 @@ impl Nvic {
 
     /// Priority of the innermost active code before masks.
     pub fn active_priority(&self) -> Priority {
-        numbers(self.active).map(|e| self.priority_of(e)).min().unwrap_or(THREAD_PRIORITY)
+        numbers(self.active)
+            .map(|e| self.priority_of(e))
+            .min()
+            .unwrap_or(THREAD_PRIORITY)
     }
 
     /// The priority an exception must beat to be taken (ARMv7-M ARM `ExecutionPriority`).
@@ -191,7 +202,8 @@ impl Nvic {
 
     /// What the processor takes now.
     pub fn deliverable(&self, masks: Masks) -> Option<Exception> {
-        self.first_pending().filter(|&e| self.priority_of(e) < self.execution_priority(masks))
+        self.first_pending()
+            .filter(|&e| self.priority_of(e) < self.execution_priority(masks))
     }
 
     /// Something pending beats the active code, masks aside: the masks decide.
@@ -201,7 +213,11 @@ impl Nvic {
 
     /// What ends a WFI: a pending exception that PRIMASK alone may hold back (ARMv7-M ARM B1.5.19).
     pub fn wakes_from_wfi(&self, masks: Masks) -> bool {
-        self.deliverable(Masks { primask: false, ..masks }).is_some()
+        self.deliverable(Masks {
+            primask: false,
+            ..masks
+        })
+        .is_some()
     }
 
     /// The processor begins to run `exception`.
@@ -242,11 +258,19 @@ impl Nvic {
 }
 
 fn irq_bits(word: u32, bits: u32) -> u128 {
-    if word < 3 { u128::from(bits) << (32 * word + 16) & IRQ_BITS } else { 0 }
+    if word < 3 {
+        u128::from(bits) << (32 * word + 16) & IRQ_BITS
+    } else {
+        0
+    }
 }
 
 fn irq_word(set: u128, word: u32) -> u32 {
-    if word < 3 { ((set & IRQ_BITS) >> (32 * word + 16)) as u32 } else { 0 }
+    if word < 3 {
+        ((set & IRQ_BITS) >> (32 * word + 16)) as u32
+    } else {
+        0
+    }
 }
 
 fn numbers(set: u128) -> impl Iterator<Item = Exception> {
@@ -262,6 +286,104 @@ fn numbers(set: u128) -> impl Iterator<Item = Exception> {
 mod tests {
     use super::*;
 
-    const A: Exception = Exception(20 + 16);
-    const B: Exception = Exception(30 + 16);
+    fn irq(number: u8) -> Exception {
+        Exception::from_irq(number)
+    }
+
+    /// Interrupts enabled and pending at the given priority bytes.
+    fn pending(requests: &[(u8, u8)]) -> Nvic {
+        let mut nvic = Nvic::default();
+        for &(number, priority) in requests {
+            nvic.set_priority_register(irq(number), priority);
+            nvic.set_enabled(irq(number), true);
+            nvic.pend(irq(number));
+        }
+        nvic
+    }
+
+    #[test]
+    fn lower_value_goes_first_then_lower_number() {
+        let nvic = pending(&[(9, 0x40), (30, 0x20), (31, 0x20)]);
+        assert_eq!(nvic.deliverable(Masks::default()), Some(irq(30)));
+    }
+
+    #[test]
+    fn only_a_higher_priority_preempts() {
+        let mut nvic = pending(&[(5, 0x20)]);
+        nvic.activate(irq(5));
+        nvic.set_priority_register(irq(6), 0x20);
+        nvic.set_enabled(irq(6), true);
+        nvic.pend(irq(6));
+        assert_eq!(nvic.deliverable(Masks::default()), None);
+        nvic.set_priority_register(irq(6), 0x10);
+        assert_eq!(nvic.deliverable(Masks::default()), Some(irq(6)));
+    }
+
+    #[test]
+    fn grouping_takes_the_subpriority_out_of_preemption() {
+        let mut nvic = pending(&[(5, 0x30)]);
+        nvic.activate(irq(5));
+        nvic.set_priority_register(irq(6), 0x20);
+        nvic.set_enabled(irq(6), true);
+        nvic.pend(irq(6));
+        assert_eq!(nvic.deliverable(Masks::default()), Some(irq(6)));
+        // PRIGROUP 5: two bits of group, two of subpriority; 0x20 and 0x30 share a group.
+        nvic.set_priority_group(5);
+        assert_eq!(nvic.deliverable(Masks::default()), None);
+    }
+
+    #[test]
+    fn masks_hold_back_what_they_cover() {
+        let nvic = pending(&[(5, 0x20)]);
+        let masked = |masks| nvic.deliverable(masks).is_none();
+        assert!(masked(Masks {
+            primask: true,
+            ..Masks::default()
+        }));
+        assert!(masked(Masks {
+            faultmask: true,
+            ..Masks::default()
+        }));
+        assert!(masked(Masks {
+            basepri: 0x20,
+            ..Masks::default()
+        }));
+        assert!(!masked(Masks {
+            basepri: 0x30,
+            ..Masks::default()
+        }));
+        assert!(nvic.wakes_from_wfi(Masks {
+            primask: true,
+            ..Masks::default()
+        }));
+        let mut nmi = Nvic::default();
+        nmi.pend(Exception::NMI);
+        assert!(
+            nmi.deliverable(Masks {
+                faultmask: true,
+                ..Masks::default()
+            })
+            .is_some()
+        );
+    }
+
+    #[test]
+    fn priorities_keep_four_bits() {
+        let mut nvic = Nvic::default();
+        nvic.set_priority_register(irq(3), 0xFF);
+        assert_eq!(nvic.priority_register(irq(3)), 0xF0);
+    }
+
+    #[test]
+    fn a_raised_line_pends_again_when_its_handler_returns_and_cannot_be_cleared() {
+        let mut nvic = pending(&[(5, 0x20)]);
+        nvic.activate(irq(5));
+        assert!(!nvic.is_pending(irq(5)));
+        nvic.retire(true);
+        assert!(nvic.is_pending(irq(5)));
+        nvic.clear_pending_word(0, 1 << 5, |_| true);
+        assert!(nvic.is_pending(irq(5)));
+        nvic.clear_pending_word(0, 1 << 5, |_| false);
+        assert!(!nvic.is_pending(irq(5)));
+    }
 }

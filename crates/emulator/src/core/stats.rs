@@ -57,7 +57,10 @@ impl Execution {
 
     /// The control tick's function was entered.
     pub fn tick_entered(&mut self, at: Ps, context: Exception) {
-        self.ticks.push(TickEntry { at, executed: self.executed[context.index()] });
+        self.ticks.push(TickEntry {
+            at,
+            executed: self.executed[context.index()],
+        });
     }
 
     pub fn rebooted(&mut self) {
@@ -70,17 +73,28 @@ impl Execution {
 
     /// Periods in which no tick came.
     pub fn missed_ticks(&self) -> u64 {
-        self.pairs().map(|(a, b)| ((b.at - a.at + TICK / 2) / TICK).saturating_sub(1)).sum()
+        self.pairs()
+            .map(|(a, b)| ((b.at - a.at + TICK / 2) / TICK).saturating_sub(1))
+            .sum()
     }
 
     /// Instructions of the control executor from one tick to the next.
     pub fn tick_instructions(&self) -> Distribution {
-        distribution(self.pairs().map(|(a, b)| (b.executed - a.executed) as f64).collect())
+        distribution(
+            self.pairs()
+                .map(|(a, b)| (b.executed - a.executed) as f64)
+                .collect(),
+        )
     }
 
     /// Deviation of each tick from the 1 ms grid of its boot, counted from the earliest.
     pub fn release_jitter_us(&self) -> Distribution {
-        distribution(self.jitter().iter().map(|&ps| ps as f64 / US as f64).collect())
+        distribution(
+            self.jitter()
+                .iter()
+                .map(|&ps| ps as f64 / US as f64)
+                .collect(),
+        )
     }
 
     /// Counts of release jitter in 0.5 µs bins.
@@ -98,7 +112,11 @@ impl Execution {
 
     pub fn cpu_load(&self) -> f64 {
         let all = self.busy_cycles + self.idle_cycles;
-        if all == 0 { 0.0 } else { self.busy_cycles as f64 / all as f64 }
+        if all == 0 {
+            0.0
+        } else {
+            self.busy_cycles as f64 / all as f64
+        }
     }
 
     /// Share of all instructions by context.
@@ -120,7 +138,8 @@ impl Execution {
     }
 
     fn pairs(&self) -> impl Iterator<Item = (TickEntry, TickEntry)> {
-        self.runs().flat_map(|run| run.windows(2).map(|w| (w[0], w[1])))
+        self.runs()
+            .flat_map(|run| run.windows(2).map(|w| (w[0], w[1])))
     }
 
     fn jitter(&self) -> Vec<Ps> {

@@ -69,10 +69,18 @@ impl System {
     /// Everything a system reset resets; debug registers keep their values (only power-on clears them).
     pub fn reset(&mut self) {
         let debug = std::mem::take(&mut self.debug);
-        *self = Self { debug, ..Self::default() };
+        *self = Self {
+            debug,
+            ..Self::default()
+        };
     }
 
-    pub fn read(&mut self, addr: u32, size: u8, around: &Surroundings<'_>) -> Result<u32, Unmodelled> {
+    pub fn read(
+        &mut self,
+        addr: u32,
+        size: u8,
+        around: &Surroundings<'_>,
+    ) -> Result<u32, Unmodelled> {
         let access = Access::new(addr, size);
         let word = match access.register {
             0xE000_E004 => 2, // ICTR: 96 interrupt lines
@@ -81,16 +89,27 @@ impl System {
             0xE000_E014 => self.systick.reload(),
             0xE000_E018 => self.systick.value(around.cycles),
             0xE000_E01C => 0, // CALIB: no calibration value is promised
-            r @ 0xE000_E100..=0xE000_E4EF => self.read_nvic(r).ok_or_else(|| unmodelled(r, "read"))?,
+            r @ 0xE000_E100..=0xE000_E4EF => {
+                self.read_nvic(r).ok_or_else(|| unmodelled(r, "read"))?
+            }
             r @ (0xE000_ED00..=0xE000_ED94 | 0xE000_EF34..=0xE000_EF44) => {
                 self.read_scb(r).ok_or_else(|| unmodelled(r, "read"))?
             }
-            r => self.debug.read(r, around.cycles).ok_or_else(|| unmodelled(r, "read"))?,
+            r => self
+                .debug
+                .read(r, around.cycles)
+                .ok_or_else(|| unmodelled(r, "read"))?,
         };
         Ok(access.read_of(word))
     }
 
-    pub fn write(&mut self, addr: u32, size: u8, value: u32, around: &Surroundings<'_>) -> Result<(), Unmodelled> {
+    pub fn write(
+        &mut self,
+        addr: u32,
+        size: u8,
+        value: u32,
+        around: &Surroundings<'_>,
+    ) -> Result<(), Unmodelled> {
         let access = Access::new(addr, size);
         let refused = || unmodelled(access.register, &format!("write of 0x{value:08X}"));
         let done = match access.register {
@@ -110,8 +129,12 @@ impl System {
                 self.systick.write_value(around.cycles);
                 true
             }
-            r @ (0xE000_E100..=0xE000_E4EF | 0xE000_EF00) => self.write_nvic(r, access, value, around),
-            r @ (0xE000_ED00..=0xE000_ED94 | 0xE000_EF34..=0xE000_EF44) => self.write_scb(r, access, value),
+            r @ (0xE000_E100..=0xE000_E4EF | 0xE000_EF00) => {
+                self.write_nvic(r, access, value, around)
+            }
+            r @ (0xE000_ED00..=0xE000_ED94 | 0xE000_EF34..=0xE000_EF44) => {
+                self.write_scb(r, access, value)
+            }
             r => self.debug.write(r, value, around.cycles),
         };
         if done { Ok(()) } else { Err(refused()) }
@@ -156,7 +179,10 @@ impl System {
 }
 
 fn unmodelled(register: u32, what: &str) -> Unmodelled {
-    Unmodelled { register: register_name(register), what: what.to_owned() }
+    Unmodelled {
+        register: register_name(register),
+        what: what.to_owned(),
+    }
 }
 
 fn register_name(addr: u32) -> String {

@@ -30,7 +30,11 @@ impl SysTick {
 
     /// Cycle of the next wrap to zero.
     pub fn next_cycle(&self) -> u64 {
-        if self.runs() { self.zero_at + self.period() } else { u64::MAX }
+        if self.runs() {
+            self.zero_at + self.period()
+        } else {
+            u64::MAX
+        }
     }
 
     /// Lets the counter wrap as often as `cycles` asks; true when an interrupt is due.
@@ -75,7 +79,11 @@ impl SysTick {
             return 0;
         }
         let ticks = (cycles.saturating_sub(self.zero_at) % self.period()) / self.divider();
-        if ticks == 0 { 0 } else { (u64::from(self.reload) + 1 - ticks) as u32 }
+        if ticks == 0 {
+            0
+        } else {
+            (u64::from(self.reload) + 1 - ticks) as u32
+        }
     }
 
     /// Any write clears the counter and COUNTFLAG.

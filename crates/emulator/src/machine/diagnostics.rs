@@ -22,11 +22,17 @@ pub struct Diagnostics {
 
 impl Diagnostics {
     pub fn find(elf: &[u8], image: &Image) -> Result<Self, String> {
-        let Some(base) = image.symbol(STATIC) else { return Ok(Self::default()) };
+        let Some(base) = image.symbol(STATIC) else {
+            return Ok(Self::default());
+        };
         let record = layout::of_static(elf, STATIC, RECORD)?;
         Ok(Self {
             address: base + record.offset,
-            names: record.leaves.iter().map(|leaf| format!("diag.{}", leaf.name)).collect(),
+            names: record
+                .leaves
+                .iter()
+                .map(|leaf| format!("diag.{}", leaf.name))
+                .collect(),
             copy: vec![0; record.size as usize],
             leaves: record.leaves,
             copied: false,

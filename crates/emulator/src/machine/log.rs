@@ -15,12 +15,19 @@ pub struct DefmtLog {
 impl DefmtLog {
     /// `None` for an image that does not log.
     pub fn new(elf: &[u8]) -> Result<Option<Self>, MachineError> {
-        let table = Table::parse(elf).map_err(|e| MachineError::Image(format!("defmt table: {e:#}")))?;
+        let table =
+            Table::parse(elf).map_err(|e| MachineError::Image(format!("defmt table: {e:#}")))?;
         let Some(table) = table else { return Ok(None) };
         if table.encoding() != Encoding::Rzcobs {
-            return Err(MachineError::Image("defmt frames are not rzcobs-encoded".to_owned()));
+            return Err(MachineError::Image(
+                "defmt frames are not rzcobs-encoded".to_owned(),
+            ));
         }
-        Ok(Some(Self { table, frame: Vec::new(), lines: Vec::new() }))
+        Ok(Some(Self {
+            table,
+            frame: Vec::new(),
+            lines: Vec::new(),
+        }))
     }
 
     pub fn received(&mut self, bytes: &[u8], at: Ps) {
@@ -43,10 +50,17 @@ impl DefmtLog {
         let line = match decoder.decode() {
             Ok(frame) => LogLine {
                 at,
-                level: frame.level().map_or("println", |level| level.as_str()).to_owned(),
+                level: frame
+                    .level()
+                    .map_or("println", |level| level.as_str())
+                    .to_owned(),
                 text: frame.display_message().to_string(),
             },
-            Err(_) => LogLine { at, level: "error".to_owned(), text: "a log frame is damaged".to_owned() },
+            Err(_) => LogLine {
+                at,
+                level: "error".to_owned(),
+                text: "a log frame is damaged".to_owned(),
+            },
         };
         self.lines.push(line);
     }

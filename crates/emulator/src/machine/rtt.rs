@@ -23,12 +23,16 @@ impl Rtt {
 
     /// Takes what the image has written, so that its ring never fills.
     pub fn drain(&self, cpu: &mut Cpu, out: &mut Vec<u8>) {
-        let [buffer, size, write, read] =
-            [UP_BUFFER, UP_SIZE, UP_WRITE, UP_READ].map(|offset| word(cpu, self.control_block + offset));
+        let [buffer, size, write, read] = [UP_BUFFER, UP_SIZE, UP_WRITE, UP_READ]
+            .map(|offset| word(cpu, self.control_block + offset));
         if write == read || size > LARGEST_RING || write >= size || read >= size {
             return;
         }
-        let (first, second) = if write > read { (read..write, 0..0) } else { (read..size, 0..write) };
+        let (first, second) = if write > read {
+            (read..write, 0..0)
+        } else {
+            (read..size, 0..write)
+        };
         for range in [first, second] {
             let start = out.len();
             out.resize(start + range.len(), 0);
@@ -37,11 +41,16 @@ impl Rtt {
                 return;
             }
         }
-        cpu.memory().write(self.control_block + UP_READ, &write.to_le_bytes());
+        cpu.memory()
+            .write(self.control_block + UP_READ, &write.to_le_bytes());
     }
 }
 
 fn word(cpu: &Cpu, addr: u32) -> u32 {
     let mut bytes = [0; 4];
-    if cpu.read_memory(addr, &mut bytes) { u32::from_le_bytes(bytes) } else { 0 }
+    if cpu.read_memory(addr, &mut bytes) {
+        u32::from_le_bytes(bytes)
+    } else {
+        0
+    }
 }

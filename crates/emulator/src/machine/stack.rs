@@ -16,13 +16,20 @@ impl StackWatch {
     /// An image without `_stack_end` may use its RAM down to the end of `.bss` and is not watched.
     pub fn of(image: &Image) -> Self {
         let bounds = image.symbol("_stack_end").zip(image.symbol("_stack_start"));
-        let region = bounds.map(|(end, start)| Region { base: end, size: start.saturating_sub(end) });
-        Self { region: region.filter(|r| holder(*r).is_some()) }
+        let region = bounds.map(|(end, start)| Region {
+            base: end,
+            size: start.saturating_sub(end),
+        });
+        Self {
+            region: region.filter(|r| holder(*r).is_some()),
+        }
     }
 
     /// Bytes from the deepest changed byte to the top.
     pub fn peak(&self, cpu: &Cpu) -> u64 {
-        let Some((stack, ram)) = self.region.and_then(|r| Some((r, holder(r)?))) else { return 0 };
+        let Some((stack, ram)) = self.region.and_then(|r| Some((r, holder(r)?))) else {
+            return 0;
+        };
         let mut now = vec![0; stack.size as usize];
         if !cpu.read_memory(stack.base, &mut now) {
             return 0;
@@ -35,5 +42,7 @@ impl StackWatch {
 }
 
 fn holder(stack: Region) -> Option<Region> {
-    [CCM, SRAM].into_iter().find(|ram| ram.contains(stack.base, stack.size))
+    [CCM, SRAM]
+        .into_iter()
+        .find(|ram| ram.contains(stack.base, stack.size))
 }

@@ -21,7 +21,9 @@ pub(super) struct BlockCosts {
 
 impl Default for BlockCosts {
     fn default() -> Self {
-        Self { slots: vec![Slot::default(); SLOTS] }
+        Self {
+            slots: vec![Slot::default(); SLOTS],
+        }
     }
 }
 

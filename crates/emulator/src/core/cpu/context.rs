@@ -5,7 +5,7 @@ use unicorn_engine::{RegisterARM, Unicorn};
 use super::{Cpu, ENTRY_CYCLES, FP_FRAME_CYCLES, Halt, RETURN_CYCLES, State, TAIL_CHAIN_CYCLES};
 use crate::core::{
     exception::Exception,
-    faults::Fault,
+    faults::{Fault, HFSR_FORCED},
     memory::{CCM, SRAM},
     nvic::Masks,
 };
@@ -53,7 +53,9 @@ const FP_STACKED: [RegisterARM; 16] = [
 
 /// Every register here is 32 bits wide and known to the engine.
 pub(super) fn register(engine: &Unicorn<'_, State>, register: RegisterARM) -> u32 {
-    engine.reg_read(register).expect("the engine knows the register") as u32
+    engine
+        .reg_read(register)
+        .expect("the engine knows the register") as u32
 }
 
 pub(super) fn masks(engine: &Unicorn<'_, State>) -> Masks {
@@ -70,7 +72,9 @@ impl Cpu {
     }
 
     fn set_register(&mut self, name: RegisterARM, value: u32) {
-        self.engine.reg_write(name, value.into()).expect("the engine knows the register");
+        self.engine
+            .reg_write(name, value.into())
+            .expect("the engine knows the register");
     }
 
     /// Sets xPSR and makes the engine notice a change of mode, which only a write of the flags alone does.
@@ -82,7 +86,11 @@ impl Cpu {
     pub(super) fn reset_registers(&mut self) {
         self.set_xpsr(XPSR_THUMB);
         self.set_register(RegisterARM::CONTROL, 0);
-        for mask in [RegisterARM::PRIMASK, RegisterARM::FAULTMASK, RegisterARM::BASEPRI] {
+        for mask in [
+            RegisterARM::PRIMASK,
+            RegisterARM::FAULTMASK,
+            RegisterARM::BASEPRI,
+        ] {
             self.set_register(mask, 0);
         }
         for name in STACKED {
@@ -99,7 +107,8 @@ impl Cpu {
 
     fn word(&self, addr: u32) -> Option<u32> {
         let mut bytes = [0; 4];
-        self.read_memory(addr, &mut bytes).then(|| u32::from_le_bytes(bytes))
+        self.read_memory(addr, &mut bytes)
+            .then(|| u32::from_le_bytes(bytes))
     }
 
     fn is_thread(&self) -> bool {
@@ -116,10 +125,19 @@ impl Cpu {
             self.state_mut().system.faults.record(Fault::Stacking);
         }
         let mut exc_return = 0xFFFF_FFE1;
-        exc_return |= if extended { 0 } else { EXC_RETURN_STANDARD_FRAME };
-        exc_return |= if self.is_thread() { EXC_RETURN_THREAD } else { 0 };
+        exc_return |= if extended {
+            0
+        } else {
+            EXC_RETURN_STANDARD_FRAME
+        };
+        exc_return |= if self.is_thread() {
+            EXC_RETURN_THREAD
+        } else {
+            0
+        };
         exc_return |= if uses_psp { EXC_RETURN_PSP } else { 0 };
-        self.state_mut().spend(ENTRY_CYCLES + if extended { FP_FRAME_CYCLES } else { 0 });
+        self.state_mut()
+            .spend(ENTRY_CYCLES + if extended { FP_FRAME_CYCLES } else { 0 });
         if !stacked && !self.handles_stacking_fault(exception) {
             return self.start_handler(Exception::HARD_FAULT, exc_return);
         }
@@ -134,17 +152,23 @@ impl Cpu {
         }
         let system = &mut self.state_mut().system;
         system.nvic.pend(exception);
-        system.faults.hfsr |= crate::core::faults::HFSR_FORCED;
+        system.faults.hfsr |= HFSR_FORCED;
         false
     }
 
     fn start_handler(&mut self, exception: Exception, exc_return: u32) -> Result<(), Halt> {
         let vector_at = self.state().system.vector_table() + 4 * exception.number();
         let Some(vector) = self.word(vector_at) else {
-            return Err(self.halt(format!("lock-up: no vector for {} at 0x{vector_at:08X}", exception.name())));
+            return Err(self.halt(format!(
+                "lock-up: no vector for {} at 0x{vector_at:08X}",
+                exception.name()
+            )));
         };
         let xpsr = self.register(RegisterARM::XPSR) & XPSR_FLAGS;
-        self.set_register(RegisterARM::CONTROL, self.register(RegisterARM::CONTROL) & !(CONTROL_FPCA | CONTROL_SPSEL));
+        self.set_register(
+            RegisterARM::CONTROL,
+            self.register(RegisterARM::CONTROL) & !(CONTROL_FPCA | CONTROL_SPSEL),
+        );
         self.set_xpsr(xpsr | XPSR_THUMB | exception.number());
         self.set_register(RegisterARM::LR, exc_return);
         self.set_register(RegisterARM::PC, vector | 1);
@@ -160,15 +184,25 @@ impl Cpu {
 
     /// False where the frame does not fit into RAM; the stack pointer moves anyway, as on silicon.
     fn push_frame(&mut self, uses_psp: bool, extended: bool) -> bool {
-        let stack = if uses_psp { RegisterARM::PSP } else { RegisterARM::MSP };
+        let stack = if uses_psp {
+            RegisterARM::PSP
+        } else {
+            RegisterARM::MSP
+        };
         let before = self.register(stack);
-        let size = if extended { EXTENDED_FRAME } else { BASIC_FRAME };
+        let size = if extended {
+            EXTENDED_FRAME
+        } else {
+            BASIC_FRAME
+        };
         let aligns = extended || self.state().system.aligns_stack();
         let padded = aligns && before & 4 != 0;
         let frame = before.wrapping_sub(size) & if aligns { !7 } else { !3 };
         let mut words: Vec<u32> = STACKED.iter().map(|&name| self.register(name)).collect();
         words.push(self.pc());
-        words.push(self.register(RegisterARM::XPSR) & !XPSR_PADDED | if padded { XPSR_PADDED } else { 0 });
+        words.push(
+            self.register(RegisterARM::XPSR) & !XPSR_PADDED | if padded { XPSR_PADDED } else { 0 },
+        );
         if extended {
             words.extend(FP_STACKED.iter().map(|&name| self.register(name)));
             words.extend([self.register(RegisterARM::FPSCR), 0]);
@@ -180,8 +214,14 @@ impl Cpu {
 
     /// A branch to an EXC_RETURN value: the handler is over; what waits runs next without unstacking.
     pub(super) fn return_from_exception(&mut self, exc_return: u32) -> Result<(), Halt> {
-        const VALID: [u32; 6] =
-            [0xFFFF_FFE1, 0xFFFF_FFE9, 0xFFFF_FFED, 0xFFFF_FFF1, 0xFFFF_FFF9, 0xFFFF_FFFD];
+        const VALID: [u32; 6] = [
+            0xFFFF_FFE1,
+            0xFFFF_FFE9,
+            0xFFFF_FFED,
+            0xFFFF_FFF1,
+            0xFFFF_FFF9,
+            0xFFFF_FFFD,
+        ];
         let to_thread = exc_return & EXC_RETURN_THREAD != 0;
         let ended = self.state().system.nvic.current();
         self.retire(ended);
@@ -207,8 +247,9 @@ impl Cpu {
             self.set_register(RegisterARM::FAULTMASK, 0);
         }
         let state = self.state_mut();
-        let line_high =
-            ended.irq().is_some_and(|irq| state.soc.as_ref().is_some_and(|soc| soc.irq.level(irq)));
+        let line_high = ended
+            .irq()
+            .is_some_and(|irq| state.soc.as_ref().is_some_and(|soc| soc.irq.level(irq)));
         state.system.nvic.retire(line_high);
         state.event = true;
         state.attention = true;
@@ -216,15 +257,26 @@ impl Cpu {
 
     fn pop_frame(&mut self, exc_return: u32) -> bool {
         let extended = exc_return & EXC_RETURN_STANDARD_FRAME == 0;
-        let size = if extended { EXTENDED_FRAME } else { BASIC_FRAME };
+        let size = if extended {
+            EXTENDED_FRAME
+        } else {
+            BASIC_FRAME
+        };
         let to_psp = exc_return & EXC_RETURN_PSP != 0;
-        let stack = if to_psp { RegisterARM::PSP } else { RegisterARM::MSP };
+        let stack = if to_psp {
+            RegisterARM::PSP
+        } else {
+            RegisterARM::MSP
+        };
         let frame = self.register(stack);
         let mut bytes = vec![0; size as usize];
         if !is_ram(frame, size) || !self.read_memory(frame, &mut bytes) {
             return false;
         }
-        let words: Vec<u32> = bytes.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
+        let words: Vec<u32> = bytes
+            .chunks_exact(4)
+            .map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]))
+            .collect();
         for (name, &value) in STACKED.iter().zip(&words) {
             self.set_register(*name, value);
         }
@@ -235,9 +287,13 @@ impl Cpu {
             }
             self.set_register(RegisterARM::FPSCR, words[24]);
         }
-        self.set_register(stack, frame + size + if xpsr & XPSR_PADDED != 0 { 4 } else { 0 });
+        self.set_register(
+            stack,
+            frame + size + if xpsr & XPSR_PADDED != 0 { 4 } else { 0 },
+        );
         self.resume(pc, xpsr & !XPSR_PADDED, to_psp, extended);
-        self.state_mut().spend(RETURN_CYCLES + if extended { FP_FRAME_CYCLES } else { 0 });
+        self.state_mut()
+            .spend(RETURN_CYCLES + if extended { FP_FRAME_CYCLES } else { 0 });
         true
     }
 

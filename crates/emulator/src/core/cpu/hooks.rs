@@ -44,7 +44,9 @@ fn block_begins(engine: &mut Unicorn<'_, State>, address: u64, size: u32) {
     let cost = match engine.get_data().costs.known(start, size) {
         Some(cost) => cost,
         None => {
-            let code = engine.mem_read_as_vec(address, size as usize).unwrap_or_default();
+            let code = engine
+                .mem_read_as_vec(address, size as usize)
+                .unwrap_or_default();
             engine.get_data_mut().costs.learn(start, &code)
         }
     };
@@ -57,9 +59,16 @@ fn block_begins(engine: &mut Unicorn<'_, State>, address: u64, size: u32) {
     }
     state.event |= cost.sends_event;
     if state.tick_entry == Some(start) {
-        state.stats.tick_entered(state.clock.now(), state.system.nvic.current());
+        state
+            .stats
+            .tick_entered(state.clock.now(), state.system.nvic.current());
     }
-    state.block = Block { start, end: start + size, instructions: cost.instructions, cycles: cost.cycles };
+    state.block = Block {
+        start,
+        end: start + size,
+        instructions: cost.instructions,
+        cycles: cost.cycles,
+    };
 }
 
 /// Events that are due, then interrupts that may be taken.
@@ -91,10 +100,10 @@ pub(super) fn run_due(engine: &mut Unicorn<'_, State>) {
     if state.system.run_due(state.clock.cycles) {
         state.attention = true;
     }
-    if state.clock.now() >= state.soc_event {
-        if let Err(access) = with_soc(engine, |soc, now, memory| soc.run_due(now, memory)) {
-            engine.get_data_mut().stop = Some(Stop::Unmodelled(access));
-        }
+    if state.clock.now() >= state.soc_event
+        && let Err(access) = with_soc(engine, |soc, now, memory| soc.run_due(now, memory))
+    {
+        engine.get_data_mut().stop = Some(Stop::Unmodelled(access));
     }
     engine.get_data_mut().refresh_due();
 }
@@ -105,7 +114,11 @@ pub(super) fn with_soc<R>(
     work: impl FnOnce(&mut Soc, Ps, &mut dyn GuestMemory) -> R,
 ) -> R {
     let now = engine.get_data().clock.now();
-    let mut soc = engine.get_data_mut().soc.take().expect("the chip does not call itself");
+    let mut soc = engine
+        .get_data_mut()
+        .soc
+        .take()
+        .expect("the chip does not call itself");
     let result = work(&mut soc, now, &mut EngineMemory(engine));
     let state = engine.get_data_mut();
     state.note_soc(&mut soc);
@@ -138,7 +151,8 @@ impl State {
 
 fn leave(engine: &mut Unicorn<'_, State>) {
     if let Err(error) = engine.emu_stop() {
-        engine.get_data_mut().stop = Some(Stop::Engine(format!("the engine does not stop: {error:?}")));
+        engine.get_data_mut().stop =
+            Some(Stop::Engine(format!("the engine does not stop: {error:?}")));
     }
 }
 
@@ -154,7 +168,9 @@ fn refuse(engine: &mut Unicorn<'_, State>, access: Unmodelled) {
 
 fn read_peripheral(engine: &mut Unicorn<'_, State>, offset: u64, size: usize) -> u64 {
     let addr = (PERIPHERALS.0 + offset) as u32;
-    let value = with_soc(engine, |soc, now, memory| soc.read(addr, size as u8, now, memory));
+    let value = with_soc(engine, |soc, now, memory| {
+        soc.read(addr, size as u8, now, memory)
+    });
     let value = value.unwrap_or_else(|access| {
         refuse(engine, access);
         0
@@ -165,7 +181,9 @@ fn read_peripheral(engine: &mut Unicorn<'_, State>, offset: u64, size: usize) ->
 
 fn write_peripheral(engine: &mut Unicorn<'_, State>, offset: u64, size: usize, value: u64) {
     let addr = (PERIPHERALS.0 + offset) as u32;
-    let done = with_soc(engine, |soc, now, memory| soc.write(addr, size as u8, value as u32, now, memory));
+    let done = with_soc(engine, |soc, now, memory| {
+        soc.write(addr, size as u8, value as u32, now, memory)
+    });
     if let Err(access) = done {
         refuse(engine, access);
     }
@@ -174,7 +192,9 @@ fn write_peripheral(engine: &mut Unicorn<'_, State>, offset: u64, size: usize, v
 
 fn read_private(engine: &mut Unicorn<'_, State>, offset: u64, size: usize) -> u64 {
     let addr = (PRIVATE_PERIPHERALS.0 + offset) as u32;
-    let value = with_system(engine, |system, around| system.read(addr, size as u8, around));
+    let value = with_system(engine, |system, around| {
+        system.read(addr, size as u8, around)
+    });
     let value = value.unwrap_or_else(|access| {
         refuse(engine, access);
         0
@@ -185,7 +205,9 @@ fn read_private(engine: &mut Unicorn<'_, State>, offset: u64, size: usize) -> u6
 
 fn write_private(engine: &mut Unicorn<'_, State>, offset: u64, size: usize, value: u64) {
     let addr = (PRIVATE_PERIPHERALS.0 + offset) as u32;
-    let done = with_system(engine, |system, around| system.write(addr, size as u8, value as u32, around));
+    let done = with_system(engine, |system, around| {
+        system.write(addr, size as u8, value as u32, around)
+    });
     if let Err(access) = done {
         refuse(engine, access);
     }
@@ -198,14 +220,31 @@ fn write_private(engine: &mut Unicorn<'_, State>, offset: u64, size: usize, valu
     leave_if_stopped(engine);
 }
 
-fn with_system<R>(engine: &mut Unicorn<'_, State>, work: impl FnOnce(&mut System, &Surroundings<'_>) -> R) -> R {
-    let State { system, soc, clock, .. } = engine.get_data_mut();
+fn with_system<R>(
+    engine: &mut Unicorn<'_, State>,
+    work: impl FnOnce(&mut System, &Surroundings<'_>) -> R,
+) -> R {
+    let State {
+        system, soc, clock, ..
+    } = engine.get_data_mut();
     let line_high = |irq| soc.as_ref().is_some_and(|soc| soc.irq.level(irq));
-    work(system, &Surroundings { cycles: clock.cycles, line_high: &line_high })
+    work(
+        system,
+        &Surroundings {
+            cycles: clock.cycles,
+            line_high: &line_high,
+        },
+    )
 }
 
 /// Accesses outside the map or against its rights. Returning false ends the run with the PC on the instruction.
-fn refused_access(engine: &mut Unicorn<'_, State>, kind: MemType, address: u64, size: usize, value: i64) -> bool {
+fn refused_access(
+    engine: &mut Unicorn<'_, State>,
+    kind: MemType,
+    address: u64,
+    size: usize,
+    value: i64,
+) -> bool {
     let address = address as u32;
     let stop = match kind {
         MemType::FETCH_UNMAPPED => Stop::Fault(Fault::FetchBus),

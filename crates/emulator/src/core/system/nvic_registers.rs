@@ -44,12 +44,15 @@ impl System {
 
     /// The priority bytes of exceptions `first` … `first` + 3.
     pub(super) fn priorities(&self, first: u32) -> u32 {
-        let byte = |i| Exception::from_number(first + i).map_or(0, |e| self.nvic.priority_register(e));
+        let byte =
+            |i| Exception::from_number(first + i).map_or(0, |e| self.nvic.priority_register(e));
         u32::from_le_bytes([byte(0), byte(1), byte(2), byte(3)])
     }
 
     pub(super) fn set_priorities(&mut self, first: u32, access: Access, value: u32) {
-        let bytes = access.written_over(self.priorities(first), value).to_le_bytes();
+        let bytes = access
+            .written_over(self.priorities(first), value)
+            .to_le_bytes();
         for (i, byte) in (first..).zip(bytes) {
             if let Some(exception) = Exception::from_number(i) {
                 self.nvic.set_priority_register(exception, byte);

@@ -12,8 +12,11 @@ const AIRCR_SYSRESETREQ: u32 = 1 << 2;
 const MPU_TYPE: u32 = 0x0000_0800;
 
 /// Enable bits of SHCSR and the exceptions they enable.
-const SHCSR_ENABLES: [(u32, Exception); 3] =
-    [(1 << 16, Exception::MEM_MANAGE), (1 << 17, Exception::BUS_FAULT), (1 << 18, Exception::USAGE_FAULT)];
+const SHCSR_ENABLES: [(u32, Exception); 3] = [
+    (1 << 16, Exception::MEM_MANAGE),
+    (1 << 17, Exception::BUS_FAULT),
+    (1 << 18, Exception::USAGE_FAULT),
+];
 
 impl System {
     pub(super) fn read_scb(&self, register: u32) -> Option<u32> {
@@ -59,7 +62,9 @@ impl System {
                 }
                 self.ccr = ccr & 0x303;
             }
-            0xE000_ED18..=0xE000_ED20 => self.set_priorities(4 + (register - 0xE000_ED18), access, value),
+            0xE000_ED18..=0xE000_ED20 => {
+                self.set_priorities(4 + (register - 0xE000_ED18), access, value)
+            }
             0xE000_ED24 => {
                 let enables = access.written_over(self.shcsr(), value);
                 for (bit, exception) in SHCSR_ENABLES {
@@ -90,7 +95,11 @@ impl System {
     }
 
     fn write_icsr(&mut self, value: u32) {
-        let sets = [(31, Exception::NMI), (28, Exception::PEND_SV), (26, Exception::SYS_TICK)];
+        let sets = [
+            (31, Exception::NMI),
+            (28, Exception::PEND_SV),
+            (26, Exception::SYS_TICK),
+        ];
         for (bit, exception) in sets {
             if value >> bit & 1 == 1 {
                 self.nvic.pend(exception);
@@ -104,7 +113,11 @@ impl System {
     }
 
     fn shcsr(&self) -> u32 {
-        let enables = SHCSR_ENABLES.iter().filter(|(_, e)| self.nvic.is_enabled(*e)).map(|(bit, _)| bit).sum::<u32>();
+        let enables = SHCSR_ENABLES
+            .iter()
+            .filter(|(_, e)| self.nvic.is_enabled(*e))
+            .map(|(bit, _)| bit)
+            .sum::<u32>();
         let active = [
             (0, Exception::MEM_MANAGE),
             (1, Exception::BUS_FAULT),
@@ -113,6 +126,10 @@ impl System {
             (10, Exception::PEND_SV),
             (11, Exception::SYS_TICK),
         ];
-        active.iter().map(|(bit, e)| u32::from(self.nvic.is_active(*e)) << bit).sum::<u32>() | enables
+        active
+            .iter()
+            .map(|(bit, e)| u32::from(self.nvic.is_active(*e)) << bit)
+            .sum::<u32>()
+            | enables
     }
 }

@@ -2,7 +2,10 @@
 
 use std::borrow::Cow;
 
-use gimli::{AttributeValue, DebuggingInformationEntry, Dwarf, EndianSlice, LittleEndian, Unit, UnitOffset, constants};
+use gimli::{
+    AttributeValue, DebuggingInformationEntry, Dwarf, EndianSlice, LittleEndian, Unit, UnitOffset,
+    constants,
+};
 use object::{Object, ObjectSection};
 
 type Slice<'d> = EndianSlice<'d, LittleEndian>;
@@ -57,7 +60,9 @@ impl Leaf {
 pub fn of_static(elf: &[u8], name: &str, record: &str) -> Result<Record, String> {
     let file = object::File::parse(elf).map_err(|e| e.to_string())?;
     let section = |id: gimli::SectionId| -> Result<Cow<'_, [u8]>, gimli::Error> {
-        let data = file.section_by_name(id.name()).and_then(|s| s.uncompressed_data().ok());
+        let data = file
+            .section_by_name(id.name())
+            .and_then(|s| s.uncompressed_data().ok());
         Ok(data.unwrap_or_default())
     };
     let sections = gimli::DwarfSections::load(section).map_err(|e| e.to_string())?;
@@ -67,11 +72,16 @@ pub fn of_static(elf: &[u8], name: &str, record: &str) -> Result<Record, String>
         .variable(name)
         .map_err(|e| e.to_string())?
         .ok_or_else(|| format!("`{name}` has no debug information"))?;
-    let (place, offset) =
-        types.find(variable, record, 0)?.ok_or_else(|| format!("`{name}` holds no `{record}`"))?;
+    let (place, offset) = types
+        .find(variable, record, 0)?
+        .ok_or_else(|| format!("`{name}` holds no `{record}`"))?;
     let mut leaves = Vec::new();
     types.flatten(place, 0, "", &mut leaves)?;
-    Ok(Record { offset, size: types.size(place)?, leaves })
+    Ok(Record {
+        offset,
+        size: types.size(place)?,
+        leaves,
+    })
 }
 
 /// A type: its unit and its entry in it.
@@ -120,34 +130,40 @@ impl<'d> Types<'d> {
     }
 
     fn text(&self, unit: usize, entry: &Die<'d>, at: constants::DwAt) -> Option<String> {
-        let text = self.dwarf.attr_string(&self.units[unit], entry.attr_value(at)?).ok()?;
+        let text = self
+            .dwarf
+            .attr_string(&self.units[unit], entry.attr_value(at)?)
+            .ok()?;
         Some(text.to_string_lossy().into_owned())
     }
 
     fn type_of(&self, unit: usize, entry: &Die<'d>) -> Option<Place> {
         match entry.attr_value(constants::DW_AT_type)? {
             AttributeValue::UnitRef(entry) => Some(Place { unit, entry }),
-            AttributeValue::DebugInfoRef(offset) => {
-                (0..).zip(&self.units).find_map(|(unit, u)| {
-                    let entry = offset.to_unit_offset(&u.header)?;
-                    Some(Place { unit, entry })
-                })
-            }
+            AttributeValue::DebugInfoRef(offset) => (0..).zip(&self.units).find_map(|(unit, u)| {
+                let entry = offset.to_unit_offset(&u.header)?;
+                Some(Place { unit, entry })
+            }),
             _ => None,
         }
     }
 
     fn entry(&self, place: Place) -> Result<Die<'d>, String> {
-        self.units[place.unit].entry(place.entry).map_err(|e| e.to_string())
+        self.units[place.unit]
+            .entry(place.entry)
+            .map_err(|e| e.to_string())
     }
 
     fn size(&self, place: Place) -> Result<u32, String> {
-        number(&self.entry(place)?, constants::DW_AT_byte_size).ok_or_else(|| "a type has no size".to_owned())
+        number(&self.entry(place)?, constants::DW_AT_byte_size)
+            .ok_or_else(|| "a type has no size".to_owned())
     }
 
     fn children(&self, place: Place) -> Result<Vec<Die<'d>>, String> {
         let unit = &self.units[place.unit];
-        let mut tree = unit.entries_tree(Some(place.entry)).map_err(|e| e.to_string())?;
+        let mut tree = unit
+            .entries_tree(Some(place.entry))
+            .map_err(|e| e.to_string())?;
         let mut children = tree.root().map_err(|e| e.to_string())?.children();
         let mut all = Vec::new();
         while let Some(child) = children.next().map_err(|e| e.to_string())? {
@@ -158,23 +174,37 @@ impl<'d> Types<'d> {
 
     fn members(&self, place: Place) -> Result<Vec<Member>, String> {
         let children = self.children(place)?;
-        let members = children.iter().filter(|c| c.tag() == constants::DW_TAG_member).filter_map(|c| {
-            Some(Member {
-                name: self.text(place.unit, c, constants::DW_AT_name)?,
-                offset: number(c, constants::DW_AT_data_member_location).unwrap_or(0),
-                place: self.type_of(place.unit, c)?,
-            })
-        });
+        let members = children
+            .iter()
+            .filter(|c| c.tag() == constants::DW_TAG_member)
+            .filter_map(|c| {
+                Some(Member {
+                    name: self.text(place.unit, c, constants::DW_AT_name)?,
+                    offset: number(c, constants::DW_AT_data_member_location).unwrap_or(0),
+                    place: self.type_of(place.unit, c)?,
+                })
+            });
         Ok(members.collect())
     }
 
     /// The struct named `record` at or below `place`, with its offset.
-    fn find(&self, place: Place, record: &str, offset: u32) -> Result<Option<(Place, u32)>, String> {
+    fn find(
+        &self,
+        place: Place,
+        record: &str,
+        offset: u32,
+    ) -> Result<Option<(Place, u32)>, String> {
         let entry = self.entry(place)?;
-        if !matches!(entry.tag(), constants::DW_TAG_structure_type | constants::DW_TAG_union_type) {
+        if !matches!(
+            entry.tag(),
+            constants::DW_TAG_structure_type | constants::DW_TAG_union_type
+        ) {
             return Ok(None);
         }
-        if self.text(place.unit, &entry, constants::DW_AT_name).is_some_and(|name| name == record) {
+        if self
+            .text(place.unit, &entry, constants::DW_AT_name)
+            .is_some_and(|name| name == record)
+        {
             return Ok(Some((place, offset)));
         }
         for member in self.members(place)? {
@@ -185,23 +215,45 @@ impl<'d> Types<'d> {
         Ok(None)
     }
 
-    fn flatten(&self, place: Place, offset: u32, name: &str, leaves: &mut Vec<Leaf>) -> Result<(), String> {
+    fn flatten(
+        &self,
+        place: Place,
+        offset: u32,
+        name: &str,
+        leaves: &mut Vec<Leaf>,
+    ) -> Result<(), String> {
         let entry = self.entry(place)?;
         match entry.tag() {
             constants::DW_TAG_structure_type => self.flatten_struct(place, offset, name, leaves),
             constants::DW_TAG_array_type => self.flatten_array(place, &entry, offset, name, leaves),
             constants::DW_TAG_base_type | constants::DW_TAG_enumeration_type => {
                 let kind = scalar(&entry).ok_or_else(|| format!("{name}: no plain number"))?;
-                leaves.push(Leaf { name: name.to_owned(), offset, kind });
+                leaves.push(Leaf {
+                    name: name.to_owned(),
+                    offset,
+                    kind,
+                });
                 Ok(())
             }
             tag => Err(format!("{name}: {tag} cannot be read as numbers")),
         }
     }
 
-    fn flatten_struct(&self, place: Place, offset: u32, name: &str, leaves: &mut Vec<Leaf>) -> Result<(), String> {
-        if self.children(place)?.iter().any(|c| c.tag() == constants::DW_TAG_variant_part) {
-            return Err(format!("{name}: an enum with fields cannot be read as numbers"));
+    fn flatten_struct(
+        &self,
+        place: Place,
+        offset: u32,
+        name: &str,
+        leaves: &mut Vec<Leaf>,
+    ) -> Result<(), String> {
+        if self
+            .children(place)?
+            .iter()
+            .any(|c| c.tag() == constants::DW_TAG_variant_part)
+        {
+            return Err(format!(
+                "{name}: an enum with fields cannot be read as numbers"
+            ));
         }
         let members = self.members(place)?;
         let is_newtype = members.len() == 1 && members[0].name == "__0";
@@ -224,7 +276,9 @@ impl<'d> Types<'d> {
         name: &str,
         leaves: &mut Vec<Leaf>,
     ) -> Result<(), String> {
-        let element = self.type_of(place.unit, entry).ok_or_else(|| format!("{name}: array of nothing"))?;
+        let element = self
+            .type_of(place.unit, entry)
+            .ok_or_else(|| format!("{name}: array of nothing"))?;
         let ranges = self.children(place)?;
         let count = ranges.iter().find_map(|range| {
             number(range, constants::DW_AT_count)
@@ -232,14 +286,23 @@ impl<'d> Types<'d> {
         });
         let stride = self.size(element)?;
         for i in 0..count.unwrap_or(0) {
-            self.flatten(element, offset + i * stride, &join(name, &i.to_string()), leaves)?;
+            self.flatten(
+                element,
+                offset + i * stride,
+                &join(name, &i.to_string()),
+                leaves,
+            )?;
         }
         Ok(())
     }
 }
 
 fn join(prefix: &str, name: &str) -> String {
-    if prefix.is_empty() { name.to_owned() } else { format!("{prefix}.{name}") }
+    if prefix.is_empty() {
+        name.to_owned()
+    } else {
+        format!("{prefix}.{name}")
+    }
 }
 
 fn number(entry: &Die<'_>, at: constants::DwAt) -> Option<u32> {
@@ -251,13 +314,16 @@ fn scalar(entry: &Die<'_>) -> Option<Kind> {
     if entry.tag() == constants::DW_TAG_enumeration_type {
         return Some(Kind::Unsigned(size));
     }
-    let Some(AttributeValue::Encoding(encoding)) = entry.attr_value(constants::DW_AT_encoding) else { return None };
+    let Some(AttributeValue::Encoding(encoding)) = entry.attr_value(constants::DW_AT_encoding)
+    else {
+        return None;
+    };
     match encoding {
         constants::DW_ATE_float => Some(Kind::Float(size)),
         constants::DW_ATE_signed | constants::DW_ATE_signed_char => Some(Kind::Signed(size)),
-        constants::DW_ATE_unsigned | constants::DW_ATE_unsigned_char | constants::DW_ATE_boolean => {
-            Some(Kind::Unsigned(size))
-        }
+        constants::DW_ATE_unsigned
+        | constants::DW_ATE_unsigned_char
+        | constants::DW_ATE_boolean => Some(Kind::Unsigned(size)),
         _ => None,
     }
     .filter(|_| size <= 8)
