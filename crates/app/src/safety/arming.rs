@@ -224,3 +224,99 @@ impl Arming {
             .all(|stick| stick.abs() <= self.config.stick_centre)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Bench {
+        arming: Arming,
+        now_us: u64,
+        enabled: bool,
+        calibrated: bool,
+        safety: SafetyStatus,
+    }
+
+    impl Bench {
+        fn new() -> Self {
+            Self {
+                arming: Arming::new(SafetyConfig::default()),
+                now_us: 1_000_000,
+                enabled: false,
+                calibrated: true,
+                safety: SafetyStatus {
+                    verdict: SafetyVerdict::Run,
+                    ..SafetyStatus::default()
+                },
+            }
+        }
+
+        fn run(&mut self, milliseconds: u64) -> ArmingStatus {
+            let mut status = ArmingStatus::default();
+            for _ in 0..milliseconds {
+                self.now_us += 1_000;
+                let inputs = ArmingInputs {
+                    remote: &RemoteState::default(),
+                    remote_age_us: 5_000,
+                    operator: &OperatorState {
+                        enabled: self.enabled,
+                        e_stop: false,
+                        ..OperatorState::default()
+                    },
+                    estimate_valid: true,
+                    calibrated: self.calibrated,
+                    safety: &self.safety,
+                };
+                let (now, token) = self.arming.step(&inputs, self.now_us);
+                assert_eq!(token.is_some(), now.state == ArmingState::Armed);
+                status = now;
+            }
+            status
+        }
+    }
+
+    #[test]
+    fn off_then_on_arms_at_once() {
+        let mut bench = Bench::new();
+        assert_eq!(bench.run(1).blockers, ArmingBlockers::ENABLE_OFF);
+        bench.enabled = true;
+        assert_eq!(bench.run(1).state, ArmingState::Armed);
+    }
+
+    #[test]
+    fn a_request_waits_a_while_for_the_calibration_but_not_for_ever() {
+        let mut bench = Bench::new();
+        bench.calibrated = false;
+        bench.run(1);
+        bench.enabled = true;
+        assert_eq!(
+            bench.run(2_000).blockers,
+            ArmingBlockers::CALIBRATION_PENDING
+        );
+        bench.calibrated = true;
+        assert_eq!(bench.run(1).state, ArmingState::Armed);
+
+        let mut late = Bench::new();
+        late.calibrated = false;
+        late.run(1);
+        late.enabled = true;
+        late.run(3_100);
+        late.calibrated = true;
+        assert_eq!(late.run(1).blockers, ArmingBlockers::ENABLE_NOT_CYCLED);
+    }
+
+    #[test]
+    fn a_stopped_bus_forbids_arming_but_does_not_disarm() {
+        let mut bench = Bench::new();
+        bench.safety.verdict = SafetyVerdict::BusStop;
+        bench.run(1);
+        bench.enabled = true;
+        assert_eq!(bench.run(1).blockers, ArmingBlockers::SAFETY_STOP);
+        bench.safety.verdict = SafetyVerdict::Run;
+        assert_eq!(bench.run(1).state, ArmingState::Armed);
+        bench.safety.verdict = SafetyVerdict::BusStop;
+        assert_eq!(bench.run(10).state, ArmingState::Armed);
+        bench.safety.verdict = SafetyVerdict::GlobalStop;
+        assert_eq!(bench.run(1).state, ArmingState::Disarmed);
+    }
+}

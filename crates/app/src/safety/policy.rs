@@ -179,3 +179,91 @@ impl SafetyPolicy {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NOW_US: u64 = 10_000_000;
+
+    /// Nothing wrong, then one change.
+    fn judge(change: impl FnOnce(&mut SystemHealth, &mut RemoteDiagnostics)) -> SafetyStatus {
+        let mut health = SystemHealth::default();
+        let mut remote = RemoteDiagnostics {
+            quality: 1.0,
+            frames: 100,
+            age_us: 7_000,
+            ..RemoteDiagnostics::default()
+        };
+        change(&mut health, &mut remote);
+        let mut motor = MotorFeedback::default();
+        for wheel in &mut motor.wheels {
+            wheel.age_us = 1_000;
+        }
+        let inputs = SafetyInputs {
+            remote: &remote,
+            operator: &OperatorState {
+                e_stop: false,
+                ..OperatorState::default()
+            },
+            imu_ts_us: NOW_US - 5_000,
+            estimate: &StateEstimate {
+                valid: true,
+                ..StateEstimate::default()
+            },
+            motor: &motor,
+            motor_timeout_us: 50_000,
+            command_ts_us: NOW_US - 10_000,
+            health: &health,
+        };
+        SafetyPolicy::new(SafetyConfig::default()).evaluate(&inputs, NOW_US)
+    }
+
+    #[test]
+    fn with_nothing_wrong_it_runs() {
+        let status = judge(|_, _| ());
+        assert_eq!(status.flags, SafetyFlags::NONE);
+        assert_eq!(status.verdict, SafetyVerdict::Run);
+        assert!(BusId::ALL.iter().all(|bus| !status.stops(*bus)));
+    }
+
+    #[test]
+    fn a_bad_bus_stops_only_its_own_actuators() {
+        let off = judge(|health, _| health.can[0].state = BusErrorState::BusOff);
+        let congested = judge(|health, _| health.can[0].tx_failures_in_row = 21);
+        assert_eq!(off.flags, SafetyFlags::CAN1_FAULT);
+        assert_eq!(congested.flags, SafetyFlags::CAN1_CONGESTED);
+        for status in [off, congested] {
+            assert_eq!(status.verdict, SafetyVerdict::BusStop);
+            assert!(status.stops(BusId::Can1) && !status.stops(BusId::Can2));
+        }
+        let other = judge(|health, _| health.can[1].state = BusErrorState::BusOff);
+        assert_eq!(other.verdict, SafetyVerdict::Run);
+        assert!(other.stops(BusId::Can2) && !other.stops(BusId::Can1));
+    }
+
+    /// The limit is 20, and the first tick forgives one.
+    #[test]
+    fn accumulated_sensor_errors_stop_everything() {
+        let imu = judge(|health, _| health.imu.errors = 22);
+        let mag = judge(|health, _| health.mag.errors = 22);
+        assert_eq!(imu.flags, SafetyFlags::IMU_ERRORS);
+        assert_eq!(mag.flags, SafetyFlags::MAG_ERRORS);
+        for status in [imu, mag] {
+            assert!(BusId::ALL.iter().all(|bus| status.stops(*bus)));
+        }
+    }
+
+    #[test]
+    fn a_bad_link_stops_everything() {
+        let lossy = judge(|_, remote| remote.quality = 0.49);
+        let silent = judge(|_, remote| remote.age_us = 100_001);
+        let failsafe = judge(|_, remote| remote.failsafe = true);
+        assert_eq!(lossy.flags, SafetyFlags::REMOTE_QUALITY);
+        assert_eq!(silent.flags, SafetyFlags::REMOTE_LOST);
+        assert_eq!(failsafe.flags, SafetyFlags::REMOTE_FAILSAFE);
+        for status in [lossy, silent, failsafe] {
+            assert_eq!(status.verdict, SafetyVerdict::GlobalStop);
+        }
+    }
+}

@@ -57,11 +57,6 @@ impl ImuPipeline {
         self.startup_bias.bias_dps().is_some()
     }
 
-    /// Share of the start-up calibration that is done, 0 … 1.
-    pub fn calibration_progress(&self) -> f32 {
-        self.startup_bias.progress()
-    }
-
     /// Takes the answers to `ACCEL_READ` and `GYRO_READ`, read at `ts_us`.
     pub fn process(
         &mut self,

@@ -50,17 +50,6 @@ impl StartupGyroBias {
         self.bias_dps
     }
 
-    /// 0 … 1.
-    pub fn progress(&self) -> f32 {
-        match (&self.bias_dps, &self.window) {
-            (Some(_), _) => 1.0,
-            (None, Some(window)) => {
-                f32::from(window.samples) / f32::from(MIN_SAMPLES.max(window.samples))
-            }
-            (None, None) => 0.0,
-        }
-    }
-
     /// `gyro_dps` with its offset still in it.
     pub fn feed(&mut self, gyro_dps: Vector3, accel_mps2: Vector3, ts_us: u64) {
         if self.bias_dps.is_some() {
@@ -153,7 +142,6 @@ mod tests {
         let mut bias = StartupGyroBias::new();
         feed_still(&mut bias, 200, 1, [0.5, -0.7, 0.2]);
         assert_eq!(bias.bias_dps(), None, "0.995 s are not a second");
-        assert!(bias.progress() > 0.99);
         feed_still(&mut bias, 1, 1 + 200 * 5_000, [0.5, -0.7, 0.2]);
         let found = bias.bias_dps().unwrap();
         for (got, expected) in found.iter().zip([0.5, -0.7, 0.2]) {
