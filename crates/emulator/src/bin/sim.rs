@@ -106,7 +106,12 @@ fn job(args: &Args) -> anyhow::Result<Job> {
         if !(seconds > 0.0 && seconds.is_finite()) {
             bail!("--seconds {seconds}: write a length above 0");
         }
-        scenario.length = time::from_seconds(seconds);
+        let left_out = scenario.cut_to(time::from_seconds(seconds));
+        if left_out > 0 {
+            println!(
+                "--seconds {seconds}: {left_out} expectations look past that and are not judged"
+            );
+        }
     }
     scenario.seed = args.seed.unwrap_or(scenario.seed);
     Ok(Job {

@@ -229,7 +229,11 @@ impl Judge {
         let seconds = time::to_seconds;
         if self.worst_excess > 0.0 {
             let worst = self.decisive?;
-            return Some(format!("was {} at {:.4} s", worst.value, seconds(worst.at)));
+            return Some(format!(
+                "was {} at {:.4} s",
+                readable(worst.value),
+                seconds(worst.at)
+            ));
         }
         if self.bound.is_crossing() && self.readings > 0 && !self.crossed {
             return Some("never did".into());

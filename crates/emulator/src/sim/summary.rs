@@ -93,7 +93,7 @@ pub struct Final {
     pub estimate: Value,
     /// `truth.wheel.*`.
     pub wheels: Value,
-    /// `truth.joint.*`: empty for plants without legs.
+    /// `truth.joint.*`: null for plants without legs.
     pub joints: Value,
 }
 
@@ -196,5 +196,8 @@ fn attitude_error(result: &RunResult) -> Option<AttitudeError> {
 fn subtree(result: &RunResult, prefix: &str) -> Value {
     let names = result.table.names().iter().enumerate();
     let inside = names.filter_map(|(place, name)| Some((name.strip_prefix(prefix)?, place)));
-    Tree::new(inside).json(&result.last_values)
+    match Tree::new(inside).json(&result.last_values) {
+        Value::Object(fields) if fields.is_empty() => Value::Null,
+        values => values,
+    }
 }

@@ -181,7 +181,7 @@ impl Plots<'_> {
         let end = time::to_seconds(self.report.result.ran).max(1e-3);
         Ok(Some(Figure {
             title: "Arming and safety",
-            caption: "States, blockers and flags as the firmware's diagnostics number them; a lane is filled while it is on.",
+            caption: "A lane is filled while it is on. Blockers and flags by bit, as crates/app/src/safety names them.",
             legend: Vec::new(),
             svg: lanes::draw(&rows, 0.0..end, &self.marks)?,
         }))

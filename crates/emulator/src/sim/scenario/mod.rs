@@ -65,6 +65,14 @@ impl Scenario {
         Self::parse(&text, &path.display().to_string())
     }
 
+    /// Cuts the run to `length` and returns how many expectations fall away because they look past it.
+    pub fn cut_to(&mut self, length: Ps) -> usize {
+        let before = self.expectations.len();
+        self.length = length;
+        self.expectations.retain(|e| e.window.end <= length);
+        before - self.expectations.len()
+    }
+
     /// Parses the text of a scenario; `file` names it in errors.
     pub fn parse(text: &str, file: &str) -> Result<Self, ScenarioError> {
         file::parse(text, file)
