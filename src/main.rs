@@ -90,7 +90,7 @@ fn main() -> ! {
 /// Motors that were left turning by whatever happened before stop before anything else starts.
 fn send_zero_torque(ports: &mut [CanPort; 2]) {
     let start = Instant::now();
-    while ports.iter().any(|port| !port.is_up()) && start.elapsed() < CAN_JOIN_TIMEOUT {
+    while ports.iter().any(|port| !port.is_on_bus()) && start.elapsed() < CAN_JOIN_TIMEOUT {
         for port in ports.iter_mut() {
             port.begin_tick(Instant::now().as_micros());
         }

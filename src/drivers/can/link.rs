@@ -15,7 +15,7 @@ enum State {
     Up {
         since_us: u64,
     },
-    /// Off the bus by its error counters; torque frames are refused until the back-off is over.
+    /// Off the bus by its error counters; frames are refused until the back-off is over.
     BusOff {
         retry_at_us: u64,
     },
@@ -23,6 +23,8 @@ enum State {
     Resetting,
     /// Left initialisation mode: the hardware counts 128 × 11 recessive bits.
     Rejoining,
+    /// Back on the bus, but still reported as off, so that only zero torque is sent until a frame got through.
+    OnTrial,
 }
 
 pub struct Link {
@@ -47,12 +49,21 @@ impl Link {
         }
     }
 
-    pub fn is_up(&self) -> bool {
-        matches!(self.state, State::Up { .. })
+    /// Whether frames can be sent.
+    pub fn is_on_bus(&self) -> bool {
+        matches!(self.state, State::Up { .. } | State::OnTrial)
     }
 
+    /// From bus-off until a frame proved that the bus works again.
     pub fn is_bus_off(&self) -> bool {
-        !self.is_up() && self.state != State::Joining
+        !matches!(self.state, State::Up { .. } | State::Joining)
+    }
+
+    /// A frame was sent and acknowledged.
+    pub fn frame_got_through(&mut self, now_us: u64) {
+        if self.state == State::OnTrial {
+            self.state = State::Up { since_us: now_us };
+        }
     }
 
     /// Times the link went bus-off since boot.
@@ -68,8 +79,12 @@ impl Link {
                 self.state = State::Up { since_us: now_us }
             }
             State::Up { since_us } if can.esr().read().boff() => {
-                self.enter_bus_off(since_us, now_us)
+                if now_us.saturating_sub(since_us) >= TRUSTED_AFTER_US {
+                    self.back_off_us = FIRST_BACK_OFF_US;
+                }
+                self.enter_bus_off(now_us);
             }
+            State::OnTrial if can.esr().read().boff() => self.enter_bus_off(now_us),
             State::BusOff { retry_at_us } if now_us >= retry_at_us => {
                 can.mcr().modify(|w| w.set_inrq(true));
                 self.state = State::Resetting;
@@ -79,18 +94,14 @@ impl Link {
                 self.state = State::Rejoining;
             }
             State::Rejoining if !can.msr().read().inak() && !can.esr().read().boff() => {
-                self.state = State::Up { since_us: now_us };
+                self.state = State::OnTrial;
             }
             _ => {}
         }
     }
 
-    fn enter_bus_off(&mut self, up_since_us: u64, now_us: u64) {
+    fn enter_bus_off(&mut self, now_us: u64) {
         self.bus_off_count = self.bus_off_count.wrapping_add(1);
-        let held = now_us.saturating_sub(up_since_us) >= TRUSTED_AFTER_US;
-        if held || self.bus_off_count == 1 {
-            self.back_off_us = FIRST_BACK_OFF_US;
-        }
         self.state = State::BusOff {
             retry_at_us: now_us.saturating_add(self.back_off_us),
         };

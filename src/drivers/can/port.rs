@@ -36,14 +36,17 @@ impl CanPort {
     }
 
     /// Whether the peripheral takes part in bus traffic.
-    pub fn is_up(&self) -> bool {
-        self.link.is_up()
+    pub fn is_on_bus(&self) -> bool {
+        self.link.is_on_bus()
     }
 
     /// Advances the link, takes back the last tick's leftovers and reads the error state. Never waits.
     pub fn begin_tick(&mut self, now_us: u64) {
-        self.link.step(now_us);
         let outcomes = transmit::retire_old_frames(self.can);
+        if outcomes.sent > 0 {
+            self.link.frame_got_through(now_us);
+        }
+        self.link.step(now_us);
         self.count_outcomes(outcomes);
         self.read_error_state();
     }
@@ -60,7 +63,7 @@ impl CanPort {
 
     /// Queues a frame for this tick; one that finds no place counts as taken back.
     pub fn send(&mut self, frame: &CanFrame) {
-        if !self.link.is_up() || transmit::send(self.can, frame).is_err() {
+        if !self.link.is_on_bus() || transmit::send(self.can, frame).is_err() {
             self.count_outcomes(Outcomes {
                 sent: 0,
                 expired: 1,

@@ -10,7 +10,7 @@ const MAILBOXES: core::ops::Range<usize> = 0..3;
 #[derive(Clone, Copy, Default)]
 pub struct Outcomes {
     pub sent: u32,
-    /// Aborted because their tick was over, or lost to a bus error.
+    /// Taken back because their tick was over. One that was on the wire at that moment may still count as sent later.
     pub expired: u32,
 }
 
@@ -27,15 +27,12 @@ pub fn retire_old_frames(can: Can) -> Outcomes {
     for mailbox in MAILBOXES {
         if status.rqcp(mailbox) {
             command.set_rqcp(mailbox, true);
-            let counter = if status.txok(mailbox) {
-                &mut outcomes.sent
-            } else {
-                &mut outcomes.expired
-            };
-            *counter = counter.wrapping_add(1);
+            outcomes.sent = outcomes.sent.wrapping_add(u32::from(status.txok(mailbox)));
         }
+        // Counted now: the next frame in this mailbox clears the flags of the aborted one.
         if !status.tme(mailbox) {
             command.set_abrq(mailbox, true);
+            outcomes.expired = outcomes.expired.wrapping_add(1);
         }
     }
     can.tsr().write_value(command);
