@@ -9,7 +9,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use anyhow::{Context, bail};
+use anyhow::{Context, anyhow};
 
 use crate::workspace;
 
@@ -32,39 +32,52 @@ struct Running {
     started: Instant,
 }
 
-/// Runs all jobs to their end. The first that failed is reported with the end of its output.
+/// Runs all jobs to their end. If one fails, the others are ended too, and the end of its output is
+/// shown.
 pub fn run_all(jobs: Vec<Job>) -> anyhow::Result<()> {
     let mut running = Vec::new();
     for job in jobs {
         running.push(start(job)?);
     }
     let mut status = Status::new();
-    let mut failed = Vec::new();
     while !running.is_empty() {
         let mut unfinished = Vec::new();
+        let mut failed = None;
         for mut job in running {
             match job.child.try_wait()? {
                 None => unfinished.push(job),
                 Some(exit) if exit.success() => status.finished(&job),
-                Some(_) => failed.push(job),
+                Some(_) => failed = Some(job),
             }
         }
         running = unfinished;
+        if let Some(failed) = failed {
+            status.clear();
+            end(&mut running);
+            return Err(failure(&failed)?);
+        }
         status.show(&running);
         thread::sleep(POLL_EVERY);
     }
     status.clear();
-    match failed.first() {
-        None => Ok(()),
-        Some(job) => {
-            eprintln!("{}", log_tail(job)?);
-            bail!(
-                "building the {} failed (whole output: {})",
-                job.name,
-                job.log.display()
-            )
-        }
+    Ok(())
+}
+
+fn end(running: &mut [Running]) {
+    for job in running {
+        // It may have ended by itself meanwhile.
+        job.child.kill().ok();
+        job.child.wait().ok();
     }
+}
+
+fn failure(job: &Running) -> anyhow::Result<anyhow::Error> {
+    eprintln!("{}", log_tail(job)?);
+    Ok(anyhow!(
+        "building the {} failed (whole output: {})",
+        job.name,
+        job.log.display()
+    ))
 }
 
 fn start(mut job: Job) -> anyhow::Result<Running> {
@@ -137,5 +150,26 @@ impl Status {
         if self.redraws {
             eprint!("\r\x1b[2K");
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn job(name: &'static str, program: &str, argument: &str) -> Job {
+        let mut command = Command::new(program);
+        command.arg(argument);
+        Job { name, command }
+    }
+
+    #[test]
+    fn one_failure_ends_the_others_and_is_named() {
+        let jobs = vec![
+            job("test-endless", "sleep", "1000"),
+            job("test-broken", "ls", "/no/such/file"),
+        ];
+        let error = run_all(jobs).expect_err("ls fails");
+        assert!(error.to_string().contains("test-broken"), "{error}");
     }
 }
