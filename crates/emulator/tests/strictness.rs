@@ -40,7 +40,7 @@ fn wrong_alternate_function_of_the_imu_clock() {
         mask: 0xF000,
         value: 0x6000,
     };
-    must_complain(patch, &["SPI1", "PB3"]);
+    must_complain(patch, &["SPI1_SCK: PB3 is AF6, needs AF5"]);
 }
 
 /// USART3_RX sits on DMA1 stream 1 channel 4; channel 5 is TIM2's there: DMA1_S1CR bits 27:25.
@@ -51,7 +51,7 @@ fn wrong_dma_channel_of_the_radio() {
         mask: 7 << 25,
         value: 5 << 25,
     };
-    must_complain(patch, &["DMA1"]);
+    must_complain(patch, &["USART3_RX", "DMA1 stream 1", "set to channel 5"]);
 }
 
 /// Prescaler 6 instead of 3 halves the bit rate: CAN1_BTR bits 9:0.
@@ -62,10 +62,10 @@ fn wrong_can_bit_timing() {
         mask: 0x3FF,
         value: 5,
     };
-    must_complain(patch, &["CAN1"]);
+    must_complain(patch, &["CAN1: 500000 bit/s on a 1000000 bit/s bus"]);
 }
 
-/// N = 100 instead of 168 gives 100 MHz: every rate derived from the clock tree is wrong. RCC_PLLCFGR bits 14:6.
+/// N = 100 instead of 168 gives 100 MHz: APB1 runs at 25 MHz. RCC_PLLCFGR bits 14:6.
 #[test]
 fn wrong_pll_multiplier() {
     let patch = RegisterPatch {
@@ -73,7 +73,7 @@ fn wrong_pll_multiplier() {
         mask: 0x1FF << 6,
         value: 100 << 6,
     };
-    must_complain(patch, &["USART3"]);
+    must_complain(patch, &["pclk1 runs at 25 MHz"]);
 }
 
 /// 8N1 instead of 8E2: USART3_CR1 bits M (12) and PCE (10) cleared.
@@ -84,5 +84,5 @@ fn radio_without_parity() {
         mask: 1 << 12 | 1 << 10,
         value: 0,
     };
-    must_complain(patch, &["USART3"]);
+    must_complain(patch, &["USART3", "8E2", "8N2"]);
 }

@@ -19,7 +19,7 @@ impl AttitudeScore {
                 [Some(t), Some(h), Some(i)] => Some([t, h, i]),
                 _ => None,
             },
-            scored: table.index("truth.trial.scored"),
+            scored: table.index("truth.trial.mov"),
             square_sums: [0.0; 3],
             samples: 0,
         }
