@@ -271,7 +271,7 @@ impl Soc {
         };
         let on = enables >> gate.bit & 1 == 1;
         if !on {
-            let name = memory_map::block_name(block);
+            let name = gate.peripheral();
             self.errors.report(
                 now,
                 format!("{name}: registers {access} while RCC {} is 0", gate.name),

@@ -75,6 +75,14 @@ pub struct ClockGate {
     pub name: &'static str,
 }
 
+impl ClockGate {
+    /// The peripheral behind the gate: `"USART3"`.
+    pub fn peripheral(&self) -> &'static str {
+        let bit = self.name.rsplit('.').next().unwrap_or(self.name);
+        bit.strip_suffix("EN").unwrap_or(bit)
+    }
+}
+
 /// The block at `addr` and the offset in it.
 pub fn locate(addr: u32) -> Option<(Block, u32)> {
     let (block, size) = match addr & !0x3FF {
@@ -168,26 +176,6 @@ pub fn reset_bit(block: Block) -> Option<(Bus, u8)> {
 
 /// RCC reset bits of CAN1 and CAN2, which are one block here.
 pub const CAN_RESETS: [(Bus, u8); 2] = [(Bus::Apb1, 25), (Bus::Apb1, 26)];
-
-/// Name of the block as error messages give it.
-pub fn block_name(block: Block) -> String {
-    match block {
-        Block::Timer(n) => format!("TIM{n}"),
-        Block::Usart(n) => format!("USART{n}"),
-        Block::Spi1 => "SPI1".to_owned(),
-        Block::I2c3 => "I2C3".to_owned(),
-        Block::Can => "CAN".to_owned(),
-        Block::Pwr => "PWR".to_owned(),
-        Block::Iwdg => "IWDG".to_owned(),
-        Block::Adc => "ADC".to_owned(),
-        Block::Syscfg => "SYSCFG".to_owned(),
-        Block::Exti => "EXTI".to_owned(),
-        Block::Gpio(port) => format!("GPIO{}", char::from(b'A' + port)),
-        Block::Rcc => "RCC".to_owned(),
-        Block::Flash => "FLASH".to_owned(),
-        Block::Dma(n) => format!("DMA{n}"),
-    }
-}
 
 /// What to call an address no modelled block answers at.
 pub fn unmodelled_name(addr: u32) -> String {

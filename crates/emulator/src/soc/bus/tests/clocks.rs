@@ -61,6 +61,16 @@ fn an_unclocked_block_is_deaf_and_named() {
 }
 
 #[test]
+fn the_two_can_controllers_are_gated_each_by_its_bit() {
+    let mut bench = Bench::new();
+    bench.set_bits(APB1ENR, 1 << 25);
+    // MCR of CAN2.
+    bench.write(0x4000_6800, 1);
+    assert!(bench.has_error("CAN2: registers written while RCC APB1ENR.CAN2EN is 0"));
+    assert!(!bench.has_error("CAN1"));
+}
+
+#[test]
 fn a_reset_bit_brings_back_the_reset_values() {
     let mut bench = Bench::new();
     bench.set_bits(APB1ENR, 1);
