@@ -152,8 +152,9 @@ impl CanBus {
         }
         match self.phase {
             Phase::Idle => None,
-            Phase::Frame(transmission) => {
+            Phase::Frame(mut transmission) => {
                 self.phase = Phase::Intermission;
+                self.apply_faults_meanwhile(&mut transmission, ctx);
                 self.finish(&transmission, board, filters, ctx);
                 let at = self.phase_lasts(INTERMISSION_BITS * transmission.bit, ctx);
                 self.delay_quiet_bus(&transmission, at, board);
@@ -245,6 +246,17 @@ impl CanBus {
                     Outcome::NotAcknowledged
                 }
             }
+        }
+    }
+
+    /// A bus shorted or a sender gone since the start of frame: nobody got the frame whole.
+    fn apply_faults_meanwhile(&self, transmission: &mut Transmission, ctx: &Ctx<'_>) {
+        let sender_gone = match transmission.sender {
+            Sender::Board { .. } => false,
+            Sender::Node(node) => !ctx.world.can_present(self.id, node),
+        };
+        if ctx.world.can_broken(self.id) || sender_gone {
+            transmission.outcome = Outcome::Unheard;
         }
     }
 

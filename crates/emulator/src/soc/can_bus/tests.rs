@@ -240,3 +240,78 @@ fn a_reset_silences_a_frame_on_the_bus() {
     assert_eq!(bench.read(&mut can, CAN2 + MCR), 0x0001_0002);
     assert_eq!(bench.read(&mut can, CAN2 + MSR), 0x0000_0C02);
 }
+
+#[test]
+fn a_short_in_the_middle_of_a_frame_spoils_it() {
+    let (mut bench, mut can) = ready(CAN2);
+    request_wheel_command(&mut bench, &mut can, CAN2);
+    run_for(&mut bench, &mut can, 50 * US);
+    bench
+        .world
+        .set_fault("can2-broken", true)
+        .expect("a known fault");
+    run_for(&mut bench, &mut can, 80 * US);
+    assert_eq!(can.stats(1).tx, 0);
+    // Bit dominant error, TEC = 8.
+    assert_eq!(bench.read(&mut can, CAN2 + ESR), 8 << 16 | 5 << 4);
+}
+
+#[test]
+fn without_automatic_retransmission_one_failure_ends_the_request() {
+    let (mut bench, mut can) = ready(CAN2);
+    bench.write(&mut can, CAN2 + MCR, 1 << 4);
+    bench
+        .world
+        .set_fault("can2-empty", true)
+        .expect("a known fault");
+    request_wheel_command(&mut bench, &mut can, CAN2);
+    run_for(&mut bench, &mut can, MS);
+    // RQCP0 and TERR0, no TXOK0; mailbox 0 is empty again.
+    assert_eq!(
+        bench.read(&mut can, CAN2 + TSR) & (0xFF | 1 << 26),
+        0b1001 | 1 << 26
+    );
+    assert_eq!(can.stats(1).errors, 1);
+}
+
+#[test]
+fn a_frame_on_the_bus_wakes_a_sleeping_controller_that_asked_for_it() {
+    let (mut bench, mut can) = (Bench::new(), Can::new());
+    enable(&mut bench, &mut can, CAN1, ONE_MEGABIT);
+    // SLEEP and AWUM, WKUIE.
+    bench.write(&mut can, MCR, 1 << 1 | 1 << 5);
+    bench.write(&mut can, IER, 1 << 16);
+    assert_eq!(bench.read(&mut can, MSR) & 3, 2);
+    run_for(&mut bench, &mut can, 3 * MS);
+    assert!(bench.irq.level(22));
+    assert_eq!(bench.read(&mut can, MSR) & (1 << 3 | 3), 1 << 3);
+    bench.write(&mut can, MSR, 1 << 3);
+    assert!(!bench.irq.level(22));
+}
+
+#[test]
+fn bus_off_recovers_by_itself_where_abom_is_set_and_tells_by_interrupt() {
+    let (mut bench, mut can) = ready(CAN2);
+    bench.write(&mut can, CAN2 + MCR, 1 << 6);
+    // ERRIE, BOFIE.
+    bench.write(&mut can, CAN2 + IER, 1 << 15 | 1 << 10);
+    bench
+        .world
+        .set_fault("can2-broken", true)
+        .expect("a known fault");
+    request_wheel_command(&mut bench, &mut can, CAN2);
+    let until = bench.now + 2 * MS;
+    bench.run_while(&mut can, until, |b| !b.irq.level(66));
+    assert!(bench.irq.level(66));
+    assert_eq!(bench.read(&mut can, CAN2 + ESR) & 4, 4);
+    bench
+        .world
+        .set_fault("can2-broken", false)
+        .expect("a known fault");
+    // 1408 bits of silence, then the frame that waited.
+    run_for(&mut bench, &mut can, 1400 * US);
+    assert_eq!(bench.read(&mut can, CAN2 + ESR) & 4, 4);
+    run_for(&mut bench, &mut can, 200 * US);
+    assert_eq!(bench.read(&mut can, CAN2 + ESR) & 4, 0);
+    assert_eq!(can.stats(1).tx, 1);
+}

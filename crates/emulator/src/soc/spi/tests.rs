@@ -114,3 +114,17 @@ fn what_is_not_modelled_is_refused() {
     assert!(bidirectional.is_err());
     assert!(spi.write(CR2, 4, 1 << 4, &mut bench.ctx()).is_err());
 }
+
+#[test]
+fn sixteen_bit_frames_carry_the_high_byte_first() {
+    let (mut bench, mut spi) = ready();
+    bench.write(&mut spi, CR1, 0);
+    bench.write(&mut spi, CR1, MODE_3_MASTER | 1 << 11);
+    let now = bench.now;
+    bench.world.spi_select(SpiSelect::Gyro, true, now);
+    bench.write(&mut spi, DR, 0x8000);
+    let until = bench.now + 4_000 * NS;
+    bench.run(&mut spi, until);
+    // The chip id answers the second byte.
+    assert_eq!(bench.read(&mut spi, DR) & 0xFF, 0x0F);
+}
