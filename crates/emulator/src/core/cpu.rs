@@ -12,7 +12,7 @@ use crate::{
         exception::Exception,
         faults::{Fault, HFSR_FORCED},
         image::Segment,
-        memory::{self, EngineMemory, FLASH},
+        memory::{self, EngineMemory, FLASH, SRAM},
         nvic::Masks,
         stats::Execution,
         system::System,
@@ -128,7 +128,8 @@ impl Cpu {
             stop: None,
             tick_entry,
         };
-        let mut engine = Unicorn::new_with_data(Arch::ARM, Mode::THUMB | Mode::MCLASS, state)?;
+        let mut engine = Unicorn::new_with_data(Arch::ARM, Mode::THUMB, state)?;
+        // Mode::MCLASS would override the model with a Cortex-M33.
         engine.ctl_set_cpu_model(ArmCpuModel::CORTEX_M4 as i32)?;
         memory::map(&mut engine)?;
         hooks::install(&mut engine)?;
@@ -250,8 +251,16 @@ impl Cpu {
             (None, Ok(())) => Ok(self.fall_asleep(SleepKind::Interrupt)),
             (None, Err(uc_error::INSN_INVALID)) => self.hint_or_undefined(),
             (None, Err(uc_error::EXCEPTION)) => self.raise(Fault::InvalidState).map(|()| None),
+            (None, Err(uc_error::FETCH_PROT)) => self.fetch_forbidden().map(|()| None),
             (None, Err(error)) => Err(self.halt(format!("the engine stopped: {error:?}"))),
         }
+    }
+
+    fn fetch_forbidden(&mut self) -> Result<(), Halt> {
+        if SRAM.contains(self.pc(), 2) {
+            return Err(self.halt("code in SRAM is not modelled".to_owned()));
+        }
+        self.raise(Fault::FetchForbidden)
     }
 
     /// WFE and YIELD end their block and leave the PC past it; an undefined instruction leaves the PC on itself.
@@ -352,11 +361,17 @@ impl Cpu {
         }
     }
 
-    /// For register accesses: the engine knows the PC inside a block only at its ends.
+    /// After a register access the engine gives its PC, inside an IT block that of the block's end.
     fn halt_in_block(&self, what: String) -> Halt {
+        let Block { start, end, .. } = self.state().block;
+        let pc = self.pc();
         Halt {
             what,
-            pc: self.state().block.start,
+            pc: if (start..end).contains(&pc) {
+                pc
+            } else {
+                start
+            },
         }
     }
 }

@@ -44,12 +44,13 @@ const UNIQUE_ID: u32 = 0x1FFF_7A10;
 const FLASH_SIZE_KIB: u32 = 0x1FFF_7A22;
 
 /// Maps the memories and fills them as they are at power-on: flash and OTP erased, RAM full of noise.
+/// SRAM may not hold code: the engine would then look at every store for changes of it.
 pub fn map<D>(engine: &mut Unicorn<'_, D>) -> Result<(), uc_error> {
     for (region, rights) in [
         (FLASH, Prot::READ | Prot::EXEC),
         (FLASH_ALIAS, Prot::READ | Prot::EXEC),
         (SYSTEM_MEMORY, Prot::READ),
-        (SRAM, Prot::ALL),
+        (SRAM, Prot::READ | Prot::WRITE),
         (CCM, Prot::READ | Prot::WRITE),
     ] {
         engine.mem_map(region.base.into(), region.size.into(), rights)?;

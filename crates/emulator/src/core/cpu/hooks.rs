@@ -7,7 +7,7 @@ use super::{Block, State, Stop, context};
 use crate::{
     core::{
         faults::Fault,
-        memory::EngineMemory,
+        memory::{CCM, EngineMemory, Region, SRAM},
         system::{Surroundings, System},
     },
     soc::{bus::Soc, guest_memory::GuestMemory, peripheral::Unmodelled, reset::ResetCause},
@@ -22,7 +22,15 @@ pub(super) fn install(engine: &mut Unicorn<'static, State>) -> Result<(), uc_err
     let (base, size) = PRIVATE_PERIPHERALS;
     engine.mmio_map(base, size, Some(read_private), Some(write_private))?;
     engine.add_block_hook(1, 0, block_begins)?;
-    engine.add_mem_hook(HookType::MEM_INVALID, 1, 0, refused_access)?;
+    // A hook over RAM, even one for accesses that cannot happen there, would slow every store down.
+    let above = |region: Region| u64::from(region.base) + u64::from(region.size);
+    for (first, last) in [
+        (0, u64::from(CCM.base) - 1),
+        (above(CCM), u64::from(SRAM.base) - 1),
+        (above(SRAM), u64::from(u32::MAX)),
+    ] {
+        engine.add_mem_hook(HookType::MEM_INVALID, first, last, refused_access)?;
+    }
     engine.add_intr_hook(engine_exception)?;
     Ok(())
 }

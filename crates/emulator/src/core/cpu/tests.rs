@@ -347,3 +347,20 @@ fn a_register_the_model_lacks_stops_the_run_with_its_name() {
     let halt = run_until(&mut cpu, 100 * US).expect_err("the ITM is not modelled");
     assert_eq!(halt.what, "ITM 0xE0000000: read is not modelled");
 }
+
+#[test]
+fn a_system_reset_request_starts_the_program_again() {
+    let thread = program(&[
+        &trace(1),
+        &[0xF64E, 0x520C, 0xF2CE, 0x0200], // movw r2, #0xED0C; movt r2, #0xE000: AIRCR
+        &[0x2004, 0xF2C0, 0x50FA, 0x6010], // movs r0, #4; movt r0, #0x5FA; str r0, [r2]
+        &[STAY],
+    ]);
+    let mut cpu = board(&thread, &[]);
+    assert_eq!(cpu.run(100 * US), Ok(Pause::Reset(ResetCause::Software)));
+    assert_eq!(traced(&cpu), [1]);
+    cpu.reset();
+    assert_eq!(cpu.pc(), CODE);
+    assert_eq!(cpu.register(RegisterARM::MSP), STACK_TOP);
+    assert!(!cpu.state().system.fpu_on());
+}
