@@ -179,7 +179,4 @@ fn shows_verdict_plots_failures_and_escaped_log() {
     assert!(html.contains("FAIL") && html.contains("1 of 2 expectations held"));
     assert!(html.contains("a &lt; b &amp; c") && !html.contains("a < b"));
     assert_eq!(html.matches("<svg").count(), html.matches("</svg>").count());
-    if let Ok(p) = std::env::var("DEV_REPORT") {
-        std::fs::write(p, &html).unwrap();
-    }
 }
