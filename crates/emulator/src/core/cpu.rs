@@ -1,7 +1,9 @@
 //! The processor: runs the image until something asks for attention, takes exceptions, sleeps.
 //!
 //! Time stands still inside a block of code: a register access sees the instant its block began, and an interrupt is
-//! taken at the first block boundary after its request.
+//! taken at the first block boundary after its request, even one the block itself pends (barriers end a block).
+//! Exceptions do not clear the exclusive monitor, which the engine keeps to itself: a STREX across a handler fails only
+//! if the handler changed the word.
 
 use robot_plant::time::Ps;
 use unicorn_engine::{Arch, ArmCpuModel, Mode, RegisterARM, Unicorn, uc_error};
@@ -13,7 +15,6 @@ use crate::{
         faults::{Fault, HFSR_FORCED},
         image::Segment,
         memory::{self, EngineMemory, FLASH, SRAM},
-        nvic::Masks,
         stats::Execution,
         system::System,
     },
@@ -23,11 +24,13 @@ use crate::{
 mod block_costs;
 mod context;
 mod hooks;
+mod sleep;
 #[cfg(test)]
 mod tests;
 
 use block_costs::BlockCosts;
 use hooks::with_soc;
+use sleep::SleepKind;
 
 /// Why `Cpu::run` came back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,12 +48,6 @@ pub enum Pause {
 pub struct Halt {
     pub what: String,
     pub pc: u32,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum SleepKind {
-    Event,
-    Interrupt,
 }
 
 /// Why the engine was asked to come out of translated code.
@@ -279,43 +276,6 @@ impl Cpu {
         }
     }
 
-    fn wait_for_event(&mut self) -> Option<Pause> {
-        if std::mem::take(&mut self.state_mut().event) {
-            return None;
-        }
-        self.fall_asleep(SleepKind::Event)
-    }
-
-    fn fall_asleep(&mut self, kind: SleepKind) -> Option<Pause> {
-        self.asleep = Some(kind);
-        Some(Pause::Asleep {
-            thread: self.state().system.nvic.current() == Exception::THREAD,
-        })
-    }
-
-    /// Passes idle time in one step from event to event; `None` when the core wakes.
-    fn sleep(&mut self, kind: SleepKind) -> Result<Option<Pause>, Halt> {
-        let masks = context::masks(&self.engine);
-        loop {
-            hooks::run_due(&mut self.engine);
-            let state = self.state_mut();
-            match state.stop.take() {
-                Some(Stop::Reset(cause)) => return Ok(Some(Pause::Reset(cause))),
-                Some(Stop::Unmodelled(access)) => {
-                    return Err(self.halt_in_block(access.to_string()));
-                }
-                _ => {}
-            }
-            if state.wakes(kind, masks) {
-                return Ok(None);
-            }
-            if state.clock.cycles >= state.limit_cycle {
-                return Ok(Some(Pause::Limit));
-            }
-            state.skip_idle();
-        }
-    }
-
     /// Takes the exception that beats the running code, if there is one.
     fn take_deliverable(&mut self) -> Result<(), Halt> {
         while let Some(exception) = {
@@ -402,20 +362,5 @@ impl State {
             .cycle_at(self.soc_event)
             .min(self.system.systick.next_cycle())
             .min(self.limit_cycle);
-    }
-
-    fn skip_idle(&mut self) {
-        let cycles = self.due_cycle.saturating_sub(self.clock.cycles);
-        self.clock.cycles += cycles;
-        self.stats.idle_cycles += cycles;
-    }
-
-    fn wakes(&mut self, kind: SleepKind, masks: Masks) -> bool {
-        match kind {
-            SleepKind::Event => {
-                std::mem::take(&mut self.event) || self.system.deliverable(masks).is_some()
-            }
-            SleepKind::Interrupt => self.system.nvic.wakes_from_wfi(masks),
-        }
     }
 }

@@ -328,3 +328,30 @@ fn scalar(entry: &Die<'_>) -> Option<Kind> {
     }
     .filter(|_| size <= 8)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn leaf(offset: u32, kind: Kind) -> Leaf {
+        Leaf {
+            name: String::new(),
+            offset,
+            kind,
+        }
+    }
+
+    #[test]
+    fn numbers_of_every_kind_are_read_at_their_offsets() {
+        // u16 500, i8 -2, bool true, f32 1.5, i32 -70000, little-endian.
+        let record = [
+            0xF4, 0x01, 0xFE, 0x01, 0x00, 0x00, 0xC0, 0x3F, 0x90, 0xEE, 0xFE, 0xFF,
+        ];
+        let read = |offset, kind| leaf(offset, kind).read(&record);
+        assert_eq!(read(0, Kind::Unsigned(2)), 500.0);
+        assert_eq!(read(2, Kind::Signed(1)), -2.0);
+        assert_eq!(read(3, Kind::Unsigned(1)), 1.0);
+        assert_eq!(read(4, Kind::Float(4)), 1.5);
+        assert_eq!(read(8, Kind::Signed(4)), -70_000.0);
+    }
+}

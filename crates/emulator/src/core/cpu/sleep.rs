@@ -1,0 +1,67 @@
+//! WFE and WFI: idle time passes in steps from event to event.
+
+use super::{Cpu, Halt, Pause, State, Stop, context, hooks};
+use crate::core::{exception::Exception, nvic::Masks};
+
+/// What ends the sleep: WFE waits for an event, WFI for an interrupt.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum SleepKind {
+    Event,
+    Interrupt,
+}
+
+impl Cpu {
+    pub(super) fn wait_for_event(&mut self) -> Option<Pause> {
+        if std::mem::take(&mut self.state_mut().event) {
+            return None;
+        }
+        self.fall_asleep(SleepKind::Event)
+    }
+
+    pub(super) fn fall_asleep(&mut self, kind: SleepKind) -> Option<Pause> {
+        self.asleep = Some(kind);
+        Some(Pause::Asleep {
+            thread: self.state().system.nvic.current() == Exception::THREAD,
+        })
+    }
+
+    /// Passes idle time in one step from event to event; `None` when the core wakes.
+    pub(super) fn sleep(&mut self, kind: SleepKind) -> Result<Option<Pause>, Halt> {
+        let masks = context::masks(&self.engine);
+        loop {
+            hooks::run_due(&mut self.engine);
+            let state = self.state_mut();
+            match state.stop.take() {
+                Some(Stop::Reset(cause)) => return Ok(Some(Pause::Reset(cause))),
+                Some(Stop::Unmodelled(access)) => {
+                    return Err(self.halt_in_block(access.to_string()));
+                }
+                _ => {}
+            }
+            if state.wakes(kind, masks) {
+                return Ok(None);
+            }
+            if state.clock.cycles >= state.limit_cycle {
+                return Ok(Some(Pause::Limit));
+            }
+            state.skip_idle();
+        }
+    }
+}
+
+impl State {
+    fn skip_idle(&mut self) {
+        let cycles = self.due_cycle.saturating_sub(self.clock.cycles);
+        self.clock.cycles += cycles;
+        self.stats.idle_cycles += cycles;
+    }
+
+    fn wakes(&mut self, kind: SleepKind, masks: Masks) -> bool {
+        match kind {
+            SleepKind::Event => {
+                std::mem::take(&mut self.event) || self.system.deliverable(masks).is_some()
+            }
+            SleepKind::Interrupt => self.system.nvic.wakes_from_wfi(masks),
+        }
+    }
+}
