@@ -21,7 +21,11 @@ impl BoardErrors {
         let message = message.into();
         match self.list.iter_mut().find(|e| e.message == message) {
             Some(e) => e.count += 1,
-            None => self.list.push(BoardError { at, count: 1, message }),
+            None => self.list.push(BoardError {
+                at,
+                count: 1,
+                message,
+            }),
         }
     }
 

@@ -10,7 +10,10 @@ pub struct Pin {
 impl Pin {
     /// `Pin::new('B', 3)` is PB3.
     pub const fn new(port: char, number: u8) -> Self {
-        Self { port: port as u8 - b'A', number }
+        Self {
+            port: port as u8 - b'A',
+            number,
+        }
     }
 }
 
@@ -43,7 +46,11 @@ impl Default for PinBank {
         for (port, number) in [(0, 13), (0, 14), (0, 15), (1, 3), (1, 4)] {
             mode[port][number] = PinMode::Alternate(0);
         }
-        Self { mode, driven: [[false; 16]; 9], external: [[true; 16]; 9] }
+        Self {
+            mode,
+            driven: [[false; 16]; 9],
+            external: [[true; 16]; 9],
+        }
     }
 }
 

@@ -42,7 +42,12 @@ pub struct Scheduler {
 impl Scheduler {
     pub fn at(&mut self, at: Ps, target: Target, tag: u32) {
         self.asked += 1;
-        self.heap.push(Reverse(Event { at, order: self.asked, target, tag }));
+        self.heap.push(Reverse(Event {
+            at,
+            order: self.asked,
+            target,
+            tag,
+        }));
     }
 
     pub fn next(&self) -> Ps {
