@@ -8,15 +8,21 @@ pub struct StateEstimate {
     pub q_wxyz: [f32; 4],
     /// Roll, pitch, yaw from `q_wxyz`, for display only: wraps at ±π.
     pub rpy_rad: [f32; 3],
-    /// World frame.
+    /// World frame, level: from wheel feedback alone, zero while a wheel is silent.
     pub vel_mps: [f32; 3],
-    /// World frame, from where the robot booted.
+    /// World frame, from where the robot booted: `vel_mps` added up.
     pub pos_m: [f32; 3],
-    /// Offset found beyond the one already taken out of the IMU samples.
+    /// Offset found beyond the one already taken out of the IMU samples, ±2 °/s at most.
     pub gyro_bias_rps: [f32; 3],
+    /// Not estimated: zero.
     pub accel_bias_mps2: [f32; 3],
+    /// Tick it is for; attitude is carried on to this time. 0 = none yet.
     pub ts_us: u64,
-    /// False while the IMU is silent, time jumped, or nothing was received yet.
+    /// True if the attitude can be trusted: the last IMU sample is at most 25 ms old, and 100 samples in a row (0.5 s)
+    /// were used since boot, since a gap of more than 100 ms between samples, since a sample that no sensor can measure
+    /// (NaN, infinite, out of range) and since the ticks' time last ran backwards, stood still or jumped by more than
+    /// 20 ms. While false the other fields hold what is left of the last good ones. Says nothing about heading (the
+    /// magnetometer may be missing) or wheels.
     pub valid: bool,
 }
 

@@ -14,12 +14,20 @@ const MAX_SAMPLE_GAP_US: u32 = 100_000;
 const SETTLING_SAMPLES: u16 = 100;
 /// A tick further from the last than this is a jump in time.
 const MAX_TICK_US: u32 = 20_000;
+/// Beyond what the BMI088 can measure at any setting (±2000 °/s, ±24 g) and the IST8310 at all (±2500 µT), with room
+/// for calibration. A larger value is no measurement, and its square would overflow into the filters' memories.
+const MAX_RATE_DPS: f32 = 2_500.0;
+const MAX_ACCEL_MPS2: f32 = 300.0;
+const MAX_FIELD_UT: f32 = 5_000.0;
 
 /// Called at 1 kHz with the latest samples; uses each sample once and carries the attitude on between them.
 #[derive(Clone, Debug)]
 pub struct InsEstimator {
     attitude: AttitudeFilter,
     odometry: WheelOdometry,
+    /// Last sample looked at.
+    imu_seen_us: u64,
+    /// Last sample used.
     imu_ts_us: u64,
     mag_ts_us: u64,
     applied_bias_dps: Vector3,
@@ -32,6 +40,7 @@ impl InsEstimator {
         Self {
             attitude: AttitudeFilter::new(),
             odometry: WheelOdometry::new(&odometry),
+            imu_seen_us: 0,
             imu_ts_us: 0,
             mag_ts_us: 0,
             applied_bias_dps: [0.0; 3],
@@ -40,6 +49,7 @@ impl InsEstimator {
         }
     }
 
+    /// `motor`: with ages as of `now_us`. What makes the estimate invalid is listed at [`StateEstimate::valid`].
     pub fn step(
         &mut self,
         imu: &ImuState,
@@ -53,7 +63,8 @@ impl InsEstimator {
         if !in_time {
             self.settled_samples = 0;
         }
-        if imu.ts_us != self.imu_ts_us && imu.ts_us != 0 {
+        if imu.ts_us != self.imu_seen_us && imu.ts_us != 0 {
+            self.imu_seen_us = imu.ts_us;
             self.take_imu(imu);
         }
         if mag.ts_us != self.mag_ts_us && mag.ts_us != 0 {
@@ -70,13 +81,13 @@ impl InsEstimator {
     }
 
     fn take_imu(&mut self, imu: &ImuState) {
-        let gap_us = age_us(self.imu_ts_us, imu.ts_us);
-        let continuous = imu.ts_us > self.imu_ts_us && gap_us <= MAX_SAMPLE_GAP_US;
-        self.imu_ts_us = imu.ts_us;
-        if !vector::is_finite(imu.gyro_dps) || !vector::is_finite(imu.accel_mps2) {
+        if !is_measurement(imu) {
             self.settled_samples = 0;
             return;
         }
+        let gap_us = age_us(self.imu_ts_us, imu.ts_us);
+        let continuous = imu.ts_us > self.imu_ts_us && gap_us <= MAX_SAMPLE_GAP_US;
+        self.imu_ts_us = imu.ts_us;
         if self.applied_bias_dps != imu.gyro_bias_dps {
             self.applied_bias_dps = imu.gyro_bias_dps;
             self.attitude.restart_bias();
@@ -92,7 +103,7 @@ impl InsEstimator {
     }
 
     fn take_mag(&mut self, mag: &MagState) {
-        if self.settled_samples > 0 && vector::is_finite(mag.mag_ut) {
+        if self.settled_samples > 0 && vector::is_within(mag.mag_ut, MAX_FIELD_UT) {
             self.attitude.feed_mag(mag.mag_ut);
         }
     }
@@ -111,6 +122,12 @@ impl InsEstimator {
         estimate.ts_us = now_us;
         estimate.valid = imu_age_us <= MAX_IMU_AGE_US && self.settled_samples >= SETTLING_SAMPLES;
     }
+}
+
+fn is_measurement(imu: &ImuState) -> bool {
+    vector::is_within(imu.gyro_dps, MAX_RATE_DPS)
+        && vector::is_within(imu.gyro_bias_dps, MAX_RATE_DPS)
+        && vector::is_within(imu.accel_mps2, MAX_ACCEL_MPS2)
 }
 
 fn seconds(us: u32) -> f32 {

@@ -28,6 +28,7 @@ pub fn norm(v: Vector3) -> f32 {
     scalar::sqrt(dot(v, v))
 }
 
-pub fn is_finite(v: Vector3) -> bool {
-    v.iter().all(|x| x.is_finite())
+/// True if each component is at most `limit` in size; false for NaN.
+pub fn is_within(v: Vector3, limit: f32) -> bool {
+    v.iter().all(|x| x.abs() <= limit)
 }

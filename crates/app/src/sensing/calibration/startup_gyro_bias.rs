@@ -83,8 +83,10 @@ impl Window {
 
     fn continues_with(&self, gyro_dps: Vector3, accel_mps2: Vector3, ts_us: u64) -> bool {
         let gravity_error = (vector::norm(accel_mps2) - GRAVITY_MPS2).abs();
-        within(gyro_dps, self.first_gyro_dps, MAX_GYRO_EXCURSION_DPS)
-            && within(accel_mps2, self.first_accel_mps2, MAX_ACCEL_EXCURSION_MPS2)
+        let turned = vector::sub(gyro_dps, self.first_gyro_dps);
+        let pushed = vector::sub(accel_mps2, self.first_accel_mps2);
+        vector::is_within(turned, MAX_GYRO_EXCURSION_DPS)
+            && vector::is_within(pushed, MAX_ACCEL_EXCURSION_MPS2)
             && gravity_error < MAX_GRAVITY_ERROR_MPS2
             && age_us(self.last_us, ts_us) < MAX_PAUSE_US
             && ts_us > self.last_us
@@ -111,13 +113,8 @@ impl Window {
         let quiet = variance
             .iter()
             .all(|&value| value < MAX_GYRO_STD_DPS * MAX_GYRO_STD_DPS);
-        let plausible = mean.iter().all(|value| value.abs() < MAX_BIAS_DPS);
-        (quiet && plausible).then_some(mean)
+        (quiet && vector::is_within(mean, MAX_BIAS_DPS)).then_some(mean)
     }
-}
-
-fn within(a: Vector3, b: Vector3, limit: f32) -> bool {
-    vector::sub(a, b).iter().all(|value| value.abs() < limit)
 }
 
 #[cfg(test)]
