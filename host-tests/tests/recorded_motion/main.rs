@@ -1,6 +1,7 @@
 //! The estimator on recorded human motion with optical ground truth (BROAD, see `data/broad/README.md`).
 //!
-//! The recordings stay outside the repository: in `../shared/data/broad`, or where `ROBOT_DATA` points.
+//! The recordings stay outside the repository: in `../shared/data/broad`, or where `ROBOT_DATA` points when this is
+//! built. Without them the test counts as ignored.
 
 mod score;
 mod trial;
@@ -57,38 +58,37 @@ fn run(trial: &Trial, sensors: Sensors) -> Rmse {
     rmse
 }
 
-/// VQF's default settings at 1 kHz reach 0.84° inclination in the mean of these trials, BasicVQF 1.15°; a single bad
-/// trial may be three times as far off.
+/// The mean of the published numbers of VQF with default settings on these trials, extrapolated to 1 kHz: 2.57° total
+/// and 0.84° inclination. A single bad trial may be three times as far off.
 #[test]
-fn inclination_follows_the_optical_reference() -> anyhow::Result<()> {
-    let Some(trials) = trial::load_all()? else {
-        println!("skipped: recorded motion is not there (set ROBOT_DATA to its folder)");
-        return Ok(());
-    };
-    let mut inclination_sum = 0.0;
-    println!(
-        "{:50} {:>8} {:>8} {:>8}",
-        "trial", "total", "heading", "incl"
-    );
+#[cfg_attr(
+    not(recorded_motion),
+    ignore = "no recorded motion: set ROBOT_DATA to its folder"
+)]
+fn attitude_follows_the_optical_reference() -> anyhow::Result<()> {
+    let trials = trial::load_all()?;
+    let (mut total_sum, mut inclination_sum) = (0.0, 0.0);
+    println!("trial, RMSE in degrees: total, heading, inclination");
     for trial in &trials {
-        let rmse = run(trial, Sensors::WithMagnetometer);
-        let without = run(trial, Sensors::WithoutMagnetometer);
-        let [total, heading, inclination] = rmse.degrees();
+        let [total, heading, inclination] = run(trial, Sensors::WithMagnetometer).degrees();
+        let [_, _, alone] = run(trial, Sensors::WithoutMagnetometer).degrees();
         println!(
             "{:50} {total:8.2} {heading:8.2} {inclination:8.2}",
             trial.name
         );
-        let [_, _, alone] = without.degrees();
         assert!(inclination < 3.0, "{}: {inclination}°", trial.name);
         assert!(
             (inclination - alone).abs() < 0.5,
             "{}: the magnetometer tilts the horizon",
             trial.name
         );
+        total_sum += total;
         inclination_sum += inclination;
     }
-    let mean = inclination_sum / trials.len() as f64;
-    println!("mean inclination {mean:.3}°");
-    assert!(mean < 1.15, "mean inclination error {mean}°");
+    let count = trials.len() as f64;
+    let (total, inclination) = (total_sum / count, inclination_sum / count);
+    println!("mean {total:.3}° total, {inclination:.3}° inclination");
+    assert!(total < 2.57, "mean error {total}°");
+    assert!(inclination < 0.90, "mean inclination error {inclination}°");
     Ok(())
 }

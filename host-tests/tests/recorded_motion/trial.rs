@@ -47,20 +47,10 @@ impl Trial {
     }
 }
 
-fn folder() -> PathBuf {
-    match std::env::var_os("ROBOT_DATA") {
-        Some(path) => path.into(),
-        None => Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/broad"),
-    }
-}
-
-/// `None` if the recordings are not on this machine.
-pub fn load_all() -> anyhow::Result<Option<Vec<Trial>>> {
-    let folder = folder().join("hz200");
-    if !folder.is_dir() {
-        return Ok(None);
-    }
-    let mut headers: Vec<PathBuf> = std::fs::read_dir(&folder)?
+/// All trials in the folder that `build.rs` found.
+pub fn load_all() -> anyhow::Result<Vec<Trial>> {
+    let folder = Path::new(env!("RECORDED_MOTION"));
+    let mut headers: Vec<PathBuf> = std::fs::read_dir(folder)?
         .map(|entry| entry.map(|entry| entry.path()))
         .collect::<Result<_, _>>()?;
     headers.retain(|path| {
@@ -69,8 +59,7 @@ pub fn load_all() -> anyhow::Result<Option<Vec<Trial>>> {
     });
     headers.sort();
     ensure!(!headers.is_empty(), "no trial in {}", folder.display());
-    let trials = headers.iter().map(|path| load(path));
-    trials.collect::<anyhow::Result<_>>().map(Some)
+    headers.iter().map(|path| load(path)).collect()
 }
 
 fn load(header_path: &Path) -> anyhow::Result<Trial> {
