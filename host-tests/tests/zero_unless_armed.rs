@@ -1,5 +1,5 @@
 //! Whatever comes in: no torque unless every condition of design.md section 3 holds, never more than the limit, no
-//! panic. The conditions are written here from the rules, from what goes into the tick alone.
+//! panic, no NaN in the estimate. The conditions are written here from the rules, from what goes into the tick alone.
 
 use proptest::prelude::*;
 use robot_app::{
@@ -7,7 +7,7 @@ use robot_app::{
     domain::{
         BusErrorState, BusHealth, BusId, CanFrame, ChassisCommand, HighLevelCommand, ImuState,
         MagState, OperatorState, RemoteDiagnostics, RemoteState, RemoteUpdate, StandardId,
-        SystemHealth, WheelCommand,
+        StateEstimate, SystemHealth, WheelCommand,
     },
     logic::LogicBus,
     tick::{ControlConfig, ControlInputs, ControlLoop},
@@ -51,6 +51,8 @@ struct Phase {
     imu_sends: bool,
     accel: [f32; 3],
     gyro: [f32; 3],
+    gyro_bias: [f32; 3],
+    mag: [f32; 3],
     calibrated: bool,
     can1: BusErrorState,
     logic_sends: bool,
@@ -82,6 +84,8 @@ fn phases() -> impl Strategy<Value = Vec<Phase>> {
         mostly(true, Just(false)),
         mostly([0.0, 0.0, 9.81], any::<[f32; 3]>()),
         mostly([0.0; 3], any::<[f32; 3]>()),
+        mostly([0.0; 3], any::<[f32; 3]>()),
+        mostly([0.0, 20.0, -45.0], any::<[f32; 3]>()),
         mostly(true, Just(false)),
     );
     let rest = (
@@ -104,7 +108,9 @@ fn phases() -> impl Strategy<Value = Vec<Phase>> {
                 imu_sends: imu.0,
                 accel: imu.1,
                 gyro: imu.2,
-                calibrated: imu.3,
+                gyro_bias: imu.3,
+                mag: imu.4,
+                calibrated: imu.5,
                 can1: rest.0,
                 logic_sends: rest.1,
                 imu_errors: rest.2,
@@ -162,6 +168,19 @@ fn sent_counts(frames: &[(BusId, CanFrame)]) -> [i32; 4] {
     std::array::from_fn(|slot| i16::from_be_bytes([data[2 * slot], data[2 * slot + 1]]).into())
 }
 
+/// Whatever the sensors said, what comes out is a rotation and finite numbers.
+fn assert_sound(estimate: &StateEstimate) {
+    let squared: f32 = estimate.q_wxyz.iter().map(|part| part * part).sum();
+    assert!((squared - 1.0).abs() < 1e-4, "{estimate:?}");
+    let vectors = [
+        estimate.rpy_rad,
+        estimate.vel_mps,
+        estimate.pos_m,
+        estimate.gyro_bias_rps,
+    ];
+    assert!(vectors.iter().flatten().all(|part| part.is_finite()));
+}
+
 /// Runs the phases and says for how many ticks torque was on.
 fn run(phases: &[Phase], demand_ma: f32) -> usize {
     let mut control = ControlLoop::new(ControlConfig::default(), Rogue(demand_ma));
@@ -184,6 +203,7 @@ fn run(phases: &[Phase], demand_ma: f32) -> usize {
                 imu = ImuState {
                     accel_mps2: phase.accel,
                     gyro_dps: phase.gyro,
+                    gyro_bias_dps: phase.gyro_bias,
                     ts_us: now_us,
                     ..ImuState::default()
                 };
@@ -215,7 +235,10 @@ fn run(phases: &[Phase], demand_ma: f32) -> usize {
             let inputs = ControlInputs {
                 remote: &remote,
                 imu: &imu,
-                mag: &MagState::default(),
+                mag: &MagState {
+                    mag_ut: phase.mag,
+                    ts_us: now_us - now_us % 20_000,
+                },
                 logic: &logic,
                 health: &health,
             };
@@ -226,6 +249,7 @@ fn run(phases: &[Phase], demand_ma: f32) -> usize {
             assert!(allowed || zero, "torque {counts:?} at {now_us} µs");
             assert!(counts.iter().all(|count| count.abs() <= LIMIT_COUNTS));
             assert_eq!(counts[2..], [0, 0]);
+            assert_sound(outputs.estimate);
             rules.driving |= !zero;
             driven += usize::from(!zero);
         }
@@ -282,6 +306,8 @@ fn good(ticks: u16, enabled: bool) -> Phase {
         imu_sends: true,
         accel: [0.0, 0.0, 9.81],
         gyro: [0.0; 3],
+        gyro_bias: [0.0; 3],
+        mag: [0.0, 20.0, -45.0],
         calibrated: true,
         can1: BusErrorState::Active,
         logic_sends: true,
@@ -308,7 +334,7 @@ fn a_controller_that_asks_for_nan_gets_zero() {
 #[test]
 fn every_cause_disarms_until_the_switch_moves() {
     type Cause = fn(&mut Phase);
-    let causes: [(&str, Cause); 8] = [
+    let causes: [(&str, Cause); 9] = [
         ("switch", |phase| phase.enabled = false),
         ("e-stop", |phase| phase.e_stop = true),
         ("failsafe", |phase| phase.failsafe = true),
@@ -317,6 +343,7 @@ fn every_cause_disarms_until_the_switch_moves() {
         ("imu", |phase| phase.imu_sends = false),
         ("imu errors", |phase| phase.imu_errors = 100),
         ("nan", |phase| phase.gyro = [f32::NAN; 3]),
+        ("overflow", |phase| phase.accel = [f32::MAX; 3]),
     ];
     for (name, cause) in causes {
         let mut bad = good(200, true);
