@@ -7,5 +7,5 @@ pub mod board_errors;
 pub mod core;
 pub mod machine;
 pub mod sim;
-pub mod soc;
-pub mod wiring;
+mod soc;
+mod wiring;

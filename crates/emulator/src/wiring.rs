@@ -17,10 +17,8 @@ pub enum Signal {
     I2c3Scl,
     I2c3Sda,
     Usart1Tx,
-    Usart1Rx,
     Usart3Rx,
     Usart6Tx,
-    Usart6Rx,
     Can1Tx,
     Can1Rx,
     Can2Tx,
@@ -69,7 +67,6 @@ fn route(signal: Signal) -> Route {
             "the IST8310 is not connected",
         ),
         Signal::Usart1Tx => ("USART1_TX", Pin::new('A', 9), af(7), "the PC hears nothing"),
-        Signal::Usart1Rx => ("USART1_RX", Pin::new('B', 7), af(7), "the PC is not heard"),
         Signal::Usart3Rx => (
             "USART3_RX",
             Pin::new('C', 11),
@@ -81,12 +78,6 @@ fn route(signal: Signal) -> Route {
             Pin::new('G', 14),
             af(8),
             "nothing leaves the 3-pin UART",
-        ),
-        Signal::Usart6Rx => (
-            "USART6_RX",
-            Pin::new('G', 9),
-            af(8),
-            "the 3-pin UART is not heard",
         ),
         Signal::Can1Tx => (
             "CAN1_TX",
@@ -135,16 +126,18 @@ const fn af(number: u8) -> PinMode {
 pub fn check(signal: Signal, ctx: &mut Ctx<'_>) -> bool {
     let route = route(signal);
     let found = ctx.pins.mode(route.pin);
-    if found == route.mode {
+    let shared_line = matches!(signal, Signal::I2c3Scl | Signal::I2c3Sda);
+    let (is, needed) = if found != route.mode {
+        (mode_name(found), mode_name(route.mode))
+    } else if shared_line && !ctx.pins.open_drain(route.pin) {
+        // A push-pull stage would drive against whoever pulls the line down (RM0090 27.3.2).
+        ("push-pull".to_owned(), "open-drain".to_owned())
+    } else {
         return true;
-    }
+    };
     let message = format!(
-        "{}: {} is {}, needs {}: {}",
-        route.name,
-        route.pin,
-        mode_name(found),
-        mode_name(route.mode),
-        route.consequence
+        "{}: {} is {is}, needs {needed}: {}",
+        route.name, route.pin, route.consequence
     );
     ctx.errors.report(ctx.now, message);
     false

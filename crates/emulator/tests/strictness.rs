@@ -86,3 +86,80 @@ fn radio_without_parity() {
     };
     must_complain(patch, &["USART3", "8E2", "8N2"]);
 }
+
+/// Odd parity where the receiver sends even: USART3_CR1 bit PS (9).
+#[test]
+fn radio_with_the_wrong_parity() {
+    let patch = RegisterPatch {
+        address: 0x4000_480C,
+        mask: 1 << 9,
+        value: 1 << 9,
+    };
+    must_complain(patch, &["USART3", "8E2", "8O2"]);
+}
+
+/// PLLP = 4 instead of 2 halves every clock: RCC_PLLCFGR bits 17:16.
+#[test]
+fn wrong_pll_divider() {
+    let patch = RegisterPatch {
+        address: 0x4002_3804,
+        mask: 3 << 16,
+        value: 1 << 16,
+    };
+    must_complain(patch, &["pclk1 runs at 21 MHz"]);
+}
+
+/// APB1 at 84 MHz, its limit is 42 MHz: RCC_CFGR bits 12:10.
+#[test]
+fn wrong_apb1_prescaler() {
+    let patch = RegisterPatch {
+        address: 0x4002_3808,
+        mask: 7 << 10,
+        value: 0b100 << 10,
+    };
+    must_complain(patch, &["PCLK1 is 84000000 Hz"]);
+}
+
+/// Port B without its clock: RCC_AHB1ENR bit 1.
+#[test]
+fn unclocked_port() {
+    let patch = RegisterPatch {
+        address: 0x4002_3830,
+        mask: 1 << 1,
+        value: 0,
+    };
+    must_complain(patch, &["GPIOB", "AHB1ENR.GPIOBEN is 0"]);
+}
+
+/// PCLK2/8 = 10.5 MHz, the BMI088 takes 10 MHz: SPI1_CR1 bits 5:3.
+#[test]
+fn imu_clock_above_its_limit() {
+    let patch = RegisterPatch {
+        address: 0x4001_3000,
+        mask: 7 << 3,
+        value: 2 << 3,
+    };
+    must_complain(patch, &["BMI088: SCK at 10500000 Hz"]);
+}
+
+/// 42 MHz / (3 × 30) = 467 kHz, fast mode ends at 400 kHz: I2C3_CCR bits 11:0.
+#[test]
+fn magnetometer_clock_above_its_limit() {
+    let patch = RegisterPatch {
+        address: 0x4000_5C1C,
+        mask: 0xFFF,
+        value: 30,
+    };
+    must_complain(patch, &["I2C3: SCL at 466666 Hz"]);
+}
+
+/// A push-pull SDA: GPIOC_OTYPER bit 9.
+#[test]
+fn push_pull_i2c_line() {
+    let patch = RegisterPatch {
+        address: 0x4002_0804,
+        mask: 1 << 9,
+        value: 0,
+    };
+    must_complain(patch, &["I2C3_SDA: PC9 is push-pull, needs open-drain"]);
+}

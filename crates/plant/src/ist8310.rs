@@ -189,6 +189,13 @@ impl Ist8310 {
         }
     }
 
+    /// Why the chip cannot understand the master, if so.
+    pub(crate) fn misuse(&self, addr7: u8, scl_hz: u32) -> Option<String> {
+        (addr7 == ADDRESS && scl_hz > MAX_SCL_HZ).then(|| {
+            format!("IST8310: SCL at {scl_hz} Hz, at most {MAX_SCL_HZ} Hz: no acknowledge")
+        })
+    }
+
     pub(crate) fn address(&mut self, addr7: u8, read: bool, scl_hz: u32, now: Ps) -> bool {
         if addr7 != ADDRESS || scl_hz > MAX_SCL_HZ || !self.answers(now) {
             self.transfer = Transfer::Idle;

@@ -128,6 +128,7 @@ pub struct World {
     faults: ActiveFaults,
     signal_names: Vec<String>,
     wire_events: Vec<WireEvent>,
+    complaints: Vec<String>,
 }
 
 impl World {
@@ -159,6 +160,7 @@ impl World {
             indicators: Indicators::default(),
             faults: ActiveFaults::default(),
             wire_events: Vec::new(),
+            complaints: Vec::new(),
         })
     }
 }

@@ -109,7 +109,7 @@ impl Soc {
     ) -> Result<u32, Unmodelled> {
         self.run_due(now, mem)?;
         let (block, offset) = find(addr, "read")?;
-        if !self.clocked(block, offset, "read", now) {
+        if !self.answers(block, offset, "read", now) {
             return Ok(0);
         }
         let (blocks, mut ctx) = split!(self, now);
@@ -128,7 +128,7 @@ impl Soc {
     ) -> Result<(), Unmodelled> {
         self.run_due(now, mem)?;
         let (block, offset) = find(addr, "write")?;
-        if !self.clocked(block, offset, "written", now) {
+        if !self.answers(block, offset, "written", now) {
             return Ok(());
         }
         let value = self.patched(addr, value);
@@ -174,20 +174,14 @@ impl Soc {
         mem: &mut dyn GuestMemory,
     ) -> Result<(), Unmodelled> {
         let block = match target {
-            Target::World => return self.advance_world(now, mem),
             Target::Rcc => Block::Rcc,
-            Target::Flash => Block::Flash,
             Target::Timer(n) => Block::Timer(n),
             Target::Usart(n) => Block::Usart(n),
             Target::Spi1 => Block::Spi1,
             Target::I2c3 => Block::I2c3,
-            Target::Dma(n) => Block::Dma(n),
             Target::CanBus(_) => Block::Can,
             Target::Adc3 => Block::Adc,
             Target::Iwdg => Block::Iwdg,
-            Target::Exti => Block::Exti,
-            // SysTick counts inside the core.
-            Target::SysTick => return Ok(()),
         };
         let (blocks, mut ctx) = split!(self, now);
         blocks.get(block).event(tag, &mut ctx);
@@ -211,7 +205,9 @@ impl Soc {
             Block::I2c3 => {
                 let (blocks, mut ctx) = split!(self, now);
                 blocks.inputs_changed(&mut ctx);
+                self.hear_complaints(now);
             }
+            Block::Spi1 => self.hear_complaints(now),
             Block::Syscfg => {
                 let (blocks, mut ctx) = split!(self, now);
                 blocks.exti_sources_changed(&mut ctx);
@@ -219,6 +215,12 @@ impl Soc {
             _ => {}
         }
         self.serve_dma(now, mem)
+    }
+
+    fn hear_complaints(&mut self, now: Ps) {
+        for complaint in self.world.take_complaints() {
+            self.errors.report(now, complaint);
+        }
     }
 
     fn rcc_changed(&mut self, now: Ps) {
@@ -243,7 +245,7 @@ impl Soc {
         let rose = |reset: (Bus, u8)| reset.0 == bus && bits >> reset.1 & 1 == 1;
         let (blocks, mut ctx) = split!(self, now);
         for block in Block::ALL.into_iter().filter(|block| *block != Block::Can) {
-            if memory_map::reset_bit(block).is_some_and(rose) {
+            if memory_map::reset_bit(block, 0).is_some_and(rose) {
                 blocks.get(block).reset(&mut ctx);
             }
         }
@@ -260,7 +262,8 @@ impl Soc {
         blocks.outputs_changed(&mut ctx);
     }
 
-    fn clocked(&mut self, block: Block, offset: u32, access: &str, now: Ps) -> bool {
+    /// True where the block answers: clocked and out of reset. Otherwise files a board error.
+    fn answers(&mut self, block: Block, offset: u32, access: &str, now: Ps) -> bool {
         let Some(gate) = memory_map::clock_gate(block, offset) else {
             return true;
         };
@@ -269,15 +272,18 @@ impl Soc {
             Bus::Apb1 => self.clocks.apb1enr,
             Bus::Apb2 => self.clocks.apb2enr,
         };
-        let on = enables >> gate.bit & 1 == 1;
-        if !on {
-            let name = gate.peripheral();
-            self.errors.report(
-                now,
-                format!("{name}: registers {access} while RCC {} is 0", gate.name),
-            );
-        }
-        on
+        let reset = memory_map::reset_bit(block, offset);
+        let why = if enables >> gate.bit & 1 == 0 {
+            format!("RCC {} is 0", gate.name)
+        } else if reset.is_some_and(|bit| self.blocks.rcc.holds_in_reset(bit)) {
+            "RCC holds it in reset".to_owned()
+        } else {
+            return true;
+        };
+        let name = gate.peripheral();
+        self.errors
+            .report(now, format!("{name}: registers {access} while {why}"));
+        false
     }
 
     fn patched(&self, addr: u32, value: u32) -> u32 {

@@ -14,7 +14,6 @@ pub struct ClockTree {
     pub tim2_hz: u32,
     pub lsi_on: bool,
     pub ahb1enr: u32,
-    pub ahb2enr: u32,
     pub apb1enr: u32,
     pub apb2enr: u32,
 }
@@ -31,7 +30,6 @@ impl Default for ClockTree {
             tim2_hz: hsi,
             lsi_on: false,
             ahb1enr: 0x0010_0000,
-            ahb2enr: 0,
             apb1enr: 0,
             apb2enr: 0,
         }

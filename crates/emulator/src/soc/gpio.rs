@@ -58,6 +58,7 @@ impl Gpio {
         for number in 0..16 {
             let pin = self.pin(number);
             ctx.pins.set_mode(pin, self.mode(number));
+            ctx.pins.set_open_drain(pin, self.otyper >> number & 1 == 1);
             ctx.pins.set_driven(pin, self.odr >> number & 1 == 1);
         }
     }

@@ -18,7 +18,7 @@ const RELOAD_AFTER_RESET: u32 = 0xFFF;
 #[derive(Clone, Copy, Debug)]
 struct Crossing {
     value: u32,
-    /// Until when `value` is still on its way, and what counts until then.
+    /// Until when `value` is still on its way (for ever while the LSI stands), and what counts until then.
     pending: Option<(Ps, u32)>,
 }
 
@@ -44,8 +44,15 @@ impl Crossing {
         let old = self.effective(now);
         *self = Self {
             value,
-            pending: Some((now + cycles_to_ps(UPDATE_CYCLES, LSI_HZ), old)),
+            pending: Some((Ps::MAX, old)),
         };
+    }
+
+    /// The LSI runs: what waited for it begins to cross.
+    fn clocked(&mut self, now: Ps) {
+        if let Some((until @ Ps::MAX, _)) = &mut self.pending {
+            *until = now + cycles_to_ps(UPDATE_CYCLES, LSI_HZ);
+        }
     }
 }
 
@@ -105,13 +112,20 @@ impl Iwdg {
         self.unlocked = key == 0x5555;
         match key {
             0xCCCC if self.expires_at.is_none() => {
-                ctx.clocks.lsi_on = true;
                 self.count_from(RELOAD_AFTER_RESET, ctx);
             }
             0xAAAA if self.expires_at.is_some() => {
                 self.count_from(self.reload.effective(ctx.now), ctx);
             }
             _ => {}
+        }
+    }
+
+    /// Registers cross on LSI cycles only; a running watchdog keeps the LSI on (RM0090 21.3).
+    fn cross(&mut self, ctx: &Ctx<'_>) {
+        if ctx.clocks.lsi_on || self.expires_at.is_some() {
+            self.prescaler.clocked(ctx.now);
+            self.reload.clocked(ctx.now);
         }
     }
 
@@ -140,6 +154,7 @@ impl Iwdg {
 impl Peripheral for Iwdg {
     fn read(&mut self, offset: u32, size: u8, ctx: &mut Ctx<'_>) -> Result<u32, Unmodelled> {
         let access = Access::new(offset, size);
+        self.cross(ctx);
         let value = match access.register {
             0x0 => 0,
             0x4 => self.prescaler.value,
@@ -168,6 +183,7 @@ impl Peripheral for Iwdg {
             0xC => {}
             other => return Err(unmodelled(other, format!("write of {value:#010x}"))),
         }
+        self.cross(ctx);
         Ok(())
     }
 

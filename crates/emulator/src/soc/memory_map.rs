@@ -165,12 +165,12 @@ const GPIO_ENABLES: [&str; 9] = [
     "AHB1ENR.GPIOIEN",
 ];
 
-/// The block's RCC reset bit; none where only a system reset does it.
-pub fn reset_bit(block: Block) -> Option<(Bus, u8)> {
+/// The RCC reset bit of the registers at `offset` of `block`; none where only a system reset does it.
+pub fn reset_bit(block: Block, offset: u32) -> Option<(Bus, u8)> {
     match block {
         // One bit for the three converters (RM0090 7.3.9).
         Block::Adc => Some((Bus::Apb2, 8)),
-        _ => clock_gate(block, 0).map(|gate| (gate.bus, gate.bit)),
+        _ => clock_gate(block, offset).map(|gate| (gate.bus, gate.bit)),
     }
 }
 
@@ -245,12 +245,12 @@ mod tests {
 
     #[test]
     fn each_register_block_resets_by_its_own_bit() {
-        let mut bits: Vec<_> = Block::ALL.iter().filter_map(|b| reset_bit(*b)).collect();
+        let mut bits: Vec<_> = Block::ALL.iter().filter_map(|b| reset_bit(*b, 0)).collect();
         let all = bits.len();
         bits.sort_by_key(|(bus, bit)| (*bus as u8, *bit));
         bits.dedup();
         assert_eq!(bits.len(), all);
         // RM0090 7.3.7: USART3RST is bit 18 of RCC_APB1RSTR.
-        assert_eq!(reset_bit(Block::Usart(3)), Some((Bus::Apb1, 18)));
+        assert_eq!(reset_bit(Block::Usart(3), 0), Some((Bus::Apb1, 18)));
     }
 }

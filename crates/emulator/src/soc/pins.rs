@@ -35,6 +35,7 @@ pub enum PinMode {
 #[derive(Debug)]
 pub struct PinBank {
     mode: [[PinMode; 16]; 9],
+    open_drain: [[bool; 16]; 9],
     driven: [[bool; 16]; 9],
     external: [[bool; 16]; 9],
 }
@@ -48,6 +49,7 @@ impl Default for PinBank {
         }
         Self {
             mode,
+            open_drain: [[false; 16]; 9],
             driven: [[false; 16]; 9],
             external: [[true; 16]; 9],
         }
@@ -61,6 +63,15 @@ impl PinBank {
 
     pub fn set_mode(&mut self, pin: Pin, mode: PinMode) {
         self.mode[usize::from(pin.port)][usize::from(pin.number)] = mode;
+    }
+
+    /// True where the output stage pulls down only.
+    pub fn open_drain(&self, pin: Pin) -> bool {
+        self.open_drain[usize::from(pin.port)][usize::from(pin.number)]
+    }
+
+    pub fn set_open_drain(&mut self, pin: Pin, open_drain: bool) {
+        self.open_drain[usize::from(pin.port)][usize::from(pin.number)] = open_drain;
     }
 
     /// What the output register asks for (seen outside only in output mode).
@@ -77,6 +88,10 @@ impl PinBank {
     pub fn level(&self, pin: Pin) -> bool {
         let (port, number) = (usize::from(pin.port), usize::from(pin.number));
         match self.mode[port][number] {
+            // An open drain lets go where it does not pull down.
+            PinMode::Output if self.open_drain[port][number] => {
+                self.driven[port][number] && self.external[port][number]
+            }
             PinMode::Output => self.driven[port][number],
             _ => self.external[port][number],
         }

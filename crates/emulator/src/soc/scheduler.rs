@@ -7,20 +7,15 @@ use robot_plant::time::Ps;
 /// Who is woken. One variant for each thing that acts by itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Target {
-    World,
     Rcc,
-    Flash,
     Timer(u8),
     /// 1, 3 or 6.
     Usart(u8),
     Spi1,
     I2c3,
-    Dma(u8),
     CanBus(u8),
     Adc3,
     Iwdg,
-    Exti,
-    SysTick,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

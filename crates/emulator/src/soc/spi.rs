@@ -204,6 +204,15 @@ impl Spi {
         Ok(())
     }
 
+    fn write_dr(&mut self, frame: u16, ctx: &mut Ctx<'_>) {
+        if self.transmit_buffer.replace(frame).is_some() {
+            ctx.errors.report(
+                ctx.now,
+                "SPI1: DR written while TXE is 0: the frame waiting there is lost",
+            );
+        }
+    }
+
     fn read_sr(&mut self) -> u32 {
         let status = self.status();
         if std::mem::take(&mut self.dr_read_after_overrun) {
@@ -277,7 +286,7 @@ impl Peripheral for Spi {
             }
             // All flags but CRCERR are read-only or cleared by sequences; CRC is not modelled.
             0x08 => {}
-            0x0C => self.transmit_buffer = Some(over(0) as u16),
+            0x0C => self.write_dr(over(0) as u16, ctx),
             0x10 => self.crcpr = over(self.crcpr) & 0xFFFF,
             0x1C if over(0) == 0 => {}
             other => {

@@ -67,6 +67,9 @@ impl Bench {
                 .pins
                 .set_mode(Pin::new(port, number), PinMode::Alternate(af));
         }
+        for (port, number) in [('A', 8), ('C', 9)] {
+            bench.pins.set_open_drain(Pin::new(port, number), true);
+        }
         bench.pins.set_mode(Pin::new('F', 10), PinMode::Analog);
         bench
     }

@@ -198,6 +198,10 @@ impl Die for GyroDie {
     }
 
     fn write(&mut self, register: u8, value: u8, now: Ps) {
+        // A die that starts hears nothing; one that runs takes its time over a write.
+        if now < self.alive_at {
+            return;
+        }
         if now < self.write_allowed_at {
             self.lost_writes += 1;
             return;

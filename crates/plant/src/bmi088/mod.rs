@@ -182,6 +182,23 @@ impl Bmi088 {
         }
     }
 
+    /// Why the selected dies cannot understand the master, if so.
+    pub(crate) fn misuse(&self, sck_hz: u32, mode: u8) -> Option<String> {
+        if self.accel_wire.selected && self.gyro_wire.selected {
+            Some("BMI088: both chip selects are low: the dies fight over MISO".to_owned())
+        } else if !(self.accel_wire.selected || self.gyro_wire.selected) {
+            None
+        } else if sck_hz > MAX_SCK_HZ {
+            Some(format!(
+                "BMI088: SCK at {sck_hz} Hz, at most {MAX_SCK_HZ} Hz: garbage"
+            ))
+        } else if !matches!(mode, 0 | 3) {
+            Some(format!("BMI088: SPI mode {mode}, needs 0 or 3: garbage"))
+        } else {
+            None
+        }
+    }
+
     pub(crate) fn transfer(&mut self, mosi: u8, sck_hz: u32, mode: u8, now: Ps) -> u8 {
         if self.faults.gone || !(self.accel_wire.selected || self.gyro_wire.selected) {
             return 0xFF;

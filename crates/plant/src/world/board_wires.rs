@@ -12,10 +12,17 @@ impl World {
     }
 
     /// Exchanges one byte with the selected device; 0xFF (pulled up) where none is.
-    /// `sck_hz` and the SPI mode come from the chip's registers; a device out of its limits answers garbage.
+    /// `sck_hz` and the SPI mode come from the chip's registers; a device out of its limits answers garbage and
+    /// complains.
     pub fn spi_transfer(&mut self, mosi: u8, sck_hz: u32, mode: u8, now: Ps) -> u8 {
         self.advance(now);
+        self.complaints.extend(self.imu.misuse(sck_hz, mode));
+        let lost_before = self.imu.lost_writes();
         let miso = self.imu.transfer(mosi, sck_hz, mode, now);
+        if self.imu.lost_writes() != lost_before {
+            self.complaints
+                .push("BMI088: register written too soon after another: lost".to_owned());
+        }
         if let (Some(playback), Some(read_at)) = (&mut self.playback, self.imu.gyro_data_read_at())
             && let Some(rows_from) = playback.lock_to_read(read_at)
         {
@@ -27,9 +34,10 @@ impl World {
 
 /// I2C3: IST8310.
 impl World {
-    /// START and address byte; true = acknowledged.
+    /// START and address byte; true = acknowledged. Too fast a clock is not, and complained of.
     pub fn i2c_address(&mut self, addr7: u8, read: bool, scl_hz: u32, now: Ps) -> bool {
         self.advance(now);
+        self.complaints.extend(self.mag.misuse(addr7, scl_hz));
         self.mag.address(addr7, read, scl_hz, now)
     }
 
@@ -53,6 +61,13 @@ impl World {
     /// True where a device holds SDA or SCL low.
     pub fn i2c_bus_held(&self) -> bool {
         self.mag.bus_held()
+    }
+}
+
+impl World {
+    /// What the board asked of a device beyond its limits since the last call. Silicon punishes that without a word.
+    pub fn take_complaints(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.complaints)
     }
 }
 

@@ -100,7 +100,7 @@ impl Soc {
         now: Ps,
     ) -> Result<u32, Unmodelled> {
         let (block, offset) = super::find(item.peripheral_addr, "DMA access")?;
-        if !self.clocked(block, offset, "moved by DMA", now) {
+        if !self.answers(block, offset, "moved by DMA", now) {
             return Ok(0);
         }
         let (blocks, mut ctx) = split!(self, now);

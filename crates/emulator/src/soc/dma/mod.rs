@@ -1,7 +1,6 @@
 //! DMA1 and DMA2: eight streams each, served one item a request (RM0090 section 10).
 //!
-//! Memory-to-memory, double buffer, peripheral bursts and peripheral flow control are not modelled; the FIFO passes
-//! each item through at once.
+//! Memory-to-memory, double buffer, FIFO mode, peripheral bursts and peripheral flow control are not modelled.
 
 pub mod request_map;
 pub mod stream;

@@ -69,10 +69,6 @@ pub fn line_of(slot: Slot) -> Option<&'static RequestLine> {
     LINES.iter().find(|line| line.slots.contains(&slot))
 }
 
-pub fn line(request: DmaRequest) -> &'static RequestLine {
-    &LINES[request as usize]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

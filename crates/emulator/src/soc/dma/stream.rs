@@ -18,6 +18,8 @@ const PBURST: u32 = 3 << 21;
 const INTERRUPT_ENABLES: u32 = DMEIE | TEIE | HTIE | TCIE;
 const CR_BITS: u32 = 0x0FEF_FFFF;
 const FCR_BITS: u32 = 0x87;
+/// Direct mode off: through the FIFO.
+const DMDIS: u32 = 1 << 2;
 /// FIFO empty.
 const FS_EMPTY: u32 = 0b100 << 3;
 
@@ -147,11 +149,11 @@ impl Stream {
             (DBM_CT, "double buffer mode"),
             (PBURST, "peripheral burst"),
         ];
-        let packs = self.memory_size() != self.item_size() && self.fcr & 4 != 0;
         let what = match unusual.iter().find(|(bit, _)| self.cr & bit != 0) {
             Some((_, what)) => what,
             None if self.cr & DIR > 1 << 6 => "memory-to-memory transfer",
-            None if packs && self.cr & MINC == 0 => "packing without memory increment",
+            // The FIFO would hold items back until its threshold.
+            None if self.fcr & DMDIS != 0 => "FIFO mode",
             None => return Ok(()),
         };
         Err(Unmodelled {
@@ -164,11 +166,7 @@ impl Stream {
         1 << (self.cr >> 11 & 3).min(2)
     }
 
-    fn memory_size(&self) -> u8 {
-        1 << (self.cr >> 13 & 3).min(2)
-    }
-
-    /// What the next request moves. Packing in the FIFO leaves memory as if each item were written by itself.
+    /// What the next request moves. In direct mode MSIZE counts for nothing: both sides move PSIZE (RM0090 10.3.12).
     pub fn next_item(&self) -> Item {
         let size = self.item_size();
         let done = (self.reload - self.ndtr) * u32::from(size);

@@ -42,6 +42,7 @@ pub struct Master {
     pub cr2: u32,
     pub sr1: u32,
     pub ccr: u32,
+    pub trise: u32,
     pub phase: Phase,
     pub transmitter: bool,
     dr: u8,
@@ -54,6 +55,14 @@ pub struct Master {
 }
 
 impl Master {
+    /// After reset.
+    pub fn new() -> Self {
+        Self {
+            trise: 2,
+            ..Self::default()
+        }
+    }
+
     pub fn owns_bus(&self) -> bool {
         !matches!(
             self.phase,
@@ -82,7 +91,7 @@ impl Master {
         if self.cr1 & cr1::STOP != 0 && (between_bytes || self.phase == Phase::Started) {
             self.phase = Phase::Stopping;
         } else if self.cr1 & cr1::START != 0 && (between_bytes || self.phase == Phase::Idle) {
-            self.check_frequency(ctx);
+            self.check_timing(ctx);
             self.phase = Phase::Starting {
                 repeated: between_bytes,
             };
@@ -274,12 +283,32 @@ impl Master {
         (u64::from(ctx.clocks.pclk1_hz) / self.clocks_per_bit()) as u32
     }
 
-    fn check_frequency(&self, ctx: &mut Ctx<'_>) {
+    /// What RM0090 27.6.2, 27.6.8 and 27.6.9 ask of FREQ, CCR and TRISE.
+    fn check_timing(&self, ctx: &mut Ctx<'_>) {
         let told_mhz = self.cr2 & cr2::FREQ;
         let pclk1_mhz = ctx.clocks.pclk1_hz / 1_000_000;
         if told_mhz != pclk1_mhz {
             let message =
                 format!("I2C3: CR2.FREQ says {told_mhz} MHz, pclk1 runs at {pclk1_mhz} MHz");
+            ctx.errors.report(ctx.now, message);
+        }
+        let fast = self.ccr >> 15 & 1 == 1;
+        let (mode, max_hz, rise_ns) = if fast {
+            ("fast", 400_000, 300)
+        } else {
+            ("standard", 100_000, 1000)
+        };
+        let scl_hz = self.scl_hz(ctx);
+        if scl_hz > max_hz {
+            let message = format!("I2C3: SCL at {scl_hz} Hz, {mode} mode ends at {max_hz} Hz");
+            ctx.errors.report(ctx.now, message);
+        }
+        let rise_cycles = told_mhz * rise_ns / 1000 + 1;
+        if self.trise != rise_cycles {
+            let message = format!(
+                "I2C3: TRISE is {}, {mode} mode needs {rise_cycles} for {rise_ns} ns",
+                self.trise
+            );
             ctx.errors.report(ctx.now, message);
         }
     }

@@ -20,7 +20,6 @@ const IRQ_ERROR: u8 = 73;
 pub struct I2c {
     master: Master,
     oar: [u32; 2],
-    trise: u32,
     /// SR1 was read since these flags rose: the second half of their clear sequence may come.
     shown: u32,
 }
@@ -28,7 +27,7 @@ pub struct I2c {
 impl I2c {
     pub fn new() -> Self {
         Self {
-            trise: 2,
+            master: Master::new(),
             ..Self::default()
         }
     }
@@ -87,6 +86,14 @@ impl I2c {
         self.master.requests_changed(ctx);
     }
 
+    /// CCR and TRISE may be written only while PE is 0 (RM0090 27.6.8, 27.6.9).
+    fn check_disabled(&self, register: &str, ctx: &mut Ctx<'_>) {
+        if self.master.cr1 & cr1::PE != 0 {
+            let message = format!("I2C3: {register} written while PE is 1: SCL is undefined");
+            ctx.errors.report(ctx.now, message);
+        }
+    }
+
     fn update_lines(&self, ctx: &mut Ctx<'_>) {
         let flags = self.master.sr1;
         let has = |bits| flags & bits != 0;
@@ -118,7 +125,7 @@ impl Peripheral for I2c {
             0x14 => self.read_sr1(),
             0x18 => self.read_sr2(ctx),
             0x1C => self.master.ccr,
-            0x20 => self.trise,
+            0x20 => self.master.trise,
             other => return Err(registers::unmodelled(other, "read".to_owned())),
         };
         self.update_lines(ctx);
@@ -142,8 +149,14 @@ impl Peripheral for I2c {
             0x0C => self.oar[1] = over(self.oar[1]),
             0x10 => self.write_dr(over(0) as u8, ctx),
             0x14 => self.master.sr1 &= over(u32::MAX) | !sr1::ERRORS,
-            0x1C => self.master.ccr = over(self.master.ccr),
-            0x20 => self.trise = over(self.trise),
+            0x1C => {
+                self.check_disabled("CCR", ctx);
+                self.master.ccr = over(self.master.ccr);
+            }
+            0x20 => {
+                self.check_disabled("TRISE", ctx);
+                self.master.trise = over(self.master.trise);
+            }
             _ => {}
         }
         self.update_lines(ctx);

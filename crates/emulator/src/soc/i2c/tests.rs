@@ -16,6 +16,7 @@ const DR: u32 = 0x10;
 const SR1: u32 = 0x14;
 const SR2: u32 = 0x18;
 const CCR: u32 = 0x1C;
+const TRISE: u32 = 0x20;
 
 const PE: u32 = 1;
 const START: u32 = 1 << 8;
@@ -41,6 +42,8 @@ fn ready() -> (Bench, I2c) {
     bench.run(&mut i2c, 100 * MS);
     bench.write(&mut i2c, CR2, 42);
     bench.write(&mut i2c, CCR, 1 << 15 | 35);
+    // 300 ns at 42 MHz are 12 cycles, plus 1.
+    bench.write(&mut i2c, TRISE, 13);
     bench.write(&mut i2c, CR1, PE);
     (bench, i2c)
 }
@@ -197,6 +200,32 @@ fn wrong_wiring_and_a_wrong_clock_are_said_aloud() {
 }
 
 #[test]
+fn a_push_pull_stage_on_the_bus_is_said_aloud() {
+    let (mut bench, mut i2c) = ready();
+    bench.pins.set_open_drain(Pin::new('A', 8), false);
+    address(&mut bench, &mut i2c, MAG << 1, 0);
+    assert_eq!(bench.read(&mut i2c, SR1) & (ADDR | AF), AF);
+    let expected = "I2C3_SCL: PA8 is push-pull, needs open-drain: the IST8310 gets no clock";
+    assert_eq!(bench.error_texts(), [expected]);
+}
+
+#[test]
+fn wrong_timing_is_said_aloud() {
+    let (mut bench, mut i2c) = ready();
+    // 42 MHz / (3 × 34) = 411.8 kHz.
+    bench.write(&mut i2c, CCR, 1 << 15 | 34);
+    bench.write(&mut i2c, CR1, 0);
+    bench.write(&mut i2c, TRISE, 43);
+    bench.write(&mut i2c, CR1, PE | START);
+    let expected = [
+        "I2C3: CCR written while PE is 1: SCL is undefined",
+        "I2C3: SCL at 411764 Hz, fast mode ends at 400000 Hz",
+        "I2C3: TRISE is 43, fast mode needs 13 for 300 ns",
+    ];
+    assert_eq!(bench.error_texts(), expected);
+}
+
+#[test]
 fn a_software_reset_frees_the_bus() {
     let (mut bench, mut i2c) = ready();
     address(&mut bench, &mut i2c, MAG << 1, 0);
@@ -205,5 +234,5 @@ fn a_software_reset_frees_the_bus() {
     assert_eq!(bench.read(&mut i2c, SR2), 0);
     assert_eq!(bench.read(&mut i2c, CCR), 0);
     i2c.reset(&mut bench.ctx());
-    assert_eq!(bench.read(&mut i2c, 0x20), 2, "TRISE after reset");
+    assert_eq!(bench.read(&mut i2c, TRISE), 2, "after reset");
 }

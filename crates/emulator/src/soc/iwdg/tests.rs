@@ -10,6 +10,12 @@ const PR: u32 = 4;
 const RLR: u32 = 8;
 const SR: u32 = 12;
 
+fn with_lsi() -> (Bench, Iwdg) {
+    let mut bench = Bench::new();
+    bench.clocks.lsi_on = true;
+    (bench, Iwdg::new())
+}
+
 #[test]
 fn the_shortest_and_longest_times_of_the_table() {
     // Prescaler /4: RLR 0 = 0.125 ms, RLR 0xFFF = 512 ms; /256: 0xFFF = 32768 ms.
@@ -18,7 +24,7 @@ fn the_shortest_and_longest_times_of_the_table() {
         (0, 0xFFF, 512 * MS),
         (6, 0xFFF, 32_768 * MS),
     ] {
-        let (mut bench, mut iwdg) = (Bench::new(), Iwdg::new());
+        let (mut bench, mut iwdg) = with_lsi();
         bench.write(&mut iwdg, KR, 0x5555);
         bench.write(&mut iwdg, PR, pr);
         bench.write(&mut iwdg, RLR, rlr);
@@ -54,7 +60,7 @@ fn step(bench: &mut Bench, iwdg: &mut Iwdg) {
 
 #[test]
 fn reloading_in_time_keeps_it_quiet() {
-    let (mut bench, mut iwdg) = (Bench::new(), Iwdg::new());
+    let (mut bench, mut iwdg) = with_lsi();
     bench.write(&mut iwdg, KR, 0x5555);
     // 144 periods of 125 µs: 18 ms.
     bench.write(&mut iwdg, RLR, 143);
@@ -68,6 +74,20 @@ fn reloading_in_time_keeps_it_quiet() {
     let until = bench.now + 18 * MS;
     bench.run(&mut iwdg, until);
     assert!(iwdg.take_reset_request());
+}
+
+#[test]
+fn without_the_lsi_an_update_waits_for_the_start() {
+    let (mut bench, mut iwdg) = (Bench::new(), Iwdg::new());
+    bench.write(&mut iwdg, KR, 0x5555);
+    bench.write(&mut iwdg, RLR, 143);
+    bench.run(&mut iwdg, 100 * MS);
+    // RVU.
+    assert_eq!(bench.read(&mut iwdg, SR), 2);
+    bench.write(&mut iwdg, KR, 0xCCCC);
+    // Five cycles of 31.25 µs.
+    bench.run(&mut iwdg, 100 * MS + 157 * US);
+    assert_eq!(bench.read(&mut iwdg, SR), 0);
 }
 
 #[test]

@@ -18,6 +18,9 @@ use crate::soc::{
     scheduler::Target,
 };
 
+/// Every clock goes on in sleep: reset values of AHB1LPENR to APB2LPENR.
+const SLEEP_ENABLES: [u32; 6] = [0x7E67_91FF, 0x0000_00F1, 1, 0, 0x36FE_C9FF, 0x0007_5F33];
+
 #[derive(Debug)]
 pub struct Rcc {
     cr: u32,
@@ -30,7 +33,6 @@ pub struct Rcc {
     /// AHB1, AHB2, AHB3, –, APB1, APB2 as the registers lie.
     resets: [u32; 6],
     enables: [u32; 6],
-    sleep_enables: [u32; 6],
     source: SystemClock,
     /// Start-ups begun, by oscillator; an event of an older one is stale.
     generation: [u32; 4],
@@ -52,7 +54,6 @@ impl Default for Rcc {
             plli2scfgr: 0x2000_3000,
             resets: [0; 6],
             enables: [0x0010_0000, 0, 0, 0, 0, 0],
-            sleep_enables: [0x7E67_91FF, 0x0000_00F1, 1, 0, 0x36FE_C9FF, 0x0007_5F33],
             source: SystemClock::Hsi,
             generation: [0; 4],
             frequencies_changed: false,
@@ -83,6 +84,16 @@ impl Rcc {
         std::mem::take(&mut self.frequencies_changed)
     }
 
+    /// True while the reset bit of a block stands at 1.
+    pub fn holds_in_reset(&self, (bus, bit): (Bus, u8)) -> bool {
+        let register = match bus {
+            Bus::Ahb1 => 0,
+            Bus::Apb1 => 4,
+            Bus::Apb2 => 5,
+        };
+        self.resets[register] >> bit & 1 == 1
+    }
+
     /// Reset bits that rose since the last call.
     pub fn take_resets(&mut self) -> Vec<(Bus, u32)> {
         std::mem::take(&mut self.risen_resets)
@@ -96,7 +107,7 @@ impl Rcc {
             0x0C => 0,
             0x10..=0x24 if register != 0x1C => self.resets[bank(register, 0x10)],
             0x30..=0x44 if register != 0x3C => self.enables[bank(register, 0x30)],
-            0x50..=0x64 if register != 0x5C => self.sleep_enables[bank(register, 0x50)],
+            0x50..=0x64 if register != 0x5C => SLEEP_ENABLES[bank(register, 0x50)],
             0x70 => self.bdcr,
             0x74 => self.csr,
             0x80 => self.sscgr,
@@ -118,7 +129,12 @@ impl Rcc {
                 self.enables[bank(register, 0x30)] = value;
                 self.publish_enables(ctx.clocks);
             }
-            0x50..=0x64 if register != 0x5C => self.sleep_enables[bank(register, 0x50)] = value,
+            0x50..=0x64 if register != 0x5C => {
+                let kept = SLEEP_ENABLES[bank(register, 0x50)];
+                if value & kept != kept {
+                    return Err(unmodelled(register, "a clock that stops in sleep"));
+                }
+            }
             0x70 if self.backup_unlocked => return self.write_bdcr(value),
             0x70 => {
                 ctx.errors
@@ -244,13 +260,13 @@ impl Rcc {
             return Err(unmodelled(0x08, "SW = 3 (not allowed)"));
         }
         self.cfgr = value & 0x001F_FCF3;
-        self.follow_sw(ctx);
+        self.follow_sw();
         self.publish_frequencies(ctx);
         Ok(())
     }
 
     /// SYSCLK moves to the source asked for as soon as that one is ready.
-    fn follow_sw(&mut self, _ctx: &mut Ctx<'_>) {
+    fn follow_sw(&mut self) {
         let Some(wanted) = SystemClock::from_sw(self.cfgr) else {
             return;
         };
@@ -285,7 +301,6 @@ impl Rcc {
 
     fn publish_enables(&self, clocks: &mut ClockTree) {
         clocks.ahb1enr = self.enables[0];
-        clocks.ahb2enr = self.enables[1];
         clocks.apb1enr = self.enables[4];
         clocks.apb2enr = self.enables[5];
     }
@@ -350,7 +365,7 @@ impl Peripheral for Rcc {
         }
         *self.register_of(oscillator) |= oscillator.bits().1;
         ctx.clocks.lsi_on = self.csr & csr::LSIRDY != 0;
-        self.follow_sw(ctx);
+        self.follow_sw();
         self.publish_frequencies(ctx);
     }
 

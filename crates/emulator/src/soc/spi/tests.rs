@@ -84,6 +84,17 @@ fn dma_requests_follow_txe_and_rxne() {
 }
 
 #[test]
+fn a_frame_written_over_another_is_said_aloud() {
+    let (mut bench, mut spi) = ready();
+    for byte in [1, 2] {
+        bench.write(&mut spi, DR, byte);
+    }
+    assert_eq!(bench.error_texts(), Vec::<&str>::new());
+    bench.write(&mut spi, DR, 3);
+    assert!(bench.error_texts()[0].starts_with("SPI1: DR written while TXE is 0"));
+}
+
+#[test]
 fn an_unmuxed_clock_pin_leaves_the_sensor_silent() {
     let (mut bench, mut spi) = ready();
     bench.pins.set_mode(Pin::new('B', 3), PinMode::Alternate(0));

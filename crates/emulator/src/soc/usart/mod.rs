@@ -231,6 +231,13 @@ impl Usart {
     }
 
     fn write_dr(&mut self, ctx: &mut Ctx<'_>) {
+        if self.waiting_to_send {
+            let message = format!(
+                "USART{}: DR written while TXE is 0: the character waiting there is lost",
+                self.number
+            );
+            ctx.errors.report(ctx.now, message);
+        }
         self.sr &= !(sr::TXE | self.shown & sr::TC);
         self.shown &= !sr::TC;
         self.waiting_to_send = true;

@@ -119,6 +119,28 @@ fn the_radio_at_8e2_gives_framing_errors_at_8n1_and_says_why() {
 }
 
 #[test]
+fn the_radio_at_even_parity_gives_parity_errors_at_odd_parity_and_says_why() {
+    // PS.
+    let (mut bench, mut usart) = configured(UE_RE | NINE_BITS_EVEN | 1 << 9, TWO_STOP);
+    bench.run(&mut usart, 10 * MS);
+    // PE without FE.
+    assert_eq!(bench.read(&mut usart, SR) & 3, 1);
+    let expected = "USART3: sender sends 100000 8E2, receiver is set to 100000 8O2";
+    assert!(bench.error_texts().iter().any(|e| e.starts_with(expected)));
+}
+
+#[test]
+fn a_character_written_over_another_is_said_aloud() {
+    let (mut bench, mut usart) = configured(1 << 13 | 1 << 3, 0);
+    for byte in [1, 2] {
+        bench.write(&mut usart, DR, byte);
+    }
+    assert_eq!(bench.error_texts(), Vec::<&str>::new());
+    bench.write(&mut usart, DR, 3);
+    assert!(bench.error_texts()[0].starts_with("USART3: DR written while TXE is 0"));
+}
+
+#[test]
 fn the_radio_arrives_whole_where_the_framing_fits() {
     let (mut bench, mut usart) = configured(UE_RE | NINE_BITS_EVEN, TWO_STOP);
     let mut bytes = Vec::new();

@@ -82,6 +82,39 @@ fn a_reset_bit_brings_back_the_reset_values() {
 }
 
 #[test]
+fn a_block_held_in_reset_is_deaf_and_named() {
+    let mut bench = Bench::new();
+    bench.set_bits(APB1ENR, 1);
+    // TIM2RST set and never cleared.
+    bench.set_bits(RCC + 0x20, 1);
+    let tim2_psc = 0x4000_0028;
+    bench.write(tim2_psc, 83);
+    assert_eq!(bench.read(tim2_psc), 0);
+    assert!(bench.has_error("TIM2: registers written while RCC holds it in reset"));
+}
+
+#[test]
+fn a_prescaler_that_overclocks_a_bus_is_named() {
+    let mut bench = Bench::new();
+    bench.clock_up();
+    // APB1 at /2 instead of /4.
+    bench.write(RCC + 0x08, 0b10 | 0b100 << 10 | 0b100 << 13);
+    assert!(bench.has_error("PCLK1 is 84000000 Hz, more than the 42 MHz allowed"));
+}
+
+#[test]
+fn stopping_a_clock_in_sleep_is_refused() {
+    let mut bench = Bench::new();
+    let (apb1lpenr, now) = (RCC + 0x60, bench.now);
+    assert_eq!(bench.read(apb1lpenr), 0x36FE_C9FF);
+    let error = bench
+        .soc
+        .write(apb1lpenr, 4, 0x36FE_C9FE, now, &mut bench.ram)
+        .unwrap_err();
+    assert_eq!(error.register, "RCC.APB1LPENR");
+}
+
+#[test]
 fn reset_flags_tell_the_cause_until_removed() {
     let mut bench = Bench::new();
     let csr = RCC + 0x74;

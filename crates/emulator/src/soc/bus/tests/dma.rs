@@ -114,6 +114,19 @@ fn the_wrong_channel_is_named() {
 }
 
 #[test]
+fn fifo_mode_is_refused() {
+    let mut bench = radio();
+    // FCR.DMDIS.
+    bench.write(S1CR + 0x14, 1 << 2);
+    let now = bench.now;
+    let error = bench
+        .soc
+        .write(S1CR, 4, RECEIVE, now, &mut bench.ram)
+        .unwrap_err();
+    assert_eq!(error.to_string(), "DMA1.S1CR: FIFO mode is not modelled");
+}
+
+#[test]
 fn a_stream_that_was_never_enabled_is_named() {
     let mut bench = radio();
     bench.run_for(20 * MS);

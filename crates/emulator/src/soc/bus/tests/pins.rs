@@ -34,6 +34,19 @@ fn setting_wins_over_resetting_in_bsrr() {
 }
 
 #[test]
+fn an_open_drain_output_pulls_down_and_lets_go() {
+    let mut bench = ports_on();
+    let pa4 = Pin::new('A', 4);
+    bench.write(GPIOA + 0x04, 1 << 4);
+    bench.write(GPIOA, 0b01 << 8 | 0xA800_0000);
+    assert!(!bench.soc.pins.level(pa4));
+    bench.write(GPIOA + 0x18, 1 << 4);
+    assert!(bench.soc.pins.level(pa4));
+    bench.soc.pins.set_external(pa4, false);
+    assert!(!bench.soc.pins.level(pa4));
+}
+
+#[test]
 fn alternate_functions_reach_the_pin() {
     let mut bench = ports_on();
     bench.write(GPIOA, 0b10 << 14 | 0xA800_0000);
