@@ -9,6 +9,7 @@ const PERIOD_US: u32 = 1_000;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(C)]
 pub struct TickStats {
+    /// Ticks since boot; wraps.
     pub count: u32,
     /// Since the tick before.
     pub dt_us: u32,
@@ -21,8 +22,9 @@ pub struct TickStats {
 }
 
 impl TickStats {
+    /// Time that runs backwards counts as standing still.
     pub fn tick(&mut self, now_us: u64) {
-        if self.count > 0 {
+        if self.ts_us > 0 {
             self.dt_us = age_us(self.ts_us, now_us);
             self.jitter_us = self.dt_us.abs_diff(PERIOD_US);
             self.max_jitter_us = self.max_jitter_us.max(self.jitter_us);

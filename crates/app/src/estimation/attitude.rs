@@ -45,7 +45,7 @@ impl AttitudeFilter {
         self.rate_rps = vector::sub(gyro_rps, self.bias.bias_rps());
         self.gyro_turned = self
             .gyro_turned
-            .then_after(step_rotation(self.rate_rps, dt_s))
+            .after(step_rotation(self.rate_rps, dt_s))
             .normalised();
         let rest_rate = self.rest.feed(gyro_rps, accel_mps2, MAX_BIAS_RPS);
         let Some(level_accel) = self.correct_inclination(accel_mps2) else {
@@ -82,7 +82,7 @@ impl AttitudeFilter {
                 z: 0.0,
             }
         };
-        self.inclination = correction.then_after(self.inclination).normalised();
+        self.inclination = correction.after(self.inclination).normalised();
         Some(level)
     }
 
@@ -95,8 +95,8 @@ impl AttitudeFilter {
     pub fn orientation(&self, ahead_s: f32) -> Quaternion {
         self.heading
             .turn()
-            .then_after(self.level())
-            .then_after(step_rotation(self.rate_rps, ahead_s))
+            .after(self.level())
+            .after(step_rotation(self.rate_rps, ahead_s))
     }
 
     pub const fn bias_rps(&self) -> Vector3 {
@@ -117,7 +117,7 @@ impl AttitudeFilter {
     }
 
     fn level(&self) -> Quaternion {
-        self.inclination.then_after(self.gyro_turned)
+        self.inclination.after(self.gyro_turned)
     }
 }
 

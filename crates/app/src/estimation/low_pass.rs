@@ -30,9 +30,9 @@ struct Channel {
 }
 
 impl<const N: usize> LowPass<N> {
-    /// `time_constant_s` as in the VQF paper: cut-off at √2/(2π·τ); at least a few samples long.
+    /// `time_constant_s` as in the VQF paper: cut-off at √2/(2π·τ); at least 2.4 samples long.
     pub fn new(time_constant_s: f32, sample_s: f32) -> Self {
-        // tan(x) for x ≤ 0.2 by its series.
+        // tan(x) by its series, to 3e-5 of itself for x ≤ 0.3.
         let x = SQRT_2 / time_constant_s * sample_s / 2.0;
         let x2 = x * x;
         let g = x * (1.0 + x2 / 3.0 * (1.0 + x2 * 0.4));

@@ -41,10 +41,10 @@ impl Quaternion {
         }
     }
 
-    /// First `right`, then `self`.
+    /// `first`, then `self`: the quaternion product self · first.
     #[must_use]
-    pub fn then_after(self, right: Self) -> Self {
-        let (a, b) = (self, right);
+    pub fn after(self, first: Self) -> Self {
+        let (a, b) = (self, first);
         Self {
             w: a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z,
             x: a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
@@ -87,7 +87,8 @@ impl Quaternion {
         ]
     }
 
-    /// Roll, pitch, yaw (rotations about x, then y, then z of the fixed frame).
+    /// Roll, pitch, yaw: rotations about x, then y, then z of the fixed frame; ±π, ±π/2, ±π. Near a pitch of ±π/2 only
+    /// the difference of roll and yaw means anything.
     pub fn roll_pitch_yaw(self) -> Vector3 {
         let Self { w, x, y, z } = self;
         let roll = scalar::atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y));
@@ -121,7 +122,7 @@ mod tests {
         let step = Quaternion::from_small_rotation([0.0, 0.0, core::f32::consts::TAU / 1000.0]);
         let mut q = Quaternion::IDENTITY;
         for _ in 0..1000 {
-            q = q.then_after(step).normalised();
+            q = q.after(step).normalised();
         }
         assert!((q.w.abs() - 1.0).abs() < 1e-6 && q.z.abs() < 1e-4);
     }

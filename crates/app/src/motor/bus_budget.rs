@@ -1,5 +1,6 @@
 //! Worst-case load of each bus, checked when this crate is compiled.
 
+use super::WHEEL_BUS;
 use crate::domain::BusId;
 
 /// Standard frame of eight bytes with every possible stuff bit and the pause after it.
@@ -15,16 +16,16 @@ struct Traffic {
 const TRAFFIC: [Traffic; 3] = [
     // 0x200: wheel currents, once a tick.
     Traffic {
-        bus: BusId::Can1,
+        bus: WHEEL_BUS,
         frames_per_second: 1_000,
     },
     // 0x201, 0x202: wheel feedback at the C620's own rate.
     Traffic {
-        bus: BusId::Can1,
+        bus: WHEEL_BUS,
         frames_per_second: 1_000,
     },
     Traffic {
-        bus: BusId::Can1,
+        bus: WHEEL_BUS,
         frames_per_second: 1_000,
     },
 ];

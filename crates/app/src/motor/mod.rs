@@ -5,5 +5,5 @@ pub mod m3508;
 mod manager;
 mod safe_frames;
 
-pub use manager::{MotorManager, WHEEL_BUS};
+pub(crate) use manager::{MotorManager, WHEEL_BUS};
 pub use safe_frames::safe_frames;

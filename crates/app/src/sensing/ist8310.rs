@@ -83,12 +83,12 @@ pub const INIT: &[InitStep] = &[
 
 /// Counts as read, in the sensor's own left-handed frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct MagRaw {
-    pub counts: [i16; 3],
+pub(super) struct MagRaw {
+    counts: [i16; 3],
 }
 
 /// `None` if the status says that nothing new was measured, or the answer has all bits alike.
-pub fn decode(answer: &[u8; READ_LEN]) -> Option<MagRaw> {
+pub(super) fn decode(answer: &[u8; READ_LEN]) -> Option<MagRaw> {
     let [status, x0, x1, y0, y1, z0, z1] = *answer;
     if status & DATA_READY == 0 || status == 0xFF {
         return None;

@@ -1,7 +1,7 @@
 //! Sensor registers → calibrated samples; how to bring the sensors up, as data that a driver walks.
 
 pub mod bmi088;
-pub mod calibration;
+mod calibration;
 mod imu_pipeline;
 pub mod ist8310;
 mod mag_pipeline;

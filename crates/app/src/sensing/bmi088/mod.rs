@@ -6,4 +6,5 @@ mod decode;
 mod registers;
 
 pub use bring_up::{INIT, InitCheck, InitStep, SpiTarget, read_command, write_command};
-pub use decode::{ACCEL_READ, AccelRaw, GYRO_READ, GyroRaw, decode_accel, decode_gyro};
+pub use decode::{ACCEL_READ, GYRO_READ};
+pub(super) use decode::{AccelRaw, GyroRaw, decode_accel, decode_gyro};

@@ -2,7 +2,7 @@
 
 mod startup_gyro_bias;
 
-pub use startup_gyro_bias::StartupGyroBias;
+pub(super) use startup_gyro_bias::StartupGyroBias;
 
 use crate::math::{Vector3, vector};
 
