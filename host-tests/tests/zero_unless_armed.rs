@@ -150,7 +150,7 @@ impl Rules {
         }
         if remote_fresh {
             self.cycled = operator.enabled && self.seen_off;
-            self.seen_off |= !operator.enabled;
+            self.seen_off |= operator.disabled;
         }
         self.cycled
             && !stopped
@@ -267,6 +267,7 @@ fn remote_update(phase: &Phase, now_us: u64) -> RemoteUpdate {
         },
         operator: OperatorState {
             enabled: phase.enabled,
+            disabled: !phase.enabled,
             e_stop: phase.e_stop,
             mode: 0,
             ts_us: now_us,

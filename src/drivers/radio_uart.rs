@@ -1,7 +1,7 @@
 //! The receiver input: USART3, receive only, by circular DMA with an idle-line interrupt.
 //!
 //! The HAL's ring-buffered receiver stops on every line error and throws the buffer away; a radio link has
-//! errors all day. Here an error is counted and reception goes on.
+//! errors all day. Here an error spoils the bytes it came with, and reception goes on.
 
 use core::future::poll_fn;
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -97,6 +97,17 @@ impl<I: Interrupt> Handler<I> for RadioInterrupt {
 /// The receiver's byte stream.
 pub struct RadioUart {
     ring: ReadableRingBuffer<'static, u8>,
+    /// Errors that spoilt a burst already.
+    reported: LineErrors,
+}
+
+/// What arrived since the last read.
+pub enum Burst<'a> {
+    Clean(&'a [u8]),
+    /// The UART flagged a character of this burst or lost one.
+    Damaged {
+        count: usize,
+    },
 }
 
 impl RadioUart {
@@ -124,20 +135,42 @@ impl RadioUart {
         configure(uart, clock_hz, format);
         ring.start();
         uart.cr1().modify(|w| w.set_re(true));
-        Self { ring }
+        Self {
+            ring,
+            reported: RADIO_LINE.errors(),
+        }
     }
 
     /// Waits for bytes: until the line falls idle, or half of the ring is full.
-    pub async fn read(&mut self, bytes: &mut [u8]) -> usize {
+    pub async fn read<'a>(&mut self, bytes: &'a mut [u8]) -> Burst<'a> {
         loop {
             self.wait().await;
-            match self.ring.read(bytes) {
-                Ok((0, _)) => {}
-                Ok((count, _)) => return count,
-                // Overwritten before it was read: the HAL has emptied the ring, the parser resynchronises.
-                Err(_) => increment(&RADIO_LINE.overrun),
+            let (mut count, mut left) = self.read_ring(bytes);
+            // Only after the bytes: the interrupt preempts this task, so the error of a byte in the ring is counted.
+            let errors = RADIO_LINE.errors();
+            if errors != self.reported {
+                self.reported = errors;
+                // The flagged one may be among those that found no room.
+                while left > 0 {
+                    let (more, rest) = self.read_ring(bytes);
+                    count = count.saturating_add(more);
+                    left = rest;
+                }
+                return Burst::Damaged { count };
+            }
+            if count > 0 {
+                return Burst::Clean(bytes.get(..count).unwrap_or_default());
             }
         }
+    }
+
+    /// How many bytes were read and how many are left.
+    fn read_ring(&mut self, bytes: &mut [u8]) -> (usize, usize) {
+        self.ring.read(bytes).unwrap_or_else(|_| {
+            // Overwritten before it was read; the HAL has emptied the ring.
+            increment(&RADIO_LINE.overrun);
+            (0, 0)
+        })
     }
 
     async fn wait(&mut self) {

@@ -6,7 +6,7 @@ use robot_app::input::{RemoteFormat, RemoteMapping, RemoteReceiver};
 use robot_snapshot::Writer;
 
 use crate::deadlines::Watched;
-use crate::drivers::radio_uart::RadioUart;
+use crate::drivers::radio_uart::{Burst, RadioUart};
 
 /// Silence is no error here (its age speaks for itself), but the task must show that it lives.
 const CHECK_IN_PERIOD: Duration = Duration::from_millis(10);
@@ -20,10 +20,14 @@ pub async fn run(
     let mut receiver = RemoteReceiver::new(format, RemoteMapping::default());
     let mut bytes = [0; 64];
     loop {
-        if let Ok(count) = with_timeout(CHECK_IN_PERIOD, uart.read(&mut bytes)).await {
-            let arrived = bytes.get(..count).unwrap_or(&bytes);
+        if let Ok(burst) = with_timeout(CHECK_IN_PERIOD, uart.read(&mut bytes)).await {
             let ts_us = Instant::now().as_micros();
-            receiver.feed(arrived, ts_us, |update| output.publish(&update));
+            match burst {
+                Burst::Clean(arrived) => {
+                    receiver.feed(arrived, ts_us, |update| output.publish(&update));
+                }
+                Burst::Damaged { count } => receiver.reject(count, ts_us),
+            }
         }
         Watched::Sbus.check_in();
     }

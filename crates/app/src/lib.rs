@@ -17,7 +17,8 @@
 //! | [`tick`] | the 1 kHz tick: all stages from CAN frames in to CAN frames out |
 //!
 //! # How the firmware uses it
-//! - sbus task: `input::RemoteReceiver::feed(bytes, ts_us, |update| publish)`.
+//! - sbus task: `input::RemoteReceiver::feed(bytes, ts_us, |update| publish)`, or `reject` if the UART flagged one of
+//!   the bytes.
 //! - sensor task: walk `sensing::bmi088::INIT` and `sensing::ist8310::INIT`; then every 5 ms transfer
 //!   `bmi088::ACCEL_READ`/`GYRO_READ` and hand both answers to `sensing::ImuPipeline::process`; every 20 ms write
 //!   `ist8310::START_SINGLE_SHOT`, wait `ist8310::MEASUREMENT_US`, read `ist8310::READ_LEN` bytes from

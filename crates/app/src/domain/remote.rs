@@ -21,6 +21,8 @@ pub struct RemoteState {
 #[repr(C)]
 pub struct OperatorState {
     pub enabled: bool,
+    /// The enable switch is off beyond doubt; never together with `enabled`. Neither of the two: not known for sure.
+    pub disabled: bool,
     pub e_stop: bool,
     /// Three-position switch: 0, 1, 2.
     pub mode: u8,
@@ -32,6 +34,7 @@ impl Default for OperatorState {
     fn default() -> Self {
         Self {
             enabled: false,
+            disabled: false,
             e_stop: true,
             mode: 0,
             ts_us: 0,
@@ -45,7 +48,8 @@ impl Default for OperatorState {
 pub struct RemoteDiagnostics {
     /// Frames a second on the wire, smoothed.
     pub frame_rate_hz: f32,
-    /// Fraction of the last 64 frames without the frame-lost flag; frames before the first count as good.
+    /// Fraction of the last 64 frames that came whole and without the frame-lost flag, at the last accepted one; frames
+    /// before the first count as good.
     pub quality: f32,
     /// Accepted frames, with or without the frame-lost flag.
     pub frames: u32,
@@ -53,6 +57,8 @@ pub struct RemoteDiagnostics {
     pub lost_frames: u32,
     /// Bytes that belonged to no accepted frame.
     pub discarded_bytes: u32,
+    /// Bursts of bytes dropped because the UART flagged one of them (parity, framing, noise, overrun).
+    pub damaged_bursts: u32,
     /// The receiver itself says that the radio is gone.
     pub failsafe: bool,
     /// Age of the last frame that came over the air; `u32::MAX` before the first.

@@ -5,7 +5,7 @@
 
 use super::channels;
 
-const FRAME_LEN: usize = 18;
+pub(super) const FRAME_LEN: usize = 18;
 /// 11 bit at 100 kbaud.
 const BYTE_US: u64 = 110;
 /// Longer silence than any inside a frame, shorter than the 12 ms between frames.
@@ -139,6 +139,15 @@ impl DbusParser {
             // Whatever follows without silence is not a frame.
             self.overrun = true;
         }
+    }
+
+    /// As [`feed`](Self::feed) for `count` bytes of which the line damaged at least one: they and whatever comes before
+    /// the next silence are dropped.
+    pub fn reject(&mut self, count: usize, ts_us: u64) {
+        self.drop_window();
+        self.discarded_bytes = self.discarded_bytes.wrapping_add(count as u32);
+        self.overrun = true;
+        self.last_byte_us = Some(ts_us);
     }
 
     fn notice_silence(&mut self, arrived: usize, ts_us: u64) {

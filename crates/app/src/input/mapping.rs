@@ -61,8 +61,10 @@ pub(super) fn from_sbus(
         channels,
         ts_us,
     };
+    let enabled = mapping.enable.of(&channels) > SWITCH_THRESHOLD;
     let operator = OperatorState {
-        enabled: mapping.enable.of(&channels) > SWITCH_THRESHOLD,
+        enabled,
+        disabled: !enabled,
         e_stop: mapping.e_stop.of(&channels) > -SWITCH_THRESHOLD,
         mode: match mapping.mode.of(&channels) {
             low if low < -SWITCH_THRESHOLD => 0,
@@ -91,8 +93,10 @@ pub(super) fn from_dbus(frame: &DbusFrame, ts_us: u64) -> (RemoteState, Operator
         channels,
         ts_us,
     };
+    let enabled = frame.right_switch == DbusSwitch::Up;
     let operator = OperatorState {
-        enabled: frame.right_switch == DbusSwitch::Up,
+        enabled,
+        disabled: !enabled,
         e_stop: frame.right_switch == DbusSwitch::Down,
         mode: match frame.left_switch {
             DbusSwitch::Up => 0,

@@ -1,6 +1,7 @@
 //! Radio bytes → sticks, switches and link quality.
 
 mod channels;
+mod confirmation;
 mod dbus;
 mod mapping;
 mod receiver;

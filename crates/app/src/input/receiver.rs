@@ -1,6 +1,8 @@
 //! Either radio format behind one interface, with the quality of the link.
 
-use super::{DbusParser, RemoteMapping, SbusParser, mapping};
+use super::{
+    DbusParser, RemoteMapping, SbusParser, confirmation::Confirmation, dbus, mapping, sbus,
+};
 use crate::domain::{OperatorState, RemoteDiagnostics, RemoteState, RemoteUpdate, age_us};
 
 /// Which receiver is plugged into the DBUS connector.
@@ -55,14 +57,31 @@ impl RemoteReceiver {
                     };
                     sink(link.accept(state, operator, flags, ts_us));
                 });
-                link.diagnostics.discarded_bytes = parser.discarded_bytes();
+                link.weigh_discarded(parser.discarded_bytes(), sbus::FRAME_LEN);
             }
             Parser::Dbus(parser) => {
                 parser.feed(bytes, ts_us, |frame| {
                     let (state, operator) = mapping::from_dbus(&frame, ts_us);
                     sink(link.accept(state, operator, LinkFlags::default(), ts_us));
                 });
-                link.diagnostics.discarded_bytes = parser.discarded_bytes();
+                link.weigh_discarded(parser.discarded_bytes(), dbus::FRAME_LEN);
+            }
+        }
+    }
+
+    /// Instead of [`feed`](Self::feed) for `count` bytes among which the UART flagged a parity, framing, noise or
+    /// overrun error: no frame with any of them is accepted.
+    pub fn reject(&mut self, count: usize, ts_us: u64) {
+        let link = &mut self.link;
+        link.diagnostics.damaged_bursts = link.diagnostics.damaged_bursts.wrapping_add(1);
+        match &mut self.parser {
+            Parser::Sbus(parser) => {
+                parser.reject(count, ts_us);
+                link.weigh_discarded(parser.discarded_bytes(), sbus::FRAME_LEN);
+            }
+            Parser::Dbus(parser) => {
+                parser.reject(count, ts_us);
+                link.weigh_discarded(parser.discarded_bytes(), dbus::FRAME_LEN);
             }
         }
     }
@@ -80,8 +99,11 @@ struct Link {
     diagnostics: RemoteDiagnostics,
     state: RemoteState,
     operator: OperatorState,
+    confirmation: Confirmation,
     /// One bit a frame, newest lowest, 1 = lost.
     lost_history: u64,
+    /// Discarded bytes that are in the history.
+    weighed_bytes: u32,
 }
 
 impl Link {
@@ -100,7 +122,8 @@ impl Link {
         diagnostics.frames = diagnostics.frames.wrapping_add(1);
         diagnostics.failsafe = flags.failsafe;
         diagnostics.frame_ts_us = ts_us;
-        self.lost_history = self.lost_history << 1 | u64::from(flags.lost);
+        self.remember(flags.lost);
+        let diagnostics = &mut self.diagnostics;
         let good = 64u32.saturating_sub(self.lost_history.count_ones());
         diagnostics.quality = good as f32 / 64.0;
         if flags.lost {
@@ -109,8 +132,7 @@ impl Link {
         // In lost and failsafe frames the receiver repeats or invents values.
         if !flags.lost && !flags.failsafe {
             diagnostics.good_ts_us = ts_us;
-            self.state = state;
-            self.operator = operator;
+            (self.state, self.operator) = self.confirmation.confirm(state, operator);
         }
         diagnostics.age_us = age_us(diagnostics.good_ts_us, ts_us);
         RemoteUpdate {
@@ -118,6 +140,20 @@ impl Link {
             operator: self.operator,
             diagnostics: *diagnostics,
         }
+    }
+
+    /// Bytes outside of frames are frames that were damaged or cut: each frame's length of them counts as one lost.
+    fn weigh_discarded(&mut self, discarded_bytes: u32, frame_len: usize) {
+        self.diagnostics.discarded_bytes = discarded_bytes;
+        let frame_len = frame_len as u32;
+        while discarded_bytes.wrapping_sub(self.weighed_bytes) >= frame_len {
+            self.weighed_bytes = self.weighed_bytes.wrapping_add(frame_len);
+            self.remember(true);
+        }
+    }
+
+    fn remember(&mut self, lost: bool) {
+        self.lost_history = self.lost_history << 1 | u64::from(lost);
     }
 
     fn update_rate(&mut self, ts_us: u64) {
@@ -132,5 +168,133 @@ impl Link {
         } else {
             diagnostics.frame_rate_hz + Self::RATE_GAIN * (rate_hz - diagnostics.frame_rate_hz)
         };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// All channels 992, no flags (hardware.md section 12).
+    const SBUS_CENTRED: [u8; 25] = [
+        0x0F, 0xE0, 0x03, 0x1F, 0xF8, 0xC0, 0x07, 0x3E, 0xF0, 0x81, 0x0F, 0x7C, 0xE0, 0x03, 0x1F,
+        0xF8, 0xC0, 0x07, 0x3E, 0xF0, 0x81, 0x0F, 0x7C, 0x00, 0x00,
+    ];
+    /// Sticks 1024, switches in the middle (hardware.md section 12).
+    const DBUS_CENTRED: [u8; 18] = [
+        0x00, 0x04, 0x20, 0x00, 0x01, 0xF8, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0x00, 0x04,
+    ];
+
+    struct Bench {
+        receiver: RemoteReceiver,
+        frame: &'static [u8],
+        character_us: u64,
+        now_us: u64,
+        updates: Vec<RemoteUpdate>,
+    }
+
+    impl Bench {
+        fn sbus() -> Self {
+            Self::new(RemoteFormat::Sbus, &SBUS_CENTRED, 120)
+        }
+
+        fn dbus() -> Self {
+            Self::new(RemoteFormat::Dbus, &DBUS_CENTRED, 110)
+        }
+
+        fn new(format: RemoteFormat, frame: &'static [u8], character_us: u64) -> Self {
+            Self {
+                receiver: RemoteReceiver::new(format, RemoteMapping::default()),
+                frame,
+                character_us,
+                now_us: 1_000_000,
+                updates: Vec::new(),
+            }
+        }
+
+        /// The bytes from `from` to `to` of a frame as one burst.
+        fn burst(&mut self, from: usize, to: usize, damaged: bool) {
+            self.now_us += (to - from) as u64 * self.character_us;
+            if damaged {
+                self.receiver.reject(to - from, self.now_us);
+            } else {
+                let updates = &mut self.updates;
+                let bytes = &self.frame[from..to];
+                self.receiver
+                    .feed(bytes, self.now_us, |update| updates.push(update));
+            }
+        }
+
+        fn frame(&mut self, damaged: bool) {
+            self.now_us += 4_000;
+            self.burst(0, self.frame.len(), damaged);
+        }
+    }
+
+    #[test]
+    fn a_damaged_frame_is_dropped_and_the_next_one_is_not() {
+        for mut bench in [Bench::sbus(), Bench::dbus()] {
+            bench.frame(false);
+            bench.frame(true);
+            assert_eq!(bench.updates.len(), 1);
+            bench.frame(false);
+            assert_eq!(bench.updates.len(), 2);
+            assert_eq!(bench.updates[1].diagnostics.damaged_bursts, 1);
+        }
+    }
+
+    /// Wherever the line splits a frame and whichever part is damaged.
+    #[test]
+    fn half_a_damaged_frame_spoils_the_other_half() {
+        for make in [Bench::sbus, Bench::dbus] {
+            let len = make().frame.len();
+            for cut in 1..len {
+                for first_damaged in [true, false] {
+                    let mut bench = make();
+                    bench.frame(false);
+                    bench.now_us += 4_000;
+                    bench.burst(0, cut, first_damaged);
+                    bench.burst(cut, len, !first_damaged);
+                    assert_eq!(bench.updates.len(), 1, "cut at {cut}");
+                    bench.frame(false);
+                    assert_eq!(bench.updates.len(), 2, "cut at {cut}");
+                }
+            }
+        }
+    }
+
+    /// Frames right behind each other: no silence tells where one starts.
+    #[test]
+    fn without_silence_sbus_is_back_at_the_second_frame() {
+        let mut bench = Bench::sbus();
+        bench.frame(false);
+        bench.burst(0, 25, true);
+        bench.burst(0, 25, false);
+        assert_eq!(bench.updates.len(), 1);
+        bench.burst(0, 25, false);
+        assert_eq!(bench.updates.len(), 2);
+    }
+
+    #[test]
+    fn damaged_and_cut_frames_count_as_lost() {
+        let mut bench = Bench::sbus();
+        for _ in 0..64 {
+            bench.frame(false);
+        }
+        assert_eq!(bench.updates[63].diagnostics.quality, 1.0);
+        for _ in 0..16 {
+            bench.frame(true);
+        }
+        bench.frame(false);
+        assert_eq!(bench.updates[64].diagnostics.quality, 48.0 / 64.0);
+        // Twenty-five frames cut to 24 bytes make 24 frames' length of discarded bytes.
+        for _ in 0..25 {
+            bench.now_us += 4_000;
+            bench.burst(0, 24, false);
+        }
+        bench.frame(false);
+        bench.frame(false);
+        let quality = bench.updates[66].diagnostics.quality;
+        assert_eq!(quality, (64.0 - 16.0 - 24.0) / 64.0);
     }
 }

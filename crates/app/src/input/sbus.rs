@@ -7,7 +7,7 @@
 
 use super::channels;
 
-const FRAME_LEN: usize = 25;
+pub(super) const FRAME_LEN: usize = 25;
 const HEADER: u8 = 0x0F;
 /// 12 bit at 100 kbaud.
 const BYTE_US: u64 = 120;
@@ -95,6 +95,15 @@ impl SbusParser {
                 sink(frame);
             }
         }
+        self.last_byte_us = Some(ts_us);
+    }
+
+    /// As [`feed`](Self::feed) for `count` bytes of which the line damaged at least one: they and the frame begun
+    /// before them are dropped.
+    pub fn reject(&mut self, count: usize, ts_us: u64) {
+        self.discard(self.filled);
+        self.discarded_bytes = self.discarded_bytes.wrapping_add(count as u32);
+        self.aligned = false;
         self.last_byte_us = Some(ts_us);
     }
 

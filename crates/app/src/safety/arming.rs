@@ -143,7 +143,7 @@ impl Arming {
         now_us: u64,
     ) -> (ArmingStatus, Option<ArmedToken>) {
         let fresh = inputs.remote_age_us <= self.config.remote_timeout_us;
-        self.follow_switch(fresh, inputs.operator.enabled, now_us);
+        self.follow_switch(fresh, inputs.operator, now_us);
         let mut blockers = self.blockers(fresh, inputs);
         match self.state {
             ArmingState::Disarmed => {
@@ -178,20 +178,24 @@ impl Arming {
     }
 
     /// Only a fresh remote moves the switch: old values are no sign of the pilot's will.
-    fn follow_switch(&mut self, fresh: bool, enabled: bool, now_us: u64) {
+    fn follow_switch(&mut self, fresh: bool, operator: &OperatorState, now_us: u64) {
         if !fresh {
             return;
         }
-        self.request = match (self.request, enabled) {
-            (_, false) => Request::Ready,
+        if operator.disabled {
+            self.request = Request::Ready;
+            return;
+        }
+        self.request = match (self.request, operator.enabled) {
             (Request::Ready, true) => Request::Asked { since_us: now_us },
+            (Request::Asked { .. }, false) => Request::MustGoOff,
             (Request::Asked { since_us }, true)
                 if self.state == ArmingState::Disarmed
                     && now_us.saturating_sub(since_us) > u64::from(self.config.arm_request_us) =>
             {
                 Request::MustGoOff
             }
-            (request, true) => request,
+            (request, _) => request,
         };
     }
 
@@ -233,6 +237,7 @@ mod tests {
         arming: Arming,
         now_us: u64,
         enabled: bool,
+        disabled: bool,
         calibrated: bool,
         safety: SafetyStatus,
     }
@@ -243,12 +248,17 @@ mod tests {
                 arming: Arming::new(SafetyConfig::default()),
                 now_us: 1_000_000,
                 enabled: false,
+                disabled: true,
                 calibrated: true,
                 safety: SafetyStatus {
                     verdict: SafetyVerdict::Run,
                     ..SafetyStatus::default()
                 },
             }
+        }
+
+        fn flip_on(&mut self) {
+            (self.enabled, self.disabled) = (true, false);
         }
 
         fn run(&mut self, milliseconds: u64) -> ArmingStatus {
@@ -260,6 +270,7 @@ mod tests {
                     remote_age_us: 5_000,
                     operator: &OperatorState {
                         enabled: self.enabled,
+                        disabled: self.disabled,
                         e_stop: false,
                         ..OperatorState::default()
                     },
@@ -279,7 +290,7 @@ mod tests {
     fn off_then_on_arms_at_once() {
         let mut bench = Bench::new();
         assert_eq!(bench.run(1).blockers, ArmingBlockers::ENABLE_OFF);
-        bench.enabled = true;
+        bench.flip_on();
         assert_eq!(bench.run(1).state, ArmingState::Armed);
     }
 
@@ -288,7 +299,7 @@ mod tests {
         let mut bench = Bench::new();
         bench.calibrated = false;
         bench.run(1);
-        bench.enabled = true;
+        bench.flip_on();
         assert_eq!(
             bench.run(2_000).blockers,
             ArmingBlockers::CALIBRATION_PENDING
@@ -299,7 +310,7 @@ mod tests {
         let mut late = Bench::new();
         late.calibrated = false;
         late.run(1);
-        late.enabled = true;
+        late.flip_on();
         late.run(3_100);
         late.calibrated = true;
         assert_eq!(late.run(1).blockers, ArmingBlockers::ENABLE_NOT_CYCLED);
@@ -310,7 +321,7 @@ mod tests {
         let mut bench = Bench::new();
         bench.safety.verdict = SafetyVerdict::BusStop;
         bench.run(1);
-        bench.enabled = true;
+        bench.flip_on();
         assert_eq!(bench.run(1).blockers, ArmingBlockers::SAFETY_STOP);
         bench.safety.verdict = SafetyVerdict::Run;
         assert_eq!(bench.run(1).state, ArmingState::Armed);
@@ -318,5 +329,21 @@ mod tests {
         assert_eq!(bench.run(10).state, ArmingState::Armed);
         bench.safety.verdict = SafetyVerdict::GlobalStop;
         assert_eq!(bench.run(1).state, ArmingState::Disarmed);
+    }
+
+    #[test]
+    fn a_moment_of_doubt_disarms_and_is_no_flip_of_the_switch() {
+        let mut bench = Bench::new();
+        bench.run(1);
+        bench.flip_on();
+        assert_eq!(bench.run(1).state, ArmingState::Armed);
+        bench.enabled = false;
+        assert_eq!(bench.run(1).blockers, ArmingBlockers::ENABLE_OFF);
+        bench.enabled = true;
+        assert_eq!(bench.run(10).blockers, ArmingBlockers::ENABLE_NOT_CYCLED);
+        (bench.enabled, bench.disabled) = (false, true);
+        bench.run(1);
+        bench.flip_on();
+        assert_eq!(bench.run(1).state, ArmingState::Armed);
     }
 }
