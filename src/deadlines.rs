@@ -1,11 +1,12 @@
-//! Every task checks in; the control tick feeds the watchdog only while all of them met their deadline.
+//! Every task checks in; while one is late the control tick stops the robot and starves the watchdog.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
 use embassy_time::{Duration, Instant, Timer};
+use robot_app::domain::LateTasks;
 
 /// Tasks below the control tick.
-#[derive(Clone, Copy, PartialEq, Eq, defmt::Format)]
+#[derive(Clone, Copy)]
 pub enum Watched {
     Imu,
     Mag,
@@ -36,6 +37,12 @@ impl Watched {
     pub fn check_in(self) {
         self.last_check_in().store(now_us(), Ordering::Relaxed);
     }
+
+    fn is_late(self, now_us: u32) -> bool {
+        let age_us = now_us.wrapping_sub(self.last_check_in().load(Ordering::Relaxed));
+        // A check-in may come after `now_us` was read, so that its time lies just ahead.
+        (DEADLINE_US..u32::MAX / 2).contains(&age_us)
+    }
 }
 
 /// Every watched task runs at least each 10 ms. With the watchdog's longest period this gives a reset within 60 ms.
@@ -48,14 +55,16 @@ pub fn start() {
     }
 }
 
-/// A task that missed its deadline, if there is one.
-pub fn missed() -> Option<Watched> {
+/// The tasks that missed their deadline.
+pub fn late_tasks() -> LateTasks {
     let now_us = now_us();
-    Watched::ALL.into_iter().find(|task| {
-        let age_us = now_us.wrapping_sub(task.last_check_in().load(Ordering::Relaxed));
-        // A check-in may come between the two reads, so that its time lies just ahead of `now_us`.
-        (DEADLINE_US..u32::MAX / 2).contains(&age_us)
-    })
+    LateTasks {
+        imu: Watched::Imu.is_late(now_us),
+        mag: Watched::Mag.is_late(now_us),
+        sbus: Watched::Sbus.is_late(now_us),
+        logic: Watched::Logic.is_late(now_us),
+        status: Watched::Status.is_late(now_us),
+    }
 }
 
 /// Sleeps in steps short enough for the deadline.

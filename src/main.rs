@@ -22,11 +22,13 @@ mod exchange;
 mod executors;
 mod fault;
 mod isr_cell;
+mod last_words;
 mod tasks;
 
 use defmt_rtt as _;
 use embassy_executor::{Executor, Spawner};
 use embassy_time::{Duration, Instant};
+use robot_app::domain::{LastWords, ResetCause};
 use robot_app::motor;
 use static_cell::StaticCell;
 
@@ -40,14 +42,25 @@ use tasks::control::ControlContext;
 /// A bus is idle for 11 bits within one frame time of at most 0.14 ms; a dead bus must not stop the boot.
 const CAN_JOIN_TIMEOUT: Duration = Duration::from_millis(1);
 
+/// How the run before this one ended.
+#[derive(Clone, Copy)]
+pub struct LastRun {
+    pub reset_cause: ResetCause,
+    pub last_words: LastWords,
+}
+
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    let reset_cause = reset_cause::take();
+    let last_run = LastRun {
+        reset_cause: reset_cause::take(),
+        // SAFETY: nothing else runs yet.
+        last_words: unsafe { last_words::take() },
+    };
     let peripherals = embassy_stm32::init(board::clocks());
     let board = Board::start(peripherals, config::REMOTE_FORMAT);
     let mut ports = [board.can1, board.can2];
     send_zero_torque(&mut ports);
-    defmt::info!("boot, reset cause {}", reset_cause);
+    log_boot(last_run);
 
     let exchange = Exchange::init();
     let writers = defmt::unwrap!(exchange.take_writers());
@@ -56,7 +69,7 @@ fn main() -> ! {
         exchange,
         ports,
         Watchdog::start(board.iwdg),
-        reset_cause,
+        last_run,
         writers.diagnostics,
     );
 
@@ -85,6 +98,20 @@ fn main() -> ! {
                 writers.battery_v
             )));
         })
+}
+
+fn log_boot(last_run: LastRun) {
+    let LastRun {
+        reset_cause,
+        last_words,
+    } = last_run;
+    match (reset_cause, last_words) {
+        (ResetCause::IndependentWatchdog, LastWords::Silent) => {
+            defmt::error!("boot, reset by watchdog: the control tick hung");
+        }
+        (cause, LastWords::Silent) => defmt::info!("boot, reset cause {}", cause),
+        (cause, words) => defmt::error!("boot, reset cause {}: {}", cause, words),
+    }
 }
 
 /// Motors that were left turning by whatever happened before stop before anything else starts.

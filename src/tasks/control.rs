@@ -3,15 +3,15 @@
 use embassy_time::{Duration, Instant, Ticker};
 use robot_app::control::UserController;
 use robot_app::diagnostics::DiagnosticsSnapshot;
-use robot_app::domain::{ResetCause, SystemHealth};
+use robot_app::domain::{LateTasks, SystemHealth};
 use robot_app::tick::{ControlConfig, ControlInputs, ControlLoop};
 use robot_snapshot::Writer;
 
-use crate::deadlines;
 use crate::debugger_view::g_robotapp_diag;
 use crate::drivers::can::CanPort;
 use crate::drivers::watchdog::Watchdog;
 use crate::exchange::Exchange;
+use crate::{LastRun, deadlines, last_words};
 
 const PERIOD: Duration = Duration::from_hz(1_000);
 /// Diagnostics go to the status task every tenth tick.
@@ -22,7 +22,8 @@ pub struct ControlContext {
     exchange: &'static Exchange,
     ports: [CanPort; 2],
     watchdog: Watchdog,
-    reset_cause: ResetCause,
+    last_run: LastRun,
+    late_tasks: LateTasks,
     control_loop: ControlLoop<UserController>,
     diagnostics: Writer<'static, DiagnosticsSnapshot>,
 }
@@ -32,14 +33,15 @@ impl ControlContext {
         exchange: &'static Exchange,
         ports: [CanPort; 2],
         watchdog: Watchdog,
-        reset_cause: ResetCause,
+        last_run: LastRun,
         diagnostics: Writer<'static, DiagnosticsSnapshot>,
     ) -> Self {
         Self {
             exchange,
             ports,
             watchdog,
-            reset_cause,
+            last_run,
+            late_tasks: LateTasks::default(),
             control_loop: ControlLoop::new(ControlConfig::default(), UserController::default()),
             diagnostics,
         }
@@ -64,7 +66,8 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
         exchange,
         ports,
         watchdog,
-        reset_cause,
+        last_run,
+        late_tasks,
         control_loop,
         diagnostics,
     } = context;
@@ -75,6 +78,8 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
         port.drain(|frame, ts_us| control_loop.on_can_frame(bus, frame, ts_us));
     }
 
+    note_late_tasks(late_tasks);
+
     let imu = exchange.imu.latest();
     let mag = exchange.mag.latest();
     let remote = exchange.remote.latest();
@@ -84,7 +89,9 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
         imu: imu.health,
         mag: mag.health,
         imu_calibrated: imu.calibrated,
-        reset_cause: *reset_cause,
+        late_tasks: *late_tasks,
+        reset_cause: last_run.reset_cause,
+        last_words: last_run.last_words,
         battery_v: exchange.battery_v.latest(),
     };
     let inputs = ControlInputs {
@@ -112,7 +119,21 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
     {
         diagnostics.publish(outputs.diagnostics);
     }
-    if deadlines::missed().is_none() {
+    if !late_tasks.any() {
         watchdog.feed();
+    }
+}
+
+/// A late task stops the robot in this tick. It is logged from here, because the status task may be the late one.
+fn note_late_tasks(noted: &mut LateTasks) {
+    let late = deadlines::late_tasks();
+    if late == *noted {
+        return;
+    }
+    *noted = late;
+    // SAFETY: called by the control tick alone.
+    unsafe { last_words::leave(late.last_words()) };
+    if late.any() {
+        defmt::error!("{}, waiting for the watchdog", late.last_words());
     }
 }

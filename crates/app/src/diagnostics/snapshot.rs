@@ -3,8 +3,8 @@
 use super::TickStats;
 use crate::{
     domain::{
-        BusHealth, ChassisCommand, ImuState, MagState, MotorFeedback, OperatorState,
-        RemoteDiagnostics, RemoteState, ResetCause, SensorHealth, StateEstimate,
+        BusHealth, ChassisCommand, ImuState, LastWords, LateTasks, MagState, MotorFeedback,
+        OperatorState, RemoteDiagnostics, RemoteState, ResetCause, SensorHealth, StateEstimate,
     },
     logic::LogicBus,
     safety::{ArmingStatus, SafetyStatus},
@@ -33,6 +33,9 @@ pub struct DiagnosticsSnapshot {
     pub mag_health: SensorHealth,
     pub imu_calibrated: bool,
     pub tick: TickStats,
+    pub late_tasks: LateTasks,
     pub reset_cause: ResetCause,
+    /// Of the run before this one.
+    pub last_words: LastWords,
     pub battery_v: f32,
 }

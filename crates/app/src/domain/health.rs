@@ -1,5 +1,7 @@
 //! What the platform knows about its parts: filled by the firmware, judged by `safety`.
 
+use super::{LastWords, LateTasks};
+
 /// Fault confinement state of a CAN controller (ISO 11898-1).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -69,7 +71,10 @@ pub struct SystemHealth {
     pub mag: SensorHealth,
     /// Start-up gyro calibration finished.
     pub imu_calibrated: bool,
+    pub late_tasks: LateTasks,
     pub reset_cause: ResetCause,
+    /// Of the run before this one.
+    pub last_words: LastWords,
     /// 0 while not measured.
     pub battery_v: f32,
 }

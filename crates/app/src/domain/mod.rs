@@ -5,6 +5,7 @@ mod command;
 mod config;
 mod estimate;
 mod health;
+mod last_words;
 mod remote;
 mod sensors;
 
@@ -15,6 +16,7 @@ pub use config::{
 };
 pub use estimate::StateEstimate;
 pub use health::{BusErrorState, BusHealth, ResetCause, SensorHealth, SystemHealth};
+pub use last_words::{LastWords, LateTasks};
 pub use remote::{OperatorState, RemoteDiagnostics, RemoteState, RemoteUpdate};
 pub use sensors::{ImuState, MagState, MotorFeedback, SensorsSnapshot, WheelFeedback};
 

@@ -29,6 +29,8 @@ impl SafetyFlags {
     pub const WHEEL_RIGHT_SILENT: Self = Self(1 << 13);
     /// Neither kind of command on the logic bus is fresh.
     pub const COMMAND_STALE: Self = Self(1 << 14);
+    /// A task below the control tick missed its deadline; the watchdog will reset the chip unless it comes back.
+    pub const TASK_LATE: Self = Self(1 << 15);
 
     /// Any of these stops every actuator.
     pub const GLOBAL_STOP: Self = Self(
@@ -39,10 +41,11 @@ impl SafetyFlags {
             | Self::ESTIMATE_INVALID.0
             | Self::IMU_STALE.0
             | Self::IMU_ERRORS.0
-            | Self::MAG_ERRORS.0,
+            | Self::MAG_ERRORS.0
+            | Self::TASK_LATE.0,
     );
 
-    const NAMES: [(Self, &'static str); 15] = [
+    const NAMES: [(Self, &'static str); 16] = [
         (Self::REMOTE_LOST, "remote-lost"),
         (Self::REMOTE_FAILSAFE, "remote-failsafe"),
         (Self::REMOTE_QUALITY, "remote-quality"),
@@ -58,6 +61,7 @@ impl SafetyFlags {
         (Self::WHEEL_LEFT_SILENT, "wheel-left-silent"),
         (Self::WHEEL_RIGHT_SILENT, "wheel-right-silent"),
         (Self::COMMAND_STALE, "command-stale"),
+        (Self::TASK_LATE, "task-late"),
     ];
 
     pub const fn bits(self) -> u32 {

@@ -108,6 +108,7 @@ impl SafetyPolicy {
             SafetyFlags::COMMAND_STALE,
             age_us(inputs.command_ts_us, now_us) > self.config.command_timeout_us,
         );
+        flags.set(SafetyFlags::TASK_LATE, inputs.health.late_tasks.any());
         self.flags_seen = self.flags_seen.and(flags);
         self.conclude(flags)
     }
@@ -252,6 +253,13 @@ mod tests {
         for status in [imu, mag] {
             assert!(BusId::ALL.iter().all(|bus| status.stops(*bus)));
         }
+    }
+
+    #[test]
+    fn a_late_task_stops_everything() {
+        let late = judge(|health, _| health.late_tasks.status = true);
+        assert_eq!(late.flags, SafetyFlags::TASK_LATE);
+        assert_eq!(late.verdict, SafetyVerdict::GlobalStop);
     }
 
     #[test]

@@ -193,7 +193,9 @@ impl<C: ChassisController> ControlLoop<C> {
         diagnostics.mag_health = health.mag;
         diagnostics.imu_calibrated = health.imu_calibrated;
         diagnostics.tick = self.tick;
+        diagnostics.late_tasks = health.late_tasks;
         diagnostics.reset_cause = health.reset_cause;
+        diagnostics.last_words = health.last_words;
         diagnostics.battery_v = health.battery_v;
     }
 }

@@ -1,0 +1,45 @@
+//! Memory that survives a reset: a dying run tells the next one why.
+
+use core::cell::UnsafeCell;
+
+use robot_app::domain::LastWords;
+
+/// Written by the control tick and the fault handlers, read and cleared at boot.
+struct Slot(UnsafeCell<[u32; 2]>);
+
+// SAFETY: `leave` and `take` say in their contracts that no two accesses overlap.
+unsafe impl Sync for Slot {}
+
+/// Start-up code leaves `.uninit` alone; after power-on it holds noise.
+#[unsafe(link_section = ".uninit.last_words")]
+static SLOT: Slot = Slot(UnsafeCell::new([0; 2]));
+
+/// Upper 24 bits of a valid word; its complement follows, so that noise hardly passes.
+const MARK: u32 = 0x4C57_A500;
+
+/// # Safety
+/// Only the control tick, or a fault handler with all interrupts disabled, may call this.
+pub unsafe fn leave(words: LastWords) {
+    let word = MARK | u32::from(words.code());
+    // SAFETY: a static; the contract forbids concurrent access. Volatile, because nothing in this run reads it.
+    unsafe { SLOT.0.get().write_volatile([word, !word]) };
+}
+
+/// Reads the words of the run before and clears them.
+///
+/// # Safety
+/// Only `main` may call this, before any task runs.
+pub unsafe fn take() -> LastWords {
+    // SAFETY: a static; the contract forbids concurrent access. Volatile, because its initial value is not what the
+    // memory holds.
+    let [word, complement] = unsafe { SLOT.0.get().read_volatile() };
+    // SAFETY: as above.
+    unsafe { SLOT.0.get().write_volatile([0; 2]) };
+    let [code, mark @ ..] = word.to_le_bytes();
+    let [_, expected_mark @ ..] = MARK.to_le_bytes();
+    if word == !complement && mark == expected_mark {
+        LastWords::from_code(code).unwrap_or_default()
+    } else {
+        LastWords::Silent
+    }
+}
