@@ -13,6 +13,7 @@ pub struct ChassisControllerInput<'a> {
     pub wheel_odom_cfg: &'a WheelOdomConfig,
     pub wheel_ctrl_cfg: &'a WheelControllerConfig,
     pub operator_state: &'a OperatorState,
+    /// From whoever is in command; not sure to be inside −1 … 1.
     pub hl_cmd: HighLevelCommand,
 }
 
@@ -23,8 +24,8 @@ pub struct ChassisControllerOutput {
     pub cmd_valid: bool,
 }
 
-/// A control algorithm, called at 1 kHz while a high-level command is valid. Whatever it returns is limited and may be
-/// cut to zero by the safety policy.
+/// A control algorithm, called at 1 kHz while the robot is armed and a high-level command is valid and fresh. Whatever
+/// it returns is limited and may be cut to zero by the safety policy.
 pub trait ChassisController {
     fn step(&mut self, input: &ChassisControllerInput<'_>) -> ChassisControllerOutput;
 }

@@ -10,7 +10,8 @@ pub struct HighLevelCommand {
     pub wz: f32,
 }
 
-/// Requested current of one wheel motor. Not yet limited: see [`MotorCurrent`].
+/// Current of one wheel motor in the motor's own sense (see `WheelFeedback`). As requested it may be anything, even NaN;
+/// only a [`MotorCurrent`] leaves the board.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct WheelCommand {

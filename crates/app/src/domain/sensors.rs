@@ -4,14 +4,15 @@
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct ImuState {
-    /// Specific force: +9.8 on z at rest.
+    /// Specific force: +9.8 on z at rest. ±118 (12 g) on each axis.
     pub accel_mps2: [f32; 3],
-    /// Offset taken out.
+    /// Offset taken out. ±2000 on each axis.
     pub gyro_dps: [f32; 3],
-    /// The offset that was taken out.
+    /// The offset that was taken out, before scaling.
     pub gyro_bias_dps: [f32; 3],
+    /// Of the accelerometer's die, renewed every 1.28 s; 0 before the first.
     pub temperature_c: f32,
-    /// 0 = no sample yet.
+    /// When it was read, 0 = no sample yet.
     pub ts_us: u64,
 }
 
@@ -19,8 +20,9 @@ pub struct ImuState {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct MagState {
+    /// At most 1600 on x and y, 2500 on z before calibration; the earth's field is 25 to 65 long.
     pub mag_ut: [f32; 3],
-    /// 0 = no sample yet.
+    /// When its measurement began, 0 = no sample yet.
     pub ts_us: u64,
 }
 
@@ -32,12 +34,12 @@ pub struct WheelFeedback {
     pub rotor_angle: u16,
     /// Rotor speed before the gear, right-hand rule about the outward shaft.
     pub rpm: i16,
-    /// Torque current.
+    /// Torque current, ±20,000; positive pushes towards positive `rpm`.
     pub current_ma: f32,
     pub temperature_c: u8,
-    /// `u32::MAX` before the first report.
+    /// Since `ts_us`; `u32::MAX` before the first report.
     pub age_us: u32,
-    /// 0 = no report yet.
+    /// When it was received, 0 = no report yet.
     pub ts_us: u64,
 }
 
@@ -59,6 +61,7 @@ impl Default for WheelFeedback {
 #[repr(C)]
 pub struct MotorFeedback {
     pub wheels: [WheelFeedback; 2],
+    /// Tick that the ages refer to; each wheel has its own time of report.
     pub ts_us: u64,
 }
 
@@ -69,5 +72,6 @@ pub struct SensorsSnapshot {
     pub imu: ImuState,
     pub mag: MagState,
     pub motor: MotorFeedback,
+    /// The tick; each part has its own time of measurement.
     pub ts_us: u64,
 }

@@ -41,3 +41,32 @@ impl MagPipeline {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By hand: 100, −200, 200 counts of 0.3 µT, raw y pointing right, are 30, 60, 60 µT in the body frame.
+    #[test]
+    fn the_field_is_calibrated_in_the_body_frame() {
+        let mut pipeline = MagPipeline::new(MagCalibration {
+            bias_ut: [10.0, 20.0, -40.0],
+            scale: [1.0, 2.0, 0.5],
+        });
+        let answer = [0x01, 0x64, 0x00, 0x38, 0xFF, 0xC8, 0x00];
+        let state = pipeline.process(&answer, 7).unwrap();
+        for (got, expected) in state.mag_ut.iter().zip([20.0, 80.0, 50.0]) {
+            assert!((got - expected).abs() < 1e-4, "{:?}", state.mag_ut);
+        }
+        assert_eq!(state.ts_us, 7);
+    }
+
+    #[test]
+    fn a_rejected_sample_is_named() {
+        let mut pipeline = MagPipeline::new(MagCalibration::default());
+        let stale = [0x00, 0x64, 0x00, 0x38, 0xFF, 0xC8, 0x00];
+        let far = [0x01, 0xFF, 0x7F, 0x00, 0x00, 0x00, 0x00];
+        assert_eq!(pipeline.process(&stale, 7), Err(MagSampleError::NotReady));
+        assert_eq!(pipeline.process(&far, 7), Err(MagSampleError::OutOfRange));
+    }
+}
