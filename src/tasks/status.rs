@@ -25,7 +25,7 @@ pub async fn run(
     mut battery: Battery,
     mut battery_v: Writer<'static, f32>,
 ) -> ! {
-    let mut changes = ChangeLog::new();
+    let mut changes = ChangeLog::default();
     let mut ticker = Ticker::every(PERIOD);
     let mut round: u32 = 0;
     loop {

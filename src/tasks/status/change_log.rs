@@ -1,6 +1,6 @@
-//! One log line for each change of state.
+//! Log lines for changes of state, at most four a second for each.
 
-use robot_app::diagnostics::DiagnosticsSnapshot;
+use robot_app::diagnostics::{ChangeNotice, DiagnosticsSnapshot};
 use robot_app::domain::{BusErrorState, BusId};
 use robot_app::safety::{ArmingBlockers, ArmingState, SafetyFlags};
 
@@ -10,40 +10,69 @@ use crate::exchange::RADIO_LINE;
 /// What was logged last.
 #[derive(Default)]
 pub struct ChangeLog {
-    armed: ArmingState,
-    blockers: ArmingBlockers,
-    flags: SafetyFlags,
-    buses: [BusErrorState; 2],
-    imu_ready: bool,
-    mag_ready: bool,
-    calibrated: bool,
-    line_errors: LineErrors,
-    ticks_missed: u32,
+    arming: ChangeNotice<ArmingState>,
+    blockers: ChangeNotice<ArmingBlockers>,
+    flags: ChangeNotice<SafetyFlags>,
+    buses: [ChangeNotice<BusErrorState>; 2],
+    imu_ready: ChangeNotice<bool>,
+    mag_ready: ChangeNotice<bool>,
+    calibrated: ChangeNotice<bool>,
+    line_errors: ChangeNotice<LineErrors>,
+    ticks_missed: ChangeNotice<u32>,
 }
 
 impl ChangeLog {
-    pub fn new() -> Self {
-        Self::default()
-    }
-
     pub fn report(&mut self, d: &DiagnosticsSnapshot) {
         self.report_arming(d);
         self.report_sensors(d);
-        for (bus, (last, now)) in BusId::ALL
-            .into_iter()
-            .zip(self.buses.iter_mut().zip(d.can.iter().map(|bus| bus.state)))
+        self.report_lines(d);
+        if let Some(missed) = self.ticks_missed.due(d.tick.missed, d.ts_us) {
+            defmt::warn!("control ticks missed since boot: {=u32}", missed);
+        }
+    }
+
+    fn report_arming(&mut self, d: &DiagnosticsSnapshot) {
+        match self.arming.due(d.arming.state, d.ts_us) {
+            Some(ArmingState::Armed) => defmt::info!("armed"),
+            Some(ArmingState::Disarmed) => defmt::warn!("disarmed: {}", d.arming.blockers),
+            None => {}
+        }
+        if d.arming.state == ArmingState::Disarmed
+            && let Some(blockers) = self.blockers.due(d.arming.blockers, d.ts_us)
         {
-            if changed(last, now) {
-                defmt::warn!("{} is now error-{}", bus, now);
+            defmt::info!("arming blocked by: {}", blockers);
+        }
+        if let Some(flags) = self.flags.due(d.safety.flags, d.ts_us) {
+            defmt::warn!("safety: {} -> {}", flags, d.safety.verdict);
+        }
+    }
+
+    fn report_sensors(&mut self, d: &DiagnosticsSnapshot) {
+        if let Some(ready) = self.imu_ready.due(d.imu_health.ready, d.ts_us) {
+            log_sensor("imu", ready, d.imu_health.errors);
+        }
+        if let Some(ready) = self.mag_ready.due(d.mag_health.ready, d.ts_us) {
+            log_sensor("magnetometer", ready, d.mag_health.errors);
+        }
+        if let Some(true) = self.calibrated.due(d.imu_calibrated, d.ts_us) {
+            let [x, y, z] = d.imu.gyro_bias_dps;
+            defmt::info!("gyro offset found: {=f32} {=f32} {=f32} dps", x, y, z);
+        }
+    }
+
+    fn report_lines(&mut self, d: &DiagnosticsSnapshot) {
+        for ((bus, notice), health) in BusId::ALL.into_iter().zip(&mut self.buses).zip(&d.can) {
+            if let Some(state) = notice.due(health.state, d.ts_us) {
+                defmt::warn!("{} is now error-{}", bus, state);
             }
         }
-        if changed(&mut self.line_errors, RADIO_LINE.errors()) {
+        if let Some(errors) = self.line_errors.due(RADIO_LINE.errors(), d.ts_us) {
             let LineErrors {
                 parity,
                 framing,
                 noise,
                 overrun,
-            } = self.line_errors;
+            } = errors;
             defmt::warn!(
                 "radio line errors since boot: parity {=u32}, framing {=u32}, noise {=u32}, overrun {=u32}",
                 parity,
@@ -51,37 +80,6 @@ impl ChangeLog {
                 noise,
                 overrun
             );
-        }
-        if changed(&mut self.ticks_missed, d.tick.missed) {
-            defmt::warn!("control ticks missed since boot: {=u32}", self.ticks_missed);
-        }
-    }
-
-    fn report_arming(&mut self, d: &DiagnosticsSnapshot) {
-        if changed(&mut self.armed, d.arming.state) {
-            match self.armed {
-                ArmingState::Armed => defmt::info!("armed"),
-                ArmingState::Disarmed => defmt::warn!("disarmed: {}", d.arming.blockers),
-            }
-        }
-        if changed(&mut self.blockers, d.arming.blockers) && self.armed == ArmingState::Disarmed {
-            defmt::info!("arming blocked by: {}", self.blockers);
-        }
-        if changed(&mut self.flags, d.safety.flags) {
-            defmt::warn!("safety: {} -> {}", self.flags, d.safety.verdict);
-        }
-    }
-
-    fn report_sensors(&mut self, d: &DiagnosticsSnapshot) {
-        if changed(&mut self.imu_ready, d.imu_health.ready) {
-            log_sensor("imu", self.imu_ready, d.imu_health.errors);
-        }
-        if changed(&mut self.mag_ready, d.mag_health.ready) {
-            log_sensor("magnetometer", self.mag_ready, d.mag_health.errors);
-        }
-        if changed(&mut self.calibrated, d.imu_calibrated) {
-            let [x, y, z] = d.imu.gyro_bias_dps;
-            defmt::info!("gyro offset found: {=f32} {=f32} {=f32} dps", x, y, z);
         }
     }
 }
@@ -92,13 +90,4 @@ fn log_sensor(name: &str, ready: bool, errors: u32) {
     } else {
         defmt::warn!("{=str} lost, {=u32} errors since boot", name, errors);
     }
-}
-
-/// Stores `now` and says whether it differs.
-fn changed<T: PartialEq>(last: &mut T, now: T) -> bool {
-    if *last == now {
-        return false;
-    }
-    *last = now;
-    true
 }

@@ -1,7 +1,9 @@
 //! The state of the whole robot in one place, for debugger, log and recordings.
 
+mod change_notice;
 mod snapshot;
 mod tick_stats;
 
+pub use change_notice::ChangeNotice;
 pub use snapshot::DiagnosticsSnapshot;
 pub use tick_stats::TickStats;
