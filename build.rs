@@ -1,4 +1,4 @@
-//! Puts `memory.x` where the linker looks for it.
+//! Puts `memory.x` where the linker looks for it, and builds anew for another receiver (`src/config.rs`).
 use std::{env, fs, path::PathBuf};
 
 fn main() {
@@ -6,4 +6,5 @@ fn main() {
     fs::copy("memory.x", out.join("memory.x")).expect("memory.x is copied into OUT_DIR");
     println!("cargo:rustc-link-search={}", out.display());
     println!("cargo:rerun-if-changed=memory.x");
+    println!("cargo:rerun-if-env-changed=ROBOT_REMOTE");
 }
