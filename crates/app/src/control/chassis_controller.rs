@@ -28,4 +28,8 @@ pub struct ChassisControllerOutput {
 /// it returns is limited and may be cut to zero by the safety policy.
 pub trait ChassisController {
     fn step(&mut self, input: &ChassisControllerInput<'_>) -> ChassisControllerOutput;
+
+    /// Forgets integrators and filters: called in every tick without [`step`](Self::step), so that a controller starts
+    /// each drive fresh and does not wind up against motors that are cut off.
+    fn reset(&mut self);
 }

@@ -26,6 +26,8 @@ impl ChassisController for DefaultController {
             cmd_valid: true,
         }
     }
+
+    fn reset(&mut self) {}
 }
 
 /// Ground speeds of the left and right wheel that give the wanted drive and turn.

@@ -1,7 +1,7 @@
 //! The place for your own control algorithm.
 //!
 //! Write it in `step`: read `input`, set `cmd.wheels[0]` (left) and `[1]` (right) in mA, set `cmd_valid`. State goes
-//! into the struct. As shipped it delegates to the default controller.
+//! into the struct, and `reset` brings it back to the start. As shipped it delegates to the default controller.
 
 use super::{
     ChassisController, ChassisControllerInput, ChassisControllerOutput, DefaultController,
@@ -15,5 +15,9 @@ pub struct UserController {
 impl ChassisController for UserController {
     fn step(&mut self, input: &ChassisControllerInput<'_>) -> ChassisControllerOutput {
         self.default.step(input)
+    }
+
+    fn reset(&mut self) {
+        self.default.reset();
     }
 }

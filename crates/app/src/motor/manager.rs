@@ -49,6 +49,11 @@ impl MotorManager {
         &self.feedback
     }
 
+    /// True if the permit lets any motor move.
+    pub fn may_move(permit: Option<&TorquePermit>) -> bool {
+        permit.is_some_and(|permit| permit.allows(WHEEL_BUS))
+    }
+
     /// The frame of this tick, and the currents that are in it. Without a permit for the wheels' bus they are exactly
     /// zero, and the frame is sent all the same: a speed controller may hold its last command.
     pub fn compose(
@@ -57,7 +62,7 @@ impl MotorManager {
         permit: Option<&TorquePermit>,
         limit_ma: f32,
     ) -> ((BusId, CanFrame), ChassisCommand) {
-        let permitted = permit.is_some_and(|permit| permit.allows(WHEEL_BUS));
+        let permitted = Self::may_move(permit);
         let [left, right] = command.wheels.map(|wheel| {
             if permitted {
                 MotorCurrent::clamped(wheel.current_ma, limit_ma)

@@ -6,9 +6,9 @@ use crate::{
     control::{ChassisController, ChassisControllerInput, UserController},
     diagnostics::{DiagnosticsSnapshot, TickStats},
     domain::{
-        BusId, CanFrame, ChassisCommand, ImuState, MagState, RemoteUpdate, SafetyConfig,
-        SensorsSnapshot, StateEstimate, SystemHealth, WheelControllerConfig, WheelOdomConfig,
-        age_us,
+        BusId, CanFrame, ChassisCommand, HighLevelCommand, ImuState, MagState, RemoteUpdate,
+        SafetyConfig, SensorsSnapshot, StateEstimate, SystemHealth, WheelControllerConfig,
+        WheelOdomConfig, age_us,
     },
     estimation::InsEstimator,
     logic::LogicBus,
@@ -42,6 +42,15 @@ pub struct ControlOutputs<'a> {
     pub sensors: &'a SensorsSnapshot,
     pub estimate: &'a StateEstimate,
     pub diagnostics: &'a DiagnosticsSnapshot,
+}
+
+/// Who decides the currents of this tick.
+enum Demand {
+    /// Nobody: no motor may move, or no command is fresh and valid.
+    Stop,
+    /// The logic bus, past the controller.
+    Direct(ChassisCommand),
+    Control(HighLevelCommand),
 }
 
 /// State of all stages of the tick. Same calls, same results, bit for bit.
@@ -138,11 +147,22 @@ impl<C: ChassisController> ControlLoop<C> {
         token.map(|token| TorquePermit::new(token, &diagnostics.safety))
     }
 
-    /// Without a permit no controller runs: one with memory must not wind up against a standing robot.
     fn act(&mut self, inputs: &ControlInputs<'_>, permit: Option<&TorquePermit>, now_us: u64) {
-        let wanted = match permit {
-            Some(_) => self.wanted_command(inputs, now_us),
-            None => ChassisCommand::default(),
+        let demand = if MotorManager::may_move(permit) {
+            self.demand(inputs.logic, now_us)
+        } else {
+            Demand::Stop
+        };
+        let wanted = match demand {
+            Demand::Control(hl_cmd) => self.control(inputs, hl_cmd),
+            Demand::Direct(command) => {
+                self.controller.reset();
+                command
+            }
+            Demand::Stop => {
+                self.controller.reset();
+                ChassisCommand::default()
+            }
         };
         let limit_ma = self.config.wheel_ctrl.current_limit_ma;
         let (frame, sent) = self.motors.compose(&wanted, permit, limit_ma);
@@ -152,24 +172,26 @@ impl<C: ChassisController> ControlLoop<C> {
         self.diagnostics.command = sent;
     }
 
-    fn wanted_command(&mut self, inputs: &ControlInputs<'_>, now_us: u64) -> ChassisCommand {
-        let logic = inputs.logic;
+    fn demand(&self, logic: &LogicBus, now_us: u64) -> Demand {
         if age_us(logic.ts_us, now_us) > self.config.safety.command_timeout_us {
-            return ChassisCommand::default();
+            Demand::Stop
+        } else if logic.cmd_valid {
+            Demand::Direct(logic.cmd)
+        } else if logic.hl_valid {
+            Demand::Control(logic.hl_cmd)
+        } else {
+            Demand::Stop
         }
-        if logic.cmd_valid {
-            return logic.cmd;
-        }
-        if !logic.hl_valid {
-            return ChassisCommand::default();
-        }
+    }
+
+    fn control(&mut self, inputs: &ControlInputs<'_>, hl_cmd: HighLevelCommand) -> ChassisCommand {
         let output = self.controller.step(&ChassisControllerInput {
             sensors: &self.sensors,
             estimate: &self.diagnostics.estimate,
             wheel_odom_cfg: &self.config.wheel_odom,
             wheel_ctrl_cfg: &self.config.wheel_ctrl,
             operator_state: &inputs.remote.operator,
-            hl_cmd: logic.hl_cmd,
+            hl_cmd,
         });
         if output.cmd_valid {
             output.cmd
