@@ -330,6 +330,9 @@ mod tests {
         assert!(!chip.address(0x0E, false, 400_000, MS));
         assert!(!chip.address(0x0F, false, 400_000, 60 * MS));
         assert_eq!(read::<1>(&mut chip, 0x00, 60 * MS), [0x10]);
+        assert!(!chip.address(0x0E, false, 400_001, 60 * MS));
+        assert!(chip.misuse(0x0E, 400_001).is_some());
+        assert_eq!(chip.misuse(0x0E, 400_000), None);
     }
 
     #[test]

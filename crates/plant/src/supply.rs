@@ -4,6 +4,7 @@
 const OPEN_CIRCUIT_V: f64 = 24.0;
 /// Under the 3.3 V a cell of a spent pack.
 const SPENT_V: f64 = 19.2;
+/// Pack and leads; assumed.
 const RESISTANCE_OHM: f64 = 0.05;
 /// 200 kΩ over 22 kΩ (hardware.md 1.2).
 const DIVIDER: f64 = 22.0 / 222.0;
@@ -28,7 +29,7 @@ impl Battery {
         self.spent = spent;
     }
 
-    /// Sags under the power the motors draw, W (negative while they brake).
+    /// Sags under the mechanical power of the motors, W (negative while they brake).
     pub(crate) fn load(&mut self, power_w: f64) {
         let open_v = if self.spent { SPENT_V } else { OPEN_CIRCUIT_V };
         self.terminal_v = open_v - RESISTANCE_OHM * power_w / open_v;

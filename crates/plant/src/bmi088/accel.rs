@@ -1,10 +1,13 @@
 //! Accelerometer die of the BMI088 (datasheet chapters 4.5 and 5.3).
 
-use super::{Die, MotionSource, low_pass::LowPass, quantise, sample_clock::SampleClock};
+use super::{
+    DATA_READY, Die, MotionSource, SOFTRESET, WRITE_GAP_NORMAL, WRITE_GAP_SUSPEND,
+    low_pass::LowPass, quantise, rate_of_steps_hz, sample_clock::SampleClock,
+};
 use crate::{
     random::Random,
-    time::{MS, Ps, SECOND, US},
-    world::{PHYSICS_STEP, STANDARD_GRAVITY_MPS2},
+    time::{MS, Ps, SECOND},
+    world::STANDARD_GRAVITY_MPS2,
 };
 
 mod register {
@@ -30,13 +33,9 @@ mod register {
 }
 
 const CHIP_ID: u8 = 0x1E;
-const SOFTRESET: u8 = 0xB6;
-const DATA_READY: u8 = 1 << 7;
 const SUSPEND: u8 = 0x03;
 const ACC_ENABLED: u8 = 0x04;
 const START_UP: Ps = MS;
-const WRITE_GAP_NORMAL: Ps = 2 * US;
-const WRITE_GAP_SUSPEND: Ps = 450 * US;
 /// 39.0625 µs a count.
 const SENSORTIME_LSB: Ps = SECOND / 25_600;
 const TEMPERATURE_PERIOD: Ps = 1_280 * MS;
@@ -45,7 +44,7 @@ const TEMPERATURE_PERIOD: Ps = 1_280 * MS;
 const NOISE_G_PER_SQRT_HZ: [f64; 3] = [160e-6, 160e-6, 190e-6];
 /// Zero-g offset ±20 mg typical, drawn evenly within.
 const OFFSET_G: f64 = 0.020;
-/// Excursion of the self test in g: both polarities together exceed the 1000/1000/500 mg the datasheet asks for.
+/// Excursion of the self test in g; its size is assumed: both polarities together exceed the 1000/1000/500 mg the datasheet asks for.
 const SELF_TEST_G: [f64; 3] = [0.7, 0.7, 0.4];
 
 pub(super) struct AccelDie {
@@ -273,10 +272,6 @@ impl Die for AccelDie {
     fn drives_miso(&self) -> bool {
         self.bus == Bus::Spi
     }
-}
-
-fn rate_of_steps_hz() -> f64 {
-    SECOND as f64 / PHYSICS_STEP as f64
 }
 
 /// Output rate and 3 dB bandwidth in Hz of an ACC_CONF value (hardware.md 4.3); none for a reserved code, which the

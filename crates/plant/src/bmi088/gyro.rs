@@ -1,10 +1,12 @@
 //! Gyroscope die of the BMI088 (datasheet chapters 4.6 and 5.5).
 
-use super::{Die, MotionSource, low_pass::LowPass, quantise, sample_clock::SampleClock};
+use super::{
+    DATA_READY, Die, MotionSource, SOFTRESET, WRITE_GAP_NORMAL, WRITE_GAP_SUSPEND,
+    low_pass::LowPass, quantise, rate_of_steps_hz, sample_clock::SampleClock,
+};
 use crate::{
     random::Random,
-    time::{MS, Ps, SECOND, US},
-    world::PHYSICS_STEP,
+    time::{MS, Ps},
 };
 
 mod register {
@@ -23,13 +25,9 @@ mod register {
 }
 
 const CHIP_ID: u8 = 0x0F;
-const SOFTRESET: u8 = 0xB6;
-const DATA_READY: u8 = 1 << 7;
 const SUSPEND: u8 = 0x80;
 const DEEP_SUSPEND: u8 = 0x20;
 const START_UP: Ps = 30 * MS;
-const WRITE_GAP_NORMAL: Ps = 2 * US;
-const WRITE_GAP_SUSPEND: Ps = 450 * US;
 /// The datasheet gives no duration; most drivers wait 10 ms or poll.
 const SELF_TEST_TIME: Ps = 10 * MS;
 
@@ -236,10 +234,6 @@ impl Die for GyroDie {
     fn drives_miso(&self) -> bool {
         true
     }
-}
-
-fn rate_of_steps_hz() -> f64 {
-    SECOND as f64 / PHYSICS_STEP as f64
 }
 
 /// Output rate and 3 dB bandwidth in Hz of a GYRO_BANDWIDTH value (hardware.md 4.3).

@@ -9,8 +9,8 @@ mod thermal;
 
 use crate::{
     random::{Random, Stream},
-    time::Ps,
-    world::SpiSelect,
+    time::{Ps, SECOND, US},
+    world::{PHYSICS_STEP, SpiSelect},
 };
 use accel::AccelDie;
 use gyro::GyroDie;
@@ -18,6 +18,14 @@ use thermal::Thermal;
 
 /// Fastest serial clock of both dies.
 const MAX_SCK_HZ: u32 = 10_000_000;
+
+/// Written to either die's SOFTRESET register it starts the die anew.
+const SOFTRESET: u8 = 0xB6;
+/// Of either die's status register.
+const DATA_READY: u8 = 1 << 7;
+/// Shortest time from one register write to the next (hardware.md 4.1).
+const WRITE_GAP_NORMAL: Ps = 2 * US;
+const WRITE_GAP_SUSPEND: Ps = 450 * US;
 
 /// What the package feels: specific force and angular rate in sensor axes.
 #[derive(Clone, Copy, Debug)]
@@ -216,6 +224,11 @@ impl Bmi088 {
         }
         miso
     }
+}
+
+/// How often the analogue chains advance.
+fn rate_of_steps_hz() -> f64 {
+    SECOND as f64 / PHYSICS_STEP as f64
 }
 
 /// Rounds to the nearest code and clips at the ends of an `i16`, as the converter does.

@@ -1,8 +1,5 @@
 use super::*;
-use crate::{
-    time::{MS, US},
-    world::{PHYSICS_STEP, physics_step_s},
-};
+use crate::{time::MS, world::physics_step_s};
 
 const SCK_HZ: u32 = 5_250_000;
 const LEVEL: Motion = Motion {
@@ -150,7 +147,21 @@ fn too_fast_a_clock_or_a_wrong_mode_gives_garbage() {
             })
             .collect();
         assert!(ids.iter().any(|&id| id != 0x0F));
+        assert_eq!(bench.imu.misuse(sck_hz, mode), None);
+        bench.imu.select(SpiSelect::Gyro, true, bench.now);
+        assert!(bench.imu.misuse(sck_hz, mode).is_some());
+        assert_eq!(bench.imu.misuse(SCK_HZ, 0), None);
+        bench.imu.select(SpiSelect::Gyro, false, bench.now);
     }
+}
+
+#[test]
+fn both_dies_selected_at_once_are_complained_of() {
+    let mut bench = Bench::configured(MotionSource::Physics);
+    bench.imu.select(SpiSelect::Gyro, true, bench.now);
+    bench.imu.select(SpiSelect::Accel, true, bench.now);
+    let complaint = bench.imu.misuse(SCK_HZ, 3);
+    assert!(complaint.is_some_and(|text| text.contains("both chip selects")));
 }
 
 #[test]

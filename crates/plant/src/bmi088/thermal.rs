@@ -1,11 +1,12 @@
 //! Temperature of the package on its heated copper island.
 
-/// Room and board without heater.
+/// Assumed room and board without heater.
 const AMBIENT_C: f64 = 30.0;
 /// Heater of the C board: 43 Ω on 5 V (hardware.md 1.2).
 const HEATER_W: f64 = 0.58;
 /// No source gives it: chosen so that full heat ends 25 K above the board.
 const KELVIN_PER_WATT: f64 = 43.0;
+/// An assumption too.
 const TIME_CONSTANT_S: f64 = 15.0;
 
 #[derive(Clone, Copy, Debug)]

@@ -11,7 +11,7 @@ use stand::Stand;
 pub(crate) const WHEEL_RADIUS_M: f64 = 0.06;
 /// Distance between the wheels in m.
 pub(crate) const TRACK_M: f64 = 0.42;
-/// Wheel with reflected rotor inertia, kg·m².
+/// Wheel with reflected rotor inertia, kg·m²: an assumption, published values spread widely (hardware.md 11).
 const WHEEL_INERTIA_KGM2: f64 = 0.0105;
 
 /// Torque of each motor on its wheel, right-hand about the body's y axis (positive drives forward).

@@ -5,20 +5,20 @@
 use super::{Pose, TRACK_M, WHEEL_INERTIA_KGM2, WHEEL_RADIUS_M, WheelTorques, turn_shaft};
 use crate::{bmi088::Motion, m3508::Friction, world::STANDARD_GRAVITY_MPS2};
 
-/// Robot with legs and wheels, kg.
+/// Robot with legs and wheels, kg (hardware.md 11).
 const MASS_KG: f64 = 9.0;
 /// About z: a 0.3 m square body of 7.5 kg and two wheels of 0.75 kg at half the track.
 const YAW_INERTIA_KGM2: f64 = 0.18;
-/// Rubber on a clean floor.
+/// Assumed: rubber on a clean floor.
 const GRIP: f64 = 0.8;
-/// Share of the grip used per unit of slip ratio: full grip at 10 % slip.
+/// Assumed share of the grip used per unit of slip ratio: full grip at 10 % slip.
 const SLIP_STIFFNESS: f64 = 10.0;
 /// Speed below which slip is counted against this instead, so that the slip ratio stays finite at rest.
 const SLIP_REFERENCE_MPS: f64 = 0.1;
-/// Rolling resistance per newton of load.
+/// Assumed rolling resistance per newton of load.
 const ROLLING_RESISTANCE: f64 = 0.015;
 const LOAD_N: f64 = MASS_KG * STANDARD_GRAVITY_MPS2 / 2.0;
-/// IMU relative to the middle of the axle, m: x forward, y left.
+/// Assumed place of the IMU relative to the middle of the axle, m: x forward, y left.
 const IMU_M: [f64; 2] = [0.05, 0.02];
 
 #[derive(Clone, Copy, Debug, Default)]

@@ -11,10 +11,11 @@ use crate::{
 const COMMAND_ID: u32 = 0x200;
 const FULL_SCALE_RAW: f64 = 16_384.0;
 const FULL_SCALE_A: f64 = 20.0;
+/// Time constant; no source gives it.
 const CURRENT_LOOP_S: f64 = 1e-3;
 const ENCODER_STEPS: f64 = 8_192.0;
 const FEEDBACK_PERIOD: Ps = SECOND / 1_000;
-/// The controllers start one after the other and each runs on its own crystal, 50 ppm at most off.
+/// Assumed: the controllers start one after the other and each runs on its own crystal, 50 ppm at most off.
 const STAGGER: Ps = 370 * US;
 const CRYSTAL_PPM: f64 = 50.0;
 

@@ -1,16 +1,17 @@
 //! Torque, friction and heat of the M3508 at its output shaft.
 
-/// N·m at the output shaft per ampere of torque current.
+/// N·m at the output shaft per ampere of torque current (hardware.md 7).
 const TORQUE_NM_PER_A: f64 = 0.3;
 /// Datasheet: 482 rpm and 0.78 A without load at 24 V.
 const NO_LOAD_RPS: f64 = 482.0 * std::f64::consts::TAU / 60.0;
 const NO_LOAD_A: f64 = 0.78;
 const RATED_V: f64 = 24.0;
-/// Datasheet phase resistance.
+/// An assumption from memory of the datasheet's phase resistance; no source at hand gives it. It bounds the current at
+/// high speed and heats the winding, nothing else.
 const RESISTANCE_OHM: f64 = 0.194;
 /// Back-EMF seen by the supply per output speed, so that 24 V end at the no-load point.
 const BACK_EMF_V_PER_RPS: f64 = (RATED_V - RESISTANCE_OHM * NO_LOAD_A) / NO_LOAD_RPS;
-/// Share of the no-load torque that is dry friction of gear and seals; the rest grows with speed.
+/// Assumed share of the no-load torque that is dry friction of gear and seals; the rest grows with speed.
 const DRY_SHARE: f64 = 0.6;
 const AMBIENT_C: f64 = 30.0;
 /// Winding to air; no source gives them: 10 A continuous ends near 90 °C.

@@ -3,7 +3,7 @@
 use super::{PHYSICS_STEP, World, physics_step_s};
 use crate::{attitude, bmi088::Motion, faults::Fault, m3508::M3508, radio::RadioFaults, time::Ps};
 
-/// Earth's field in ENU, µT: 22 north, 42 into the ground.
+/// Earth's field in ENU, µT: 22 north, 42 into the ground, as in the middle of Europe or China; declination left out.
 const EARTH_FIELD_UT: [f64; 3] = [0.0, 22.0, -42.0];
 /// Right-hand turn about the outward shaft against forward rolling: left, right.
 pub(super) const SHAFT_SIGN: [f64; 2] = [1.0, -1.0];
