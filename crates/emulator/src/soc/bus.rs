@@ -275,6 +275,9 @@ impl Soc {
         let reset = memory_map::reset_bit(block, offset);
         let why = if enables >> gate.bit & 1 == 0 {
             format!("RCC {} is 0", gate.name)
+        } else if gate.name == "APB1ENR.CAN2EN" && self.clocks.apb1enr >> 25 & 1 == 0 {
+            // The message memory and the filters are CAN1's (RM0090 32.3).
+            "RCC APB1ENR.CAN1EN is 0".to_owned()
         } else if reset.is_some_and(|bit| self.blocks.rcc.holds_in_reset(bit)) {
             "RCC holds it in reset".to_owned()
         } else {

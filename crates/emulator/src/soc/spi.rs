@@ -18,6 +18,8 @@ const IRQ: u8 = 35;
 mod cr1 {
     pub const MSTR: u32 = 1 << 2;
     pub const SPE: u32 = 1 << 6;
+    /// CPHA, CPOL, BR, LSBFIRST, DFF: not to be touched during a frame (RM0090 28.5.1).
+    pub const FRAME_SHAPE: u32 = 0x8BB;
     pub const LSBFIRST: u32 = 1 << 7;
     pub const SSI: u32 = 1 << 8;
     pub const SSM: u32 = 1 << 9;
@@ -175,6 +177,12 @@ impl Spi {
         }
         if std::mem::take(&mut self.modf_shown) {
             self.flags &= !sr::MODF;
+        }
+        if self.shifting.is_some() && (self.cr1 ^ value) & cr1::FRAME_SHAPE != 0 {
+            ctx.errors.report(
+                ctx.now,
+                "SPI1: clock or frame settings changed in the middle of a frame",
+            );
         }
         if self.shifting.is_some() && value & cr1::SPE == 0 {
             self.shifting = None;

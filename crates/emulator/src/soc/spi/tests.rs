@@ -95,6 +95,14 @@ fn a_frame_written_over_another_is_said_aloud() {
 }
 
 #[test]
+fn a_new_rate_in_the_middle_of_a_frame_is_said_aloud() {
+    let (mut bench, mut spi) = ready();
+    bench.write(&mut spi, DR, 1);
+    bench.write(&mut spi, CR1, MODE_3_MASTER ^ 1 << 3);
+    assert!(bench.error_texts()[0].contains("in the middle of a frame"));
+}
+
+#[test]
 fn an_unmuxed_clock_pin_leaves_the_sensor_silent() {
     let (mut bench, mut spi) = ready();
     bench.pins.set_mode(Pin::new('B', 3), PinMode::Alternate(0));

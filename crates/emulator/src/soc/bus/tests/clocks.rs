@@ -67,7 +67,10 @@ fn the_two_can_controllers_are_gated_each_by_its_bit() {
     // MCR of CAN2.
     bench.write(0x4000_6800, 1);
     assert!(bench.has_error("CAN2: registers written while RCC APB1ENR.CAN2EN is 0"));
-    assert!(!bench.has_error("CAN1"));
+    assert!(!bench.has_error("CAN1:"));
+    bench.write(APB1ENR, 1 << 26);
+    bench.write(0x4000_6800, 1);
+    assert!(bench.has_error("CAN2: registers written while RCC APB1ENR.CAN1EN is 0"));
 }
 
 #[test]
