@@ -17,6 +17,7 @@ use crate::{
 };
 
 mod diagnostics;
+pub mod faults;
 mod log;
 mod rtt;
 mod stack;
@@ -129,6 +130,11 @@ impl Machine {
         self.cpu.with_soc(|soc, _| soc.add_patch(patch));
     }
 
+    /// When a fault of the machine last struck.
+    pub fn fault_struck_at(&self) -> Option<Ps> {
+        self.cpu.struck_at()
+    }
+
     /// Runs on until `until`; a block of code may carry it a fraction of a microsecond past it.
     pub fn run_until(&mut self, until: Ps) -> Result<(), MachineError> {
         while self.cpu.now() < until {
@@ -205,6 +211,10 @@ impl Machine {
             resets: self.resets.clone(),
             can: [0, 1].map(|bus| self.can_stats(bus)).to_vec(),
         }
+    }
+
+    pub fn resets(&self) -> usize {
+        self.resets.len()
     }
 
     fn can_stats(&self, bus: usize) -> CanStats {

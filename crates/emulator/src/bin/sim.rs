@@ -11,6 +11,7 @@ use robot_emulator::{
     machine::RegisterPatch,
     sim::{
         board::Board,
+        faults,
         job::Job,
         run_signals::RunSignals,
         scenario::Scenario,
@@ -18,7 +19,7 @@ use robot_emulator::{
         terminal::{LogLevel, Terminal},
     },
 };
-use robot_plant::{time, world::World};
+use robot_plant::{time, world::CanBusId};
 
 /// Boot the firmware in an emulated RoboMaster C board wired to a simulated robot.
 #[derive(Parser)]
@@ -38,6 +39,12 @@ struct Args {
     /// Play a recorded trial (.json beside its .f32.gz) through the sensor models.
     #[arg(long, value_name = "TRIAL.json")]
     imu: Option<PathBuf>,
+    /// CAN1 as a LAWICEL (slcan) adapter on a pseudo-terminal; implies --realtime, and the run is not reproducible.
+    #[arg(long, value_enum, value_name = "pty")]
+    can1: Option<CanOutside>,
+    /// CAN2 likewise.
+    #[arg(long, value_enum, value_name = "pty")]
+    can2: Option<CanOutside>,
     /// Not faster than real time.
     #[arg(long)]
     realtime: bool,
@@ -58,6 +65,13 @@ struct Args {
     patch: Vec<RegisterPatch>,
 }
 
+/// Where the frames of a bus go beside the simulated robot.
+#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum CanOutside {
+    /// A pseudo-terminal.
+    Pty,
+}
+
 const DRIVE: &str = include_str!("../../../../scenarios/drive.toml");
 
 /// What `--imu` runs without a scenario: nobody touches the radio.
@@ -66,7 +80,7 @@ const REPLAY: &str = "name = \"replay\"\nseconds = 10\nplant = \"stand\"\n";
 fn main() -> anyhow::Result<ExitCode> {
     let args = Args::parse();
     if args.list_faults {
-        for fault in World::faults() {
+        for fault in faults::all() {
             println!("{:<20} {}", fault.name, fault.what);
         }
         return Ok(ExitCode::SUCCESS);
@@ -75,7 +89,11 @@ fn main() -> anyhow::Result<ExitCode> {
     if args.list_signals {
         return list_signals(&job);
     }
-    let mut terminal = Terminal::new(job.scenario.length, args.log, args.realtime);
+    let realtime = args.realtime || !job.can_on_pty.is_empty();
+    if realtime && !args.realtime {
+        println!("a PC takes part: real time, and not reproducible");
+    }
+    let mut terminal = Terminal::new(job.scenario.length, args.log, realtime);
     let outcome = job.run_into(&args.out, &mut terminal)?;
     terminal.conclude(&outcome);
     Ok(if outcome.summary.ok {
@@ -83,6 +101,14 @@ fn main() -> anyhow::Result<ExitCode> {
     } else {
         ExitCode::FAILURE
     })
+}
+
+impl Args {
+    fn can_on_pty(&self) -> Vec<CanBusId> {
+        let buses = [(self.can1, CanBusId::Can1), (self.can2, CanBusId::Can2)];
+        let outside = buses.into_iter().filter(|(place, _)| place.is_some());
+        outside.map(|(_, bus)| bus).collect()
+    }
 }
 
 fn job(args: &Args) -> anyhow::Result<Job> {
@@ -119,6 +145,7 @@ fn job(args: &Args) -> anyhow::Result<Job> {
         scenario,
         imu_trial: args.imu.clone(),
         patches: args.patch.clone(),
+        can_on_pty: args.can_on_pty(),
     })
 }
 

@@ -24,12 +24,15 @@ use crate::{
 mod block_costs;
 mod context;
 mod hooks;
+mod sabotage;
 mod sleep;
 #[cfg(test)]
 mod tests;
 
 use block_costs::BlockCosts;
 use hooks::with_soc;
+use sabotage::Saboteur;
+pub use sabotage::{Harm, Sabotage};
 use sleep::SleepKind;
 
 /// Why `Cpu::run` came back.
@@ -61,6 +64,9 @@ enum Stop {
     Reset(ResetCause),
     Unmodelled(Unmodelled),
     Engine(String),
+    Sabotaged(Sabotage),
+    /// The function at this address may go on after all.
+    Released(u32),
 }
 
 /// The block of code being run.
@@ -93,6 +99,9 @@ pub struct State {
     stop: Option<Stop>,
     /// Entry of the function whose calls are counted as control ticks.
     tick_entry: Option<u32>,
+    saboteur: Saboteur,
+    /// When sabotage last struck.
+    struck_at: Option<Ps>,
 }
 
 /// CPU, memories and chip.
@@ -124,6 +133,8 @@ impl Cpu {
             event: false,
             stop: None,
             tick_entry,
+            saboteur: Saboteur::default(),
+            struck_at: None,
         };
         let mut engine = Unicorn::new_with_data(Arch::ARM, Mode::THUMB, state)?;
         // Mode::MCLASS would override the model with a Cortex-M33.
@@ -158,6 +169,7 @@ impl Cpu {
         state.attention = false;
         state.event = false;
         state.stop = None;
+        state.saboteur = Saboteur::default();
         self.reset_registers();
         self.soc_changed();
     }
@@ -176,6 +188,11 @@ impl Cpu {
     /// The chip, to be changed from outside between two runs.
     pub fn with_soc<R>(&mut self, change: impl FnOnce(&mut Soc, Ps) -> R) -> R {
         with_soc(&mut self.engine, |soc, now, _| change(soc, now))
+    }
+
+    /// When sabotage last made the program go wrong.
+    pub fn struck_at(&self) -> Option<Ps> {
+        self.state().struck_at
     }
 
     pub fn stats(&self) -> &Execution {
@@ -242,6 +259,11 @@ impl Cpu {
                 Ok(None)
             }
             (Some(Stop::Fault(fault)), _) => self.raise(fault).map(|()| None),
+            (Some(Stop::Sabotaged(sabotage)), _) => self.suffer(sabotage).map(|()| None),
+            (Some(Stop::Released(entry)), _) => {
+                self.set_register(RegisterARM::PC, entry | 1);
+                Ok(None)
+            }
             (Some(Stop::Reset(cause)), _) => Ok(Some(Pause::Reset(cause))),
             (Some(Stop::Unmodelled(access)), _) => Err(self.halt_in_block(access.to_string())),
             (Some(Stop::Engine(what)), _) => Err(self.halt(what)),

@@ -17,8 +17,9 @@ pub struct Segment {
     pub data: Vec<u8>,
 }
 
+/// A function or a static, by its demangled name.
 #[derive(Debug)]
-struct Function {
+struct Item {
     start: u32,
     size: u32,
     name: String,
@@ -29,7 +30,8 @@ struct Function {
 pub struct Image {
     pub segments: Vec<Segment>,
     symbols: BTreeMap<String, u32>,
-    functions: Vec<Function>,
+    functions: Vec<Item>,
+    statics: Vec<Item>,
 }
 
 #[derive(Debug, thiserror::Error)]
@@ -65,13 +67,26 @@ impl Image {
         Ok(Self {
             segments,
             symbols: symbols(&file),
-            functions: functions(&file),
+            functions: items(&file, SymbolKind::Text),
+            statics: items(&file, SymbolKind::Data),
         })
     }
 
     /// Address of a symbol, without the Thumb bit.
     pub fn symbol(&self, name: &str) -> Option<u32> {
         self.symbols.get(name).copied()
+    }
+
+    /// Starts of all functions whose demangled name has `part` in it and ends so.
+    pub fn functions(&self, part: &str, ends: &str) -> impl Iterator<Item = u32> {
+        let fits = move |f: &&Item| f.name.contains(part) && f.name.ends_with(ends);
+        self.functions.iter().filter(fits).map(|f| f.start)
+    }
+
+    /// Address and size of the first static whose demangled name ends so.
+    pub fn static_item(&self, ends: &str) -> Option<(u32, u32)> {
+        let item = self.statics.iter().find(|s| s.name.ends_with(ends))?;
+        Some((item.start, item.size))
     }
 
     /// The function that holds `pc`, with the offset in it: `main+0x12`; the bare address where none does.
@@ -105,14 +120,14 @@ fn symbols(file: &Elf<'_>) -> BTreeMap<String, u32> {
         .collect()
 }
 
-fn functions(file: &Elf<'_>) -> Vec<Function> {
-    let mut list: Vec<Function> = file
+fn items(file: &Elf<'_>, kind: SymbolKind) -> Vec<Item> {
+    let mut list: Vec<Item> = file
         .symbols()
-        .filter(|s| s.kind() == SymbolKind::Text)
+        .filter(|s| s.kind() == kind)
         .filter_map(|s| {
             let name = format!("{:#}", rustc_demangle::demangle(s.name().ok()?));
-            Some(Function {
-                start: s.address() as u32 & !1,
+            Some(Item {
+                start: s.address() as u32 & !u32::from(kind == SymbolKind::Text),
                 size: s.size() as u32,
                 name,
             })

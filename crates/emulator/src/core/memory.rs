@@ -40,6 +40,11 @@ const SYSTEM_MEMORY: Region = Region {
     base: 0x1FFF_0000,
     size: 0x8000,
 };
+/// No memory of the chip: the endless loop that code made to hang runs in.
+pub const HANG: Region = Region {
+    base: 0x1F00_0000,
+    size: 0x1000,
+};
 const UNIQUE_ID: u32 = 0x1FFF_7A10;
 const FLASH_SIZE_KIB: u32 = 0x1FFF_7A22;
 
@@ -50,6 +55,7 @@ pub fn map<D>(engine: &mut Unicorn<'_, D>) -> Result<(), uc_error> {
         (FLASH, Prot::READ | Prot::EXEC),
         (FLASH_ALIAS, Prot::READ | Prot::EXEC),
         (SYSTEM_MEMORY, Prot::READ),
+        (HANG, Prot::READ | Prot::EXEC),
         (SRAM, Prot::READ | Prot::WRITE),
         (CCM, Prot::READ | Prot::WRITE),
     ] {
@@ -61,8 +67,21 @@ pub fn map<D>(engine: &mut Unicorn<'_, D>) -> Result<(), uc_error> {
     for region in [SRAM, CCM] {
         engine.mem_write(region.base.into(), &power_on_noise(region))?;
     }
+    engine.mem_write(HANG.base.into(), &endless_loop())?;
     engine.mem_write(UNIQUE_ID.into(), b"EMULATEDBRD1")?;
     engine.mem_write(FLASH_SIZE_KIB.into(), &1024_u16.to_le_bytes())
+}
+
+/// NOPs and a branch back to the first: long enough to be quick to emulate, short against any deadline.
+fn endless_loop() -> Vec<u8> {
+    const NOPS: usize = 62;
+    const NOP: u16 = 0xBF00;
+    const BRANCH_BACK: u16 = 0xE000 | 0x7FF & (NOPS as u16 + 2).wrapping_neg();
+    [NOP; NOPS]
+        .into_iter()
+        .chain([BRANCH_BACK])
+        .flat_map(u16::to_le_bytes)
+        .collect()
 }
 
 /// RAM after power-on: the same on every run, and no value a program could count on.

@@ -1,20 +1,25 @@
 //! What the runner needs of an emulated board.
 
-use robot_plant::{
-    time::Ps,
-    world::{WireEvent, WorldError},
-};
+use std::io;
 
-use super::scenario::Deed;
+use robot_plant::{time::Ps, world::WireEvent};
+
+use super::{
+    faults::{self, DeedError},
+    scenario::Deed,
+};
 use crate::{
     board_errors::BoardError,
     machine::{LogLine, Machine, MachineError, Stats},
+    pty::CanPort,
 };
 
 /// A board with a world around it that advances in simulated time.
 pub trait Board {
     fn run_until(&mut self, until: Ps) -> Result<(), MachineError>;
-    fn act(&mut self, deed: &Deed) -> Result<(), WorldError>;
+    fn act(&mut self, deed: &Deed) -> Result<(), DeedError>;
+    /// Lets the PCs on `ports` send to the world and hear from it.
+    fn serve(&mut self, ports: &mut [CanPort]) -> io::Result<()>;
     fn world_names(&mut self) -> Vec<String>;
     fn sample_world(&mut self, out: &mut Vec<f64>);
     fn drain_wire_events(&mut self, out: &mut Vec<WireEvent>);
@@ -25,6 +30,8 @@ pub trait Board {
     fn attitude_error_deg(&mut self, q_wxyz: [f64; 4]) -> Option<[f64; 3]>;
     fn take_log(&mut self) -> Vec<LogLine>;
     fn stats(&mut self) -> Stats;
+    /// Resets since power-on.
+    fn resets(&mut self) -> usize;
     fn board_errors(&mut self) -> Vec<BoardError>;
 }
 
@@ -33,15 +40,22 @@ impl Board for Machine {
         Machine::run_until(self, until)
     }
 
-    fn act(&mut self, deed: &Deed) -> Result<(), WorldError> {
-        self.with_world(|world| match deed {
+    fn act(&mut self, deed: &Deed) -> Result<(), DeedError> {
+        match deed {
             Deed::Remote(input) => {
-                world.set_remote(*input);
+                self.with_world(|world| world.set_remote(*input));
                 Ok(())
             }
-            Deed::StartFault(name) => world.set_fault(name, true),
-            Deed::EndFault(name) => world.set_fault(name, false),
-        })
+            Deed::StartFault(name) => faults::set(self, name, true),
+            Deed::EndFault(name) => faults::set(self, name, false),
+        }
+    }
+
+    fn serve(&mut self, ports: &mut [CanPort]) -> io::Result<()> {
+        if ports.is_empty() {
+            return Ok(());
+        }
+        self.with_world(|world| ports.iter_mut().try_for_each(|port| port.serve(world)))
     }
 
     fn world_names(&mut self) -> Vec<String> {
@@ -74,6 +88,10 @@ impl Board for Machine {
 
     fn stats(&mut self) -> Stats {
         Machine::stats(self)
+    }
+
+    fn resets(&mut self) -> usize {
+        Machine::resets(self)
     }
 
     fn board_errors(&mut self) -> Vec<BoardError> {

@@ -6,9 +6,10 @@ use std::{
     time::Instant,
 };
 
-use robot_plant::world::{World, WorldConfig, WorldError};
+use robot_plant::world::{CanBusId, World, WorldConfig, WorldError};
 
 use super::{
+    faults::DeedError,
     recording::{Recording, RecordingError},
     report::{self, Report, ReportError},
     runner::{self, Observer, RunResult},
@@ -16,7 +17,10 @@ use super::{
     summary::Summary,
     trace::Traces,
 };
-use crate::machine::{Machine, MachineError, RegisterPatch};
+use crate::{
+    machine::{Machine, MachineError, RegisterPatch},
+    pty::CanPort,
+};
 
 pub struct Job {
     /// The firmware image, with symbols and debug information.
@@ -25,6 +29,8 @@ pub struct Job {
     /// A recorded trial to play through the sensor models.
     pub imu_trial: Option<PathBuf>,
     pub patches: Vec<RegisterPatch>,
+    /// Buses that a PC takes part in through a pseudo-terminal. What it sends is not reproducible.
+    pub can_on_pty: Vec<CanBusId>,
 }
 
 #[derive(Debug, thiserror::Error)]
@@ -33,6 +39,10 @@ pub enum JobError {
     World(#[from] WorldError),
     #[error(transparent)]
     Machine(#[from] MachineError),
+    #[error("cannot open a pseudo-terminal: {0}")]
+    Port(io::Error),
+    #[error(transparent)]
+    Deed(#[from] DeedError),
     #[error(transparent)]
     Recording(#[from] RecordingError),
     #[error(transparent)]
@@ -67,8 +77,10 @@ impl Job {
     /// Runs without writing anything.
     pub fn run(&self, observers: &mut [&mut dyn Observer]) -> Result<Outcome, JobError> {
         let mut machine = self.machine()?;
+        let ports: Result<Vec<_>, _> = self.can_on_pty.iter().copied().map(CanPort::open).collect();
+        let mut ports = ports.map_err(JobError::Port)?;
         let started = Instant::now();
-        let result = runner::run(&mut machine, &self.scenario, observers)?;
+        let result = runner::run(&mut machine, &self.scenario, &mut ports, observers)?;
         let summary = Summary::new(&self.scenario, &result, started.elapsed());
         Ok(Outcome {
             result,

@@ -4,6 +4,7 @@ pub mod attitude_score;
 pub mod board;
 pub mod budgets;
 pub mod expectation;
+pub mod faults;
 pub mod job;
 mod recording;
 mod report;

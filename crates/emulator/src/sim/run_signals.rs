@@ -11,10 +11,10 @@ use crate::machine::Stats;
 const NAMES: [&str; 9] = [
     "emu.board_errors",
     "emu.cpu_load",
-    "emu.resets",
     "emu.missed_ticks",
     "emu.can1.load",
     "emu.can2.load",
+    "emu.resets",
     "emu.att_error.total_deg",
     "emu.att_error.heading_deg",
     "emu.att_error.inclination_deg",
@@ -26,7 +26,7 @@ const STATS_PERIOD: Ps = 100 * time::MS;
 /// Keeps the `emu.*` values up to date.
 pub struct RunSignals {
     stats_due: Ps,
-    counters: [Option<f64>; 6],
+    counters: [Option<f64>; 5],
     /// When the statistics were last worked out, and how long each CAN bus had been busy by then, in seconds.
     can_busy: (Ps, [f64; 2]),
     quaternion: Option<[usize; 4]>,
@@ -42,7 +42,7 @@ impl RunSignals {
         let part = |i: usize| table.index(&format!("diag.estimate.q_wxyz.{i}"));
         Self {
             stats_due: 0,
-            counters: [None; 6],
+            counters: [None; 5],
             can_busy: (0, [0.0; 2]),
             quaternion: match [part(0), part(1), part(2), part(3)] {
                 [Some(w), Some(x), Some(y), Some(z)] => Some([w, x, y, z]),
@@ -61,7 +61,6 @@ impl RunSignals {
             self.counters = [
                 Some(board.board_errors().len() as f64),
                 Some(stats.cpu_load),
-                Some(stats.resets.len() as f64),
                 Some(stats.missed as f64),
                 can1,
                 can2,
@@ -71,6 +70,7 @@ impl RunSignals {
             .estimate(values)
             .and_then(|q| board.attitude_error_deg(q));
         values.extend(self.counters);
+        values.push(Some(board.resets() as f64));
         values.extend((0..3).map(|i| error.map(|e| e[i])));
     }
 

@@ -1,14 +1,17 @@
 //! Runs a scenario on a board: acts on time, samples at 1 kHz, judges every expectation.
 
+use std::path::Path;
+
 use robot_plant::{
     time::{self, Ps},
-    world::{WireEvent, WorldError},
+    world::{CanBusId, WireEvent},
 };
 
 use super::{
     attitude_score::AttitudeScore,
     board::Board,
     expectation::{self, Judge, Verdict},
+    faults::DeedError,
     run_signals::RunSignals,
     scenario::Scenario,
     signals::{SignalTable, Values},
@@ -16,6 +19,7 @@ use super::{
 use crate::{
     board_errors::BoardError,
     machine::{LogLine, Stats},
+    pty::{CanPort, PortStats},
 };
 
 /// Signals are sampled and expectations judged this often.
@@ -28,6 +32,9 @@ const DIAG_HOLD: Ps = 20 * time::MS;
 pub trait Observer {
     fn sample(&mut self, at: Ps, table: &SignalTable, values: &Values);
     fn log(&mut self, line: &LogLine);
+
+    /// A bus is on the pseudo-terminal `device`; the run begins.
+    fn can_port(&mut self, _bus: CanBusId, _device: &Path) {}
 }
 
 /// Everything a run leaves behind.
@@ -46,6 +53,8 @@ pub struct RunResult {
     /// Every bit that `diag.safety.flags` had at some sample.
     pub safety_flags_seen: u64,
     pub attitude: AttitudeScore,
+    /// Buses a PC took part in.
+    pub ports: Vec<(CanBusId, PortStats)>,
 }
 
 impl RunResult {
@@ -61,12 +70,18 @@ impl RunResult {
     }
 }
 
-/// Runs `scenario` from power-on to its end, or to where the machine stops.
+/// Runs `scenario` from power-on to its end, or to where the machine stops. PCs on `ports` take part every sample.
 pub fn run<B: Board>(
     board: &mut B,
     scenario: &Scenario,
+    ports: &mut [CanPort],
     observers: &mut [&mut dyn Observer],
-) -> Result<RunResult, WorldError> {
+) -> Result<RunResult, DeedError> {
+    for port in ports.iter() {
+        for observer in observers.iter_mut() {
+            observer.can_port(port.bus(), port.path());
+        }
+    }
     let mut run = Run::new(board, scenario);
     let mut actions = scenario.actions.iter().peekable();
     let mut now = 0;
@@ -85,11 +100,18 @@ pub fn run<B: Board>(
             break;
         }
         now = until;
+        if let Err(why) = run.board.serve(ports) {
+            stopped = Some(format!("the pseudo-terminal of a CAN bus failed: {why}"));
+            run.drain_log(observers);
+            break;
+        }
         if now == next_sample || now == scenario.length {
             run.sample(now, now == scenario.length, observers);
         }
     }
-    Ok(run.finish(scenario, now, stopped))
+    let mut result = run.finish(scenario, now, stopped);
+    result.ports = ports.iter().map(|p| (p.bus(), p.stats())).collect();
+    Ok(result)
 }
 
 struct Run<'a, B> {
@@ -218,6 +240,7 @@ impl<'a, B: Board> Run<'a, B> {
             last_values: self.values,
             safety_flags_seen: self.safety_flags_seen,
             attitude: self.attitude,
+            ports: Vec::new(),
             table: self.table,
         }
     }

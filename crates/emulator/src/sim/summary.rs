@@ -16,6 +16,7 @@ use super::{
 use crate::{
     board_errors::BoardError,
     machine::{CanStats, Distribution},
+    pty::PortStats,
 };
 
 #[derive(Debug, Serialize)]
@@ -30,6 +31,11 @@ pub struct Summary {
     pub stopped: Option<String>,
     pub board_errors: Vec<BoardErrorEntry>,
     pub allowed_board_errors: Vec<BoardErrorEntry>,
+    /// A PC took part: the same image, scenario and seed need not give the same run again.
+    pub external_input: bool,
+    pub reproducible: bool,
+    /// Frames exchanged with a PC, by bus: `can1`, `can2`.
+    pub can_ports: BTreeMap<String, PortStats>,
     pub sim_seconds: f64,
     pub control: Control,
     /// Busy share of the CPU, 0 … 1.
@@ -124,6 +130,9 @@ impl Summary {
             stopped: result.stopped.clone(),
             board_errors: entries(&result.board_errors),
             allowed_board_errors: entries(&result.allowed_board_errors),
+            external_input: !result.ports.is_empty(),
+            reproducible: result.ports.is_empty(),
+            can_ports: can_ports(result),
             sim_seconds,
             control: Control {
                 ticks: stats.ticks,
@@ -181,6 +190,14 @@ fn entries(errors: &[BoardError]) -> Vec<BoardErrorEntry> {
             message: e.message.clone(),
         })
         .collect()
+}
+
+fn can_ports(result: &RunResult) -> BTreeMap<String, PortStats> {
+    let named = result.ports.iter().map(|(bus, stats)| {
+        let name = format!("{bus:?}").to_lowercase();
+        (name, *stats)
+    });
+    named.collect()
 }
 
 fn attitude_error(result: &RunResult) -> Option<AttitudeError> {

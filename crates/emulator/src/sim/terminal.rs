@@ -2,12 +2,16 @@
 
 use std::{
     io::IsTerminal,
+    path::Path,
     thread,
     time::{Duration, Instant},
 };
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use robot_plant::time::{self, Ps};
+use robot_plant::{
+    time::{self, Ps},
+    world::CanBusId,
+};
 
 use super::{
     budgets::{self, Budget},
@@ -145,6 +149,15 @@ impl Terminal {
                 error.inclination_rmse_deg
             );
         }
+        for (bus, port) in &outcome.result.ports {
+            println!(
+                "{}: {} frames to the PC, {} from it, {} dropped as it did not read",
+                bus_name(*bus),
+                port.to_pc,
+                port.from_pc,
+                port.dropped
+            );
+        }
         for file in &outcome.files {
             println!("wrote {}", file.display());
         }
@@ -208,7 +221,20 @@ impl Terminal {
     }
 }
 
+fn bus_name(bus: CanBusId) -> &'static str {
+    match bus {
+        CanBusId::Can1 => "CAN1",
+        CanBusId::Can2 => "CAN2",
+    }
+}
+
 impl Observer for Terminal {
+    fn can_port(&mut self, bus: CanBusId, device: &Path) {
+        let (bus, device) = (bus_name(bus), device.display());
+        let text = format!("{bus} on {device}: slcand or any slcan tool, 1 Mbit/s (S8)");
+        self.bar.suspend(|| println!("{text}"));
+    }
+
     fn sample(&mut self, at: Ps, _: &SignalTable, _: &Values) {
         if self.realtime {
             self.keep_pace(at);

@@ -71,7 +71,7 @@ impl Cpu {
         register(&self.engine, name)
     }
 
-    fn set_register(&mut self, name: RegisterARM, value: u32) {
+    pub(super) fn set_register(&mut self, name: RegisterARM, value: u32) {
         self.engine
             .reg_write(name, value.into())
             .expect("the engine knows the register");

@@ -3,7 +3,7 @@
 use robot_plant::time::Ps;
 use unicorn_engine::{HookType, MemType, RegisterARM, Unicorn, uc_error};
 
-use super::{Block, State, Stop, context};
+use super::{Block, State, Stop, context, sabotage};
 use crate::{
     core::{
         faults::Fault,
@@ -49,6 +49,10 @@ fn block_begins(engine: &mut Unicorn<'_, State>, address: u64, size: u32) {
         }
     }
     let start = address as u32;
+    if sabotage::strikes(engine, start) {
+        leave(engine);
+        return;
+    }
     let cost = match engine.get_data().costs.known(start, size) {
         Some(cost) => cost,
         None => {

@@ -7,6 +7,8 @@ use robot_plant::{
 
 use super::*;
 
+mod sabotage;
+
 const TRACE: u32 = 0x2000_0000;
 const CODE: u32 = 0x0800_0200;
 const ROUTINE: u32 = 0x80;

@@ -4,15 +4,17 @@ use std::time::Duration;
 
 use robot_plant::{
     time::{self, Ps},
-    world::{WireEvent, WorldError},
+    world::WireEvent,
 };
 
 use super::*;
 use crate::{
     board_errors::BoardError,
     machine::{CanStats, LogLine, MachineError, Stats},
+    pty::CanPort,
     sim::{
         board::Board,
+        faults::DeedError,
         runner,
         scenario::{Deed, Scenario},
         summary::Summary,
@@ -60,9 +62,13 @@ impl Board for Waves {
         self.now = until;
         Ok(())
     }
-    fn act(&mut self, _: &Deed) -> Result<(), WorldError> {
+    fn act(&mut self, _: &Deed) -> Result<(), DeedError> {
         Ok(())
     }
+    fn serve(&mut self, _: &mut [CanPort]) -> std::io::Result<()> {
+        Ok(())
+    }
+
     fn world_names(&mut self) -> Vec<String> {
         WORLD.map(String::from).to_vec()
     }
@@ -106,6 +112,10 @@ impl Board for Waves {
         };
         due.then_some(line).into_iter().collect()
     }
+    fn resets(&mut self) -> usize {
+        0
+    }
+
     fn stats(&mut self) -> Stats {
         Stats {
             ticks: 10_000,
@@ -149,7 +159,7 @@ const SCENARIO: &str = r#"
 fn rendered(board: &mut impl Board) -> String {
     let scenario = Scenario::parse(SCENARIO, "waves.toml").unwrap();
     let mut traces = Traces::new(scenario.length);
-    let result = runner::run(board, &scenario, &mut [&mut traces]).unwrap();
+    let result = runner::run(board, &scenario, &mut [], &mut [&mut traces]).unwrap();
     let summary = Summary::new(&scenario, &result, Duration::from_secs(1));
     render(&Report {
         scenario: &scenario,

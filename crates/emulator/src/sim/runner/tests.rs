@@ -34,7 +34,7 @@ impl Board for Double {
         Ok(())
     }
 
-    fn act(&mut self, deed: &Deed) -> Result<(), WorldError> {
+    fn act(&mut self, deed: &Deed) -> Result<(), DeedError> {
         if let Deed::Remote(input) = deed {
             self.current_ma = if input.enable == Some(true) {
                 100.0
@@ -43,6 +43,10 @@ impl Board for Double {
             };
         }
         self.acted.push((self.now, deed.clone()));
+        Ok(())
+    }
+
+    fn serve(&mut self, _: &mut [CanPort]) -> std::io::Result<()> {
         Ok(())
     }
 
@@ -81,6 +85,10 @@ impl Board for Double {
         Stats::default()
     }
 
+    fn resets(&mut self) -> usize {
+        0
+    }
+
     fn board_errors(&mut self) -> Vec<BoardError> {
         self.errors.clone()
     }
@@ -89,7 +97,7 @@ impl Board for Double {
 fn run_double(board: &mut Double, body: &str) -> RunResult {
     let text = format!("name = \"n\"\nseconds = 0.05\nplant = \"stand\"\n{body}");
     let scenario = Scenario::parse(&text, "t.toml").unwrap();
-    run(board, &scenario, &mut []).unwrap()
+    run(board, &scenario, &mut [], &mut []).unwrap()
 }
 
 const PULSE: &str = "

@@ -2,7 +2,7 @@
 
 use robot_plant::{
     time::{self, Ps},
-    world::{PlantKind, RadioKind, RemoteInput, World},
+    world::{PlantKind, RadioKind, RemoteInput},
 };
 use serde::Deserialize;
 use toml::Spanned;
@@ -10,6 +10,7 @@ use toml::Spanned;
 use super::{Action, Deed, Scenario, ScenarioError};
 use crate::sim::{
     expectation::{Bound, Expectation, Window},
+    faults,
     signals::nearest,
 };
 
@@ -213,11 +214,10 @@ fn read_remote(remote: &Remote) -> Result<RemoteInput, String> {
 }
 
 fn known_fault(name: &str) -> Result<String, String> {
-    let faults = World::faults();
-    if faults.iter().any(|f| f.name == name) {
+    if faults::all().any(|f| f.name == name) {
         return Ok(name.to_owned());
     }
-    let hint = nearest(name, faults.iter().map(|f| f.name))
+    let hint = nearest(name, faults::all().map(|f| f.name))
         .map_or(String::new(), |n| format!(" did you mean `{n}`?"));
     Err(format!(
         "no fault is named `{name}`;{hint} `cargo xtask sim --list-faults` lists them"

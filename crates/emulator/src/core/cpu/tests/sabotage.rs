@@ -1,0 +1,77 @@
+//! A handler calls a function every 100 µs, and the function is sabotaged.
+
+use super::*;
+
+const FUNCTION: u32 = CODE + 2 * ROUTINE;
+
+/// SysTick calls the function, which leaves a 1; HardFault leaves a 9.
+fn calling_board() -> Cpu {
+    let handler = vec![0xB500, 0xF000, 0xF83D, 0xBD00]; // push {lr}; bl FUNCTION; pop {pc}
+    let function = program(&[&trace(1), &[RETURN]]);
+    let hard_fault = program(&[&trace(9), &[STAY]]);
+    let mut cpu = board(
+        &[WFE, 0xE7FD],
+        &[
+            (Exception::SYS_TICK, handler),
+            // Behind a vector that is never taken.
+            (Exception::PEND_SV, function),
+            (Exception::HARD_FAULT, hard_fault),
+        ],
+    );
+    let systick = &mut cpu.state_mut().system.systick;
+    systick.write_reload(1_599);
+    systick.write_value(0);
+    systick.write_ctrl(0b111, 0);
+    run_until(&mut cpu, 350 * US).expect("no fault");
+    assert_eq!(traced(&cpu), [1, 1, 1]);
+    cpu
+}
+
+fn harm(harm: Harm) -> Sabotage {
+    Sabotage {
+        entry: FUNCTION,
+        harm,
+    }
+}
+
+/// Times 400, 500 and 600 µs fall into the hang: the first call goes on at its end, one more was pending.
+#[test]
+fn a_function_that_hangs_does_its_work_when_the_harm_ends() {
+    let mut cpu = calling_board();
+    cpu.sabotage(harm(Harm::Hang));
+    run_until(&mut cpu, 650 * US).expect("no fault");
+    assert_eq!(traced(&cpu).len(), 3);
+    let struck = cpu.struck_at().expect("it struck");
+    assert!((400 * US..402 * US).contains(&struck));
+    cpu.end_sabotage(harm(Harm::Hang));
+    run_until(&mut cpu, 1_050 * US).expect("no fault");
+    assert_eq!(traced(&cpu).len(), 3 + 2 + 4);
+}
+
+#[test]
+fn calls_that_return_at_once_are_lost() {
+    let mut cpu = calling_board();
+    cpu.sabotage(harm(Harm::ReturnAtOnce));
+    run_until(&mut cpu, 650 * US).expect("no fault");
+    cpu.end_sabotage(harm(Harm::ReturnAtOnce));
+    run_until(&mut cpu, 1_050 * US).expect("no fault");
+    assert_eq!(traced(&cpu).len(), 10 - 3);
+}
+
+#[test]
+fn an_undefined_instruction_and_a_jump_to_nowhere_are_hard_faults() {
+    for what in [Harm::Undefined, Harm::GoTo(0x0900_0000)] {
+        let mut cpu = calling_board();
+        cpu.sabotage(harm(what));
+        run_until(&mut cpu, 650 * US).expect("the handler runs");
+        assert_eq!(traced(&cpu), [1, 1, 1, 9], "{what:?}");
+    }
+}
+
+#[test]
+fn a_reset_ends_all_harm() {
+    let mut cpu = calling_board();
+    cpu.sabotage(harm(Harm::Undefined));
+    cpu.reset();
+    assert!(cpu.state().saboteur.is_idle());
+}

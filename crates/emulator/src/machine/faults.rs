@@ -1,0 +1,130 @@
+//! What can go wrong inside the chip, by name: the program itself fails. A reset ends every one of them.
+
+use robot_plant::world::FaultInfo;
+
+use super::{CONTROL_TICK, Machine};
+use crate::core::{
+    cpu::{Cpu, Harm, Sabotage},
+    image::Image,
+};
+
+#[derive(Debug, thiserror::Error)]
+pub enum FaultError {
+    #[error("no fault is named `{0}`; `cargo xtask sim --list-faults` lists them")]
+    Unknown(String),
+    #[error("the fault `{fault}` needs {what}, which is not in the image or not running")]
+    NotThere { fault: &'static str, what: String },
+}
+
+/// Where a fault strikes.
+#[derive(Clone, Copy, Debug)]
+enum Place {
+    ControlTick,
+    /// The function through which the executor runs the task of `src/tasks/`.
+    Task(&'static str),
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Failure {
+    Panic,
+    HardFault,
+    StackOverflow,
+    Stuck,
+    Asleep,
+}
+
+struct Entry {
+    info: FaultInfo,
+    place: Place,
+    failure: Failure,
+}
+
+const fn entry(name: &'static str, place: Place, failure: Failure, what: &'static str) -> Entry {
+    Entry {
+        info: FaultInfo { name, what },
+        place,
+        failure,
+    }
+}
+
+#[rustfmt::skip]
+const ENTRIES: &[Entry] = &[
+    entry("panic", Place::ControlTick, Failure::Panic, "the next control tick panics"),
+    entry("panic-thread", Place::Task("logic"), Failure::Panic, "the logic task panics, below every interrupt"),
+    entry("hard-fault", Place::ControlTick, Failure::HardFault, "the next control tick runs into an undefined instruction"),
+    entry("stack-overflow", Place::ControlTick, Failure::StackOverflow, "the next control tick finds its stack used up"),
+    entry("task-stuck-control", Place::ControlTick, Failure::Stuck, "the next control tick does not return"),
+    entry("task-stuck-sensor", Place::Task("imu"), Failure::Stuck, "the imu task does not return: no sensor, no radio"),
+    entry("task-stuck-thread", Place::Task("logic"), Failure::Stuck, "the logic task does not return: no task in thread mode"),
+    entry("task-asleep-imu", Place::Task("imu"), Failure::Asleep, "the imu task is never run, all others are"),
+    entry("task-asleep-mag", Place::Task("mag"), Failure::Asleep, "the mag task is never run, all others are"),
+    entry("task-asleep-sbus", Place::Task("sbus"), Failure::Asleep, "the sbus task is never run, all others are"),
+    entry("task-asleep-logic", Place::Task("logic"), Failure::Asleep, "the logic task is never run, all others are"),
+    entry("task-asleep-status", Place::Task("status"), Failure::Asleep, "the status task is never run, all others are"),
+];
+
+/// Every fault of the machine.
+pub fn all() -> impl Iterator<Item = &'static FaultInfo> {
+    ENTRIES.iter().map(|entry| &entry.info)
+}
+
+impl Machine {
+    /// Starts or ends one of [`all`]. Ending what has already struck changes nothing, but a task that is stuck goes on.
+    pub fn set_fault(&mut self, name: &str, active: bool) -> Result<(), FaultError> {
+        let entry = ENTRIES
+            .iter()
+            .find(|entry| entry.info.name == name)
+            .ok_or_else(|| FaultError::Unknown(name.to_owned()))?;
+        let sabotage = entry.sabotage(&self.image, &self.cpu)?;
+        if active {
+            self.cpu.sabotage(sabotage);
+        } else {
+            self.cpu.end_sabotage(sabotage);
+        }
+        Ok(())
+    }
+}
+
+impl Entry {
+    fn sabotage(&self, image: &Image, cpu: &Cpu) -> Result<Sabotage, FaultError> {
+        let symbol = |name: &str| self.present(image.symbol(name), name);
+        Ok(Sabotage {
+            entry: match self.place {
+                Place::ControlTick => symbol(CONTROL_TICK)?,
+                Place::Task(task) => {
+                    let poll = poll_function(image, cpu, task);
+                    self.present(poll, &format!("task {task}, spawned"))?
+                }
+            },
+            harm: match self.failure {
+                Failure::Panic => Harm::GoTo(symbol("_defmt_panic")?),
+                Failure::HardFault => Harm::Undefined,
+                Failure::StackOverflow => Harm::StackAt(symbol("_stack_end")?),
+                Failure::Stuck => Harm::Hang,
+                Failure::Asleep => Harm::ReturnAtOnce,
+            },
+        })
+    }
+
+    fn present(&self, address: Option<u32>, what: &str) -> Result<u32, FaultError> {
+        address.ok_or_else(|| FaultError::NotThere {
+            fault: self.info.name,
+            what: what.to_owned(),
+        })
+    }
+}
+
+/// Embassy runs a task by calling `TaskStorage<its future>::poll`. Symbol names do not always tell the instances apart,
+/// but the task's storage holds the address of its own from the spawn on.
+fn poll_function(image: &Image, cpu: &Cpu, task: &str) -> Option<u32> {
+    let (pool, size) = image.static_item(&format!("::tasks::{task}::run::POOL"))?;
+    let mut storage = vec![0; size as usize];
+    if !cpu.read_memory(pool, &mut storage) {
+        return None;
+    }
+    let candidates: Vec<u32> = image.functions("TaskStorage<", "::poll").collect();
+    storage
+        .chunks_exact(4)
+        .map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]]) & !1)
+        .find(|word| candidates.contains(word))
+}

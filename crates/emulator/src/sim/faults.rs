@@ -1,0 +1,31 @@
+//! All faults a scenario can start and end: the world's and the machine's.
+
+use robot_plant::world::{FaultInfo, World, WorldError};
+
+use crate::machine::{
+    Machine,
+    faults::{self, FaultError},
+};
+
+/// A deed that cannot be done.
+#[derive(Debug, thiserror::Error)]
+pub enum DeedError {
+    #[error(transparent)]
+    World(#[from] WorldError),
+    #[error(transparent)]
+    Machine(#[from] FaultError),
+}
+
+pub fn all() -> impl Iterator<Item = &'static FaultInfo> {
+    World::faults().iter().chain(faults::all())
+}
+
+/// Starts or ends a fault by its name.
+pub fn set(machine: &mut Machine, name: &str, active: bool) -> Result<(), DeedError> {
+    if faults::all().any(|fault| fault.name == name) {
+        machine.set_fault(name, active)?;
+    } else {
+        machine.with_world(|world| world.set_fault(name, active))?;
+    }
+    Ok(())
+}
