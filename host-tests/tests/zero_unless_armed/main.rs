@@ -150,3 +150,22 @@ fn a_controller_with_memory_starts_each_drive_fresh() {
         assert_eq!(left[1_099], 81);
     }
 }
+
+/// 1000 mA are 819 counts. A direct command needs the same permit as any other, and has the same limit.
+#[test]
+fn a_direct_command_passes_the_controller_by_and_nothing_else() {
+    let cases = [
+        (1_000.0, 819),
+        (-f32::INFINITY, 1 - LIMIT_COUNTS),
+        (f32::NAN, 0),
+    ];
+    for (direct_ma, counts) in cases {
+        let mut drive = good(100, true);
+        drive.direct_ma = Some(direct_ma);
+        let mut unarmed = good(1_000, false);
+        unarmed.direct_ma = Some(direct_ma);
+        let left = run(&[unarmed, drive], Rogue(5_000.0));
+        assert_eq!(left[..1_000], [0; 1_000]);
+        assert_eq!(left[1_010..], [counts; 90]);
+    }
+}

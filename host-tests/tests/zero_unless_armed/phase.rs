@@ -3,8 +3,8 @@
 use proptest::prelude::*;
 use robot_app::{
     domain::{
-        BusErrorState, HighLevelCommand, ImuState, MagState, OperatorState, RemoteDiagnostics,
-        RemoteState, RemoteUpdate, SystemHealth,
+        BusErrorState, ChassisCommand, HighLevelCommand, ImuState, MagState, OperatorState,
+        RemoteDiagnostics, RemoteState, RemoteUpdate, SystemHealth, WheelCommand,
     },
     logic::LogicBus,
     tick::ControlInputs,
@@ -28,6 +28,8 @@ pub struct Phase {
     pub calibrated: bool,
     pub can1: BusErrorState,
     pub logic_sends: bool,
+    /// Currents past the controller, both wheels, mA.
+    pub direct_ma: Option<f32>,
     pub imu_errors: u32,
     pub time_jump_us: u64,
     pub frame: (u16, Vec<u8>),
@@ -63,6 +65,7 @@ pub fn phases() -> impl Strategy<Value = Vec<Phase>> {
     let rest = (
         mostly(BusErrorState::Active, Just(BusErrorState::BusOff)),
         mostly(true, Just(false)),
+        mostly(None, any::<f32>().prop_map(Some)),
         mostly(0, any::<u32>()),
         mostly(0, any::<u64>()),
         (any::<u16>(), prop::collection::vec(any::<u8>(), 0..=8)),
@@ -85,9 +88,10 @@ pub fn phases() -> impl Strategy<Value = Vec<Phase>> {
                 calibrated: imu.5,
                 can1: rest.0,
                 logic_sends: rest.1,
-                imu_errors: rest.2,
-                time_jump_us: rest.3,
-                frame: rest.4,
+                direct_ma: rest.2,
+                imu_errors: rest.3,
+                time_jump_us: rest.4,
+                frame: rest.5,
             }
         });
     prop::collection::vec(phase, 1..12)
@@ -111,6 +115,7 @@ pub fn good(ticks: u16, enabled: bool) -> Phase {
         calibrated: true,
         can1: BusErrorState::Active,
         logic_sends: true,
+        direct_ma: None,
         imu_errors: 0,
         time_jump_us: 0,
         frame: (0x201, vec![0; 8]),
@@ -152,8 +157,13 @@ impl Producers {
             self.logic = LogicBus {
                 hl_cmd: HighLevelCommand { vx, wz },
                 hl_valid: true,
+                cmd: ChassisCommand {
+                    wheels: [WheelCommand {
+                        current_ma: phase.direct_ma.unwrap_or_default(),
+                    }; 2],
+                },
+                cmd_valid: phase.direct_ma.is_some(),
                 ts_us: now_us,
-                ..LogicBus::default()
             };
         }
         self.health.can[0].state = phase.can1;

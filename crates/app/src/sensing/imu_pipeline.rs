@@ -143,6 +143,22 @@ mod tests {
         assert_eq!(state.ts_us, 5_000);
     }
 
+    /// By hand: (9.806 − 0.306) · 2 = 19 m/s²; until the offset is measured the stored one counts, (10.01 − 1.01) · 0.5.
+    #[test]
+    fn stored_offsets_and_scales_are_applied() {
+        let mut pipeline = ImuPipeline::new(ImuCalibration {
+            accel_bias_mps2: [0.0, 0.0, 0.306],
+            accel_scale: [1.0, 1.0, 2.0],
+            gyro_bias_dps: [0.0, 0.0, 1.01],
+            gyro_scale: [1.0, 1.0, 0.5],
+        });
+        let (accel, gyro) = answers(3);
+        let state = pipeline.process(&accel, &gyro, 5_000).unwrap();
+        assert!((state.accel_mps2[2] - 19.0).abs() < 0.01);
+        assert!((state.gyro_dps[2] - 4.5).abs() < 0.01);
+        assert_eq!(state.gyro_bias_dps[2], 1.01);
+    }
+
     #[test]
     fn a_still_second_takes_the_offset_out() {
         let mut pipeline = ImuPipeline::new(ImuCalibration::default());
