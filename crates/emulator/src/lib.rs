@@ -1,11 +1,13 @@
 //! An emulated RoboMaster C board: the shipped firmware image boots here, unchanged.
 //!
 //! `core` runs the Cortex-M4F, `soc` holds the STM32F407's peripherals, `wiring` is the board's schematic,
-//! `machine` joins them to the world of `robot-plant`, `sim` runs scenarios on the machine.
+//! `machine` joins them to the world of `robot-plant`, `pty` offers its CAN buses to tools on this computer,
+//! `sim` runs scenarios on the machine.
 
 pub mod board_errors;
 pub mod core;
 pub mod machine;
+mod pty;
 pub mod sim;
 mod soc;
 mod wiring;

@@ -2,6 +2,7 @@
 //!
 //! Nothing here knows the chip, and nothing here uses the firmware's codecs: a codec must not be tested against itself.
 
+pub mod can_adapter;
 pub mod time;
 pub mod wire;
 pub mod world;

@@ -2,14 +2,17 @@
 
 use crate::time::Ps;
 
-/// One CAN 2.0 data frame.
+/// One CAN 2.0 frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CanFrame {
     /// 11 bits, or 29 where `extended`.
     pub id: u32,
     pub extended: bool,
+    /// Asks for the data (RTR) instead of carrying them.
+    pub remote: bool,
     /// 0 to 8.
     pub dlc: u8,
+    /// The first `dlc` bytes; none of a remote frame reach the wire.
     pub data: [u8; 8],
 }
 

@@ -9,6 +9,7 @@ mod signals;
 use crate::{
     bmi088::{Bmi088, MotionSource},
     body::Body,
+    can_adapter::CanAdapter,
     faults::ActiveFaults,
     ist8310::Ist8310,
     m3508::C620,
@@ -119,6 +120,9 @@ pub struct World {
     body: Body,
     /// Left, right.
     escs: [C620; 2],
+    /// CAN1, CAN2.
+    adapters: [CanAdapter; 2],
+    can2_zero_frames: u64,
     battery: Battery,
     imu: Bmi088,
     mag: Ist8310,
@@ -151,6 +155,8 @@ impl World {
                 C620::new(1, Random::new(seed, Stream::LeftMotor)),
                 C620::new(2, Random::new(seed, Stream::RightMotor)),
             ],
+            adapters: Default::default(),
+            can2_zero_frames: 0,
             battery: Battery::default(),
             imu: Bmi088::new(seed, source),
             mag: Ist8310::new(seed, source),

@@ -37,6 +37,7 @@ fn command(world: &mut World, left: i16, right: i16, now: Ps) {
     let frame = CanFrame {
         id: 0x200,
         extended: false,
+        remote: false,
         dlc: 8,
         data,
     };

@@ -201,6 +201,7 @@ impl Robot {
             let sent = WireFrame {
                 id: frame.id().raw().into(),
                 extended: false,
+                remote: false,
                 dlc: frame.payload().len() as u8,
                 data,
             };

@@ -27,5 +27,6 @@ pub fn job(scenario: Scenario) -> Job {
         scenario,
         imu_trial: None,
         patches: Vec::new(),
+        can_on_pty: Vec::new(),
     }
 }

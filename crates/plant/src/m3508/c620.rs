@@ -108,6 +108,7 @@ impl C620 {
         self.feedback_pending.then_some(CanFrame {
             id: COMMAND_ID + u32::from(self.id),
             extended: false,
+            remote: false,
             dlc: 8,
             data: self.feedback,
         })
@@ -129,7 +130,12 @@ impl C620 {
     /// True where the frame was a command to this controller. The last command holds for ever: whether a C620 stops by
     /// itself is unknown, so the board must say zero.
     pub(crate) fn receive(&mut self, frame: &CanFrame) -> bool {
-        if !self.powered() || frame.extended || frame.id != COMMAND_ID || frame.dlc != 8 {
+        if !self.powered()
+            || frame.extended
+            || frame.remote
+            || frame.id != COMMAND_ID
+            || frame.dlc != 8
+        {
             return false;
         }
         let slot = 2 * usize::from(self.id - 1);
@@ -158,6 +164,7 @@ mod tests {
         let frame = CanFrame {
             id: 0x200,
             extended: false,
+            remote: false,
             dlc: 8,
             data: [0x03, 0xE8, 0xFC, 0x18, 0x40, 0x00, 0xC0, 0x00],
         };
@@ -173,6 +180,10 @@ mod tests {
             extended: true,
             ..frame
         }));
+        assert!(!esc.receive(&CanFrame {
+            remote: true,
+            ..frame
+        }));
         assert_eq!(esc.commanded_ma(), 0.0);
     }
 
@@ -182,6 +193,7 @@ mod tests {
         esc.receive(&CanFrame {
             id: 0x200,
             extended: false,
+            remote: false,
             dlc: 8,
             data: [0, 0, 0x10, 0, 0, 0, 0, 0],
         });
@@ -218,6 +230,7 @@ mod tests {
         esc.receive(&CanFrame {
             id: 0x200,
             extended: false,
+            remote: false,
             dlc: 8,
             data: [0x10, 0, 0, 0, 0, 0, 0, 0],
         });

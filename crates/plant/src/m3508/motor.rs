@@ -14,6 +14,8 @@ const BACK_EMF_V_PER_RPS: f64 = (RATED_V - RESISTANCE_OHM * NO_LOAD_A) / NO_LOAD
 /// Assumed share of the no-load torque that is dry friction of gear and seals; the rest grows with speed.
 const DRY_SHARE: f64 = 0.6;
 const AMBIENT_C: f64 = 30.0;
+/// A decaying current ends here instead of in denormal numbers; one step of the feedback is 10⁶ times as much.
+const NO_CURRENT_A: f64 = 1e-9;
 /// Winding to air; no source gives them: 10 A continuous ends near 90 °C.
 const KELVIN_PER_WATT: f64 = 3.0;
 const HEAT_CAPACITY_J_PER_K: f64 = 120.0;
@@ -77,6 +79,9 @@ impl M3508 {
         let least_a = (-supply_v - back_emf_v) / RESISTANCE_OHM;
         let goal_a = wanted_a.clamp(least_a, most_a.max(least_a));
         self.current_a += (goal_a - self.current_a) * follow;
+        if self.current_a.abs() < NO_CURRENT_A {
+            self.current_a = 0.0;
+        }
         let loss_w = self.current_a * self.current_a * RESISTANCE_OHM;
         let cooling_w = (self.winding_c - AMBIENT_C) / KELVIN_PER_WATT;
         self.winding_c += (loss_w - cooling_w) * dt_s / HEAT_CAPACITY_J_PER_K;

@@ -2,12 +2,27 @@
 //! bus.
 
 use super::{CanBusId, WireEvent, World, signals};
-use crate::{faults::Fault, time::Ps, wire::CanFrame};
+use crate::{
+    can_adapter::{AdapterMode, CanAdapter},
+    faults::Fault,
+    time::Ps,
+    wire::CanFrame,
+};
 
 /// The highest priority there is.
 const ROGUE_FRAME: CanFrame = CanFrame {
     id: 0,
     extended: false,
+    remote: false,
+    dlc: 8,
+    data: [0; 8],
+};
+
+/// Zero current for the ESCs 1 to 4 (C620 user guide).
+const ZERO_TORQUE: CanFrame = CanFrame {
+    id: 0x200,
+    extended: false,
+    remote: false,
     dlc: 8,
     data: [0; 8],
 };
@@ -16,8 +31,10 @@ const ROGUE_FRAME: CanFrame = CanFrame {
 enum Node {
     /// Wheel controller.
     Esc(usize),
-    /// Bus adapter of a PC: acknowledges, never sends.
+    /// A device that acknowledges and never sends.
     Listener,
+    /// Bus adapter of a PC.
+    Adapter,
     Rogue(Fault),
 }
 
@@ -25,8 +42,13 @@ const CAN1: &[Node] = &[
     Node::Esc(0),
     Node::Esc(1),
     Node::Rogue(Fault::RogueNodeCan1),
+    Node::Adapter,
 ];
-const CAN2: &[Node] = &[Node::Listener, Node::Rogue(Fault::RogueNodeCan2)];
+const CAN2: &[Node] = &[
+    Node::Listener,
+    Node::Rogue(Fault::RogueNodeCan2),
+    Node::Adapter,
+];
 
 fn nodes(bus: CanBusId) -> &'static [Node] {
     match bus {
@@ -40,18 +62,38 @@ impl World {
         nodes(bus).len()
     }
 
+    fn unplugged(&self, bus: CanBusId) -> bool {
+        self.faults.has(match bus {
+            CanBusId::Can1 => Fault::Can1Empty,
+            CanBusId::Can2 => Fault::Can2Empty,
+        })
+    }
+
     /// A node that is unpowered or unplugged neither sends nor acknowledges.
     pub fn can_present(&self, bus: CanBusId, node: usize) -> bool {
-        let unplugged = match bus {
-            CanBusId::Can1 => self.faults.has(Fault::Can1Empty),
-            CanBusId::Can2 => self.faults.has(Fault::Can2Empty),
-        };
-        !unplugged
+        !self.unplugged(bus)
             && match nodes(bus)[node] {
                 Node::Esc(wheel) => self.escs[wheel].powered(),
                 Node::Listener => true,
+                Node::Adapter => self.adapter(bus).mode() == AdapterMode::Active,
                 Node::Rogue(fault) => self.faults.has(fault),
             }
+    }
+
+    /// True for the present nodes and for one that only listens.
+    pub fn can_hears(&self, bus: CanBusId, node: usize) -> bool {
+        let listens = nodes(bus)[node] == Node::Adapter
+            && self.adapter(bus).mode() == AdapterMode::ListenOnly;
+        self.can_present(bus, node) || listens && !self.unplugged(bus)
+    }
+
+    fn adapter(&self, bus: CanBusId) -> &CanAdapter {
+        &self.adapters[bus as usize]
+    }
+
+    /// The adapter through which a PC takes part in this bus.
+    pub fn can_adapter(&mut self, bus: CanBusId) -> &mut CanAdapter {
+        &mut self.adapters[bus as usize]
     }
 
     /// The frame this node wants on the bus now.
@@ -62,6 +104,7 @@ impl World {
         match nodes(bus)[node] {
             Node::Esc(wheel) => self.escs[wheel].pending(),
             Node::Listener => None,
+            Node::Adapter => self.adapter(bus).pending(),
             Node::Rogue(_) => Some(ROGUE_FRAME),
         }
     }
@@ -69,27 +112,41 @@ impl World {
     /// Its pending frame went out and was acknowledged.
     pub fn can_sent(&mut self, bus: CanBusId, node: usize, now: Ps) {
         self.advance(now);
-        if let Node::Esc(wheel) = nodes(bus)[node] {
-            self.escs[wheel].sent();
-            self.wire_events.push(WireEvent {
-                at: now,
-                signal: signals::motor_rpm(wheel),
-                value: self.escs[wheel].fed_back_rpm(),
-            });
+        match nodes(bus)[node] {
+            Node::Esc(wheel) => {
+                self.escs[wheel].sent();
+                self.wire_events.push(WireEvent {
+                    at: now,
+                    signal: signals::motor_rpm(wheel),
+                    value: self.escs[wheel].fed_back_rpm(),
+                });
+            }
+            Node::Adapter => self.can_adapter(bus).delivered(),
+            Node::Listener | Node::Rogue(_) => {}
         }
     }
 
-    /// A frame of another node ended without error (called once for each present node but the sender).
+    /// A frame of another node ended without error (called once for each node that hears, but not the sender).
     pub fn can_received(&mut self, bus: CanBusId, node: usize, frame: &CanFrame, now: Ps) {
         self.advance(now);
-        if let Node::Esc(wheel) = nodes(bus)[node]
-            && self.escs[wheel].receive(frame)
-        {
-            self.wire_events.push(WireEvent {
-                at: now,
-                signal: signals::motor_current_ma(wheel),
-                value: self.escs[wheel].commanded_ma(),
-            });
+        match nodes(bus)[node] {
+            Node::Esc(wheel) if self.escs[wheel].receive(frame) => {
+                self.wire_events.push(WireEvent {
+                    at: now,
+                    signal: signals::motor_current_ma(wheel),
+                    value: self.escs[wheel].commanded_ma(),
+                });
+            }
+            Node::Adapter => self.can_adapter(bus).hear(frame, now),
+            Node::Listener if *frame == ZERO_TORQUE => {
+                self.can2_zero_frames += 1;
+                self.wire_events.push(WireEvent {
+                    at: now,
+                    signal: signals::CAN2_ZERO_FRAMES,
+                    value: self.can2_zero_frames as f64,
+                });
+            }
+            Node::Esc(_) | Node::Listener | Node::Rogue(_) => {}
         }
     }
 

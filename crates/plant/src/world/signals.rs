@@ -14,12 +14,16 @@ pub(super) fn motor_rpm(wheel: usize) -> usize {
     2 * wheel + 1
 }
 
+/// Frames on CAN2 that command zero current to every motor.
+pub(super) const CAN2_ZERO_FRAMES: usize = 4;
+
 /// Current as commanded on the wire; rotor speed as fed back. Both in the motor's own sense of rotation.
 const CAN: &[Signal] = &[
     ("can.m3508.0.current_ma", |w| w.escs[0].commanded_ma()),
     ("can.m3508.0.rpm", |w| w.escs[0].fed_back_rpm()),
     ("can.m3508.1.current_ma", |w| w.escs[1].commanded_ma()),
     ("can.m3508.1.rpm", |w| w.escs[1].fed_back_rpm()),
+    ("can.can2.zero_frames", |w| w.can2_zero_frames as f64),
 ];
 
 /// What the pilot does: sticks −1 … 1, switches as 0, 1, 2.
@@ -148,6 +152,7 @@ mod tests {
     #[test]
     fn wire_events_point_at_their_signals() {
         let names = names(false);
+        assert_eq!(names[CAN2_ZERO_FRAMES], "can.can2.zero_frames");
         for wheel in 0..2 {
             assert_eq!(
                 names[motor_current_ma(wheel)],

@@ -241,7 +241,7 @@ impl Controller {
         } else {
             0
         };
-        let [a, b, c, d, e, f, g, h] = frame.data;
+        let [a, b, c, d, e, f, g, h] = if frame.remote { [0; 8] } else { frame.data };
         let received = [
             filter::register_layout(frame),
             (time as u32) << 16 | u32::from(accepted.index) << 8 | u32::from(frame.dlc),

@@ -184,11 +184,12 @@ fn spread_16(half: u16) -> u32 {
 
 /// The identifier as CAN_RIxR shows it.
 pub fn register_layout(frame: &CanFrame) -> u32 {
-    if frame.extended {
+    let identifier = if frame.extended {
         frame.id << 3 | 4
     } else {
         frame.id << 21
-    }
+    };
+    identifier | u32::from(frame.remote) << 1
 }
 
 fn bank_word(offset: u32) -> Option<(usize, usize)> {
@@ -204,6 +205,7 @@ mod tests {
         CanFrame {
             id,
             extended: false,
+            remote: false,
             dlc: 0,
             data: [0; 8],
         }

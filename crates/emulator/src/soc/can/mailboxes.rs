@@ -48,6 +48,7 @@ impl Mailbox {
         CanFrame {
             id: if extended { id >> 3 } else { id >> 21 },
             extended,
+            remote: id & 2 != 0,
             dlc: (control & 0xF).min(8) as u8,
             data,
         }

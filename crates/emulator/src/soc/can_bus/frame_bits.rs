@@ -1,4 +1,4 @@
-//! The bits of a CAN 2.0 data frame on the wire: fields, CRC-15, stuffing (Bosch CAN 2.0, part B).
+//! The bits of a CAN 2.0 frame on the wire: fields, CRC-15, stuffing (Bosch CAN 2.0, part B).
 
 use robot_plant::wire::CanFrame;
 
@@ -18,29 +18,33 @@ pub fn length(frame: &CanFrame) -> u32 {
 
 /// Lower wins the bus: the arbitration field as it appears bit by bit, dominant = 0.
 pub fn arbitration_key(frame: &CanFrame) -> u32 {
+    let rtr = u32::from(frame.remote);
     if frame.extended {
-        // Base identifier, recessive SRR and IDE, identifier extension.
-        frame.id >> 18 << 20 | 0b11 << 18 | frame.id & 0x3_FFFF
+        // Base identifier, recessive SRR and IDE, identifier extension, RTR.
+        frame.id >> 18 << 21 | 0b11 << 19 | (frame.id & 0x3_FFFF) << 1 | rtr
     } else {
-        frame.id << 20
+        // Identifier, RTR, dominant IDE.
+        frame.id << 21 | rtr << 20
     }
 }
 
 fn for_each_field(frame: &CanFrame, mut field: impl FnMut(u32, u32)) {
+    let rtr = u32::from(frame.remote);
     field(0, 1);
     if frame.extended {
         field(frame.id >> 18, 11);
         field(0b11, 2);
         field(frame.id, 18);
         // RTR, r1, r0
-        field(0, 3);
+        field(rtr << 2, 3);
     } else {
         field(frame.id, 11);
         // RTR, IDE, r0
-        field(0, 3);
+        field(rtr << 2, 3);
     }
     field(u32::from(frame.dlc), 4);
-    for byte in frame.data.iter().take(usize::from(frame.dlc)) {
+    let carried = if frame.remote { 0 } else { frame.dlc };
+    for byte in frame.data.iter().take(usize::from(carried)) {
         field(u32::from(*byte), 8);
     }
 }
@@ -91,6 +95,7 @@ mod tests {
         CanFrame {
             id,
             extended,
+            remote: false,
             dlc: data.len() as u8,
             data: bytes,
         }
@@ -120,5 +125,21 @@ mod tests {
         // The same eleven bits first: the standard frame's RTR and IDE are dominant.
         assert!(key(0x200, false) < key(0x200 << 18, true));
         assert!(key(0x1FF << 18 | 0x3_FFFF, true) < key(0x200, false));
+    }
+
+    #[test]
+    fn a_remote_frame_carries_no_data_and_yields_to_the_data_frame_it_asks_for() {
+        for extended in [false, true] {
+            let data = frame(0x123, extended, &[0xFF; 8]);
+            let remote = CanFrame {
+                remote: true,
+                ..data
+            };
+            assert!(arbitration_key(&data) < arbitration_key(&remote));
+            // 34 or 54 bits up to the CRC's last and 10 after it; at most one stuff bit for four of them (Bosch CAN 2.0).
+            let (least, stuffed) = if extended { (64, 13) } else { (44, 8) };
+            assert!((least..=least + stuffed).contains(&length(&remote)));
+            assert!(arbitration_key(&remote) < arbitration_key(&frame(0x124, extended, &[])));
+        }
     }
 }

@@ -313,8 +313,8 @@ impl CanBus {
     }
 
     fn deliver_to_nodes(&self, sender: Option<usize>, frame: &CanFrame, ctx: &mut Ctx<'_>) {
-        for node in self.present_nodes(ctx) {
-            if Some(node) != sender {
+        for node in 0..ctx.world.can_nodes(self.id) {
+            if Some(node) != sender && ctx.world.can_hears(self.id, node) {
                 ctx.world.can_received(self.id, node, frame, ctx.now);
             }
         }

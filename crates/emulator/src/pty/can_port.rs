@@ -1,0 +1,130 @@
+//! One CAN bus on one pseudo-terminal.
+
+use std::{io, path::Path};
+
+use robot_plant::{
+    can_adapter::CanAdapter,
+    time::{MS, Ps},
+    world::{CanBusId, World},
+};
+
+use super::{
+    frame_text,
+    lawicel::{self, Lawicel, Request, flags},
+    terminal::Terminal,
+};
+
+/// Text that waits for the PC; at full bus load this is a quarter of a second.
+const WAITING: usize = 64 * 1024;
+/// Bytes taken from the PC in one visit: more than a bus carries in a millisecond.
+const READ: u64 = 4 * 1024;
+/// Time stamps run from 0 to 59,999.
+const STAMP_MS: Ps = 60_000;
+
+/// Frames between the bus and the PC since power-on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct PortStats {
+    pub to_pc: u64,
+    pub from_pc: u64,
+    /// Heard on the bus while the PC did not read.
+    pub dropped: u64,
+}
+
+/// A LAWICEL adapter on a bus, at a PC's disposal.
+pub struct CanPort {
+    bus: CanBusId,
+    terminal: Terminal,
+    lawicel: Lawicel,
+    arrived: Vec<u8>,
+    waiting: String,
+    flags: u8,
+    /// Frames dropped here, and by the adapter up to now.
+    dropped: u64,
+    stats: PortStats,
+}
+
+impl CanPort {
+    pub fn open(bus: CanBusId) -> io::Result<Self> {
+        Ok(Self {
+            bus,
+            terminal: Terminal::open()?,
+            lawicel: Lawicel::default(),
+            arrived: Vec::new(),
+            waiting: String::new(),
+            flags: 0,
+            dropped: 0,
+            stats: PortStats::default(),
+        })
+    }
+
+    pub fn bus(&self) -> CanBusId {
+        self.bus
+    }
+
+    /// The device a tool opens.
+    pub fn path(&self) -> &Path {
+        self.terminal.path()
+    }
+
+    pub fn stats(&self) -> PortStats {
+        self.stats
+    }
+
+    /// Does what the PC asked since the last visit and passes on what the bus carried. Never waits.
+    pub fn serve(&mut self, world: &mut World) -> io::Result<()> {
+        let adapter = world.can_adapter(self.bus);
+        self.terminal.read(&mut self.arrived, READ)?;
+        for byte in std::mem::take(&mut self.arrived) {
+            if let Some(request) = self.lawicel.feed(byte, adapter.mode()) {
+                self.answer(request, adapter);
+            }
+        }
+        self.pass_on(adapter);
+        let written = self.terminal.write(self.waiting.as_bytes())?;
+        self.waiting.drain(..written);
+        Ok(())
+    }
+
+    fn answer(&mut self, request: Request, adapter: &mut CanAdapter) {
+        let reply = match request {
+            Request::Answered(reply) => reply,
+            Request::Switch(mode) => {
+                adapter.set_mode(mode);
+                self.flags = 0;
+                lawicel::SWITCHED
+            }
+            Request::Send(frame) => {
+                let taken = adapter.send(frame);
+                if !taken {
+                    self.flags |= flags::TRANSMIT_FULL;
+                }
+                lawicel::sent_reply(&frame, taken)
+            }
+            Request::Flags => &lawicel::flags_reply(std::mem::take(&mut self.flags)),
+        };
+        if self.waiting.len() < 2 * WAITING {
+            self.waiting.push_str(reply);
+        }
+    }
+
+    fn pass_on(&mut self, adapter: &mut CanAdapter) {
+        while let Some((at, frame)) = adapter.take() {
+            if self.waiting.len() >= WAITING {
+                self.dropped += 1;
+                continue;
+            }
+            let stamp = self
+                .lawicel
+                .time_stamps
+                .then_some((at / MS % STAMP_MS) as u16);
+            frame_text::append(&frame, stamp, &mut self.waiting);
+            self.stats.to_pc += 1;
+        }
+        let dropped = self.dropped + adapter.lost();
+        if dropped > self.stats.dropped {
+            self.flags |= flags::RECEIVE_FULL;
+        }
+        self.stats.dropped = dropped;
+        self.stats.from_pc = adapter.sent();
+    }
+}

@@ -1,0 +1,73 @@
+//! The emulator's end of a pseudo-terminal; the other end is a serial device to a PC's tool.
+
+use std::{
+    ffi::OsStr,
+    fs::{File, OpenOptions},
+    io::{self, ErrorKind, Read, Write},
+    os::{
+        fd::OwnedFd,
+        unix::{ffi::OsStrExt, fs::OpenOptionsExt},
+    },
+    path::{Path, PathBuf},
+};
+
+use rustix::{
+    fs::OFlags,
+    io::ioctl_fionbio,
+    pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt},
+    termios::{OptionalActions, tcgetattr, tcsetattr},
+};
+
+/// Neither reading nor writing ever waits for the other end.
+pub struct Terminal {
+    ours: File,
+    /// Held open so that a tool that closes its end does not hang up the line for the next one.
+    _theirs: File,
+    path: PathBuf,
+}
+
+impl Terminal {
+    /// A new pseudo-terminal in raw mode: no echo, no line editing, bytes as they are.
+    pub fn open() -> io::Result<Self> {
+        let ours: OwnedFd = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
+        grantpt(&ours)?;
+        unlockpt(&ours)?;
+        ioctl_fionbio(&ours, true)?;
+        let name = ptsname(&ours, Vec::new())?;
+        let path = PathBuf::from(OsStr::from_bytes(name.to_bytes()));
+        let theirs = OpenOptions::new()
+            .read(true)
+            .write(true)
+            .custom_flags(OFlags::NOCTTY.bits().cast_signed())
+            .open(&path)?;
+        let mut settings = tcgetattr(&theirs)?;
+        settings.make_raw();
+        tcsetattr(&theirs, OptionalActions::Now, &settings)?;
+        Ok(Self {
+            ours: File::from(ours),
+            _theirs: theirs,
+            path,
+        })
+    }
+
+    /// The device a tool opens.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Appends what has arrived, at most `most` bytes.
+    pub fn read(&mut self, into: &mut Vec<u8>, most: u64) -> io::Result<()> {
+        match (&self.ours).take(most).read_to_end(into) {
+            Err(e) if e.kind() != ErrorKind::WouldBlock => Err(e),
+            _ => Ok(()),
+        }
+    }
+
+    /// Writes as much as the line takes now and returns how much that was.
+    pub fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self.ours.write(bytes) {
+            Err(e) if e.kind() == ErrorKind::WouldBlock => Ok(0),
+            written => written,
+        }
+    }
+}

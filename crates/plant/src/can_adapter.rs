@@ -1,0 +1,132 @@
+//! A PC's CAN adapter: the one node whose frames come from outside the simulation.
+
+use std::collections::VecDeque;
+
+use crate::{time::Ps, wire::CanFrame};
+
+/// Frames that wait for the bus; more would take 30 ms and longer to send.
+const OUTBOX: usize = 256;
+/// Frames that wait for the PC; a bus at full load fills this in a tenth of a second.
+const INBOX: usize = 1_024;
+
+/// How the adapter takes part in its bus.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum AdapterMode {
+    #[default]
+    Off,
+    /// Hears what others acknowledge.
+    ListenOnly,
+    /// Sends, hears and acknowledges.
+    Active,
+}
+
+/// Both queues are bounded: a PC too slow for the bus loses frames, the bus waits for nobody.
+#[derive(Debug, Default)]
+pub struct CanAdapter {
+    mode: AdapterMode,
+    outbox: VecDeque<CanFrame>,
+    inbox: VecDeque<(Ps, CanFrame)>,
+    sent: u64,
+    lost: u64,
+}
+
+impl CanAdapter {
+    pub fn mode(&self) -> AdapterMode {
+        self.mode
+    }
+
+    /// Frames of the mode before are forgotten.
+    pub fn set_mode(&mut self, mode: AdapterMode) {
+        self.mode = mode;
+        self.outbox.clear();
+        self.inbox.clear();
+    }
+
+    /// False where the frame cannot be sent: not active, or too many wait already.
+    pub fn send(&mut self, frame: CanFrame) -> bool {
+        let taken = self.mode == AdapterMode::Active && self.outbox.len() < OUTBOX;
+        if taken {
+            self.outbox.push_back(frame);
+        }
+        taken
+    }
+
+    /// The next frame heard, with the end of its transmission.
+    pub fn take(&mut self) -> Option<(Ps, CanFrame)> {
+        self.inbox.pop_front()
+    }
+
+    /// Frames that went out and were acknowledged.
+    pub fn sent(&self) -> u64 {
+        self.sent
+    }
+
+    /// Frames heard that nobody took in time.
+    pub fn lost(&self) -> u64 {
+        self.lost
+    }
+
+    pub(crate) fn pending(&self) -> Option<CanFrame> {
+        self.outbox.front().copied()
+    }
+
+    pub(crate) fn delivered(&mut self) {
+        self.outbox.pop_front();
+        self.sent += 1;
+    }
+
+    pub(crate) fn hear(&mut self, frame: &CanFrame, now: Ps) {
+        if self.inbox.len() < INBOX {
+            self.inbox.push_back((now, *frame));
+        } else {
+            self.lost += 1;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn frame(id: u32) -> CanFrame {
+        CanFrame {
+            id,
+            extended: false,
+            remote: false,
+            dlc: 0,
+            data: [0; 8],
+        }
+    }
+
+    #[test]
+    fn only_an_active_adapter_takes_frames_to_send() {
+        let mut adapter = CanAdapter::default();
+        assert!(!adapter.send(frame(1)));
+        adapter.set_mode(AdapterMode::ListenOnly);
+        assert!(!adapter.send(frame(1)));
+        adapter.set_mode(AdapterMode::Active);
+        assert!(adapter.send(frame(1)));
+        assert_eq!(adapter.pending(), Some(frame(1)));
+        adapter.delivered();
+        assert_eq!((adapter.pending(), adapter.sent()), (None, 1));
+    }
+
+    #[test]
+    fn a_pc_that_reads_nothing_loses_frames_and_they_are_counted() {
+        let mut adapter = CanAdapter::default();
+        adapter.set_mode(AdapterMode::ListenOnly);
+        for id in 0..INBOX as u32 + 3 {
+            adapter.hear(&frame(id), 7);
+        }
+        assert_eq!(adapter.lost(), 3);
+        assert_eq!(adapter.take(), Some((7, frame(0))));
+    }
+
+    #[test]
+    fn a_frame_too_many_is_refused() {
+        let mut adapter = CanAdapter::default();
+        adapter.set_mode(AdapterMode::Active);
+        let taken = (0..300).filter(|id| adapter.send(frame(*id))).count();
+        assert_eq!(taken, OUTBOX);
+    }
+}
