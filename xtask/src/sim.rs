@@ -9,7 +9,11 @@ use std::{
 use anyhow::Context;
 use clap::Parser;
 
-use crate::{emulator, firmware, job};
+use crate::{
+    emulator,
+    firmware::{self, Remote},
+    job,
+};
 
 /// `--elf` is looked for here only to know whether an image must be built; `sim` parses the rest.
 #[derive(Parser)]
@@ -37,7 +41,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let mut sim = Command::new(program);
     sim.args(&args.passed_on);
     if args.needs_an_image() {
-        let (build_image, elf) = firmware::build()?;
+        let (build_image, elf) = firmware::build(Remote::chosen()?)?;
         jobs.push(build_image);
         sim.arg("--elf").arg::<PathBuf>(elf);
     }

@@ -27,6 +27,11 @@ pub fn firmware_target_dir() -> PathBuf {
     host_target_dir().join("firmware")
 }
 
+/// Its own folder, so that neither image makes the other one out of date.
+pub fn dbus_firmware_target_dir() -> PathBuf {
+    host_target_dir().join("firmware-dbus")
+}
+
 /// Logs of finished builds.
 pub fn log_dir() -> PathBuf {
     host_target_dir().join("xtask")

@@ -3,9 +3,9 @@
 mod distribution;
 pub mod image;
 
-use std::{path::PathBuf, process::Command};
+use std::{env, path::PathBuf, process::Command};
 
-use anyhow::Context;
+use anyhow::{Context, bail};
 
 use crate::{
     job::Job,
@@ -24,24 +24,44 @@ enum Compiler {
     Distribution,
 }
 
+/// Which receiver the image listens to (`src/config.rs`).
+#[derive(Clone, Copy)]
+pub enum Remote {
+    Sbus,
+    Dbus,
+}
+
+impl Remote {
+    /// As `ROBOT_REMOTE` says; SBUS if it says nothing.
+    pub fn chosen() -> anyhow::Result<Self> {
+        match env::var("ROBOT_REMOTE").as_deref() {
+            Err(env::VarError::NotPresent) | Ok("sbus") => Ok(Self::Sbus),
+            Ok("dbus") => Ok(Self::Dbus),
+            other => bail!("ROBOT_REMOTE must be sbus or dbus, or unset for SBUS: it is {other:?}"),
+        }
+    }
+}
+
 /// The build, ready to start, and the image it makes; installs what it needs.
-pub fn build() -> anyhow::Result<(Job, PathBuf)> {
+pub fn build(remote: Remote) -> anyhow::Result<(Job, PathBuf)> {
+    let (name, word, target_dir) = match remote {
+        Remote::Sbus => ("firmware", "sbus", workspace::firmware_target_dir()),
+        Remote::Dbus => (
+            "firmware-dbus",
+            "dbus",
+            workspace::dbus_firmware_target_dir(),
+        ),
+    };
     let mut command = match compiler()? {
         Compiler::Rustup => tool::cargo(),
         Compiler::Distribution => distribution::cargo()?,
     };
     command.args(["build", "--release", "--package", PACKAGE]);
     command.args(["--target", BOARD, "--target-dir"]);
-    command.arg(workspace::firmware_target_dir());
-    let elf = workspace::firmware_target_dir()
-        .join(BOARD)
-        .join("release")
-        .join(PACKAGE);
-    let job = Job {
-        name: "firmware",
-        command,
-    };
-    Ok((job, elf))
+    command.arg(&target_dir);
+    command.env("ROBOT_REMOTE", word);
+    let elf = target_dir.join(BOARD).join("release").join(PACKAGE);
+    Ok((Job { name, command }, elf))
 }
 
 /// Clippy over the image; `None` if the toolchain of `rust-toolchain.toml` lacks the target.
