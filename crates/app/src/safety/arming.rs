@@ -34,16 +34,6 @@ impl ArmingBlockers {
     /// `SafetyPolicy` wants a stop; see its flags.
     pub const SAFETY_STOP: Self = Self(1 << 6);
 
-    const NAMES: [(Self, &'static str); 7] = [
-        (Self::REMOTE_NOT_FRESH, "remote-not-fresh"),
-        (Self::ENABLE_OFF, "enable-off"),
-        (Self::ENABLE_NOT_CYCLED, "enable-not-cycled"),
-        (Self::STICKS_NOT_CENTRED, "sticks-not-centred"),
-        (Self::ESTIMATE_INVALID, "estimate-invalid"),
-        (Self::CALIBRATION_PENDING, "calibration-pending"),
-        (Self::SAFETY_STOP, "safety-stop"),
-    ];
-
     pub const fn bits(self) -> u32 {
         self.0
     }
@@ -58,10 +48,10 @@ impl ArmingBlockers {
 
     /// Names of the blockers in the set, lowest bit first.
     pub fn names(self) -> impl Iterator<Item = &'static str> {
-        Self::NAMES
-            .into_iter()
+        BLOCKER_NAMES
+            .iter()
             .filter(move |(blocker, _)| self.contains(*blocker))
-            .map(|(_, name)| name)
+            .map(|(_, name)| *name)
     }
 
     fn set(&mut self, blocker: Self, active: bool) {
@@ -70,6 +60,17 @@ impl ArmingBlockers {
         }
     }
 }
+
+/// Not a constant: tools read the names of the bits out of the image.
+static BLOCKER_NAMES: [(ArmingBlockers, &str); 7] = [
+    (ArmingBlockers::REMOTE_NOT_FRESH, "remote-not-fresh"),
+    (ArmingBlockers::ENABLE_OFF, "enable-off"),
+    (ArmingBlockers::ENABLE_NOT_CYCLED, "enable-not-cycled"),
+    (ArmingBlockers::STICKS_NOT_CENTRED, "sticks-not-centred"),
+    (ArmingBlockers::ESTIMATE_INVALID, "estimate-invalid"),
+    (ArmingBlockers::CALIBRATION_PENDING, "calibration-pending"),
+    (ArmingBlockers::SAFETY_STOP, "safety-stop"),
+];
 
 #[cfg(feature = "defmt")]
 impl defmt::Format for ArmingBlockers {

@@ -45,25 +45,6 @@ impl SafetyFlags {
             | Self::TASK_LATE.0,
     );
 
-    const NAMES: [(Self, &'static str); 16] = [
-        (Self::REMOTE_LOST, "remote-lost"),
-        (Self::REMOTE_FAILSAFE, "remote-failsafe"),
-        (Self::REMOTE_QUALITY, "remote-quality"),
-        (Self::E_STOP, "e-stop"),
-        (Self::ESTIMATE_INVALID, "estimate-invalid"),
-        (Self::IMU_STALE, "imu-stale"),
-        (Self::IMU_ERRORS, "imu-errors"),
-        (Self::MAG_ERRORS, "mag-errors"),
-        (Self::CAN1_FAULT, "can1-fault"),
-        (Self::CAN2_FAULT, "can2-fault"),
-        (Self::CAN1_CONGESTED, "can1-congested"),
-        (Self::CAN2_CONGESTED, "can2-congested"),
-        (Self::WHEEL_LEFT_SILENT, "wheel-left-silent"),
-        (Self::WHEEL_RIGHT_SILENT, "wheel-right-silent"),
-        (Self::COMMAND_STALE, "command-stale"),
-        (Self::TASK_LATE, "task-late"),
-    ];
-
     pub const fn bits(self) -> u32 {
         self.0
     }
@@ -90,12 +71,32 @@ impl SafetyFlags {
 
     /// Names of the conditions in the set, lowest bit first.
     pub fn names(self) -> impl Iterator<Item = &'static str> {
-        Self::NAMES
-            .into_iter()
+        FLAG_NAMES
+            .iter()
             .filter(move |(flag, _)| self.intersects(*flag))
-            .map(|(_, name)| name)
+            .map(|(_, name)| *name)
     }
 }
+
+/// Not a constant: tools read the names of the bits out of the image.
+static FLAG_NAMES: [(SafetyFlags, &str); 16] = [
+    (SafetyFlags::REMOTE_LOST, "remote-lost"),
+    (SafetyFlags::REMOTE_FAILSAFE, "remote-failsafe"),
+    (SafetyFlags::REMOTE_QUALITY, "remote-quality"),
+    (SafetyFlags::E_STOP, "e-stop"),
+    (SafetyFlags::ESTIMATE_INVALID, "estimate-invalid"),
+    (SafetyFlags::IMU_STALE, "imu-stale"),
+    (SafetyFlags::IMU_ERRORS, "imu-errors"),
+    (SafetyFlags::MAG_ERRORS, "mag-errors"),
+    (SafetyFlags::CAN1_FAULT, "can1-fault"),
+    (SafetyFlags::CAN2_FAULT, "can2-fault"),
+    (SafetyFlags::CAN1_CONGESTED, "can1-congested"),
+    (SafetyFlags::CAN2_CONGESTED, "can2-congested"),
+    (SafetyFlags::WHEEL_LEFT_SILENT, "wheel-left-silent"),
+    (SafetyFlags::WHEEL_RIGHT_SILENT, "wheel-right-silent"),
+    (SafetyFlags::COMMAND_STALE, "command-stale"),
+    (SafetyFlags::TASK_LATE, "task-late"),
+];
 
 #[cfg(feature = "defmt")]
 impl defmt::Format for SafetyFlags {
