@@ -242,6 +242,11 @@ fn drive(pins: &PinBank, pin: Pin, timer_af: u8, timer: &Timer, channel: usize) 
     }
 }
 
+/// True where a device of the model drives the pin. The BMI088's interrupt pins (PC4, PC5) are not modelled.
+pub fn drives_input(pin: Pin) -> bool {
+    matches!(pin, MAG_DRDY | USER_KEY)
+}
+
 /// Levels that devices drive onto the chip's pins.
 pub fn drive_inputs(pins: &mut PinBank, world: &World) {
     pins.set_external(MAG_DRDY, world.mag_drdy_pin());

@@ -174,6 +174,10 @@ impl Blocks {
         self.exti.sources_changed(&self.syscfg, ctx);
     }
 
+    pub fn exti_lines_changed(&mut self, ctx: &mut Ctx<'_>) {
+        self.exti.check_sources(&self.syscfg, ctx);
+    }
+
     /// Limits that join several blocks: wait states, regulator scale, the backup domain's lock.
     pub fn power_changed(&mut self, ctx: &mut Ctx<'_>) {
         self.rcc.set_backup_unlocked(self.pwr.backup_unlocked());

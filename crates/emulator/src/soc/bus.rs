@@ -208,6 +208,10 @@ impl Soc {
                 self.hear_complaints(now);
             }
             Block::Spi1 => self.hear_complaints(now),
+            Block::Exti => {
+                let (blocks, mut ctx) = split!(self, now);
+                blocks.exti_lines_changed(&mut ctx);
+            }
             Block::Syscfg => {
                 let (blocks, mut ctx) = split!(self, now);
                 blocks.exti_sources_changed(&mut ctx);

@@ -1,10 +1,14 @@
 //! EXTI: edges of pins to interrupts, lines 0–15 (RM0090 12.3). Lines 16–22 (PVD, RTC, USB, ETH) are not modelled.
 
-use crate::soc::{
-    access::Access,
-    irq::Irq,
-    peripheral::{Ctx, Peripheral, Unmodelled},
-    syscfg::Syscfg,
+use crate::{
+    soc::{
+        access::Access,
+        irq::Irq,
+        peripheral::{Ctx, Peripheral, Unmodelled},
+        pins::PinMode,
+        syscfg::Syscfg,
+    },
+    wiring,
 };
 
 const PIN_LINES: u32 = 0xFFFF;
@@ -33,6 +37,19 @@ impl Exti {
     /// Another port on a line: its level is taken over without an edge.
     pub fn sources_changed(&mut self, syscfg: &Syscfg, ctx: &mut Ctx<'_>) {
         self.levels = line_levels(syscfg, ctx);
+    }
+
+    /// Files a board error for each unmasked line on which no edge can ever come.
+    pub fn check_sources(&self, syscfg: &Syscfg, ctx: &mut Ctx<'_>) {
+        let unmasked = self.imr & (self.rtsr | self.ftsr);
+        for line in (0..16).filter(|line| unmasked >> line & 1 == 1) {
+            let pin = syscfg.exti_source(line);
+            if ctx.pins.mode(pin) != PinMode::Output && !wiring::drives_input(pin) {
+                let message =
+                    format!("EXTI{line}: nothing modelled drives {pin}: no edge ever comes");
+                ctx.errors.report(ctx.now, message);
+            }
+        }
     }
 
     fn drive_irqs(&self, ctx: &mut Ctx<'_>) {

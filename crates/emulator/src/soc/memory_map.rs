@@ -250,7 +250,34 @@ mod tests {
         bits.sort_by_key(|(bus, bit)| (*bus as u8, *bit));
         bits.dedup();
         assert_eq!(bits.len(), all);
-        // RM0090 7.3.7: USART3RST is bit 18 of RCC_APB1RSTR.
-        assert_eq!(reset_bit(Block::Usart(3), 0), Some((Bus::Apb1, 18)));
+    }
+
+    #[test]
+    fn gates_are_those_of_the_enable_registers() {
+        // RM0090 7.3.10, 7.3.13 and 7.3.14, read off the register maps.
+        for (block, offset, bus, bit) in [
+            (Block::Gpio(0), 0, Bus::Ahb1, 0),
+            (Block::Gpio(8), 0, Bus::Ahb1, 8),
+            (Block::Dma(1), 0, Bus::Ahb1, 21),
+            (Block::Dma(2), 0, Bus::Ahb1, 22),
+            (Block::Timer(2), 0, Bus::Apb1, 0),
+            (Block::Timer(5), 0, Bus::Apb1, 3),
+            (Block::Usart(3), 0, Bus::Apb1, 18),
+            (Block::I2c3, 0, Bus::Apb1, 23),
+            (Block::Can, 0, Bus::Apb1, 25),
+            (Block::Can, 0x400, Bus::Apb1, 26),
+            (Block::Pwr, 0, Bus::Apb1, 28),
+            (Block::Usart(1), 0, Bus::Apb2, 4),
+            (Block::Usart(6), 0, Bus::Apb2, 5),
+            (Block::Adc, 0x200, Bus::Apb2, 10),
+            (Block::Spi1, 0, Bus::Apb2, 12),
+            (Block::Syscfg, 0, Bus::Apb2, 14),
+            (Block::Timer(10), 0, Bus::Apb2, 17),
+        ] {
+            let gate = clock_gate(block, offset).map(|gate| (gate.bus, gate.bit));
+            assert_eq!(gate, Some((bus, bit)), "{block:?}");
+        }
+        // The converters share ADCRST, bit 8.
+        assert_eq!(reset_bit(Block::Adc, 0x200), Some((Bus::Apb2, 8)));
     }
 }

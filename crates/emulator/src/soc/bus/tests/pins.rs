@@ -69,4 +69,19 @@ fn an_edge_on_the_selected_port_raises_exti3() {
     assert!(bench.soc.irq.level(9));
     bench.write(EXTI + 0x14, 1 << 3);
     assert!(!bench.soc.irq.level(9));
+    assert_eq!(bench.errors(), Vec::<&str>::new());
+}
+
+#[test]
+fn waiting_for_an_edge_nobody_makes_is_named() {
+    let mut bench = ports_on();
+    bench.set_bits(APB2ENR, 1 << 14);
+    // EXTI5 from port C (2): the BMI088's INT3, which is not modelled.
+    bench.write(SYSCFG + 0x0C, 2 << 4);
+    bench.write(EXTI + 0x0C, 1 << 5);
+    bench.write(EXTI, 1 << 5);
+    assert_eq!(
+        bench.errors(),
+        ["EXTI5: nothing modelled drives PC5: no edge ever comes"]
+    );
 }
