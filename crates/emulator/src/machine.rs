@@ -3,7 +3,7 @@
 use std::{collections::BTreeMap, path::Path};
 
 use robot_plant::{
-    time::{MS, Ps, to_seconds},
+    time::{MS, Ps, US, to_seconds},
     world::World,
 };
 
@@ -80,6 +80,15 @@ pub struct Stats {
     pub stack_peak_bytes: u64,
     pub resets: Vec<String>,
     pub can: Vec<CanStats>,
+    pub flash: FlashUse,
+}
+
+#[derive(Clone, Debug, Default, serde::Serialize)]
+pub struct FlashUse {
+    pub erases: u64,
+    pub programs: u64,
+    /// Longest time without a fetch.
+    pub longest_stall_us: u64,
 }
 
 #[derive(Clone, Debug, Default, serde::Serialize)]
@@ -210,11 +219,21 @@ impl Machine {
             stack_peak_bytes: self.stack.peak(&self.cpu),
             resets: self.resets.clone(),
             can: [0, 1].map(|bus| self.can_stats(bus)).to_vec(),
+            flash: self.flash_use(),
         }
     }
 
     pub fn resets(&self) -> usize {
         self.resets.len()
+    }
+
+    fn flash_use(&self) -> FlashUse {
+        let counted = self.cpu.soc().flash_stats();
+        FlashUse {
+            erases: counted.erases,
+            programs: counted.programs,
+            longest_stall_us: counted.longest_stall / US,
+        }
     }
 
     fn can_stats(&self, bus: usize) -> CanStats {

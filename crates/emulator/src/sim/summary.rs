@@ -15,7 +15,7 @@ use super::{
 };
 use crate::{
     board_errors::BoardError,
-    machine::{CanStats, Distribution},
+    machine::{CanStats, Distribution, FlashUse},
     pty::PortStats,
 };
 
@@ -43,6 +43,7 @@ pub struct Summary {
     /// Share of all instructions by context, 0 … 1.
     pub executors: BTreeMap<String, f64>,
     pub can: Vec<CanStats>,
+    pub flash: FlashUse,
     pub stack_peak_bytes: u64,
     pub resets: Vec<String>,
     /// Bit positions of `diag.safety.flags` that were set at some time.
@@ -143,6 +144,7 @@ impl Summary {
             cpu_load: stats.cpu_load,
             executors: stats.executors.clone(),
             can: stats.can.clone(),
+            flash: stats.flash.clone(),
             stack_peak_bytes: stats.stack_peak_bytes,
             resets: stats.resets.clone(),
             safety_flags_seen: (0..64)

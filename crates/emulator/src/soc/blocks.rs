@@ -11,7 +11,7 @@ use crate::{
         dma::{Beat, Dma, request_map::RequestLine, unserved::Unserved},
         dma_request::DmaRequests,
         exti::Exti,
-        flash::Flash,
+        flash::{Flash, FlashStats},
         gpio::Gpio,
         i2c::I2c,
         iwdg::Iwdg,
@@ -149,6 +149,10 @@ impl Blocks {
     }
 
     /// Frames and load of CAN1 (0) or CAN2 (1).
+    pub fn flash_stats(&self) -> FlashStats {
+        self.flash.stats()
+    }
+
     pub fn can_stats(&self, bus: usize) -> CanBusStats {
         self.can.stats(bus)
     }

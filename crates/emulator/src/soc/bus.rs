@@ -10,6 +10,7 @@ use crate::{
         can_bus::CanBusStats,
         clocks::ClockTree,
         dma_request::DmaRequests,
+        flash::FlashStats,
         guest_memory::GuestMemory,
         irq::IrqLines,
         memory_map::{self, Block, Bus},
@@ -96,6 +97,10 @@ impl Soc {
     }
 
     /// Frames and load of CAN1 (0) or CAN2 (1).
+    pub fn flash_stats(&self) -> FlashStats {
+        self.blocks.flash_stats()
+    }
+
     pub fn can_stats(&self, bus: usize) -> CanBusStats {
         self.blocks.can_stats(bus)
     }
