@@ -16,13 +16,13 @@ use crate::{
     soc::{bus::Soc, reset::ResetCause},
 };
 
-mod diagnostics;
+pub mod diagnostics;
 pub mod faults;
 mod log;
 mod rtt;
 mod stack;
 
-use diagnostics::Diagnostics;
+use diagnostics::{Diagnostics, meaning::Meaning};
 use log::DefmtLog;
 use rtt::Rtt;
 use stack::StackWatch;
@@ -198,6 +198,11 @@ impl Machine {
     /// Names of the firmware's diagnostics, `diag.*`, read from the image's debug information.
     pub fn diag_names(&self) -> &[String] {
         self.diagnostics.names()
+    }
+
+    /// What the values of each of `diag_names` stand for, where the image says so.
+    pub fn diag_meanings(&self) -> Vec<Option<Meaning>> {
+        self.diagnostics.meanings()
     }
 
     /// Values in the order of `diag_names` as they stood when the thread executor last went to sleep; false while it

@@ -3,8 +3,10 @@
 use crate::core::{cpu::Cpu, image::Image};
 
 mod layout;
+pub mod meaning;
 
 use layout::Leaf;
+use meaning::Meaning;
 
 /// The static that holds the record, and the record's type.
 const STATIC: &str = "g_robotapp_diag";
@@ -41,6 +43,14 @@ impl Diagnostics {
 
     pub fn names(&self) -> &[String] {
         &self.names
+    }
+
+    /// In the order of `names`.
+    pub fn meanings(&self) -> Vec<Option<Meaning>> {
+        self.leaves
+            .iter()
+            .map(|leaf| leaf.meaning.clone())
+            .collect()
     }
 
     /// Called where the record cannot be half-written.

@@ -10,6 +10,7 @@ use super::{
 };
 use crate::{
     board_errors::BoardError,
+    machine::diagnostics::meaning::Meaning,
     machine::{LogLine, Machine, MachineError, Stats},
     pty::CanPort,
 };
@@ -24,6 +25,8 @@ pub trait Board {
     fn sample_world(&mut self, out: &mut Vec<f64>);
     fn drain_wire_events(&mut self, out: &mut Vec<WireEvent>);
     fn diag_names(&mut self) -> Vec<String>;
+    /// What the values of each of them stand for, where the firmware says so.
+    fn diag_meanings(&mut self) -> Vec<Option<Meaning>>;
     /// False while the firmware's diagnostics cannot be read whole.
     fn sample_diag(&mut self, out: &mut Vec<f64>) -> bool;
     /// Total, heading and inclination error in degrees; `None` in a gap of the reference.
@@ -72,6 +75,10 @@ impl Board for Machine {
 
     fn diag_names(&mut self) -> Vec<String> {
         Machine::diag_names(self).to_vec()
+    }
+
+    fn diag_meanings(&mut self) -> Vec<Option<Meaning>> {
+        Machine::diag_meanings(self)
     }
 
     fn sample_diag(&mut self, out: &mut Vec<f64>) -> bool {

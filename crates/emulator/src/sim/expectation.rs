@@ -2,6 +2,8 @@
 
 use robot_plant::time::{self, Ps};
 
+use crate::machine::diagnostics::meaning::Meaning;
+
 #[derive(Clone, Debug)]
 pub struct Expectation {
     pub signal: String,
@@ -85,6 +87,16 @@ impl Bound {
         }
     }
 
+    /// As `Display`, with the firmware's own name of a state or flag.
+    fn in_words(self, meaning: Option<&Meaning>) -> String {
+        let words = meaning.and_then(|meaning| match self {
+            Self::Equals(value) => meaning.words(value),
+            Self::HasBit(bit) | Self::LacksBit(bit) => meaning.bit(bit).map(str::to_owned),
+            _ => None,
+        });
+        format!("{self}{}", in_brackets(words))
+    }
+
     fn crossed(self, before: f64, now: f64) -> bool {
         match self {
             Self::RisesAbove(level) => before <= level && now > level,
@@ -96,6 +108,10 @@ impl Bound {
     fn is_crossing(self) -> bool {
         matches!(self, Self::RisesAbove(_) | Self::FallsBelow(_))
     }
+}
+
+fn in_brackets(words: Option<String>) -> String {
+    words.map_or(String::new(), |words| format!(" ({words})"))
 }
 
 fn has_bit(value: f64, bit: u8) -> bool {
@@ -129,7 +145,8 @@ pub struct Reading {
 #[derive(Clone, Debug)]
 pub struct Verdict {
     pub signal: String,
-    pub bound: Bound,
+    /// The bound in words.
+    pub expected: String,
     pub window: Window,
     pub because: Option<String>,
     /// The reading nearest to breaking the bound, the one that broke it most, or the crossing.
@@ -212,11 +229,17 @@ impl Judge {
     }
 
     /// `end` is when the run really ended: a window that was cut off has not been kept.
-    pub fn finish(self, signal: &str, because: Option<String>, end: Ps) -> Verdict {
-        let failure = self.failure(end);
+    pub fn finish(
+        self,
+        signal: &str,
+        because: Option<String>,
+        end: Ps,
+        meaning: Option<&Meaning>,
+    ) -> Verdict {
+        let failure = self.failure(end, meaning);
         Verdict {
             signal: signal.to_owned(),
-            bound: self.bound,
+            expected: self.bound.in_words(meaning),
             window: self.window,
             because,
             decisive: self.decisive,
@@ -225,13 +248,14 @@ impl Judge {
         }
     }
 
-    fn failure(&self, end: Ps) -> Option<String> {
+    fn failure(&self, end: Ps, meaning: Option<&Meaning>) -> Option<String> {
         let seconds = time::to_seconds;
         if self.worst_excess > 0.0 {
             let worst = self.decisive?;
             return Some(format!(
-                "was {} at {:.4} s",
+                "was {}{} at {:.4} s",
                 readable(worst.value),
+                in_brackets(meaning.and_then(|m| m.words(worst.value))),
                 seconds(worst.at)
             ));
         }
@@ -257,7 +281,7 @@ pub fn readable(value: f64) -> f64 {
 pub fn missing_signal(expectation: &Expectation, bound: Bound, why: String) -> Verdict {
     Verdict {
         signal: expectation.signal.clone(),
-        bound,
+        expected: bound.to_string(),
         window: expectation.window,
         because: expectation.because.clone(),
         decisive: None,
@@ -282,7 +306,7 @@ mod tests {
         for (i, v) in values.iter().enumerate() {
             judge.see(i as Ps * MS, *v);
         }
-        judge.finish("s", None, (values.len() as Ps - 1) * MS)
+        judge.finish("s", None, (values.len() as Ps - 1) * MS, None)
     }
 
     #[test]
@@ -345,6 +369,18 @@ mod tests {
     }
 
     #[test]
+    fn states_and_flags_are_called_by_their_names() {
+        let flags = Meaning::Flags([(0, "lost".to_owned()), (3, "e-stop".to_owned())].into());
+        let window = Window { start: 0, end: MS };
+        let mut judge = Judge::new(Bound::LacksBit(3), window);
+        judge.see(0, 9.0);
+        let verdict = judge.finish("s", None, MS, Some(&flags));
+        assert_eq!(verdict.expected, "lacks bit 3 (e-stop)");
+        let why = verdict.failure.as_deref();
+        assert_eq!(why, Some("was 9 (lost e-stop) at 0.0000 s"));
+    }
+
+    #[test]
     fn nothing_seen_is_a_failure() {
         assert!(
             run(Bound::MaxAbs(1.0), (5, 9), &[0.0; 20])
@@ -359,7 +395,7 @@ mod tests {
         let mut judge = Judge::new(Bound::Max(1.0), between_samples);
         judge.see(0, 0.0);
         judge.see(MS, 0.0);
-        assert!(judge.finish("s", None, MS).failure.is_some());
+        assert!(judge.finish("s", None, MS, None).failure.is_some());
     }
 
     #[test]
@@ -385,7 +421,7 @@ mod tests {
         for (at, value) in [(MS, 1.0), (2 * MS, 2.0), (3 * MS, 3.0)] {
             judge.see(at, value);
         }
-        let verdict = judge.finish("s", None, 3 * MS);
+        let verdict = judge.finish("s", None, 3 * MS, None);
         assert_eq!((verdict.readings, verdict.failure), (1, None));
     }
 }

@@ -136,7 +136,8 @@ impl<'a, B: Board> Run<'a, B> {
             &board.world_names(),
             &board.diag_names(),
             RunSignals::names(),
-        );
+        )
+        .with_meanings(board.diag_meanings());
         let judges = scenario.expectations.iter().flat_map(|e| {
             let place = table.index(&e.signal);
             e.bounds
@@ -220,7 +221,10 @@ impl<'a, B: Board> Run<'a, B> {
         let verdicts = bounds
             .zip(self.judges)
             .map(|((e, bound), (place, judge))| match place {
-                Some(_) => judge.finish(&e.signal, e.because.clone(), end),
+                Some(place) => {
+                    let meaning = self.table.meaning(place);
+                    judge.finish(&e.signal, e.because.clone(), end, meaning)
+                }
                 None => expectation::missing_signal(e, bound, self.table.missing(&e.signal)),
             })
             .collect();

@@ -1,11 +1,15 @@
 //! The names of everything a scenario can look at, and the values at one instant.
 
+use crate::machine::diagnostics::meaning::Meaning;
+
 /// Names of all signals of a run: the world's, then the firmware's diagnostics, then the run's own.
 #[derive(Clone, Debug)]
 pub struct SignalTable {
     names: Vec<String>,
     world: usize,
     diag: usize,
+    /// Of the diagnostics, in their order; may be shorter.
+    meanings: Vec<Option<Meaning>>,
 }
 
 /// One value of each signal; `None` where it has none at this instant (firmware not up, gap of a reference).
@@ -18,7 +22,21 @@ impl SignalTable {
             names: names.chain(run.iter().map(|n| n.to_string())).collect(),
             world: world.len(),
             diag: diag.len(),
+            meanings: Vec::new(),
         }
+    }
+
+    /// Takes what the values of the diagnostics stand for.
+    #[must_use]
+    pub fn with_meanings(mut self, diag: Vec<Option<Meaning>>) -> Self {
+        self.meanings = diag;
+        self
+    }
+
+    /// What the values of a signal stand for, where the firmware says so.
+    pub fn meaning(&self, place: usize) -> Option<&Meaning> {
+        let diag = place.checked_sub(self.world)?;
+        self.meanings.get(diag)?.as_ref()
     }
 
     pub fn names(&self) -> &[String] {

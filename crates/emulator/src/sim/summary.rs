@@ -46,8 +46,8 @@ pub struct Summary {
     pub flash: FlashUse,
     pub stack_peak_bytes: u64,
     pub resets: Vec<String>,
-    /// Bit positions of `diag.safety.flags` that were set at some time.
-    pub safety_flags_seen: Vec<u32>,
+    /// Flags of `diag.safety.flags` that were set at some time, by name; `bit n` for one without a name.
+    pub safety_flags_seen: Vec<String>,
     /// Against the plant's truth or the recording's reference; absent where nothing could be scored.
     pub attitude_error: Option<AttitudeError>,
     pub budgets: Vec<Budget>,
@@ -147,9 +147,7 @@ impl Summary {
             flash: stats.flash.clone(),
             stack_peak_bytes: stats.stack_peak_bytes,
             resets: stats.resets.clone(),
-            safety_flags_seen: (0..64)
-                .filter(|bit| result.safety_flags_seen >> bit & 1 == 1)
-                .collect(),
+            safety_flags_seen: flags_seen(result),
             attitude_error: attitude_error(result),
             budgets: budgets::image_budgets(result),
             last: Final {
@@ -172,7 +170,7 @@ fn failed(verdicts: &[Verdict]) -> Vec<FailedExpectation> {
     broken
         .map(|(verdict, why)| FailedExpectation {
             signal: verdict.signal.clone(),
-            expected: verdict.bound.to_string(),
+            expected: verdict.expected.clone(),
             from: time::to_seconds(verdict.window.start),
             to: time::to_seconds(verdict.window.end),
             measured: verdict.decisive.map(|r| r.value),
@@ -210,6 +208,16 @@ fn attitude_error(result: &RunResult) -> Option<AttitudeError> {
         heading_rmse_deg: heading,
         inclination_rmse_deg: inclination,
     })
+}
+
+fn flags_seen(result: &RunResult) -> Vec<String> {
+    let place = result.table.index("diag.safety.flags");
+    let meaning = place.and_then(|place| result.table.meaning(place));
+    let name = |bit| meaning.and_then(|m| m.bit(bit)).map(str::to_owned);
+    (0..64)
+        .filter(|bit| result.safety_flags_seen >> bit & 1 == 1)
+        .map(|bit| name(bit).unwrap_or_else(|| format!("bit {bit}")))
+        .collect()
 }
 
 fn subtree(result: &RunResult, prefix: &str) -> Value {

@@ -196,7 +196,7 @@ impl Terminal {
         };
         let text = format!(
             "failed: {} {} {window}: {why}",
-            verdict.signal, verdict.bound
+            verdict.signal, verdict.expected
         );
         println!("{}", painted(&text, Paint::Red, self.colours));
         if let Some(because) = &verdict.because {

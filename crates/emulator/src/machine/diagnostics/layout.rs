@@ -8,6 +8,10 @@ use gimli::{
 };
 use object::{Object, ObjectSection};
 
+use super::meaning::Meaning;
+
+mod meanings;
+
 type Slice<'d> = EndianSlice<'d, LittleEndian>;
 type Die<'d> = DebuggingInformationEntry<Slice<'d>, usize>;
 
@@ -18,6 +22,8 @@ pub struct Leaf {
     pub name: String,
     offset: u32,
     kind: Kind,
+    /// What its values stand for, where the image says so.
+    pub meaning: Option<Meaning>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,7 +73,7 @@ pub fn of_static(elf: &[u8], name: &str, record: &str) -> Result<Record, String>
     };
     let sections = gimli::DwarfSections::load(section).map_err(|e| e.to_string())?;
     let dwarf = sections.borrow(|bytes| EndianSlice::new(bytes, LittleEndian));
-    let types = Types::load(&dwarf).map_err(|e| e.to_string())?;
+    let types = Types::load(&file, &dwarf).map_err(|e| e.to_string())?;
     let variable = types
         .variable(name)
         .map_err(|e| e.to_string())?
@@ -92,6 +98,7 @@ struct Place {
 }
 
 struct Types<'d> {
+    file: &'d object::File<'d>,
     dwarf: &'d Dwarf<Slice<'d>>,
     units: Vec<Unit<Slice<'d>>>,
 }
@@ -103,13 +110,13 @@ struct Member {
 }
 
 impl<'d> Types<'d> {
-    fn load(dwarf: &'d Dwarf<Slice<'d>>) -> gimli::Result<Self> {
+    fn load(file: &'d object::File<'d>, dwarf: &'d Dwarf<Slice<'d>>) -> gimli::Result<Self> {
         let mut units = Vec::new();
         let mut headers = dwarf.units();
         while let Some(header) = headers.next()? {
             units.push(dwarf.unit(header)?);
         }
-        Ok(Self { dwarf, units })
+        Ok(Self { file, dwarf, units })
     }
 
     /// Type of the static `name`.
@@ -232,6 +239,10 @@ impl<'d> Types<'d> {
                     name: name.to_owned(),
                     offset,
                     kind,
+                    meaning: match entry.tag() {
+                        constants::DW_TAG_enumeration_type => Some(self.states(place)?),
+                        _ => None,
+                    },
                 });
                 Ok(())
             }
@@ -265,6 +276,9 @@ impl<'d> Types<'d> {
             };
             self.flatten(member.place, offset + member.offset, &full, leaves)?;
         }
+        if is_newtype && let Some(leaf) = leaves.last_mut().filter(|leaf| leaf.name == name) {
+            leaf.meaning = self.flags(place)?;
+        }
         Ok(())
     }
 
@@ -279,13 +293,8 @@ impl<'d> Types<'d> {
         let element = self
             .type_of(place.unit, entry)
             .ok_or_else(|| format!("{name}: array of nothing"))?;
-        let ranges = self.children(place)?;
-        let count = ranges.iter().find_map(|range| {
-            number(range, constants::DW_AT_count)
-                .or_else(|| number(range, constants::DW_AT_upper_bound).map(|last| last + 1))
-        });
         let stride = self.size(element)?;
-        for i in 0..count.unwrap_or(0) {
+        for i in 0..self.element_count(place)? {
             self.flatten(
                 element,
                 offset + i * stride,
@@ -294,6 +303,17 @@ impl<'d> Types<'d> {
             )?;
         }
         Ok(())
+    }
+}
+
+impl Types<'_> {
+    fn element_count(&self, array: Place) -> Result<u32, String> {
+        let ranges = self.children(array)?;
+        let count = ranges.iter().find_map(|range| {
+            number(range, constants::DW_AT_count)
+                .or_else(|| number(range, constants::DW_AT_upper_bound).map(|last| last + 1))
+        });
+        Ok(count.unwrap_or(0))
     }
 }
 
@@ -338,6 +358,7 @@ mod tests {
             name: String::new(),
             offset,
             kind,
+            meaning: None,
         }
     }
 

@@ -178,7 +178,7 @@ fn expectations(verdicts: &[Verdict]) -> String {
             "<tr><td class=\"{class}\">{mark}</td><td>{}</td><td>{}</td>\
              <td class=\"n\">{window}</td><td>{decided}</td><td class=\"soft\">{}</td></tr>",
             escaped(&verdict.signal),
-            escaped(&verdict.bound.to_string()),
+            escaped(&verdict.expected),
             escaped(verdict.because.as_deref().unwrap_or_default()),
         );
     }

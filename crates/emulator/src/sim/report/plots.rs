@@ -9,6 +9,8 @@ use super::{
 };
 use plotters::style::RGBColor;
 
+use crate::machine::diagnostics::meaning::Meaning;
+
 /// Width of a bin of the release jitter histogram (`Stats::jitter_bins`).
 const JITTER_BIN_US: f64 = 0.5;
 
@@ -142,6 +144,11 @@ impl Plots<'_> {
         }))
     }
 
+    fn meaning(&self, signal: &str) -> Option<&Meaning> {
+        let table = &self.report.result.table;
+        table.meaning(table.index(signal)?)
+    }
+
     fn timeline(&self) -> MaybeFigure {
         let points = |name: &str| Some(self.points(self.report.traces.signal(name)?));
         let mut rows: Vec<Lane> = Vec::new();
@@ -158,7 +165,10 @@ impl Plots<'_> {
         }
         if let Some(points) = points("diag.arming.state") {
             for state in distinct(&points) {
-                let label = format!("arming state {state}");
+                let words = self
+                    .meaning("diag.arming.state")
+                    .and_then(|m| m.words(state as f64));
+                let label = words.unwrap_or_else(|| format!("arming state {state}"));
                 rows.push(Lane::new(label, GREEN, &points, |v| v == state as f64));
             }
         }
@@ -170,9 +180,11 @@ impl Plots<'_> {
                 continue;
             };
             let seen = distinct(&points).into_iter().fold(0, |all, v| all | v);
-            for bit in (0..64).filter(|bit| seen >> bit & 1 == 1) {
+            for bit in (0..64_u8).filter(|bit| seen >> bit & 1 == 1) {
                 let is_on = |v: f64| v as u64 >> bit & 1 == 1;
-                rows.push(Lane::new(format!("{label} {bit}"), colour, &points, is_on));
+                let name = self.meaning(signal).and_then(|m| m.bit(bit));
+                let label = name.map_or_else(|| format!("{label} {bit}"), str::to_owned);
+                rows.push(Lane::new(label, colour, &points, is_on));
             }
         }
         if rows.is_empty() {
@@ -181,7 +193,7 @@ impl Plots<'_> {
         let end = time::to_seconds(self.report.result.ran).max(1e-3);
         Ok(Some(Figure {
             title: "Arming and safety",
-            caption: "A lane is filled while it is on. Blockers and flags by bit, as crates/app/src/safety names them.",
+            caption: "A lane is filled while it is on. Blockers in purple, safety flags in orange.",
             legend: Vec::new(),
             svg: lanes::draw(&rows, 0.0..end, &self.marks)?,
         }))

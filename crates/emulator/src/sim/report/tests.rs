@@ -112,6 +112,10 @@ impl Board for Waves {
         };
         due.then_some(line).into_iter().collect()
     }
+    fn diag_meanings(&mut self) -> Vec<Option<crate::machine::diagnostics::meaning::Meaning>> {
+        Vec::new()
+    }
+
     fn resets(&mut self) -> usize {
         0
     }

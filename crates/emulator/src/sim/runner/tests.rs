@@ -85,6 +85,10 @@ impl Board for Double {
         Stats::default()
     }
 
+    fn diag_meanings(&mut self) -> Vec<Option<crate::machine::diagnostics::meaning::Meaning>> {
+        Vec::new()
+    }
+
     fn resets(&mut self) -> usize {
         0
     }
