@@ -3,6 +3,7 @@
 //! Nothing here knows the chip, and nothing here uses the firmware's codecs: a codec must not be tested against itself.
 
 pub mod can_adapter;
+pub mod recording;
 pub mod time;
 pub mod wire;
 pub mod world;
@@ -15,5 +16,4 @@ mod ist8310;
 mod m3508;
 mod radio;
 mod random;
-mod recording;
 mod supply;

@@ -1,9 +1,6 @@
 //! Boots a firmware image in the emulated C board and runs a scenario (`cargo xtask sim`).
 
-use std::{
-    path::{Path, PathBuf},
-    process::ExitCode,
-};
+use std::{path::PathBuf, process::ExitCode};
 
 use anyhow::{Context, bail};
 use clap::Parser;
@@ -19,7 +16,7 @@ use robot_emulator::{
         terminal::{LogLevel, Terminal},
     },
 };
-use robot_plant::{time, world::CanBusId};
+use robot_plant::{recording, time, world::CanBusId};
 
 /// Boot the firmware in an emulated RoboMaster C board wired to a simulated robot.
 #[derive(Parser)]
@@ -124,7 +121,7 @@ fn job(args: &Args) -> anyhow::Result<Job> {
         (None, None) => Scenario::parse(DRIVE, "scenarios/drive.toml")?,
         (None, Some(trial)) => {
             let mut scenario = Scenario::parse(REPLAY, "replay")?;
-            scenario.length = time::from_seconds(trial_seconds(trial)?);
+            scenario.length = recording::run_length(trial)?;
             scenario
         }
     };
@@ -147,21 +144,6 @@ fn job(args: &Args) -> anyhow::Result<Job> {
         patches: args.patch.clone(),
         can_on_pty: args.can_on_pty(),
     })
-}
-
-/// Length of a recorded trial, from its description.
-fn trial_seconds(path: &Path) -> anyhow::Result<f64> {
-    #[derive(serde::Deserialize)]
-    struct Trial {
-        rows: f64,
-        rate_num: f64,
-        rate_den: f64,
-    }
-    let text = std::fs::read_to_string(path)
-        .with_context(|| format!("cannot read the trial {}", path.display()))?;
-    let trial: Trial = serde_json::from_str(&text)
-        .with_context(|| format!("{} does not describe a trial", path.display()))?;
-    Ok(trial.rows * trial.rate_den / trial.rate_num)
 }
 
 fn list_signals(job: &Job) -> anyhow::Result<ExitCode> {

@@ -225,6 +225,24 @@ mod tests {
     }
 
     #[test]
+    fn a_current_taken_back_is_zero_and_no_denormal_number_after_50_ms() {
+        let mut esc = esc(1);
+        for commanded in [0x10, 0] {
+            esc.receive(&CanFrame {
+                id: 0x200,
+                extended: false,
+                remote: false,
+                dlc: 8,
+                data: [commanded, 0, 0, 0, 0, 0, 0, 0],
+            });
+            for _ in 0..200 {
+                esc.step(0.0, 24.0);
+            }
+        }
+        assert_eq!(esc.motor.current_a(), 0.0);
+    }
+
+    #[test]
     fn command_holds_without_further_frames_and_dies_with_the_supply() {
         let mut esc = esc(1);
         esc.receive(&CanFrame {

@@ -19,6 +19,14 @@ use trial::{Row, Trial};
 const LEAD_IN: Ps = 1_000 * MS;
 /// How long before the board's own sampling a row is put into the registers. Both sensor dies are read within this.
 const ROW_BEFORE_READ: Ps = 300 * US;
+/// The slowest board the records suit reads at their own rate of 200 Hz.
+const LONGEST_READ_PERIOD: Ps = 5 * MS;
+
+/// How long a run lasts that plays all of the trial `header` describes: lead-in, the wait for the board's next read,
+/// and every row.
+pub fn run_length(header: &Path) -> Result<Ps, WorldError> {
+    Ok(LEAD_IN + LONGEST_READ_PERIOD + trial::duration(header)?)
+}
 
 pub(crate) struct Playback {
     trial: Trial,

@@ -18,6 +18,34 @@ struct Header {
     rate_den: u64,
 }
 
+impl Header {
+    fn read(path: &Path) -> Result<Self, WorldError> {
+        let text = std::fs::read_to_string(path).map_err(|e| wrong(path, e.to_string()))?;
+        let header: Self = serde_json::from_str(&text).map_err(|e| wrong(path, e.to_string()))?;
+        if header.rows == 0 || header.rate_num == 0 {
+            return Err(wrong(path, "no rows, or no rate".into()));
+        }
+        Ok(header)
+    }
+
+    fn row_period(&self) -> Ps {
+        SECOND * self.rate_den / self.rate_num
+    }
+}
+
+fn wrong(path: &Path, why: String) -> WorldError {
+    WorldError::Trial {
+        path: path.to_owned(),
+        why,
+    }
+}
+
+/// Time from the first row to the end of the last.
+pub(super) fn duration(header_path: &Path) -> Result<Ps, WorldError> {
+    let header = Header::read(header_path)?;
+    Ok(header.rows as Ps * header.row_period())
+}
+
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Row {
     pub gyro_rps: [f64; 3],
@@ -37,13 +65,8 @@ pub(super) struct Trial {
 impl Trial {
     /// Reads `<trial>.json` and the `<trial>.f32.gz` beside it.
     pub(super) fn load(header_path: &Path) -> Result<Self, WorldError> {
-        let fail = |why: String| WorldError::Trial {
-            path: header_path.to_owned(),
-            why,
-        };
-        let text = std::fs::read_to_string(header_path).map_err(|error| fail(error.to_string()))?;
-        let header: Header =
-            serde_json::from_str(&text).map_err(|error| fail(error.to_string()))?;
+        let header = Header::read(header_path)?;
+        let fail = |why: String| wrong(header_path, why);
         let data_path = header_path.with_extension("f32.gz");
         let file = std::fs::File::open(&data_path)
             .map_err(|error| fail(format!("{}: {error}", data_path.display())))?;
@@ -56,7 +79,7 @@ impl Trial {
 
     fn parse(header: &Header, bytes: &[u8]) -> Result<Self, String> {
         let expected = header.rows * header.columns.len() * 4;
-        if header.rows == 0 || header.rate_num == 0 || bytes.len() != expected {
+        if bytes.len() != expected {
             return Err(format!(
                 "header speaks of {expected} bytes at {}/{} Hz, data has {}",
                 header.rate_num,
@@ -92,7 +115,7 @@ impl Trial {
             .collect();
         Ok(Self {
             rows,
-            row_period: SECOND * header.rate_den / header.rate_num,
+            row_period: header.row_period(),
         })
     }
 
