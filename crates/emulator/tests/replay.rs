@@ -75,9 +75,9 @@ fn replay_all(mut trials: Vec<PathBuf>) -> Vec<(String, AttitudeError)> {
 /// reference skipped, no alignment of any kind. The lead-in before a record is at rest and is not scored.
 ///
 /// The estimator alone, fed with the records as they are (`host-tests`, `recorded_motion`), has 0.84° of inclination in
-/// the mean; in the image it has 0.88°, and no trial differs by 0.1°. Heading differs more, up to 1.7° (trial 21): here
-/// every row passes the chips' resolution, ranges and conversion times, the magnetometer's above all. The bounds are what
-/// was measured (0.88° and at most 1.93°) and a fifth more; the mean's is kept at 1°.
+/// the mean; in the image it has 0.88°, and no trial differs by 0.1°. Heading differs more, up to 1.7° (trial 21), and
+/// which of the chips' resolution, filters and conversion times does that has not been measured. The bounds are what was
+/// measured (0.88° and at most 1.93°) and a fifth more; the mean's is kept at 1°.
 ///
 /// It takes 9 minutes of processor time: half of that where two cores are free.
 #[test]
