@@ -272,9 +272,14 @@ impl Judge {
     }
 }
 
-/// Six significant digits are enough to see what is wrong.
-pub fn readable(value: f64) -> f64 {
-    format!("{value:.5e}").parse().unwrap_or(value)
+/// Six significant digits are enough to see what is wrong; what would need many zeros takes an exponent.
+pub fn readable(value: f64) -> String {
+    let rounded = format!("{value:.5e}").parse().unwrap_or(value);
+    if rounded == 0.0 || (1e-6..1e9).contains(&rounded.abs()) || !rounded.is_finite() {
+        rounded.to_string()
+    } else {
+        format!("{rounded:e}")
+    }
 }
 
 /// The verdict on a signal that does not exist.
@@ -396,6 +401,14 @@ mod tests {
         judge.see(0, 0.0);
         judge.see(MS, 0.0);
         assert!(judge.finish("s", None, MS, None).failure.is_some());
+    }
+
+    #[test]
+    fn values_are_short_whatever_their_size() {
+        assert_eq!(readable(0.592_001_23), "0.592001");
+        assert_eq!(readable(-1.234_567_8e-300), "-1.23457e-300");
+        assert_eq!(readable(0.0), "0");
+        assert_eq!(readable(f64::NAN), "NaN");
     }
 
     #[test]
