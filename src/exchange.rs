@@ -7,6 +7,7 @@
 //! | [`Exchange::remote`] | sbus task | logic, control | each radio frame, 70 to 143 Hz |
 //! | [`Exchange::logic_bus`] | logic task | control | 100 Hz |
 //! | [`Exchange::battery_v`] | status task | control | 4 Hz |
+//! | [`Exchange::config`] | control task | imu, mag, logic | when tuning changed it |
 //! | [`Exchange::diagnostics`] | control task | status | 100 Hz |
 //! | [`RADIO_LINE`] | radio UART interrupt | sbus, status | each radio frame |
 //! | `drivers/can/receive.rs`, queues | CAN receive interrupts | control | each CAN frame |
@@ -14,7 +15,7 @@
 //! | `debugger_view.rs` | control task | a debugger | 1 kHz |
 
 use robot_app::diagnostics::DiagnosticsSnapshot;
-use robot_app::domain::{ImuState, MagState, RemoteUpdate, SensorHealth};
+use robot_app::domain::{ImuState, MagState, RemoteUpdate, RobotConfig, SensorHealth};
 use robot_app::logic::LogicBus;
 use robot_snapshot::{Snapshot, Writer};
 use static_cell::StaticCell;
@@ -45,6 +46,7 @@ pub struct Exchange {
     pub logic_bus: Snapshot<LogicBus>,
     /// 0 while not measured.
     pub battery_v: Snapshot<f32>,
+    pub config: Snapshot<RobotConfig>,
     pub diagnostics: Snapshot<DiagnosticsSnapshot>,
 }
 
@@ -60,6 +62,7 @@ pub struct Writers {
     pub remote: Writer<'static, RemoteUpdate>,
     pub logic_bus: Writer<'static, LogicBus>,
     pub battery_v: Writer<'static, f32>,
+    pub config: Writer<'static, RobotConfig>,
     pub diagnostics: Writer<'static, DiagnosticsSnapshot>,
 }
 
@@ -72,6 +75,7 @@ impl Exchange {
             remote: Snapshot::new(RemoteUpdate::default()),
             logic_bus: Snapshot::new(LogicBus::default()),
             battery_v: Snapshot::new(0.0),
+            config: Snapshot::new(RobotConfig::default()),
             diagnostics: Snapshot::new(DiagnosticsSnapshot::default()),
         })
     }
@@ -84,6 +88,7 @@ impl Exchange {
             remote: self.remote.writer()?,
             logic_bus: self.logic_bus.writer()?,
             battery_v: self.battery_v.writer()?,
+            config: self.config.writer()?,
             diagnostics: self.diagnostics.writer()?,
         })
     }

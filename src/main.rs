@@ -70,12 +70,21 @@ fn main() -> ! {
         ports,
         Watchdog::start(board.iwdg),
         last_run,
+        writers.config,
         writers.diagnostics,
     );
 
     let sensor = executors::start_sensor();
-    sensor.spawn(defmt::unwrap!(tasks::imu::run(board.imu, writers.imu)));
-    sensor.spawn(defmt::unwrap!(tasks::mag::run(board.mag, writers.mag)));
+    sensor.spawn(defmt::unwrap!(tasks::imu::run(
+        board.imu,
+        exchange,
+        writers.imu
+    )));
+    sensor.spawn(defmt::unwrap!(tasks::mag::run(
+        board.mag,
+        exchange,
+        writers.mag
+    )));
     sensor.spawn(defmt::unwrap!(tasks::sbus::run(
         board.radio,
         config::REMOTE_FORMAT,

@@ -1,7 +1,7 @@
 //! Frames of hardware.md section 12, computed there from the protocol tables, through the public interface.
 
 use robot_app::{
-    domain::{BusId, MotorCurrent, RemoteUpdate},
+    domain::{BusId, DriveMode, MotorCurrent, RemoteUpdate},
     input::{DbusFrame, DbusSwitch, RemoteFormat, RemoteMapping, RemoteReceiver, SbusFrame},
     motor::{m3508, safe_frames},
 };
@@ -103,7 +103,7 @@ fn sbus_sticks_and_switches_mean_what_the_mapping_says() {
     let update = last_update(RemoteFormat::Sbus, &sbus(channels)).unwrap();
     assert_eq!((update.state.vx, update.state.wz), (1.0, -1.0));
     assert!(update.operator.enabled && !update.operator.e_stop);
-    assert_eq!(update.operator.mode, 2);
+    assert_eq!(update.operator.mode, DriveMode::Custom);
 
     let update = last_update(RemoteFormat::Sbus, &SBUS_CENTRED).unwrap();
     assert_eq!((update.state.vx, update.state.wz), (0.0, 0.0));
@@ -112,7 +112,7 @@ fn sbus_sticks_and_switches_mean_what_the_mapping_says() {
         update.operator.e_stop,
         "only a switch clearly low means run"
     );
-    assert_eq!(update.operator.mode, 1);
+    assert_eq!(update.operator.mode, DriveMode::Pc);
 }
 
 #[test]
@@ -134,7 +134,7 @@ fn dbus_sticks_and_switches_mean_what_the_mapping_says() {
     let update = last_update(RemoteFormat::Dbus, &DBUS_DEFLECTED).unwrap();
     assert_eq!((update.state.vx, update.state.wz), (1.0, 1.0));
     assert!(update.operator.enabled && !update.operator.e_stop);
-    assert_eq!(update.operator.mode, 2);
+    assert_eq!(update.operator.mode, DriveMode::Custom);
     let update = last_update(RemoteFormat::Dbus, &DBUS_CENTRED).unwrap();
     assert!(!update.operator.enabled && !update.operator.e_stop);
 }

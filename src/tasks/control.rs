@@ -3,8 +3,8 @@
 use embassy_time::{Duration, Instant, Ticker};
 use robot_app::control::UserController;
 use robot_app::diagnostics::DiagnosticsSnapshot;
-use robot_app::domain::{LateTasks, SystemHealth};
-use robot_app::tick::{ControlConfig, ControlInputs, ControlLoop};
+use robot_app::domain::{LateTasks, RobotConfig, SystemHealth};
+use robot_app::tick::{ControlInputs, ControlLoop};
 use robot_snapshot::Writer;
 
 use crate::debugger_view::g_robotapp_diag;
@@ -25,6 +25,7 @@ pub struct ControlContext {
     last_run: LastRun,
     late_tasks: LateTasks,
     control_loop: ControlLoop<UserController>,
+    config: Writer<'static, RobotConfig>,
     diagnostics: Writer<'static, DiagnosticsSnapshot>,
 }
 
@@ -34,6 +35,7 @@ impl ControlContext {
         ports: [CanPort; 2],
         watchdog: Watchdog,
         last_run: LastRun,
+        config: Writer<'static, RobotConfig>,
         diagnostics: Writer<'static, DiagnosticsSnapshot>,
     ) -> Self {
         Self {
@@ -42,7 +44,8 @@ impl ControlContext {
             watchdog,
             last_run,
             late_tasks: LateTasks::default(),
-            control_loop: ControlLoop::new(ControlConfig::default(), UserController::default()),
+            control_loop: ControlLoop::new(RobotConfig::default(), UserController::default()),
+            config,
             diagnostics,
         }
     }
@@ -69,6 +72,7 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
         last_run,
         late_tasks,
         control_loop,
+        config: _,
         diagnostics,
     } = context;
 

@@ -1,14 +1,13 @@
 //! 200 Hz: BMI088 → calibrated IMU samples. A lost sensor is brought up again for as long as it takes.
 
 use embassy_time::{Duration, Instant, Ticker};
-use robot_app::domain::ImuCalibration;
 use robot_app::sensing::ImuPipeline;
 use robot_snapshot::Writer;
 
 use crate::board::ImuBus;
 use crate::deadlines::{Watched, sleep_checking_in};
 use crate::drivers::bmi088::Bmi088;
-use crate::exchange::ImuReport;
+use crate::exchange::{Exchange, ImuReport};
 
 const PERIOD: Duration = Duration::from_hz(200);
 /// Bad samples in a row after which the sensor counts as lost.
@@ -22,9 +21,13 @@ struct ImuTask {
 }
 
 #[embassy_executor::task]
-pub async fn run(mut bus: ImuBus, output: Writer<'static, ImuReport>) -> ! {
+pub async fn run(
+    mut bus: ImuBus,
+    exchange: &'static Exchange,
+    output: Writer<'static, ImuReport>,
+) -> ! {
     let mut task = ImuTask {
-        pipeline: ImuPipeline::new(ImuCalibration::default()),
+        pipeline: ImuPipeline::new(exchange.config.latest().imu),
         report: ImuReport::default(),
         output,
     };

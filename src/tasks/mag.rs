@@ -1,14 +1,13 @@
 //! 50 Hz: IST8310 → calibrated magnetometer samples. A lost sensor is brought up again for as long as it takes.
 
 use embassy_time::{Duration, Instant, Ticker};
-use robot_app::domain::MagCalibration;
 use robot_app::sensing::MagPipeline;
 use robot_snapshot::Writer;
 
 use crate::board::MagBus;
 use crate::deadlines::{Watched, sleep_checking_in};
 use crate::drivers::ist8310::Ist8310;
-use crate::exchange::MagReport;
+use crate::exchange::{Exchange, MagReport};
 
 /// 50 Hz in two halves, so that the task meets its deadline in between.
 const HALF_PERIOD: Duration = Duration::from_millis(10);
@@ -23,9 +22,13 @@ struct MagTask {
 }
 
 #[embassy_executor::task]
-pub async fn run(mut bus: MagBus, output: Writer<'static, MagReport>) -> ! {
+pub async fn run(
+    mut bus: MagBus,
+    exchange: &'static Exchange,
+    output: Writer<'static, MagReport>,
+) -> ! {
     let mut task = MagTask {
-        pipeline: MagPipeline::new(MagCalibration::default()),
+        pipeline: MagPipeline::new(exchange.config.latest().mag),
         report: MagReport::default(),
         output,
     };

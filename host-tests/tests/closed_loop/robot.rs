@@ -5,7 +5,7 @@ use robot_app::{
     diagnostics::DiagnosticsSnapshot,
     domain::{
         BusId, CanFrame, ImuCalibration, ImuState, MagCalibration, MagState, RemoteUpdate,
-        SafetyConfig, StandardId, SystemHealth,
+        RobotConfig, SafetyConfig, StandardId, SystemHealth,
     },
     input::{RemoteFormat, RemoteMapping, RemoteReceiver},
     logic::{LogicBus, LogicStage},
@@ -15,7 +15,7 @@ use robot_app::{
         bmi088::{self, ACCEL_READ, GYRO_READ},
         ist8310,
     },
-    tick::{ControlConfig, ControlInputs, ControlLoop},
+    tick::{ControlInputs, ControlLoop},
 };
 use robot_plant::{
     time::{MS, Ps, US},
@@ -70,7 +70,7 @@ impl Robot {
             imu_pipeline: ImuPipeline::new(ImuCalibration::default()),
             mag_pipeline: MagPipeline::new(MagCalibration::default()),
             logic_stage: LogicStage::new(&SafetyConfig::default()),
-            control: ControlLoop::new(ControlConfig::default(), UserController::default()),
+            control: ControlLoop::new(RobotConfig::default(), UserController::default()),
             remote: RemoteUpdate::default(),
             imu: ImuState::default(),
             mag: MagState::default(),

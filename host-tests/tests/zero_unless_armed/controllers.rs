@@ -18,6 +18,7 @@ impl ChassisController for Rogue {
                         current_ma: -self.0,
                     },
                 ],
+                ..ChassisCommand::default()
             },
             cmd_valid: true,
         }

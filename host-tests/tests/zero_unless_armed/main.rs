@@ -10,8 +10,8 @@ use phase::{Phase, Producers, good, phases};
 use proptest::prelude::*;
 use robot_app::{
     control::ChassisController,
-    domain::{BusErrorState, BusId, CanFrame, StandardId, StateEstimate},
-    tick::{ControlConfig, ControlLoop},
+    domain::{BusErrorState, BusId, CanFrame, RobotConfig, StandardId, StateEstimate},
+    tick::ControlLoop,
 };
 use rules::Rules;
 
@@ -42,7 +42,7 @@ fn assert_sound(estimate: &StateEstimate) {
 
 /// Runs the phases; what each tick sent, if it may be anything but zero, in C620 counts of the left wheel.
 fn run(phases: &[Phase], controller: impl ChassisController) -> Vec<i32> {
-    let mut control = ControlLoop::new(ControlConfig::default(), controller);
+    let mut control = ControlLoop::new(RobotConfig::default(), controller);
     let (mut rules, mut producers) = (Rules::default(), Producers::default());
     let mut now_us = 1_000_000u64;
     let mut left = Vec::new();

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use robot_app::{
     domain::{
-        BusErrorState, ChassisCommand, HighLevelCommand, ImuState, MagState, OperatorState,
+        BusErrorState, ChassisCommand, DriveMode, HighLevelCommand, ImuState, MagState, OperatorState,
         RemoteDiagnostics, RemoteState, RemoteUpdate, SystemHealth, WheelCommand,
     },
     logic::LogicBus,
@@ -161,6 +161,7 @@ impl Producers {
                     wheels: [WheelCommand {
                         current_ma: phase.direct_ma.unwrap_or_default(),
                     }; 2],
+                    ..ChassisCommand::default()
                 },
                 cmd_valid: phase.direct_ma.is_some(),
                 ts_us: now_us,
@@ -194,7 +195,7 @@ fn remote_update(phase: &Phase, now_us: u64) -> RemoteUpdate {
             enabled: phase.enabled,
             disabled: !phase.enabled,
             e_stop: phase.e_stop,
-            mode: 0,
+            mode: DriveMode::Manual,
             ts_us: now_us,
         },
         diagnostics: RemoteDiagnostics {

@@ -22,7 +22,10 @@ impl ChassisController for DefaultController {
             wheel_command(right_mps, right, right_sign, rpm_to_mps, ctrl),
         ];
         ChassisControllerOutput {
-            cmd: ChassisCommand { wheels },
+            cmd: ChassisCommand {
+                wheels,
+                ..ChassisCommand::default()
+            },
             cmd_valid: true,
         }
     }

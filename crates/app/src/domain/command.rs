@@ -18,11 +18,44 @@ pub struct WheelCommand {
     pub current_ma: f32,
 }
 
-/// Commands of all actuators, wheel 0 = left, 1 = right.
+/// How a joint motor closes its loop.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[repr(u8)]
+pub enum JointMode {
+    /// Enabled without torque: turns freely.
+    #[default]
+    Off = 0,
+    /// `kp`·(`pos_rad` − angle) + `kd`·(`vel_rps` − speed) + `tau_nm`.
+    Mit = 1,
+    /// To `pos_rad`, at most `vel_rps` fast.
+    PositionSpeed = 2,
+    /// At `vel_rps`.
+    Speed = 3,
+}
+
+/// Command of one joint in joint coordinates (see `JointFeedback`). As requested it may be anything, even NaN; limits
+/// are applied before anything leaves the board.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct JointCommand {
+    pub mode: JointMode,
+    pub pos_rad: f32,
+    pub vel_rps: f32,
+    /// N·m/rad.
+    pub kp: f32,
+    /// N·m·s/rad.
+    pub kd: f32,
+    pub tau_nm: f32,
+}
+
+/// Commands of all actuators; wheel 0 = left, 1 = right; joint 0 = left front, 1 = left rear, 2 = right front, 3 = right
+/// rear.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct ChassisCommand {
     pub wheels: [WheelCommand; 2],
+    pub joints: [JointCommand; 4],
 }
 
 /// A motor current that may leave the board: finite and inside the limit it was made with.

@@ -68,6 +68,57 @@ impl Default for WheelControllerConfig {
     }
 }
 
+/// How the default controller holds the legs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct JointControllerConfig {
+    /// N·m/rad.
+    pub hold_kp: f32,
+    /// N·m·s/rad.
+    pub hold_kd: f32,
+}
+
+impl Default for JointControllerConfig {
+    fn default() -> Self {
+        Self {
+            hold_kp: 20.0,
+            hold_kd: 1.0,
+        }
+    }
+}
+
+/// One joint's place in the robot and what it may do, in joint coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct JointConfig {
+    /// +1 or −1: sense of the motor that turns the joint forward.
+    pub direction: f32,
+    /// Motor angle at joint angle zero.
+    pub zero_rad: f32,
+    pub min_rad: f32,
+    pub max_rad: f32,
+    pub max_torque_nm: f32,
+    pub max_speed_rps: f32,
+    pub max_kp: f32,
+    pub max_kd: f32,
+}
+
+impl Default for JointConfig {
+    /// A DM4310 that turns as the joint does, with what it can give for long and all the way it can tell.
+    fn default() -> Self {
+        Self {
+            direction: 1.0,
+            zero_rad: 0.0,
+            min_rad: -1.5,
+            max_rad: 1.5,
+            max_torque_nm: 3.0,
+            max_speed_rps: 15.0,
+            max_kp: 100.0,
+            max_kd: 5.0,
+        }
+    }
+}
+
 /// Limits of `SafetyPolicy` and `Arming`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
@@ -87,6 +138,18 @@ pub struct SafetyConfig {
     pub stick_centre: f32,
     /// How long a flip of the enable switch keeps asking; afterwards it must go off and on again.
     pub arm_request_us: u32,
+    /// A joint's reply older than this: silent.
+    pub joint_timeout_us: u32,
+    /// Angle between the body's z axis and the vertical beyond this: fallen over.
+    pub max_tilt_rad: f32,
+    pub max_wheel_c: f32,
+    pub max_joint_c: f32,
+    /// Below this: no arming, a warning while armed. 0 switches both battery limits off.
+    pub battery_low_v: f32,
+    /// Below this: everything stops.
+    pub battery_empty_v: f32,
+    /// How long enable off and e-stop thrown together clear latched stops.
+    pub clear_hold_us: u32,
 }
 
 impl Default for SafetyConfig {
@@ -100,6 +163,13 @@ impl Default for SafetyConfig {
             max_tx_failures: 20,
             stick_centre: 0.05,
             arm_request_us: 3_000_000,
+            joint_timeout_us: 50_000,
+            max_tilt_rad: 0.9,
+            max_wheel_c: 90.0,
+            max_joint_c: 90.0,
+            battery_low_v: 21.0,
+            battery_empty_v: 19.0,
+            clear_hold_us: 1_000_000,
         }
     }
 }
@@ -126,19 +196,78 @@ impl Default for ImuCalibration {
     }
 }
 
-/// Hard-iron offset and per-axis scale, applied in the body frame.
+/// Hard and soft iron of the robot, applied in the body frame: calibrated = soft_iron · (raw − bias).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct MagCalibration {
     pub bias_ut: [f32; 3],
-    pub scale: [f32; 3],
+    /// Symmetric, row by row.
+    pub soft_iron: [[f32; 3]; 3],
 }
 
 impl Default for MagCalibration {
     fn default() -> Self {
         Self {
             bias_ut: [0.0; 3],
-            scale: [1.0; 3],
+            soft_iron: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        }
+    }
+}
+
+/// Control of the IMU's heater.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct HeaterConfig {
+    /// Below 20 switches the heater off.
+    pub target_c: f32,
+    /// Duty (0 … 1) a kelvin.
+    pub kp: f32,
+    /// Duty a kelvin and second.
+    pub ki: f32,
+    pub max_duty: f32,
+}
+
+impl Default for HeaterConfig {
+    fn default() -> Self {
+        Self {
+            target_c: 40.0,
+            kp: 0.2,
+            ki: 0.01,
+            max_duty: 1.0,
+        }
+    }
+}
+
+/// Everything about one robot that can be changed while it stands: the tuning channel writes it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct RobotConfig {
+    pub wheel_odom: WheelOdomConfig,
+    pub wheel_ctrl: WheelControllerConfig,
+    pub joint_ctrl: JointControllerConfig,
+    pub joints: [JointConfig; 4],
+    pub safety: SafetyConfig,
+    pub imu: ImuCalibration,
+    pub mag: MagCalibration,
+    pub heater: HeaterConfig,
+}
+
+impl Default for RobotConfig {
+    fn default() -> Self {
+        let left = JointConfig::default();
+        let right = JointConfig {
+            direction: -1.0,
+            ..left
+        };
+        Self {
+            wheel_odom: WheelOdomConfig::default(),
+            wheel_ctrl: WheelControllerConfig::default(),
+            joint_ctrl: JointControllerConfig::default(),
+            joints: [left, left, right, right],
+            safety: SafetyConfig::default(),
+            imu: ImuCalibration::default(),
+            mag: MagCalibration::default(),
+            heater: HeaterConfig::default(),
         }
     }
 }

@@ -10,15 +10,20 @@ mod remote;
 mod sensors;
 
 pub use can::{BusId, CanFrame, StandardId};
-pub use command::{ChassisCommand, HighLevelCommand, MotorCurrent, WheelCommand};
+pub use command::{
+    ChassisCommand, HighLevelCommand, JointCommand, JointMode, MotorCurrent, WheelCommand,
+};
 pub use config::{
-    ImuCalibration, MagCalibration, SafetyConfig, WheelControllerConfig, WheelOdomConfig,
+    HeaterConfig, ImuCalibration, JointConfig, JointControllerConfig, MagCalibration, RobotConfig,
+    SafetyConfig, WheelControllerConfig, WheelOdomConfig,
 };
 pub use estimate::StateEstimate;
 pub use health::{BusErrorState, BusHealth, ResetCause, SensorHealth, SystemHealth};
 pub use last_words::{LastWords, LateTasks};
-pub use remote::{OperatorState, RemoteDiagnostics, RemoteState, RemoteUpdate};
-pub use sensors::{ImuState, MagState, MotorFeedback, SensorsSnapshot, WheelFeedback};
+pub use remote::{DriveMode, OperatorState, RemoteDiagnostics, RemoteState, RemoteUpdate};
+pub use sensors::{
+    ImuState, JointFeedback, JointState, MagState, MotorFeedback, SensorsSnapshot, WheelFeedback,
+};
 
 /// Microseconds from `then_us` to `now_us`, saturating at both ends; a `then_us` of 0 means never and gives `u32::MAX`.
 pub fn age_us(then_us: u64, now_us: u64) -> u32 {

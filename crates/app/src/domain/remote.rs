@@ -16,6 +16,20 @@ pub struct RemoteState {
     pub ts_us: u64,
 }
 
+/// Who decides where the robot goes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[repr(u8)]
+pub enum DriveMode {
+    /// The sticks.
+    #[default]
+    Manual = 0,
+    /// The computer on the PC link.
+    Pc = 1,
+    /// `logic/user_logic.rs`.
+    Custom = 2,
+}
+
 /// What the pilot asks for with the switches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
@@ -24,8 +38,8 @@ pub struct OperatorState {
     /// The enable switch is off beyond doubt; never together with `enabled`. Neither of the two: not known for sure.
     pub disabled: bool,
     pub e_stop: bool,
-    /// Three-position switch: 0, 1, 2.
-    pub mode: u8,
+    /// Three-position switch.
+    pub mode: DriveMode,
     pub ts_us: u64,
 }
 
@@ -36,7 +50,7 @@ impl Default for OperatorState {
             enabled: false,
             disabled: false,
             e_stop: true,
-            mode: 0,
+            mode: DriveMode::Manual,
             ts_us: 0,
         }
     }

@@ -37,6 +37,8 @@ pub struct WheelFeedback {
     /// Torque current, ±20,000; positive pushes towards positive `rpm`.
     pub current_ma: f32,
     pub temperature_c: u8,
+    /// Its reports contradict themselves or what was commanded: it repeats an old one.
+    pub frozen: bool,
     /// Since `ts_us`; `u32::MAX` before the first report.
     pub age_us: u32,
     /// When it was received, 0 = no report yet.
@@ -50,18 +52,76 @@ impl Default for WheelFeedback {
             rpm: 0,
             current_ma: 0.0,
             temperature_c: 0,
+            frozen: false,
             age_us: u32::MAX,
             ts_us: 0,
         }
     }
 }
 
-/// All motors; wheel 0 = left, 1 = right.
+/// What a joint motor does, as far as the board knows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[repr(u8)]
+pub enum JointState {
+    /// No reply within the time limit.
+    #[default]
+    Silent = 0,
+    /// Answers, but its ranges, time-out or mode are not verified yet.
+    SettingUp = 1,
+    /// Verified, gives no torque.
+    Disabled = 2,
+    /// Asked to enable, not confirmed.
+    Enabling = 3,
+    /// Obeys commands.
+    Enabled = 4,
+    /// Reports a fault and gives no torque until that is cleared.
+    Fault = 5,
+}
+
+/// Last report of one joint, in joint coordinates: angle = direction · (motor angle − zero).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct JointFeedback {
+    pub pos_rad: f32,
+    pub vel_rps: f32,
+    pub torque_nm: f32,
+    /// The hotter of driver and winding, as far as the motor tells.
+    pub temperature_c: f32,
+    pub state: JointState,
+    /// The motor's own fault code, 0 = none: DM4310 the ERR nibble if it is 8 or more, RS00 the fault word.
+    pub fault_code: u32,
+    /// Position stands still although the motor reports speed.
+    pub frozen: bool,
+    /// Since `ts_us`; `u32::MAX` before the first report.
+    pub age_us: u32,
+    /// When it was received, 0 = no report yet.
+    pub ts_us: u64,
+}
+
+impl Default for JointFeedback {
+    fn default() -> Self {
+        Self {
+            pos_rad: 0.0,
+            vel_rps: 0.0,
+            torque_nm: 0.0,
+            temperature_c: 0.0,
+            state: JointState::Silent,
+            fault_code: 0,
+            frozen: false,
+            age_us: u32::MAX,
+            ts_us: 0,
+        }
+    }
+}
+
+/// All motors, in the order of `ChassisCommand`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct MotorFeedback {
     pub wheels: [WheelFeedback; 2],
-    /// Tick that the ages refer to; each wheel has its own time of report.
+    pub joints: [JointFeedback; 4],
+    /// Tick that the ages refer to; each motor has its own time of report.
     pub ts_us: u64,
 }
 

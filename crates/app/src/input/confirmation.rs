@@ -1,14 +1,14 @@
 //! SBUS and DBUS have no checksum, and two flipped bits pass a parity check: nothing is believed that one frame alone
 //! says, except a stop.
 
-use crate::domain::{OperatorState, RemoteState};
+use crate::domain::{DriveMode, OperatorState, RemoteState};
 
 /// Combines each frame with the two before it. Starts with centred sticks, disabled and stopped.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Confirmation {
     last: [RemoteState; 2],
     last_operator: OperatorState,
-    mode: u8,
+    mode: DriveMode,
 }
 
 impl Confirmation {
@@ -51,7 +51,12 @@ fn median(a: f32, b: f32, c: f32) -> f32 {
 mod tests {
     use super::*;
 
-    fn frame(vx: f32, enabled: bool, e_stop: bool, mode: u8) -> (RemoteState, OperatorState) {
+    fn frame(
+        vx: f32,
+        enabled: bool,
+        e_stop: bool,
+        mode: DriveMode,
+    ) -> (RemoteState, OperatorState) {
         let state = RemoteState {
             vx,
             wz: -vx,
@@ -79,7 +84,7 @@ mod tests {
     fn one_wrong_frame_moves_no_stick() {
         let mut confirmation = Confirmation::default();
         let vx: Vec<f32> = [0.4, 0.4, 0.4, -1.0, 0.4, 0.4, 1.0, 0.5, 0.5]
-            .map(|vx| feed(&mut confirmation, frame(vx, true, false, 0)).0)
+            .map(|vx| feed(&mut confirmation, frame(vx, true, false, DriveMode::Manual)).0)
             .to_vec();
         assert_eq!(vx, [0.0, 0.4, 0.4, 0.4, 0.4, 0.4, 0.4, 0.5, 0.5]);
     }
@@ -88,9 +93,15 @@ mod tests {
     fn both_sticks_are_watched() {
         let mut confirmation = Confirmation::default();
         for _ in 0..3 {
-            feed(&mut confirmation, frame(0.25, true, false, 0));
+            feed(
+                &mut confirmation,
+                frame(0.25, true, false, DriveMode::Manual),
+            );
         }
-        let (vx, wz, _) = feed(&mut confirmation, frame(-0.75, true, false, 0));
+        let (vx, wz, _) = feed(
+            &mut confirmation,
+            frame(-0.75, true, false, DriveMode::Manual),
+        );
         assert_eq!((vx, wz), (0.25, -0.25));
     }
 
@@ -99,9 +110,12 @@ mod tests {
         let mut confirmation = Confirmation::default();
         let stops: Vec<bool> = [false, false, true, false, false]
             .map(|e_stop| {
-                feed(&mut confirmation, frame(0.0, true, e_stop, 0))
-                    .2
-                    .e_stop
+                feed(
+                    &mut confirmation,
+                    frame(0.0, true, e_stop, DriveMode::Manual),
+                )
+                .2
+                .e_stop
             })
             .to_vec();
         assert_eq!(stops, [true, false, true, true, false]);
@@ -111,7 +125,11 @@ mod tests {
     fn enable_needs_two_frames_and_its_end_one() {
         let mut confirmation = Confirmation::default();
         let enabled: Vec<bool> = [true, false, true, true, false, true]
-            .map(|on| feed(&mut confirmation, frame(0.0, on, false, 0)).2.enabled)
+            .map(|on| {
+                feed(&mut confirmation, frame(0.0, on, false, DriveMode::Manual))
+                    .2
+                    .enabled
+            })
             .to_vec();
         assert_eq!(enabled, [false, false, false, true, false, false]);
     }
@@ -121,19 +139,24 @@ mod tests {
     fn off_counts_after_two_frames() {
         let mut confirmation = Confirmation::default();
         let off: Vec<bool> = [false, true, false, true, false, false, true]
-            .map(|on| feed(&mut confirmation, frame(0.0, on, false, 0)).2.disabled)
+            .map(|on| {
+                feed(&mut confirmation, frame(0.0, on, false, DriveMode::Manual))
+                    .2
+                    .disabled
+            })
             .to_vec();
         assert_eq!(off, [false, false, false, false, false, true, false]);
     }
 
     #[test]
     fn a_mode_needs_two_equal_frames() {
+        use DriveMode::{Custom, Pc};
         let mut confirmation = Confirmation::default();
-        let modes: Vec<u8> = [1, 1, 2, 1, 2, 2]
+        let modes: Vec<u8> = [Pc, Pc, Custom, Pc, Custom, Custom]
             .map(|mode| {
                 feed(&mut confirmation, frame(0.0, true, false, mode))
                     .2
-                    .mode
+                    .mode as u8
             })
             .to_vec();
         assert_eq!(modes, [0, 1, 1, 1, 1, 2]);

@@ -1,7 +1,7 @@
 //! Which channel means what.
 
 use super::{DbusFrame, DbusSwitch, SbusFrame, channels};
-use crate::domain::{OperatorState, RemoteState};
+use crate::domain::{DriveMode, OperatorState, RemoteState};
 
 /// Index of an SBUS channel, 0 to 15.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,9 +67,9 @@ pub(super) fn from_sbus(
         disabled: !enabled,
         e_stop: mapping.e_stop.of(&channels) > -SWITCH_THRESHOLD,
         mode: match mapping.mode.of(&channels) {
-            low if low < -SWITCH_THRESHOLD => 0,
-            high if high > SWITCH_THRESHOLD => 2,
-            _ => 1,
+            low if low < -SWITCH_THRESHOLD => DriveMode::Manual,
+            high if high > SWITCH_THRESHOLD => DriveMode::Custom,
+            _ => DriveMode::Pc,
         },
         ts_us,
     };
@@ -99,9 +99,9 @@ pub(super) fn from_dbus(frame: &DbusFrame, ts_us: u64) -> (RemoteState, Operator
         disabled: !enabled,
         e_stop: frame.right_switch == DbusSwitch::Down,
         mode: match frame.left_switch {
-            DbusSwitch::Up => 0,
-            DbusSwitch::Middle => 1,
-            DbusSwitch::Down => 2,
+            DbusSwitch::Up => DriveMode::Manual,
+            DbusSwitch::Middle => DriveMode::Pc,
+            DbusSwitch::Down => DriveMode::Custom,
         },
         ts_us,
     };

@@ -67,6 +67,7 @@ pub fn decode_feedback(frame: &CanFrame, ts_us: u64) -> Option<WheelFeedback> {
         rpm: i16::from_be_bytes([rpm_h, rpm_l]),
         current_ma: f32::from(i16::from_be_bytes([current_h, current_l])) / COUNTS_PER_MA,
         temperature_c,
+        frozen: false,
         age_us: 0,
         ts_us,
     })

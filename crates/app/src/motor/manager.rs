@@ -75,6 +75,7 @@ impl MotorManager {
             wheels: [left, right].map(|current| WheelCommand {
                 current_ma: current.ma(),
             }),
+            ..ChassisCommand::default()
         };
         ((WHEEL_BUS, frame), sent)
     }
@@ -114,6 +115,7 @@ mod tests {
             wheels: [WheelCommand {
                 current_ma: 5_000.0,
             }; 2],
+            ..ChassisCommand::default()
         };
         let ((bus, frame), sent) = MotorManager::default().compose(&command, None, 8_000.0);
         assert_eq!((bus, frame.payload()), (BusId::Can1, &[0; 8][..]));

@@ -1,7 +1,7 @@
 //! IST8310 answers → calibrated [`MagState`].
 
 use super::{
-    calibration::correct,
+    calibration::correct_by_matrix,
     ist8310::{self, READ_LEN},
 };
 use crate::domain::{MagCalibration, MagState};
@@ -36,7 +36,11 @@ impl MagPipeline {
         let raw = ist8310::decode(answer).ok_or(MagSampleError::NotReady)?;
         let field_ut = raw.body_ut().ok_or(MagSampleError::OutOfRange)?;
         Ok(MagState {
-            mag_ut: correct(field_ut, self.calibration.bias_ut, self.calibration.scale),
+            mag_ut: correct_by_matrix(
+                field_ut,
+                self.calibration.bias_ut,
+                self.calibration.soft_iron,
+            ),
             ts_us,
         })
     }
@@ -51,7 +55,7 @@ mod tests {
     fn the_field_is_calibrated_in_the_body_frame() {
         let mut pipeline = MagPipeline::new(MagCalibration {
             bias_ut: [10.0, 20.0, -40.0],
-            scale: [1.0, 2.0, 0.5],
+            soft_iron: [[1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 0.5]],
         });
         let answer = [0x01, 0x64, 0x00, 0x38, 0xFF, 0xC8, 0x00];
         let state = pipeline.process(&answer, 7).unwrap();

@@ -7,22 +7,13 @@ use crate::{
     diagnostics::{DiagnosticsSnapshot, TickStats},
     domain::{
         BusId, CanFrame, ChassisCommand, HighLevelCommand, ImuState, MagState, RemoteUpdate,
-        SafetyConfig, SensorsSnapshot, StateEstimate, SystemHealth, WheelControllerConfig,
-        WheelOdomConfig, age_us,
+        RobotConfig, SensorsSnapshot, StateEstimate, SystemHealth, age_us,
     },
     estimation::InsEstimator,
     logic::LogicBus,
     motor::MotorManager,
     safety::{Arming, ArmingInputs, SafetyInputs, SafetyPolicy, TorquePermit},
 };
-
-/// What fits the tick to one robot.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ControlConfig {
-    pub wheel_odom: WheelOdomConfig,
-    pub wheel_ctrl: WheelControllerConfig,
-    pub safety: SafetyConfig,
-}
 
 /// The latest snapshot of each producer.
 #[derive(Clone, Copy, Debug)]
@@ -56,7 +47,7 @@ enum Demand {
 /// State of all stages of the tick. Same calls, same results, bit for bit.
 #[derive(Clone, Debug)]
 pub struct ControlLoop<C: ChassisController = UserController> {
-    config: ControlConfig,
+    config: RobotConfig,
     controller: C,
     motors: MotorManager,
     estimator: InsEstimator,
@@ -69,7 +60,7 @@ pub struct ControlLoop<C: ChassisController = UserController> {
 }
 
 impl<C: ChassisController> ControlLoop<C> {
-    pub fn new(config: ControlConfig, controller: C) -> Self {
+    pub fn new(config: RobotConfig, controller: C) -> Self {
         Self {
             config,
             controller,

@@ -2,4 +2,4 @@
 
 mod control_loop;
 
-pub use control_loop::{ControlConfig, ControlInputs, ControlLoop, ControlOutputs};
+pub use control_loop::{ControlInputs, ControlLoop, ControlOutputs};
