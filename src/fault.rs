@@ -12,7 +12,7 @@ use embassy_stm32::pac::{CAN1, CAN2, RCC};
 use robot_app::domain::{BusId, CanFrame, LastWords};
 use robot_app::motor;
 
-use crate::drivers::can::transmit;
+use crate::drivers::can::transmit::{self, MailboxesFull};
 use crate::last_words;
 
 /// Register reads to wait for the mailboxes, about 0.5 ms: a frame takes at most 0.14 ms.
@@ -134,9 +134,19 @@ fn stay_safe_until_reset() -> ! {
 }
 
 fn send_zero_torque() {
-    for (bus, frame) in motor::safe_frames() {
+    for bus in BusId::ALL {
         if let Some(can) = running_peripheral(bus) {
-            replace_mailboxes(can, &frame);
+            transmit::retire_old_frames(can);
+            send_safe_frames(can, bus);
+        }
+    }
+}
+
+/// A dead bus is given up at the first frame that finds no place.
+fn send_safe_frames(can: Can, bus: BusId) {
+    for (_, frame) in motor::safe_frames().iter().filter(|(on, _)| *on == bus) {
+        if send_when_free(can, frame).is_err() {
+            return;
         }
     }
 }
@@ -151,19 +161,11 @@ fn running_peripheral(bus: BusId) -> Option<Can> {
     }
 }
 
-/// Drops what waits in the mailboxes and sends `frame`. Bounded: gives up on a dead bus.
-fn replace_mailboxes(can: Can, frame: &CanFrame) {
-    transmit::retire_old_frames(can);
-    wait_until_idle(can);
-    if transmit::send(can, frame).is_ok() {
-        wait_until_idle(can);
-    }
-}
-
-fn wait_until_idle(can: Can) {
+fn send_when_free(can: Can, frame: &CanFrame) -> Result<(), MailboxesFull> {
     for _ in 0..MAILBOX_POLLS {
-        if transmit::is_idle(can) {
-            return;
+        if transmit::send(can, frame).is_ok() {
+            return Ok(());
         }
     }
+    Err(MailboxesFull)
 }

@@ -41,6 +41,8 @@ use tasks::control::ControlContext;
 
 /// A bus is idle for 11 bits within one frame time of at most 0.14 ms; a dead bus must not stop the boot.
 const CAN_JOIN_TIMEOUT: Duration = Duration::from_millis(1);
+/// Five frames of one bus take 0.7 ms.
+const SAFE_FRAMES_TIMEOUT: Duration = Duration::from_millis(3);
 
 /// How the run before this one ended.
 #[derive(Clone, Copy)]
@@ -131,9 +133,10 @@ fn send_zero_torque(ports: &mut [CanPort; 2]) {
             port.begin_tick(Instant::now().as_micros());
         }
     }
-    for (bus, frame) in motor::safe_frames() {
-        for port in ports.iter_mut().filter(|port| port.bus() == bus) {
-            port.send(&frame);
+    for (bus, frame) in &motor::safe_frames() {
+        for port in ports.iter_mut().filter(|port| port.bus() == *bus) {
+            while !port.has_room() && start.elapsed() < SAFE_FRAMES_TIMEOUT {}
+            port.send(frame);
         }
     }
 }

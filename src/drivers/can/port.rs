@@ -61,6 +61,11 @@ impl CanPort {
         }
     }
 
+    /// Whether a frame would find a place now.
+    pub fn has_room(&self) -> bool {
+        transmit::has_room(self.can)
+    }
+
     /// Queues a frame for this tick; one that finds no place counts as taken back.
     pub fn send(&mut self, frame: &CanFrame) {
         if !self.link.is_on_bus() || transmit::send(self.can, frame).is_err() {

@@ -68,8 +68,8 @@ pub fn send(can: Can, frame: &CanFrame) -> Result<(), MailboxesFull> {
     Ok(())
 }
 
-/// Whether no frame waits or is on the wire.
-pub fn is_idle(can: Can) -> bool {
+/// Whether a frame would find a place now.
+pub fn has_room(can: Can) -> bool {
     let status = can.tsr().read();
-    MAILBOXES.into_iter().all(|mailbox| status.tme(mailbox))
+    MAILBOXES.into_iter().any(|mailbox| status.tme(mailbox))
 }
