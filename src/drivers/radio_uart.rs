@@ -11,6 +11,7 @@ use embassy_stm32::dma::{Channel, ReadableRingBuffer, Request, TransferOptions};
 use embassy_stm32::interrupt::typelevel::{Handler, Interrupt};
 use embassy_stm32::pac::usart::{Usart, vals};
 use embassy_sync::waitqueue::AtomicWaker;
+use robot_app::domain::RadioLineHealth;
 use robot_app::input::RemoteFormat;
 
 use crate::exchange::RADIO_LINE;
@@ -18,23 +19,16 @@ use crate::exchange::RADIO_LINE;
 /// SBUS and DBUS both run at 100 kBd.
 const BAUD: u32 = 100_000;
 
-/// Line events since boot. Written by the interrupt, read by the task.
+/// Line events since boot. Errors and idle are written by the interrupt, the rest by the task.
 pub struct RadioLine {
     idle: AtomicBool,
     waker: AtomicWaker,
+    rx_events: AtomicU32,
+    rx_bytes: AtomicU32,
     parity: AtomicU32,
     framing: AtomicU32,
     noise: AtomicU32,
     overrun: AtomicU32,
-}
-
-/// Line errors since boot.
-#[derive(Clone, Copy, Default, PartialEq, Eq)]
-pub struct LineErrors {
-    pub parity: u32,
-    pub framing: u32,
-    pub noise: u32,
-    pub overrun: u32,
 }
 
 impl RadioLine {
@@ -42,6 +36,8 @@ impl RadioLine {
         Self {
             idle: AtomicBool::new(false),
             waker: AtomicWaker::new(),
+            rx_events: AtomicU32::new(0),
+            rx_bytes: AtomicU32::new(0),
             parity: AtomicU32::new(0),
             framing: AtomicU32::new(0),
             noise: AtomicU32::new(0),
@@ -49,13 +45,21 @@ impl RadioLine {
         }
     }
 
-    pub fn errors(&self) -> LineErrors {
-        LineErrors {
+    pub fn health(&self) -> RadioLineHealth {
+        RadioLineHealth {
+            rx_events: self.rx_events.load(Ordering::Relaxed),
+            rx_bytes: self.rx_bytes.load(Ordering::Relaxed),
             parity: self.parity.load(Ordering::Relaxed),
             framing: self.framing.load(Ordering::Relaxed),
             noise: self.noise.load(Ordering::Relaxed),
             overrun: self.overrun.load(Ordering::Relaxed),
         }
+    }
+
+    fn count_burst(&self, bytes: usize) {
+        increment(&self.rx_events);
+        // No more than the ring holds.
+        self.rx_bytes.fetch_add(bytes as u32, Ordering::Relaxed);
     }
 }
 
@@ -98,7 +102,7 @@ impl<I: Interrupt> Handler<I> for RadioInterrupt {
 pub struct RadioUart {
     ring: ReadableRingBuffer<'static, u8>,
     /// Errors that spoilt a burst already.
-    reported: LineErrors,
+    reported: u32,
 }
 
 /// What arrived since the last read.
@@ -137,7 +141,7 @@ impl RadioUart {
         uart.cr1().modify(|w| w.set_re(true));
         Self {
             ring,
-            reported: RADIO_LINE.errors(),
+            reported: RADIO_LINE.health().errors(),
         }
     }
 
@@ -147,7 +151,7 @@ impl RadioUart {
             self.wait().await;
             let (mut count, mut left) = self.read_ring(bytes);
             // Only after the bytes: the interrupt preempts this task, so the error of a byte in the ring is counted.
-            let errors = RADIO_LINE.errors();
+            let errors = RADIO_LINE.health().errors();
             if errors != self.reported {
                 self.reported = errors;
                 // The flagged one may be among those that found no room.
@@ -156,9 +160,11 @@ impl RadioUart {
                     count = count.saturating_add(more);
                     left = rest;
                 }
+                RADIO_LINE.count_burst(count);
                 return Burst::Damaged { count };
             }
             if count > 0 {
+                RADIO_LINE.count_burst(count);
                 return Burst::Clean(bytes.get(..count).unwrap_or_default());
             }
         }

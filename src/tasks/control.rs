@@ -10,7 +10,7 @@ use robot_snapshot::Writer;
 use crate::debugger_view::g_robotapp_diag;
 use crate::drivers::can::CanPort;
 use crate::drivers::watchdog::Watchdog;
-use crate::exchange::Exchange;
+use crate::exchange::{Exchange, RADIO_LINE};
 use crate::{LastRun, deadlines, last_words};
 
 const PERIOD: Duration = Duration::from_hz(1_000);
@@ -92,6 +92,7 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
         can: ports.each_ref().map(CanPort::health),
         imu: imu.health,
         mag: mag.health,
+        radio_line: RADIO_LINE.health(),
         imu_calibrated: imu.calibrated,
         late_tasks: *late_tasks,
         reset_cause: last_run.reset_cause,

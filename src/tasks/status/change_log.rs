@@ -1,11 +1,8 @@
 //! Log lines for changes of state, at most four a second for each.
 
 use robot_app::diagnostics::{ChangeNotice, DiagnosticsSnapshot};
-use robot_app::domain::{BusErrorState, BusId};
+use robot_app::domain::{BusErrorState, BusId, RadioLineHealth};
 use robot_app::safety::{ArmingBlockers, ArmingState, SafetyFlags};
-
-use crate::drivers::radio_uart::LineErrors;
-use crate::exchange::RADIO_LINE;
 
 /// What was logged last.
 #[derive(Default)]
@@ -17,7 +14,7 @@ pub struct ChangeLog {
     imu_ready: ChangeNotice<bool>,
     mag_ready: ChangeNotice<bool>,
     calibrated: ChangeNotice<bool>,
-    line_errors: ChangeNotice<LineErrors>,
+    line_errors: ChangeNotice<u32>,
     ticks_missed: ChangeNotice<u32>,
 }
 
@@ -66,13 +63,15 @@ impl ChangeLog {
                 defmt::warn!("{} is now error-{}", bus, state);
             }
         }
-        if let Some(errors) = self.line_errors.due(RADIO_LINE.errors(), d.ts_us) {
-            let LineErrors {
+        let line = &d.radio_line;
+        if self.line_errors.due(line.errors(), d.ts_us).is_some() {
+            let RadioLineHealth {
                 parity,
                 framing,
                 noise,
                 overrun,
-            } = errors;
+                ..
+            } = *line;
             defmt::warn!(
                 "radio line errors since boot: parity {=u32}, framing {=u32}, noise {=u32}, overrun {=u32}",
                 parity,

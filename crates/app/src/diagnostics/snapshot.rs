@@ -4,7 +4,7 @@ use super::TickStats;
 use crate::{
     domain::{
         BusHealth, ChassisCommand, ImuState, LastWords, LateTasks, MagState, MotorFeedback,
-        OperatorState, RemoteDiagnostics, RemoteState, ResetCause, SensorHealth, StateEstimate,
+        OperatorState, RadioLineHealth, RemoteDiagnostics, RemoteState, ResetCause, SensorHealth, StateEstimate,
     },
     logic::LogicBus,
     safety::{ArmingStatus, SafetyStatus},
@@ -31,6 +31,7 @@ pub struct DiagnosticsSnapshot {
     pub can: [BusHealth; 2],
     pub imu_health: SensorHealth,
     pub mag_health: SensorHealth,
+    pub radio_line: RadioLineHealth,
     pub imu_calibrated: bool,
     pub tick: TickStats,
     pub late_tasks: LateTasks,

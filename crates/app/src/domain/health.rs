@@ -45,6 +45,28 @@ pub struct SensorHealth {
     pub reinits: u32,
 }
 
+/// What the receiver's UART saw, all since boot (ROBOT_CPP's `g_app_sbus_rx_events` and `g_app_sbus_rx_bytes` among it).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(C)]
+pub struct RadioLineHealth {
+    /// Bursts of bytes.
+    pub rx_events: u32,
+    pub rx_bytes: u32,
+    pub parity: u32,
+    pub framing: u32,
+    pub noise: u32,
+    pub overrun: u32,
+}
+
+impl RadioLineHealth {
+    /// Errors of any kind; wraps.
+    pub fn errors(&self) -> u32 {
+        [self.parity, self.framing, self.noise, self.overrun]
+            .into_iter()
+            .fold(0, u32::wrapping_add)
+    }
+}
+
 /// Why the chip started (RM0090, RCC_CSR).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -69,6 +91,7 @@ pub struct SystemHealth {
     pub can: [BusHealth; 2],
     pub imu: SensorHealth,
     pub mag: SensorHealth,
+    pub radio_line: RadioLineHealth,
     /// Start-up gyro calibration finished.
     pub imu_calibrated: bool,
     pub late_tasks: LateTasks,

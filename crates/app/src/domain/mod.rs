@@ -18,7 +18,9 @@ pub use config::{
     SafetyConfig, WheelControllerConfig, WheelOdomConfig,
 };
 pub use estimate::StateEstimate;
-pub use health::{BusErrorState, BusHealth, ResetCause, SensorHealth, SystemHealth};
+pub use health::{
+    BusErrorState, BusHealth, RadioLineHealth, ResetCause, SensorHealth, SystemHealth,
+};
 pub use last_words::{LastWords, LateTasks};
 pub use remote::{DriveMode, OperatorState, RemoteDiagnostics, RemoteState, RemoteUpdate};
 pub use sensors::{

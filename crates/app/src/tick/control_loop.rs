@@ -204,6 +204,7 @@ impl<C: ChassisController> ControlLoop<C> {
         diagnostics.can = health.can;
         diagnostics.imu_health = health.imu;
         diagnostics.mag_health = health.mag;
+        diagnostics.radio_line = health.radio_line;
         diagnostics.imu_calibrated = health.imu_calibrated;
         diagnostics.tick = self.tick;
         diagnostics.late_tasks = health.late_tasks;
