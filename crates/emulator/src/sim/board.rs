@@ -2,7 +2,7 @@
 
 use std::io;
 
-use robot_plant::{time::Ps, world::WireEvent};
+use robot_plant::{can_adapter::AdapterMode, time::Ps, world::WireEvent};
 
 use super::{
     faults::{self, DeedError},
@@ -48,6 +48,16 @@ impl Board for Machine {
             Deed::Remote(input) => {
                 self.with_world(|world| world.set_remote(*input));
                 Ok(())
+            }
+            Deed::Can(bus, frame) => {
+                let taken = self.with_world(|world| {
+                    let adapter = world.can_adapter(*bus);
+                    if adapter.mode() != AdapterMode::Active {
+                        adapter.set_mode(AdapterMode::Active);
+                    }
+                    adapter.send(*frame)
+                });
+                taken.then_some(()).ok_or(DeedError::AdapterFull)
             }
             Deed::StartFault(name) => faults::set(self, name, true),
             Deed::EndFault(name) => faults::set(self, name, false),

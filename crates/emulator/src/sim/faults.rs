@@ -14,6 +14,8 @@ pub enum DeedError {
     World(#[from] WorldError),
     #[error(transparent)]
     Machine(#[from] FaultError),
+    #[error("the PC's CAN adapter has too many frames waiting; send fewer at a time")]
+    AdapterFull,
 }
 
 pub fn all() -> impl Iterator<Item = &'static FaultInfo> {

@@ -114,6 +114,66 @@ pub fn run<B: Board>(
     Ok(result)
 }
 
+/// One bound or flag of one expectation.
+struct Watched {
+    /// Its place in the scenario.
+    expectation: usize,
+    judged: Result<Judged, Unjudgeable>,
+}
+
+struct Judged {
+    /// The signal's place in the table.
+    place: usize,
+    judge: Judge,
+}
+
+struct Unjudgeable {
+    expected: String,
+    why: String,
+}
+
+impl Watched {
+    fn all(scenario: &Scenario, table: &SignalTable) -> Vec<Self> {
+        let mut all = Vec::new();
+        for (expectation, wanted) in scenario.expectations.iter().enumerate() {
+            let place = table.index(&wanted.signal);
+            let bounds = wanted.bounds.iter().map(|b| (b.to_string(), Ok(*b)));
+            let meaning = place.and_then(|place| table.meaning(place));
+            let flags = wanted.flags.iter();
+            let flags = flags.map(|f| (f.to_string(), f.bound(&wanted.signal, meaning)));
+            for (expected, bound) in bounds.chain(flags) {
+                let judged = match (place, bound) {
+                    (Some(place), Ok(bound)) => Ok(Judged {
+                        place,
+                        judge: Judge::new(bound, wanted.window),
+                    }),
+                    (Some(_), Err(why)) => Err(Unjudgeable { expected, why }),
+                    (None, _) => {
+                        let why = table.missing(&wanted.signal);
+                        Err(Unjudgeable { expected, why })
+                    }
+                };
+                all.push(Self {
+                    expectation,
+                    judged,
+                });
+            }
+        }
+        all
+    }
+
+    fn verdict(self, scenario: &Scenario, end: Ps, table: &SignalTable) -> Verdict {
+        let wanted = &scenario.expectations[self.expectation];
+        match self.judged {
+            Ok(Judged { place, judge }) => {
+                let because = wanted.because.clone();
+                judge.finish(&wanted.signal, because, end, table.meaning(place))
+            }
+            Err(Unjudgeable { expected, why }) => expectation::unjudgeable(wanted, expected, why),
+        }
+    }
+}
+
 struct Run<'a, B> {
     board: &'a mut B,
     table: SignalTable,
@@ -123,8 +183,7 @@ struct Run<'a, B> {
     diag: Vec<f64>,
     diag_seen: Option<Ps>,
     events: Vec<WireEvent>,
-    /// For each bound of each expectation: the signal's place in the table, if it exists.
-    judges: Vec<(Option<usize>, Judge)>,
+    watched: Vec<Watched>,
     flags: Option<usize>,
     safety_flags_seen: u64,
     attitude: AttitudeScore,
@@ -138,14 +197,8 @@ impl<'a, B: Board> Run<'a, B> {
             RunSignals::names(),
         )
         .with_meanings(board.diag_meanings());
-        let judges = scenario.expectations.iter().flat_map(|e| {
-            let place = table.index(&e.signal);
-            e.bounds
-                .iter()
-                .map(move |b| (place, Judge::new(*b, e.window)))
-        });
         Self {
-            judges: judges.collect(),
+            watched: Watched::all(scenario, &table),
             signals: RunSignals::new(&table),
             flags: table.index("diag.safety.flags"),
             attitude: AttitudeScore::new(&table),
@@ -164,8 +217,8 @@ impl<'a, B: Board> Run<'a, B> {
         self.drain_log(observers);
         self.judge_wire_events();
         self.read_values(now, last);
-        for (place, judge) in &mut self.judges {
-            if let Some(value) = place.and_then(|i| self.values[i]) {
+        for Judged { place, judge } in judged(&mut self.watched) {
+            if let Some(value) = self.values[*place] {
                 judge.see(now, value);
             }
         }
@@ -190,8 +243,10 @@ impl<'a, B: Board> Run<'a, B> {
         self.events.clear();
         self.board.drain_wire_events(&mut self.events);
         for event in &self.events {
-            for (_, judge) in self.judges.iter_mut().filter(|j| j.0 == Some(event.signal)) {
-                judge.see(event.at, event.value);
+            for Judged { place, judge } in judged(&mut self.watched) {
+                if *place == event.signal {
+                    judge.see(event.at, event.value);
+                }
             }
         }
     }
@@ -214,19 +269,10 @@ impl<'a, B: Board> Run<'a, B> {
     }
 
     fn finish(self, scenario: &Scenario, end: Ps, stopped: Option<String>) -> RunResult {
-        let bounds = scenario
-            .expectations
-            .iter()
-            .flat_map(|e| e.bounds.iter().map(move |b| (e, *b)));
-        let verdicts = bounds
-            .zip(self.judges)
-            .map(|((e, bound), (place, judge))| match place {
-                Some(place) => {
-                    let meaning = self.table.meaning(place);
-                    judge.finish(&e.signal, e.because.clone(), end, meaning)
-                }
-                None => expectation::missing_signal(e, bound, self.table.missing(&e.signal)),
-            })
+        let verdicts = self
+            .watched
+            .into_iter()
+            .map(|watched| watched.verdict(scenario, end, &self.table))
             .collect();
         let allowed = |e: &BoardError| {
             let mut allowances = scenario.allow_board_errors.iter();
@@ -248,6 +294,10 @@ impl<'a, B: Board> Run<'a, B> {
             table: self.table,
         }
     }
+}
+
+fn judged(watched: &mut [Watched]) -> impl Iterator<Item = &mut Judged> {
+    watched.iter_mut().filter_map(|w| w.judged.as_mut().ok())
 }
 
 #[cfg(test)]

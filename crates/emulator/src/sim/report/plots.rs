@@ -14,6 +14,13 @@ use crate::machine::diagnostics::meaning::Meaning;
 /// Width of a bin of the release jitter histogram (`Stats::jitter_bins`).
 const JITTER_BIN_US: f64 = 0.5;
 
+const JOINTS: [(usize, &str, RGBColor); 4] = [
+    (0, "left front", BLUE),
+    (1, "left rear", GREEN),
+    (2, "right front", ORANGE),
+    (3, "right rear", PURPLE),
+];
+
 pub fn all(report: &Report) -> Result<Vec<Figure>, ReportError> {
     let marks: Vec<f64> = report
         .scenario
@@ -26,6 +33,8 @@ pub fn all(report: &Report) -> Result<Vec<Figure>, ReportError> {
         plots.sticks()?,
         plots.wheels()?,
         plots.currents()?,
+        plots.joint_angles()?,
+        plots.joint_torques()?,
         plots.path()?,
         plots.timeline()?,
         plots.attitude()?,
@@ -120,6 +129,34 @@ impl Plots<'_> {
                 self.curve("left wheel", "can.m3508.0.current_ma", 1e-3, BLUE),
                 self.curve("right wheel", "can.m3508.1.current_ma", 1e-3, ORANGE),
             ],
+        )
+    }
+
+    fn joint_angles(&self) -> MaybeFigure {
+        let curves = JOINTS.map(|(joint, label, colour)| {
+            let signal = format!("truth.joint.{joint}.pos_rad");
+            self.curve(label, &signal, 1.0, colour)
+        });
+        self.time_plot(
+            "Joint angle",
+            "True angle of each joint motor's shaft, in the motor's own sense; the right side is mirrored.",
+            "rad",
+            260,
+            curves.into(),
+        )
+    }
+
+    fn joint_torques(&self) -> MaybeFigure {
+        let curves = JOINTS.map(|(joint, label, colour)| {
+            let signal = format!("can.joint.{joint}.torque_nm");
+            self.curve(label, &signal, 1.0, colour)
+        });
+        self.time_plot(
+            "Commanded joint torque",
+            "What the motor's present command asks for, as decoded from the CAN bus. It must be 0 whenever the robot is not armed.",
+            "N·m",
+            260,
+            curves.into(),
         )
     }
 

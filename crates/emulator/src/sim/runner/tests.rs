@@ -3,7 +3,10 @@
 use robot_plant::time::{MS, US};
 
 use super::*;
-use crate::{machine::MachineError, sim::scenario::Deed};
+use crate::{
+    machine::{MachineError, diagnostics::meaning::Meaning},
+    sim::scenario::Deed,
+};
 
 /// Current 100 mA from the moment the switch goes on; one command frame 300 µs past each millisecond.
 #[derive(Default)]
@@ -85,8 +88,9 @@ impl Board for Double {
         Stats::default()
     }
 
-    fn diag_meanings(&mut self) -> Vec<Option<crate::machine::diagnostics::meaning::Meaning>> {
-        Vec::new()
+    fn diag_meanings(&mut self) -> Vec<Option<Meaning>> {
+        let names = [(1, "late".to_owned()), (2, "lost".to_owned())];
+        vec![Some(Meaning::Flags(names.into()))]
     }
 
     fn resets(&mut self) -> usize {
@@ -152,6 +156,23 @@ fn diagnostics_that_are_not_there_or_stale_never_pass() {
 fn safety_flags_are_gathered_over_the_run() {
     let result = run_double(&mut Double::default(), "");
     assert_eq!(result.safety_flags_seen, 0b110);
+}
+
+#[test]
+fn flags_are_judged_by_their_names() {
+    let judged = |flag: &str| {
+        let expect = format!(
+            "[[expect]]\nsignal = \"diag.safety.flags\"\nfrom = 0.006\nto = 0.009\n{flag}\n"
+        );
+        let result = run_double(&mut Double::default(), &expect);
+        (result.ok(), result.verdicts[0].clone())
+    };
+    assert!(judged("has_flag = \"lost\"").0);
+    assert!(judged("lacks_flag = \"late\"").0);
+    assert!(!judged("has_flag = \"late\"").0);
+    let (ok, verdict) = judged("has_flag = \"later\"");
+    let why = verdict.failure.unwrap_or_default();
+    assert!(!ok && why.contains("late, lost"), "{why}");
 }
 
 #[test]

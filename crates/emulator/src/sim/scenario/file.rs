@@ -2,14 +2,15 @@
 
 use robot_plant::{
     time::{self, Ps},
-    world::{PlantKind, RadioKind, RemoteInput},
+    wire::CanFrame,
+    world::{CanBusId, PlantKind, RadioKind, RemoteInput},
 };
 use serde::Deserialize;
 use toml::Spanned;
 
 use super::{Action, Deed, Scenario, ScenarioError};
 use crate::sim::{
-    expectation::{Bound, Expectation, Window},
+    expectation::{Bound, Expectation, NamedFlag, Window},
     faults,
     signals::nearest,
 };
@@ -52,9 +53,20 @@ enum Radio {
 struct At {
     t: f64,
     remote: Option<Remote>,
+    can: Option<Can>,
     fault: Option<String>,
     end_fault: Option<String>,
     duration: Option<f64>,
+}
+
+/// A frame that the PC's adapter sends.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Can {
+    /// 1 or 2.
+    bus: u8,
+    id: u32,
+    data: Vec<u8>,
 }
 
 #[derive(Deserialize)]
@@ -81,6 +93,8 @@ struct Expect {
     within: Option<[f64; 2]>,
     has_bit: Option<u8>,
     lacks_bit: Option<u8>,
+    has_flag: Option<String>,
+    lacks_flag: Option<String>,
     rises_above: Option<f64>,
     falls_below: Option<f64>,
     because: Option<String>,
@@ -158,15 +172,23 @@ fn instant(name: &str, t: f64, seconds: f64) -> Result<Ps, String> {
 
 fn read_at(at: &At, seconds: f64, actions: &mut Vec<Action>) -> Result<(), String> {
     let start = instant("t", at.t, seconds)?;
-    if at.remote.is_none() && at.fault.is_none() && at.end_fault.is_none() {
+    if at.remote.is_none() && at.can.is_none() && at.fault.is_none() && at.end_fault.is_none() {
         return Err(
-            "this [[at]] does nothing; add `remote`, `fault` or `end_fault`, or remove it".into(),
+            "this [[at]] does nothing; add `remote`, `can`, `fault` or `end_fault`, or remove it"
+                .into(),
         );
     }
     if let Some(remote) = &at.remote {
         actions.push(Action {
             at: start,
             what: Deed::Remote(read_remote(remote)?),
+        });
+    }
+    if let Some(can) = &at.can {
+        let (bus, frame) = read_can(can)?;
+        actions.push(Action {
+            at: start,
+            what: Deed::Can(bus, frame),
         });
     }
     if let Some(name) = &at.fault {
@@ -213,6 +235,33 @@ fn read_remote(remote: &Remote) -> Result<RemoteInput, String> {
     })
 }
 
+fn read_can(can: &Can) -> Result<(CanBusId, CanFrame), String> {
+    let bus = match can.bus {
+        1 => CanBusId::Can1,
+        2 => CanBusId::Can2,
+        other => return Err(format!("`bus` is {other}; the board has 1 and 2")),
+    };
+    if can.id > 0x7FF {
+        let id = can.id;
+        return Err(format!(
+            "`id` is {id:#x}; a standard identifier ends at 0x7FF"
+        ));
+    }
+    let mut data = [0; 8];
+    let Some(bytes) = data.get_mut(..can.data.len()) else {
+        return Err("`data` is longer than the 8 bytes of a frame".into());
+    };
+    bytes.copy_from_slice(&can.data);
+    let frame = CanFrame {
+        id: can.id,
+        extended: false,
+        remote: false,
+        dlc: can.data.len() as u8,
+        data,
+    };
+    Ok((bus, frame))
+}
+
 fn known_fault(name: &str) -> Result<String, String> {
     if faults::all().any(|f| f.name == name) {
         return Ok(name.to_owned());
@@ -251,8 +300,13 @@ fn read_expect(raw: Expect, seconds: f64) -> Result<Expectation, String> {
     .into_iter()
     .flatten()
     .collect();
-    if bounds.is_empty() {
-        return Err("nothing is expected of the signal; add one of `max_abs`, `min`, `max`, `equals`, `within = [value, tolerance]`, `has_bit`, `lacks_bit`, `rises_above`, `falls_below`".into());
+    let named = |name: Option<String>, set| name.map(|name| NamedFlag { name, set });
+    let flags: Vec<NamedFlag> = [named(raw.has_flag, true), named(raw.lacks_flag, false)]
+        .into_iter()
+        .flatten()
+        .collect();
+    if bounds.is_empty() && flags.is_empty() {
+        return Err("nothing is expected of the signal; add one of `max_abs`, `min`, `max`, `equals`, `within = [value, tolerance]`, `has_flag`, `lacks_flag`, `has_bit`, `lacks_bit`, `rises_above`, `falls_below`".into());
     }
     if bounds.iter().any(|b| !b.is_usable()) {
         return Err("a bound is not finite, a tolerance is negative or a bit is above 31; write plain numbers".into());
@@ -261,6 +315,7 @@ fn read_expect(raw: Expect, seconds: f64) -> Result<Expectation, String> {
         signal: raw.signal,
         window,
         bounds,
+        flags,
         because: raw.because,
     })
 }

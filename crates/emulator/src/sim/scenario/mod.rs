@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 
 use robot_plant::{
     time::Ps,
-    world::{PlantKind, RadioKind, RemoteInput},
+    wire::CanFrame,
+    world::{CanBusId, PlantKind, RadioKind, RemoteInput},
 };
 
 use super::expectation::Expectation;
@@ -36,6 +37,8 @@ pub struct Action {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Deed {
     Remote(RemoteInput),
+    /// The PC's adapter sends a frame.
+    Can(CanBusId, CanFrame),
     StartFault(String),
     EndFault(String),
 }

@@ -87,3 +87,38 @@ fn what_cannot_be_judged_is_refused() {
         assert!(error.contains(part), "{error} lacks {part}");
     }
 }
+
+#[test]
+fn a_pc_sends_frames() {
+    let frame = "[[at]]\nt = 1\ncan = { bus = 2, id = 0x7A0, data = [0x10, 200, 0, 0xB8, 0x0B] }\n";
+    let s = Scenario::parse(&format!("{HEAD}{frame}"), "s.toml").unwrap();
+    let frame = CanFrame {
+        id: 0x7A0,
+        extended: false,
+        remote: false,
+        dlc: 5,
+        data: [0x10, 200, 0, 0xB8, 0x0B, 0, 0, 0],
+    };
+    assert_eq!(s.actions[0].what, Deed::Can(CanBusId::Can2, frame));
+    for (can, part) in [
+        ("{ bus = 3, id = 1, data = [] }", "1 and 2"),
+        ("{ bus = 1, id = 0x800, data = [] }", "0x7FF"),
+        (
+            "{ bus = 1, id = 1, data = [0, 0, 0, 0, 0, 0, 0, 0, 0] }",
+            "8 bytes",
+        ),
+        ("{ bus = 1, id = 1, data = [256] }", "256"),
+    ] {
+        let error = error_of(&format!("[[at]]\nt = 1\ncan = {can}\n"));
+        assert!(error.contains(part), "{error} lacks {part}");
+    }
+}
+
+#[test]
+fn flags_are_expected_by_name() {
+    let body = "[[expect]]\nsignal = \"f\"\nat = 1\nhas_flag = \"lost\"\nlacks_flag = \"hot\"\n";
+    let s = Scenario::parse(&format!("{HEAD}{body}"), "s.toml").unwrap();
+    let flags = s.expectations[0].flags.iter();
+    let flags: Vec<_> = flags.map(|f| (f.name.as_str(), f.set)).collect();
+    assert_eq!(flags, [("lost", true), ("hot", false)]);
+}
