@@ -1,7 +1,7 @@
 //! What the engine calls back: block boundaries, register accesses, faults and engine-internal exceptions.
 
 use robot_plant::time::Ps;
-use unicorn_engine::{HookType, MemType, RegisterARM, Unicorn, uc_error};
+use unicorn_engine::{HookType, MemType, Prot, RegisterARM, TlbEntry, TlbType, Unicorn, uc_error};
 
 use super::{Block, State, Stop, context, sabotage};
 use crate::{
@@ -21,6 +21,8 @@ pub(super) fn install(engine: &mut Unicorn<'static, State>) -> Result<(), uc_err
     engine.mmio_map(base, size, Some(read_peripheral), Some(write_peripheral))?;
     let (base, size) = PRIVATE_PERIPHERALS;
     engine.mmio_map(base, size, Some(read_private), Some(write_private))?;
+    engine.ctl_set_tlb_type(TlbType::VIRTUAL)?;
+    engine.add_tlb_hook(0, u64::from(u32::MAX), page_rights)?;
     engine.add_block_hook(1, 0, block_begins)?;
     // A hook over RAM, even one for accesses that cannot happen there, would slow every store down.
     let above = |region: Region| u64::from(region.base) + u64::from(region.size);
@@ -33,6 +35,19 @@ pub(super) fn install(engine: &mut Unicorn<'static, State>) -> Result<(), uc_err
     }
     engine.add_intr_hook(engine_exception)?;
     Ok(())
+}
+
+/// Every page is where it is. The engine sends each store to a page that may hold code through a slow path, and the
+/// Cortex-M's own map allows code in RAM; so RAM is told apart here. A fetch from it still gets as far as the
+/// memory map, which refuses it.
+fn page_rights(_: &mut Unicorn<'_, State>, page: u64, access: MemType) -> Option<TlbEntry> {
+    let is_ram = [SRAM, CCM].iter().any(|ram| ram.contains(page as u32, 1));
+    let perms = if is_ram && access != MemType::FETCH {
+        Prot::READ | Prot::WRITE
+    } else {
+        Prot::ALL
+    };
+    Some(TlbEntry { paddr: page, perms })
 }
 
 fn block_begins(engine: &mut Unicorn<'_, State>, address: u64, size: u32) {
