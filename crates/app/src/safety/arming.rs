@@ -3,8 +3,10 @@
 //! The switch asks for arming when it goes from off to on; the request lives a few seconds and dies with the switch.
 //! Being disarmed for any reason uses the request up: the switch must go off and on again.
 
-use super::{SafetyStatus, SafetyVerdict};
-use crate::domain::{OperatorState, RemoteState, SafetyConfig};
+use super::{SafetyFlags, SafetyStatus, SafetyVerdict};
+use crate::domain::{
+    JointFeedback, JointState, MotorFeedback, OperatorState, RemoteState, SafetyConfig,
+};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -31,8 +33,14 @@ impl ArmingBlockers {
     pub const STICKS_NOT_CENTRED: Self = Self(1 << 3);
     pub const ESTIMATE_INVALID: Self = Self(1 << 4);
     pub const CALIBRATION_PENDING: Self = Self(1 << 5);
-    /// `SafetyPolicy` wants a stop; see its flags.
+    /// `SafetyPolicy` wants a stop, be it of a part only; see its flags.
     pub const SAFETY_STOP: Self = Self(1 << 6);
+    /// A joint does not answer, is not set up, or reports a fault.
+    pub const JOINTS_NOT_READY: Self = Self(1 << 7);
+    /// Bring-up is in the step in which nothing may move.
+    pub const BRING_UP_READ_ONLY: Self = Self(1 << 8);
+    /// Low, or not measured.
+    pub const BATTERY_LOW: Self = Self(1 << 9);
 
     pub const fn bits(self) -> u32 {
         self.0
@@ -54,6 +62,10 @@ impl ArmingBlockers {
             .map(|(_, name)| *name)
     }
 
+    const fn and(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
     fn set(&mut self, blocker: Self, active: bool) {
         if active {
             self.0 |= blocker.0;
@@ -62,7 +74,7 @@ impl ArmingBlockers {
 }
 
 /// Not a constant: tools read the names of the bits out of the image.
-static BLOCKER_NAMES: [(ArmingBlockers, &str); 7] = [
+static BLOCKER_NAMES: [(ArmingBlockers, &str); 10] = [
     (ArmingBlockers::REMOTE_NOT_FRESH, "remote-not-fresh"),
     (ArmingBlockers::ENABLE_OFF, "enable-off"),
     (ArmingBlockers::ENABLE_NOT_CYCLED, "enable-not-cycled"),
@@ -70,6 +82,9 @@ static BLOCKER_NAMES: [(ArmingBlockers, &str); 7] = [
     (ArmingBlockers::ESTIMATE_INVALID, "estimate-invalid"),
     (ArmingBlockers::CALIBRATION_PENDING, "calibration-pending"),
     (ArmingBlockers::SAFETY_STOP, "safety-stop"),
+    (ArmingBlockers::JOINTS_NOT_READY, "joints-not-ready"),
+    (ArmingBlockers::BRING_UP_READ_ONLY, "bring-up-read-only"),
+    (ArmingBlockers::BATTERY_LOW, "battery-low"),
 ];
 
 #[cfg(feature = "defmt")]
@@ -100,19 +115,24 @@ pub struct ArmedToken(());
 /// All arming looks at.
 #[derive(Clone, Copy, Debug)]
 pub struct ArmingInputs<'a> {
+    pub config: &'a SafetyConfig,
     pub remote: &'a RemoteState,
     /// Age of the last frame that came over the air.
     pub remote_age_us: u32,
     pub operator: &'a OperatorState,
     pub estimate_valid: bool,
     pub calibrated: bool,
+    pub motor: &'a MotorFeedback,
+    /// Bring-up is in the step in which nothing may move.
+    pub read_only: bool,
     pub safety: &'a SafetyStatus,
 }
 
 /// The enable switch as seen since boot or since the last disarming.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Request {
     /// Not yet seen off.
+    #[default]
     MustGoOff,
     /// Off: the next time it goes on is a request.
     Ready,
@@ -121,37 +141,26 @@ enum Request {
     },
 }
 
-#[derive(Clone, Debug)]
+/// Starts disarmed.
+#[derive(Clone, Debug, Default)]
 pub struct Arming {
-    config: SafetyConfig,
     state: ArmingState,
     request: Request,
 }
 
 impl Arming {
-    pub const fn new(config: SafetyConfig) -> Self {
-        Self {
-            config,
-            state: ArmingState::Disarmed,
-            request: Request::MustGoOff,
-        }
-    }
-
     /// A token for this tick if the robot is armed.
     pub fn step(
         &mut self,
         inputs: &ArmingInputs<'_>,
         now_us: u64,
     ) -> (ArmingStatus, Option<ArmedToken>) {
-        let fresh = inputs.remote_age_us <= self.config.remote_timeout_us;
-        self.follow_switch(fresh, inputs.operator, now_us);
-        let mut blockers = self.blockers(fresh, inputs);
+        let fresh = inputs.remote_age_us <= inputs.config.remote_timeout_us;
+        self.follow_switch(fresh, inputs, now_us);
+        let mut blockers = self.disarming(fresh, inputs);
         match self.state {
             ArmingState::Disarmed => {
-                blockers.set(
-                    ArmingBlockers::STICKS_NOT_CENTRED,
-                    !self.sticks_centred(inputs.remote),
-                );
+                blockers = blockers.and(only_forbidding(inputs));
                 if blockers.is_empty() {
                     self.state = ArmingState::Armed;
                 }
@@ -159,7 +168,7 @@ impl Arming {
             ArmingState::Armed => {
                 if !blockers.is_empty() {
                     self.disarm();
-                    blockers = self.blockers(fresh, inputs);
+                    blockers = self.disarming(fresh, inputs);
                 }
             }
         }
@@ -179,10 +188,11 @@ impl Arming {
     }
 
     /// Only a fresh remote moves the switch: old values are no sign of the pilot's will.
-    fn follow_switch(&mut self, fresh: bool, operator: &OperatorState, now_us: u64) {
+    fn follow_switch(&mut self, fresh: bool, inputs: &ArmingInputs<'_>, now_us: u64) {
         if !fresh {
             return;
         }
+        let operator = inputs.operator;
         if operator.disabled {
             self.request = Request::Ready;
             return;
@@ -192,7 +202,8 @@ impl Arming {
             (Request::Asked { .. }, false) => Request::MustGoOff,
             (Request::Asked { since_us }, true)
                 if self.state == ArmingState::Disarmed
-                    && now_us.saturating_sub(since_us) > u64::from(self.config.arm_request_us) =>
+                    && now_us.saturating_sub(since_us)
+                        > u64::from(inputs.config.arm_request_us) =>
             {
                 Request::MustGoOff
             }
@@ -200,7 +211,8 @@ impl Arming {
         };
     }
 
-    fn blockers(&self, fresh: bool, inputs: &ArmingInputs<'_>) -> ArmingBlockers {
+    /// What forbids arming and ends it.
+    fn disarming(&self, fresh: bool, inputs: &ArmingInputs<'_>) -> ArmingBlockers {
         let mut blockers = ArmingBlockers::NONE;
         blockers.set(ArmingBlockers::REMOTE_NOT_FRESH, !fresh);
         blockers.set(ArmingBlockers::ENABLE_OFF, !inputs.operator.enabled);
@@ -210,141 +222,42 @@ impl Arming {
         );
         blockers.set(ArmingBlockers::ESTIMATE_INVALID, !inputs.estimate_valid);
         blockers.set(ArmingBlockers::CALIBRATION_PENDING, !inputs.calibrated);
-        blockers.set(ArmingBlockers::SAFETY_STOP, self.stopped(inputs.safety));
+        blockers.set(ArmingBlockers::SAFETY_STOP, inputs.safety.global_stop);
+        blockers.set(ArmingBlockers::BRING_UP_READ_ONLY, inputs.read_only);
         blockers
     }
+}
 
-    /// A stopped bus forbids arming but does not disarm: only its actuators stop.
-    fn stopped(&self, safety: &SafetyStatus) -> bool {
-        match safety.verdict {
-            SafetyVerdict::Run => false,
-            SafetyVerdict::BusStop => self.state == ArmingState::Disarmed,
-            SafetyVerdict::GlobalStop => true,
-        }
-    }
+/// What forbids arming, but does not end it: a stop of a part stops only that part, and a robot that stands on its
+/// legs should not fall because its battery gets low.
+fn only_forbidding(inputs: &ArmingInputs<'_>) -> ArmingBlockers {
+    let mut blockers = ArmingBlockers::NONE;
+    let stick_limit = inputs.config.stick_centre;
+    let sticks = [inputs.remote.vx, inputs.remote.wz];
+    blockers.set(
+        ArmingBlockers::STICKS_NOT_CENTRED,
+        !sticks.iter().all(|stick| stick.abs() <= stick_limit),
+    );
+    blockers.set(
+        ArmingBlockers::SAFETY_STOP,
+        inputs.safety.verdict != SafetyVerdict::Run,
+    );
+    let joints_ready = inputs.motor.joints.iter().all(is_ready);
+    blockers.set(ArmingBlockers::JOINTS_NOT_READY, !joints_ready);
+    blockers.set(
+        ArmingBlockers::BATTERY_LOW,
+        inputs.safety.flags.intersects(SafetyFlags::BATTERY_LOW),
+    );
+    blockers
+}
 
-    fn sticks_centred(&self, remote: &RemoteState) -> bool {
-        [remote.vx, remote.wz]
-            .iter()
-            .all(|stick| stick.abs() <= self.config.stick_centre)
+/// Set up and without a fault.
+fn is_ready(joint: &JointFeedback) -> bool {
+    match joint.state {
+        JointState::Silent | JointState::SettingUp | JointState::Fault => false,
+        JointState::Disabled | JointState::Enabling | JointState::Enabled => true,
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    struct Bench {
-        arming: Arming,
-        now_us: u64,
-        enabled: bool,
-        disabled: bool,
-        calibrated: bool,
-        safety: SafetyStatus,
-    }
-
-    impl Bench {
-        fn new() -> Self {
-            Self {
-                arming: Arming::new(SafetyConfig::default()),
-                now_us: 1_000_000,
-                enabled: false,
-                disabled: true,
-                calibrated: true,
-                safety: SafetyStatus {
-                    verdict: SafetyVerdict::Run,
-                    ..SafetyStatus::default()
-                },
-            }
-        }
-
-        fn flip_on(&mut self) {
-            (self.enabled, self.disabled) = (true, false);
-        }
-
-        fn run(&mut self, milliseconds: u64) -> ArmingStatus {
-            let mut status = ArmingStatus::default();
-            for _ in 0..milliseconds {
-                self.now_us += 1_000;
-                let inputs = ArmingInputs {
-                    remote: &RemoteState::default(),
-                    remote_age_us: 5_000,
-                    operator: &OperatorState {
-                        enabled: self.enabled,
-                        disabled: self.disabled,
-                        e_stop: false,
-                        ..OperatorState::default()
-                    },
-                    estimate_valid: true,
-                    calibrated: self.calibrated,
-                    safety: &self.safety,
-                };
-                let (now, token) = self.arming.step(&inputs, self.now_us);
-                assert_eq!(token.is_some(), now.state == ArmingState::Armed);
-                status = now;
-            }
-            status
-        }
-    }
-
-    #[test]
-    fn off_then_on_arms_at_once() {
-        let mut bench = Bench::new();
-        assert_eq!(bench.run(1).blockers, ArmingBlockers::ENABLE_OFF);
-        bench.flip_on();
-        assert_eq!(bench.run(1).state, ArmingState::Armed);
-    }
-
-    #[test]
-    fn a_request_waits_a_while_for_the_calibration_but_not_for_ever() {
-        let mut bench = Bench::new();
-        bench.calibrated = false;
-        bench.run(1);
-        bench.flip_on();
-        assert_eq!(
-            bench.run(2_000).blockers,
-            ArmingBlockers::CALIBRATION_PENDING
-        );
-        bench.calibrated = true;
-        assert_eq!(bench.run(1).state, ArmingState::Armed);
-
-        let mut late = Bench::new();
-        late.calibrated = false;
-        late.run(1);
-        late.flip_on();
-        late.run(3_100);
-        late.calibrated = true;
-        assert_eq!(late.run(1).blockers, ArmingBlockers::ENABLE_NOT_CYCLED);
-    }
-
-    #[test]
-    fn a_stopped_bus_forbids_arming_but_does_not_disarm() {
-        let mut bench = Bench::new();
-        bench.safety.verdict = SafetyVerdict::BusStop;
-        bench.run(1);
-        bench.flip_on();
-        assert_eq!(bench.run(1).blockers, ArmingBlockers::SAFETY_STOP);
-        bench.safety.verdict = SafetyVerdict::Run;
-        assert_eq!(bench.run(1).state, ArmingState::Armed);
-        bench.safety.verdict = SafetyVerdict::BusStop;
-        assert_eq!(bench.run(10).state, ArmingState::Armed);
-        bench.safety.verdict = SafetyVerdict::GlobalStop;
-        assert_eq!(bench.run(1).state, ArmingState::Disarmed);
-    }
-
-    #[test]
-    fn a_moment_of_doubt_disarms_and_is_no_flip_of_the_switch() {
-        let mut bench = Bench::new();
-        bench.run(1);
-        bench.flip_on();
-        assert_eq!(bench.run(1).state, ArmingState::Armed);
-        bench.enabled = false;
-        assert_eq!(bench.run(1).blockers, ArmingBlockers::ENABLE_OFF);
-        bench.enabled = true;
-        assert_eq!(bench.run(10).blockers, ArmingBlockers::ENABLE_NOT_CYCLED);
-        (bench.enabled, bench.disabled) = (false, true);
-        bench.run(1);
-        bench.flip_on();
-        assert_eq!(bench.run(1).state, ArmingState::Armed);
-    }
-}
+mod tests;

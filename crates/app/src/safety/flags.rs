@@ -31,6 +31,21 @@ impl SafetyFlags {
     pub const COMMAND_STALE: Self = Self(1 << 14);
     /// A task below the control tick missed its deadline; the watchdog will reset the chip unless it comes back.
     pub const TASK_LATE: Self = Self(1 << 15);
+    /// Fallen over.
+    pub const TILT: Self = Self(1 << 16);
+    pub const WHEEL_HOT: Self = Self(1 << 17);
+    pub const JOINT_HOT: Self = Self(1 << 18);
+    /// Also while the battery is not measured. Stops nothing, but blocks arming.
+    pub const BATTERY_LOW: Self = Self(1 << 19);
+    pub const BATTERY_EMPTY: Self = Self(1 << 20);
+    /// A joint motor reports a fault and gives no torque.
+    pub const JOINT_FAULT: Self = Self(1 << 21);
+    /// No reply of a joint within the time limit.
+    pub const JOINT_SILENT: Self = Self(1 << 22);
+    /// A wheel motor repeats an old report.
+    pub const WHEEL_FROZEN: Self = Self(1 << 23);
+    /// A joint motor repeats an old position.
+    pub const JOINT_FROZEN: Self = Self(1 << 24);
 
     /// Any of these stops every actuator.
     pub const GLOBAL_STOP: Self = Self(
@@ -42,7 +57,29 @@ impl SafetyFlags {
             | Self::IMU_STALE.0
             | Self::IMU_ERRORS.0
             | Self::MAG_ERRORS.0
-            | Self::TASK_LATE.0,
+            | Self::TASK_LATE.0
+            | Self::TILT.0
+            | Self::BATTERY_EMPTY.0,
+    );
+    /// Any of these stops both wheels.
+    pub const WHEELS_STOP: Self = Self(Self::WHEEL_HOT.0 | Self::WHEEL_FROZEN.0);
+    /// Any of these stops all joints: legs with a dead joint cannot stand on the others.
+    pub const JOINTS_STOP: Self =
+        Self(Self::JOINT_HOT.0 | Self::JOINT_FAULT.0 | Self::JOINT_SILENT.0 | Self::JOINT_FROZEN.0);
+    /// Any of these stops what is on the bus. Index = `BusId`.
+    pub const BUS_STOP: [Self; 2] = [
+        Self(Self::CAN1_FAULT.0 | Self::CAN1_CONGESTED.0),
+        Self(Self::CAN2_FAULT.0 | Self::CAN2_CONGESTED.0),
+    ];
+    /// These stay when their cause is gone, until the pilot clears them: a human must look first.
+    pub const LATCHING: Self = Self(
+        Self::IMU_ERRORS.0
+            | Self::MAG_ERRORS.0
+            | Self::TILT.0
+            | Self::BATTERY_EMPTY.0
+            | Self::JOINT_FAULT.0
+            | Self::WHEEL_FROZEN.0
+            | Self::JOINT_FROZEN.0,
     );
 
     pub const fn bits(self) -> u32 {
@@ -63,6 +100,12 @@ impl SafetyFlags {
         Self(self.0 | other.0)
     }
 
+    /// What both sets have.
+    #[must_use]
+    pub(super) const fn common(self, other: Self) -> Self {
+        Self(self.0 & other.0)
+    }
+
     pub(super) fn set(&mut self, flag: Self, active: bool) {
         if active {
             self.0 |= flag.0;
@@ -79,7 +122,7 @@ impl SafetyFlags {
 }
 
 /// Not a constant: tools read the names of the bits out of the image.
-static FLAG_NAMES: [(SafetyFlags, &str); 16] = [
+static FLAG_NAMES: [(SafetyFlags, &str); 25] = [
     (SafetyFlags::REMOTE_LOST, "remote-lost"),
     (SafetyFlags::REMOTE_FAILSAFE, "remote-failsafe"),
     (SafetyFlags::REMOTE_QUALITY, "remote-quality"),
@@ -96,6 +139,15 @@ static FLAG_NAMES: [(SafetyFlags, &str); 16] = [
     (SafetyFlags::WHEEL_RIGHT_SILENT, "wheel-right-silent"),
     (SafetyFlags::COMMAND_STALE, "command-stale"),
     (SafetyFlags::TASK_LATE, "task-late"),
+    (SafetyFlags::TILT, "tilt"),
+    (SafetyFlags::WHEEL_HOT, "wheel-hot"),
+    (SafetyFlags::JOINT_HOT, "joint-hot"),
+    (SafetyFlags::BATTERY_LOW, "battery-low"),
+    (SafetyFlags::BATTERY_EMPTY, "battery-empty"),
+    (SafetyFlags::JOINT_FAULT, "joint-fault"),
+    (SafetyFlags::JOINT_SILENT, "joint-silent"),
+    (SafetyFlags::WHEEL_FROZEN, "wheel-frozen"),
+    (SafetyFlags::JOINT_FROZEN, "joint-frozen"),
 ];
 
 #[cfg(feature = "defmt")]

@@ -1,12 +1,19 @@
 //! Who may move: flags, verdict, arming, permit.
 
 mod arming;
+mod battery;
+mod debounce;
 mod error_account;
 mod flags;
+mod heat;
+mod latch;
 mod permit;
 mod policy;
+mod status;
+mod tilt;
 
 pub use arming::{ArmedToken, Arming, ArmingBlockers, ArmingInputs, ArmingState, ArmingStatus};
 pub use flags::SafetyFlags;
 pub use permit::TorquePermit;
-pub use policy::{SafetyInputs, SafetyPolicy, SafetyStatus, SafetyVerdict};
+pub use policy::{SafetyInputs, SafetyPolicy};
+pub use status::{SafetyStatus, SafetyVerdict};

@@ -1,4 +1,4 @@
-//! The proof that a current may leave the board in this tick.
+//! The proof that torque may leave the board in this tick.
 
 use super::{ArmedToken, SafetyStatus};
 use crate::domain::BusId;
@@ -14,7 +14,18 @@ impl TorquePermit {
         Self { status: *status }
     }
 
-    pub fn allows(&self, bus: BusId) -> bool {
-        !self.status.stops(bus)
+    /// True if wheels on this bus may push.
+    pub const fn allows_wheels(&self, bus: BusId) -> bool {
+        !self.status.stops_wheels(bus)
+    }
+
+    /// True if wheels on this bus may push.
+    pub const fn allows(&self, bus: BusId) -> bool {
+        self.allows_wheels(bus)
+    }
+
+    /// True if joints on this bus may be enabled.
+    pub const fn allows_joints(&self, bus: BusId) -> bool {
+        !self.status.stops_joints(bus)
     }
 }

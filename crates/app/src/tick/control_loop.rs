@@ -66,8 +66,8 @@ impl<C: ChassisController> ControlLoop<C> {
             controller,
             motors: MotorManager::default(),
             estimator: InsEstimator::new(config.wheel_odom),
-            policy: SafetyPolicy::new(config.safety),
-            arming: Arming::new(config.safety),
+            policy: SafetyPolicy::default(),
+            arming: Arming::default(),
             tick: TickStats::default(),
             sensors: SensorsSnapshot::default(),
             diagnostics: DiagnosticsSnapshot::default(),
@@ -112,6 +112,7 @@ impl<C: ChassisController> ControlLoop<C> {
         diagnostics.remote_diag = inputs.remote.diagnostics.at(now_us);
         diagnostics.safety = self.policy.evaluate(
             &SafetyInputs {
+                config: &self.config.safety,
                 remote: &diagnostics.remote_diag,
                 operator: &inputs.remote.operator,
                 imu_ts_us: inputs.imu.ts_us,
@@ -125,11 +126,14 @@ impl<C: ChassisController> ControlLoop<C> {
         );
         let (status, token) = self.arming.step(
             &ArmingInputs {
+                config: &self.config.safety,
                 remote: &inputs.remote.state,
                 remote_age_us: diagnostics.remote_diag.age_us,
                 operator: &inputs.remote.operator,
                 estimate_valid: diagnostics.estimate.valid,
                 calibrated: inputs.health.imu_calibrated,
+                motor: &self.sensors.motor,
+                read_only: false,
                 safety: &diagnostics.safety,
             },
             now_us,

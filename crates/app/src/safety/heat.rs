@@ -1,0 +1,40 @@
+//! Judges the motors' temperatures.
+
+use super::{SafetyFlags, debounce::Excess};
+use crate::domain::{MotorFeedback, SafetyConfig};
+
+/// One report with a wrong byte is no heat.
+const HOLD_US: u32 = 500_000;
+/// So much cooler before the motors run again.
+const MARGIN_C: f32 = 10.0;
+
+#[derive(Clone, Debug, Default)]
+pub(super) struct HeatWatch {
+    wheels: Excess,
+    joints: Excess,
+}
+
+impl HeatWatch {
+    pub fn judge(
+        &mut self,
+        motor: &MotorFeedback,
+        config: &SafetyConfig,
+        dt_us: u32,
+        flags: &mut SafetyFlags,
+    ) {
+        let wheels_cool = |margin_c: f32| {
+            let limit_c = config.max_wheel_c - margin_c;
+            let mut wheels = motor.wheels.iter();
+            wheels.all(|wheel| f32::from(wheel.temperature_c) <= limit_c)
+        };
+        let joints_cool = |margin_c: f32| {
+            let limit_c = config.max_joint_c - margin_c;
+            let mut joints = motor.joints.iter();
+            joints.all(|joint| joint.temperature_c <= limit_c)
+        };
+        let wheels_hot = self.wheels.step(wheels_cool, MARGIN_C, dt_us, HOLD_US);
+        let joints_hot = self.joints.step(joints_cool, MARGIN_C, dt_us, HOLD_US);
+        flags.set(SafetyFlags::WHEEL_HOT, wheels_hot);
+        flags.set(SafetyFlags::JOINT_HOT, joints_hot);
+    }
+}
