@@ -3,15 +3,17 @@
 mod advance;
 mod board_wires;
 mod can_buses;
+mod joint_wires;
 mod scenario;
 mod signals;
 
 use crate::{
     bmi088::{Bmi088, MotionSource},
-    body::Body,
+    body::{Body, Legs},
     can_adapter::CanAdapter,
     faults::ActiveFaults,
     ist8310::Ist8310,
+    joints::{self, JOINTS, Joint, WireState},
     m3508::C620,
     radio::Receiver,
     random::{Random, Stream},
@@ -19,6 +21,8 @@ use crate::{
     supply::Battery,
     time::{Ps, US, to_seconds},
 };
+
+pub use crate::joints::JointKind;
 
 /// Mechanics and analogue signals move on this grid; a command takes effect at its next point.
 pub(crate) const PHYSICS_STEP: Ps = 250 * US;
@@ -30,28 +34,33 @@ pub(crate) fn physics_step_s() -> f64 {
 }
 
 /// Which robot stands around the board.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PlantKind {
     /// Body fixed, wheels in the air.
+    #[default]
     Stand,
     /// Upright body rolling on flat ground.
     Rolling,
 }
 
 /// Which radio is plugged into the DBUS connector.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RadioKind {
+    #[default]
     Sbus,
     Dbus,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct WorldConfig {
     pub plant: PlantKind,
     pub radio: RadioKind,
+    pub joints: JointKind,
     pub seed: u64,
     /// A recorded trial (`<trial>.json` beside its `.f32.gz`) played through the IMU and magnetometer models.
     pub imu_trial: Option<std::path::PathBuf>,
+    /// Package of the IMU at power-on, °C; unset, the board has been on before and is at 40 °C.
+    pub imu_temperature_c: Option<f64>,
 }
 
 #[derive(Debug, thiserror::Error)]
@@ -76,6 +85,10 @@ pub struct RemoteInput {
     pub wz: Option<f64>,
     /// Three-position switch: 0, 1, 2.
     pub mode: Option<u8>,
+    /// Left stick, −1 … 1, right positive.
+    pub left_x: Option<f64>,
+    /// Left stick, −1 … 1, up positive.
+    pub left_y: Option<f64>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -120,9 +133,12 @@ pub struct World {
     body: Body,
     /// Left, right.
     escs: [C620; 2],
+    joints: [Joint; JOINTS],
+    /// What the wire events have told so far.
+    joints_told: [WireState; JOINTS],
+    legs: Legs,
     /// CAN1, CAN2.
     adapters: [CanAdapter; 2],
-    can2_zero_frames: u64,
     battery: Battery,
     imu: Bmi088,
     mag: Ist8310,
@@ -155,10 +171,12 @@ impl World {
                 C620::new(1, Random::new(seed, Stream::LeftMotor)),
                 C620::new(2, Random::new(seed, Stream::RightMotor)),
             ],
+            joints: joints::drives(config.joints),
+            joints_told: Default::default(),
+            legs: Legs::default(),
             adapters: Default::default(),
-            can2_zero_frames: 0,
             battery: Battery::default(),
-            imu: Bmi088::new(seed, source),
+            imu: Bmi088::new(seed, source, config.imu_temperature_c),
             mag: Ist8310::new(seed, source),
             radio: Receiver::new(config.radio, seed),
             signal_names: signals::names(playback.is_some()),

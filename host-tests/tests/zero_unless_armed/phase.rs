@@ -195,6 +195,7 @@ fn remote_update(phase: &Phase, now_us: u64) -> RemoteUpdate {
             enabled: phase.enabled,
             disabled: !phase.enabled,
             e_stop: phase.e_stop,
+            dead_man: false,
             mode: DriveMode::Manual,
             ts_us: now_us,
         },

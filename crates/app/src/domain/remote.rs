@@ -12,6 +12,8 @@ pub struct RemoteState {
     pub vx: f32,
     /// Turn stick, −1 … 1, left turn positive.
     pub wz: f32,
+    /// Left stick's vertical, −1 … 1, up positive: picks the motor in bring-up.
+    pub select: f32,
     /// Last frame that really came over the air; 0 = none yet.
     pub ts_us: u64,
 }
@@ -38,6 +40,8 @@ pub struct OperatorState {
     /// The enable switch is off beyond doubt; never together with `enabled`. Neither of the two: not known for sure.
     pub disabled: bool,
     pub e_stop: bool,
+    /// The left stick is held to the right: what bring-up's torque needs.
+    pub dead_man: bool,
     /// Three-position switch.
     pub mode: DriveMode,
     pub ts_us: u64,
@@ -50,6 +54,7 @@ impl Default for OperatorState {
             enabled: false,
             disabled: false,
             e_stop: true,
+            dead_man: false,
             mode: DriveMode::Manual,
             ts_us: 0,
         }

@@ -13,8 +13,8 @@ pub(super) struct Confirmation {
 
 impl Confirmation {
     /// Sticks: the middle one of the last three frames, so that a wrong one never shows and a true one shows one frame
-    /// later. Enable and the end of an e-stop need two frames in a row, their opposites stop the robot at once; but
-    /// the switch counts as off, for the next time it goes on, only after two. The mode needs two
+    /// later. Enable, the dead-man stick and the end of an e-stop need two frames in a row, their opposites stop the
+    /// robot at once; but the enable switch counts as off, for the next time it goes on, only after two. The mode needs two
     /// equal frames.
     pub fn confirm(
         &mut self,
@@ -25,6 +25,7 @@ impl Confirmation {
         let confirmed = RemoteState {
             vx: median(older.vx, last.vx, state.vx),
             wz: median(older.wz, last.wz, state.wz),
+            select: median(older.select, last.select, state.select),
             ..state
         };
         if operator.mode == self.last_operator.mode {
@@ -34,6 +35,7 @@ impl Confirmation {
             enabled: operator.enabled && self.last_operator.enabled,
             disabled: operator.disabled && self.last_operator.disabled,
             e_stop: operator.e_stop || self.last_operator.e_stop,
+            dead_man: operator.dead_man && self.last_operator.dead_man,
             mode: self.mode,
             ..operator
         };
@@ -66,6 +68,7 @@ mod tests {
             enabled,
             disabled: !enabled,
             e_stop,
+            dead_man: false,
             mode,
             ts_us: 0,
         };

@@ -24,6 +24,10 @@ pub struct RemoteMapping {
     /// Stick right = positive = turn right, so `wz` is its negative.
     pub steering: ChannelIndex,
     pub drive: ChannelIndex,
+    /// Up = high.
+    pub select: ChannelIndex,
+    /// Right = high.
+    pub dead_man: ChannelIndex,
     /// High = enabled.
     pub enable: ChannelIndex,
     /// Low, middle, high = 0, 1, 2.
@@ -37,6 +41,8 @@ impl Default for RemoteMapping {
         Self {
             steering: ChannelIndex(0),
             drive: ChannelIndex(1),
+            select: ChannelIndex(2),
+            dead_man: ChannelIndex(3),
             enable: ChannelIndex(4),
             mode: ChannelIndex(5),
             e_stop: ChannelIndex(6),
@@ -46,6 +52,8 @@ impl Default for RemoteMapping {
 
 /// A switch is taken as thrown beyond half way.
 const SWITCH_THRESHOLD: f32 = 0.5;
+/// The dead-man stick counts as held beyond this.
+const DEAD_MAN_THRESHOLD: f32 = 0.7;
 
 pub(super) fn from_sbus(
     frame: &SbusFrame,
@@ -58,6 +66,7 @@ pub(super) fn from_sbus(
     let state = RemoteState {
         vx: mapping.drive.of(&channels),
         wz: -mapping.steering.of(&channels),
+        select: mapping.select.of(&channels),
         channels,
         ts_us,
     };
@@ -66,6 +75,7 @@ pub(super) fn from_sbus(
         enabled,
         disabled: !enabled,
         e_stop: mapping.e_stop.of(&channels) > -SWITCH_THRESHOLD,
+        dead_man: mapping.dead_man.of(&channels) > DEAD_MAN_THRESHOLD,
         mode: match mapping.mode.of(&channels) {
             low if low < -SWITCH_THRESHOLD => DriveMode::Manual,
             high if high > SWITCH_THRESHOLD => DriveMode::Custom,
@@ -90,6 +100,7 @@ pub(super) fn from_dbus(frame: &DbusFrame, ts_us: u64) -> (RemoteState, Operator
     let state = RemoteState {
         vx: right_v,
         wz: -right_h,
+        select: left_v,
         channels,
         ts_us,
     };
@@ -98,6 +109,7 @@ pub(super) fn from_dbus(frame: &DbusFrame, ts_us: u64) -> (RemoteState, Operator
         enabled,
         disabled: !enabled,
         e_stop: frame.right_switch == DbusSwitch::Down,
+        dead_man: left_h > DEAD_MAN_THRESHOLD,
         mode: match frame.left_switch {
             DbusSwitch::Up => DriveMode::Manual,
             DbusSwitch::Middle => DriveMode::Pc,

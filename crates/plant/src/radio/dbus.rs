@@ -36,7 +36,12 @@ pub(crate) fn frame(pilot: &Pilot, faults: RadioFaults) -> Option<[u8; 18]> {
         _ => SWITCH_DOWN,
     };
     Some(pack(
-        [stick(-pilot.wz), stick(pilot.vx), CENTRE, CENTRE],
+        [
+            stick(-pilot.wz),
+            stick(pilot.vx),
+            stick(pilot.left_x),
+            stick(pilot.left_y),
+        ],
         right,
         left,
     ))

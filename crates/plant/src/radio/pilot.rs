@@ -11,6 +11,10 @@ pub(crate) struct Pilot {
     pub vx: f64,
     /// Left turn positive.
     pub wz: f64,
+    /// Left stick, right positive.
+    pub left_x: f64,
+    /// Left stick, up positive.
+    pub left_y: f64,
     /// 0, 1 or 2.
     pub mode: u8,
 }
@@ -21,6 +25,8 @@ impl Pilot {
         self.e_stop = input.e_stop.unwrap_or(self.e_stop);
         self.vx = input.vx.unwrap_or(self.vx).clamp(-1.0, 1.0);
         self.wz = input.wz.unwrap_or(self.wz).clamp(-1.0, 1.0);
+        self.left_x = input.left_x.unwrap_or(self.left_x).clamp(-1.0, 1.0);
+        self.left_y = input.left_y.unwrap_or(self.left_y).clamp(-1.0, 1.0);
         self.mode = input.mode.unwrap_or(self.mode).min(2);
     }
 }

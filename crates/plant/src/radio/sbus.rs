@@ -35,12 +35,14 @@ pub(crate) fn frame(pilot: &Pilot, faults: RadioFaults) -> [u8; 25] {
     pack(&channels(pilot), flags)
 }
 
-/// Channel map of this robot's transmitter: 0 steering (right = high), 1 drive (forward = high), 4 enable, 5 mode,
-/// 6 emergency stop.
+/// Channel map of this robot's transmitter: 0 steering (right = high), 1 drive (forward = high), 2 left stick's vertical
+/// (up = high), 3 left stick's horizontal (right = high), 4 enable, 5 mode, 6 emergency stop.
 fn channels(pilot: &Pilot) -> [u16; 16] {
     let mut channels = [CENTRE; 16];
     channels[0] = stick(-pilot.wz);
     channels[1] = stick(pilot.vx);
+    channels[2] = stick(pilot.left_y);
+    channels[3] = stick(pilot.left_x);
     channels[4] = stick(if pilot.enable { 1.0 } else { -1.0 });
     channels[5] = stick(f64::from(pilot.mode) - 1.0);
     channels[6] = stick(if pilot.e_stop { 1.0 } else { -1.0 });
@@ -102,13 +104,22 @@ mod tests {
             e_stop: false,
             vx: 0.0,
             wz: 1.0,
+            left_x: 1.0,
+            left_y: -1.0,
             mode: 2,
         };
         let channels = channels(&pilot);
         assert_eq!(channels[0], 172);
         assert_eq!(
-            [channels[1], channels[4], channels[5], channels[6]],
-            [992, 1811, 1811, 172]
+            [
+                channels[1],
+                channels[2],
+                channels[3],
+                channels[4],
+                channels[5],
+                channels[6]
+            ],
+            [992, 172, 1811, 1811, 1811, 172]
         );
     }
 }

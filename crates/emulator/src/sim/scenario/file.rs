@@ -3,7 +3,7 @@
 use robot_plant::{
     time::{self, Ps},
     wire::CanFrame,
-    world::{CanBusId, PlantKind, RadioKind, RemoteInput},
+    world::{CanBusId, JointKind, PlantKind, RadioKind, RemoteInput},
 };
 use serde::Deserialize;
 use toml::Spanned;
@@ -23,6 +23,9 @@ struct File {
     plant: Plant,
     #[serde(default)]
     radio: Radio,
+    #[serde(default)]
+    joints: Joints,
+    imu_temperature_c: Option<f64>,
     #[serde(default)]
     seed: u64,
     #[serde(default)]
@@ -46,6 +49,14 @@ enum Radio {
     #[default]
     Sbus,
     Dbus,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Joints {
+    #[default]
+    Dm4310,
+    Rs00,
 }
 
 #[derive(Deserialize)]
@@ -77,6 +88,8 @@ struct Remote {
     vx: Option<f64>,
     wz: Option<f64>,
     mode: Option<u8>,
+    left_x: Option<f64>,
+    left_y: Option<f64>,
 }
 
 #[derive(Deserialize)]
@@ -128,6 +141,10 @@ pub(super) fn parse(text: &str, file: &str) -> Result<Scenario, ScenarioError> {
         let what = format!("`seconds` is {seconds}; write a length between 0 and 3600");
         return Err(source.wrong(raw.seconds.span().start, what));
     }
+    if raw.imu_temperature_c.is_some_and(|c| !(-40.0..=85.0).contains(&c)) {
+        let what = "`imu_temperature_c` is outside what the BMI088 works at; write -40 to 85";
+        return Err(source.wrong(0, what));
+    }
     let mut actions = Vec::new();
     for at in &raw.at {
         read_at(at.get_ref(), seconds, &mut actions)
@@ -153,6 +170,11 @@ pub(super) fn parse(text: &str, file: &str) -> Result<Scenario, ScenarioError> {
             Radio::Sbus => RadioKind::Sbus,
             Radio::Dbus => RadioKind::Dbus,
         },
+        joints: match raw.joints {
+            Joints::Dm4310 => JointKind::Dm4310,
+            Joints::Rs00 => JointKind::Rs00,
+        },
+        imu_temperature_c: raw.imu_temperature_c,
         seed: raw.seed,
         actions,
         expectations,
@@ -218,7 +240,12 @@ fn read_at(at: &At, seconds: f64, actions: &mut Vec<Action>) -> Result<(), Strin
 }
 
 fn read_remote(remote: &Remote) -> Result<RemoteInput, String> {
-    for (name, value) in [("vx", remote.vx), ("wz", remote.wz)] {
+    for (name, value) in [
+        ("vx", remote.vx),
+        ("wz", remote.wz),
+        ("left_x", remote.left_x),
+        ("left_y", remote.left_y),
+    ] {
         if value.is_some_and(|v| !(-1.0..=1.0).contains(&v)) {
             return Err(format!("`{name}` is a stick: write −1 to 1"));
         }
@@ -232,6 +259,8 @@ fn read_remote(remote: &Remote) -> Result<RemoteInput, String> {
         vx: remote.vx,
         wz: remote.wz,
         mode: remote.mode,
+        left_x: remote.left_x,
+        left_y: remote.left_y,
     })
 }
 
