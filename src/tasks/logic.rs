@@ -1,8 +1,7 @@
-//! 100 Hz: remote → high-level command.
+//! 100 Hz: remote, PC or the user's own logic → command on the logic bus.
 
 use embassy_time::{Duration, Instant, Ticker};
-use robot_app::domain::SafetyConfig;
-use robot_app::logic::{LogicBus, LogicStage};
+use robot_app::logic::{LogicBus, LogicInputs, LogicStage, UserLogic};
 use robot_snapshot::Writer;
 
 use crate::deadlines::Watched;
@@ -12,11 +11,17 @@ const PERIOD: Duration = Duration::from_hz(100);
 
 #[embassy_executor::task]
 pub async fn run(exchange: &'static Exchange, mut output: Writer<'static, LogicBus>) -> ! {
-    let mut stage = LogicStage::new(&SafetyConfig::default());
+    let mut stage = LogicStage::new(UserLogic);
     let mut ticker = Ticker::every(PERIOD);
     loop {
         ticker.next().await;
         Watched::Logic.check_in();
-        output.publish(&stage.step(&exchange.remote.latest(), Instant::now().as_micros()));
+        let inputs = LogicInputs {
+            config: &exchange.config.latest().safety,
+            remote: &exchange.remote.latest(),
+            pc: None,
+            diagnostics: &exchange.diagnostics.latest(),
+        };
+        output.publish(&stage.step(&inputs, Instant::now().as_micros()));
     }
 }

@@ -4,11 +4,11 @@ use robot_app::{
     control::UserController,
     diagnostics::DiagnosticsSnapshot,
     domain::{
-        BusId, CanFrame, ImuCalibration, ImuState, MagCalibration, MagState, RemoteUpdate,
+        BusId, CanFrame, HeaterConfig, ImuCalibration, ImuState, MagCalibration, MagState, RemoteUpdate,
         RobotConfig, SafetyConfig, StandardId, SystemHealth,
     },
     input::{RemoteFormat, RemoteMapping, RemoteReceiver},
-    logic::{LogicBus, LogicStage},
+    logic::{LogicBus, LogicInputs, LogicStage, UserLogic},
     safety::ArmingState,
     sensing::{
         ImuPipeline, MagPipeline,
@@ -57,6 +57,7 @@ impl Robot {
             radio,
             seed: 7,
             imu_trial: None,
+            ..WorldConfig::default()
         })
         .expect("no recording to load");
         let format = match radio {
@@ -67,15 +68,18 @@ impl Robot {
             world,
             now: 0,
             receiver: RemoteReceiver::new(format, RemoteMapping::default()),
-            imu_pipeline: ImuPipeline::new(ImuCalibration::default()),
+            imu_pipeline: ImuPipeline::new(ImuCalibration::default(), HeaterConfig::default()),
             mag_pipeline: MagPipeline::new(MagCalibration::default()),
-            logic_stage: LogicStage::new(&SafetyConfig::default()),
+            logic_stage: LogicStage::new(UserLogic),
             control: ControlLoop::new(RobotConfig::default(), UserController::default()),
             remote: RemoteUpdate::default(),
             imu: ImuState::default(),
             mag: MagState::default(),
             logic: LogicBus::default(),
-            health: SystemHealth::default(),
+            health: SystemHealth {
+                battery_v: 24.0,
+                ..SystemHealth::default()
+            },
             diagnostics: DiagnosticsSnapshot::default(),
             wheel_currents_ma: [0.0; 2],
             mag_started_at: None,
@@ -147,7 +151,13 @@ impl Robot {
         }
         self.serve_mag();
         if self.now.is_multiple_of(10 * MS) {
-            self.logic = self.logic_stage.step(&self.remote, self.now_us());
+            let inputs = LogicInputs {
+                config: &SafetyConfig::default(),
+                remote: &self.remote,
+                pc: None,
+                diagnostics: &self.diagnostics,
+            };
+            self.logic = self.logic_stage.step(&inputs, self.now / US);
         }
         self.control_tick();
     }

@@ -1,8 +1,8 @@
 //! The interface of a controller (seed section 3.4).
 
 use crate::domain::{
-    ChassisCommand, HighLevelCommand, OperatorState, SensorsSnapshot, StateEstimate,
-    WheelControllerConfig, WheelOdomConfig,
+    ChassisCommand, HighLevelCommand, JointControllerConfig, OperatorState, SensorsSnapshot,
+    StateEstimate, WheelControllerConfig, WheelOdomConfig,
 };
 
 /// All a controller may look at in one tick.
@@ -12,6 +12,7 @@ pub struct ChassisControllerInput<'a> {
     pub estimate: &'a StateEstimate,
     pub wheel_odom_cfg: &'a WheelOdomConfig,
     pub wheel_ctrl_cfg: &'a WheelControllerConfig,
+    pub joint_ctrl_cfg: &'a JointControllerConfig,
     pub operator_state: &'a OperatorState,
     /// From whoever is in command; not sure to be inside −1 … 1.
     pub hl_cmd: HighLevelCommand,

@@ -1,20 +1,25 @@
-//! ROBOT_CPP's `chassis_controller_step`: proportional control of each wheel's speed.
+//! ROBOT_CPP's `chassis_controller_step`: proportional control of each wheel's speed. The joints hold their pose.
 
-use super::{ChassisController, ChassisControllerInput, ChassisControllerOutput};
+use super::{
+    ChassisController, ChassisControllerInput, ChassisControllerOutput, pose_hold::PoseHold,
+};
 use crate::domain::{
     ChassisCommand, HighLevelCommand, WheelCommand, WheelControllerConfig, WheelFeedback,
     WheelOdomConfig,
 };
 
-/// Keeps no state.
+/// Keeps the pose of the joints from when they were enabled.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct DefaultController;
+pub struct DefaultController {
+    pose: PoseHold,
+}
 
 impl ChassisController for DefaultController {
     fn step(&mut self, input: &ChassisControllerInput<'_>) -> ChassisControllerOutput {
         let (odom, ctrl) = (input.wheel_odom_cfg, input.wheel_ctrl_cfg);
         let [left_mps, right_mps] = wheel_targets_mps(input.hl_cmd, odom, ctrl);
-        let [left, right] = &input.sensors.motor.wheels;
+        let motor = &input.sensors.motor;
+        let [left, right] = &motor.wheels;
         let [left_sign, right_sign] = odom.rpm_signs();
         let rpm_to_mps = odom.mps_per_rpm();
         let wheels = [
@@ -24,13 +29,15 @@ impl ChassisController for DefaultController {
         ChassisControllerOutput {
             cmd: ChassisCommand {
                 wheels,
-                ..ChassisCommand::default()
+                joints: self.pose.step(&motor.joints, input.joint_ctrl_cfg),
             },
             cmd_valid: true,
         }
     }
 
-    fn reset(&mut self) {}
+    fn reset(&mut self) {
+        self.pose = PoseHold::default();
+    }
 }
 
 /// Ground speeds of the left and right wheel that give the wanted drive and turn.
@@ -67,7 +74,7 @@ fn wheel_command(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::domain::{OperatorState, SensorsSnapshot, StateEstimate};
+    use crate::domain::{JointControllerConfig, OperatorState, SensorsSnapshot, StateEstimate};
 
     fn step(hl_cmd: HighLevelCommand, rpm: [i16; 2], age_us: u32) -> [f32; 2] {
         let mut sensors = SensorsSnapshot::default();
@@ -75,11 +82,12 @@ mod tests {
             wheel.rpm = rpm;
             wheel.age_us = age_us;
         }
-        let output = DefaultController.step(&ChassisControllerInput {
+        let output = DefaultController::default().step(&ChassisControllerInput {
             sensors: &sensors,
             estimate: &StateEstimate::default(),
             wheel_odom_cfg: &WheelOdomConfig::default(),
             wheel_ctrl_cfg: &WheelControllerConfig::default(),
+            joint_ctrl_cfg: &JointControllerConfig::default(),
             operator_state: &OperatorState::default(),
             hl_cmd,
         });

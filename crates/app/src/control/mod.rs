@@ -4,6 +4,7 @@
 
 mod chassis_controller;
 mod default_controller;
+mod pose_hold;
 mod user_controller;
 
 pub use chassis_controller::{ChassisController, ChassisControllerInput, ChassisControllerOutput};

@@ -185,6 +185,7 @@ impl<C: ChassisController> ControlLoop<C> {
             estimate: &self.diagnostics.estimate,
             wheel_odom_cfg: &self.config.wheel_odom,
             wheel_ctrl_cfg: &self.config.wheel_ctrl,
+            joint_ctrl_cfg: &self.config.joint_ctrl,
             operator_state: &inputs.remote.operator,
             hl_cmd,
         });
