@@ -46,7 +46,7 @@ impl Run {
         let signals = [
             place("can.m3508.0.current_ma"),
             place("can.m3508.1.current_ma"),
-            place("can.can2.zero_frames"),
+            place("can.joint.0.stop_frames"),
         ];
         let mut run = Self {
             machine,

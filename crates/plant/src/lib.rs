@@ -13,6 +13,7 @@ mod bmi088;
 mod body;
 mod faults;
 mod ist8310;
+mod joints;
 mod m3508;
 mod radio;
 mod random;

@@ -14,6 +14,7 @@ pub(crate) enum Stream {
     LeftMotor = 5,
     RightMotor = 6,
     SpiGarbage = 7,
+    RadioLosses = 8,
 }
 
 /// PCG XSL 128/64: the same seed and stream give the same numbers on every machine.

@@ -2,36 +2,48 @@
 
 /// Six cells, half charged.
 const OPEN_CIRCUIT_V: f64 = 24.0;
-/// Under the 3.3 V a cell of a spent pack.
-const SPENT_V: f64 = 19.2;
+/// 3.4 V and 3.1 V a cell.
+const LOW_V: f64 = 20.5;
+const EMPTY_V: f64 = 18.5;
 /// Pack and leads; assumed.
 const RESISTANCE_OHM: f64 = 0.05;
 /// 200 kΩ over 22 kΩ (hardware.md 1.2).
 const DIVIDER: f64 = 22.0 / 222.0;
 
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Charge {
+    Half,
+    Low,
+    Empty,
+}
+
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Battery {
-    spent: bool,
+    charge: Charge,
     terminal_v: f64,
 }
 
 impl Default for Battery {
     fn default() -> Self {
         Self {
-            spent: false,
+            charge: Charge::Half,
             terminal_v: OPEN_CIRCUIT_V,
         }
     }
 }
 
 impl Battery {
-    pub(crate) fn set_spent(&mut self, spent: bool) {
-        self.spent = spent;
+    pub(crate) fn set_charge(&mut self, charge: Charge) {
+        self.charge = charge;
     }
 
     /// Sags under the mechanical power of the motors, W (negative while they brake).
     pub(crate) fn load(&mut self, power_w: f64) {
-        let open_v = if self.spent { SPENT_V } else { OPEN_CIRCUIT_V };
+        let open_v = match self.charge {
+            Charge::Half => OPEN_CIRCUIT_V,
+            Charge::Low => LOW_V,
+            Charge::Empty => EMPTY_V,
+        };
         self.terminal_v = open_v - RESISTANCE_OHM * power_w / open_v;
     }
 

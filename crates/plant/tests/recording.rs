@@ -60,6 +60,7 @@ fn play(trial: PathBuf) -> Result<World, WorldError> {
         radio: RadioKind::Sbus,
         seed: 1,
         imu_trial: Some(trial),
+        ..WorldConfig::default()
     })
 }
 

@@ -14,6 +14,7 @@ fn world(plant: PlantKind, radio: RadioKind) -> World {
         radio,
         seed: 1,
         imu_trial: None,
+        ..WorldConfig::default()
     })
     .expect("no file is read")
 }
@@ -225,7 +226,10 @@ fn battery_reaches_the_converter_through_its_divider() {
     assert!((world.battery_adc_volts() * 10.0909 - 24.0).abs() < 0.01);
     world.set_fault("battery-low", true).expect("listed");
     world.advance(2 * MS);
-    assert!(world.battery_adc_volts() * 10.0909 < 20.0);
+    assert!((world.battery_adc_volts() * 10.0909 - 20.5).abs() < 0.01);
+    world.set_fault("battery-empty", true).expect("listed");
+    world.advance(3 * MS);
+    assert!((world.battery_adc_volts() * 10.0909 - 18.5).abs() < 0.01);
 }
 
 /// The same calls give the same bytes; another seed gives others.
@@ -237,6 +241,7 @@ fn a_seed_fixes_every_random_number() {
             radio: RadioKind::Sbus,
             seed,
             imu_trial: None,
+            ..WorldConfig::default()
         })
         .expect("no file is read");
         world.set_fault("sbus-noise", true).expect("listed");

@@ -34,6 +34,7 @@ impl Bench {
             radio: RadioKind::Sbus,
             seed: 1,
             imu_trial: None,
+            ..WorldConfig::default()
         };
         let mut bench = Self {
             now: 0,

@@ -142,10 +142,16 @@ impl AccelDie {
         self.registers.pwr_ctrl == ACC_ENABLED && self.registers.pwr_conf != SUSPEND
     }
 
-    /// `locked`: a burst is being read, so the data registers are shadowed until it ends.
-    pub(super) fn step(&mut self, accel_mps2: [f64; 3], temperature_c: f64, locked: bool, now: Ps) {
+    /// `locked`: a burst is being read, so the data registers are shadowed until it ends. True with a new sample.
+    pub(super) fn step(
+        &mut self,
+        accel_mps2: [f64; 3],
+        temperature_c: f64,
+        locked: bool,
+        now: Ps,
+    ) -> bool {
         if now < self.alive_at || !self.measuring() {
-            return;
+            return false;
         }
         if self.temperature.is_none() || now >= self.temperature_at {
             let eighths = ((temperature_c - 23.0) / 0.125).round();
@@ -153,12 +159,18 @@ impl AccelDie {
             self.temperature_at = now + TEMPERATURE_PERIOD;
         }
         let analogue_g = self.analogue_g(accel_mps2);
-        if !locked && self.clock.due(now) {
+        let sampled = !locked && self.clock.due(now);
+        if sampled {
             // raw / 32768 · 1.5 · 2^(range + 1) = g
             let full_scale_g = 1.5 * f64::from(1 << (self.registers.range + 1));
             self.data = analogue_g.map(|g| quantise(g * 32_768.0 / full_scale_g));
             self.data_ready = true;
         }
+        sampled
+    }
+
+    pub(super) fn replace_sample(&mut self, data: [i16; 3]) {
+        self.data = data;
     }
 
     fn analogue_g(&mut self, accel_mps2: [f64; 3]) -> [f64; 3] {

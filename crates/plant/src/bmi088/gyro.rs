@@ -122,17 +122,23 @@ impl GyroDie {
         self.registers.lpm1 & (SUSPEND | DEEP_SUSPEND) != 0
     }
 
-    /// `locked`: a burst is being read, so the data registers are shadowed until it ends.
-    pub(super) fn step(&mut self, gyro_rps: [f64; 3], locked: bool, now: Ps) {
+    /// `locked`: a burst is being read, so the data registers are shadowed until it ends. True with a new sample.
+    pub(super) fn step(&mut self, gyro_rps: [f64; 3], locked: bool, now: Ps) -> bool {
         if now < self.alive_at || self.suspended() {
-            return;
+            return false;
         }
         let analogue_dps = self.analogue_dps(gyro_rps);
-        if !locked && self.clock.due(now) {
+        let sampled = !locked && self.clock.due(now);
+        if sampled {
             let full_scale_dps = 2_000.0 / f64::from(1 << self.registers.range);
             self.data = analogue_dps.map(|dps| quantise(dps * 32_768.0 / full_scale_dps));
             self.data_ready = true;
         }
+        sampled
+    }
+
+    pub(super) fn replace_sample(&mut self, data: [i16; 3]) {
+        self.data = data;
     }
 
     fn analogue_dps(&mut self, gyro_rps: [f64; 3]) -> [f64; 3] {

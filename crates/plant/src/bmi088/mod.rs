@@ -51,6 +51,8 @@ pub(crate) struct ImuFaults {
     pub gone: bool,
     /// The data registers never change again.
     pub frozen: bool,
+    /// Every new sample is an end of the range.
+    pub extreme: bool,
 }
 
 /// Register file seen over SPI by one die.
@@ -110,13 +112,13 @@ pub(crate) struct Bmi088 {
 }
 
 impl Bmi088 {
-    pub(crate) fn new(seed: u64, source: MotionSource) -> Self {
+    pub(crate) fn new(seed: u64, source: MotionSource, temperature_c: Option<f64>) -> Self {
         Self {
             accel: AccelDie::new(Random::new(seed, Stream::Accel), source),
             gyro: GyroDie::new(Random::new(seed, Stream::Gyro), source),
             accel_wire: Transaction::default(),
             gyro_wire: Transaction::default(),
-            thermal: Thermal::default(),
+            thermal: Thermal::new(temperature_c),
             faults: ImuFaults::default(),
             garbage: Random::new(seed, Stream::SpiGarbage),
         }
@@ -149,14 +151,21 @@ impl Bmi088 {
         if self.faults.gone || self.faults.frozen {
             return;
         }
-        self.accel.step(
+        let accel_sampled = self.accel.step(
             motion.accel_mps2,
             self.thermal.temperature_c(),
             self.accel_wire.selected,
             now,
         );
-        self.gyro
+        let gyro_sampled = self
+            .gyro
             .step(motion.gyro_rps, self.gyro_wire.selected, now);
+        if self.faults.extreme && accel_sampled {
+            self.accel.replace_sample(extremes(&mut self.garbage));
+        }
+        if self.faults.extreme && gyro_sampled {
+            self.gyro.replace_sample(extremes(&mut self.garbage));
+        }
     }
 
     /// Puts both output clocks on a common grid that begins at `at`.
@@ -229,6 +238,12 @@ impl Bmi088 {
 /// How often the analogue chains advance.
 fn rate_of_steps_hz() -> f64 {
     SECOND as f64 / PHYSICS_STEP as f64
+}
+
+/// Three axes at an end of the range each.
+fn extremes(random: &mut Random) -> [i16; 3] {
+    const ENDS: [i16; 3] = [i16::MAX, i16::MIN, -i16::MAX];
+    std::array::from_fn(|_| ENDS[random.below(3) as usize])
 }
 
 /// Rounds to the nearest code and clips at the ends of an `i16`, as the converter does.

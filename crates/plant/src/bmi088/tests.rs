@@ -17,7 +17,7 @@ struct Bench {
 impl Bench {
     fn new(source: MotionSource) -> Self {
         Self {
-            imu: Bmi088::new(7, source),
+            imu: Bmi088::new(7, source, Some(30.0)),
             now: 0,
             motion: LEVEL,
         }
@@ -256,6 +256,7 @@ fn lost_supply_reads_all_ones_and_forgets_the_settings() {
         ImuFaults {
             gone: true,
             frozen: false,
+            ..ImuFaults::default()
         },
         bench.now,
     );

@@ -1,7 +1,9 @@
 //! Temperature of the package on its heated copper island.
 
-/// Assumed room and board without heater.
-const AMBIENT_C: f64 = 30.0;
+/// Assumed board without heater, once its other chips have warmed it.
+const WARM_BOARD_C: f64 = 30.0;
+/// A package whose heater held it there until the power went off for a moment.
+const WARM_PACKAGE_C: f64 = 40.0;
 /// Heater of the C board: 43 Ω on 5 V (hardware.md 1.2).
 const HEATER_W: f64 = 0.58;
 /// No source gives it: chosen so that full heat ends 25 K above the board.
@@ -13,25 +15,27 @@ const TIME_CONSTANT_S: f64 = 15.0;
 pub(super) struct Thermal {
     /// 0 … 1.
     pub(super) heater_duty: f64,
+    board_c: f64,
     temperature_c: f64,
 }
 
-impl Default for Thermal {
-    fn default() -> Self {
+impl Thermal {
+    /// A package colder than a warm board sits on a board as cold as itself.
+    pub(super) fn new(temperature_c: Option<f64>) -> Self {
+        let temperature_c = temperature_c.unwrap_or(WARM_PACKAGE_C);
         Self {
             heater_duty: 0.0,
-            temperature_c: AMBIENT_C,
+            board_c: WARM_BOARD_C.min(temperature_c),
+            temperature_c,
         }
     }
-}
 
-impl Thermal {
     pub(super) fn temperature_c(&self) -> f64 {
         self.temperature_c
     }
 
     pub(super) fn step(&mut self, dt_s: f64) {
-        let goal_c = AMBIENT_C + self.heater_duty * HEATER_W * KELVIN_PER_WATT;
+        let goal_c = self.board_c + self.heater_duty * HEATER_W * KELVIN_PER_WATT;
         self.temperature_c += (goal_c - self.temperature_c) * dt_s / TIME_CONSTANT_S;
     }
 }

@@ -1,9 +1,11 @@
 //! The robot's mechanics. Body axes: x forward, y left, z up; wheel 0 = left, 1 = right.
 
+mod legs;
 mod rolling;
 mod stand;
 
 use crate::{bmi088::Motion, m3508::Friction, world::PlantKind};
+pub(crate) use legs::Legs;
 use rolling::Rolling;
 use stand::Stand;
 

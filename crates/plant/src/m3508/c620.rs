@@ -9,6 +9,8 @@ use crate::{
 };
 
 const COMMAND_ID: u32 = 0x200;
+/// `motor-N-wrong-id` makes ESC 1 and 2 into 5 and 6.
+const WRONG_ID: u32 = 4;
 const FULL_SCALE_RAW: f64 = 16_384.0;
 const FULL_SCALE_A: f64 = 20.0;
 /// Time constant; no source gives it.
@@ -25,6 +27,10 @@ pub(crate) struct EscFaults {
     pub gone: bool,
     /// Feedback repeats its last content; the motor still obeys.
     pub frozen: bool,
+    /// Winding at 120 °C.
+    pub hot: bool,
+    /// Somebody pressed its button: it is another ESC now.
+    pub wrong_id: bool,
 }
 
 pub(crate) struct C620 {
@@ -59,12 +65,18 @@ impl C620 {
     }
 
     pub(crate) fn set_faults(&mut self, faults: EscFaults) {
-        if faults.gone {
+        if faults.gone || faults.wrong_id != self.faults.wrong_id {
             self.commanded_raw = 0;
             self.feedback_pending = false;
             self.motor.cut();
         }
+        self.motor.heated = faults.hot;
         self.faults = faults;
+    }
+
+    /// Another ESC listens to 0x1FF and feeds back under an identifier of its own.
+    fn feedback_id(&self) -> u32 {
+        COMMAND_ID + u32::from(self.id) + u32::from(self.faults.wrong_id) * WRONG_ID
     }
 
     pub(crate) fn powered(&self) -> bool {
@@ -106,7 +118,7 @@ impl C620 {
 
     pub(crate) fn pending(&self) -> Option<CanFrame> {
         self.feedback_pending.then_some(CanFrame {
-            id: COMMAND_ID + u32::from(self.id),
+            id: self.feedback_id(),
             extended: false,
             remote: false,
             dlc: 8,
@@ -131,6 +143,7 @@ impl C620 {
     /// itself is unknown, so the board must say zero.
     pub(crate) fn receive(&mut self, frame: &CanFrame) -> bool {
         if !self.powered()
+            || self.faults.wrong_id
             || frame.extended
             || frame.remote
             || frame.id != COMMAND_ID
@@ -258,7 +271,7 @@ mod tests {
         assert!((esc.motor.current_a() - 5.0).abs() < 1e-6);
         esc.set_faults(EscFaults {
             gone: true,
-            frozen: false,
+            ..EscFaults::default()
         });
         esc.step(0.0, 24.0);
         assert_eq!(esc.motor.torque_nm(), 0.0);

@@ -14,6 +14,8 @@ const BACK_EMF_V_PER_RPS: f64 = (RATED_V - RESISTANCE_OHM * NO_LOAD_A) / NO_LOAD
 /// Assumed share of the no-load torque that is dry friction of gear and seals; the rest grows with speed.
 const DRY_SHARE: f64 = 0.6;
 const AMBIENT_C: f64 = 30.0;
+/// What `motor-N-hot` heats the winding to.
+const HOT_C: f64 = 120.0;
 /// A decaying current ends here instead of in denormal numbers; one step of the feedback is 10⁶ times as much.
 const NO_CURRENT_A: f64 = 1e-9;
 /// Winding to air; no source gives them: 10 A continuous ends near 90 °C.
@@ -31,6 +33,7 @@ pub(crate) struct Friction {
 pub(crate) struct M3508 {
     current_a: f64,
     winding_c: f64,
+    pub(super) heated: bool,
 }
 
 impl Default for M3508 {
@@ -38,6 +41,7 @@ impl Default for M3508 {
         Self {
             current_a: 0.0,
             winding_c: AMBIENT_C,
+            heated: false,
         }
     }
 }
@@ -62,7 +66,7 @@ impl M3508 {
     }
 
     pub(crate) fn temperature_c(&self) -> f64 {
-        self.winding_c
+        if self.heated { HOT_C } else { self.winding_c }
     }
 
     /// Current follows `wanted_a` as a first-order loop, as far as the supply can push it against the back-EMF.

@@ -27,15 +27,26 @@ pub(crate) struct RadioFaults {
     pub frame_lost: bool,
     /// Bit errors and stray bytes on the line.
     pub noise: bool,
+    /// Share of the frames that is lost, 0 … 1.
+    pub loss: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Loss {
+    Flagged,
+    Missing,
 }
 
 /// Sends one frame a period from power-on, with the sticks as they stand at the frame's first bit.
 pub(crate) struct Receiver {
     kind: RadioKind,
     pilot: Pilot,
+    /// As in the last packet the receiver got.
+    received: Pilot,
     next_frame: Ps,
     on_the_line: VecDeque<UartChar>,
     noise: LineNoise,
+    losses: Random,
 }
 
 impl Receiver {
@@ -43,9 +54,11 @@ impl Receiver {
         Self {
             kind,
             pilot: Pilot::default(),
+            received: Pilot::default(),
             next_frame: 0,
             on_the_line: VecDeque::new(),
             noise: LineNoise::new(Random::new(seed, Stream::RadioLine)),
+            losses: Random::new(seed, Stream::RadioLosses),
         }
     }
 
@@ -74,20 +87,17 @@ impl Receiver {
     /// Puts the frame due at `next_frame` on the line.
     pub(crate) fn start_frame(&mut self, faults: RadioFaults) {
         let start = self.next_frame;
-        let (frame, format, period) = match self.kind {
-            RadioKind::Sbus => (
-                Some(sbus::frame(&self.pilot, faults).to_vec()),
-                sbus::FORMAT,
-                sbus::PERIOD,
-            ),
-            RadioKind::Dbus => (
-                dbus::frame(&self.pilot, faults).map(|frame| frame.to_vec()),
-                dbus::FORMAT,
-                dbus::PERIOD,
-            ),
+        let lost = self.lose(faults);
+        let frame = self.frame(RadioFaults {
+            frame_lost: faults.frame_lost || lost.is_some(),
+            ..faults
+        });
+        let (format, period) = match self.kind {
+            RadioKind::Sbus => (sbus::FORMAT, sbus::PERIOD),
+            RadioKind::Dbus => (dbus::FORMAT, dbus::PERIOD),
         };
         self.next_frame = start + period;
-        if faults.silent {
+        if faults.silent || lost == Some(Loss::Missing) {
             return;
         }
         // What nobody fetched within two periods is gone: a line has no memory.
@@ -109,6 +119,28 @@ impl Receiver {
                 .disturb(&mut characters, start, period, character_time, format);
         }
         self.on_the_line.extend(characters);
+    }
+
+    /// Half of the frames lost are flagged by the receiver, half never leave it.
+    fn lose(&mut self, faults: RadioFaults) -> Option<Loss> {
+        if faults.loss == 0.0 || self.losses.unit() >= faults.loss {
+            None
+        } else if self.losses.unit() < 0.5 {
+            Some(Loss::Flagged)
+        } else {
+            Some(Loss::Missing)
+        }
+    }
+
+    /// A receiver without a new packet holds the sticks of the last one.
+    fn frame(&mut self, faults: RadioFaults) -> Option<Vec<u8>> {
+        if !(faults.failsafe || faults.frame_lost) {
+            self.received = self.pilot;
+        }
+        match self.kind {
+            RadioKind::Sbus => Some(sbus::frame(&self.received, faults).to_vec()),
+            RadioKind::Dbus => dbus::frame(&self.received, faults).map(|frame| frame.to_vec()),
+        }
     }
 
     /// Cuts off every character that has not started yet.

@@ -1,7 +1,16 @@
 //! The passage of time.
 
 use super::{PHYSICS_STEP, World, physics_step_s};
-use crate::{attitude, bmi088::Motion, faults::Fault, m3508::M3508, radio::RadioFaults, time::Ps};
+use crate::{
+    attitude,
+    bmi088::Motion,
+    faults::{Fault, RADIO_LOSSES},
+    joints::{JOINTS, Shaft},
+    m3508::M3508,
+    radio::RadioFaults,
+    supply::Charge,
+    time::Ps,
+};
 
 /// Earth's field in ENU, µT: 22 north, 42 into the ground, as in the middle of Europe or China; declination left out.
 const EARTH_FIELD_UT: [f64; 3] = [0.0, 22.0, -42.0];
@@ -10,12 +19,18 @@ pub(super) const SHAFT_SIGN: [f64; 2] = [1.0, -1.0];
 
 impl World {
     /// The next instant at which something happens here that the board could see by itself: a character on the radio
-    /// line, motor feedback, the end of a magnetometer conversion. Mechanics in between need no visit.
+    /// line, a motor's frame, the end of a magnetometer conversion. Mechanics in between need no visit.
     pub fn next_event(&self) -> Ps {
         self.escs
             .iter()
             .map(|esc| esc.next_feedback())
             .chain([self.radio.next_event(self.now), self.mag.next_event()])
+            .chain(
+                self.joints
+                    .iter()
+                    .filter_map(|joint| joint.reply_at())
+                    .filter(|at| *at > self.now),
+            )
             .min()
             .unwrap_or(Ps::MAX)
     }
@@ -64,11 +79,45 @@ impl World {
             torques_nm[wheel] = SHAFT_SIGN[wheel] * esc.motor.torque_nm();
             power_w += esc.motor.torque_nm() * shaft_rps[wheel];
         }
-        self.battery.set_spent(self.faults.has(Fault::BatteryLow));
+        power_w += self.step_joints(at, supply_v);
+        self.battery.set_charge(self.charge());
         self.battery.load(power_w);
         self.body
             .step(torques_nm, M3508::friction(), physics_step_s());
         self.imu.step(self.motion(at), at, physics_step_s());
+    }
+
+    fn charge(&self) -> Charge {
+        if self.faults.has(Fault::BatteryEmpty) {
+            Charge::Empty
+        } else if self.faults.has(Fault::BatteryLow) {
+            Charge::Low
+        } else {
+            Charge::Half
+        }
+    }
+
+    /// Mechanical power of the joints' motors, W.
+    fn step_joints(&mut self, at: Ps, supply_v: f64) -> f64 {
+        let mut power_w = 0.0;
+        for index in 0..JOINTS {
+            let shaft = self.joint_shaft(index);
+            let joint = &mut self.joints[index];
+            let was_enabled = joint.enabled();
+            joint.step(shaft, supply_v, at);
+            power_w += joint.torque_nm() * self.legs.vel_rps[index];
+            let (torque_nm, friction_nm) = (joint.torque_nm(), joint.friction_nm());
+            if joint.enabled() != was_enabled {
+                self.tell_joint(index, at);
+            }
+            self.legs
+                .step(index, torque_nm, friction_nm, physics_step_s());
+        }
+        power_w
+    }
+
+    pub(super) fn joint_shaft(&self, joint: usize) -> Shaft {
+        self.joints[joint].shaft(self.legs.pos_rad[joint], self.legs.vel_rps[joint])
     }
 
     /// Output shafts in their own sense of rotation, rad/s.
@@ -98,7 +147,15 @@ impl World {
             failsafe: self.faults.has(Fault::SbusFailsafe),
             frame_lost: self.faults.has(Fault::SbusFrameLost),
             noise: self.faults.has(Fault::SbusNoise),
+            loss: self.radio_loss(),
         }
+    }
+
+    fn radio_loss(&self) -> f64 {
+        let active = RADIO_LOSSES
+            .iter()
+            .filter(|(fault, _)| self.faults.has(*fault));
+        active.map(|(_, share)| *share).fold(0.0, f64::max)
     }
 }
 

@@ -18,21 +18,12 @@ const ROGUE_FRAME: CanFrame = CanFrame {
     data: [0; 8],
 };
 
-/// Zero current for the ESCs 1 to 4 (C620 user guide).
-const ZERO_TORQUE: CanFrame = CanFrame {
-    id: 0x200,
-    extended: false,
-    remote: false,
-    dlc: 8,
-    data: [0; 8],
-};
-
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Node {
     /// Wheel controller.
     Esc(usize),
-    /// A device that acknowledges and never sends.
-    Listener,
+    /// Motor of a leg joint.
+    Joint(usize),
     /// Bus adapter of a PC.
     Adapter,
     Rogue(Fault),
@@ -45,7 +36,10 @@ const CAN1: &[Node] = &[
     Node::Adapter,
 ];
 const CAN2: &[Node] = &[
-    Node::Listener,
+    Node::Joint(0),
+    Node::Joint(1),
+    Node::Joint(2),
+    Node::Joint(3),
     Node::Rogue(Fault::RogueNodeCan2),
     Node::Adapter,
 ];
@@ -74,7 +68,7 @@ impl World {
         !self.unplugged(bus)
             && match nodes(bus)[node] {
                 Node::Esc(wheel) => self.escs[wheel].powered(),
-                Node::Listener => true,
+                Node::Joint(joint) => self.joints[joint].powered(),
                 Node::Adapter => self.adapter(bus).mode() == AdapterMode::Active,
                 Node::Rogue(fault) => self.faults.has(fault),
             }
@@ -97,13 +91,13 @@ impl World {
     }
 
     /// The frame this node wants on the bus now.
-    pub fn can_pending(&self, bus: CanBusId, node: usize, _now: Ps) -> Option<CanFrame> {
+    pub fn can_pending(&self, bus: CanBusId, node: usize, now: Ps) -> Option<CanFrame> {
         if !self.can_present(bus, node) {
             return None;
         }
         match nodes(bus)[node] {
             Node::Esc(wheel) => self.escs[wheel].pending(),
-            Node::Listener => None,
+            Node::Joint(joint) => self.joints[joint].pending(now),
             Node::Adapter => self.adapter(bus).pending(),
             Node::Rogue(_) => Some(ROGUE_FRAME),
         }
@@ -122,7 +116,8 @@ impl World {
                 });
             }
             Node::Adapter => self.can_adapter(bus).delivered(),
-            Node::Listener | Node::Rogue(_) => {}
+            Node::Joint(joint) => self.joint_sent(joint, now),
+            Node::Rogue(_) => {}
         }
     }
 
@@ -138,15 +133,8 @@ impl World {
                 });
             }
             Node::Adapter => self.can_adapter(bus).hear(frame, now),
-            Node::Listener if *frame == ZERO_TORQUE => {
-                self.can2_zero_frames += 1;
-                self.wire_events.push(WireEvent {
-                    at: now,
-                    signal: signals::CAN2_ZERO_FRAMES,
-                    value: self.can2_zero_frames as f64,
-                });
-            }
-            Node::Esc(_) | Node::Listener | Node::Rogue(_) => {}
+            Node::Joint(joint) => self.joint_heard(joint, frame, now),
+            Node::Esc(_) | Node::Rogue(_) => {}
         }
     }
 

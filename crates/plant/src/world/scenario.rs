@@ -4,8 +4,9 @@ use super::{FaultInfo, RemoteInput, World, WorldError};
 use crate::{
     attitude::{self, Quaternion},
     bmi088::ImuFaults,
-    faults::{self, Fault},
+    faults::{self, Fault, MOTORS},
     ist8310::MagFaults,
+    joints::DriveFaults,
     m3508::EscFaults,
 };
 
@@ -22,10 +23,11 @@ impl World {
         self.faults.set(fault, active);
         match fault {
             Fault::SbusSilent if active => self.radio.unplug(self.now),
-            Fault::ImuGone | Fault::ImuFrozen => self.imu.set_faults(
+            Fault::ImuGone | Fault::ImuFrozen | Fault::ImuExtreme => self.imu.set_faults(
                 ImuFaults {
                     gone: self.faults.has(Fault::ImuGone),
                     frozen: self.faults.has(Fault::ImuFrozen),
+                    extreme: self.faults.has(Fault::ImuExtreme),
                 },
                 self.now,
             ),
@@ -36,22 +38,39 @@ impl World {
                 },
                 self.now,
             ),
-            Fault::Motor0Gone | Fault::Motor0Frozen => {
-                self.set_esc_faults(0, Fault::Motor0Gone, Fault::Motor0Frozen);
-            }
-            Fault::Motor1Gone | Fault::Motor1Frozen => {
-                self.set_esc_faults(1, Fault::Motor1Gone, Fault::Motor1Frozen);
-            }
             _ => {}
+        }
+        if let Some(motor) = MOTORS.iter().position(|faults| faults.includes(fault)) {
+            self.set_motor_faults(motor);
         }
         Ok(())
     }
 
-    fn set_esc_faults(&mut self, wheel: usize, gone: Fault, frozen: Fault) {
-        self.escs[wheel].set_faults(EscFaults {
-            gone: self.faults.has(gone),
-            frozen: self.faults.has(frozen),
-        });
+    /// Wheels are the motors 0 and 1, joints follow.
+    fn set_motor_faults(&mut self, motor: usize) {
+        let faults = &MOTORS[motor];
+        let has = |fault| self.faults.has(fault);
+        let (gone, frozen) = (has(faults.gone), has(faults.frozen));
+        let (hot, wrong_id) = (has(faults.hot), has(faults.wrong_id));
+        match motor.checked_sub(self.escs.len()) {
+            None => self.escs[motor].set_faults(EscFaults {
+                gone,
+                frozen,
+                hot,
+                wrong_id,
+            }),
+            Some(joint) => {
+                let drive_faults = DriveFaults {
+                    gone,
+                    frozen,
+                    hot,
+                    wrong_id,
+                    tripped: faults.fault.is_some_and(has),
+                };
+                self.joints[joint].set_faults(drive_faults, self.now);
+                self.tell_joint(joint, self.now);
+            }
+        }
     }
 
     pub fn faults() -> &'static [FaultInfo] {

@@ -14,8 +14,10 @@ pub(super) fn motor_rpm(wheel: usize) -> usize {
     2 * wheel + 1
 }
 
-/// Frames on CAN2 that command zero current to every motor.
-pub(super) const CAN2_ZERO_FRAMES: usize = 4;
+/// The five of a joint, in the order of their names.
+pub(super) fn joint(joint: usize) -> [usize; 5] {
+    std::array::from_fn(|part| 4 + 5 * joint + part)
+}
 
 /// Current as commanded on the wire; rotor speed as fed back. Both in the motor's own sense of rotation.
 const CAN: &[Signal] = &[
@@ -23,7 +25,62 @@ const CAN: &[Signal] = &[
     ("can.m3508.0.rpm", |w| w.escs[0].fed_back_rpm()),
     ("can.m3508.1.current_ma", |w| w.escs[1].commanded_ma()),
     ("can.m3508.1.rpm", |w| w.escs[1].fed_back_rpm()),
-    ("can.can2.zero_frames", |w| w.can2_zero_frames as f64),
+];
+
+/// Of one joint's motor, in its own sense of rotation: 1 while it is enabled; torque its present command asks for; the
+/// last feedback on the wire; disable frames it has received.
+macro_rules! joint_on_the_wire {
+    ($name:literal, $joint:literal) => {
+        [
+            (concat!($name, ".enabled"), |w| {
+                f64::from(w.joints[$joint].enabled())
+            }),
+            (concat!($name, ".torque_nm"), |w| {
+                w.joints[$joint].wire_state(w.joint_shaft($joint)).asked_nm
+            }),
+            (concat!($name, ".pos_rad"), |w| {
+                w.joints[$joint].fed_back().pos_rad
+            }),
+            (concat!($name, ".vel_rps"), |w| {
+                w.joints[$joint].fed_back().vel_rps
+            }),
+            (concat!($name, ".stop_frames"), |w| {
+                w.joints[$joint]
+                    .wire_state(w.joint_shaft($joint))
+                    .stop_frames as f64
+            }),
+        ]
+    };
+}
+
+const JOINT_WIRES: [[Signal; 5]; 4] = [
+    joint_on_the_wire!("can.joint.0", 0),
+    joint_on_the_wire!("can.joint.1", 1),
+    joint_on_the_wire!("can.joint.2", 2),
+    joint_on_the_wire!("can.joint.3", 3),
+];
+
+/// Joint angle from the leg hanging down, speed and the motor's torque in joint coordinates; its winding.
+macro_rules! joint_truth {
+    ($name:literal, $joint:literal) => {
+        [
+            (concat!($name, ".pos_rad"), |w| w.legs.pos_rad[$joint]),
+            (concat!($name, ".vel_rps"), |w| w.legs.vel_rps[$joint]),
+            (concat!($name, ".torque_nm"), |w| {
+                w.joints[$joint].torque_nm()
+            }),
+            (concat!($name, ".temperature_c"), |w| {
+                w.joints[$joint].temperature_c()
+            }),
+        ]
+    };
+}
+
+const JOINTS: [[Signal; 4]; 4] = [
+    joint_truth!("truth.joint.0", 0),
+    joint_truth!("truth.joint.1", 1),
+    joint_truth!("truth.joint.2", 2),
+    joint_truth!("truth.joint.3", 3),
 ];
 
 /// What the pilot does: sticks −1 … 1, switches as 0, 1, 2.
@@ -96,9 +153,19 @@ const RECORDING: &[Signal] = &[
 
 fn signals(recording: bool) -> impl Iterator<Item = &'static Signal> {
     let extra = if recording { RECORDING } else { &[] };
-    [CAN, RADIO, BODY, WHEELS, IMU, BOARD, extra]
-        .into_iter()
-        .flatten()
+    [
+        CAN,
+        JOINT_WIRES.as_flattened(),
+        RADIO,
+        BODY,
+        WHEELS,
+        JOINTS.as_flattened(),
+        IMU,
+        BOARD,
+        extra,
+    ]
+    .into_iter()
+    .flatten()
 }
 
 pub(super) fn names(recording: bool) -> Vec<String> {
@@ -152,7 +219,12 @@ mod tests {
     #[test]
     fn wire_events_point_at_their_signals() {
         let names = names(false);
-        assert_eq!(names[CAN2_ZERO_FRAMES], "can.can2.zero_frames");
+        for index in 0..4 {
+            let parts = ["enabled", "torque_nm", "pos_rad", "vel_rps", "stop_frames"];
+            for (signal, part) in joint(index).into_iter().zip(parts) {
+                assert_eq!(names[signal], format!("can.joint.{index}.{part}"));
+            }
+        }
         for wheel in 0..2 {
             assert_eq!(
                 names[motor_current_ma(wheel)],

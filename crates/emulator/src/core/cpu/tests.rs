@@ -68,6 +68,7 @@ fn board(thread: &[u16], handlers: &[(Exception, Vec<u16>)]) -> Cpu {
         radio: RadioKind::Sbus,
         seed: 1,
         imu_trial: None,
+        ..WorldConfig::default()
     };
     let world = World::new(config).expect("a world without a recording");
     let mut cpu = Cpu::new(&segments, None, Soc::new(world)).expect("the engine starts");

@@ -72,6 +72,7 @@ impl Bench {
             radio: RadioKind::Sbus,
             seed: 1,
             imu_trial: None,
+            ..WorldConfig::default()
         };
         let ram = Ram {
             sram: vec![0; 0x2_0000],

@@ -1,0 +1,196 @@
+//! Damiao DM4310 geared motor with its driver (hardware.md section 8).
+
+mod receive;
+mod registers;
+
+use super::{
+    DriveFaults, Shaft,
+    actuator::{Actuator, Rating},
+    mit_frame::MitCommand,
+    reply::ReplyBox,
+    speed_loop::{self, SpeedLoop},
+};
+use crate::time::{Ps, US};
+use registers::Registers;
+
+/// V1.1: peak 7 N·m, 200 rpm without load at 24 V, static friction 0.15 N·m. From memory of the datasheet: 120 rpm at
+/// the rated 3 N·m, which makes the slope and puts the stall torque at 24 V just above the peak. Assumed: 3 N·m for
+/// ever end at 90 °C, after some minutes.
+const RATING: Rating = Rating {
+    peak_nm: 7.0,
+    no_load_rps: 200.0 * std::f64::consts::TAU / 60.0,
+    supply_v: 24.0,
+    slope_rps_per_nm: 2.79,
+    friction_nm: 0.15,
+    kelvin_per_watt: 2.4,
+    heat_capacity_j_per_k: 150.0,
+};
+
+const TIMEOUT_UNIT: Ps = 50 * US;
+/// Identifiers of the fault `motor-N-wrong-id` are this much too high.
+const WRONG_ID: u32 = 8;
+
+/// ERR of a motor that has switched itself off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Trip {
+    OverCurrent = 0xA,
+    RotorTemperature = 0xC,
+    CommunicationLost = 0xD,
+}
+
+/// A trip stays until it is cleared with FB. That FB clears every one is an assumption: of 0xD it is only known that
+/// enabling and command frames do not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum State {
+    Disabled,
+    Enabled,
+    Tripped(Trip),
+}
+
+/// What an enabled motor does; nothing until the first command.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Target {
+    None,
+    Mit(MitCommand),
+    PositionSpeed { pos_rad: f64, most_rps: f64 },
+    Speed { vel_rps: f64 },
+}
+
+pub(crate) struct Dm4310 {
+    /// What a power cycle brings back.
+    stored: Registers,
+    registers: Registers,
+    state: State,
+    target: Target,
+    speed_loop: SpeedLoop,
+    actuator: Actuator,
+    /// Shaft angle that reads as 0, rad.
+    zero_rad: f64,
+    faults: DriveFaults,
+    heard_at: Ps,
+    /// Deaf and mute while it works on a register.
+    deaf_until: Ps,
+    replies: ReplyBox,
+    stop_frames: u64,
+}
+
+impl Dm4310 {
+    pub(crate) fn new(esc_id: u32, mst_id: u32) -> Self {
+        let registers = Registers::new(esc_id, mst_id);
+        Self {
+            stored: registers,
+            registers,
+            state: State::Disabled,
+            target: Target::None,
+            speed_loop: SpeedLoop::default(),
+            actuator: Actuator::new(&RATING),
+            zero_rad: 0.0,
+            faults: DriveFaults::default(),
+            heard_at: 0,
+            deaf_until: 0,
+            replies: ReplyBox::default(),
+            stop_frames: 0,
+        }
+    }
+
+    pub(crate) fn set_faults(&mut self, faults: DriveFaults, now: Ps) {
+        if faults.gone || faults.wrong_id != self.faults.wrong_id {
+            self.power_cycle(now);
+        }
+        if faults.tripped {
+            self.switch_off(State::Tripped(Trip::OverCurrent));
+        }
+        self.actuator.heated = faults.hot;
+        self.faults = faults;
+    }
+
+    /// Settings that were not stored are lost; the heat and the place of the zero stay.
+    fn power_cycle(&mut self, now: Ps) {
+        self.registers = self.stored;
+        self.deaf_until = now;
+        self.replies.drop_waiting();
+        self.switch_off(State::Disabled);
+    }
+
+    fn switch_off(&mut self, state: State) {
+        self.state = state;
+        self.target = Target::None;
+        self.speed_loop = SpeedLoop::default();
+        self.actuator.cut();
+    }
+
+    pub(crate) fn powered(&self) -> bool {
+        !self.faults.gone
+    }
+
+    pub(crate) fn enabled(&self) -> bool {
+        self.state == State::Enabled
+    }
+
+    pub(crate) fn stop_frames(&self) -> u64 {
+        self.stop_frames
+    }
+
+    pub(super) fn actuator(&self) -> &Actuator {
+        &self.actuator
+    }
+
+    pub(super) fn replies(&self) -> &ReplyBox {
+        &self.replies
+    }
+
+    pub(super) fn replies_mut(&mut self) -> &mut ReplyBox {
+        &mut self.replies
+    }
+
+    fn esc_id(&self) -> u32 {
+        self.registers.esc_id + u32::from(self.faults.wrong_id) * WRONG_ID
+    }
+
+    fn mst_id(&self) -> u32 {
+        self.registers.mst_id + u32::from(self.faults.wrong_id) * WRONG_ID
+    }
+
+    pub(crate) fn step(&mut self, shaft: Shaft, supply_v: f64, now: Ps, dt_s: f64) {
+        self.watch(now);
+        let most_nm = RATING.peak_nm;
+        let goal_rps = match self.target {
+            Target::None | Target::Mit(_) => None,
+            Target::PositionSpeed { pos_rad, most_rps } => {
+                let here_rad = shaft.pos_rad - self.zero_rad;
+                Some(speed_loop::towards(pos_rad, here_rad, most_rps))
+            }
+            Target::Speed { vel_rps } => Some(vel_rps),
+        };
+        if let Some(goal_rps) = goal_rps {
+            self.speed_loop.step(goal_rps, shaft.vel_rps, most_nm, dt_s);
+        }
+        let wanted_nm = self.enabled().then(|| self.asked_nm(shaft));
+        self.actuator.step(wanted_nm, shaft.vel_rps, supply_v, dt_s);
+    }
+
+    /// The motor's own guards.
+    fn watch(&mut self, now: Ps) {
+        if self.state != State::Enabled {
+            return;
+        }
+        let timeout = u64::from(self.registers.timeout) * TIMEOUT_UNIT;
+        if timeout != 0 && now > self.heard_at + timeout {
+            self.switch_off(State::Tripped(Trip::CommunicationLost));
+        } else if self.actuator.winding_c() > f64::from(self.registers.over_temperature_c) {
+            self.switch_off(State::Tripped(Trip::RotorTemperature));
+        }
+    }
+
+    /// Torque its present command asks for, before the limits of motor and supply.
+    pub(crate) fn asked_nm(&self, shaft: Shaft) -> f64 {
+        match self.target {
+            Target::None => 0.0,
+            Target::Mit(command) => command.asked_nm(shaft.pos_rad - self.zero_rad, shaft.vel_rps),
+            Target::PositionSpeed { .. } | Target::Speed { .. } => self.speed_loop.asked_nm(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,171 @@
+//! Frames to a DM4310 and its replies.
+
+use super::registers::{ControlMode, NotModelled};
+use super::{Dm4310, State, Target};
+use crate::{
+    joints::{Heard, Shaft},
+    time::{MS, Ps},
+    wire::CanFrame,
+};
+
+const REGISTERS: u32 = 0x7FF;
+const READ: u8 = 0x33;
+const WRITE: u8 = 0x55;
+const STORE: u8 = 0xAA;
+const REFRESH: u8 = 0xCC;
+/// A register write takes the motor this long (measured through a USB adapter; the time on CAN is unknown).
+const WRITE_TIME: Ps = 150 * MS;
+
+const POSITION_SPEED: u32 = 0x100;
+const SPEED: u32 = 0x200;
+
+const ENABLE: u8 = 0xFC;
+const DISABLE: u8 = 0xFD;
+const SET_ZERO: u8 = 0xFE;
+const CLEAR: u8 = 0xFB;
+
+impl Dm4310 {
+    pub(crate) fn receive(&mut self, frame: &CanFrame, shaft: Shaft, now: Ps) -> Heard {
+        if !self.powered() || frame.extended || frame.remote || now < self.deaf_until {
+            return Heard::Nothing;
+        }
+        if frame.id == REGISTERS {
+            return self.register_request(frame, shaft, now);
+        }
+        if let Some(tail) = self.service(frame) {
+            self.heard_at = now;
+            self.serve(tail, shaft);
+        } else if let Some(target) = self.target_of(frame) {
+            self.heard_at = now;
+            if self.enabled() {
+                self.target = target;
+            }
+        } else {
+            return Heard::Nothing;
+        }
+        self.reply(shaft, now);
+        Heard::Frame
+    }
+
+    /// Service frames are taken under ESC_ID and under the identifier of the present mode: which one the other modes
+    /// need is not known.
+    fn service(&self, frame: &CanFrame) -> Option<u8> {
+        let addressed = frame.id == self.esc_id() || frame.id == self.esc_id() + self.mode_offset();
+        let tail = frame.data[7];
+        let is_service = frame.dlc == 8
+            && frame.data[..7] == [0xFF; 7]
+            && matches!(tail, ENABLE | DISABLE | SET_ZERO | CLEAR);
+        (addressed && is_service).then_some(tail)
+    }
+
+    fn mode_offset(&self) -> u32 {
+        match self.registers.control_mode {
+            ControlMode::Mit => 0,
+            ControlMode::PositionSpeed => POSITION_SPEED,
+            ControlMode::Speed => SPEED,
+        }
+    }
+
+    fn serve(&mut self, tail: u8, shaft: Shaft) {
+        match (tail, self.state) {
+            (ENABLE, State::Disabled) => self.state = State::Enabled,
+            (DISABLE, state) => {
+                self.stop_frames += 1;
+                if state == State::Enabled {
+                    self.switch_off(State::Disabled);
+                }
+            }
+            (SET_ZERO, _) => self.zero_rad = shaft.pos_rad,
+            // A trip whose cause is still there comes back at once.
+            (CLEAR, State::Tripped(_)) if !self.faults.tripped => self.state = State::Disabled,
+            _ => {}
+        }
+    }
+
+    /// A command of the present mode; one of another mode is for nobody.
+    fn target_of(&self, frame: &CanFrame) -> Option<Target> {
+        if frame.id != self.esc_id() + self.mode_offset() {
+            return None;
+        }
+        let [a, b, c, d, rest @ ..] = frame.data;
+        let first = f64::from(f32::from_le_bytes([a, b, c, d]));
+        let second = f64::from(f32::from_le_bytes(rest));
+        match (self.registers.control_mode, frame.dlc) {
+            (ControlMode::Mit, 8) => {
+                Some(Target::Mit(self.registers.ranges().command(&frame.data)))
+            }
+            (ControlMode::PositionSpeed, 8) if first.is_finite() && second.is_finite() => {
+                Some(Target::PositionSpeed {
+                    pos_rad: first,
+                    most_rps: second,
+                })
+            }
+            (ControlMode::Speed, 4 | 8) if first.is_finite() => {
+                Some(Target::Speed { vel_rps: first })
+            }
+            _ => None,
+        }
+    }
+
+    fn register_request(&mut self, frame: &CanFrame, shaft: Shaft, now: Ps) -> Heard {
+        let [low, high, request, register, value @ ..] = frame.data;
+        if u32::from(u16::from_le_bytes([low, high])) != self.esc_id() || frame.dlc < 4 {
+            return Heard::Nothing;
+        }
+        self.heard_at = now;
+        let done = match (request, frame.dlc) {
+            (READ, _) => self.answer(frame, now),
+            (WRITE, 8) => {
+                let done = self.registers.write(register, value);
+                self.deaf_until = now + WRITE_TIME;
+                done.and_then(|()| self.answer(frame, now + WRITE_TIME))
+            }
+            (STORE, _) => {
+                self.stored = self.registers;
+                self.deaf_until = now + WRITE_TIME;
+                self.replies
+                    .other(self.mst_id(), frame.data, now + WRITE_TIME);
+                Ok(())
+            }
+            (REFRESH, _) => {
+                self.reply(shaft, now);
+                Ok(())
+            }
+            _ => return Heard::Nothing,
+        };
+        match done {
+            Ok(()) => Heard::Frame,
+            Err(NotModelled) => Heard::NotModelled(format!(
+                "DM4310: request {request:#04x} for register {register:#04x} with {value:02x?} is not modelled"
+            )),
+        }
+    }
+
+    fn answer(&mut self, frame: &CanFrame, now: Ps) -> Result<(), NotModelled> {
+        let mut data = frame.data;
+        data[4..].copy_from_slice(&self.registers.read(frame.data[3])?);
+        self.replies.other(self.mst_id(), data, now);
+        Ok(())
+    }
+
+    fn reply(&mut self, shaft: Shaft, now: Ps) {
+        let error = match self.state {
+            State::Disabled => 0,
+            State::Enabled => 1,
+            State::Tripped(trip) => trip as u8,
+        };
+        let (motion, fed_back) = self.registers.ranges().feedback(
+            shaft.pos_rad - self.zero_rad,
+            shaft.vel_rps,
+            self.actuator.torque_nm(),
+        );
+        let mut data = [0; 8];
+        data[0] = error << 4 | (self.esc_id() & 0xF) as u8;
+        data[1..6].copy_from_slice(&motion);
+        data[6] = self.actuator.driver_c().round() as u8;
+        data[7] = self.actuator.winding_c().round() as u8;
+        let id = self.mst_id();
+        self.replies
+            .feedback(id, data, fed_back, self.faults.frozen, now);
+    }
+}

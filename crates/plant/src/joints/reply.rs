@@ -1,0 +1,90 @@
+//! The one frame a motor sends for each frame it gets.
+
+use super::mit_frame::FedBack;
+use crate::{
+    time::{Ps, US},
+    wire::CanFrame,
+};
+
+/// From the end of a command to the motor's wish to reply; assumed, no source gives it.
+const REPLY_TIME: Ps = 150 * US;
+
+#[derive(Clone, Copy, Debug)]
+struct Reply {
+    ready_at: Ps,
+    frame: CanFrame,
+    fed_back: Option<FedBack>,
+}
+
+/// A reply that found no way onto the bus is replaced by the next one.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct ReplyBox {
+    waiting: Option<Reply>,
+    last_feedback: Option<([u8; 8], FedBack)>,
+    on_the_wire: FedBack,
+}
+
+impl ReplyBox {
+    /// `frozen` repeats the last feedback sent instead.
+    pub(super) fn feedback(
+        &mut self,
+        id: u32,
+        data: [u8; 8],
+        fed_back: FedBack,
+        frozen: bool,
+        now: Ps,
+    ) {
+        let (data, fed_back) = match self.last_feedback {
+            Some(last) if frozen => last,
+            _ => (data, fed_back),
+        };
+        self.last_feedback = Some((data, fed_back));
+        self.put(id, data, Some(fed_back), now + REPLY_TIME);
+    }
+
+    /// A reply that says nothing about the shaft.
+    pub(super) fn other(&mut self, id: u32, data: [u8; 8], received: Ps) {
+        self.put(id, data, None, received + REPLY_TIME);
+    }
+
+    fn put(&mut self, id: u32, data: [u8; 8], fed_back: Option<FedBack>, ready_at: Ps) {
+        let frame = CanFrame {
+            id,
+            extended: false,
+            remote: false,
+            dlc: 8,
+            data,
+        };
+        self.waiting = Some(Reply {
+            ready_at,
+            frame,
+            fed_back,
+        });
+    }
+
+    /// When the waiting reply wants the bus.
+    pub(super) fn ready_at(&self) -> Option<Ps> {
+        self.waiting.map(|reply| reply.ready_at)
+    }
+
+    pub(super) fn pending(&self, now: Ps) -> Option<CanFrame> {
+        self.waiting
+            .filter(|reply| reply.ready_at <= now)
+            .map(|reply| reply.frame)
+    }
+
+    pub(super) fn sent(&mut self) {
+        if let Some(fed_back) = self.waiting.take().and_then(|reply| reply.fed_back) {
+            self.on_the_wire = fed_back;
+        }
+    }
+
+    pub(super) fn drop_waiting(&mut self) {
+        self.waiting = None;
+    }
+
+    /// What the last feedback on the wire said.
+    pub(super) fn on_the_wire(&self) -> FedBack {
+        self.on_the_wire
+    }
+}

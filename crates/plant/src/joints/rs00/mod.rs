@@ -1,0 +1,181 @@
+//! RobStride RS00 set to its MIT protocol (seed 003, hardware.md section 9).
+
+mod receive;
+
+use super::{
+    DriveFaults, Shaft,
+    actuator::{Actuator, Rating},
+    mit_frame::{MitCommand, Ranges},
+    reply::ReplyBox,
+    speed_loop::{self, SpeedLoop},
+};
+
+const RANGES: Ranges = Ranges {
+    pos_rad: 12.57,
+    vel_rps: 33.0,
+    torque_nm: 14.0,
+};
+
+/// Peak 14 N·m, 315 rpm without load at 48 V. Assumed: at 24 V the peak is just reached at standstill, which makes the
+/// slope; friction as of the DM4310; the rated 5 N·m for ever end at 90 °C.
+const RATING: Rating = Rating {
+    peak_nm: 14.0,
+    no_load_rps: 315.0 * std::f64::consts::TAU / 60.0,
+    supply_v: 48.0,
+    slope_rps_per_nm: 1.19,
+    friction_nm: 0.15,
+    kelvin_per_watt: 2.0,
+    heat_capacity_j_per_k: 180.0,
+};
+const TORQUE_NM_PER_A: f64 = 1.48;
+
+/// Bits of the fault word.
+const OVER_TEMPERATURE: u32 = 1 << 0;
+const DRIVER: u32 = 1 << 1;
+const OVER_TEMPERATURE_C: f64 = 145.0;
+
+/// Identifiers of the fault `motor-N-wrong-id` are this much too high.
+const WRONG_ID: u32 = 8;
+
+/// Discriminants as on the wire.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Mode {
+    Mit = 0,
+    Position = 1,
+    Speed = 2,
+}
+
+/// What a running motor does; nothing until the first command.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Target {
+    None,
+    Mit(MitCommand),
+    Position { pos_rad: f64, most_rps: f64 },
+    Speed { vel_rps: f64, most_a: f64 },
+}
+
+/// The last command holds for ever: the motor's own watch over the bus is off as shipped, and its parameter is out of
+/// the MIT protocol's reach.
+pub(crate) struct Rs00 {
+    motor_id: u32,
+    host_id: u32,
+    mode: Mode,
+    running: bool,
+    fault_word: u32,
+    target: Target,
+    speed_loop: SpeedLoop,
+    actuator: Actuator,
+    /// Shaft angle that reads as 0, rad.
+    zero_rad: f64,
+    faults: DriveFaults,
+    replies: ReplyBox,
+    stop_frames: u64,
+}
+
+impl Rs00 {
+    pub(crate) fn new(motor_id: u32, host_id: u32) -> Self {
+        Self {
+            motor_id,
+            host_id,
+            mode: Mode::Mit,
+            running: false,
+            fault_word: 0,
+            target: Target::None,
+            speed_loop: SpeedLoop::default(),
+            actuator: Actuator::new(&RATING),
+            zero_rad: 0.0,
+            faults: DriveFaults::default(),
+            replies: ReplyBox::default(),
+            stop_frames: 0,
+        }
+    }
+
+    pub(crate) fn set_faults(&mut self, faults: DriveFaults) {
+        if faults.gone || faults.wrong_id != self.faults.wrong_id {
+            self.mode = Mode::Mit;
+            self.fault_word = 0;
+            self.replies.drop_waiting();
+            self.switch_off();
+        }
+        if faults.tripped {
+            self.trip(DRIVER);
+        }
+        self.actuator.heated = faults.hot;
+        self.faults = faults;
+    }
+
+    fn switch_off(&mut self) {
+        self.running = false;
+        self.target = Target::None;
+        self.speed_loop = SpeedLoop::default();
+        self.actuator.cut();
+    }
+
+    fn trip(&mut self, fault: u32) {
+        self.fault_word |= fault;
+        self.switch_off();
+    }
+
+    pub(crate) fn powered(&self) -> bool {
+        !self.faults.gone
+    }
+
+    pub(crate) fn enabled(&self) -> bool {
+        self.running
+    }
+
+    pub(crate) fn stop_frames(&self) -> u64 {
+        self.stop_frames
+    }
+
+    pub(super) fn actuator(&self) -> &Actuator {
+        &self.actuator
+    }
+
+    pub(super) fn replies(&self) -> &ReplyBox {
+        &self.replies
+    }
+
+    pub(super) fn replies_mut(&mut self) -> &mut ReplyBox {
+        &mut self.replies
+    }
+
+    fn id(&self) -> u32 {
+        self.motor_id + u32::from(self.faults.wrong_id) * WRONG_ID
+    }
+
+    pub(crate) fn step(&mut self, shaft: Shaft, supply_v: f64, dt_s: f64) {
+        if self.running && self.actuator.winding_c() > OVER_TEMPERATURE_C {
+            self.trip(OVER_TEMPERATURE);
+        }
+        let goal = match self.target {
+            Target::None | Target::Mit(_) => None,
+            Target::Position { pos_rad, most_rps } => {
+                let here_rad = shaft.pos_rad - self.zero_rad;
+                let goal_rps = speed_loop::towards(pos_rad, here_rad, most_rps);
+                Some((goal_rps, RATING.peak_nm))
+            }
+            Target::Speed { vel_rps, most_a } => {
+                let most_nm = (most_a.abs() * TORQUE_NM_PER_A).min(RATING.peak_nm);
+                Some((vel_rps, most_nm))
+            }
+        };
+        if let Some((goal_rps, most_nm)) = goal {
+            self.speed_loop.step(goal_rps, shaft.vel_rps, most_nm, dt_s);
+        }
+        let wanted_nm = self.running.then(|| self.asked_nm(shaft));
+        self.actuator.step(wanted_nm, shaft.vel_rps, supply_v, dt_s);
+    }
+
+    /// Torque its present command asks for, before the limits of motor and supply.
+    pub(crate) fn asked_nm(&self, shaft: Shaft) -> f64 {
+        match self.target {
+            Target::None => 0.0,
+            Target::Mit(command) => command.asked_nm(shaft.pos_rad - self.zero_rad, shaft.vel_rps),
+            Target::Position { .. } | Target::Speed { .. } => self.speed_loop.asked_nm(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
