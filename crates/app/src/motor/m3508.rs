@@ -17,8 +17,16 @@ impl EscId {
     }
 
     /// Identifier of its feedback: 0x201 … 0x204.
-    pub fn feedback_id(self) -> u16 {
-        COMMAND_ID.raw() | u16::from(self.0)
+    pub const fn feedback_id(self) -> StandardId {
+        match StandardId::new(COMMAND_ID.raw() | self.0 as u16) {
+            Some(id) => id,
+            None => COMMAND_ID,
+        }
+    }
+
+    /// Its place in the command frame, 0 to 3.
+    pub const fn place(self) -> usize {
+        self.0.saturating_sub(1) as usize
     }
 }
 
@@ -115,8 +123,9 @@ mod tests {
 
     #[test]
     fn controllers_answer_at_0x200_plus_their_number() {
-        assert_eq!(EscId::new(1).map(EscId::feedback_id), Some(0x201));
-        assert_eq!(EscId::new(4).map(EscId::feedback_id), Some(0x204));
+        let feedback_id = |number| EscId::new(number).map(|esc| esc.feedback_id().raw());
+        assert_eq!(feedback_id(1), Some(0x201));
+        assert_eq!(feedback_id(4), Some(0x204));
         assert_eq!(EscId::new(0), None);
         assert_eq!(EscId::new(5), None);
     }

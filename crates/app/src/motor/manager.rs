@@ -1,124 +1,154 @@
-//! Which motor sits where: routes feedback in, composes command frames out.
+//! All motors of the robot: routes feedback in, composes command frames out.
 
-use super::m3508::{self, EscId};
+use heapless::Vec;
+
+use super::{
+    interface::Motor,
+    joint::{Joint, JointOutput},
+    layout::MotorLayout,
+    m3508,
+    wheel::Wheel,
+};
 use crate::{
-    domain::{BusId, CanFrame, ChassisCommand, MotorCurrent, MotorFeedback, WheelCommand, age_us},
+    domain::{
+        BusId, CanFrame, ChassisCommand, JointCommand, MotorCurrent, MotorFeedback, RobotConfig,
+        WheelCommand,
+    },
     safety::TorquePermit,
 };
 
-/// The bus both wheel motors are on.
-pub const WHEEL_BUS: BusId = BusId::Can1;
+/// At most two on each bus (see [`MotorLayout`]).
+pub type MotorFrames = Vec<(BusId, CanFrame), 4>;
 
-const fn esc(number: u8) -> EscId {
-    match EscId::new(number) {
-        Some(id) => id,
-        None => unreachable!(),
-    }
-}
-
-/// Wheel 0 = left, 1 = right. `compose` relies on these being the first two slots of the command group.
-const WHEEL_ESCS: [EscId; 2] = [esc(1), esc(2)];
-
-/// Feedback of all motors and the frames that command them.
-#[derive(Clone, Debug, Default)]
+/// The motors of one layout.
+#[derive(Clone, Debug)]
 pub struct MotorManager {
+    layout: &'static MotorLayout,
+    wheels: [Wheel; 2],
+    joints: [Joint; 4],
     feedback: MotorFeedback,
 }
 
 impl MotorManager {
+    pub fn new(layout: &'static MotorLayout) -> Self {
+        let group = layout.wheels();
+        Self {
+            layout,
+            wheels: group.escs.map(|esc| Wheel::new(esc, group.max_current_ma)),
+            joints: layout.joints().each_ref().map(Joint::new),
+            feedback: MotorFeedback::default(),
+        }
+    }
+
     /// Takes any received frame; what is no motor feedback leaves no trace.
     pub fn route_frame(&mut self, bus: BusId, frame: &CanFrame, ts_us: u64) {
-        if bus != WHEEL_BUS {
-            return;
+        if self.layout.wheels().bus == bus {
+            for wheel in &mut self.wheels {
+                if wheel.receive(frame, ts_us) {
+                    return;
+                }
+            }
         }
-        for (wheel, esc) in self.feedback.wheels.iter_mut().zip(WHEEL_ESCS) {
-            if frame.id().raw() == esc.feedback_id()
-                && let Some(feedback) = m3508::decode_feedback(frame, ts_us)
-            {
-                *wheel = feedback;
+        for (joint, slot) in self.joints.iter_mut().zip(self.layout.joints()) {
+            if slot.bus == bus && joint.receive(frame, ts_us) {
+                return;
             }
         }
     }
 
-    /// Feedback with ages brought up to `now_us`.
-    pub fn feedback(&mut self, now_us: u64) -> &MotorFeedback {
-        for wheel in &mut self.feedback.wheels {
-            wheel.age_us = age_us(wheel.ts_us, now_us);
+    /// Feedback with ages brought up to `now_us`; once a tick, before [`compose`](Self::compose).
+    pub fn feedback(&mut self, config: &RobotConfig, now_us: u64) -> &MotorFeedback {
+        for (wheel, out) in self.wheels.iter_mut().zip(&mut self.feedback.wheels) {
+            wheel.watch(config.wheel_ctrl.feedback_timeout_us, now_us);
+            *out = wheel.feedback(&config.wheel_ctrl);
+        }
+        let joints = self.joints.iter_mut().zip(&mut self.feedback.joints);
+        for ((joint, out), joint_config) in joints.zip(&config.joints) {
+            joint.watch(config.safety.joint_timeout_us, now_us);
+            *out = joint.feedback(joint_config);
         }
         self.feedback.ts_us = now_us;
         &self.feedback
     }
 
-    /// True if the permit lets any motor move.
-    pub fn may_move(permit: Option<&TorquePermit>) -> bool {
-        permit.is_some_and(|permit| permit.allows(WHEEL_BUS))
+    /// Joint motors in fault are told to forget it in their next slot, and set up again.
+    pub fn clear_faults(&mut self) {
+        for joint in &mut self.joints {
+            joint.clear_fault();
+        }
     }
 
-    /// The frame of this tick, and the currents that are in it. Without a permit for the wheels' bus they are exactly
-    /// zero, and the frame is sent all the same: a speed controller may hold its last command.
+    /// True if the permit lets any motor move.
+    pub fn may_move(&self, permit: Option<&TorquePermit>) -> bool {
+        let Some(permit) = permit else {
+            return false;
+        };
+        let mut joints = self.layout.joints().iter();
+        permit.allows_wheels(self.layout.wheels().bus)
+            || joints.any(|slot| permit.allows_joints(slot.bus))
+    }
+
+    /// The frames of this tick, and the commands that are in them. Without a permit for a motor they are exactly zero:
+    /// zero current for a wheel, the disable frame for a joint. They are sent all the same: a wheel's speed controller
+    /// may hold its last command, a joint's motor only replies when told something.
     pub fn compose(
-        &self,
+        &mut self,
         command: &ChassisCommand,
         permit: Option<&TorquePermit>,
-        limit_ma: f32,
-    ) -> ((BusId, CanFrame), ChassisCommand) {
-        let permitted = Self::may_move(permit);
-        let [left, right] = command.wheels.map(|wheel| {
-            if permitted {
-                MotorCurrent::clamped(wheel.current_ma, limit_ma)
-            } else {
-                MotorCurrent::ZERO
+        config: &RobotConfig,
+        now_us: u64,
+    ) -> (MotorFrames, ChassisCommand) {
+        let mut frames = MotorFrames::new();
+        let wheels = self.drive_wheels(command, permit, config, now_us, &mut frames);
+        let joints = self.drive_joints(command, permit, config, now_us, &mut frames);
+        (frames, ChassisCommand { wheels, joints })
+    }
+
+    fn drive_wheels(
+        &mut self,
+        command: &ChassisCommand,
+        permit: Option<&TorquePermit>,
+        config: &RobotConfig,
+        now_us: u64,
+        frames: &mut MotorFrames,
+    ) -> [WheelCommand; 2] {
+        let bus = self.layout.wheels().bus;
+        let permitted = permit.is_some_and(|permit| permit.allows_wheels(bus));
+        let mut sent = [WheelCommand::default(); 2];
+        let mut currents = [MotorCurrent::ZERO; 4];
+        let wheels = self.layout.wheels().escs.iter().zip(&mut self.wheels);
+        for ((esc, wheel), (command, sent)) in wheels.zip(command.wheels.iter().zip(&mut sent)) {
+            let current = wheel.drive(command, &config.wheel_ctrl, permitted, now_us);
+            sent.current_ma = current.ma();
+            if let Some(place) = currents.get_mut(esc.place()) {
+                *place = current;
             }
-        });
-        let frame = m3508::encode_currents([left, right, MotorCurrent::ZERO, MotorCurrent::ZERO]);
-        let sent = ChassisCommand {
-            wheels: [left, right].map(|current| WheelCommand {
-                current_ma: current.ma(),
-            }),
-            ..ChassisCommand::default()
-        };
-        ((WHEEL_BUS, frame), sent)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::domain::StandardId;
-
-    fn feedback_frame(id: u16, rpm: i16) -> CanFrame {
-        let [high, low] = rpm.to_be_bytes();
-        CanFrame::new(StandardId::new(id).unwrap(), [0, 0, high, low, 0, 0, 30, 0])
+        }
+        // The layout leaves room.
+        let _ = frames.push((bus, m3508::encode_currents(currents)));
+        sent
     }
 
-    #[test]
-    fn feedback_reaches_its_wheel_only_from_its_bus() {
-        let mut manager = MotorManager::default();
-        manager.route_frame(BusId::Can1, &feedback_frame(0x201, 100), 1_000);
-        manager.route_frame(BusId::Can1, &feedback_frame(0x202, -100), 2_000);
-        manager.route_frame(BusId::Can2, &feedback_frame(0x201, 7), 3_000);
-        manager.route_frame(BusId::Can1, &feedback_frame(0x203, 7), 3_000);
-        let [left, right] = manager.feedback(5_000).wheels;
-        assert_eq!((left.rpm, left.age_us), (100, 4_000));
-        assert_eq!((right.rpm, right.age_us), (-100, 3_000));
-    }
-
-    #[test]
-    fn a_silent_motor_never_looks_fresh() {
-        let [left, _] = MotorManager::default().feedback(5).wheels;
-        assert_eq!(left.age_us, u32::MAX);
-    }
-
-    #[test]
-    fn without_a_permit_the_frame_is_all_zero() {
-        let command = ChassisCommand {
-            wheels: [WheelCommand {
-                current_ma: 5_000.0,
-            }; 2],
-            ..ChassisCommand::default()
-        };
-        let ((bus, frame), sent) = MotorManager::default().compose(&command, None, 8_000.0);
-        assert_eq!((bus, frame.payload()), (BusId::Can1, &[0; 8][..]));
-        assert_eq!(sent, ChassisCommand::default());
+    fn drive_joints(
+        &mut self,
+        command: &ChassisCommand,
+        permit: Option<&TorquePermit>,
+        config: &RobotConfig,
+        now_us: u64,
+        frames: &mut MotorFrames,
+    ) -> [JointCommand; 4] {
+        let mut sent = [JointCommand::default(); 4];
+        let slots = self.layout.joints().iter().zip(&mut self.joints);
+        let orders = command.joints.iter().zip(&config.joints);
+        for (((slot, joint), (command, config)), sent) in slots.zip(orders).zip(&mut sent) {
+            let permitted = permit.is_some_and(|permit| permit.allows_joints(slot.bus));
+            let output: JointOutput = joint.drive(command, config, permitted, now_us);
+            *sent = output.sent;
+            if let Some(frame) = output.frame {
+                // The layout leaves room.
+                let _ = frames.push((slot.bus, frame));
+            }
+        }
+        sent
     }
 }

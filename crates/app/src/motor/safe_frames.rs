@@ -1,10 +1,21 @@
 //! The frames that stop every motor, for those moments when nothing else of this code can be trusted.
 
-use super::m3508;
+use super::layout::ROBOT_LAYOUT;
 use crate::domain::{BusId, CanFrame};
 
-/// Zero current for speed controllers 1 to 4 on both buses. Constant: boot, panic and fault handlers send it as it is.
-pub const fn safe_frames() -> [(BusId, CanFrame); 2] {
-    let zero = CanFrame::new(m3508::COMMAND_ID, [0; 8]);
-    [(BusId::Can1, zero), (BusId::Can2, zero)]
+/// Constant: boot, panic and fault handlers send them as they are. Right for both layouts, whose joints have the same
+/// numbers and the same disable frame.
+pub const fn safe_frames() -> [(BusId, CanFrame); 5] {
+    ROBOT_LAYOUT.safe_frames()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motor::layout::RS00_LAYOUT;
+
+    #[test]
+    fn both_layouts_stop_alike() {
+        assert_eq!(RS00_LAYOUT.safe_frames(), safe_frames());
+    }
 }

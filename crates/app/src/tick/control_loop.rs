@@ -11,7 +11,10 @@ use crate::{
     },
     estimation::InsEstimator,
     logic::LogicBus,
-    motor::MotorManager,
+    motor::{
+        MotorManager,
+        layout::{MotorLayout, ROBOT_LAYOUT},
+    },
     safety::{Arming, ArmingInputs, SafetyInputs, SafetyPolicy, TorquePermit},
 };
 
@@ -60,11 +63,16 @@ pub struct ControlLoop<C: ChassisController = UserController> {
 }
 
 impl<C: ChassisController> ControlLoop<C> {
+    /// For the robot with DM4310 joints.
     pub fn new(config: RobotConfig, controller: C) -> Self {
+        Self::with_layout(&ROBOT_LAYOUT, config, controller)
+    }
+
+    pub fn with_layout(layout: &'static MotorLayout, config: RobotConfig, controller: C) -> Self {
         Self {
             config,
             controller,
-            motors: MotorManager::default(),
+            motors: MotorManager::new(layout),
             estimator: InsEstimator::new(config.wheel_odom),
             policy: SafetyPolicy::default(),
             arming: Arming::default(),
@@ -99,7 +107,7 @@ impl<C: ChassisController> ControlLoop<C> {
         let sensors = &mut self.sensors;
         sensors.imu = *inputs.imu;
         sensors.mag = *inputs.mag;
-        sensors.motor = *self.motors.feedback(now_us);
+        sensors.motor = *self.motors.feedback(&self.config, now_us);
         sensors.ts_us = now_us;
         self.diagnostics.estimate =
             *self
@@ -143,7 +151,7 @@ impl<C: ChassisController> ControlLoop<C> {
     }
 
     fn act(&mut self, inputs: &ControlInputs<'_>, permit: Option<&TorquePermit>, now_us: u64) {
-        let demand = if MotorManager::may_move(permit) {
+        let demand = if self.motors.may_move(permit) {
             self.demand(inputs.logic, now_us)
         } else {
             Demand::Stop
@@ -159,11 +167,13 @@ impl<C: ChassisController> ControlLoop<C> {
                 ChassisCommand::default()
             }
         };
-        let limit_ma = self.config.wheel_ctrl.current_limit_ma;
-        let (frame, sent) = self.motors.compose(&wanted, permit, limit_ma);
+        if self.diagnostics.safety.clear_faults {
+            self.motors.clear_faults();
+        }
+        let (frames, sent) = self.motors.compose(&wanted, permit, &self.config, now_us);
         self.frames.clear();
-        // One frame, room for eight.
-        let _ = self.frames.push(frame);
+        // Room for twice as many.
+        let _ = self.frames.extend_from_slice(&frames);
         self.diagnostics.command = sent;
     }
 

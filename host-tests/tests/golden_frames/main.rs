@@ -1,4 +1,9 @@
-//! Frames of hardware.md section 12, computed there from the protocol tables, through the public interface.
+//! Frames of hardware.md section 12, computed there from the protocol tables, through the public interface; and the
+//! joint motors' frames as the makers' documents and C code give them.
+
+mod dm4310;
+mod mit_vectors;
+mod rs00;
 
 use robot_app::{
     domain::{BusId, DriveMode, MotorCurrent, RemoteUpdate},
@@ -165,11 +170,22 @@ fn m3508_currents() {
     );
 }
 
+/// 0x200 with all zero on CAN1; FF FF FF FF FF FF FF FD for motors 1 to 4 on CAN2.
 #[test]
-fn safe_frames_command_zero_on_both_buses() {
-    let buses: Vec<BusId> = safe_frames().iter().map(|(bus, _)| *bus).collect();
-    assert_eq!(buses, BusId::ALL);
-    for (_, frame) in safe_frames() {
-        assert_eq!((frame.id().raw(), frame.payload()), (0x200, &[0; 8][..]));
-    }
+fn safe_frames_stop_every_motor() {
+    let frames: Vec<(BusId, u16, Vec<u8>)> = safe_frames()
+        .iter()
+        .map(|(bus, frame)| (*bus, frame.id().raw(), frame.payload().to_vec()))
+        .collect();
+    let disable = [0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFD].to_vec();
+    assert_eq!(
+        frames,
+        [
+            (BusId::Can1, 0x200, vec![0; 8]),
+            (BusId::Can2, 0x001, disable.clone()),
+            (BusId::Can2, 0x002, disable.clone()),
+            (BusId::Can2, 0x003, disable.clone()),
+            (BusId::Can2, 0x004, disable),
+        ]
+    );
 }

@@ -1,0 +1,117 @@
+//! What a joint may be asked for: soft limits, speed, gains and torque, all in joint coordinates.
+
+use super::mit::{KD_MAX, KP_MAX};
+use crate::domain::{JointCommand, JointConfig, JointMode};
+
+/// Where the joint is and how fast it turns.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointMotion {
+    pub pos_rad: f32,
+    pub vel_rps: f32,
+}
+
+/// The command that may leave the board instead of `command`. What is no number in a field that the mode uses makes it
+/// `Off`, as does a limit that is no number.
+///
+/// In MIT mode the torque that the motor will give, `kp`·(p − q) + `kd`·(v − q̇) + τ, is kept within the torque limit by
+/// scaling `kp`, `kd` and τ alike, and at or beyond a soft limit it never points outwards. In the other modes the motor
+/// limits torque itself; there the target stays inside the soft limits, and a speed outwards becomes zero at them.
+pub fn limited(
+    command: &JointCommand,
+    motion: JointMotion,
+    config: &JointConfig,
+    max_torque_nm: f32,
+) -> JointCommand {
+    if !is_usable(command, config) {
+        return JointCommand::default();
+    }
+    let vel_rps = within(command.vel_rps, config.max_speed_rps);
+    match command.mode {
+        JointMode::Off => JointCommand::default(),
+        JointMode::Mit => limited_mit(command, vel_rps, motion, config, max_torque_nm),
+        JointMode::PositionSpeed => JointCommand {
+            mode: JointMode::PositionSpeed,
+            pos_rad: inside(command.pos_rad, config),
+            vel_rps: vel_rps.abs(),
+            ..JointCommand::default()
+        },
+        JointMode::Speed => JointCommand {
+            mode: JointMode::Speed,
+            vel_rps: not_outwards(vel_rps, motion, config),
+            ..JointCommand::default()
+        },
+    }
+}
+
+fn is_usable(command: &JointCommand, config: &JointConfig) -> bool {
+    let fields_ok = match command.mode {
+        JointMode::Off => true,
+        JointMode::Mit => {
+            let sum = command.pos_rad + command.vel_rps + command.kp + command.kd + command.tau_nm;
+            !sum.is_nan()
+        }
+        JointMode::PositionSpeed => !(command.pos_rad + command.vel_rps).is_nan(),
+        JointMode::Speed => !command.vel_rps.is_nan(),
+    };
+    let limits = config.max_torque_nm + config.max_speed_rps + config.max_kp + config.max_kd;
+    fields_ok && !limits.is_nan() && config.min_rad <= config.max_rad
+}
+
+fn limited_mit(
+    command: &JointCommand,
+    vel_rps: f32,
+    motion: JointMotion,
+    config: &JointConfig,
+    max_torque_nm: f32,
+) -> JointCommand {
+    let limit_nm = config.max_torque_nm.min(max_torque_nm).max(0.0);
+    let allowed = JointCommand {
+        mode: JointMode::Mit,
+        pos_rad: inside(command.pos_rad, config),
+        vel_rps,
+        kp: command.kp.max(0.0).min(config.max_kp.clamp(0.0, KP_MAX)),
+        kd: command.kd.max(0.0).min(config.max_kd.clamp(0.0, KD_MAX)),
+        tau_nm: within(command.tau_nm, limit_nm),
+    };
+    let torque_nm = predicted_torque_nm(&allowed, motion);
+    let scale = if not_outwards(torque_nm, motion, config) != torque_nm {
+        0.0
+    } else if torque_nm.abs() > limit_nm {
+        limit_nm / torque_nm.abs()
+    } else {
+        return allowed;
+    };
+    JointCommand {
+        kp: allowed.kp * scale,
+        kd: allowed.kd * scale,
+        tau_nm: allowed.tau_nm * scale,
+        ..allowed
+    }
+}
+
+/// What the motor makes of an MIT command.
+pub fn predicted_torque_nm(command: &JointCommand, motion: JointMotion) -> f32 {
+    command.kp * (command.pos_rad - motion.pos_rad)
+        + command.kd * (command.vel_rps - motion.vel_rps)
+        + command.tau_nm
+}
+
+/// Zero instead of what would drive the joint past a soft limit that it has reached.
+fn not_outwards(value: f32, motion: JointMotion, config: &JointConfig) -> f32 {
+    if motion.pos_rad >= config.max_rad {
+        value.min(0.0)
+    } else if motion.pos_rad <= config.min_rad {
+        value.max(0.0)
+    } else {
+        value
+    }
+}
+
+fn inside(pos_rad: f32, config: &JointConfig) -> f32 {
+    pos_rad.max(config.min_rad).min(config.max_rad)
+}
+
+fn within(value: f32, limit: f32) -> f32 {
+    let limit = limit.max(0.0);
+    value.max(-limit).min(limit)
+}

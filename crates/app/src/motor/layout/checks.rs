@@ -1,0 +1,186 @@
+//! What a layout must hold; runs in the compiler.
+
+#![expect(
+    clippy::arithmetic_side_effects,
+    clippy::indexing_slicing,
+    reason = "runs in the compiler, where overflow and bad indices are errors"
+)]
+
+use super::{JointMotor, JointSlot, Schedule, WheelGroup};
+use crate::{
+    domain::BusId,
+    motor::{dm4310, m3508},
+};
+
+/// Standard frame of eight bytes with every possible stuff bit and the pause after it.
+const FRAME_BITS: u32 = 135;
+/// 80 % of 1 Mb/s (design.md section 6).
+const MAX_BITS_PER_SECOND: u32 = 800_000;
+const TICKS_PER_SECOND: u32 = 1_000;
+/// Of the controller's three mailboxes one is left to a tuning reply.
+const MAX_FRAMES_PER_TICK: u32 = 2;
+/// The longest schedule.
+const TICKS: u8 = 8;
+/// Identifiers of the tuning channel.
+const TUNING_IDS: [u16; 3] = [0x7A0, 0x7A1, 0x7A2];
+/// All that DJI's speed controllers may use: commands and feedback.
+const FIRST_DJI_ID: u16 = m3508::COMMAND_ID.raw() - 1;
+const LAST_DJI_ID: u16 = m3508::COMMAND_ID.raw() + 8;
+
+type Joints = [JointSlot; 4];
+
+const fn same(one: BusId, other: BusId) -> bool {
+    one as u8 == other as u8
+}
+
+pub const fn load_fits_bus(wheels: &WheelGroup, joints: &Joints) {
+    assert!(
+        bits_per_second(wheels, joints, BusId::Can1) <= MAX_BITS_PER_SECOND,
+        "CAN1 would be loaded above 80 %"
+    );
+    assert!(
+        bits_per_second(wheels, joints, BusId::Can2) <= MAX_BITS_PER_SECOND,
+        "CAN2 would be loaded above 80 %"
+    );
+}
+
+/// One command frame for all wheels, one feedback frame from each, at 1 kHz; a command and a reply for each joint in
+/// its slots.
+const fn bits_per_second(wheels: &WheelGroup, joints: &Joints, bus: BusId) -> u32 {
+    let mut frames = if same(wheels.bus, bus) {
+        (1 + wheels.escs.len() as u32) * TICKS_PER_SECOND
+    } else {
+        0
+    };
+    let mut index = 0;
+    while index < joints.len() {
+        if same(joints[index].bus, bus) {
+            frames += 2 * TICKS_PER_SECOND / joints[index].schedule.every as u32;
+        }
+        index += 1;
+    }
+    frames * FRAME_BITS
+}
+
+pub const fn frames_fit_mailboxes(wheels: &WheelGroup, joints: &Joints) {
+    let mut tick = 0;
+    while tick < TICKS {
+        assert!(
+            frames_in_tick(wheels, joints, BusId::Can1, tick) <= MAX_FRAMES_PER_TICK,
+            "more than two frames for motors on CAN1 in one tick"
+        );
+        assert!(
+            frames_in_tick(wheels, joints, BusId::Can2, tick) <= MAX_FRAMES_PER_TICK,
+            "more than two frames for motors on CAN2 in one tick"
+        );
+        tick += 1;
+    }
+}
+
+const fn frames_in_tick(wheels: &WheelGroup, joints: &Joints, bus: BusId, tick: u8) -> u32 {
+    let mut frames = same(wheels.bus, bus) as u32;
+    let mut index = 0;
+    while index < joints.len() {
+        let joint = &joints[index];
+        frames += (same(joint.bus, bus) && Schedule::is_due(joint.schedule, tick)) as u32;
+        index += 1;
+    }
+    frames
+}
+
+pub const fn no_identifier_clashes(wheels: &WheelGroup, joints: &Joints) {
+    assert!(
+        wheels.escs[0].feedback_id().raw() != wheels.escs[1].feedback_id().raw(),
+        "both wheels have the same number"
+    );
+    let mut one = 0;
+    while one < joints.len() {
+        assert_reserved_ids_are_free(wheels, &joints[one]);
+        assert_own_ids_differ(&joints[one].motor);
+        let mut other = one + 1;
+        while other < joints.len() {
+            if same(joints[one].bus, joints[other].bus) {
+                assert_ids_differ(&joints[one].motor, &joints[other].motor);
+            }
+            other += 1;
+        }
+        one += 1;
+    }
+}
+
+const fn assert_reserved_ids_are_free(wheels: &WheelGroup, joint: &JointSlot) {
+    let ids = joint.motor.identifiers();
+    let mut index = 0;
+    while index < ids.len() {
+        let id = ids[index].raw();
+        assert!(
+            !same(wheels.bus, joint.bus) || id < FIRST_DJI_ID || id > LAST_DJI_ID,
+            "a joint uses an identifier of the wheels' speed controllers"
+        );
+        assert!(
+            id != TUNING_IDS[0]
+                && id != TUNING_IDS[1]
+                && id != TUNING_IDS[2]
+                && id != dm4310::REGISTER_ID.raw(),
+            "a joint uses an identifier of the tuning channel or of register access"
+        );
+        index += 1;
+    }
+}
+
+/// A motor must not take its own reply for a command.
+const fn assert_own_ids_differ(motor: &JointMotor) {
+    let ids = motor.identifiers();
+    let reply = ids[3].raw();
+    assert!(
+        reply != ids[0].raw() && reply != ids[1].raw() && reply != ids[2].raw(),
+        "a joint's reply has the identifier of its commands"
+    );
+}
+
+const fn assert_ids_differ(one: &JointMotor, other: &JointMotor) {
+    let (one_ids, other_ids) = (one.identifiers(), other.identifiers());
+    let mut i = 0;
+    while i < one_ids.len() {
+        let mut k = 0;
+        while k < other_ids.len() {
+            let both_replies = i + 1 == one_ids.len() && k + 1 == other_ids.len();
+            assert!(
+                one_ids[i].raw() != other_ids[k].raw()
+                    || (both_replies && replies_name_motor(one, other)),
+                "two joints on one bus use the same identifier"
+            );
+            k += 1;
+        }
+        i += 1;
+    }
+}
+
+/// All RS00 reply to the host, with their number in byte 0.
+const fn replies_name_motor(one: &JointMotor, other: &JointMotor) -> bool {
+    matches!((one, other), (JointMotor::Rs00(_), JointMotor::Rs00(_)))
+}
+
+pub const fn limits_are_sound(wheels: &WheelGroup, joints: &Joints) {
+    assert!(
+        wheels.max_current_ma >= 0.0,
+        "a wheel's current limit is negative"
+    );
+    let mut index = 0;
+    while index < joints.len() {
+        let config = &joints[index].config;
+        assert!(
+            config.direction == 1.0 || config.direction == -1.0,
+            "a joint's direction is neither +1 nor -1"
+        );
+        assert!(
+            config.min_rad < config.max_rad,
+            "a joint's soft limits are in the wrong order"
+        );
+        assert!(
+            config.max_torque_nm >= 0.0 && config.max_torque_nm <= joints[index].max_torque_nm,
+            "a joint's torque limit is beyond what its motor may give"
+        );
+        index += 1;
+    }
+}

@@ -1,0 +1,168 @@
+//! The 64 bits that DM4310 and RS00 share: five numbers as unsigned codes over each motor's own ranges (hardware.md
+//! sections 8.1 and 9; reference C code in seed 003, section 3).
+
+/// Position and velocity the codes can tell, symmetric about zero, in the motor's own coordinates at the output shaft.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MitRanges {
+    pub p_max_rad: f32,
+    pub v_max_rps: f32,
+    pub t_max_nm: f32,
+}
+
+/// What a motor is asked for, motor coordinates; anything, even NaN.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MitTargets {
+    pub pos_rad: f32,
+    pub vel_rps: f32,
+    /// N·m/rad.
+    pub kp: f32,
+    /// N·m·s/rad.
+    pub kd: f32,
+    pub torque_nm: f32,
+}
+
+/// A command that a motor understands: every field is inside its range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MitCommand {
+    position: u16,
+    velocity: u16,
+    kp: u16,
+    kd: u16,
+    torque: u16,
+}
+
+/// What a motor reports besides temperature and state, motor coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MitReport {
+    /// As it came, to tell whether it changed at all.
+    pub position_code: u16,
+    pub pos_rad: f32,
+    pub vel_rps: f32,
+    pub torque_nm: f32,
+}
+
+pub const KP_MAX: f32 = 500.0;
+pub const KD_MAX: f32 = 5.0;
+const LAST_CODE_16: f32 = 65_535.0;
+const LAST_CODE_12: f32 = 4_095.0;
+
+impl MitCommand {
+    /// Clamps each field to its range; NaN becomes 0. The codes are cut off, not rounded, as in the reference code, so
+    /// that zero becomes the code half a step below it.
+    pub fn clamped(targets: &MitTargets, ranges: &MitRanges) -> Self {
+        let MitRanges {
+            p_max_rad,
+            v_max_rps,
+            t_max_nm,
+        } = *ranges;
+        Self {
+            position: code(targets.pos_rad, -p_max_rad, p_max_rad, LAST_CODE_16),
+            velocity: code(targets.vel_rps, -v_max_rps, v_max_rps, LAST_CODE_12),
+            kp: code(targets.kp, 0.0, KP_MAX, LAST_CODE_12),
+            kd: code(targets.kd, 0.0, KD_MAX, LAST_CODE_12),
+            torque: code(targets.torque_nm, -t_max_nm, t_max_nm, LAST_CODE_12),
+        }
+    }
+
+    pub fn payload(self) -> [u8; 8] {
+        let [p_high, p_low] = self.position.to_be_bytes();
+        let velocity_kp = u32::from(self.velocity) << 12 | u32::from(self.kp);
+        let kd_torque = u32::from(self.kd) << 12 | u32::from(self.torque);
+        let [_, vk_high, vk_mid, vk_low] = velocity_kp.to_be_bytes();
+        let [_, dt_high, dt_mid, dt_low] = kd_torque.to_be_bytes();
+        [
+            p_high, p_low, vk_high, vk_mid, vk_low, dt_high, dt_mid, dt_low,
+        ]
+    }
+}
+
+impl MitReport {
+    /// From bytes 1 to 5 of a reply.
+    pub fn decode([p_high, p_low, v_high, v_t, t_low]: [u8; 5], ranges: &MitRanges) -> Self {
+        let position_code = u16::from_be_bytes([p_high, p_low]);
+        let velocity = u16::from(v_high) << 4 | u16::from(v_t >> 4);
+        let torque = u16::from(v_t & 0x0F) << 8 | u16::from(t_low);
+        Self {
+            position_code,
+            pos_rad: value(position_code, ranges.p_max_rad, LAST_CODE_16),
+            vel_rps: value(velocity, ranges.v_max_rps, LAST_CODE_12),
+            torque_nm: value(torque, ranges.t_max_nm, LAST_CODE_12),
+        }
+    }
+}
+
+/// `float_to_uint` of the reference code.
+fn code(value: f32, min: f32, max: f32, last_code: f32) -> u16 {
+    let finite = if value.is_nan() { 0.0 } else { value };
+    let inside = finite.max(min).min(max);
+    ((inside - min) * last_code / (max - min)) as u16
+}
+
+/// `uint_to_float` of the reference code.
+fn value(code: u16, max: f32, last_code: f32) -> f32 {
+    f32::from(code) * (2.0 * max) / last_code - max
+}
+
+/// Clamps to ±`limit`; NaN becomes 0. For modes whose frames carry plain floats.
+pub(super) fn finite_within(value: f32, limit: f32) -> f32 {
+    if value.is_nan() {
+        return 0.0;
+    }
+    value.max(-limit).min(limit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DM: MitRanges = MitRanges {
+        p_max_rad: 12.5,
+        v_max_rps: 30.0,
+        t_max_nm: 10.0,
+    };
+
+    /// hardware.md section 12.
+    #[test]
+    fn zero_is_the_code_just_below_it() {
+        let zero = MitCommand::clamped(&MitTargets::default(), &DM);
+        assert_eq!(
+            zero.payload(),
+            [0x7F, 0xFF, 0x7F, 0xF0, 0x00, 0x00, 0x07, 0xFF]
+        );
+    }
+
+    #[test]
+    fn what_is_no_number_asks_for_nothing() {
+        let nan = MitTargets {
+            pos_rad: f32::NAN,
+            vel_rps: f32::NAN,
+            kp: f32::NAN,
+            kd: f32::NAN,
+            torque_nm: f32::NAN,
+        };
+        assert_eq!(
+            MitCommand::clamped(&nan, &DM),
+            MitCommand::clamped(&MitTargets::default(), &DM)
+        );
+    }
+
+    #[test]
+    fn infinity_ends_at_the_range() {
+        let up = MitTargets {
+            pos_rad: f32::INFINITY,
+            vel_rps: f32::INFINITY,
+            kp: f32::INFINITY,
+            kd: f32::INFINITY,
+            torque_nm: f32::INFINITY,
+        };
+        let down = MitTargets {
+            pos_rad: f32::NEG_INFINITY,
+            vel_rps: f32::NEG_INFINITY,
+            kp: f32::NEG_INFINITY,
+            kd: f32::NEG_INFINITY,
+            torque_nm: f32::NEG_INFINITY,
+        };
+        assert_eq!(MitCommand::clamped(&up, &DM).payload(), [0xFF; 8]);
+        assert_eq!(MitCommand::clamped(&down, &DM).payload(), [0; 8]);
+    }
+}

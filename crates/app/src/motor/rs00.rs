@@ -1,0 +1,211 @@
+//! RobStride RS00 in its MIT protocol (hardware.md section 9, seed 003): standard identifiers, one reply to each frame,
+//! all motors reply under the host's identifier.
+
+use super::{
+    dm4310::two_floats,
+    mit::{MitCommand, MitRanges, MitReport, finite_within},
+};
+use crate::domain::{CanFrame, StandardId};
+
+/// Ranges of the codes (RS00 manual; firmware 0.0.2.6 and newer).
+pub const RANGES: MitRanges = MitRanges {
+    p_max_rad: 12.57,
+    v_max_rps: 33.0,
+    t_max_nm: 14.0,
+};
+
+/// One motor and the host it replies to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rs00 {
+    mit_id: StandardId,
+    position_id: StandardId,
+    speed_id: StandardId,
+    host_id: StandardId,
+    number: u8,
+}
+
+/// What a motor is told to obey; it must be stopped while this changes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum RunMode {
+    Mit = 0,
+    Position = 1,
+    Speed = 2,
+}
+
+/// The motor's own faults (seed 003, section 4.5). Bits stay where the motor puts them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Faults(u32);
+
+impl Faults {
+    /// Above 145 °C.
+    pub const OVER_TEMPERATURE: Self = Self(1 << 0);
+    pub const DRIVER_CHIP: Self = Self(1 << 1);
+    /// Below 12 V.
+    pub const UNDER_VOLTAGE: Self = Self(1 << 2);
+    /// Above 60 V.
+    pub const OVER_VOLTAGE: Self = Self(1 << 3);
+    pub const PHASE_B_CURRENT: Self = Self(1 << 4);
+    pub const PHASE_C_CURRENT: Self = Self(1 << 5);
+    pub const ENCODER_NOT_CALIBRATED: Self = Self(1 << 7);
+    pub const HARDWARE_IDENTIFICATION: Self = Self(1 << 8);
+    pub const POSITION_INITIALISATION: Self = Self(1 << 9);
+    pub const STALL_OVERLOAD: Self = Self(1 << 14);
+    pub const PHASE_A_CURRENT: Self = Self(1 << 16);
+
+    const ALL: u32 = Self::OVER_TEMPERATURE.0
+        | Self::DRIVER_CHIP.0
+        | Self::UNDER_VOLTAGE.0
+        | Self::OVER_VOLTAGE.0
+        | Self::PHASE_B_CURRENT.0
+        | Self::PHASE_C_CURRENT.0
+        | Self::ENCODER_NOT_CALIBRATED.0
+        | Self::HARDWARE_IDENTIFICATION.0
+        | Self::POSITION_INITIALISATION.0
+        | Self::STALL_OVERLOAD.0
+        | Self::PHASE_A_CURRENT.0;
+
+    pub const fn bits(self) -> u32 {
+        self.0
+    }
+
+    pub const fn contains(self, other: Self) -> bool {
+        self.0 & other.0 == other.0
+    }
+}
+
+/// The reply to a command, motor coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Feedback {
+    pub motion: MitReport,
+    pub temperature_c: f32,
+    /// The motor has a fault: bit 5 of byte 6 where its firmware uses that byte so; elsewhere the bit is part of a
+    /// temperature no motor survives.
+    pub faulty: bool,
+}
+
+const FAULT_BIT: u8 = 1 << 5;
+
+/// N·m/A (RS00 manual, effective value).
+const TORQUE_CONSTANT: f32 = 1.48;
+
+impl Rs00 {
+    /// `None` unless `number` is 1 … 127.
+    pub const fn new(number: u8, host: u8) -> Option<Self> {
+        if number == 0 || number > 127 {
+            return None;
+        }
+        let number_id = number as u16;
+        match (
+            StandardId::new(number_id),
+            StandardId::new(0x100 | number_id),
+            StandardId::new(0x200 | number_id),
+            StandardId::new(host as u16),
+        ) {
+            (Some(mit_id), Some(position_id), Some(speed_id), Some(host_id)) => Some(Self {
+                mit_id,
+                position_id,
+                speed_id,
+                host_id,
+                number,
+            }),
+            _ => None,
+        }
+    }
+
+    /// Those of its three kinds of command frames, then that of its replies.
+    pub const fn identifiers(&self) -> [StandardId; 4] {
+        [self.mit_id, self.position_id, self.speed_id, self.host_id]
+    }
+
+    pub const fn enable(&self) -> CanFrame {
+        self.order(0xFF, 0xFC)
+    }
+
+    /// Stop: torque exactly zero from here on.
+    pub const fn disable(&self) -> CanFrame {
+        self.order(0xFF, 0xFD)
+    }
+
+    /// Makes the present angle the motor's zero; refused by the motor in position mode.
+    pub const fn set_zero(&self) -> CanFrame {
+        self.order(0xFF, 0xFE)
+    }
+
+    pub const fn clear_fault(&self) -> CanFrame {
+        self.order(0xFF, 0xFB)
+    }
+
+    /// Asks for the fault word; the next reply of this motor carries it (see [`decode_faults`](Self::decode_faults)).
+    pub const fn read_faults(&self) -> CanFrame {
+        self.order(0x00, 0xFB)
+    }
+
+    pub const fn set_mode(&self, mode: RunMode) -> CanFrame {
+        self.order(mode as u8, 0xFC)
+    }
+
+    const fn order(&self, detail: u8, code: u8) -> CanFrame {
+        CanFrame::new(
+            self.mit_id,
+            [0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, detail, code],
+        )
+    }
+
+    pub fn mit(&self, command: MitCommand) -> CanFrame {
+        CanFrame::new(self.mit_id, command.payload())
+    }
+
+    /// Both are clamped to the motor's ranges, the speed from below at 0; an angle that is no number does not move it.
+    pub fn position_speed(&self, pos_rad: f32, max_speed_rps: f32) -> CanFrame {
+        let speed = if pos_rad.is_nan() { 0.0 } else { max_speed_rps };
+        CanFrame::new(
+            self.position_id,
+            two_floats(
+                finite_within(pos_rad, RANGES.p_max_rad),
+                finite_within(speed, RANGES.v_max_rps).max(0.0),
+            ),
+        )
+    }
+
+    /// Clamped to the motor's range, NaN becomes 0. The torque limit goes out as a current limit.
+    pub fn speed(&self, vel_rps: f32, max_torque_nm: f32) -> CanFrame {
+        let torque_nm = finite_within(max_torque_nm, RANGES.t_max_nm).max(0.0);
+        CanFrame::new(
+            self.speed_id,
+            two_floats(
+                finite_within(vel_rps, RANGES.v_max_rps),
+                torque_nm / TORQUE_CONSTANT,
+            ),
+        )
+    }
+
+    /// `None` unless it is a whole reply of this motor.
+    pub fn decode(&self, frame: &CanFrame) -> Option<Feedback> {
+        let [p_high, p_low, v_high, v_t, t_low, status, temperature] = self.body(frame)?;
+        let tenths = u16::from_be_bytes([status, temperature]) & 0x0FFF;
+        Some(Feedback {
+            motion: MitReport::decode([p_high, p_low, v_high, v_t, t_low], &RANGES),
+            temperature_c: f32::from(tenths) / 10.0,
+            faulty: status & FAULT_BIT != 0,
+        })
+    }
+
+    /// The fault word, if this can be one. A lost answer makes the next ordinary reply look like it, so a word with
+    /// unknown bits is none; only a motor turning backwards at full speed could pass for one. Byte order of the word is
+    /// assumed little-endian, as in the motor's other protocol.
+    pub fn decode_faults(&self, frame: &CanFrame) -> Option<Faults> {
+        let [a, b, c, d, ..] = self.body(frame)?;
+        let word = u32::from_le_bytes([a, b, c, d]);
+        (word & !Faults::ALL == 0).then_some(Faults(word))
+    }
+
+    /// What follows the motor's number, if the frame is from this motor.
+    fn body(&self, frame: &CanFrame) -> Option<[u8; 7]> {
+        if frame.id() != self.host_id {
+            return None;
+        }
+        let [number, body @ ..] = frame.full_payload()?;
+        (number == self.number).then_some(body)
+    }
+}

@@ -1,0 +1,106 @@
+//! One M3508. Its current goes out in a frame it shares with others, so its output is a current, not a frame.
+
+use super::{
+    interface::Motor,
+    m3508::{self, EscId},
+};
+use crate::domain::{
+    CanFrame, MotorCurrent, WheelCommand, WheelControllerConfig, WheelFeedback, age_us,
+};
+
+/// A rotor that turns at least this fast …
+const MOVING_RPM: u16 = 60;
+/// … must show it in its angle within this time.
+const STUCK_ANGLE_US: u64 = 50_000;
+/// Reported and commanded current differ by more than this …
+const ODD_CURRENT_MA: f32 = 1_000.0;
+/// … for this long while nothing in the reports changes: they are not about this motor now.
+const STUCK_REPORT_US: u64 = 100_000;
+
+#[derive(Clone, Debug)]
+pub struct Wheel {
+    esc: EscId,
+    max_current_ma: f32,
+    feedback: WheelFeedback,
+    sent: MotorCurrent,
+    /// Last report with another angle than the one before.
+    angle_changed_us: u64,
+    /// Last report that differed at all, or agreed with the current sent.
+    plausible_us: u64,
+}
+
+impl Wheel {
+    pub fn new(esc: EscId, max_current_ma: f32) -> Self {
+        Self {
+            esc,
+            max_current_ma,
+            feedback: WheelFeedback::default(),
+            sent: MotorCurrent::ZERO,
+            angle_changed_us: 0,
+            plausible_us: 0,
+        }
+    }
+
+    /// `now` is a report, `self.feedback` the one before.
+    fn is_frozen(&mut self, now: &WheelFeedback) -> bool {
+        let last = &self.feedback;
+        let same_angle = now.rotor_angle == last.rotor_angle;
+        let same_report = same_angle
+            && now.rpm == last.rpm
+            && now.current_ma == last.current_ma
+            && now.temperature_c == last.temperature_c;
+        let odd_current = (now.current_ma - self.sent.ma()).abs() > ODD_CURRENT_MA;
+        if !same_angle || last.ts_us == 0 {
+            self.angle_changed_us = now.ts_us;
+        }
+        if !same_report || !odd_current || last.ts_us == 0 {
+            self.plausible_us = now.ts_us;
+        }
+        let stuck_angle = now.rpm.unsigned_abs() >= MOVING_RPM
+            && now.ts_us.saturating_sub(self.angle_changed_us) >= STUCK_ANGLE_US;
+        stuck_angle || now.ts_us.saturating_sub(self.plausible_us) >= STUCK_REPORT_US
+    }
+}
+
+impl Motor for Wheel {
+    type Command = WheelCommand;
+    type Config = WheelControllerConfig;
+    type Feedback = WheelFeedback;
+    type Output = MotorCurrent;
+
+    fn receive(&mut self, frame: &CanFrame, ts_us: u64) -> bool {
+        if frame.id() != self.esc.feedback_id() {
+            return false;
+        }
+        let Some(mut feedback) = m3508::decode_feedback(frame, ts_us) else {
+            return false;
+        };
+        feedback.frozen = self.is_frozen(&feedback);
+        self.feedback = feedback;
+        true
+    }
+
+    fn watch(&mut self, _timeout_us: u32, now_us: u64) {
+        self.feedback.age_us = age_us(self.feedback.ts_us, now_us);
+    }
+
+    fn feedback(&self, _config: &WheelControllerConfig) -> WheelFeedback {
+        self.feedback
+    }
+
+    fn drive(
+        &mut self,
+        command: &WheelCommand,
+        config: &WheelControllerConfig,
+        permitted: bool,
+        _now_us: u64,
+    ) -> MotorCurrent {
+        self.sent = if permitted {
+            let wanted = MotorCurrent::clamped(command.current_ma, config.current_limit_ma);
+            MotorCurrent::clamped(wanted.ma(), self.max_current_ma)
+        } else {
+            MotorCurrent::ZERO
+        };
+        self.sent
+    }
+}
