@@ -1,0 +1,7 @@
+//! Sensor corrections found from recorded samples. The firmware applies them (`robot_app::sensing`).
+
+pub mod accel;
+mod least_squares;
+pub mod mag;
+mod parameters;
+mod statistics;

@@ -1,0 +1,146 @@
+//! Parameters by name in a TOML file: what `calibrate` finds and `tune` writes to the robot.
+//!
+//! A name's parts are tables: `imu.accel-scale-x` is `accel-scale-x` in `[imu]`.
+
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
+
+use toml::{Table, Value};
+
+const HEADING: &str =
+    "# Parameters of the robot: `robotctl tune --can … apply FILE` writes them.\n";
+
+/// Values by full name, in the precision the robot has.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ParameterFile(BTreeMap<String, f32>);
+
+#[derive(Debug, thiserror::Error)]
+pub enum ParameterFileError {
+    #[error("cannot read {path}: {source}")]
+    Read {
+        path: PathBuf,
+        source: std::io::Error,
+    },
+    #[error("cannot write {path}: {source}")]
+    Write {
+        path: PathBuf,
+        source: std::io::Error,
+    },
+    #[error("{path}: {why}")]
+    Wrong { path: PathBuf, why: String },
+}
+
+impl ParameterFile {
+    pub fn load(path: &Path) -> Result<Self, ParameterFileError> {
+        let text = std::fs::read_to_string(path).map_err(|source| ParameterFileError::Read {
+            path: path.to_owned(),
+            source,
+        })?;
+        Self::parse(&text).map_err(|why| ParameterFileError::Wrong {
+            path: path.to_owned(),
+            why,
+        })
+    }
+
+    /// As `load`; a file that does not exist is an empty one.
+    pub fn load_or_new(path: &Path) -> Result<Self, ParameterFileError> {
+        match Self::load(path) {
+            Err(ParameterFileError::Read { source, .. })
+                if source.kind() == std::io::ErrorKind::NotFound =>
+            {
+                Ok(Self::default())
+            }
+            loaded => loaded,
+        }
+    }
+
+    pub fn save(&self, path: &Path) -> Result<(), ParameterFileError> {
+        std::fs::write(path, self.text()).map_err(|source| ParameterFileError::Write {
+            path: path.to_owned(),
+            source,
+        })
+    }
+
+    pub fn set(&mut self, name: &str, value: f32) {
+        self.0.insert(name.to_owned(), value);
+    }
+
+    pub fn get(&self, name: &str) -> Option<f32> {
+        self.0.get(name).copied()
+    }
+
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = (&str, f32)> {
+        self.0.iter().map(|(name, value)| (name.as_str(), *value))
+    }
+
+    fn parse(text: &str) -> Result<Self, String> {
+        let table: Table = text.parse().map_err(|e: toml::de::Error| e.to_string())?;
+        let mut file = Self::default();
+        file.add_table("", &table)?;
+        Ok(file)
+    }
+
+    fn add_table(&mut self, prefix: &str, table: &Table) -> Result<(), String> {
+        for (key, value) in table {
+            let name = format!("{prefix}{key}");
+            match value {
+                Value::Table(inner) => self.add_table(&format!("{name}."), inner)?,
+                Value::Float(number) if (*number as f32).is_finite() => {
+                    self.set(&name, *number as f32);
+                }
+                Value::Integer(number) => self.set(&name, *number as f32),
+                _ => return Err(format!("`{name}` is no number")),
+            }
+        }
+        Ok(())
+    }
+
+    fn text(&self) -> String {
+        let mut tables: BTreeMap<&str, String> = BTreeMap::new();
+        for (name, value) in self.iter() {
+            let (table, key) = name.rsplit_once('.').unwrap_or(("", name));
+            let line = format!("{key} = {value:?}\n");
+            tables.entry(table).or_default().push_str(&line);
+        }
+        let mut text = String::from(HEADING);
+        for (table, lines) in tables {
+            if !table.is_empty() {
+                text.push_str(&format!("\n[{table}]\n"));
+            }
+            text.push_str(&lines);
+        }
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_tables_and_keys() {
+        let file = ParameterFile::parse("[joint.0]\ndirection = -1\n[imu]\naccel-scale-x = 1.25\n");
+        let file = file.unwrap();
+        assert_eq!(file.get("joint.0.direction"), Some(-1.0));
+        assert_eq!(file.get("imu.accel-scale-x"), Some(1.25));
+        assert_eq!(file.iter().len(), 2);
+    }
+
+    #[test]
+    fn what_is_saved_is_read_again() {
+        let mut file = ParameterFile::default();
+        file.set("imu.accel-bias-x-mps2", -0.187_500_1);
+        file.set("joint.0.direction", 1.0);
+        file.set("safety.clear-hold-us", 1e6);
+        assert_eq!(ParameterFile::parse(&file.text()).unwrap(), file);
+    }
+
+    #[test]
+    fn what_is_no_number_is_named() {
+        let why = ParameterFile::parse("[imu]\nscale = \"1\"\n").unwrap_err();
+        assert_eq!(why, "`imu.scale` is no number");
+        assert!(ParameterFile::parse("[imu]\nscale = nan\n").is_err());
+    }
+}

@@ -1,0 +1,97 @@
+//! Recorded samples of one sensor: from a table of comma-separated values or from a `run.mcap`.
+
+mod mcap;
+mod table;
+
+use std::path::{Path, PathBuf};
+
+use nalgebra::Vector3;
+
+/// The sensors that can be calibrated from a recording.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sensor {
+    /// m/s², specific force in the body frame (x forward, y left, z up).
+    Accelerometer,
+    /// µT, body frame.
+    Magnetometer,
+}
+
+impl Sensor {
+    /// Columns of a table.
+    fn columns(self) -> [&'static str; 3] {
+        match self {
+            Self::Accelerometer => ["ax", "ay", "az"],
+            Self::Magnetometer => ["mx", "my", "mz"],
+        }
+    }
+
+    /// Place of the vector in the messages of `/diag`.
+    fn diagnostics_field(self) -> &'static str {
+        match self {
+            Self::Accelerometer => "/imu/accel_mps2",
+            Self::Magnetometer => "/mag/mag_ut",
+        }
+    }
+}
+
+/// One measurement; finite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    pub t_s: f64,
+    pub value: Vector3<f64>,
+}
+
+#[derive(Debug, thiserror::Error)]
+pub enum RecordingError {
+    #[error("cannot read {path}: {source}")]
+    File {
+        path: PathBuf,
+        source: std::io::Error,
+    },
+    #[error("{path}, line {line}: {why}")]
+    Table {
+        path: PathBuf,
+        line: usize,
+        why: String,
+    },
+    #[error("{path} is no readable MCAP file: {why}")]
+    Mcap { path: PathBuf, why: String },
+    #[error("{path} holds no samples: {expected}")]
+    Empty {
+        path: PathBuf,
+        expected: &'static str,
+    },
+}
+
+/// All samples of a file in the order of their times. A name that ends in `.mcap` is a recording of the robot or the
+/// emulated board, any other a table.
+pub fn load(path: &Path, sensor: Sensor) -> Result<Vec<Sample>, RecordingError> {
+    let bytes = std::fs::read(path).map_err(|source| RecordingError::File {
+        path: path.to_owned(),
+        source,
+    })?;
+    let is_mcap = path
+        .extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("mcap"));
+    let (samples, expected) = if is_mcap {
+        let samples = mcap::samples(&bytes, sensor).map_err(|why| RecordingError::Mcap {
+            path: path.to_owned(),
+            why,
+        })?;
+        (samples, "its /diag messages lack the sensor")
+    } else {
+        let samples = table::samples(&bytes, sensor).map_err(|e| RecordingError::Table {
+            path: path.to_owned(),
+            line: e.line,
+            why: e.why,
+        })?;
+        (samples, "there is only a header")
+    };
+    if samples.is_empty() {
+        return Err(RecordingError::Empty {
+            path: path.to_owned(),
+            expected,
+        });
+    }
+    Ok(samples)
+}
