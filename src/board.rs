@@ -11,6 +11,8 @@ use embassy_stm32::interrupt::{self, InterruptExt, Priority};
 use embassy_stm32::mode::Async;
 use embassy_stm32::spi::{self, Spi};
 use embassy_stm32::time::Hertz;
+use embassy_stm32::timer::low_level::CountingMode;
+use embassy_stm32::timer::simple_pwm::{PwmPin, SimplePwm};
 use embassy_stm32::{Config, Peri, Peripherals, bind_interrupts, pac, peripherals, rcc};
 use robot_app::input::RemoteFormat;
 use static_cell::StaticCell;
@@ -18,6 +20,7 @@ use static_cell::StaticCell;
 use crate::drivers::battery::Battery;
 use crate::drivers::bmi088::Bmi088;
 use crate::drivers::can::{self, Can1, Can2, CanPort, FifoInterrupt};
+use crate::drivers::heater::Heater;
 use crate::drivers::ist8310::Ist8310;
 use crate::drivers::radio_uart::{RadioInterrupt, RadioUart};
 use crate::drivers::status_led::StatusLed;
@@ -77,6 +80,7 @@ pub struct Board {
     pub can2: CanPort,
     pub radio: RadioUart,
     pub imu: ImuBus,
+    pub heater: Heater,
     pub mag: MagBus,
     pub led: StatusLed,
     pub battery: Battery,
@@ -93,8 +97,6 @@ pub struct ImuBus {
     rx_dma: Peri<'static, peripherals::DMA2_CH2>,
     accel_select: Peri<'static, peripherals::PA4>,
     gyro_select: Peri<'static, peripherals::PB0>,
-    /// Low = heater off. Held so that the pin never floats.
-    _heater: Output<'static>,
 }
 
 /// I2C3 and the pins of the IST8310.
@@ -136,8 +138,8 @@ impl Board {
                 rx_dma: p.DMA2_CH2,
                 accel_select: p.PA4,
                 gyro_select: p.PB0,
-                _heater: Output::new(p.PF6, Level::Low, Speed::Low),
             },
+            heater: start_heater(p.TIM10, p.PF6),
             mag: MagBus {
                 i2c: p.I2C3,
                 scl: p.PA8,
@@ -236,6 +238,32 @@ fn enable_flash_caches() {
         w.set_dcen(true);
         w.set_prften(true);
     });
+}
+
+/// 1 kHz, which the copper cannot follow.
+fn start_heater(
+    timer: Peri<'static, peripherals::TIM10>,
+    pin: Peri<'static, peripherals::PF6>,
+) -> Heater {
+    Heater::new(SimplePwm::new(
+        timer,
+        Some(PwmPin::new(pin, OutputType::PushPull)),
+        None,
+        None,
+        None,
+        Hertz(1_000),
+        CountingMode::EdgeAlignedUp,
+    ))
+}
+
+/// For the fault handlers: takes the heater's pin from its timer and drives it low.
+pub fn force_heater_off() {
+    if pac::RCC.ahb1enr().read().gpiofen() {
+        pac::GPIOF.bsrr().write(|w| w.set_br(6, true));
+        pac::GPIOF
+            .moder()
+            .modify(|w| w.set_moder(6, pac::gpio::vals::Moder::OUTPUT));
+    }
 }
 
 struct CanPins {

@@ -15,7 +15,7 @@
 //! | `debugger_view.rs` | control task | a debugger | 1 kHz |
 
 use robot_app::diagnostics::DiagnosticsSnapshot;
-use robot_app::domain::{ImuState, MagState, RemoteUpdate, RobotConfig, SensorHealth};
+use robot_app::domain::{ImuState, ImuStatus, MagState, RemoteUpdate, RobotConfig, SensorHealth};
 use robot_app::logic::LogicBus;
 use robot_snapshot::{Snapshot, Writer};
 use static_cell::StaticCell;
@@ -27,8 +27,7 @@ use crate::drivers::radio_uart::RadioLine;
 pub struct ImuReport {
     pub state: ImuState,
     pub health: SensorHealth,
-    /// Start-up gyro calibration finished.
-    pub calibrated: bool,
+    pub status: ImuStatus,
 }
 
 /// The newest magnetometer sample and how the sensor fares.

@@ -12,6 +12,7 @@ use embassy_stm32::pac::{CAN1, CAN2, RCC};
 use robot_app::domain::{BusId, CanFrame, LastWords};
 use robot_app::motor;
 
+use crate::board;
 use crate::drivers::can::transmit::{self, MailboxesFull};
 use crate::last_words;
 
@@ -111,6 +112,7 @@ unsafe fn DefaultHandler(irq: i16) -> ! {
 fn enter(words: LastWords) {
     cortex_m::interrupt::disable();
     send_zero_torque();
+    board::force_heater_off();
     static SPOKEN: AtomicBool = AtomicBool::new(false);
     if !SPOKEN.swap(true, Ordering::Relaxed) {
         // SAFETY: a fault handler, and interrupts are disabled until the reset.

@@ -79,6 +79,7 @@ fn main() -> ! {
     let sensor = executors::start_sensor();
     sensor.spawn(defmt::unwrap!(tasks::imu::run(
         board.imu,
+        board.heater,
         exchange,
         writers.imu
     )));

@@ -3,6 +3,7 @@
 pub mod battery;
 pub mod bmi088;
 pub mod can;
+pub mod heater;
 pub mod ist8310;
 pub mod radio_uart;
 pub mod reset_cause;

@@ -3,7 +3,7 @@
 use embassy_time::{Duration, Instant, Ticker};
 use robot_app::control::UserController;
 use robot_app::diagnostics::DiagnosticsSnapshot;
-use robot_app::domain::{LateTasks, RobotConfig, SystemHealth};
+use robot_app::domain::{CalibrationState, LateTasks, RobotConfig, SystemHealth};
 use robot_app::tick::{ControlInputs, ControlLoop};
 use robot_snapshot::Writer;
 
@@ -93,7 +93,8 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
         imu: imu.health,
         mag: mag.health,
         radio_line: RADIO_LINE.health(),
-        imu_calibrated: imu.calibrated,
+        imu_calibrated: imu.status.calibration.state == CalibrationState::Done,
+        imu_status: imu.status,
         late_tasks: *late_tasks,
         reset_cause: last_run.reset_cause,
         last_words: last_run.last_words,

@@ -1,4 +1,4 @@
-//! 200 Hz: BMI088 → calibrated IMU samples. A lost sensor is brought up again for as long as it takes.
+//! 200 Hz: BMI088 → calibrated IMU samples, and its heater. A lost sensor is brought up again for as long as it takes.
 
 use embassy_time::{Duration, Instant, Ticker};
 use robot_app::sensing::ImuPipeline;
@@ -7,6 +7,7 @@ use robot_snapshot::Writer;
 use crate::board::ImuBus;
 use crate::deadlines::{Watched, sleep_checking_in};
 use crate::drivers::bmi088::Bmi088;
+use crate::drivers::heater::Heater;
 use crate::exchange::{Exchange, ImuReport};
 
 const PERIOD: Duration = Duration::from_hz(200);
@@ -15,7 +16,9 @@ const LOST_AFTER: u32 = 5;
 const RETRY_PAUSE: Duration = Duration::from_millis(100);
 
 struct ImuTask {
+    exchange: &'static Exchange,
     pipeline: ImuPipeline,
+    heater: Heater,
     report: ImuReport,
     output: Writer<'static, ImuReport>,
 }
@@ -23,11 +26,15 @@ struct ImuTask {
 #[embassy_executor::task]
 pub async fn run(
     mut bus: ImuBus,
+    heater: Heater,
     exchange: &'static Exchange,
     output: Writer<'static, ImuReport>,
 ) -> ! {
+    let config = exchange.config.latest();
     let mut task = ImuTask {
-        pipeline: ImuPipeline::new(exchange.config.latest().imu),
+        exchange,
+        pipeline: ImuPipeline::new(config.imu, config.heater),
+        heater,
         report: ImuReport::default(),
         output,
     };
@@ -36,10 +43,10 @@ pub async fn run(
         if sensor.bring_up().await.is_ok() {
             task.sample_until_lost(&mut sensor).await;
         } else {
-            task.count_error();
+            task.report.health.count_error();
         }
-        task.report.health.reinits = task.report.health.reinits.wrapping_add(1);
-        task.publish_ready(false);
+        task.report.health.count_loss();
+        task.publish();
         sleep_checking_in(Watched::Imu, RETRY_PAUSE).await;
     }
 }
@@ -47,10 +54,12 @@ pub async fn run(
 impl ImuTask {
     async fn sample_until_lost(&mut self, sensor: &mut Bmi088<'_>) {
         let mut ticker = Ticker::every(PERIOD);
-        let mut bad_in_row = 0;
+        let mut bad_in_row: u32 = 0;
         while bad_in_row < LOST_AFTER {
             ticker.next().await;
             Watched::Imu.check_in();
+            let config = self.exchange.config.latest();
+            self.pipeline.set_config(&config.imu, &config.heater);
             if self.sample(sensor).await {
                 bad_in_row = 0;
             } else {
@@ -59,34 +68,30 @@ impl ImuTask {
         }
     }
 
-    /// Reads and publishes one sample; false if there was none.
+    /// Reads and publishes one sample; false if there was none. Without one the heater is off.
     async fn sample(&mut self, sensor: &mut Bmi088<'_>) -> bool {
         let ts_us = Instant::now().as_micros();
-        let state = match sensor.read_sample().await {
-            Ok(answers) => self
-                .pipeline
+        let state = if let Ok(answers) = sensor.read_sample().await {
+            self.pipeline
                 .process(&answers.accel, &answers.gyro, ts_us)
-                .ok(),
-            Err(_) => None,
+                .ok()
+        } else {
+            self.pipeline.process_silence(ts_us);
+            None
         };
+        self.heater.set_duty(self.pipeline.heater_duty());
         if let Some(state) = state {
             self.report.state = state;
-            self.report.calibrated = self.pipeline.calibrated();
-            self.report.health.samples = self.report.health.samples.wrapping_add(1);
-            self.publish_ready(true);
+            self.report.health.count_sample();
         } else {
-            self.count_error();
-            self.output.publish(&self.report);
+            self.report.health.count_error();
         }
+        self.publish();
         state.is_some()
     }
 
-    fn count_error(&mut self) {
-        self.report.health.errors = self.report.health.errors.wrapping_add(1);
-    }
-
-    fn publish_ready(&mut self, ready: bool) {
-        self.report.health.ready = ready;
+    fn publish(&mut self) {
+        self.report.status = self.pipeline.status();
         self.output.publish(&self.report);
     }
 }

@@ -16,6 +16,7 @@ const LOST_AFTER: u32 = 5;
 const RETRY_PAUSE: Duration = Duration::from_millis(200);
 
 struct MagTask {
+    exchange: &'static Exchange,
     pipeline: MagPipeline,
     report: MagReport,
     output: Writer<'static, MagReport>,
@@ -28,6 +29,7 @@ pub async fn run(
     output: Writer<'static, MagReport>,
 ) -> ! {
     let mut task = MagTask {
+        exchange,
         pipeline: MagPipeline::new(exchange.config.latest().mag),
         report: MagReport::default(),
         output,
@@ -37,10 +39,10 @@ pub async fn run(
         if sensor.bring_up().await.is_ok() {
             task.sample_until_lost(&mut sensor).await;
         } else {
-            task.count_error();
+            task.report.health.count_error();
         }
-        task.report.health.reinits = task.report.health.reinits.wrapping_add(1);
-        task.publish_ready(false);
+        task.report.health.count_loss();
+        task.output.publish(&task.report);
         sleep_checking_in(Watched::Mag, RETRY_PAUSE).await;
     }
 }
@@ -48,10 +50,12 @@ pub async fn run(
 impl MagTask {
     async fn sample_until_lost(&mut self, sensor: &mut Ist8310<'_>) {
         let mut ticker = Ticker::every(HALF_PERIOD);
-        let mut bad_in_row = 0;
+        let mut bad_in_row: u32 = 0;
         while bad_in_row < LOST_AFTER {
             ticker.next().await;
             Watched::Mag.check_in();
+            self.pipeline
+                .set_calibration(&self.exchange.config.latest().mag);
             if self.sample(sensor).await {
                 bad_in_row = 0;
             } else {
@@ -71,21 +75,11 @@ impl MagTask {
         };
         if let Some(state) = state {
             self.report.state = state;
-            self.report.health.samples = self.report.health.samples.wrapping_add(1);
-            self.publish_ready(true);
+            self.report.health.count_sample();
         } else {
-            self.count_error();
-            self.output.publish(&self.report);
+            self.report.health.count_error();
         }
-        state.is_some()
-    }
-
-    fn count_error(&mut self) {
-        self.report.health.errors = self.report.health.errors.wrapping_add(1);
-    }
-
-    fn publish_ready(&mut self, ready: bool) {
-        self.report.health.ready = ready;
         self.output.publish(&self.report);
+        state.is_some()
     }
 }

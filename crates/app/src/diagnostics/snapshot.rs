@@ -3,7 +3,7 @@
 use super::TickStats;
 use crate::{
     domain::{
-        BusHealth, ChassisCommand, ImuState, LastWords, LateTasks, MagState, MotorFeedback,
+        BusHealth, ChassisCommand, ImuState, ImuStatus, LastWords, LateTasks, MagState, MotorFeedback,
         OperatorState, RadioLineHealth, RemoteDiagnostics, RemoteState, ResetCause, SensorHealth, StateEstimate,
     },
     logic::LogicBus,
@@ -33,6 +33,8 @@ pub struct DiagnosticsSnapshot {
     pub mag_health: SensorHealth,
     pub radio_line: RadioLineHealth,
     pub imu_calibrated: bool,
+    /// Heater, start-up calibration, rejected samples.
+    pub imu_status: ImuStatus,
     pub tick: TickStats,
     pub late_tasks: LateTasks,
     pub reset_cause: ResetCause,

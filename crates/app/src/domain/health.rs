@@ -1,6 +1,6 @@
 //! What the platform knows about its parts: filled by the firmware, judged by `safety`.
 
-use super::{LastWords, LateTasks};
+use super::{ImuStatus, LastWords, LateTasks};
 
 /// Fault confinement state of a CAN controller (ISO 11898-1).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -43,6 +43,23 @@ pub struct SensorHealth {
     /// Bus errors and rejected samples since boot.
     pub errors: u32,
     pub reinits: u32,
+}
+
+impl SensorHealth {
+    pub fn count_sample(&mut self) {
+        self.ready = true;
+        self.samples = self.samples.wrapping_add(1);
+    }
+
+    pub fn count_error(&mut self) {
+        self.errors = self.errors.wrapping_add(1);
+    }
+
+    /// The sensor does not answer and must be brought up again.
+    pub fn count_loss(&mut self) {
+        self.ready = false;
+        self.reinits = self.reinits.wrapping_add(1);
+    }
 }
 
 /// What the receiver's UART saw, all since boot (ROBOT_CPP's `g_app_sbus_rx_events` and `g_app_sbus_rx_bytes` among it).
@@ -94,6 +111,7 @@ pub struct SystemHealth {
     pub radio_line: RadioLineHealth,
     /// Start-up gyro calibration finished.
     pub imu_calibrated: bool,
+    pub imu_status: ImuStatus,
     pub late_tasks: LateTasks,
     pub reset_cause: ResetCause,
     /// Of the run before this one.

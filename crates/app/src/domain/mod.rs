@@ -5,6 +5,7 @@ mod command;
 mod config;
 mod estimate;
 mod health;
+mod imu_status;
 mod last_words;
 mod remote;
 mod sensors;
@@ -20,6 +21,9 @@ pub use config::{
 pub use estimate::StateEstimate;
 pub use health::{
     BusErrorState, BusHealth, RadioLineHealth, ResetCause, SensorHealth, SystemHealth,
+};
+pub use imu_status::{
+    CalibrationState, CalibrationStatus, HeaterState, HeaterStatus, ImuRejects, ImuStatus, Warmth,
 };
 pub use last_words::{LastWords, LateTasks};
 pub use remote::{DriveMode, OperatorState, RemoteDiagnostics, RemoteState, RemoteUpdate};

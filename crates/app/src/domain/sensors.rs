@@ -12,6 +12,8 @@ pub struct ImuState {
     pub gyro_bias_dps: [f32; 3],
     /// Of the accelerometer's die, renewed every 1.28 s; 0 before the first.
     pub temperature_c: f32,
+    /// An axis is at the end of its range, so the true value may lie beyond.
+    pub saturated: bool,
     /// When it was read, 0 = no sample yet.
     pub ts_us: u64,
 }

@@ -1,10 +1,15 @@
-//! BMI088 answers → calibrated [`ImuState`].
+//! BMI088 answers → calibrated [`ImuState`], and the heat that keeps the package warm.
 
 use super::{
     bmi088::{self, ACCEL_READ, AccelRaw, GYRO_READ, GyroRaw},
-    calibration::{StartupGyroBias, correct},
+    calibration::{Sample, StartupCalibration, correct},
+    heater::Heater,
+    plausibility::Plausibility,
 };
-use crate::domain::{ImuCalibration, ImuState};
+use crate::{
+    domain::{CalibrationState, HeaterConfig, ImuCalibration, ImuRejects, ImuState, ImuStatus},
+    math::Vector3,
+};
 
 /// Why a sample was rejected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,6 +21,10 @@ pub enum ImuSampleError {
     GyroAbsent,
     /// The accelerometer's own clock stands still, or no count has changed for longer than noise allows.
     Frozen,
+    /// No robot moves like that, or the sensor has not been sane for long enough since it did.
+    Implausible,
+    /// At the end of the range for longer than a blow or a spin can take.
+    Saturated,
 }
 
 /// What a frozen sensor repeats.
@@ -29,32 +38,60 @@ struct RawSample {
 /// Samples that may be alike in all six counts: at rest noise moves at least one of them nearly every time.
 const MAX_REPEATS: u8 = 10;
 
-/// Checks, scales and calibrates each sample; finds the gyro offset once after boot.
+/// Checks, scales and calibrates each sample; runs the heater; finds the gyro offset once after boot.
 ///
 /// Sensor axes are body axes: the board is mounted with its X forward and Z up.
 #[derive(Clone, Debug)]
 pub struct ImuPipeline {
     calibration: ImuCalibration,
-    startup_bias: StartupGyroBias,
+    heater: Heater,
+    startup: StartupCalibration,
+    plausibility: Plausibility,
+    rejects: ImuRejects,
     last: Option<RawSample>,
     repeats: u8,
-    temperature_c: f32,
 }
 
 impl ImuPipeline {
-    pub fn new(calibration: ImuCalibration) -> Self {
+    pub fn new(calibration: ImuCalibration, heater: HeaterConfig) -> Self {
         Self {
             calibration,
-            startup_bias: StartupGyroBias::new(),
+            heater: Heater::new(heater),
+            startup: StartupCalibration::default(),
+            plausibility: Plausibility::default(),
+            rejects: ImuRejects::default(),
             last: None,
             repeats: 0,
-            temperature_c: 0.0,
         }
+    }
+
+    /// Counts from the next sample on.
+    pub fn set_config(&mut self, calibration: &ImuCalibration, heater: &HeaterConfig) {
+        self.calibration = *calibration;
+        self.heater.set_config(heater);
     }
 
     /// True once the start-up gyro offset is known.
     pub fn calibrated(&self) -> bool {
-        self.startup_bias.bias_dps().is_some()
+        self.startup.status().state == CalibrationState::Done
+    }
+
+    pub fn status(&self) -> ImuStatus {
+        ImuStatus {
+            heater: *self.heater.status(),
+            calibration: *self.startup.status(),
+            rejects: self.rejects,
+        }
+    }
+
+    /// Duty of the heater from now on, 0 … 1.
+    pub const fn heater_duty(&self) -> f32 {
+        self.heater.status().duty
+    }
+
+    /// To be called in place of `process` when no answer came.
+    pub fn process_silence(&mut self, ts_us: u64) {
+        self.heater.step(None, ts_us);
     }
 
     /// Takes the answers to `ACCEL_READ` and `GYRO_READ`, read at `ts_us`.
@@ -64,34 +101,76 @@ impl ImuPipeline {
         gyro_answer: &[u8; GYRO_READ.len()],
         ts_us: u64,
     ) -> Result<ImuState, ImuSampleError> {
+        let checked = self.check(accel_answer, gyro_answer, ts_us);
+        let temperature_c = match &checked {
+            Ok(raw) => raw.temperature_c,
+            Err(error) => {
+                self.count(*error);
+                None
+            }
+        };
+        self.heater.step(temperature_c, ts_us);
+        checked.map(|raw| self.calibrate(&raw, ts_us))
+    }
+
+    fn check(
+        &mut self,
+        accel_answer: &[u8; ACCEL_READ.len()],
+        gyro_answer: &[u8; GYRO_READ.len()],
+        ts_us: u64,
+    ) -> Result<CheckedSample, ImuSampleError> {
         let accel = bmi088::decode_accel(accel_answer).ok_or(ImuSampleError::AccelAbsent)?;
         let gyro = bmi088::decode_gyro(gyro_answer).ok_or(ImuSampleError::GyroAbsent)?;
-        if self.frozen(&accel, &gyro) {
+        let frozen = self.frozen(&accel, &gyro);
+        let saturated = self.plausibility.judge(&accel, &gyro, ts_us)?;
+        if frozen {
             return Err(ImuSampleError::Frozen);
         }
-        if let Some(temperature) = accel.temperature {
-            self.temperature_c = temperature.celsius();
-        }
+        Ok(CheckedSample {
+            accel_mps2: accel.mps2(),
+            gyro_dps: gyro.dps(),
+            temperature_c: accel.temperature.map(|temperature| temperature.celsius()),
+            saturated,
+        })
+    }
 
+    fn calibrate(&mut self, raw: &CheckedSample, ts_us: u64) -> ImuState {
         let calibration = &self.calibration;
         let accel_mps2 = correct(
-            accel.mps2(),
+            raw.accel_mps2,
             calibration.accel_bias_mps2,
             calibration.accel_scale,
         );
-        let gyro_raw_dps = gyro.dps();
-        self.startup_bias.feed(gyro_raw_dps, accel_mps2, ts_us);
-        let gyro_bias_dps = self
-            .startup_bias
-            .bias_dps()
-            .unwrap_or(calibration.gyro_bias_dps);
-        Ok(ImuState {
+        let sample = Sample {
+            gyro_dps: raw.gyro_dps,
             accel_mps2,
-            gyro_dps: correct(gyro_raw_dps, gyro_bias_dps, calibration.gyro_scale),
-            gyro_bias_dps,
-            temperature_c: self.temperature_c,
+            temperature_c: raw.temperature_c,
             ts_us,
-        })
+        };
+        self.startup.feed(&sample, &self.heater);
+        let gyro_bias_dps = self
+            .startup
+            .gyro_bias_dps()
+            .unwrap_or(calibration.gyro_bias_dps);
+        ImuState {
+            accel_mps2,
+            gyro_dps: correct(raw.gyro_dps, gyro_bias_dps, calibration.gyro_scale),
+            gyro_bias_dps,
+            temperature_c: self.heater.status().temperature_c,
+            saturated: raw.saturated,
+            ts_us,
+        }
+    }
+
+    fn count(&mut self, error: ImuSampleError) {
+        let rejects = &mut self.rejects;
+        let count = match error {
+            ImuSampleError::AccelAbsent | ImuSampleError::GyroAbsent => &mut rejects.absent,
+            ImuSampleError::Frozen => &mut rejects.frozen,
+            ImuSampleError::Implausible => &mut rejects.implausible,
+            ImuSampleError::Saturated => &mut rejects.saturated,
+        };
+        *count = count.wrapping_add(1);
     }
 
     fn frozen(&mut self, accel: &AccelRaw, gyro: &GyroRaw) -> bool {
@@ -114,18 +193,31 @@ impl ImuPipeline {
     }
 }
 
+/// Physical units, not yet calibrated.
+#[derive(Clone, Copy, Debug)]
+struct CheckedSample {
+    accel_mps2: Vector3,
+    gyro_dps: Vector3,
+    temperature_c: Option<f32>,
+    saturated: bool,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// BMI088 answers at rest, level, by the datasheet: 1 g is 2730 counts at ±12 g, temperature 0x0120 shifted = 24.125 °C.
+    fn new_pipeline() -> ImuPipeline {
+        ImuPipeline::new(ImuCalibration::default(), HeaterConfig::default())
+    }
+
+    /// BMI088 answers at rest, level, by the datasheet: 1 g is 2730 counts at ±12 g, temperature 0x1020 shifted = 39.125 °C.
     fn answers(index: u32) -> ([u8; 20], [u8; 9]) {
         let mut accel = [0; 20];
         let ripple = (index % 3) as u8;
         accel[2] = ripple;
         accel[6..8].copy_from_slice(&2_730i16.to_le_bytes());
         accel[8..11].copy_from_slice(&(index * 128).to_le_bytes()[..3]);
-        accel[18..20].copy_from_slice(&[0x01, 0x20]);
+        accel[18..20].copy_from_slice(&[0x10, 0x20]);
         let mut gyro = [0; 9];
         gyro[1] = 0x0F;
         gyro[7..9].copy_from_slice(&164i16.to_le_bytes());
@@ -134,24 +226,26 @@ mod tests {
 
     #[test]
     fn counts_become_physical_units() {
-        let mut pipeline = ImuPipeline::new(ImuCalibration::default());
+        let mut pipeline = new_pipeline();
         let (accel, gyro) = answers(3);
         let state = pipeline.process(&accel, &gyro, 5_000).unwrap();
         assert!((state.accel_mps2[2] - 9.806_65).abs() < 0.01);
         assert!((state.gyro_dps[2] - 10.01).abs() < 0.01);
-        assert_eq!(state.temperature_c, 24.125);
+        assert_eq!(state.temperature_c, 39.125);
         assert_eq!(state.ts_us, 5_000);
     }
 
     /// By hand: (9.806 − 0.306) · 2 = 19 m/s²; until the offset is measured the stored one counts, (10.01 − 1.01) · 0.5.
     #[test]
     fn stored_offsets_and_scales_are_applied() {
-        let mut pipeline = ImuPipeline::new(ImuCalibration {
+        let mut pipeline = new_pipeline();
+        let calibration = ImuCalibration {
             accel_bias_mps2: [0.0, 0.0, 0.306],
             accel_scale: [1.0, 1.0, 2.0],
             gyro_bias_dps: [0.0, 0.0, 1.01],
             gyro_scale: [1.0, 1.0, 0.5],
-        });
+        };
+        pipeline.set_config(&calibration, &HeaterConfig::default());
         let (accel, gyro) = answers(3);
         let state = pipeline.process(&accel, &gyro, 5_000).unwrap();
         assert!((state.accel_mps2[2] - 19.0).abs() < 0.01);
@@ -161,7 +255,7 @@ mod tests {
 
     #[test]
     fn a_still_second_takes_the_offset_out() {
-        let mut pipeline = ImuPipeline::new(ImuCalibration::default());
+        let mut pipeline = new_pipeline();
         let mut last = ImuState::default();
         for index in 1..=210u32 {
             let (accel, mut gyro) = answers(index);
@@ -177,7 +271,7 @@ mod tests {
 
     #[test]
     fn an_absent_sensor_is_named() {
-        let mut pipeline = ImuPipeline::new(ImuCalibration::default());
+        let mut pipeline = new_pipeline();
         let (accel, gyro) = answers(1);
         let mut process = |accel: &[u8; 20], gyro: &[u8; 9]| pipeline.process(accel, gyro, 5_000);
         assert_eq!(
@@ -194,13 +288,13 @@ mod tests {
 
     #[test]
     fn a_frozen_sensor_is_noticed() {
-        let mut pipeline = ImuPipeline::new(ImuCalibration::default());
+        let mut pipeline = new_pipeline();
         let (accel, gyro) = answers(1);
         assert!(pipeline.process(&accel, &gyro, 5_000).is_ok());
         let stopped_clock = pipeline.process(&accel, &gyro, 10_000);
         assert_eq!(stopped_clock, Err(ImuSampleError::Frozen));
 
-        let mut pipeline = ImuPipeline::new(ImuCalibration::default());
+        let mut pipeline = new_pipeline();
         let results: Vec<bool> = (1..=20u32)
             .map(|index| {
                 let (mut accel, gyro) = answers(index);
@@ -211,5 +305,60 @@ mod tests {
             .collect();
         assert!(results[..8].iter().all(|good| *good));
         assert!(!results[19]);
+    }
+
+    /// By hand from the datasheet: 0x00 0x00 is 23 °C, 17 K below the target; 0x80 0x00 is no temperature.
+    #[test]
+    fn the_heater_follows_the_temperature_and_stops_without() {
+        let mut pipeline = new_pipeline();
+        let mut duty_after = |index: u32, temperature: [u8; 2], present: bool| {
+            let (mut accel, gyro) = answers(index);
+            accel[18..20].copy_from_slice(&temperature);
+            if !present {
+                accel = [0xFF; 20];
+            }
+            let _ = pipeline.process(&accel, &gyro, u64::from(index) * 5_000);
+            pipeline.heater_duty()
+        };
+        assert_eq!(duty_after(1, [0, 0], true), 1.0);
+        assert_eq!(duty_after(2, [0x80, 0], true), 0.0);
+        assert_eq!(duty_after(3, [0, 0], true), 1.0);
+        assert_eq!(duty_after(4, [0, 0], false), 0.0);
+        assert_eq!(duty_after(5, [0, 0], true), 1.0);
+        pipeline.process_silence(30_000);
+        assert_eq!(pipeline.heater_duty(), 0.0);
+        assert_eq!(pipeline.status().rejects.absent, 1);
+    }
+
+    #[test]
+    fn a_cold_package_is_not_calibrated() {
+        let mut pipeline = new_pipeline();
+        for index in 1..=600u32 {
+            let (mut accel, mut gyro) = answers(index);
+            accel[18..20].copy_from_slice(&[0, 0]);
+            gyro[7..9].copy_from_slice(&(16 + (index % 2) as i16).to_le_bytes());
+            let ts_us = u64::from(index) * 5_000;
+            pipeline.process(&accel, &gyro, ts_us).unwrap();
+        }
+        assert!(!pipeline.calibrated());
+        let calibration = pipeline.status().calibration;
+        assert_eq!(calibration.state, CalibrationState::WaitingForTemperature);
+    }
+
+    #[test]
+    fn the_end_of_the_range_is_marked_and_nonsense_rejected() {
+        let mut pipeline = new_pipeline();
+        let (accel, gyro) = answers(1);
+        assert!(!pipeline.process(&accel, &gyro, 5_000).unwrap().saturated);
+        let (mut accel, gyro) = answers(2);
+        accel[6..8].copy_from_slice(&i16::MAX.to_le_bytes());
+        assert!(pipeline.process(&accel, &gyro, 10_000).unwrap().saturated);
+        let (accel, mut gyro) = answers(3);
+        gyro[3..5].copy_from_slice(&i16::MIN.to_le_bytes());
+        assert_eq!(
+            pipeline.process(&accel, &gyro, 15_000),
+            Err(ImuSampleError::Implausible)
+        );
+        assert_eq!(pipeline.status().rejects.implausible, 1);
     }
 }

@@ -27,6 +27,11 @@ impl MagPipeline {
         Self { calibration }
     }
 
+    /// Counts from the next sample on.
+    pub fn set_calibration(&mut self, calibration: &MagCalibration) {
+        self.calibration = *calibration;
+    }
+
     /// Takes the bytes read from `ist8310::READ_FROM` at `ts_us`.
     pub fn process(
         &mut self,

@@ -2,9 +2,11 @@
 
 pub mod bmi088;
 mod calibration;
+mod heater;
 mod imu_pipeline;
 pub mod ist8310;
 mod mag_pipeline;
+mod plausibility;
 
 pub use imu_pipeline::{ImuPipeline, ImuSampleError};
 pub use mag_pipeline::{MagPipeline, MagSampleError};

@@ -1,8 +1,10 @@
 //! Sensor offsets and scales.
 
+mod startup;
 mod startup_gyro_bias;
+mod temperature_gate;
 
-pub(super) use startup_gyro_bias::StartupGyroBias;
+pub(super) use startup::{Sample, StartupCalibration};
 
 use crate::math::{Vector3, vector};
 

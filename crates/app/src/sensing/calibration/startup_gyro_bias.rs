@@ -6,6 +6,8 @@ use crate::{
 };
 
 const MIN_SAMPLES: u16 = 200;
+/// Samples alike after which the robot is taken to stand, 50 ms.
+const SETTLING_SAMPLES: u16 = 10;
 const MIN_SPAN_US: u32 = 1_000_000;
 /// A pause in the samples longer than this starts the second anew.
 const MAX_PAUSE_US: u32 = 50_000;
@@ -38,11 +40,27 @@ struct Window {
 }
 
 impl StartupGyroBias {
-    pub const fn new() -> Self {
-        Self {
-            window: None,
-            bias_dps: None,
+    /// The still second starts anew, unless the offset is known.
+    pub fn restart(&mut self) {
+        self.window = None;
+    }
+
+    /// True once the robot has stood still for a moment.
+    pub fn is_measuring(&self) -> bool {
+        self.samples() > SETTLING_SAMPLES
+    }
+
+    /// Part of the still second that is over, 0 … 1.
+    pub fn progress(&self) -> f32 {
+        if self.bias_dps.is_some() {
+            1.0
+        } else {
+            f32::from(self.samples().min(MIN_SAMPLES)) / f32::from(MIN_SAMPLES)
         }
+    }
+
+    fn samples(&self) -> u16 {
+        self.window.as_ref().map_or(0, |window| window.samples)
     }
 
     /// °/s, once known.
@@ -136,7 +154,7 @@ mod tests {
 
     #[test]
     fn one_still_second_gives_the_mean() {
-        let mut bias = StartupGyroBias::new();
+        let mut bias = StartupGyroBias::default();
         feed_still(&mut bias, 200, 1, [0.5, -0.7, 0.2]);
         assert_eq!(bias.bias_dps(), None, "0.995 s are not a second");
         feed_still(&mut bias, 1, 1 + 200 * 5_000, [0.5, -0.7, 0.2]);
@@ -148,7 +166,7 @@ mod tests {
 
     #[test]
     fn a_bump_starts_the_second_anew() {
-        let mut bias = StartupGyroBias::new();
+        let mut bias = StartupGyroBias::default();
         feed_still(&mut bias, 150, 1, [0.0; 3]);
         bias.feed([10.0, 0.0, 0.0], LEVEL, 1 + 150 * 5_000);
         feed_still(&mut bias, 199, 1 + 151 * 5_000, [0.0; 3]);
@@ -159,9 +177,9 @@ mod tests {
 
     #[test]
     fn a_shaking_or_falling_or_turning_robot_is_not_still() {
-        let mut shaking = StartupGyroBias::new();
-        let mut falling = StartupGyroBias::new();
-        let mut turning = StartupGyroBias::new();
+        let mut shaking = StartupGyroBias::default();
+        let mut falling = StartupGyroBias::default();
+        let mut turning = StartupGyroBias::default();
         for index in 0..2_000u64 {
             let ts_us = 1 + index * 5_000;
             let swing = if index % 2 == 0 { 1.0 } else { -1.0 };

@@ -1,0 +1,84 @@
+//! How the IMU is kept warm, calibrated at start-up and doubted: for diagnostics, arming and indication.
+
+/// What the heater of the IMU does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[repr(u8)]
+pub enum HeaterState {
+    /// Switched off by its configuration.
+    #[default]
+    Off = 0,
+    /// More than 3 K below the target.
+    Heating = 1,
+    Holding = 2,
+    /// Held off: no valid temperature, or far too hot.
+    CutOff = 3,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct HeaterStatus {
+    pub state: HeaterState,
+    /// On-fraction, 0 … 1.
+    pub duty: f32,
+    /// Last valid temperature of the package; 0 before the first.
+    pub temperature_c: f32,
+}
+
+/// What the start-up calibration of the gyro waits for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[repr(u8)]
+pub enum CalibrationState {
+    #[default]
+    WaitingForTemperature = 0,
+    /// The robot moves, or has only just stopped.
+    WaitingForStillness = 1,
+    Measuring = 2,
+    Done = 3,
+}
+
+/// What is known of the package's temperature: the offset of the gyro moves with it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[repr(u8)]
+pub enum Warmth {
+    #[default]
+    Unsettled = 0,
+    /// Within 3 K of the heater's target.
+    AtTarget = 1,
+    /// Away from the target, but steady: the heater is off, too weak (USB supply) or not needed.
+    Settled = 2,
+    /// The sensor has told no temperature for 20 s.
+    Unknown = 3,
+}
+
+/// Start-up calibration of the gyro.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct CalibrationStatus {
+    pub state: CalibrationState,
+    /// The temperature it goes by; kept once it is done.
+    pub warmth: Warmth,
+    /// Part of the still second that has been measured, 0 … 1.
+    pub progress: f32,
+}
+
+/// Samples that were rejected since boot, by reason.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(C)]
+pub struct ImuRejects {
+    pub absent: u32,
+    pub frozen: u32,
+    pub implausible: u32,
+    pub saturated: u32,
+}
+
+/// Of the IMU task.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct ImuStatus {
+    pub heater: HeaterStatus,
+    pub calibration: CalibrationStatus,
+    pub rejects: ImuRejects,
+}

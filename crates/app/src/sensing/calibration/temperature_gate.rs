@@ -1,0 +1,149 @@
+//! Whether the package is as warm as it will get, so that a gyro offset measured now stays true.
+
+use super::super::heater::{Heater, NEAR_TARGET_K};
+use crate::domain::{HeaterState, Warmth, age_us};
+
+/// A heater that has given all or nothing for this long cannot bring the target.
+const AT_LIMIT_US: u32 = 15_000_000;
+/// Steady: changes of less than this …
+const STEADY_K: f32 = 0.3;
+/// … for this long.
+const STEADY_US: u32 = 5_000_000;
+/// After this long without any temperature it is not waited for.
+const UNKNOWN_AFTER_US: u32 = 20_000_000;
+
+#[derive(Clone, Copy, Debug)]
+struct Reading {
+    celsius: f32,
+    ts_us: u64,
+}
+
+/// Call [`step`](Self::step) with every sample.
+#[derive(Clone, Debug, Default)]
+pub struct TemperatureGate {
+    /// When the last temperature was read, or the first sample if there was none.
+    known_us: Option<u64>,
+    /// From which the temperature has not moved.
+    steady_from: Option<Reading>,
+    at_limit_since_us: Option<u64>,
+}
+
+impl TemperatureGate {
+    /// `temperature_c` and `heater` as of this sample.
+    pub fn step(&mut self, temperature_c: Option<f32>, heater: &Heater, ts_us: u64) -> Warmth {
+        let known_us = *self.known_us.get_or_insert(ts_us);
+        let Some(celsius) = temperature_c else {
+            return if age_us(known_us, ts_us) >= UNKNOWN_AFTER_US {
+                Warmth::Unknown
+            } else {
+                Warmth::Unsettled
+            };
+        };
+        self.known_us = Some(ts_us);
+        let steady = self.is_steady(celsius, ts_us);
+        let at_limit = self.is_at_limit(heater, ts_us);
+        if heater.status().state == HeaterState::Off {
+            return if steady {
+                Warmth::Settled
+            } else {
+                Warmth::Unsettled
+            };
+        }
+        if (celsius - heater.target_c()).abs() <= NEAR_TARGET_K {
+            Warmth::AtTarget
+        } else if steady && at_limit {
+            Warmth::Settled
+        } else {
+            Warmth::Unsettled
+        }
+    }
+
+    fn is_steady(&mut self, celsius: f32, ts_us: u64) -> bool {
+        let reading = Reading { celsius, ts_us };
+        let from = self.steady_from.get_or_insert(reading);
+        if (celsius - from.celsius).abs() >= STEADY_K {
+            *from = reading;
+        }
+        age_us(from.ts_us, ts_us) >= STEADY_US
+    }
+
+    fn is_at_limit(&mut self, heater: &Heater, ts_us: u64) -> bool {
+        if !heater.at_limit() {
+            self.at_limit_since_us = None;
+            return false;
+        }
+        let since_us = *self.at_limit_since_us.get_or_insert(ts_us);
+        age_us(since_us, ts_us) >= AT_LIMIT_US
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::domain::HeaterConfig;
+
+    /// Warmth after each whole second, at 10 Hz, of a temperature that follows `celsius` of the time in s.
+    fn warmth(config: HeaterConfig, celsius: impl Fn(f32) -> Option<f32>) -> Vec<Warmth> {
+        let mut gate = TemperatureGate::default();
+        let mut heater = Heater::new(config);
+        let mut each_second = Vec::new();
+        for tick in 0..=600u64 {
+            let ts_us = 1 + tick * 100_000;
+            let temperature = celsius(tick as f32 / 10.0);
+            heater.step(temperature, ts_us);
+            let warmth = gate.step(temperature, &heater, ts_us);
+            if tick % 10 == 0 {
+                each_second.push(warmth);
+            }
+        }
+        each_second
+    }
+
+    fn first(warmths: &[Warmth], wanted: Warmth) -> Option<usize> {
+        warmths.iter().position(|warmth| *warmth == wanted)
+    }
+
+    /// One kelvin a second from 22 °C is within 3 K of 40 °C at 15 s.
+    #[test]
+    fn near_the_target_counts_at_once() {
+        let warmths = warmth(HeaterConfig::default(), |t| Some((22.0 + t).min(40.0)));
+        assert_eq!(first(&warmths, Warmth::AtTarget), Some(15));
+        let warm = warmth(HeaterConfig::default(), |_| Some(38.0));
+        assert_eq!(first(&warm, Warmth::AtTarget), Some(0));
+    }
+
+    /// On USB the heater ends at 34 °C: with a lag of 4 s from 24 °C it moves less than 0.3 K in any 5 s from 13 s on
+    /// (10 K · e^(−13/4) = 0.39 K are left, 0.11 K at 18 s).
+    #[test]
+    fn a_heater_that_cannot_reach_the_target_counts_once_steady() {
+        let usb = |t: f32| Some(34.0 - 10.0 * (-t / 4.0).exp());
+        let warmths = warmth(HeaterConfig::default(), usb);
+        let settled = first(&warmths, Warmth::Settled).unwrap();
+        assert!((15..=20).contains(&settled), "{settled}");
+        assert_eq!(first(&warmths, Warmth::AtTarget), None);
+    }
+
+    #[test]
+    fn a_temperature_that_still_moves_does_not_count() {
+        let drifting = warmth(HeaterConfig::default(), |t| Some(10.0 + 0.1 * t));
+        assert!(drifting.iter().all(|warmth| *warmth == Warmth::Unsettled));
+    }
+
+    #[test]
+    fn without_heater_steady_is_enough() {
+        let off = HeaterConfig {
+            target_c: 0.0,
+            ..HeaterConfig::default()
+        };
+        let warmths = warmth(off, |_| Some(25.0));
+        assert_eq!(first(&warmths, Warmth::Settled), Some(5));
+    }
+
+    #[test]
+    fn without_temperature_it_is_given_up_after_twenty_seconds() {
+        let warmths = warmth(HeaterConfig::default(), |_| None);
+        assert_eq!(first(&warmths, Warmth::Unknown), Some(20));
+        let back = warmth(HeaterConfig::default(), |t| (t > 30.0).then_some(22.0));
+        assert_eq!(back[31], Warmth::Unsettled, "it is waited for again");
+    }
+}

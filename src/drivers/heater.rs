@@ -1,0 +1,27 @@
+//! The IMU's heater: a MOSFET driven by a PWM channel.
+
+use embassy_stm32::peripherals::TIM10;
+use embassy_stm32::timer::simple_pwm::SimplePwm;
+
+/// 58 °C at full duty in a warm room, so a duty that is left alone does no harm until the watchdog's reset ends it.
+pub struct Heater {
+    pwm: SimplePwm<'static, TIM10>,
+}
+
+impl Heater {
+    /// Off until told otherwise.
+    pub fn new(pwm: SimplePwm<'static, TIM10>) -> Self {
+        let mut heater = Self { pwm };
+        heater.set_duty(0.0);
+        heater.pwm.ch1().enable();
+        heater
+    }
+
+    /// 0 … 1; anything else, NaN too, counts as the nearest of both ends or as off.
+    pub fn set_duty(&mut self, duty: f32) {
+        let mut channel = self.pwm.ch1();
+        let steps = channel.max_duty_cycle();
+        let on = (duty * steps as f32) as u32;
+        channel.set_duty_cycle(on.min(steps));
+    }
+}
