@@ -13,6 +13,8 @@
 //! | [`control`] | `LogicBus` and estimate → `ChassisCommand`; `control/user_controller.rs` is where a user writes theirs |
 //! | [`safety`] | health → flags and verdict; arming; the permit without which no current leaves the board |
 //! | [`motor`] | CAN frames ↔ motors; zero-current frames; the bus budget |
+//! | [`tuning`] | CAN requests → changed `RobotConfig`, replies |
+//! | [`bring_up`] | radio or tuning request → the command that tries out new hardware |
 //! | [`diagnostics`] | one `DiagnosticsSnapshot` of all of the above |
 //! | [`tick`] | the 1 kHz tick: all stages from CAN frames in to CAN frames out |
 //!
@@ -41,6 +43,7 @@
     )
 )]
 
+pub mod bring_up;
 pub mod control;
 pub mod diagnostics;
 pub mod domain;
@@ -52,3 +55,4 @@ pub mod motor;
 pub mod safety;
 pub mod sensing;
 pub mod tick;
+pub mod tuning;

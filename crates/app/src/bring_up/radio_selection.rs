@@ -1,0 +1,63 @@
+//! Flicks of the left stick, up or down.
+
+/// Beyond this the stick is flicked.
+const FLICKED: f32 = 0.7;
+/// Inside this it is ready for the next one.
+const CENTRED: f32 = 0.5;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Flick {
+    Up,
+    Down,
+}
+
+/// Counts a flick only from the centre, so that a throttle stick without a spring, at rest at its end, flicks nothing.
+#[derive(Clone, Debug, Default)]
+pub struct FlickDetector {
+    centred: bool,
+}
+
+impl FlickDetector {
+    /// `stick`: −1 … 1, up positive.
+    pub fn step(&mut self, stick: f32) -> Option<Flick> {
+        if stick.abs() < CENTRED {
+            self.centred = true;
+            return None;
+        }
+        if !self.centred || stick.abs() <= FLICKED {
+            return None;
+        }
+        self.centred = false;
+        Some(if stick > 0.0 { Flick::Up } else { Flick::Down })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_flick_each_way_out_of_the_centre() {
+        let mut detector = FlickDetector::default();
+        let flicks: Vec<_> = [
+            -1.0,
+            0.0,
+            0.6,
+            0.8,
+            1.0,
+            0.6,
+            0.8,
+            0.4,
+            -0.71,
+            -1.0,
+            f32::NAN,
+        ]
+        .into_iter()
+        .map(|stick| detector.step(stick))
+        .collect();
+        let mut expected = [None; 11];
+        expected[3] = Some(Flick::Up);
+        expected[8] = Some(Flick::Down);
+        assert_eq!(flicks, expected);
+    }
+}

@@ -1,0 +1,252 @@
+//! One motor under the dead-man stick, inside hard limits.
+
+use core::f32::consts::TAU;
+
+use super::{
+    limits,
+    request::{TestMotor, Trial, TrialAction},
+    status::TrialState,
+};
+use crate::domain::{
+    ChassisCommand, JointCommand, JointMode, MotorFeedback, WheelCommand, WheelOdomConfig,
+};
+
+/// All that a trial looks at in one tick.
+#[derive(Clone, Copy, Debug)]
+pub struct TrialInputs<'a> {
+    pub dead_man: DeadMan,
+    /// Drive stick, −1 … 1.
+    pub drive: f32,
+    pub motor: &'a MotorFeedback,
+    pub wheel_odom: &'a WheelOdomConfig,
+}
+
+/// The dead-man stick of a fresh frame; an old frame says neither.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DeadMan {
+    Held,
+    LetGo,
+    Unknown,
+}
+
+/// The motor's last report.
+#[derive(Clone, Copy, Debug)]
+struct Motion {
+    /// Of a joint; 0 for a wheel.
+    pos_rad: f32,
+    /// At the shaft of joint or wheel.
+    vel_rps: f32,
+    max_rps: f32,
+    age_us: u32,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Phase {
+    /// Until the stick has been let go for a while; `why` is what stopped it.
+    Locked {
+        why: TrialState,
+        let_go_since_us: Option<u64>,
+    },
+    Ready,
+    Active {
+        since_us: u64,
+        /// Where a joint was when the stick was taken.
+        pose_rad: f32,
+    },
+}
+
+const LOCKED: Phase = Phase::Locked {
+    why: TrialState::ReleaseFirst,
+    let_go_since_us: None,
+};
+
+/// Starts locked: the stick must be seen let go while the robot is armed.
+#[derive(Clone, Debug)]
+pub struct TrialRun {
+    phase: Phase,
+}
+
+impl Default for TrialRun {
+    fn default() -> Self {
+        Self { phase: LOCKED }
+    }
+}
+
+impl TrialRun {
+    pub fn reset(&mut self) {
+        self.phase = LOCKED;
+    }
+
+    pub fn state(&self) -> TrialState {
+        match self.phase {
+            Phase::Locked { why, .. } => why,
+            Phase::Ready => TrialState::Ready,
+            Phase::Active { .. } => TrialState::Active,
+        }
+    }
+
+    /// All zero except, while the stick is held, for the motor on trial.
+    pub fn step(&mut self, trial: &Trial, inputs: &TrialInputs<'_>, now_us: u64) -> ChassisCommand {
+        let motion = motion(trial.motor, inputs);
+        self.phase = self.advance(inputs.dead_man, &motion, now_us);
+        match self.phase {
+            Phase::Active { pose_rad, .. } => command(trial, &motion, pose_rad, inputs.drive),
+            Phase::Locked { .. } | Phase::Ready => ChassisCommand::default(),
+        }
+    }
+
+    fn advance(&self, dead_man: DeadMan, motion: &Motion, now_us: u64) -> Phase {
+        match self.phase {
+            Phase::Locked {
+                why,
+                let_go_since_us,
+            } => wait_for_release(why, let_go_since_us, dead_man, now_us),
+            Phase::Ready if dead_man == DeadMan::Held => match too_risky(motion, now_us, now_us) {
+                Some(why) => locked(why),
+                None => Phase::Active {
+                    since_us: now_us,
+                    pose_rad: motion.pos_rad,
+                },
+            },
+            Phase::Ready => Phase::Ready,
+            Phase::Active { .. } if dead_man != DeadMan::Held => locked(TrialState::ReleaseFirst),
+            Phase::Active { since_us, pose_rad } => match too_risky(motion, since_us, now_us) {
+                Some(why) => locked(why),
+                None => Phase::Active { since_us, pose_rad },
+            },
+        }
+    }
+}
+
+const fn locked(why: TrialState) -> Phase {
+    Phase::Locked {
+        why,
+        let_go_since_us: None,
+    }
+}
+
+fn wait_for_release(
+    why: TrialState,
+    let_go_since_us: Option<u64>,
+    dead_man: DeadMan,
+    now_us: u64,
+) -> Phase {
+    if dead_man != DeadMan::LetGo {
+        return locked(why);
+    }
+    let since_us = let_go_since_us.unwrap_or(now_us);
+    if now_us.saturating_sub(since_us) >= limits::RELEASE_US {
+        return Phase::Ready;
+    }
+    Phase::Locked {
+        why,
+        let_go_since_us: Some(since_us),
+    }
+}
+
+/// Why the motor must be let go, if it must. A speed that is no number counts as too fast.
+fn too_risky(motion: &Motion, since_us: u64, now_us: u64) -> Option<TrialState> {
+    if motion.age_us > limits::FEEDBACK_AGE_US {
+        Some(TrialState::Silent)
+    } else if !(-motion.max_rps..=motion.max_rps).contains(&motion.vel_rps) {
+        Some(TrialState::TooFast)
+    } else if now_us.saturating_sub(since_us) > limits::TORQUE_US {
+        Some(TrialState::TooLong)
+    } else {
+        None
+    }
+}
+
+/// A motor that does not exist is silent.
+fn motion(motor: TestMotor, inputs: &TrialInputs<'_>) -> Motion {
+    let nothing = Motion {
+        pos_rad: 0.0,
+        vel_rps: 0.0,
+        max_rps: 0.0,
+        age_us: u32::MAX,
+    };
+    match motor {
+        TestMotor::Wheel(index) => match inputs.motor.wheels.get(usize::from(index)) {
+            Some(wheel) => Motion {
+                vel_rps: f32::from(wheel.rpm) * (TAU / 60.0) / inputs.wheel_odom.gear_ratio,
+                max_rps: limits::WHEEL_SPEED_RPS,
+                age_us: wheel.age_us,
+                ..nothing
+            },
+            None => nothing,
+        },
+        TestMotor::Joint(index) => match inputs.motor.joints.get(usize::from(index)) {
+            Some(joint) => Motion {
+                pos_rad: joint.pos_rad,
+                vel_rps: joint.vel_rps,
+                max_rps: limits::JOINT_SPEED_RPS,
+                age_us: joint.age_us,
+            },
+            None => nothing,
+        },
+    }
+}
+
+fn command(trial: &Trial, motion: &Motion, pose_rad: f32, drive: f32) -> ChassisCommand {
+    let mut command = ChassisCommand::default();
+    match trial.motor {
+        TestMotor::Wheel(index) => {
+            if let Some(wheel) = command.wheels.get_mut(usize::from(index)) {
+                *wheel = wheel_command(trial.action, motion, drive);
+            }
+        }
+        TestMotor::Joint(index) => {
+            if let Some(joint) = command.joints.get_mut(usize::from(index)) {
+                *joint = joint_command(trial.action, motion, pose_rad, drive);
+            }
+        }
+    }
+    command
+}
+
+/// Share of the hard limit, or `None` for a motor to be held.
+fn torque_share(action: TrialAction, drive: f32) -> Option<f32> {
+    match action {
+        TrialAction::StickTorque => Some(drive.clamp(-1.0, 1.0)),
+        TrialAction::FixedTorque(share) => Some(share.clamp(-1.0, 1.0)),
+        TrialAction::Hold => None,
+    }
+}
+
+fn wheel_command(action: TrialAction, motion: &Motion, drive: f32) -> WheelCommand {
+    let limit_ma = limits::WHEEL_CURRENT_MA;
+    let current_ma = match torque_share(action, drive) {
+        Some(share) => share * limit_ma,
+        None => (-limits::BRAKE_MA_PER_RPS * motion.vel_rps).clamp(-limit_ma, limit_ma),
+    };
+    WheelCommand { current_ma }
+}
+
+/// The motor itself computes stiffness and damping. Its target stays so near to the present angle that the two together
+/// cannot exceed the limit.
+fn joint_command(action: TrialAction, motion: &Motion, pose_rad: f32, drive: f32) -> JointCommand {
+    let off = JointCommand {
+        mode: JointMode::Mit,
+        ..JointCommand::default()
+    };
+    if let Some(share) = torque_share(action, drive) {
+        return JointCommand {
+            tau_nm: share * limits::JOINT_TORQUE_NM,
+            ..off
+        };
+    }
+    let damping_nm = limits::HOLD_KD * motion.vel_rps;
+    let stiffness_nm = (limits::HOLD_KP * (pose_rad - motion.pos_rad)).clamp(
+        damping_nm - limits::HOLD_TORQUE_NM,
+        damping_nm + limits::HOLD_TORQUE_NM,
+    );
+    JointCommand {
+        pos_rad: motion.pos_rad + stiffness_nm / limits::HOLD_KP,
+        kp: limits::HOLD_KP,
+        kd: limits::HOLD_KD,
+        ..off
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,127 @@
+//! Requests in, at most one reply a tick and bus out.
+
+use super::{
+    Refusal, TuningStatus, consistency, parameters,
+    protocol::{self, Request},
+    wheel_geometry::WheelGeometry,
+};
+use crate::{
+    bring_up::BringUp,
+    domain::{BusId, CanFrame, OperatorState, RobotConfig},
+    safety::ArmingState,
+};
+
+/// Whether writes are done (seed section 5.3, design.md section 3, rule 6).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TuningGate {
+    Open,
+    /// Armed, or the pilot is about to.
+    Shut,
+}
+
+impl TuningGate {
+    pub fn of(arming: ArmingState, operator: &OperatorState) -> Self {
+        if arming == ArmingState::Disarmed && !operator.enabled {
+            Self::Open
+        } else {
+            Self::Shut
+        }
+    }
+}
+
+#[derive(Clone, Debug, Default)]
+pub struct TuningChannel {
+    /// Index = `BusId`: a reply was made in this tick.
+    replied: [bool; 2],
+    status: TuningStatus,
+}
+
+impl TuningChannel {
+    /// Before the frames of each tick.
+    pub fn begin_tick(&mut self) {
+        self.replied = [false; 2];
+    }
+
+    /// Takes any received frame and gives the reply, for the same bus. A client that waits for each reply always gets
+    /// one; of more requests in one tick all but the first are left undone, so that replies never fill a bus.
+    pub fn on_frame(
+        &mut self,
+        bus: BusId,
+        frame: &CanFrame,
+        gate: TuningGate,
+        config: &mut RobotConfig,
+        bring_up: &mut BringUp,
+    ) -> Option<CanFrame> {
+        let request = Request::decode(frame)?;
+        if core::mem::replace(self.replied.get_mut(bus as usize)?, true) {
+            self.status.dropped = self.status.dropped.wrapping_add(1);
+            return None;
+        }
+        let done = request.and_then(|request| match request {
+            Request::ReadGeometry => {
+                let geometry = WheelGeometry::of(&config.wheel_odom);
+                Ok(protocol::geometry_reply(geometry))
+            }
+            Request::ReadParameter { group, index } => {
+                let value = parameters::find(group, index)?.read(config);
+                Ok(protocol::parameter_reply(group, index, value))
+            }
+            _ if gate == TuningGate::Shut => Err(Refusal::Armed),
+            Request::WriteGeometry(geometry) => self
+                .change(config, |candidate| geometry.apply(candidate))
+                .map(|()| protocol::echo(frame)),
+            Request::WriteParameter {
+                group,
+                index,
+                value,
+            } => {
+                let parameter = parameters::find(group, index)?;
+                self.change(config, |candidate| parameter.write(candidate, value))
+                    .map(|()| protocol::echo(frame))
+            }
+            Request::BringUp(request) => {
+                bring_up.request(request);
+                Ok(protocol::echo(frame))
+            }
+        });
+        Some(self.conclude(frame, done))
+    }
+
+    pub fn status(&self) -> &TuningStatus {
+        &self.status
+    }
+
+    /// All of a change or, if any of it is refused, nothing.
+    fn change(
+        &mut self,
+        config: &mut RobotConfig,
+        apply: impl FnOnce(&mut RobotConfig) -> Result<(), Refusal>,
+    ) -> Result<(), Refusal> {
+        let mut candidate = *config;
+        apply(&mut candidate)?;
+        consistency::check(&candidate)?;
+        if candidate != *config {
+            *config = candidate;
+            self.status.revision = self.status.revision.wrapping_add(1);
+        }
+        Ok(())
+    }
+
+    fn conclude(&mut self, request: &CanFrame, done: Result<CanFrame, Refusal>) -> CanFrame {
+        let status = &mut self.status;
+        match done {
+            Ok(reply) => {
+                status.accepted = status.accepted.wrapping_add(1);
+                reply
+            }
+            Err(reason) => {
+                status.refused = status.refused.wrapping_add(1);
+                status.last_refusal = reason.code();
+                protocol::refusal_reply(request, reason)
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

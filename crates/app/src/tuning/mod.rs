@@ -1,0 +1,20 @@
+//! Settings over CAN while the robot is disarmed (seed section 5.3, docs/tuning.md).
+//!
+//! A request comes on [`WRITE_ID`] or [`READ_ID`] of either bus and is answered on [`REPLY_ID`] of the same bus.
+//! [`PARAMETERS`] lists everything that can be changed.
+
+mod channel;
+mod consistency;
+mod parameter;
+mod parameters;
+mod protocol;
+mod refusal;
+mod status;
+mod wheel_geometry;
+
+pub use channel::{TuningChannel, TuningGate};
+pub use parameter::{Parameter, ParameterGroup, ParameterKind};
+pub use parameters::PARAMETERS;
+pub use protocol::{READ_ID, REPLY_ID, WRITE_ID};
+pub use refusal::Refusal;
+pub use status::TuningStatus;

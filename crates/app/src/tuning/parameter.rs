@@ -1,0 +1,105 @@
+//! One setting: its number, its name, what it may be.
+
+use super::Refusal;
+use crate::domain::RobotConfig;
+
+/// Which of the numbers between its limits a setting may take.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ParameterKind {
+    Float,
+    Integer,
+    /// Only +1 and −1.
+    Sign,
+}
+
+/// A setting of `RobotConfig`. All travel as `f32`, which is exact for the integers here.
+#[derive(Debug)]
+pub struct Parameter {
+    /// Inside its group; never changes.
+    pub index: u8,
+    /// Inside its group.
+    pub name: &'static str,
+    /// Empty for a pure number.
+    pub unit: &'static str,
+    pub min: f32,
+    pub max: f32,
+    pub kind: ParameterKind,
+    pub(super) get: fn(&RobotConfig) -> f32,
+    pub(super) set: fn(&mut RobotConfig, f32),
+}
+
+/// Settings that belong together.
+#[derive(Debug)]
+pub struct ParameterGroup {
+    /// Never changes.
+    pub number: u8,
+    pub name: &'static str,
+    pub parameters: &'static [Parameter],
+}
+
+impl Parameter {
+    pub fn read(&self, config: &RobotConfig) -> f32 {
+        (self.get)(config)
+    }
+
+    /// Unchanged unless `value` is one this setting may take by itself.
+    pub(super) fn write(&self, config: &mut RobotConfig, value: f32) -> Result<(), Refusal> {
+        if !value.is_finite() {
+            return Err(Refusal::NotFinite);
+        }
+        let allowed = match self.kind {
+            ParameterKind::Float => true,
+            ParameterKind::Integer => (value as u32) as f32 == value,
+            ParameterKind::Sign => value == 1.0 || value == -1.0,
+        };
+        if !allowed || !(self.min..=self.max).contains(&value) {
+            return Err(Refusal::OutOfRange);
+        }
+        (self.set)(config, value);
+        Ok(())
+    }
+}
+
+/// `float!(index, "name", "unit", min, max, path in RobotConfig)`.
+macro_rules! float {
+    ($index:literal, $name:literal, $unit:literal, $min:expr, $max:expr, $($field:tt)+) => {
+        Parameter {
+            index: $index,
+            name: $name,
+            unit: $unit,
+            min: $min,
+            max: $max,
+            kind: ParameterKind::Float,
+            get: |config| config.$($field)+,
+            set: |config, value| config.$($field)+ = value,
+        }
+    };
+}
+
+/// As `float!`, for a field of +1 or −1.
+macro_rules! sign {
+    ($index:literal, $name:literal, $($field:tt)+) => {
+        Parameter {
+            kind: ParameterKind::Sign,
+            ..float!($index, $name, "", -1.0, 1.0, $($field)+)
+        }
+    };
+}
+
+/// As `float!`, for a `u32` field.
+macro_rules! integer {
+    ($index:literal, $name:literal, $unit:literal, $min:expr, $max:expr, $($field:tt)+) => {
+        Parameter {
+            index: $index,
+            name: $name,
+            unit: $unit,
+            min: $min,
+            max: $max,
+            kind: ParameterKind::Integer,
+            get: |config| config.$($field)+ as f32,
+            set: |config, value| config.$($field)+ = value as u32,
+        }
+    };
+}
+
+pub(super) use {float, integer, sign};

@@ -1,0 +1,22 @@
+//! Thresholds of `SafetyPolicy` and `Arming`. No limit here lets a rule be switched off, the battery's aside.
+
+use crate::tuning::parameter::{Parameter, ParameterKind, float, integer};
+
+#[rustfmt::skip] // One line a setting.
+pub static SAFETY: [Parameter; 15] = [
+    integer!(0, "remote-timeout-us", "us", 30_000.0, 500_000.0, safety.remote_timeout_us),
+    float!(1, "min-remote-quality", "", 0.1, 1.0, safety.min_remote_quality),
+    integer!(2, "imu-timeout-us", "us", 6_000.0, 100_000.0, safety.imu_timeout_us),
+    integer!(3, "command-timeout-us", "us", 15_000.0, 200_000.0, safety.command_timeout_us),
+    integer!(4, "max-sensor-errors", "", 1.0, 1_000.0, safety.max_sensor_errors),
+    integer!(5, "max-tx-failures", "", 1.0, 1_000.0, safety.max_tx_failures),
+    float!(6, "stick-centre", "", 0.01, 0.3, safety.stick_centre),
+    integer!(7, "arm-request-us", "us", 100_000.0, 10_000_000.0, safety.arm_request_us),
+    integer!(8, "joint-timeout-us", "us", 5_000.0, 200_000.0, safety.joint_timeout_us),
+    float!(9, "max-tilt-rad", "rad", 0.1, 1.57, safety.max_tilt_rad),
+    float!(10, "max-wheel-c", "degC", 30.0, 120.0, safety.max_wheel_c),
+    float!(11, "max-joint-c", "degC", 30.0, 120.0, safety.max_joint_c),
+    float!(12, "battery-low-v", "V", 0.0, 60.0, safety.battery_low_v),
+    float!(13, "battery-empty-v", "V", 0.0, 60.0, safety.battery_empty_v),
+    integer!(14, "clear-hold-us", "us", 200_000.0, 10_000_000.0, safety.clear_hold_us),
+];

@@ -1,0 +1,122 @@
+//! The bytes of requests and replies, all little-endian.
+
+use super::{Refusal, wheel_geometry::WheelGeometry};
+use crate::{
+    bring_up::BringUpRequest,
+    domain::{CanFrame, StandardId},
+};
+
+const fn id(raw: u16) -> StandardId {
+    match StandardId::new(raw) {
+        Some(id) => id,
+        None => unreachable!(),
+    }
+}
+
+/// Requests that change something.
+pub const WRITE_ID: StandardId = id(0x7A0);
+/// Requests that only ask.
+pub const READ_ID: StandardId = id(0x7A1);
+pub const REPLY_ID: StandardId = id(0x7A2);
+
+const WRITE_GEOMETRY: u8 = 0x10;
+const READ_GEOMETRY: u8 = 0x11;
+const WRITE_PARAMETER: u8 = 0x20;
+const READ_PARAMETER: u8 = 0x21;
+const BRING_UP: u8 = 0x40;
+/// No old client takes it for the answer to 0x10 or 0x11.
+const REFUSED: u8 = 0xEE;
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Request {
+    WriteGeometry(WheelGeometry),
+    ReadGeometry,
+    WriteParameter { group: u8, index: u8, value: f32 },
+    ReadParameter { group: u8, index: u8 },
+    BringUp(BringUpRequest),
+}
+
+impl Request {
+    /// `None` for a frame that is not for the tuning channel.
+    pub fn decode(frame: &CanFrame) -> Option<Result<Self, Refusal>> {
+        let id = frame.id();
+        if id == WRITE_ID {
+            Some(Self::decode_write(frame))
+        } else if id == READ_ID {
+            Some(Self::decode_read(frame.payload()))
+        } else {
+            None
+        }
+    }
+
+    /// Writes have eight bytes.
+    fn decode_write(frame: &CanFrame) -> Result<Self, Refusal> {
+        let known = matches!(
+            frame.payload(),
+            [] | [WRITE_GEOMETRY | WRITE_PARAMETER | BRING_UP, ..]
+        );
+        if !known {
+            return Err(Refusal::UnknownCommand);
+        }
+        match frame.full_payload().ok_or(Refusal::WrongLength)? {
+            [WRITE_GEOMETRY, geometry @ ..] => Ok(Self::WriteGeometry(WheelGeometry(geometry))),
+            [WRITE_PARAMETER, group, index, 0, a, b, c, d] => Ok(Self::WriteParameter {
+                group,
+                index,
+                value: f32::from_le_bytes([a, b, c, d]),
+            }),
+            [BRING_UP, step, motor, action, low, high, 0, 0] => {
+                let value = i16::from_le_bytes([low, high]);
+                BringUpRequest::from_fields(step, motor, action, value)
+                    .map(Self::BringUp)
+                    .ok_or(Refusal::OutOfRange)
+            }
+            // A byte that must be 0 is not.
+            _ => Err(Refusal::OutOfRange),
+        }
+    }
+
+    /// Reads may be longer than they need: many tools always send eight bytes.
+    fn decode_read(payload: &[u8]) -> Result<Self, Refusal> {
+        match *payload {
+            [READ_GEOMETRY, ..] => Ok(Self::ReadGeometry),
+            [READ_PARAMETER, group, index, ..] => Ok(Self::ReadParameter { group, index }),
+            [] | [READ_PARAMETER, ..] => Err(Refusal::WrongLength),
+            _ => Err(Refusal::UnknownCommand),
+        }
+    }
+}
+
+pub fn geometry_reply(geometry: WheelGeometry) -> CanFrame {
+    let [a, b, c, d, e, f, g] = geometry.0;
+    CanFrame::new(REPLY_ID, [READ_GEOMETRY, a, b, c, d, e, f, g])
+}
+
+pub fn parameter_reply(group: u8, index: u8, value: f32) -> CanFrame {
+    let [a, b, c, d] = value.to_le_bytes();
+    CanFrame::new(REPLY_ID, [READ_PARAMETER, group, index, 0, a, b, c, d])
+}
+
+/// A write that was done is answered with its own bytes.
+pub fn echo(request: &CanFrame) -> CanFrame {
+    let mut data = [0; 8];
+    for (byte, sent) in data.iter_mut().zip(request.payload()) {
+        *byte = *sent;
+    }
+    CanFrame::new(REPLY_ID, data)
+}
+
+/// Says which request it was: its command, and group and index if it has them.
+pub fn refusal_reply(request: &CanFrame, reason: Refusal) -> CanFrame {
+    let mut bytes = request.payload().iter().copied();
+    let command = bytes.next().unwrap_or(0);
+    let mut address = || match command {
+        WRITE_PARAMETER | READ_PARAMETER => bytes.next().unwrap_or(0),
+        _ => 0,
+    };
+    let (group, index) = (address(), address());
+    CanFrame::new(
+        REPLY_ID,
+        [REFUSED, command, reason.code(), group, index, 0, 0, 0],
+    )
+}

@@ -1,0 +1,41 @@
+//! Why a request changed nothing.
+
+/// The numbers are on the wire and never change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[repr(u8)]
+pub enum Refusal {
+    /// The frame is shorter or longer than its command.
+    WrongLength = 1,
+    UnknownCommand = 2,
+    UnknownParameter = 3,
+    /// Not a value this field may take.
+    OutOfRange = 4,
+    /// The robot is armed or the enable switch is on.
+    Armed = 5,
+    /// NaN or infinite.
+    NotFinite = 6,
+    /// Fits alone but not together with another setting.
+    Inconsistent = 7,
+}
+
+impl Refusal {
+    const ALL: [Self; 7] = [
+        Self::WrongLength,
+        Self::UnknownCommand,
+        Self::UnknownParameter,
+        Self::OutOfRange,
+        Self::Armed,
+        Self::NotFinite,
+        Self::Inconsistent,
+    ];
+
+    pub const fn code(self) -> u8 {
+        self as u8
+    }
+
+    /// `None` unless `code` is one that [`code`](Self::code) gives.
+    pub fn from_code(code: u8) -> Option<Self> {
+        Self::ALL.into_iter().find(|reason| reason.code() == code)
+    }
+}

@@ -1,0 +1,16 @@
+//! The tuning channel for diagnostics.
+
+/// Counters since boot.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(C)]
+pub struct TuningStatus {
+    /// Requests that were done, reads included.
+    pub accepted: u32,
+    pub refused: u32,
+    /// Requests left undone and unanswered: a second one in the same tick on the same bus.
+    pub dropped: u32,
+    /// Grows whenever a setting changes.
+    pub revision: u32,
+    /// Of the last refusal: see `Refusal`; 0 = none yet.
+    pub last_refusal: u8,
+}
