@@ -221,6 +221,7 @@ impl<C: ChassisController> ControlLoop<C> {
         diagnostics.mag_health = health.mag;
         diagnostics.radio_line = health.radio_line;
         diagnostics.imu_calibrated = health.imu_calibrated;
+        diagnostics.imu_status = health.imu_status;
         diagnostics.tick = self.tick;
         diagnostics.late_tasks = health.late_tasks;
         diagnostics.reset_cause = health.reset_cause;
