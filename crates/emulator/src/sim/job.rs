@@ -64,6 +64,8 @@ impl Job {
         let world = World::new(WorldConfig {
             plant: self.scenario.plant,
             radio: self.scenario.radio,
+            joints: self.scenario.joints,
+            imu_temperature_c: self.scenario.imu_temperature_c,
             seed: self.scenario.seed,
             imu_trial: self.imu_trial.clone(),
         })?;

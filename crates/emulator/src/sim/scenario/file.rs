@@ -141,7 +141,10 @@ pub(super) fn parse(text: &str, file: &str) -> Result<Scenario, ScenarioError> {
         let what = format!("`seconds` is {seconds}; write a length between 0 and 3600");
         return Err(source.wrong(raw.seconds.span().start, what));
     }
-    if raw.imu_temperature_c.is_some_and(|c| !(-40.0..=85.0).contains(&c)) {
+    if raw
+        .imu_temperature_c
+        .is_some_and(|c| !(-40.0..=85.0).contains(&c))
+    {
         let what = "`imu_temperature_c` is outside what the BMI088 works at; write -40 to 85";
         return Err(source.wrong(0, what));
     }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use robot_plant::{
     time::Ps,
     wire::CanFrame,
-    world::{CanBusId, PlantKind, RadioKind, RemoteInput},
+    world::{CanBusId, JointKind, PlantKind, RadioKind, RemoteInput},
 };
 
 use super::expectation::Expectation;
@@ -20,6 +20,9 @@ pub struct Scenario {
     pub length: Ps,
     pub plant: PlantKind,
     pub radio: RadioKind,
+    pub joints: JointKind,
+    /// Of the IMU's package at power-on; unset, the board has been on before.
+    pub imu_temperature_c: Option<f64>,
     pub seed: u64,
     /// In order of time; what was written first comes first at equal times.
     pub actions: Vec<Action>,

@@ -122,3 +122,19 @@ fn flags_are_expected_by_name() {
     let flags: Vec<_> = flags.map(|f| (f.name.as_str(), f.set)).collect();
     assert_eq!(flags, [("lost", true), ("hot", false)]);
 }
+
+#[test]
+fn the_robot_may_have_other_joints_and_a_cold_board() {
+    let plain = Scenario::parse(HEAD, "s.toml").unwrap();
+    assert_eq!(
+        (plain.joints, plain.imu_temperature_c),
+        (JointKind::Dm4310, None)
+    );
+    let text = format!("{HEAD}joints = \"rs00\"\nimu_temperature_c = 22.0\n");
+    let cold = Scenario::parse(&text, "s.toml").unwrap();
+    assert_eq!(
+        (cold.joints, cold.imu_temperature_c),
+        (JointKind::Rs00, Some(22.0))
+    );
+    assert!(error_of("imu_temperature_c = 200.0\n").contains("BMI088"));
+}
