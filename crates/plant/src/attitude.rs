@@ -8,6 +8,12 @@ pub(crate) fn from_yaw(yaw_rad: f64) -> Quaternion {
     [cos, 0.0, 0.0, sin]
 }
 
+/// Turned about the earth's vertical, then pitched about the body's y axis, nose down positive.
+pub(crate) fn from_yaw_pitch(yaw_rad: f64, pitch_rad: f64) -> Quaternion {
+    let (sin, cos) = (pitch_rad / 2.0).sin_cos();
+    multiply(from_yaw(yaw_rad), [cos, 0.0, sin, 0.0])
+}
+
 /// `a` then rotated by nothing else: the Hamilton product `a·b`.
 fn multiply(a: Quaternion, b: Quaternion) -> Quaternion {
     let [w, x, y, z] = a;

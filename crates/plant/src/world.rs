@@ -6,10 +6,11 @@ mod can_buses;
 mod joint_wires;
 mod scenario;
 mod signals;
+mod tuning_replies;
 
 use crate::{
     bmi088::{Bmi088, MotionSource},
-    body::{Body, Legs},
+    body::{Body, Legs, Tilt},
     can_adapter::CanAdapter,
     faults::ActiveFaults,
     ist8310::Ist8310,
@@ -21,6 +22,7 @@ use crate::{
     supply::Battery,
     time::{Ps, US, to_seconds},
 };
+use tuning_replies::TuningReplies;
 
 pub use crate::joints::JointKind;
 
@@ -131,6 +133,7 @@ pub struct World {
     now: Ps,
     next_step: Ps,
     body: Body,
+    tilt: Tilt,
     /// Left, right.
     escs: [C620; 2],
     joints: [Joint; JOINTS],
@@ -139,6 +142,7 @@ pub struct World {
     legs: Legs,
     /// CAN1, CAN2.
     adapters: [CanAdapter; 2],
+    tuning_replies: TuningReplies,
     battery: Battery,
     imu: Bmi088,
     mag: Ist8310,
@@ -167,6 +171,7 @@ impl World {
             now: 0,
             next_step: PHYSICS_STEP,
             body: Body::new(config.plant),
+            tilt: Tilt::default(),
             escs: [
                 C620::new(1, Random::new(seed, Stream::LeftMotor)),
                 C620::new(2, Random::new(seed, Stream::RightMotor)),
@@ -175,6 +180,7 @@ impl World {
             joints_told: Default::default(),
             legs: Legs::default(),
             adapters: Default::default(),
+            tuning_replies: TuningReplies::default(),
             battery: Battery::default(),
             imu: Bmi088::new(seed, source, config.imu_temperature_c),
             mag: Ist8310::new(seed, source),

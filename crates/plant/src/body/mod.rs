@@ -3,11 +3,13 @@
 mod legs;
 mod rolling;
 mod stand;
+mod tilt;
 
 use crate::{bmi088::Motion, m3508::Friction, world::PlantKind};
 pub(crate) use legs::Legs;
 use rolling::Rolling;
 use stand::Stand;
+pub(crate) use tilt::Tilt;
 
 /// Wheel radius in m.
 pub(crate) const WHEEL_RADIUS_M: f64 = 0.06;

@@ -84,6 +84,8 @@ impl World {
         self.battery.load(power_w);
         self.body
             .step(torques_nm, M3508::friction(), physics_step_s());
+        self.tilt
+            .step(self.faults.has(Fault::Tilted), physics_step_s());
         self.imu.step(self.motion(at), at, physics_step_s());
     }
 
@@ -130,14 +132,14 @@ impl World {
     pub(super) fn motion(&self, at: Ps) -> Motion {
         match &self.playback {
             Some(playback) => playback.motion(at),
-            None => self.body.motion(),
+            None => self.tilt.felt(self.body.motion()),
         }
     }
 
     fn field_ut(&self, at: Ps) -> [f64; 3] {
         match &self.playback {
             Some(playback) => playback.field_ut(at),
-            None => attitude::to_body(attitude::from_yaw(self.body.pose().yaw_rad), EARTH_FIELD_UT),
+            None => attitude::to_body(self.tilt.attitude(self.body.pose().yaw_rad), EARTH_FIELD_UT),
         }
     }
 

@@ -132,7 +132,10 @@ impl World {
                     value: self.escs[wheel].commanded_ma(),
                 });
             }
-            Node::Adapter => self.can_adapter(bus).hear(frame, now),
+            Node::Adapter => {
+                self.note_tuning_reply(frame, now);
+                self.can_adapter(bus).hear(frame, now);
+            }
             Node::Joint(joint) => self.joint_heard(joint, frame, now),
             Node::Esc(_) | Node::Rogue(_) => {}
         }

@@ -86,7 +86,7 @@ impl World {
     pub(super) fn true_attitude(&self) -> Option<Quaternion> {
         match &self.playback {
             Some(playback) => playback.reference(self.now),
-            None => Some(attitude::from_yaw(self.body.pose().yaw_rad)),
+            None => Some(self.tilt.attitude(self.body.pose().yaw_rad)),
         }
     }
 }

@@ -5,7 +5,7 @@ use crate::{body::WHEEL_RADIUS_M, recording::Playback};
 
 type Signal = (&'static str, fn(&World) -> f64);
 
-/// Signals decoded from CAN come first, two a motor, so that wire events can point at them.
+/// Signals decoded from CAN come first, two a wheel, so that wire events can point at them.
 pub(super) fn motor_current_ma(wheel: usize) -> usize {
     2 * wheel
 }
@@ -19,12 +19,31 @@ pub(super) fn joint(joint: usize) -> [usize; 5] {
     std::array::from_fn(|part| 4 + 5 * joint + part)
 }
 
+pub(super) const TUNING_REPLIES: usize = 24;
+
+pub(super) fn tuning_reply(byte: usize) -> usize {
+    TUNING_REPLIES + 1 + byte
+}
+
 /// Current as commanded on the wire; rotor speed as fed back. Both in the motor's own sense of rotation.
 const CAN: &[Signal] = &[
     ("can.m3508.0.current_ma", |w| w.escs[0].commanded_ma()),
     ("can.m3508.0.rpm", |w| w.escs[0].fed_back_rpm()),
     ("can.m3508.1.current_ma", |w| w.escs[1].commanded_ma()),
     ("can.m3508.1.rpm", |w| w.escs[1].fed_back_rpm()),
+];
+
+/// Replies on the tuning channel that a PC's adapter heard on either bus, and the bytes of the last one.
+const TUNING: &[Signal] = &[
+    ("can.tuning.replies", |w| w.tuning_replies.count as f64),
+    ("can.tuning.reply.0", |w| w.tuning_replies.last[0]),
+    ("can.tuning.reply.1", |w| w.tuning_replies.last[1]),
+    ("can.tuning.reply.2", |w| w.tuning_replies.last[2]),
+    ("can.tuning.reply.3", |w| w.tuning_replies.last[3]),
+    ("can.tuning.reply.4", |w| w.tuning_replies.last[4]),
+    ("can.tuning.reply.5", |w| w.tuning_replies.last[5]),
+    ("can.tuning.reply.6", |w| w.tuning_replies.last[6]),
+    ("can.tuning.reply.7", |w| w.tuning_replies.last[7]),
 ];
 
 /// Of one joint's motor, in its own sense of rotation: 1 while it is enabled; torque its present command asks for; the
@@ -156,6 +175,7 @@ fn signals(recording: bool) -> impl Iterator<Item = &'static Signal> {
     [
         CAN,
         JOINT_WIRES.as_flattened(),
+        TUNING,
         RADIO,
         BODY,
         WHEELS,
@@ -219,6 +239,13 @@ mod tests {
     #[test]
     fn wire_events_point_at_their_signals() {
         let names = names(false);
+        assert_eq!(names[TUNING_REPLIES], "can.tuning.replies");
+        for byte in 0..8 {
+            assert_eq!(
+                names[tuning_reply(byte)],
+                format!("can.tuning.reply.{byte}")
+            );
+        }
         for index in 0..4 {
             let parts = ["enabled", "torque_nm", "pos_rad", "vel_rps", "stop_frames"];
             for (signal, part) in joint(index).into_iter().zip(parts) {
