@@ -16,6 +16,10 @@ pub struct ChassisControllerInput<'a> {
     pub operator_state: &'a OperatorState,
     /// From whoever is in command; not sure to be inside −1 … 1.
     pub hl_cmd: HighLevelCommand,
+    /// Wheel commands of this tick go nowhere: what integrates their errors must start again.
+    pub wheels_stopped: bool,
+    /// The same for joints.
+    pub joints_stopped: bool,
 }
 
 /// What it wants. Not valid = zero on every actuator.
@@ -31,6 +35,6 @@ pub trait ChassisController {
     fn step(&mut self, input: &ChassisControllerInput<'_>) -> ChassisControllerOutput;
 
     /// Forgets integrators and filters: called in every tick without [`step`](Self::step), so that a controller starts
-    /// each drive fresh and does not wind up against motors that are cut off.
+    /// each drive fresh. If only wheels or only joints are cut off, `step` goes on and the input says so.
     fn reset(&mut self);
 }

@@ -90,6 +90,8 @@ mod tests {
             joint_ctrl_cfg: &JointControllerConfig::default(),
             operator_state: &OperatorState::default(),
             hl_cmd,
+            wheels_stopped: false,
+            joints_stopped: false,
         });
         assert!(output.cmd_valid);
         output.cmd.wheels.map(|wheel| wheel.current_ma)

@@ -78,14 +78,15 @@ impl MotorManager {
         }
     }
 
-    /// True if the permit lets any motor move.
-    pub fn may_move(&self, permit: Option<&TorquePermit>) -> bool {
-        let Some(permit) = permit else {
-            return false;
-        };
+    /// True if the permit lets the wheels push.
+    pub fn wheels_may_move(&self, permit: Option<&TorquePermit>) -> bool {
+        permit.is_some_and(|permit| permit.allows_wheels(self.layout.wheels().bus))
+    }
+
+    /// True if the permit lets any joint be enabled.
+    pub fn joints_may_move(&self, permit: Option<&TorquePermit>) -> bool {
         let mut joints = self.layout.joints().iter();
-        permit.allows_wheels(self.layout.wheels().bus)
-            || joints.any(|slot| permit.allows_joints(slot.bus))
+        permit.is_some_and(|permit| joints.any(|slot| permit.allows_joints(slot.bus)))
     }
 
     /// The frames of this tick, and the commands that are in them. Without a permit for a motor they are exactly zero:

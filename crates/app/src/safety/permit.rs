@@ -19,11 +19,6 @@ impl TorquePermit {
         !self.status.stops_wheels(bus)
     }
 
-    /// True if wheels on this bus may push.
-    pub const fn allows(&self, bus: BusId) -> bool {
-        self.allows_wheels(bus)
-    }
-
     /// True if joints on this bus may be enabled.
     pub const fn allows_joints(&self, bus: BusId) -> bool {
         !self.status.stops_joints(bus)

@@ -47,6 +47,12 @@ enum Demand {
     Control(HighLevelCommand),
 }
 
+/// What no command reaches in this tick.
+struct Stopped {
+    wheels: bool,
+    joints: bool,
+}
+
 /// State of all stages of the tick. Same calls, same results, bit for bit.
 #[derive(Clone, Debug)]
 pub struct ControlLoop<C: ChassisController = UserController> {
@@ -151,13 +157,17 @@ impl<C: ChassisController> ControlLoop<C> {
     }
 
     fn act(&mut self, inputs: &ControlInputs<'_>, permit: Option<&TorquePermit>, now_us: u64) {
-        let demand = if self.motors.may_move(permit) {
-            self.demand(inputs.logic, now_us)
-        } else {
+        let stopped = Stopped {
+            wheels: !self.motors.wheels_may_move(permit),
+            joints: !self.motors.joints_may_move(permit),
+        };
+        let demand = if stopped.wheels && stopped.joints {
             Demand::Stop
+        } else {
+            self.demand(inputs.logic, now_us)
         };
         let wanted = match demand {
-            Demand::Control(hl_cmd) => self.control(inputs, hl_cmd),
+            Demand::Control(hl_cmd) => self.control(inputs, hl_cmd, &stopped),
             Demand::Direct(command) => {
                 self.controller.reset();
                 command
@@ -189,7 +199,12 @@ impl<C: ChassisController> ControlLoop<C> {
         }
     }
 
-    fn control(&mut self, inputs: &ControlInputs<'_>, hl_cmd: HighLevelCommand) -> ChassisCommand {
+    fn control(
+        &mut self,
+        inputs: &ControlInputs<'_>,
+        hl_cmd: HighLevelCommand,
+        stopped: &Stopped,
+    ) -> ChassisCommand {
         let output = self.controller.step(&ChassisControllerInput {
             sensors: &self.sensors,
             estimate: &self.diagnostics.estimate,
@@ -198,6 +213,8 @@ impl<C: ChassisController> ControlLoop<C> {
             joint_ctrl_cfg: &self.config.joint_ctrl,
             operator_state: &inputs.remote.operator,
             hl_cmd,
+            wheels_stopped: stopped.wheels,
+            joints_stopped: stopped.joints,
         });
         if output.cmd_valid {
             output.cmd

@@ -140,9 +140,10 @@ fn a_bad_bus_stops_only_its_own_actuators() {
 /// The limit is 20.
 #[test]
 fn accumulated_sensor_errors_stop_everything_until_cleared() {
-    let imu = |bench: &mut Bench| bench.health.imu.errors = 21;
-    let mag = |bench: &mut Bench| bench.health.mag.errors = 21;
-    let cases: [(fn(&mut Bench), SafetyFlags); 2] = [
+    type Spoil = fn(&mut Bench);
+    let imu: Spoil = |bench| bench.health.imu.errors = 21;
+    let mag: Spoil = |bench| bench.health.mag.errors = 21;
+    let cases = [
         (imu, SafetyFlags::IMU_ERRORS),
         (mag, SafetyFlags::MAG_ERRORS),
     ];
