@@ -1,1 +1,255 @@
+//! Bytes written by hand from ROBOT_CPP's section 5.3 and docs/tuning.md.
 
+use super::*;
+use crate::{
+    bring_up::BringUpStep,
+    domain::{StandardId, WheelOdomConfig},
+};
+
+/// ROBOT_CPP 5.3: radius 75 mm, track 450 mm, ratio 36.00, left wheel reversed.
+const GEOMETRY: [u8; 8] = [0x10, 75, 0, 0xC2, 0x01, 0x10, 0x0E, 0x01];
+
+#[derive(Default)]
+struct Bench {
+    channel: TuningChannel,
+    config: RobotConfig,
+    bring_up: BringUp,
+}
+
+impl Bench {
+    fn ask(&mut self, gate: TuningGate, id: u16, payload: &[u8]) -> Option<CanFrame> {
+        let id = StandardId::new(id).unwrap();
+        let frame = CanFrame::from_payload(id, payload).unwrap();
+        let Self {
+            channel,
+            config,
+            bring_up,
+        } = self;
+        channel.on_frame(BusId::Can1, &frame, gate, config, bring_up)
+    }
+
+    /// The reply to the first request of a tick.
+    fn reply(&mut self, gate: TuningGate, id: u16, payload: &[u8]) -> [u8; 8] {
+        self.channel.begin_tick();
+        let reply = self.ask(gate, id, payload).unwrap();
+        assert_eq!(reply.id().raw(), 0x7A2);
+        reply.full_payload().unwrap()
+    }
+
+    fn write(&mut self, payload: &[u8]) -> [u8; 8] {
+        self.reply(TuningGate::Open, 0x7A0, payload)
+    }
+
+    fn read(&mut self, payload: &[u8]) -> [u8; 8] {
+        self.reply(TuningGate::Open, 0x7A1, payload)
+    }
+
+    fn unchanged(&self) -> bool {
+        self.config == RobotConfig::default()
+            && self.channel.status().revision == 0
+            && self.bring_up.status().step == BringUpStep::Off
+    }
+}
+
+#[test]
+fn an_old_client_writes_the_wheel_geometry_and_gets_its_own_bytes() {
+    let mut bench = Bench::default();
+    assert_eq!(bench.write(&GEOMETRY), GEOMETRY);
+    let expected = WheelOdomConfig {
+        wheel_radius_m: 0.075,
+        wheel_track_m: 0.45,
+        gear_ratio: 36.0,
+        rpm_sign_left: -1.0,
+        rpm_sign_right: 1.0,
+    };
+    assert_eq!(bench.config.wheel_odom, expected);
+    assert_eq!(
+        bench.read(&[0x11]),
+        [0x11, 75, 0, 0xC2, 0x01, 0x10, 0x0E, 0x01]
+    );
+}
+
+/// 60 mm, 420 mm, 3591/187 = 19.203 as 1920, right wheel reversed. The length of a read is free.
+#[test]
+fn an_old_client_reads_the_defaults() {
+    let mut bench = Bench::default();
+    let expected = [0x11, 60, 0, 0xA4, 0x01, 0x80, 0x07, 0x02];
+    assert_eq!(bench.read(&[0x11]), expected);
+    assert_eq!(bench.read(&[0x11, 9, 9, 9, 9, 9, 9, 9]), expected);
+    assert_eq!(bench.reply(TuningGate::Shut, 0x7A1, &[0x11]), expected);
+}
+
+/// IEEE 754 by hand: 30,000 = 0x46EA6000, 8,000 = 0x45FA0000.
+#[test]
+fn any_setting_is_written_and_read() {
+    let mut bench = Bench::default();
+    let write = [0x20, 2, 2, 0, 0x00, 0x60, 0xEA, 0x46];
+    assert_eq!(bench.write(&write), write);
+    assert_eq!(bench.config.wheel_ctrl.kp_ma_per_mps, 30_000.0);
+    assert_eq!(
+        bench.read(&[0x21, 2, 2]),
+        [0x21, 2, 2, 0, 0x00, 0x60, 0xEA, 0x46]
+    );
+    assert_eq!(
+        bench.read(&[0x21, 2, 3]),
+        [0x21, 2, 3, 0, 0x00, 0x00, 0xFA, 0x45]
+    );
+}
+
+/// A refusal never begins with the command of a reply that an old client knows.
+#[test]
+fn every_refusal_says_why_and_changes_nothing() {
+    const NAN: [u8; 4] = [0x00, 0x00, 0xC0, 0x7F];
+    let [n0, n1, n2, n3] = NAN;
+    let writes: [(&[u8], [u8; 5]); 14] = [
+        // No command, a short, an unknown one, a read on the identifier of writes.
+        (&[], [0xEE, 0x00, 1, 0, 0]),
+        (
+            &[0x10, 75, 0, 0xC2, 0x01, 0x10, 0x0E],
+            [0xEE, 0x10, 1, 0, 0],
+        ),
+        (&[0x20, 2, 2], [0xEE, 0x20, 1, 2, 2]),
+        (&[0x40, 1], [0xEE, 0x40, 1, 0, 0]),
+        (&[0x12, 0, 0, 0, 0, 0, 0, 0], [0xEE, 0x12, 2, 0, 0]),
+        (&[0x11], [0xEE, 0x11, 2, 0, 0]),
+        // No such setting.
+        (&[0x20, 99, 1, 0, 0, 0, 0, 0], [0xEE, 0x20, 3, 99, 1]),
+        // Ratio 0, radius 0, a bit that has no meaning, a byte that must be 0, -1.0 mA as current limit.
+        (&[0x10, 75, 0, 0xC2, 0x01, 0, 0, 0], [0xEE, 0x10, 4, 0, 0]),
+        (
+            &[0x10, 0, 0, 0xC2, 0x01, 0x10, 0x0E, 0],
+            [0xEE, 0x10, 4, 0, 0],
+        ),
+        (
+            &[0x10, 75, 0, 0xC2, 0x01, 0x10, 0x0E, 4],
+            [0xEE, 0x10, 4, 0, 0],
+        ),
+        (&[0x20, 2, 2, 1, 0, 0x60, 0xEA, 0x46], [0xEE, 0x20, 4, 2, 2]),
+        (&[0x20, 2, 3, 0, 0, 0, 0x80, 0xBF], [0xEE, 0x20, 4, 2, 3]),
+        (&[0x20, 2, 2, 0, n0, n1, n2, n3], [0xEE, 0x20, 6, 2, 2]),
+        // Lower limit of joint 0 at 2.0 rad, its upper one is 1.5.
+        (&[0x20, 16, 2, 0, 0, 0, 0, 0x40], [0xEE, 0x20, 7, 16, 2]),
+    ];
+    for (payload, expected) in writes {
+        let mut bench = Bench::default();
+        assert_eq!(bench.write(payload)[..5], expected, "{payload:x?}");
+        assert_eq!(bench.write(payload)[5..], [0; 3]);
+        assert!(bench.unchanged(), "{payload:x?}");
+        let status = bench.channel.status();
+        assert_eq!((status.accepted, status.refused), (0, 2));
+        assert_eq!(status.last_refusal, expected[2]);
+    }
+    let reads: [(&[u8], [u8; 5]); 5] = [
+        (&[], [0xEE, 0x00, 1, 0, 0]),
+        (&[0x21, 2], [0xEE, 0x21, 1, 2, 0]),
+        (&[0x21, 2, 200], [0xEE, 0x21, 3, 2, 200]),
+        (
+            &[0x10, 75, 0, 0xC2, 0x01, 0x10, 0x0E, 0],
+            [0xEE, 0x10, 2, 0, 0],
+        ),
+        (&[0xEE, 1, 2], [0xEE, 0xEE, 2, 0, 0]),
+    ];
+    for (payload, expected) in reads {
+        assert_eq!(
+            Bench::default().read(payload)[..5],
+            expected,
+            "{payload:x?}"
+        );
+    }
+}
+
+#[test]
+fn nothing_is_written_while_armed() {
+    let mut bench = Bench::default();
+    for (payload, expected) in [
+        (GEOMETRY, [0xEE, 0x10, 5, 0, 0, 0, 0, 0]),
+        (
+            [0x20, 2, 2, 0, 0, 0x60, 0xEA, 0x46],
+            [0xEE, 0x20, 5, 2, 2, 0, 0, 0],
+        ),
+        ([0x40, 2, 0, 0, 0, 0, 0, 0], [0xEE, 0x40, 5, 0, 0, 0, 0, 0]),
+    ] {
+        assert_eq!(bench.reply(TuningGate::Shut, 0x7A0, &payload), expected);
+        assert!(bench.unchanged());
+    }
+}
+
+#[test]
+fn the_gate_is_open_only_with_the_switch_off_and_the_robot_disarmed() {
+    for (arming, enabled, gate) in [
+        (ArmingState::Disarmed, false, TuningGate::Open),
+        (ArmingState::Disarmed, true, TuningGate::Shut),
+        (ArmingState::Armed, false, TuningGate::Shut),
+        (ArmingState::Armed, true, TuningGate::Shut),
+    ] {
+        let operator = OperatorState {
+            enabled,
+            ..OperatorState::default()
+        };
+        assert_eq!(TuningGate::of(arming, &operator), gate);
+    }
+}
+
+/// The geometry is one change: an impossible ratio keeps the radius that came with it out, too.
+#[test]
+fn a_write_is_done_whole_or_not_at_all() {
+    let mut bench = Bench::default();
+    bench.write(&[0x10, 75, 0, 0xC2, 0x01, 0, 0, 0]);
+    assert!(bench.unchanged());
+}
+
+#[test]
+fn one_request_a_tick_and_bus() {
+    let mut bench = Bench::default();
+    bench.channel.begin_tick();
+    assert!(bench.ask(TuningGate::Open, 0x7A1, &[0x11]).is_some());
+    assert_eq!(bench.ask(TuningGate::Open, 0x7A0, &GEOMETRY), None);
+    assert!(bench.unchanged());
+    assert_eq!(bench.channel.status().dropped, 1);
+    let read = CanFrame::from_payload(protocol::READ_ID, &[0x11]).unwrap();
+    let Bench {
+        channel,
+        config,
+        bring_up,
+    } = &mut bench;
+    let other_bus = channel.on_frame(BusId::Can2, &read, TuningGate::Open, config, bring_up);
+    assert!(other_bus.is_some());
+    bench.channel.begin_tick();
+    assert!(bench.ask(TuningGate::Open, 0x7A0, &GEOMETRY).is_some());
+}
+
+#[test]
+fn other_frames_are_nobody_s_business() {
+    let mut bench = Bench::default();
+    for id in [0x7A2, 0x79F, 0x201, 0x000] {
+        assert_eq!(bench.ask(TuningGate::Open, id, &GEOMETRY), None);
+    }
+    assert_eq!(*bench.channel.status(), TuningStatus::default());
+}
+
+#[test]
+fn the_revision_counts_changes_only() {
+    let mut bench = Bench::default();
+    bench.write(&GEOMETRY);
+    bench.write(&GEOMETRY);
+    bench.read(&[0x11]);
+    let status = bench.channel.status();
+    assert_eq!((status.accepted, status.revision), (3, 1));
+}
+
+/// Third step, motor 2 (joint 0), torque, 300 mN·m = 0x012C; then 501 mN·m = 0x01F5.
+#[test]
+fn bring_up_is_asked_for_and_echoed() {
+    let mut bench = Bench::default();
+    let start = [0x40, 3, 2, 0, 0x2C, 0x01, 0, 0];
+    assert_eq!(bench.write(&start), start);
+    assert!(!bench.bring_up.blocks_arming());
+    let read_only = [0x40, 1, 0, 0, 0, 0, 0, 0];
+    assert_eq!(bench.write(&read_only), read_only);
+    assert!(bench.bring_up.blocks_arming());
+    let too_much = bench.write(&[0x40, 3, 2, 0, 0xF5, 0x01, 0, 0]);
+    assert_eq!(too_much, [0xEE, 0x40, 4, 0, 0, 0, 0, 0]);
+    assert!(bench.bring_up.blocks_arming());
+    bench.write(&[0x40, 0, 0, 0, 0, 0, 0, 0]);
+    assert!(!bench.bring_up.blocks_arming());
+}

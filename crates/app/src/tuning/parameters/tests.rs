@@ -1,1 +1,111 @@
+use super::*;
+use crate::{
+    domain::RobotConfig,
+    tuning::{ParameterKind, Refusal},
+};
 
+fn all() -> impl Iterator<Item = (&'static ParameterGroup, &'static Parameter)> {
+    PARAMETERS
+        .iter()
+        .flat_map(|group| group.parameters.iter().map(move |p| (group, p)))
+}
+
+/// Every field of the configuration is four bytes wide; three of the soft iron matrix are mirror images.
+#[test]
+fn every_field_of_the_configuration_has_a_setting() {
+    let fields = size_of::<RobotConfig>() / 4;
+    assert_eq!(all().count(), fields - 3);
+}
+
+#[test]
+fn numbers_and_names_are_unique() {
+    for (position, (group, parameter)) in all().enumerate() {
+        for (other_group, other) in all().skip(position + 1) {
+            assert!((group.number, parameter.index) != (other_group.number, other.index));
+            assert!((group.name, parameter.name) != (other_group.name, other.name));
+        }
+        let found = find(group.number, parameter.index).unwrap();
+        assert!(std::ptr::eq(found, parameter));
+    }
+    assert_eq!(find(1, 5).err(), Some(Refusal::UnknownParameter));
+    assert_eq!(find(8, 0).err(), Some(Refusal::UnknownParameter));
+}
+
+#[test]
+fn a_setting_changes_its_own_field_and_no_other() {
+    let default = RobotConfig::default();
+    for (group, parameter) in all() {
+        for wanted in [parameter.min, parameter.max] {
+            let mut config = default;
+            assert_eq!(parameter.write(&mut config, wanted), Ok(()));
+            for (other_group, other) in all() {
+                let same = group.number == other_group.number && parameter.index == other.index;
+                let expected = if same { wanted } else { other.read(&default) };
+                let name = (group.name, parameter.name, other.name);
+                assert_eq!(other.read(&config), expected, "{name:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_limits_are_exact_and_the_default_lies_between() {
+    for (group, parameter) in all() {
+        let name = (group.name, parameter.name);
+        let mut config = RobotConfig::default();
+        let value = parameter.read(&config);
+        assert_eq!(parameter.write(&mut config, value), Ok(()), "{name:?}");
+        for (outside, reason) in [
+            (parameter.min.next_down(), Refusal::OutOfRange),
+            (parameter.max.next_up(), Refusal::OutOfRange),
+            (f32::NAN, Refusal::NotFinite),
+            (f32::NEG_INFINITY, Refusal::NotFinite),
+        ] {
+            assert_eq!(
+                parameter.write(&mut config, outside),
+                Err(reason),
+                "{name:?}"
+            );
+        }
+        assert_eq!(config, RobotConfig::default(), "{name:?}");
+    }
+}
+
+/// An `f32` holds every integer up to 2^24.
+#[test]
+fn integers_travel_exactly() {
+    for (_, parameter) in all() {
+        if parameter.kind == ParameterKind::Integer {
+            assert!(parameter.min >= 0.0 && parameter.max <= 16_777_216.0);
+            let mut config = RobotConfig::default();
+            let between = parameter.write(&mut config, parameter.min + 0.5);
+            assert_eq!(between, Err(Refusal::OutOfRange));
+        }
+    }
+}
+
+#[test]
+fn a_direction_is_forward_or_backward() {
+    let mut config = RobotConfig::default();
+    for value in [0.0, 0.5, -0.999] {
+        let written = find(16, 0).unwrap().write(&mut config, value);
+        assert_eq!(written, Err(Refusal::OutOfRange));
+    }
+}
+
+/// Group and index as robots in the field know them.
+#[test]
+fn wire_numbers_stay() {
+    let default = RobotConfig::default();
+    let read = |group, index| find(group, index).unwrap().read(&default);
+    assert_eq!(read(1, 0), 0.06);
+    assert_eq!(read(1, 4), -1.0);
+    assert_eq!(read(2, 3), 8_000.0);
+    assert_eq!(read(3, 0), 20.0);
+    assert_eq!(read(4, 9), 0.9);
+    assert_eq!(read(4, 12), 21.0);
+    assert_eq!(read(7, 0), 40.0);
+    assert_eq!(read(16, 0), 1.0);
+    assert_eq!(read(18, 0), -1.0);
+    assert_eq!(read(19, 3), 1.5);
+}
