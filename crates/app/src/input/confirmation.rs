@@ -125,6 +125,35 @@ mod tests {
     }
 
     #[test]
+    fn the_dead_man_stick_needs_two_frames_and_its_end_one() {
+        let mut confirmation = Confirmation::default();
+        let held: Vec<bool> = [true, false, true, true, true, false]
+            .map(|dead_man| {
+                let (state, operator) = frame(0.0, true, false, DriveMode::Manual);
+                let operator = OperatorState {
+                    dead_man,
+                    ..operator
+                };
+                feed(&mut confirmation, (state, operator)).2.dead_man
+            })
+            .to_vec();
+        assert_eq!(held, [false, false, false, true, true, false]);
+    }
+
+    #[test]
+    fn one_wrong_frame_is_no_flick_of_the_selector() {
+        let mut confirmation = Confirmation::default();
+        let selected: Vec<f32> = [0.0, 0.0, 1.0, 0.0, 1.0, 1.0]
+            .map(|select| {
+                let (state, operator) = frame(0.0, true, false, DriveMode::Manual);
+                let state = RemoteState { select, ..state };
+                confirmation.confirm(state, operator).0.select
+            })
+            .to_vec();
+        assert_eq!(selected, [0.0, 0.0, 0.0, 0.0, 1.0, 1.0]);
+    }
+
+    #[test]
     fn enable_needs_two_frames_and_its_end_one() {
         let mut confirmation = Confirmation::default();
         let enabled: Vec<bool> = [true, false, true, true, false, true]

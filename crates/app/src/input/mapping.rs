@@ -119,3 +119,45 @@ pub(super) fn from_dbus(frame: &DbusFrame, ts_us: u64) -> (RemoteState, Operator
     };
     (state, operator)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Ends and centre of SBUS: 172, 992, 1811; of DBUS: 364, 1024, 1684 (hardware.md section 6). Beyond 0.7: 1566 and
+    /// 1487.
+    #[test]
+    fn the_left_stick_is_dead_man_and_selector_on_both_radios() {
+        let sbus = |select, dead_man| {
+            let mut channels = [992; 16];
+            (channels[2], channels[3]) = (select, dead_man);
+            let frame = SbusFrame {
+                channels,
+                channel_17: false,
+                channel_18: false,
+                frame_lost: false,
+                failsafe: false,
+            };
+            let (state, operator) = from_sbus(&frame, &RemoteMapping::default(), 1);
+            (state.select, operator.dead_man)
+        };
+        assert_eq!(sbus(992, 992), (0.0, false));
+        assert_eq!(sbus(1811, 1811), (1.0, true));
+        assert_eq!(sbus(172, 172), (-1.0, false));
+        assert_eq!((sbus(992, 1565).1, sbus(992, 1566).1), (false, true));
+        let dbus = |select, dead_man| {
+            let frame = DbusFrame {
+                sticks: [1024, 1024, dead_man, select],
+                wheel: 1024,
+                right_switch: DbusSwitch::Middle,
+                left_switch: DbusSwitch::Middle,
+            };
+            let (state, operator) = from_dbus(&frame, 1);
+            (state.select, operator.dead_man)
+        };
+        assert_eq!(dbus(1024, 1024), (0.0, false));
+        assert_eq!(dbus(364, 1684), (-1.0, true));
+        assert_eq!(dbus(1684, 364), (1.0, false));
+        assert_eq!((dbus(1024, 1486).1, dbus(1024, 1487).1), (false, true));
+    }
+}
