@@ -12,6 +12,8 @@ const ENABLE: RemoteInput = RemoteInput {
     vx: None,
     wz: None,
     mode: None,
+    left_x: None,
+    left_y: None,
 };
 const DISABLE: RemoteInput = RemoteInput {
     enable: Some(false),
