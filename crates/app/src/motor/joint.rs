@@ -10,7 +10,12 @@ use self::{
     freeze_watch::FreezeWatch,
     set_up::SetUp,
 };
-use super::{interface::Motor, joint_limits::limited, layout::JointSlot, mit::MitTargets};
+use super::{
+    interface::Motor,
+    joint_limits::{MotorLimits, limited},
+    layout::JointSlot,
+    mit::MitTargets,
+};
 use crate::domain::{
     CanFrame, JointCommand, JointConfig, JointFeedback, JointMode, JointState, age_us,
 };
@@ -279,26 +284,30 @@ impl Joint {
     }
 
     fn command_frame(&mut self, command: &JointCommand, config: &JointConfig) -> CanFrame {
-        let max_torque_nm = self.slot.max_torque_nm;
+        let limits = MotorLimits {
+            max_torque_nm: self.slot.max_torque_nm,
+            // The report is up to one period old, and so is the command when the next one comes.
+            horizon_s: 2.0 * self.slot.schedule.period_s(),
+        };
         let allowed = match &self.report {
-            Some(report) => limited(
-                command,
-                axis::joint_motion(&report.motion, config),
-                config,
-                max_torque_nm,
-            ),
+            Some(report) => {
+                let motion = axis::joint_motion(&report.motion, config);
+                limited(command, motion, config, limits)
+            }
             None => JointCommand::default(),
         };
         self.sent = allowed;
         let targets = axis::motor_targets(&allowed, config);
         self.obeyed = (allowed.mode == JointMode::Mit).then_some(targets);
-        let torque_nm = config.max_torque_nm.min(max_torque_nm);
         if allowed.mode == JointMode::Off && self.mode != JointMode::Mit {
             // The command was no number: the same as Off.
             self.phase = Phase::Disabled;
             return self.slot.motor.disable();
         }
-        self.slot.motor.command(allowed.mode, &targets, torque_nm)
+        let max_torque_nm = config.max_torque_nm.min(limits.max_torque_nm);
+        self.slot
+            .motor
+            .command(allowed.mode, &targets, max_torque_nm)
     }
 }
 

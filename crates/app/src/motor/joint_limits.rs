@@ -10,17 +10,26 @@ pub struct JointMotion {
     pub vel_rps: f32,
 }
 
+/// What the motor's place in the layout adds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotorLimits {
+    pub max_torque_nm: f32,
+    /// How long the joint may move between the report that a command was made from and the command after it.
+    pub horizon_s: f32,
+}
+
 /// The command that may leave the board instead of `command`. What is no number in a field that the mode uses makes it
 /// `Off`, as does a limit that is no number.
 ///
 /// In MIT mode the torque that the motor will give, `kp`·(p − q) + `kd`·(v − q̇) + τ, is kept within the torque limit by
-/// scaling `kp`, `kd` and τ alike, and at or beyond a soft limit it never points outwards. In the other modes the motor
-/// limits torque itself; there the target stays inside the soft limits, and a speed outwards becomes zero at them.
+/// scaling `kp`, `kd` and τ alike, for where the joint is and where it will be at its present speed until the next
+/// command; and at or beyond a soft limit it never points outwards. In the other modes the motor limits torque itself;
+/// there the target stays inside the soft limits, and a speed outwards becomes zero at them.
 pub fn limited(
     command: &JointCommand,
     motion: JointMotion,
     config: &JointConfig,
-    max_torque_nm: f32,
+    motor: MotorLimits,
 ) -> JointCommand {
     if !is_usable(command, config) {
         return JointCommand::default();
@@ -28,7 +37,7 @@ pub fn limited(
     let vel_rps = within(command.vel_rps, config.max_speed_rps);
     match command.mode {
         JointMode::Off => JointCommand::default(),
-        JointMode::Mit => limited_mit(command, vel_rps, motion, config, max_torque_nm),
+        JointMode::Mit => limited_mit(command, vel_rps, motion, config, motor),
         JointMode::PositionSpeed => JointCommand {
             mode: JointMode::PositionSpeed,
             pos_rad: inside(command.pos_rad, config),
@@ -62,9 +71,9 @@ fn limited_mit(
     vel_rps: f32,
     motion: JointMotion,
     config: &JointConfig,
-    max_torque_nm: f32,
+    motor: MotorLimits,
 ) -> JointCommand {
-    let limit_nm = config.max_torque_nm.min(max_torque_nm).max(0.0);
+    let limit_nm = config.max_torque_nm.min(motor.max_torque_nm).max(0.0);
     let allowed = JointCommand {
         mode: JointMode::Mit,
         pos_rad: inside(command.pos_rad, config),
@@ -74,10 +83,12 @@ fn limited_mit(
         tau_nm: within(command.tau_nm, limit_nm),
     };
     let torque_nm = predicted_torque_nm(&allowed, motion);
+    let later_nm = torque_nm - allowed.kp * motion.vel_rps * motor.horizon_s;
+    let largest_nm = torque_nm.abs().max(later_nm.abs());
     let scale = if not_outwards(torque_nm, motion, config) != torque_nm {
         0.0
-    } else if torque_nm.abs() > limit_nm {
-        limit_nm / torque_nm.abs()
+    } else if largest_nm > limit_nm {
+        limit_nm / largest_nm
     } else {
         return allowed;
     };
@@ -90,7 +101,7 @@ fn limited_mit(
 }
 
 /// What the motor makes of an MIT command.
-pub fn predicted_torque_nm(command: &JointCommand, motion: JointMotion) -> f32 {
+fn predicted_torque_nm(command: &JointCommand, motion: JointMotion) -> f32 {
     command.kp * (command.pos_rad - motion.pos_rad)
         + command.kd * (command.vel_rps - motion.vel_rps)
         + command.tau_nm

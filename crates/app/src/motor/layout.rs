@@ -29,6 +29,11 @@ impl Schedule {
         }
     }
 
+    /// Time from one command to the next.
+    pub fn period_s(self) -> f32 {
+        f32::from(self.every) * 1e-3
+    }
+
     /// `every` is a power of two, so the remainder is a mask.
     pub const fn is_due(self, tick: u8) -> bool {
         tick & self.every.wrapping_sub(1) == self.phase

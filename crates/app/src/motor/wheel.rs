@@ -41,7 +41,7 @@ impl Wheel {
         }
     }
 
-    /// `now` is a report, `self.feedback` the one before.
+    /// `now` is a report, `self.feedback` the one before. Once frozen, only another report thaws it.
     fn is_frozen(&mut self, now: &WheelFeedback) -> bool {
         let last = &self.feedback;
         let same_angle = now.rotor_angle == last.rotor_angle;
@@ -58,7 +58,8 @@ impl Wheel {
         }
         let stuck_angle = now.rpm.unsigned_abs() >= MOVING_RPM
             && now.ts_us.saturating_sub(self.angle_changed_us) >= STUCK_ANGLE_US;
-        stuck_angle || now.ts_us.saturating_sub(self.plausible_us) >= STUCK_REPORT_US
+        let stuck_report = now.ts_us.saturating_sub(self.plausible_us) >= STUCK_REPORT_US;
+        stuck_angle || stuck_report || (self.feedback.frozen && same_report)
     }
 }
 

@@ -15,6 +15,7 @@ const STUCK_REPORT_US: u64 = 100_000;
 #[derive(Clone, Debug, Default)]
 pub struct FreezeWatch {
     last: Option<Report>,
+    frozen: bool,
     /// Last report with another angle than the one before.
     position_changed_us: u64,
     /// Last report that differed at all, or agreed with the command.
@@ -22,7 +23,7 @@ pub struct FreezeWatch {
 }
 
 impl FreezeWatch {
-    /// True if `report` belongs to a frozen series. `obeyed` is what an enabled motor was last told in MIT mode.
+    /// True if `report` belongs to a frozen series; once frozen, only another report thaws it. `obeyed` is what an enabled motor was last told in MIT mode.
     pub fn is_frozen(&mut self, report: &Report, obeyed: Option<&MitTargets>, ts_us: u64) -> bool {
         let same_position = self
             .last
@@ -31,13 +32,16 @@ impl FreezeWatch {
         if !same_position {
             self.position_changed_us = ts_us;
         }
-        if self.last != Some(*report) || !odd_torque {
+        let same_report = self.last == Some(*report);
+        if !same_report || !odd_torque {
             self.plausible_us = ts_us;
         }
         self.last = Some(*report);
         let stuck_position = report.motion.vel_rps.abs() > MOVING_RPS
             && ts_us.saturating_sub(self.position_changed_us) >= STUCK_POSITION_US;
-        stuck_position || ts_us.saturating_sub(self.plausible_us) >= STUCK_REPORT_US
+        let stuck_report = ts_us.saturating_sub(self.plausible_us) >= STUCK_REPORT_US;
+        self.frozen = stuck_position || stuck_report || (self.frozen && same_report);
+        self.frozen
     }
 }
 

@@ -1,0 +1,140 @@
+//! Nothing that control asks for gets past the joints' limits.
+
+use robot_app::domain::{JointCommand, JointMode};
+use robot_plant::world::JointKind;
+
+use crate::robot::Robot;
+
+const BOTH: [JointKind; 2] = [JointKind::Dm4310, JointKind::Rs00];
+/// Default of `JointConfig`.
+const MAX_TORQUE_NM: f64 = 3.0;
+const MAX_POS_RAD: f64 = 1.5;
+
+fn mit(pos_rad: f32, vel_rps: f32, kp: f32, kd: f32, tau_nm: f32) -> JointCommand {
+    JointCommand {
+        mode: JointMode::Mit,
+        pos_rad,
+        vel_rps,
+        kp,
+        kd,
+        tau_nm,
+    }
+}
+
+/// What the motor itself makes of its last command in every tick, while the leg flies. The codes cut off up to a step of
+/// each field, and 100 N·m/rad turns a step of the angle into 0.04 N·m.
+#[test]
+fn torque_stays_within_its_limit() {
+    for kind in BOTH {
+        let mut robot = Robot::armed(kind);
+        for command in [
+            mit(1.4, 0.0, 1e9, 0.0, 0.0),
+            mit(-1.4, 0.0, 100.0, 1.0, -1e9),
+            mit(0.0, 30.0, 20.0, 5.0, 50.0),
+            mit(0.0, -30.0, 0.0, 5.0, -50.0),
+            mit(1.0, 0.0, 80.0, 2.0, 100.0),
+        ] {
+            let mut largest = 0.0_f64;
+            robot.command_joints(command);
+            robot.run_watching(0.3, |robot| {
+                for torque_nm in robot.joint_signals("can.joint.{}.torque_nm") {
+                    largest = largest.max(torque_nm.abs());
+                }
+            });
+            assert!(
+                largest < MAX_TORQUE_NM + 0.1,
+                "{kind:?} {command:?} {largest}"
+            );
+            assert!(
+                largest > MAX_TORQUE_NM - 0.2,
+                "{kind:?} {command:?} {largest}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_joint_stops_at_its_soft_limit() {
+    for kind in BOTH {
+        for command in [
+            mit(9.0, 0.0, 60.0, 3.0, 0.0),
+            JointCommand {
+                mode: JointMode::PositionSpeed,
+                pos_rad: 9.0,
+                vel_rps: 2.0,
+                ..JointCommand::default()
+            },
+            JointCommand {
+                mode: JointMode::Speed,
+                vel_rps: 2.0,
+                ..JointCommand::default()
+            },
+        ] {
+            let mut robot = Robot::armed(kind);
+            robot.command_joints(command);
+            let mut farthest = 0.0_f64;
+            robot.run_watching(3.0, |robot| {
+                for pos_rad in robot.joint_signals("truth.joint.{}.pos_rad") {
+                    farthest = farthest.max(pos_rad);
+                }
+            });
+            assert!(farthest > 1.3, "{kind:?} {:?} {farthest}", command.mode);
+            assert!(
+                farthest < MAX_POS_RAD + 0.15,
+                "{kind:?} {:?} {farthest}",
+                command.mode
+            );
+        }
+    }
+}
+
+#[test]
+fn beyond_a_soft_limit_nothing_pushes_further_out() {
+    for kind in BOTH {
+        let mut robot = Robot::armed(kind);
+        robot.command_joints(mit(0.0, 0.0, 0.0, 0.0, 3.0));
+        let mut was_beyond = false;
+        let mut ticks_beyond = [0; 4];
+        robot.run_watching(2.0, |robot| {
+            for (joint, ticks) in ticks_beyond.iter_mut().enumerate() {
+                *ticks = if robot.joint(joint).pos_rad >= 1.5 {
+                    *ticks + 1
+                } else {
+                    0
+                };
+                // A joint is told something in every second tick.
+                if *ticks < 2 {
+                    continue;
+                }
+                was_beyond = true;
+                let direction = if joint < 2 { 1.0 } else { -1.0 };
+                let asked = direction * robot.signal(&format!("can.joint.{joint}.torque_nm"));
+                // Half a step of the torque code.
+                assert!(asked < 5e-3, "{kind:?} {joint}: {asked}");
+            }
+        });
+        assert!(was_beyond);
+    }
+}
+
+#[test]
+fn a_command_that_is_no_number_is_no_torque() {
+    let nan = f32::NAN;
+    for kind in BOTH {
+        for command in [
+            mit(nan, 0.0, 20.0, 1.0, 0.0),
+            mit(0.0, nan, 20.0, 1.0, 0.0),
+            mit(0.0, 0.0, nan, 1.0, 1.0),
+            mit(0.0, 0.0, 20.0, nan, 1.0),
+            mit(0.0, 0.0, 20.0, 1.0, nan),
+        ] {
+            let mut robot = Robot::armed(kind);
+            robot.command_joints(command);
+            robot.run_watching(0.05, |robot| {
+                for torque_nm in robot.joint_signals("can.joint.{}.torque_nm") {
+                    assert!(torque_nm.abs() < 5e-3, "{kind:?} {command:?} {torque_nm}");
+                }
+            });
+        }
+    }
+}

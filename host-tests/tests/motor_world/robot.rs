@@ -1,0 +1,239 @@
+//! The control tick with all its motors in the simulated world; radio and IMU are as they should be.
+
+use robot_app::{
+    control::UserController,
+    diagnostics::DiagnosticsSnapshot,
+    domain::{
+        BusId, CanFrame, ChassisCommand, DriveMode, ImuState, JointCommand, JointFeedback,
+        JointState, MagState, OperatorState, RemoteDiagnostics, RemoteState, RemoteUpdate,
+        RobotConfig, StandardId, SystemHealth,
+    },
+    logic::LogicBus,
+    motor::layout::{MotorLayout, ROBOT_LAYOUT, RS00_LAYOUT},
+    safety::ArmingState,
+    tick::{ControlInputs, ControlLoop},
+};
+use robot_plant::{
+    time::{MS, Ps, US},
+    wire::CanFrame as WireFrame,
+    world::{CanBusId, JointKind, World, WorldConfig},
+};
+
+pub struct Robot {
+    pub command: ChassisCommand,
+    pub enabled: bool,
+    pub e_stop: bool,
+    world: World,
+    now: Ps,
+    control: ControlLoop<UserController>,
+    diagnostics: DiagnosticsSnapshot,
+    sent: Vec<(BusId, CanFrame)>,
+}
+
+impl Robot {
+    pub fn new(joints: JointKind) -> Self {
+        let layout: &'static MotorLayout = match joints {
+            JointKind::Dm4310 => &ROBOT_LAYOUT,
+            JointKind::Rs00 => &RS00_LAYOUT,
+        };
+        let world = World::new(WorldConfig {
+            joints,
+            seed: 3,
+            ..WorldConfig::default()
+        })
+        .expect("no recording to load");
+        Self {
+            command: ChassisCommand::default(),
+            enabled: false,
+            e_stop: false,
+            world,
+            now: 0,
+            control: ControlLoop::with_layout(
+                layout,
+                RobotConfig::default(),
+                UserController::default(),
+            ),
+            diagnostics: DiagnosticsSnapshot::default(),
+            sent: Vec::new(),
+        }
+    }
+
+    /// Set up, armed and enabled with the command `Off`.
+    pub fn armed(joints: JointKind) -> Self {
+        let mut robot = Self::new(joints);
+        robot.run(1.5);
+        robot.enabled = true;
+        robot.run(0.1);
+        assert!(robot.is_armed(), "{:?}", robot.diagnostics.arming.blockers);
+        assert_eq!(robot.states(), [JointState::Enabled; 4]);
+        robot
+    }
+
+    pub fn run(&mut self, seconds: f64) {
+        self.run_watching(seconds, |_| ());
+    }
+
+    /// Looks at the robot after each tick.
+    pub fn run_watching(&mut self, seconds: f64, mut look: impl FnMut(&Self)) {
+        let ticks = (seconds * 1_000.0).round() as u32;
+        for _ in 0..ticks {
+            self.tick();
+            look(self);
+        }
+    }
+
+    /// The board says nothing; `look` is told the milliseconds gone by.
+    pub fn run_without_board(&mut self, ticks: u64, mut look: impl FnMut(&Self, u64)) {
+        for ms in 1..=ticks {
+            self.now += MS;
+            self.world.advance(self.now);
+            look(self, ms);
+        }
+    }
+
+    pub fn fault(&mut self, name: &str, active: bool) {
+        self.world.set_fault(name, active).expect("a known fault");
+    }
+
+    /// The same command for every joint.
+    pub fn command_joints(&mut self, command: JointCommand) {
+        self.command.joints = [command; 4];
+    }
+
+    pub fn is_armed(&self) -> bool {
+        self.diagnostics.arming.state == ArmingState::Armed
+    }
+
+    pub fn diagnostics(&self) -> &DiagnosticsSnapshot {
+        &self.diagnostics
+    }
+
+    pub fn joint(&self, joint: usize) -> &JointFeedback {
+        &self.diagnostics.motor.joints[joint]
+    }
+
+    pub fn states(&self) -> [JointState; 4] {
+        self.diagnostics.motor.joints.map(|joint| joint.state)
+    }
+
+    /// Frames of the last tick.
+    pub fn sent(&self) -> &[(BusId, CanFrame)] {
+        &self.sent
+    }
+
+    pub fn signal(&self, name: &str) -> f64 {
+        let names = self.world.signal_names();
+        let index = names.iter().position(|known| known == name);
+        let mut values = Vec::new();
+        self.world.sample(&mut values);
+        values[index.unwrap_or_else(|| panic!("no signal {name}"))]
+    }
+
+    /// What `name` says of each joint, as in `can.joint.{}.enabled`.
+    pub fn joint_signals(&self, name: &str) -> [f64; 4] {
+        std::array::from_fn(|joint| self.signal(&name.replace("{}", &joint.to_string())))
+    }
+
+    fn now_us(&self) -> u64 {
+        self.now / US
+    }
+
+    fn tick(&mut self) {
+        self.now += MS;
+        self.world.advance(self.now);
+        self.receive();
+        let now_us = self.now_us();
+        let remote = self.remote(now_us);
+        let imu = ImuState {
+            accel_mps2: [0.0, 0.0, 9.81],
+            temperature_c: 40.0,
+            ts_us: now_us,
+            ..ImuState::default()
+        };
+        let mag = MagState {
+            mag_ut: [0.0, 20.0, -45.0],
+            ts_us: now_us,
+        };
+        let logic = LogicBus {
+            cmd: self.command,
+            cmd_valid: true,
+            ts_us: now_us,
+            ..LogicBus::default()
+        };
+        let health = SystemHealth {
+            imu_calibrated: true,
+            battery_v: 24.0,
+            ..SystemHealth::default()
+        };
+        let inputs = ControlInputs {
+            remote: &remote,
+            imu: &imu,
+            mag: &mag,
+            logic: &logic,
+            health: &health,
+        };
+        let outputs = self.control.tick(&inputs, now_us);
+        self.sent = outputs.frames.to_vec();
+        self.diagnostics = *outputs.diagnostics;
+        self.send();
+    }
+
+    fn remote(&self, now_us: u64) -> RemoteUpdate {
+        RemoteUpdate {
+            state: RemoteState {
+                ts_us: now_us,
+                ..RemoteState::default()
+            },
+            operator: OperatorState {
+                enabled: self.enabled,
+                disabled: !self.enabled,
+                e_stop: self.e_stop,
+                mode: DriveMode::Custom,
+                ts_us: now_us,
+                ..OperatorState::default()
+            },
+            diagnostics: RemoteDiagnostics {
+                quality: 1.0,
+                frames: 1,
+                frame_ts_us: now_us,
+                good_ts_us: now_us,
+                ..RemoteDiagnostics::default()
+            },
+        }
+    }
+
+    fn receive(&mut self) {
+        for (bus, wire) in [(BusId::Can1, CanBusId::Can1), (BusId::Can2, CanBusId::Can2)] {
+            for node in 0..self.world.can_nodes(wire) {
+                if let Some(frame) = self.world.can_pending(wire, node, self.now) {
+                    self.world.can_sent(wire, node, self.now);
+                    let id = StandardId::new(frame.id as u16).expect("11 bits");
+                    let frame = CanFrame::from_payload(id, &frame.data[..frame.dlc.into()]);
+                    let frame = frame.expect("at most eight bytes");
+                    self.control.on_can_frame(bus, &frame, self.now / US);
+                }
+            }
+        }
+    }
+
+    fn send(&mut self) {
+        for (bus, frame) in &self.sent {
+            let wire = match bus {
+                BusId::Can1 => CanBusId::Can1,
+                BusId::Can2 => CanBusId::Can2,
+            };
+            let sent = WireFrame {
+                id: frame.id().raw().into(),
+                extended: false,
+                remote: false,
+                dlc: 8,
+                data: frame.full_payload().expect("motors take full frames"),
+            };
+            for node in 0..self.world.can_nodes(wire) {
+                if self.world.can_present(wire, node) {
+                    self.world.can_received(wire, node, &sent, self.now);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! From power-on to enabled motors.
+
+use robot_app::domain::JointState;
+use robot_plant::world::JointKind;
+
+use crate::robot::Robot;
+
+const BOTH: [JointKind; 2] = [JointKind::Dm4310, JointKind::Rs00];
+
+#[test]
+fn motors_are_verified_before_they_count_as_ready() {
+    for kind in BOTH {
+        let mut robot = Robot::new(kind);
+        let mut seen = Vec::new();
+        robot.run_watching(1.0, |robot| {
+            let state = robot.joint(0).state;
+            if seen.last() != Some(&state) {
+                seen.push(state);
+            }
+        });
+        let [first, .., last] = seen[..] else {
+            panic!("{seen:?}");
+        };
+        assert_eq!((first, last), (JointState::Silent, JointState::Disabled));
+        assert!(seen.contains(&JointState::SettingUp), "{seen:?}");
+        assert_eq!(robot.states(), [JointState::Disabled; 4]);
+        assert_eq!(robot.joint_signals("can.joint.{}.enabled"), [0.0; 4]);
+    }
+}
+
+/// A motor from the factory has no time-out; set up by the firmware it lets go 100 ms after the last frame.
+#[test]
+fn an_abandoned_dm4310_lets_go() {
+    let mut robot = Robot::armed(JointKind::Dm4310);
+    assert_eq!(robot.joint_signals("can.joint.{}.enabled"), [1.0; 4]);
+    let mut let_go_after_ms = 0;
+    robot.run_without_board(200, |robot, ms| {
+        if robot.joint_signals("can.joint.{}.enabled") == [1.0; 4] {
+            let_go_after_ms = ms;
+        }
+    });
+    assert!((95..=105).contains(&let_go_after_ms), "{let_go_after_ms}");
+}
+
+#[test]
+fn motors_are_enabled_while_armed_and_only_then() {
+    for kind in BOTH {
+        let mut robot = Robot::armed(kind);
+        assert_eq!(robot.joint_signals("can.joint.{}.enabled"), [1.0; 4]);
+        robot.enabled = false;
+        robot.run(0.01);
+        assert_eq!(robot.joint_signals("can.joint.{}.enabled"), [0.0; 4]);
+        assert_eq!(robot.states(), [JointState::Disabled; 4]);
+        robot.run(0.3);
+        robot.enabled = true;
+        robot.run(0.05);
+        assert_eq!(robot.joint_signals("can.joint.{}.enabled"), [1.0; 4]);
+    }
+}
+
+/// The zero of an MIT frame is half a torque step: 10/4095 and 14/4095 N·m.
+#[test]
+fn off_is_the_torque_code_nearest_to_zero() {
+    for (kind, half_step_nm) in [(JointKind::Dm4310, 2.45e-3), (JointKind::Rs00, 3.42e-3)] {
+        let mut robot = Robot::armed(kind);
+        robot.run_watching(0.1, |robot| {
+            for torque_nm in robot.joint_signals("can.joint.{}.torque_nm") {
+                assert!(torque_nm.abs() < half_step_nm, "{torque_nm}");
+            }
+        });
+    }
+}
+
+#[test]
+fn the_pilots_stop_reaches_every_joint_within_two_ticks() {
+    for kind in BOTH {
+        for offset_ms in 0..2 {
+            let mut robot = Robot::armed(kind);
+            robot.run(f64::from(offset_ms) * 1e-3);
+            robot.e_stop = true;
+            robot.run(2e-3);
+            assert_eq!(robot.joint_signals("can.joint.{}.enabled"), [0.0; 4]);
+            assert_eq!(robot.joint_signals("can.joint.{}.torque_nm"), [0.0; 4]);
+        }
+    }
+}
+
+#[test]
+fn each_joint_is_told_something_in_every_second_tick() {
+    let mut robot = Robot::new(JointKind::Dm4310);
+    let mut told = Vec::new();
+    robot.run(0.5);
+    robot.run_watching(4e-3, |robot| {
+        let ids: Vec<u16> = robot
+            .sent()
+            .iter()
+            .map(|(_, frame)| frame.id().raw())
+            .collect();
+        told.push(ids);
+    });
+    let left = vec![0x200, 1, 2];
+    let right = vec![0x200, 3, 4];
+    let expected = if told[0] == left {
+        [left.clone(), right.clone(), left, right]
+    } else {
+        [right.clone(), left.clone(), right, left]
+    };
+    assert_eq!(told, expected);
+}
