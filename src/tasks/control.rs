@@ -26,6 +26,8 @@ pub struct ControlContext {
     late_tasks: LateTasks,
     control_loop: ControlLoop<UserController>,
     config: Writer<'static, RobotConfig>,
+    /// Of the configuration last published.
+    config_revision: u32,
     diagnostics: Writer<'static, DiagnosticsSnapshot>,
 }
 
@@ -46,6 +48,7 @@ impl ControlContext {
             late_tasks: LateTasks::default(),
             control_loop: ControlLoop::new(RobotConfig::default(), UserController::default()),
             config,
+            config_revision: 0,
             diagnostics,
         }
     }
@@ -72,7 +75,8 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
         last_run,
         late_tasks,
         control_loop,
-        config: _,
+        config,
+        config_revision,
         diagnostics,
     } = context;
 
@@ -113,6 +117,12 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
         if let Some(port) = ports.iter_mut().find(|port| port.bus() == *bus) {
             port.send(frame);
         }
+    }
+
+    let revision = outputs.diagnostics.tuning.revision;
+    if revision != *config_revision {
+        *config_revision = revision;
+        config.publish(outputs.config);
     }
 
     // SAFETY: this task is the only caller.

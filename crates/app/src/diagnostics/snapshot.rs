@@ -2,12 +2,15 @@
 
 use super::TickStats;
 use crate::{
+    bring_up::BringUpStatus,
     domain::{
-        BusHealth, ChassisCommand, ImuState, ImuStatus, LastWords, LateTasks, MagState, MotorFeedback,
-        OperatorState, RadioLineHealth, RemoteDiagnostics, RemoteState, ResetCause, SensorHealth, StateEstimate,
+        BusHealth, ChassisCommand, ImuState, ImuStatus, LastWords, LateTasks, MagState,
+        MotorFeedback, OperatorState, RadioLineHealth, RemoteDiagnostics, RemoteState, ResetCause,
+        SensorHealth, StateEstimate,
     },
     logic::LogicBus,
     safety::{ArmingStatus, SafetyStatus},
+    tuning::TuningStatus,
 };
 
 /// Plain data, so that a debugger or the emulator can read every field by its name.
@@ -35,6 +38,8 @@ pub struct DiagnosticsSnapshot {
     pub imu_calibrated: bool,
     /// Heater, start-up calibration, rejected samples.
     pub imu_status: ImuStatus,
+    pub bring_up: BringUpStatus,
+    pub tuning: TuningStatus,
     pub tick: TickStats,
     pub late_tasks: LateTasks,
     pub reset_cause: ResetCause,

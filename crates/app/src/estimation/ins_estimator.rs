@@ -49,6 +49,11 @@ impl InsEstimator {
         }
     }
 
+    /// Other wheels from now on; everything known so far stays.
+    pub fn set_odometry(&mut self, odometry: &WheelOdomConfig) {
+        self.odometry.set_config(odometry);
+    }
+
     /// `motor`: with ages as of `now_us`. What makes the estimate invalid is listed at [`StateEstimate::valid`].
     pub fn step(
         &mut self,

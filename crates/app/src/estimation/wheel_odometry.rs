@@ -26,6 +26,12 @@ impl WheelOdometry {
         }
     }
 
+    /// Other wheels from now on; the way so far stays.
+    pub fn set_config(&mut self, config: &WheelOdomConfig) {
+        self.signs = config.rpm_signs();
+        self.mps_per_rpm = config.mps_per_rpm();
+    }
+
     /// Rolls without slip along the body's x axis laid flat. Silent wheels count as standing.
     pub fn step(&mut self, motor: &MotorFeedback, orientation: Quaternion, dt_s: f32) {
         let forward_mps = self.forward_mps(motor);

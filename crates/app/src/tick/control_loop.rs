@@ -3,6 +3,7 @@
 use heapless::Vec;
 
 use crate::{
+    bring_up::{BringUp, BringUpInputs},
     control::{ChassisController, ChassisControllerInput, UserController},
     diagnostics::{DiagnosticsSnapshot, TickStats},
     domain::{
@@ -16,6 +17,7 @@ use crate::{
         layout::{MotorLayout, ROBOT_LAYOUT},
     },
     safety::{Arming, ArmingInputs, SafetyInputs, SafetyPolicy, TorquePermit},
+    tuning::{TuningChannel, TuningGate},
 };
 
 /// The latest snapshot of each producer.
@@ -36,13 +38,15 @@ pub struct ControlOutputs<'a> {
     pub sensors: &'a SensorsSnapshot,
     pub estimate: &'a StateEstimate,
     pub diagnostics: &'a DiagnosticsSnapshot,
+    /// As `diagnostics.tuning.revision` counts it.
+    pub config: &'a RobotConfig,
 }
 
 /// Who decides the currents of this tick.
 enum Demand {
     /// Nobody: no motor may move, or no command is fresh and valid.
     Stop,
-    /// The logic bus, past the controller.
+    /// The logic bus or bring-up, past the controller.
     Direct(ChassisCommand),
     Control(HighLevelCommand),
 }
@@ -62,6 +66,10 @@ pub struct ControlLoop<C: ChassisController = UserController> {
     estimator: InsEstimator,
     policy: SafetyPolicy,
     arming: Arming,
+    tuning: TuningChannel,
+    /// Of the tuning channel, for the next tick: one a bus.
+    replies: Vec<(BusId, CanFrame), 2>,
+    bring_up: BringUp,
     tick: TickStats,
     sensors: SensorsSnapshot,
     diagnostics: DiagnosticsSnapshot,
@@ -82,6 +90,9 @@ impl<C: ChassisController> ControlLoop<C> {
             estimator: InsEstimator::new(config.wheel_odom),
             policy: SafetyPolicy::default(),
             arming: Arming::default(),
+            tuning: TuningChannel::default(),
+            replies: Vec::new(),
+            bring_up: BringUp::default(),
             tick: TickStats::default(),
             sensors: SensorsSnapshot::default(),
             diagnostics: DiagnosticsSnapshot::default(),
@@ -92,21 +103,46 @@ impl<C: ChassisController> ControlLoop<C> {
     /// Every frame received since the last tick, in order of arrival.
     pub fn on_can_frame(&mut self, bus: BusId, frame: &CanFrame, now_us: u64) {
         self.motors.route_frame(bus, frame, now_us);
+        let diagnostics = &self.diagnostics;
+        let gate = TuningGate::of(diagnostics.arming.state, &diagnostics.operator);
+        let Self {
+            tuning,
+            config,
+            bring_up,
+            ..
+        } = self;
+        if let Some(reply) = tuning.on_frame(bus, frame, gate, config, bring_up) {
+            // The channel gives one a bus and tick.
+            let _ = self.replies.push((bus, reply));
+        }
     }
 
     /// One tick; `now_us` is when it began.
     pub fn tick(&mut self, inputs: &ControlInputs<'_>, now_us: u64) -> ControlOutputs<'_> {
         self.tick.tick(now_us);
+        self.take_config();
         self.sense(inputs, now_us);
+        let trial = self.try_out(inputs, now_us);
         let permit = self.judge(inputs, now_us);
-        self.act(inputs, permit.as_ref(), now_us);
+        self.act(inputs, permit.as_ref(), trial, now_us);
+        self.reply();
         self.record(inputs, now_us);
         ControlOutputs {
             frames: &self.frames,
             sensors: &self.sensors,
             estimate: &self.diagnostics.estimate,
             diagnostics: &self.diagnostics,
+            config: &self.config,
         }
+    }
+
+    /// The estimator keeps what it makes of its settings; all other stages read them in each tick.
+    fn take_config(&mut self) {
+        let status = *self.tuning.status();
+        if status.revision != self.diagnostics.tuning.revision {
+            self.estimator.set_odometry(&self.config.wheel_odom);
+        }
+        self.diagnostics.tuning = status;
     }
 
     fn sense(&mut self, inputs: &ControlInputs<'_>, now_us: u64) {
@@ -121,9 +157,27 @@ impl<C: ChassisController> ControlLoop<C> {
                 .step(&sensors.imu, &sensors.mag, &sensors.motor, now_us);
     }
 
-    fn judge(&mut self, inputs: &ControlInputs<'_>, now_us: u64) -> Option<TorquePermit> {
+    /// The command of bring-up, which replaces any other.
+    fn try_out(&mut self, inputs: &ControlInputs<'_>, now_us: u64) -> Option<ChassisCommand> {
         let diagnostics = &mut self.diagnostics;
         diagnostics.remote_diag = inputs.remote.diagnostics.at(now_us);
+        let command = self.bring_up.step(
+            &BringUpInputs {
+                remote: &inputs.remote.state,
+                operator: &inputs.remote.operator,
+                remote_age_us: diagnostics.remote_diag.age_us,
+                arming: diagnostics.arming.state,
+                motor: &self.sensors.motor,
+                wheel_odom: &self.config.wheel_odom,
+            },
+            now_us,
+        );
+        diagnostics.bring_up = *self.bring_up.status();
+        command
+    }
+
+    fn judge(&mut self, inputs: &ControlInputs<'_>, now_us: u64) -> Option<TorquePermit> {
+        let diagnostics = &mut self.diagnostics;
         diagnostics.safety = self.policy.evaluate(
             &SafetyInputs {
                 config: &self.config.safety,
@@ -147,7 +201,7 @@ impl<C: ChassisController> ControlLoop<C> {
                 estimate_valid: diagnostics.estimate.valid,
                 calibrated: inputs.health.imu_calibrated,
                 motor: &self.sensors.motor,
-                read_only: false,
+                read_only: self.bring_up.blocks_arming(),
                 safety: &diagnostics.safety,
             },
             now_us,
@@ -156,13 +210,21 @@ impl<C: ChassisController> ControlLoop<C> {
         token.map(|token| TorquePermit::new(token, &diagnostics.safety))
     }
 
-    fn act(&mut self, inputs: &ControlInputs<'_>, permit: Option<&TorquePermit>, now_us: u64) {
+    fn act(
+        &mut self,
+        inputs: &ControlInputs<'_>,
+        permit: Option<&TorquePermit>,
+        trial: Option<ChassisCommand>,
+        now_us: u64,
+    ) {
         let stopped = Stopped {
             wheels: !self.motors.wheels_may_move(permit),
             joints: !self.motors.joints_may_move(permit),
         };
         let demand = if stopped.wheels && stopped.joints {
             Demand::Stop
+        } else if let Some(command) = trial {
+            Demand::Direct(command)
         } else {
             self.demand(inputs.logic, now_us)
         };
@@ -185,6 +247,13 @@ impl<C: ChassisController> ControlLoop<C> {
         // Room for twice as many.
         let _ = self.frames.extend_from_slice(&frames);
         self.diagnostics.command = sent;
+    }
+
+    fn reply(&mut self) {
+        // Motors take two of three mailboxes (layout), a reply the third.
+        let _ = self.frames.extend_from_slice(&self.replies);
+        self.replies.clear();
+        self.tuning.begin_tick();
     }
 
     fn demand(&self, logic: &LogicBus, now_us: u64) -> Demand {
