@@ -6,8 +6,12 @@
 //! | [`calibration`] | samples → corrections the firmware applies |
 //! | [`report`] | a correction → an HTML page |
 //! | [`parameter_file`] | parameters by name, in TOML |
+//! | [`can_link`] | a CAN bus through an slcan adapter or SocketCAN |
+//! | [`tuning`] | the settings of the robot on a bus |
 
 pub mod calibration;
+pub mod can_link;
 pub mod parameter_file;
 pub mod recording;
 pub mod report;
+pub mod tuning;

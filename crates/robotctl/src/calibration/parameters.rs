@@ -42,7 +42,7 @@ impl MagCorrection {
     pub fn write(&self, file: &mut ParameterFile) {
         for row in 0..AXES.len() {
             file.set(&mag_bias(row), self.bias_ut[row] as f32);
-            for column in 0..AXES.len() {
+            for column in row..AXES.len() {
                 file.set(
                     &soft_iron(row, column),
                     self.soft_iron[(row, column)] as f32,
@@ -53,17 +53,19 @@ impl MagCorrection {
 }
 
 fn accel_bias(axis: usize) -> String {
-    format!("imu.accel-bias-{}-mps2", AXES[axis])
+    format!("imu-calibration.accel-bias-{}-mps2", AXES[axis])
 }
 
 fn accel_scale(axis: usize) -> String {
-    format!("imu.accel-scale-{}", AXES[axis])
+    format!("imu-calibration.accel-scale-{}", AXES[axis])
 }
 
 fn mag_bias(axis: usize) -> String {
-    format!("mag.bias-{}-ut", AXES[axis])
+    format!("mag-calibration.bias-{}-ut", AXES[axis])
 }
 
+/// The matrix is symmetric: its lower half goes by the names of the upper one.
 fn soft_iron(row: usize, column: usize) -> String {
-    format!("mag.soft-iron-{}{}", AXES[row], AXES[column])
+    let (row, column) = (row.min(column), row.max(column));
+    format!("mag-calibration.soft-iron-{}{}", AXES[row], AXES[column])
 }

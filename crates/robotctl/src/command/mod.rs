@@ -1,6 +1,7 @@
 //! The commands of the tool; `--help` lists them.
 
 mod calibrate;
+mod tune;
 
 #[derive(clap::Subcommand)]
 pub enum Command {
@@ -9,12 +10,15 @@ pub enum Command {
         #[command(subcommand)]
         sensor: calibrate::Sensor,
     },
+    /// Read and change the robot's settings over CAN
+    Tune(tune::Tune),
 }
 
 impl Command {
     pub fn run(self) -> anyhow::Result<()> {
         match self {
             Self::Calibrate { sensor } => sensor.run(),
+            Self::Tune(tune) => tune.run(),
         }
     }
 }

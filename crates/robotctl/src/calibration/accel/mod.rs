@@ -22,8 +22,9 @@ use crate::recording::Sample;
 pub const GRAVITY_MPS2: f64 = 9.806_65;
 /// Root mean square over the positions; still hands and an undamaged sensor stay below 0.03.
 const MAX_RESIDUAL_MPS2: f64 = 0.05;
-/// The BMI088 is within ±20 mg (typical); ten times that is a damaged sensor or wrong samples.
-const MAX_BIAS_MPS2: f64 = 2.0;
+/// The BMI088 is within ±20 mg (typical); six times that, where the firmware draws the line too, is a damaged sensor or
+/// wrong samples.
+const MAX_BIAS_MPS2: f64 = 1.2;
 /// The BMI088's sensitivity is within ±0.8 % (typical).
 const MAX_SCALE_ERROR: f64 = 0.08;
 /// One axis-aligned position a side is six equations for six unknowns: only more can contradict each other.

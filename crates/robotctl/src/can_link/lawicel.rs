@@ -1,0 +1,136 @@
+//! The lines of the LAWICEL protocol (CAN232, CANUSB; "slcan"), as far as a tool needs them.
+
+use robot_app::domain::{CanFrame, StandardId};
+
+/// Answer to a command that was refused.
+const BELL: u8 = 0x07;
+/// `T`, eight digits, length, eight bytes, time stamp.
+const LONGEST: usize = 1 + 8 + 1 + 16 + 4;
+
+/// What an adapter says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Heard {
+    Frame(CanFrame),
+    /// A command or frame was accepted.
+    Done,
+    /// A command or frame was refused.
+    Refused,
+}
+
+/// Takes bytes and gives what they say; frames of other kinds, and anything unknown, are passed over.
+#[derive(Debug, Default)]
+pub(super) struct Listener {
+    line: Vec<u8>,
+}
+
+impl Listener {
+    pub fn feed(&mut self, byte: u8) -> Option<Heard> {
+        match byte {
+            BELL => {
+                self.line.clear();
+                Some(Heard::Refused)
+            }
+            b'\r' => {
+                let heard = parse(&self.line);
+                self.line.clear();
+                heard
+            }
+            _ => {
+                // One byte too many is kept as the mark of a line too long.
+                if self.line.len() <= LONGEST {
+                    self.line.push(byte);
+                }
+                None
+            }
+        }
+    }
+}
+
+fn parse(line: &[u8]) -> Option<Heard> {
+    match line {
+        [] | [b'z' | b'Z'] => Some(Heard::Done),
+        [b't', rest @ ..] => frame(rest).map(Heard::Frame),
+        _ => None,
+    }
+}
+
+/// `iiildd…`, perhaps with a time stamp of four digits.
+fn frame(text: &[u8]) -> Option<CanFrame> {
+    let text = std::str::from_utf8(text).ok().filter(|t| t.is_ascii())?;
+    let id = u16::from_str_radix(text.get(..3)?, 16).ok()?;
+    let length = usize::from_str_radix(text.get(3..4)?, 16).ok()?;
+    let digits = text.get(4..4 + 2 * length)?;
+    let stamp = text.len() - (4 + 2 * length);
+    if stamp != 0 && stamp != 4 {
+        return None;
+    }
+    let bytes: Option<Vec<u8>> = (0..length)
+        .map(|n| u8::from_str_radix(digits.get(2 * n..2 * n + 2)?, 16).ok())
+        .collect();
+    CanFrame::from_payload(StandardId::new(id)?, &bytes?)
+}
+
+/// The command that sends `frame`.
+pub(super) fn transmit(frame: &CanFrame) -> String {
+    let payload = frame.payload();
+    let mut line = format!("t{:03X}{}", frame.id().raw(), payload.len());
+    for byte in payload {
+        line.push_str(&format!("{byte:02X}"));
+    }
+    line.push('\r');
+    line
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn frame(id: u16, payload: &[u8]) -> CanFrame {
+        CanFrame::from_payload(StandardId::new(id).unwrap(), payload).unwrap()
+    }
+
+    fn heard(bytes: &[u8]) -> Vec<Heard> {
+        let mut listener = Listener::default();
+        bytes.iter().filter_map(|b| listener.feed(*b)).collect()
+    }
+
+    // The manual's example: t10021133[CR] is ID 0x100 with the two bytes 0x11 and 0x33.
+    #[test]
+    fn the_manuals_example_both_ways() {
+        let example = frame(0x100, &[0x11, 0x33]);
+        assert_eq!(transmit(&example), "t10021133\r");
+        assert_eq!(heard(b"t10021133\r"), [Heard::Frame(example)]);
+    }
+
+    #[test]
+    fn answers_and_frames_are_told_apart() {
+        let said = heard(b"\rz\rt7A20\r\x07t2011FF EA60\rt20118812AB\r");
+        assert_eq!(
+            said,
+            [
+                Heard::Done,
+                Heard::Done,
+                Heard::Frame(frame(0x7A2, &[])),
+                Heard::Refused,
+                Heard::Frame(frame(0x201, &[0x88])),
+            ]
+        );
+    }
+
+    #[test]
+    fn extended_remote_and_broken_lines_are_passed_over() {
+        let broken: [&[u8]; 6] = [
+            b"T0000010021133\r",
+            b"r1002\r",
+            b"t1003AABB\r",
+            b"t1002AABBCC\r",
+            b"t1009\r",
+            b"V1013\r",
+        ];
+        for line in broken {
+            assert_eq!(heard(line), [], "{}", String::from_utf8_lossy(line));
+        }
+        let long = [b"t", [b'0'; 90].as_slice(), b"\rz\r"].concat();
+        assert_eq!(heard(&long), [Heard::Done]);
+    }
+}

@@ -1,0 +1,186 @@
+//! `robotctl tune`: the robot's settings over CAN.
+
+use std::path::PathBuf;
+
+use anyhow::{Context, Result, bail};
+use robotctl::{
+    can_link::CanDevice,
+    parameter_file::ParameterFile,
+    tuning::{self, Named, Patience, TuningClient, WheelGeometry},
+};
+
+#[derive(clap::Args)]
+pub struct Tune {
+    /// Serial device of an slcan adapter (/dev/ttyACM0, COM3; of the emulated board: /dev/pts/N) or, on Linux, a CAN
+    /// interface (can0)
+    #[arg(long, value_name = "DEVICE", global = true)]
+    can: Option<CanDevice>,
+    #[command(subcommand)]
+    action: Action,
+}
+
+#[derive(clap::Subcommand)]
+enum Action {
+    /// All settings with unit and range and, with --can, their present values
+    List {
+        /// Only names that contain this
+        filter: Option<String>,
+    },
+    /// Print one setting
+    Get { name: String },
+    /// Change one setting; the robot must be disarmed
+    Set {
+        name: String,
+        #[arg(allow_negative_numbers = true)]
+        value: f32,
+    },
+    /// Change all settings of a file that differ; the robot must be disarmed
+    Apply { file: PathBuf },
+    /// Write the present values of all settings to a file
+    Save { file: PathBuf },
+    /// Show the wheel geometry or change parts of it, in the frames of ROBOT_CPP
+    Wheel(Wheel),
+}
+
+#[derive(clap::Args)]
+struct Wheel {
+    #[arg(long)]
+    radius_mm: Option<u16>,
+    /// Distance of the wheels' middles
+    #[arg(long)]
+    track_mm: Option<u16>,
+    /// Motor turns a wheel turn, such as 19.2
+    #[arg(long)]
+    gear_ratio: Option<f64>,
+    /// The left motor's positive direction drives backwards
+    #[arg(long)]
+    left_reversed: Option<bool>,
+    #[arg(long)]
+    right_reversed: Option<bool>,
+}
+
+impl Tune {
+    pub fn run(self) -> Result<()> {
+        match &self.action {
+            Action::List { filter } => self.list(filter.as_deref().unwrap_or_default()),
+            Action::Get { name } => self.get(name),
+            Action::Set { name, value } => self.set(name, *value),
+            Action::Apply { file } => self.apply(file),
+            Action::Save { file } => self.save(file),
+            Action::Wheel(wheel) => self.wheel(wheel),
+        }
+    }
+
+    fn client(&self) -> Result<TuningClient> {
+        let Some(device) = &self.can else {
+            bail!("say where the CAN bus is: --can /dev/ttyACM0 (slcan adapter) or --can can0");
+        };
+        Ok(TuningClient::new(device.open()?, Patience::default()))
+    }
+
+    fn list(&self, filter: &str) -> Result<()> {
+        let mut client = match &self.can {
+            Some(_) => Some(self.client()?),
+            None => None,
+        };
+        println!("{:<40} {:>12} {:<10} range", "setting", "value", "unit");
+        for named in tuning::all().filter(|n| n.full_name().contains(filter)) {
+            let value = match &mut client {
+                Some(client) => client.read(named)?.to_string(),
+                None => String::new(),
+            };
+            let parameter = named.parameter;
+            println!(
+                "{:<40} {value:>12} {:<10} {} … {}",
+                named.full_name(),
+                parameter.unit,
+                parameter.min,
+                parameter.max
+            );
+        }
+        Ok(())
+    }
+
+    fn get(&self, name: &str) -> Result<()> {
+        let named = tuning::find(name)?;
+        let value = self.client()?.read(named)?;
+        println!("{}", shown(named, value));
+        Ok(())
+    }
+
+    fn set(&self, name: &str, value: f32) -> Result<()> {
+        let named = tuning::find(name)?;
+        let mut client = self.client()?;
+        let before = client.read(named)?;
+        client.write(named, value)?;
+        println!("{} (was {before})", shown(named, value));
+        Ok(())
+    }
+
+    fn apply(&self, path: &std::path::Path) -> Result<()> {
+        let file = ParameterFile::load(path)?;
+        for applied in tuning::apply(&mut self.client()?, &file)? {
+            let was = if applied.before == applied.after {
+                "unchanged".to_owned()
+            } else {
+                format!("was {}", applied.before)
+            };
+            println!("{} ({was})", shown(applied.named, applied.after));
+        }
+        Ok(())
+    }
+
+    fn save(&self, path: &std::path::Path) -> Result<()> {
+        let mut client = self.client()?;
+        let mut file = ParameterFile::default();
+        for named in tuning::all() {
+            file.set(&named.full_name(), client.read(named)?);
+        }
+        file.save(path)?;
+        println!("{} settings in {}", file.iter().len(), path.display());
+        Ok(())
+    }
+
+    fn wheel(&self, wheel: &Wheel) -> Result<()> {
+        let mut client = self.client()?;
+        let before = client.read_geometry()?;
+        let wanted = wheel.changed(before)?;
+        if wanted != before {
+            client
+                .write_geometry(&wanted)
+                .context("the wheel geometry was not changed")?;
+        }
+        let WheelGeometry {
+            radius_mm,
+            track_mm,
+            ..
+        } = wanted;
+        println!("radius {radius_mm} mm, track {track_mm} mm");
+        println!("gear ratio {}", f64::from(wanted.gear_ratio_x100) / 100.0);
+        let direction = |reversed| if reversed { "reversed" } else { "forward" };
+        println!("left motor {}", direction(wanted.left_reversed));
+        println!("right motor {}", direction(wanted.right_reversed));
+        Ok(())
+    }
+}
+
+impl Wheel {
+    fn changed(&self, before: WheelGeometry) -> Result<WheelGeometry> {
+        let gear_ratio_x100 = match self.gear_ratio {
+            Some(ratio) => WheelGeometry::hundredths(ratio)?,
+            None => before.gear_ratio_x100,
+        };
+        Ok(WheelGeometry {
+            radius_mm: self.radius_mm.unwrap_or(before.radius_mm),
+            track_mm: self.track_mm.unwrap_or(before.track_mm),
+            gear_ratio_x100,
+            left_reversed: self.left_reversed.unwrap_or(before.left_reversed),
+            right_reversed: self.right_reversed.unwrap_or(before.right_reversed),
+        })
+    }
+}
+
+fn shown(named: Named, value: f32) -> String {
+    let text = format!("{} = {value} {}", named.full_name(), named.parameter.unit);
+    text.trim_end().to_owned()
+}

@@ -1,0 +1,127 @@
+//! A parameter file written to the robot.
+
+use robot_app::tuning::{Parameter, ParameterKind};
+
+use super::{Named, TuningClient, TuningError, UnknownName, find};
+use crate::parameter_file::ParameterFile;
+
+/// One setting of the file.
+#[derive(Clone, Copy, Debug)]
+pub struct Applied {
+    pub named: Named,
+    pub before: f32,
+    pub after: f32,
+}
+
+#[derive(Debug, thiserror::Error)]
+pub enum ApplyError {
+    #[error(transparent)]
+    Name(#[from] UnknownName),
+    #[error("{name} = {value} is not allowed: {allowed}; nothing was written")]
+    Range {
+        name: String,
+        value: f32,
+        allowed: String,
+    },
+    #[error("{source}; nothing was written")]
+    Unwritten { source: TuningError },
+    #[error(
+        "{source}; {written} of {all} settings were written: repeat the command when that is mended"
+    )]
+    Partly {
+        source: TuningError,
+        written: usize,
+        all: usize,
+    },
+}
+
+/// Writes what differs from the robot's present values. Unknown names and values out of range are found before anything
+/// is written.
+pub fn apply(client: &mut TuningClient, file: &ParameterFile) -> Result<Vec<Applied>, ApplyError> {
+    let wanted: Vec<(Named, f32)> = file
+        .iter()
+        .map(|(name, value)| Ok((checked(find(name)?, value)?, value)))
+        .collect::<Result<_, ApplyError>>()?;
+    let mut settings = Vec::new();
+    for (named, after) in wanted {
+        let before = client
+            .read(named)
+            .map_err(|source| ApplyError::Unwritten { source })?;
+        settings.push(Applied {
+            named,
+            before,
+            after,
+        });
+    }
+    let mut written = 0;
+    write_all(client, &settings, &mut written).map_err(|source| match written {
+        0 => ApplyError::Unwritten { source },
+        _ => ApplyError::Partly {
+            source,
+            written,
+            all: settings.len(),
+        },
+    })?;
+    Ok(settings)
+}
+
+fn checked(named: Named, value: f32) -> Result<Named, ApplyError> {
+    if may_be(named.parameter, value) {
+        return Ok(named);
+    }
+    let Parameter {
+        min,
+        max,
+        kind,
+        unit,
+        ..
+    } = *named.parameter;
+    let allowed = match kind {
+        ParameterKind::Float => format!("{min} … {max} {unit}"),
+        ParameterKind::Integer => format!("a whole number, {min} … {max} {unit}"),
+        ParameterKind::Sign => "1 or -1".to_owned(),
+    };
+    Err(ApplyError::Range {
+        name: named.full_name(),
+        value,
+        allowed: allowed.trim_end().to_owned(),
+    })
+}
+
+fn may_be(parameter: &Parameter, value: f32) -> bool {
+    let of_kind = match parameter.kind {
+        ParameterKind::Float => true,
+        ParameterKind::Integer => value.fract() == 0.0,
+        ParameterKind::Sign => value.abs() == 1.0,
+    };
+    of_kind && (parameter.min..=parameter.max).contains(&value)
+}
+
+/// A value that does not fit the others yet is written after them.
+fn write_all(
+    client: &mut TuningClient,
+    settings: &[Applied],
+    written: &mut usize,
+) -> Result<(), TuningError> {
+    let mut waiting: Vec<&Applied> = settings.iter().filter(|s| s.before != s.after).collect();
+    while !waiting.is_empty() {
+        let mut refused = Vec::new();
+        let mut last_error = None;
+        let tried = waiting.len();
+        for setting in waiting {
+            match client.write(setting.named, setting.after) {
+                Ok(()) => *written += 1,
+                Err(error) if error.is_inconsistent() => {
+                    refused.push(setting);
+                    last_error = Some(error);
+                }
+                Err(error) => return Err(error),
+            }
+        }
+        if let (true, Some(error)) = (refused.len() == tried, last_error) {
+            return Err(error);
+        }
+        waiting = refused;
+    }
+    Ok(())
+}

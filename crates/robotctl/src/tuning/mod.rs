@@ -1,0 +1,15 @@
+//! The robot's tuning channel, seen from the PC (docs/tuning.md).
+
+mod apply;
+mod client;
+mod name;
+mod request;
+mod wheel_geometry;
+
+#[cfg(test)]
+mod tests;
+
+pub use apply::{Applied, ApplyError, apply};
+pub use client::{Patience, TuningClient, TuningError};
+pub use name::{Named, UnknownName, all, find};
+pub use wheel_geometry::{GeometryError, WheelGeometry};

@@ -1,0 +1,99 @@
+//! Settings by name: `group.setting`.
+
+use robot_app::tuning::{PARAMETERS, Parameter, ParameterGroup};
+
+/// A setting and the group it is in.
+#[derive(Clone, Copy, Debug)]
+pub struct Named {
+    pub group: &'static ParameterGroup,
+    pub parameter: &'static Parameter,
+}
+
+impl Named {
+    pub fn full_name(&self) -> String {
+        format!("{}.{}", self.group.name, self.parameter.name)
+    }
+}
+
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("there is no setting `{name}`{}", nearest.as_ref().map(|n| format!("; did you mean `{n}`?")).unwrap_or_default())]
+pub struct UnknownName {
+    name: String,
+    nearest: Option<String>,
+}
+
+/// All settings in the order of their numbers.
+pub fn all() -> impl Iterator<Item = Named> {
+    PARAMETERS.iter().flat_map(|group| {
+        let parameters = group.parameters.iter();
+        parameters.map(move |parameter| Named { group, parameter })
+    })
+}
+
+/// By full name.
+pub fn find(name: &str) -> Result<Named, UnknownName> {
+    let found = all().find(|named| named.full_name() == name);
+    found.ok_or_else(|| UnknownName {
+        name: name.to_owned(),
+        nearest: nearest(name),
+    })
+}
+
+/// The name that shares the longest pieces; `None` if none resembles it.
+fn nearest(name: &str) -> Option<String> {
+    let names = all().map(|named| named.full_name());
+    let scored = names.map(|candidate| (likeness(name, &candidate), candidate));
+    let (score, candidate) = scored.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    (score > 0.5).then_some(candidate)
+}
+
+/// Share of neighbouring pairs of letters that both have (Dice), 0 … 1.
+fn likeness(a: &str, b: &str) -> f64 {
+    let pairs =
+        |text: &str| -> Vec<[u8; 2]> { text.as_bytes().windows(2).map(|w| [w[0], w[1]]).collect() };
+    let (ours, mut theirs) = (pairs(a), pairs(b));
+    let total = (ours.len() + theirs.len()).max(1) as f64;
+    let common = ours.iter().filter(|pair| {
+        let place = theirs.iter().position(|other| other == *pair);
+        place.map(|place| theirs.swap_remove(place)).is_some()
+    });
+    2.0 * common.count() as f64 / total
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        calibration::{accel::AccelCorrection, mag::MagCorrection},
+        parameter_file::ParameterFile,
+    };
+
+    #[test]
+    fn names_are_found_and_near_misses_helped() {
+        let found = find("wheel-geometry.track-m").unwrap();
+        assert_eq!((found.group.number, found.parameter.index), (1, 1));
+        let error = find("wheel-geometry.trak-m").unwrap_err().to_string();
+        assert!(error.contains("`wheel-geometry.track-m`"), "{error}");
+        assert_eq!(find("xyz").unwrap_err().nearest, None);
+    }
+
+    #[test]
+    fn no_two_settings_share_a_name() {
+        let mut names: Vec<_> = all().map(|named| named.full_name()).collect();
+        let count = names.len();
+        names.sort();
+        names.dedup();
+        assert_eq!(names.len(), count);
+    }
+
+    #[test]
+    fn every_name_a_calibration_writes_is_one_the_robot_knows() {
+        let mut file = ParameterFile::default();
+        AccelCorrection::NONE.write(&mut file);
+        MagCorrection::none().write(&mut file);
+        assert_eq!(file.iter().len(), 15);
+        for (name, _) in file.iter() {
+            find(name).unwrap();
+        }
+    }
+}

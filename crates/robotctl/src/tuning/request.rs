@@ -1,0 +1,166 @@
+//! The bytes of requests and replies.
+
+use robot_app::{
+    domain::CanFrame,
+    tuning::{READ_ID, REPLY_ID, Refusal, WRITE_ID},
+};
+
+const WRITE_GEOMETRY: u8 = 0x10;
+const READ_GEOMETRY: u8 = 0x11;
+const WRITE_PARAMETER: u8 = 0x20;
+const READ_PARAMETER: u8 = 0x21;
+const REFUSED: u8 = 0xEE;
+
+/// A request, and how to know its reply.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Request {
+    Read {
+        group: u8,
+        index: u8,
+    },
+    Write {
+        group: u8,
+        index: u8,
+        value: f32,
+    },
+    ReadGeometry,
+    /// The bytes after the command.
+    WriteGeometry([u8; 7]),
+}
+
+/// What the robot says to a request.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Reply {
+    /// The bytes after the command and, of a setting, after its address.
+    Done([u8; 7]),
+    /// `Err` is a number this tool does not know.
+    Refused(Result<Refusal, u8>),
+}
+
+impl Request {
+    pub fn frame(&self) -> CanFrame {
+        match *self {
+            Self::Read { group, index } => {
+                CanFrame::new(READ_ID, [READ_PARAMETER, group, index, 0, 0, 0, 0, 0])
+            }
+            Self::Write {
+                group,
+                index,
+                value,
+            } => {
+                let [a, b, c, d] = value.to_le_bytes();
+                CanFrame::new(WRITE_ID, [WRITE_PARAMETER, group, index, 0, a, b, c, d])
+            }
+            Self::ReadGeometry => CanFrame::new(READ_ID, [READ_GEOMETRY, 0, 0, 0, 0, 0, 0, 0]),
+            Self::WriteGeometry([a, b, c, d, e, f, g]) => {
+                CanFrame::new(WRITE_ID, [WRITE_GEOMETRY, a, b, c, d, e, f, g])
+            }
+        }
+    }
+
+    /// `None` if `frame` is not the reply to this request.
+    pub fn reply(&self, frame: &CanFrame) -> Option<Reply> {
+        if frame.id() != REPLY_ID {
+            return None;
+        }
+        let asked = self.frame().full_payload()?;
+        let [command, rest @ ..] = frame.full_payload()?;
+        if command == REFUSED {
+            let [refused, reason, group, index, ..] = rest;
+            let ours = refused == asked[0] && self.address() == [group, index];
+            let reason = Refusal::from_code(reason).ok_or(reason);
+            return ours.then_some(Reply::Refused(reason));
+        }
+        let ours = match self {
+            Self::Read { .. } => frame.payload().starts_with(&asked[..4]),
+            Self::ReadGeometry => command == READ_GEOMETRY,
+            Self::Write { .. } | Self::WriteGeometry(_) => frame.payload() == asked,
+        };
+        ours.then_some(Reply::Done(rest))
+    }
+
+    /// Group and index as a refusal repeats them.
+    fn address(&self) -> [u8; 2] {
+        match *self {
+            Self::Read { group, index } | Self::Write { group, index, .. } => [group, index],
+            Self::ReadGeometry | Self::WriteGeometry(_) => [0, 0],
+        }
+    }
+}
+
+/// Of the reply to a read setting.
+pub(super) fn value(reply: [u8; 7]) -> f32 {
+    let [_, _, _, a, b, c, d] = reply;
+    f32::from_le_bytes([a, b, c, d])
+}
+
+#[cfg(test)]
+mod tests {
+    use robot_app::domain::StandardId;
+
+    use super::*;
+
+    fn frame(id: u16, data: [u8; 8]) -> CanFrame {
+        CanFrame::new(StandardId::new(id).unwrap(), data)
+    }
+
+    // Bytes by hand from docs/tuning.md: 0.25 is 0x3E800000.
+    const WRITE: Request = Request::Write {
+        group: 2,
+        index: 5,
+        value: 0.25,
+    };
+    const WRITE_BYTES: [u8; 8] = [0x20, 2, 5, 0, 0, 0, 0x80, 0x3E];
+    const READ: Request = Request::Read { group: 2, index: 5 };
+
+    #[test]
+    fn requests_are_the_documented_bytes() {
+        assert_eq!(WRITE.frame(), frame(0x7A0, WRITE_BYTES));
+        assert_eq!(READ.frame(), frame(0x7A1, [0x21, 2, 5, 0, 0, 0, 0, 0]));
+        assert_eq!(
+            Request::ReadGeometry.frame().payload(),
+            [0x11, 0, 0, 0, 0, 0, 0, 0]
+        );
+        let geometry = [0x50, 0, 0x2C, 0x01, 0x80, 0x07, 0x02];
+        assert_eq!(
+            Request::WriteGeometry(geometry).frame(),
+            frame(0x7A0, [0x10, 0x50, 0, 0x2C, 0x01, 0x80, 0x07, 0x02])
+        );
+    }
+
+    #[test]
+    fn only_the_reply_to_this_request_is_taken() {
+        let answer = frame(0x7A2, [0x21, 2, 5, 0, 0, 0, 0x80, 0x3E]);
+        let Some(Reply::Done(bytes)) = READ.reply(&answer) else {
+            panic!("it is the reply");
+        };
+        assert_eq!(value(bytes), 0.25);
+        assert!(WRITE.reply(&frame(0x7A2, WRITE_BYTES)).is_some());
+        let others = [
+            frame(0x7A1, [0x21, 2, 5, 0, 0, 0, 0x80, 0x3E]),
+            frame(0x7A2, [0x21, 2, 6, 0, 0, 0, 0x80, 0x3E]),
+            frame(0x7A2, [0x11, 2, 5, 0, 0, 0, 0x80, 0x3E]),
+            frame(0x7A2, [0xEE, 0x20, 5, 2, 5, 0, 0, 0]),
+            frame(0x7A2, [0xEE, 0x21, 5, 2, 6, 0, 0, 0]),
+        ];
+        for other in others {
+            assert_eq!(READ.reply(&other), None, "{other:?}");
+        }
+    }
+
+    #[test]
+    fn a_refusal_names_its_reason() {
+        let refusal = frame(0x7A2, [0xEE, 0x20, 5, 2, 5, 0, 0, 0]);
+        let unknown = frame(0x7A2, [0xEE, 0x20, 99, 2, 5, 0, 0, 0]);
+        assert_eq!(
+            WRITE.reply(&refusal),
+            Some(Reply::Refused(Ok(Refusal::Armed)))
+        );
+        assert_eq!(WRITE.reply(&unknown), Some(Reply::Refused(Err(99))));
+        let of_geometry = frame(0x7A2, [0xEE, 0x11, 1, 0, 0, 0, 0, 0]);
+        assert_eq!(
+            Request::ReadGeometry.reply(&of_geometry),
+            Some(Reply::Refused(Ok(Refusal::WrongLength)))
+        );
+    }
+}

@@ -1,0 +1,221 @@
+//! The client against the firmware's own tuning channel, over a bus that carries other frames and loses some.
+
+use std::{
+    cell::RefCell,
+    collections::VecDeque,
+    rc::Rc,
+    time::{Duration, Instant},
+};
+
+use robot_app::{
+    bring_up::BringUp,
+    domain::{BusId, CanFrame, RobotConfig, StandardId},
+    tuning::{Refusal, TuningChannel, TuningGate},
+};
+
+use super::*;
+use crate::{
+    can_link::{CanLink, CanLinkError},
+    parameter_file::ParameterFile,
+};
+
+struct Robot {
+    channel: TuningChannel,
+    config: RobotConfig,
+    gate: TuningGate,
+    /// Replies that the bus still loses.
+    to_lose: usize,
+    requests: usize,
+    replies: VecDeque<CanFrame>,
+}
+
+#[derive(Clone)]
+struct Bus(Rc<RefCell<Robot>>);
+
+impl CanLink for Bus {
+    fn send(&mut self, frame: &CanFrame) -> Result<(), CanLinkError> {
+        let robot = &mut *self.0.borrow_mut();
+        robot.requests += 1;
+        robot.channel.begin_tick();
+        let reply = robot.channel.on_frame(
+            BusId::Can2,
+            frame,
+            robot.gate,
+            &mut robot.config,
+            &mut BringUp::default(),
+        );
+        // Traffic of the motors comes first.
+        let feedback = StandardId::new(0x201).unwrap();
+        robot.replies.push_back(CanFrame::new(feedback, [0x21; 8]));
+        if robot.to_lose > 0 {
+            robot.to_lose -= 1;
+        } else {
+            robot.replies.extend(reply);
+        }
+        Ok(())
+    }
+
+    fn receive(&mut self, _: Instant) -> Result<Option<CanFrame>, CanLinkError> {
+        Ok(self.0.borrow_mut().replies.pop_front())
+    }
+}
+
+fn robot() -> (Bus, TuningClient) {
+    let bus = Bus(Rc::new(RefCell::new(Robot {
+        channel: TuningChannel::default(),
+        config: RobotConfig::default(),
+        gate: TuningGate::Open,
+        to_lose: 0,
+        requests: 0,
+        replies: VecDeque::new(),
+    })));
+    let patience = Patience {
+        each_try: Duration::ZERO,
+        tries: 3,
+    };
+    let client = TuningClient::new(Box::new(bus.clone()), patience);
+    (bus, client)
+}
+
+fn file(values: &[(&str, f32)]) -> ParameterFile {
+    let mut file = ParameterFile::default();
+    for (name, value) in values {
+        file.set(name, *value);
+    }
+    file
+}
+
+#[test]
+fn every_setting_reads_as_the_robot_has_it_and_takes_its_limits() {
+    let (bus, mut client) = robot();
+    for named in all() {
+        let config = bus.0.borrow().config;
+        let value = client.read(named).unwrap();
+        assert_eq!(
+            value,
+            named.parameter.read(&config),
+            "{}",
+            named.full_name()
+        );
+        client.write(named, value).unwrap();
+    }
+    assert_eq!(bus.0.borrow().config, RobotConfig::default());
+}
+
+#[test]
+fn a_written_value_arrives() {
+    let (bus, mut client) = robot();
+    let track = find("wheel-geometry.track-m").unwrap();
+    client.write(track, 0.4).unwrap();
+    assert_eq!(bus.0.borrow().config.wheel_odom.wheel_track_m, 0.4);
+    let geometry = client.read_geometry().unwrap();
+    assert_eq!((geometry.track_mm, geometry.right_reversed), (400, true));
+}
+
+#[test]
+fn the_wheel_geometry_is_written_whole() {
+    let (bus, mut client) = robot();
+    let geometry = WheelGeometry {
+        radius_mm: 80,
+        track_mm: 350,
+        gear_ratio_x100: 1_920,
+        left_reversed: true,
+        right_reversed: false,
+    };
+    client.write_geometry(&geometry).unwrap();
+    let odom = bus.0.borrow().config.wheel_odom;
+    assert_eq!((odom.wheel_radius_m, odom.gear_ratio), (0.08, 19.2));
+    assert_eq!((odom.rpm_sign_left, odom.rpm_sign_right), (-1.0, 1.0));
+}
+
+#[test]
+fn an_armed_robot_refuses_and_the_message_says_what_to_do() {
+    let (bus, mut client) = robot();
+    bus.0.borrow_mut().gate = TuningGate::Shut;
+    let error = client
+        .write(find("heater.target-c").unwrap(), 30.0)
+        .unwrap_err();
+    assert!(matches!(
+        error,
+        TuningError::Refused {
+            reason: Ok(Refusal::Armed),
+            ..
+        }
+    ));
+    assert!(error.to_string().contains("switch enable off"), "{error}");
+    assert_eq!(bus.0.borrow().config, RobotConfig::default());
+}
+
+#[test]
+fn a_lost_reply_is_asked_for_again_and_a_dead_bus_is_told() {
+    let (bus, mut client) = robot();
+    let target = find("heater.target-c").unwrap();
+    bus.0.borrow_mut().to_lose = 2;
+    client.write(target, 30.0).unwrap();
+    assert_eq!(bus.0.borrow().config.heater.target_c, 30.0);
+
+    bus.0.borrow_mut().to_lose = usize::MAX;
+    let before = bus.0.borrow().requests;
+    assert!(matches!(client.read(target), Err(TuningError::Silent)));
+    assert_eq!(bus.0.borrow().requests - before, 3);
+}
+
+#[test]
+fn a_file_is_applied_whatever_the_order_of_its_values() {
+    let (bus, mut client) = robot();
+    // Alone, a lower limit of 2 contradicts the upper limit of 1.5.
+    let values = [
+        ("joint-left-front.min-rad", 2.0),
+        ("joint-left-front.max-rad", 3.0),
+        ("joint-left-front.max-kd", 5.0),
+    ];
+    let applied = apply(&mut client, &file(&values)).unwrap();
+    let joint = bus.0.borrow().config.joints[0];
+    assert_eq!((joint.min_rad, joint.max_rad), (2.0, 3.0));
+    let max = applied.iter().find(|a| a.named.parameter.name == "max-rad");
+    assert_eq!(max.map(|a| (a.before, a.after)), Some((1.5, 3.0)));
+}
+
+#[test]
+fn a_file_with_a_mistake_changes_nothing() {
+    let (bus, mut client) = robot();
+    let mistakes = [
+        ("heater.targt-c", 30.0, "did you mean `heater.target-c`"),
+        ("heater.target-c", 300.0, "0 … 55 degC"),
+        ("joint-left-front.direction", 0.5, "1 or -1"),
+        ("safety.clear-hold-us", 1.5, "a whole number"),
+    ];
+    for (name, value, expected) in mistakes {
+        let values = [("wheel-geometry.track-m", 0.4), (name, value)];
+        let error = apply(&mut client, &file(&values)).unwrap_err().to_string();
+        assert!(error.contains(expected), "{error}");
+    }
+    assert_eq!(bus.0.borrow().config, RobotConfig::default());
+}
+
+#[test]
+fn values_that_can_never_fit_end_the_application() {
+    let (bus, mut client) = robot();
+    let values = [
+        ("joint-left-front.min-rad", 1.0),
+        ("joint-left-front.max-rad", -1.0),
+    ];
+    let error = apply(&mut client, &file(&values)).unwrap_err();
+    assert!(matches!(
+        error,
+        ApplyError::Partly {
+            written: 1,
+            all: 2,
+            ..
+        }
+    ));
+    assert_eq!(bus.0.borrow().config.joints[0].max_rad, -1.0);
+}
+
+#[test]
+fn what_the_robot_has_already_is_not_written() {
+    let (bus, mut client) = robot();
+    let values = [("heater.target-c", RobotConfig::default().heater.target_c)];
+    apply(&mut client, &file(&values)).unwrap();
+    assert_eq!(bus.0.borrow().requests, 1, "one read");
+}
