@@ -19,6 +19,7 @@ use static_cell::StaticCell;
 
 use crate::drivers::battery::Battery;
 use crate::drivers::bmi088::Bmi088;
+use crate::drivers::buzzer::Buzzer;
 use crate::drivers::can::{self, Can1, Can2, CanPort, FifoInterrupt};
 use crate::drivers::heater::Heater;
 use crate::drivers::ist8310::Ist8310;
@@ -83,6 +84,7 @@ pub struct Board {
     pub heater: Heater,
     pub mag: MagBus,
     pub led: StatusLed,
+    pub buzzer: Buzzer,
     pub battery: Battery,
     pub iwdg: Peri<'static, peripherals::IWDG>,
 }
@@ -153,6 +155,7 @@ impl Board {
                 green: Output::new(p.PH11, Level::Low, Speed::Low),
                 blue: Output::new(p.PH10, Level::Low, Speed::Low),
             },
+            buzzer: start_buzzer(p.TIM4, p.PD14),
             battery: Battery::new(p.ADC3, p.PF10.degrade_adc()),
             iwdg: p.IWDG,
         }
@@ -252,6 +255,22 @@ fn start_heater(
         None,
         None,
         Hertz(1_000),
+        CountingMode::EdgeAlignedUp,
+    ))
+}
+
+/// 4 kHz, the buzzer's rated pitch.
+fn start_buzzer(
+    timer: Peri<'static, peripherals::TIM4>,
+    pin: Peri<'static, peripherals::PD14>,
+) -> Buzzer {
+    Buzzer::new(SimplePwm::new(
+        timer,
+        None,
+        None,
+        Some(PwmPin::new(pin, OutputType::PushPull)),
+        None,
+        Hertz(4_000),
         CountingMode::EdgeAlignedUp,
     ))
 }

@@ -106,6 +106,7 @@ fn main() -> ! {
             spawner.spawn(defmt::unwrap!(tasks::status::run(
                 exchange,
                 board.led,
+                board.buzzer,
                 board.battery,
                 writers.battery_v
             )));

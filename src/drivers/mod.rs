@@ -2,6 +2,7 @@
 
 pub mod battery;
 pub mod bmi088;
+pub mod buzzer;
 pub mod can;
 pub mod heater;
 pub mod ist8310;

@@ -1,15 +1,7 @@
 //! The board's red-green-blue LED.
 
 use embassy_stm32::gpio::Output;
-
-/// What the LED shows.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Colour {
-    Off,
-    Red,
-    Green,
-    Blue,
-}
+use robot_app::indication::Colour;
 
 /// Three outputs, high = on.
 pub struct StatusLed {
@@ -20,8 +12,9 @@ pub struct StatusLed {
 
 impl StatusLed {
     pub fn show(&mut self, colour: Colour) {
-        self.red.set_level((colour == Colour::Red).into());
-        self.green.set_level((colour == Colour::Green).into());
-        self.blue.set_level((colour == Colour::Blue).into());
+        let [red, green, blue] = colour.red_green_blue();
+        self.red.set_level(red.into());
+        self.green.set_level(green.into());
+        self.blue.set_level(blue.into());
     }
 }

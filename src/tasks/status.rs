@@ -1,13 +1,14 @@
-//! LED, battery voltage and the log. Checks for changes of state at 100 Hz, sums up at 4 Hz.
+//! LED, buzzer, battery voltage and the log. Checks for changes of state at 100 Hz, sums up at 4 Hz.
 
 use embassy_time::{Duration, Instant, Ticker};
 use robot_app::diagnostics::DiagnosticsSnapshot;
-use robot_app::safety::{ArmingState, SafetyVerdict};
+use robot_app::indication::{Indication, IndicationInputs, IndicationPlayer};
 use robot_snapshot::Writer;
 
 use crate::deadlines::Watched;
 use crate::drivers::battery::Battery;
-use crate::drivers::status_led::{Colour, StatusLed};
+use crate::drivers::buzzer::Buzzer;
+use crate::drivers::status_led::StatusLed;
 use crate::exchange::Exchange;
 use change_log::ChangeLog;
 
@@ -22,17 +23,21 @@ const SUMMARY_DIVIDER: u32 = 25;
 pub async fn run(
     exchange: &'static Exchange,
     mut led: StatusLed,
+    mut buzzer: Buzzer,
     mut battery: Battery,
     mut battery_v: Writer<'static, f32>,
 ) -> ! {
     let mut changes = ChangeLog::default();
+    let mut player = IndicationPlayer::default();
     let mut ticker = Ticker::every(PERIOD);
     let mut round: u32 = 0;
     loop {
         ticker.next().await;
         Watched::Status.check_in();
         let diagnostics = exchange.diagnostics.latest();
-        led.show(colour(&diagnostics));
+        let signal = player.step(indication(&diagnostics), Instant::now().as_micros());
+        led.show(signal.led);
+        buzzer.sound(signal.buzzer);
         changes.report(&diagnostics);
         round = round.wrapping_add(1);
         if round.is_multiple_of(SUMMARY_DIVIDER) {
@@ -42,18 +47,11 @@ pub async fn run(
     }
 }
 
-/// Green: armed. Red: a stop. Blue blinking at 1 Hz: ready to be armed.
-fn colour(diagnostics: &DiagnosticsSnapshot) -> Colour {
-    if diagnostics.arming.state == ArmingState::Armed {
-        return Colour::Green;
-    }
-    if diagnostics.safety.verdict != SafetyVerdict::Run {
-        return Colour::Red;
-    }
-    let second_half = Instant::now().as_millis() % 1_000 >= 500;
-    if second_half {
-        Colour::Blue
-    } else {
-        Colour::Off
-    }
+fn indication(diagnostics: &DiagnosticsSnapshot) -> Indication {
+    Indication::of(&IndicationInputs {
+        arming: &diagnostics.arming,
+        safety: &diagnostics.safety,
+        calibration: &diagnostics.imu_status.calibration,
+        bring_up: diagnostics.bring_up.step,
+    })
 }

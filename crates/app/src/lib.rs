@@ -16,6 +16,7 @@
 //! | [`tuning`] | CAN requests → changed `RobotConfig`, replies |
 //! | [`bring_up`] | radio or tuning request → the command that tries out new hardware |
 //! | [`diagnostics`] | one `DiagnosticsSnapshot` of all of the above |
+//! | [`indication`] | state → what LED and buzzer tell people |
 //! | [`tick`] | the 1 kHz tick: all stages from CAN frames in to CAN frames out |
 //!
 //! # How the firmware uses it
@@ -48,6 +49,7 @@ pub mod control;
 pub mod diagnostics;
 pub mod domain;
 pub mod estimation;
+pub mod indication;
 pub mod input;
 pub mod logic;
 mod math;

@@ -1,7 +1,9 @@
 //! Log lines for changes of state, at most four a second for each.
 
 use robot_app::diagnostics::{ChangeNotice, DiagnosticsSnapshot};
-use robot_app::domain::{BusErrorState, BusId, RadioLineHealth};
+use robot_app::domain::{
+    BusErrorState, BusId, CalibrationState, HeaterState, RadioLineHealth, Warmth,
+};
 use robot_app::safety::{ArmingBlockers, ArmingState, SafetyFlags};
 
 /// What was logged last.
@@ -13,7 +15,8 @@ pub struct ChangeLog {
     buses: [ChangeNotice<BusErrorState>; 2],
     imu_ready: ChangeNotice<bool>,
     mag_ready: ChangeNotice<bool>,
-    calibrated: ChangeNotice<bool>,
+    calibration: ChangeNotice<CalibrationState>,
+    heater: ChangeNotice<HeaterState>,
     line_errors: ChangeNotice<u32>,
     ticks_missed: ChangeNotice<u32>,
 }
@@ -51,9 +54,33 @@ impl ChangeLog {
         if let Some(ready) = self.mag_ready.due(d.mag_health.ready, d.ts_us) {
             log_sensor("magnetometer", ready, d.mag_health.errors);
         }
-        if let Some(true) = self.calibrated.due(d.imu_calibrated, d.ts_us) {
-            let [x, y, z] = d.imu.gyro_bias_dps;
-            defmt::info!("gyro offset found: {=f32} {=f32} {=f32} dps", x, y, z);
+        self.report_heater(d);
+        self.report_calibration(d);
+    }
+
+    fn report_heater(&mut self, d: &DiagnosticsSnapshot) {
+        let heater = &d.imu_status.heater;
+        match self.heater.due(heater.state, d.ts_us) {
+            Some(HeaterState::CutOff) => {
+                defmt::warn!("imu heater cut off, {=f32} C", heater.temperature_c);
+            }
+            Some(state) => defmt::info!("imu heater: {}, {=f32} C", state, heater.temperature_c),
+            None => {}
+        }
+    }
+
+    fn report_calibration(&mut self, d: &DiagnosticsSnapshot) {
+        let calibration = &d.imu_status.calibration;
+        match self.calibration.due(calibration.state, d.ts_us) {
+            Some(CalibrationState::Done) => {
+                let [x, y, z] = d.imu.gyro_bias_dps;
+                defmt::info!("gyro offset found: {=f32} {=f32} {=f32} dps", x, y, z);
+                if calibration.warmth == Warmth::Unknown {
+                    defmt::warn!("the imu tells no temperature: the gyro offset may drift");
+                }
+            }
+            Some(state) => defmt::info!("gyro calibration: {}", state),
+            None => {}
         }
     }
 

@@ -1,0 +1,125 @@
+//! Which of the things that are true now is shown: the first of the list that holds.
+
+use crate::{
+    bring_up::BringUpStep,
+    domain::{CalibrationState, CalibrationStatus},
+    safety::{ArmingBlockers, ArmingState, ArmingStatus, SafetyFlags, SafetyStatus},
+};
+
+/// In order of priority, the most urgent first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Indication {
+    /// The pilot threw the e-stop.
+    EStop,
+    /// Charge or change the battery; everything stopped.
+    BatteryEmpty,
+    /// A stop that stays until a human has looked and cleared it.
+    LatchedStop,
+    /// No radio, or a bad one.
+    RadioLost,
+    /// Anything else that stops everything.
+    Fault,
+    /// Armed, but wheels, joints or a bus are stopped.
+    ArmedInPart,
+    /// Armed, and the battery is nearly empty: land it.
+    ArmedBatteryLow,
+    /// Bring-up, armed: a motor may move.
+    BringUpArmed,
+    Armed,
+    BringUp,
+    BatteryLow,
+    /// The package is not warm yet.
+    WarmingUp,
+    /// The start-up calibration needs a robot that stands still.
+    HoldStill,
+    Calibrating,
+    /// Wheels, joints or a bus are not fit to be armed.
+    NotReady,
+    /// The enable switch is on, but that does not arm: see the arming blockers.
+    Refused,
+    /// The enable switch arms.
+    Ready,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub struct IndicationInputs<'a> {
+    pub arming: &'a ArmingStatus,
+    pub safety: &'a SafetyStatus,
+    pub calibration: &'a CalibrationStatus,
+    pub bring_up: BringUpStep,
+}
+
+const RADIO: SafetyFlags = SafetyFlags::REMOTE_LOST
+    .and(SafetyFlags::REMOTE_FAILSAFE)
+    .and(SafetyFlags::REMOTE_QUALITY);
+
+impl Indication {
+    pub fn of(inputs: &IndicationInputs<'_>) -> Self {
+        if let Some(stop) = stop(inputs.safety) {
+            return stop;
+        }
+        match inputs.arming.state {
+            ArmingState::Armed => armed(inputs),
+            ArmingState::Disarmed => disarmed(inputs),
+        }
+    }
+}
+
+fn stop(safety: &SafetyStatus) -> Option<Indication> {
+    let has = |flags| safety.flags.intersects(flags);
+    if has(SafetyFlags::E_STOP) {
+        Some(Indication::EStop)
+    } else if has(SafetyFlags::BATTERY_EMPTY) {
+        Some(Indication::BatteryEmpty)
+    } else if !safety.latched.is_empty() {
+        Some(Indication::LatchedStop)
+    } else if has(RADIO) {
+        Some(Indication::RadioLost)
+    } else if safety.global_stop {
+        Some(Indication::Fault)
+    } else {
+        None
+    }
+}
+
+fn armed(inputs: &IndicationInputs<'_>) -> Indication {
+    if stops_in_part(inputs.safety) {
+        Indication::ArmedInPart
+    } else if inputs.safety.flags.intersects(SafetyFlags::BATTERY_LOW) {
+        Indication::ArmedBatteryLow
+    } else if inputs.bring_up != BringUpStep::Off {
+        Indication::BringUpArmed
+    } else {
+        Indication::Armed
+    }
+}
+
+fn disarmed(inputs: &IndicationInputs<'_>) -> Indication {
+    let blockers = inputs.arming.blockers;
+    let blocked_by = |blocker| blockers.contains(blocker);
+    if inputs.bring_up != BringUpStep::Off {
+        Indication::BringUp
+    } else if inputs.safety.flags.intersects(SafetyFlags::BATTERY_LOW) {
+        Indication::BatteryLow
+    } else if blocked_by(ArmingBlockers::CALIBRATION_PENDING) {
+        match inputs.calibration.state {
+            CalibrationState::WaitingForTemperature => Indication::WarmingUp,
+            CalibrationState::WaitingForStillness => Indication::HoldStill,
+            CalibrationState::Measuring | CalibrationState::Done => Indication::Calibrating,
+        }
+    } else if stops_in_part(inputs.safety) || blocked_by(ArmingBlockers::JOINTS_NOT_READY) {
+        Indication::NotReady
+    } else if blocked_by(ArmingBlockers::ENABLE_OFF) {
+        Indication::Ready
+    } else {
+        Indication::Refused
+    }
+}
+
+fn stops_in_part(safety: &SafetyStatus) -> bool {
+    safety.wheels_stop || safety.joints_stop || safety.bus_stop.contains(&true)
+}
+
+#[cfg(test)]
+mod tests;

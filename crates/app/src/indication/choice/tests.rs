@@ -1,0 +1,163 @@
+use super::*;
+
+/// Armed, or disarmed with the enable switch off, and nothing wrong.
+struct Situation {
+    arming: ArmingStatus,
+    safety: SafetyStatus,
+    calibration: CalibrationStatus,
+    bring_up: BringUpStep,
+}
+
+impl Situation {
+    fn new(state: ArmingState) -> Self {
+        let blockers = match state {
+            ArmingState::Armed => ArmingBlockers::NONE,
+            ArmingState::Disarmed => ArmingBlockers::ENABLE_OFF,
+        };
+        Self {
+            arming: ArmingStatus { state, blockers },
+            safety: SafetyStatus {
+                global_stop: false,
+                wheels_stop: false,
+                joints_stop: false,
+                bus_stop: [false; 2],
+                ..SafetyStatus::default()
+            },
+            calibration: CalibrationStatus {
+                state: CalibrationState::Done,
+                ..CalibrationStatus::default()
+            },
+            bring_up: BringUpStep::Off,
+        }
+    }
+
+    fn shows(&self) -> Indication {
+        Indication::of(&IndicationInputs {
+            arming: &self.arming,
+            safety: &self.safety,
+            calibration: &self.calibration,
+            bring_up: self.bring_up,
+        })
+    }
+}
+
+fn armed(change: impl FnOnce(&mut Situation)) -> Indication {
+    let mut situation = Situation::new(ArmingState::Armed);
+    change(&mut situation);
+    situation.shows()
+}
+
+fn disarmed(change: impl FnOnce(&mut Situation)) -> Indication {
+    let mut situation = Situation::new(ArmingState::Disarmed);
+    change(&mut situation);
+    situation.shows()
+}
+
+/// A global stop, which also disarms.
+fn stopped(flags: SafetyFlags, latched: SafetyFlags) -> Indication {
+    disarmed(|s| {
+        s.safety.flags = flags;
+        s.safety.latched = latched;
+        s.safety.global_stop = true;
+    })
+}
+
+#[test]
+fn stops_come_before_everything_and_in_order_of_urgency() {
+    let none = SafetyFlags::NONE;
+    let e_stop = SafetyFlags::E_STOP;
+    let empty = SafetyFlags::BATTERY_EMPTY;
+    let tilt = SafetyFlags::TILT;
+    let lost = SafetyFlags::REMOTE_LOST;
+    let stale = SafetyFlags::IMU_STALE;
+    let all = e_stop.and(empty).and(tilt).and(lost).and(stale);
+    assert_eq!(stopped(all, empty.and(tilt)), Indication::EStop);
+    let no_e_stop = empty.and(tilt).and(lost).and(stale);
+    assert_eq!(stopped(no_e_stop, empty), Indication::BatteryEmpty);
+    let fallen = tilt.and(lost).and(stale);
+    assert_eq!(stopped(fallen, tilt), Indication::LatchedStop);
+    assert_eq!(stopped(lost.and(stale), none), Indication::RadioLost);
+    for radio in [SafetyFlags::REMOTE_FAILSAFE, SafetyFlags::REMOTE_QUALITY] {
+        assert_eq!(stopped(radio, none), Indication::RadioLost);
+    }
+    assert_eq!(stopped(stale, none), Indication::Fault);
+    assert_eq!(stopped(SafetyFlags::TASK_LATE, none), Indication::Fault);
+}
+
+#[test]
+fn a_latched_stop_of_the_joints_is_shown_while_armed_too() {
+    let shown = armed(|s| {
+        s.safety.joints_stop = true;
+        s.safety.flags = SafetyFlags::JOINT_FAULT;
+        s.safety.latched = SafetyFlags::JOINT_FAULT;
+    });
+    assert_eq!(shown, Indication::LatchedStop);
+}
+
+#[test]
+fn armed_says_what_is_less_than_whole() {
+    assert_eq!(armed(|_| ()), Indication::Armed);
+    assert_eq!(
+        armed(|s| s.bring_up = BringUpStep::OneMotor),
+        Indication::BringUpArmed
+    );
+    assert_eq!(
+        armed(|s| s.safety.flags = SafetyFlags::BATTERY_LOW),
+        Indication::ArmedBatteryLow
+    );
+    let in_part: [fn(&mut Situation); 4] = [
+        |s| s.safety.wheels_stop = true,
+        |s| s.safety.joints_stop = true,
+        |s| s.safety.bus_stop = [true, false],
+        |s| s.safety.bus_stop = [false, true],
+    ];
+    for stop in in_part {
+        assert_eq!(armed(stop), Indication::ArmedInPart);
+    }
+}
+
+#[test]
+fn disarmed_says_what_it_waits_for() {
+    assert_eq!(disarmed(|_| ()), Indication::Ready);
+    assert_eq!(
+        disarmed(|s| s.bring_up = BringUpStep::ReadOnly),
+        Indication::BringUp
+    );
+    assert_eq!(
+        disarmed(|s| s.safety.flags = SafetyFlags::BATTERY_LOW),
+        Indication::BatteryLow
+    );
+    let calibrating = |state| {
+        disarmed(|s| {
+            s.arming.blockers = ArmingBlockers::CALIBRATION_PENDING;
+            s.calibration.state = state;
+        })
+    };
+    assert_eq!(
+        calibrating(CalibrationState::WaitingForTemperature),
+        Indication::WarmingUp
+    );
+    assert_eq!(
+        calibrating(CalibrationState::WaitingForStillness),
+        Indication::HoldStill
+    );
+    assert_eq!(
+        calibrating(CalibrationState::Measuring),
+        Indication::Calibrating
+    );
+    let blocked = |blocker| disarmed(|s| s.arming.blockers = blocker);
+    assert_eq!(
+        blocked(ArmingBlockers::JOINTS_NOT_READY),
+        Indication::NotReady
+    );
+    assert_eq!(
+        disarmed(|s| s.safety.joints_stop = true),
+        Indication::NotReady
+    );
+    for refused in [
+        ArmingBlockers::ENABLE_NOT_CYCLED,
+        ArmingBlockers::STICKS_NOT_CENTRED,
+    ] {
+        assert_eq!(blocked(refused), Indication::Refused);
+    }
+}
