@@ -2,23 +2,32 @@
 
 use robot_app::{
     control::{ChassisController, ChassisControllerInput, ChassisControllerOutput},
-    domain::{ChassisCommand, WheelCommand},
+    domain::{ChassisCommand, JointCommand, WheelCommand},
 };
 
 /// A user's controller gone wrong: asks for whatever it is told.
-pub struct Rogue(pub f32);
+pub struct Rogue {
+    pub current_ma: f32,
+    pub joint: JointCommand,
+}
+
+impl Rogue {
+    /// Leaves the joints alone.
+    pub fn wheels(current_ma: f32) -> Self {
+        Self {
+            current_ma,
+            joint: JointCommand::default(),
+        }
+    }
+}
 
 impl ChassisController for Rogue {
     fn step(&mut self, _: &ChassisControllerInput<'_>) -> ChassisControllerOutput {
+        let wheels = [self.current_ma, -self.current_ma];
         ChassisControllerOutput {
             cmd: ChassisCommand {
-                wheels: [
-                    WheelCommand { current_ma: self.0 },
-                    WheelCommand {
-                        current_ma: -self.0,
-                    },
-                ],
-                ..ChassisCommand::default()
+                wheels: wheels.map(|current_ma| WheelCommand { current_ma }),
+                joints: [self.joint; 4],
             },
             cmd_valid: true,
         }
@@ -31,8 +40,12 @@ impl ChassisController for Rogue {
 pub struct Integrator(pub f32);
 
 impl ChassisController for Integrator {
-    fn step(&mut self, _: &ChassisControllerInput<'_>) -> ChassisControllerOutput {
-        self.0 += 1.0;
+    fn step(&mut self, input: &ChassisControllerInput<'_>) -> ChassisControllerOutput {
+        self.0 = if input.wheels_stopped {
+            0.0
+        } else {
+            self.0 + 1.0
+        };
         let mut output = ChassisControllerOutput {
             cmd_valid: true,
             ..ChassisControllerOutput::default()

@@ -1,14 +1,19 @@
 //! What goes into the tick, stretch by stretch.
 
 use proptest::prelude::*;
-use robot_app::{
-    domain::{
-        BusErrorState, ChassisCommand, DriveMode, HighLevelCommand, ImuState, MagState, OperatorState,
-        RemoteDiagnostics, RemoteState, RemoteUpdate, SystemHealth, WheelCommand,
-    },
-    logic::LogicBus,
-    tick::ControlInputs,
-};
+use robot_app::domain::{BusErrorState, DriveMode, JointCommand, JointMode};
+
+use crate::motors::Behaviour;
+
+/// How the clock runs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Clock {
+    Runs,
+    Stands,
+    /// µs a tick.
+    RunsBack(u16),
+    Rushes(u32),
+}
 
 /// One stretch of ticks in which the same things are right or wrong.
 #[derive(Clone, Debug)]
@@ -16,22 +21,29 @@ pub struct Phase {
     pub ticks: u16,
     pub enabled: bool,
     pub e_stop: bool,
+    pub mode: DriveMode,
     pub failsafe: bool,
     pub radio_sends: bool,
     pub quality: f32,
     pub sticks: (f32, f32),
+    pub channels: [f32; 16],
     pub imu_sends: bool,
     pub accel: [f32; 3],
     pub gyro: [f32; 3],
     pub gyro_bias: [f32; 3],
     pub mag: [f32; 3],
     pub calibrated: bool,
-    pub can1: BusErrorState,
+    pub buses: [BusErrorState; 2],
     pub logic_sends: bool,
-    /// Currents past the controller, both wheels, mA.
-    pub direct_ma: Option<f32>,
+    /// Past the controller: current of both wheels in mA, and every joint's command.
+    pub direct: Option<(f32, JointCommand)>,
     pub imu_errors: u32,
+    pub battery_v: f32,
+    pub wheels: [Behaviour; 2],
+    pub joints: [Behaviour; 4],
     pub time_jump_us: u64,
+    pub clock: Clock,
+    /// Sent again in every tick, on both buses.
     pub frame: (u16, Vec<u8>),
 }
 
@@ -43,16 +55,80 @@ fn mostly<T: Clone + std::fmt::Debug + 'static>(
     prop_oneof![9 => Just(usual), 1 => odd]
 }
 
-pub fn phases() -> impl Strategy<Value = Vec<Phase>> {
+fn behaviour() -> impl Strategy<Value = Behaviour> {
+    prop_oneof![
+        Just(Behaviour::Gone),
+        Just(Behaviour::Frozen),
+        any::<u8>().prop_map(Behaviour::Hot),
+        (8u8..16).prop_map(Behaviour::Fault),
+        any::<bool>().prop_map(Behaviour::Claims),
+        (-12.0f32..12.0).prop_map(Behaviour::At),
+        any::<[u8; 8]>().prop_map(Behaviour::Garbage),
+    ]
+}
+
+/// Any numbers, and such that a controller might really send.
+pub fn joint_command() -> impl Strategy<Value = JointCommand> {
+    let mode = prop_oneof![
+        1 => Just(JointMode::Off),
+        4 => Just(JointMode::Mit),
+        1 => Just(JointMode::PositionSpeed),
+        1 => Just(JointMode::Speed),
+    ];
+    let number = || prop_oneof![1 => any::<f32>(), 4 => -200.0f32..200.0, 4 => -1.0f32..1.0];
+    let fields = (number(), number(), number(), number(), number());
+    (mode, fields).prop_map(|(mode, (pos_rad, vel_rps, kp, kd, tau_nm))| JointCommand {
+        mode,
+        pos_rad,
+        vel_rps,
+        kp,
+        kd,
+        tau_nm,
+    })
+}
+
+/// Any frame, with a liking for those that somebody listens to: motors, tuning and bring-up.
+fn frame() -> impl Strategy<Value = (u16, Vec<u8>)> {
+    let bytes = || prop::collection::vec(any::<u8>(), 0..=8);
+    let heard = prop_oneof![0x201u16..=0x204, 0x011u16..=0x014, Just(0x0FD), Just(0x7FF)];
+    let requests = (
+        prop_oneof![Just(0x7A0u16), Just(0x7A1)],
+        prop_oneof![Just(0x10u8), Just(0x11), Just(0x20), Just(0x21)],
+        prop::collection::vec(any::<u8>(), 0..=7),
+    );
+    let bring_up = (0u8..5, 0u8..7, 0u8..3, any::<i16>());
+    prop_oneof![
+        (any::<u16>(), bytes()),
+        (heard, bytes()),
+        requests.prop_map(|(id, command, rest)| (id, [vec![command], rest].concat())),
+        bring_up.prop_map(|(step, motor, action, value)| {
+            let [low, high] = value.to_le_bytes();
+            (0x7A0, vec![0x40, step, motor, action, low, high, 0, 0])
+        }),
+    ]
+}
+
+fn clock() -> impl Strategy<Value = Clock> {
+    prop_oneof![
+        Just(Clock::Stands),
+        any::<u16>().prop_map(Clock::RunsBack),
+        any::<u32>().prop_map(Clock::Rushes),
+    ]
+}
+
+pub fn phase() -> impl Strategy<Value = Phase> {
+    let modes = prop_oneof![Just(DriveMode::Pc), Just(DriveMode::Custom)];
     let switches = (
         any::<bool>(),
         mostly(false, Just(true)),
+        mostly(DriveMode::Manual, modes),
         mostly(false, Just(true)),
     );
     let radio = (
         mostly(true, Just(false)),
         mostly(1.0, any::<f32>()),
         mostly((0.0, 0.0), any::<(f32, f32)>()),
+        mostly([0.0; 16], prop::array::uniform16(-1.0f32..1.0)),
     );
     let imu = (
         mostly(true, Just(false)),
@@ -62,39 +138,56 @@ pub fn phases() -> impl Strategy<Value = Vec<Phase>> {
         mostly([0.0, 20.0, -45.0], any::<[f32; 3]>()),
         mostly(true, Just(false)),
     );
+    let bus = || mostly(BusErrorState::Active, Just(BusErrorState::BusOff));
+    let bad = || mostly(Behaviour::Good, behaviour());
+    let motors = (
+        [bus(), bus()],
+        [bad(), bad()],
+        mostly([Behaviour::Good; 4], [bad(), bad(), bad(), bad()]),
+        mostly(24.0, prop_oneof![any::<f32>(), 15.0f32..25.0]),
+    );
+    let direct = (prop_oneof![Just(3_000.0), any::<f32>()], joint_command());
     let rest = (
-        mostly(BusErrorState::Active, Just(BusErrorState::BusOff)),
         mostly(true, Just(false)),
-        mostly(None, any::<f32>().prop_map(Some)),
+        mostly(None, direct.prop_map(Some)),
         mostly(0, any::<u32>()),
         mostly(0, any::<u64>()),
-        (any::<u16>(), prop::collection::vec(any::<u8>(), 0..=8)),
+        mostly(Clock::Runs, clock()),
+        frame(),
     );
-    let phase =
-        (1u16..300, switches, radio, imu, rest).prop_map(|(ticks, switches, radio, imu, rest)| {
-            Phase {
-                ticks,
-                enabled: switches.0,
-                e_stop: switches.1,
-                failsafe: switches.2,
-                radio_sends: radio.0,
-                quality: radio.1,
-                sticks: radio.2,
-                imu_sends: imu.0,
-                accel: imu.1,
-                gyro: imu.2,
-                gyro_bias: imu.3,
-                mag: imu.4,
-                calibrated: imu.5,
-                can1: rest.0,
-                logic_sends: rest.1,
-                direct_ma: rest.2,
-                imu_errors: rest.3,
-                time_jump_us: rest.4,
-                frame: rest.5,
-            }
-        });
-    prop::collection::vec(phase, 1..12)
+    (1u16..300, switches, radio, imu, motors, rest).prop_map(
+        |(ticks, switches, radio, imu, motors, rest)| Phase {
+            ticks,
+            enabled: switches.0,
+            e_stop: switches.1,
+            mode: switches.2,
+            failsafe: switches.3,
+            radio_sends: radio.0,
+            quality: radio.1,
+            sticks: radio.2,
+            channels: radio.3,
+            imu_sends: imu.0,
+            accel: imu.1,
+            gyro: imu.2,
+            gyro_bias: imu.3,
+            mag: imu.4,
+            calibrated: imu.5,
+            buses: motors.0,
+            wheels: motors.1,
+            joints: motors.2,
+            battery_v: motors.3,
+            logic_sends: rest.0,
+            direct: rest.1,
+            imu_errors: rest.2,
+            time_jump_us: rest.3,
+            clock: rest.4,
+            frame: rest.5,
+        },
+    )
+}
+
+pub fn phases() -> impl Strategy<Value = Vec<Phase>> {
+    prop::collection::vec(phase(), 1..12)
 }
 
 /// Everything in order.
@@ -103,109 +196,27 @@ pub fn good(ticks: u16, enabled: bool) -> Phase {
         ticks,
         enabled,
         e_stop: false,
+        mode: DriveMode::Manual,
         failsafe: false,
         radio_sends: true,
         quality: 1.0,
         sticks: (0.0, 0.0),
+        channels: [0.0; 16],
         imu_sends: true,
         accel: [0.0, 0.0, 9.81],
         gyro: [0.0; 3],
         gyro_bias: [0.0; 3],
         mag: [0.0, 20.0, -45.0],
         calibrated: true,
-        can1: BusErrorState::Active,
+        buses: [BusErrorState::Active; 2],
         logic_sends: true,
-        direct_ma: None,
+        direct: None,
         imu_errors: 0,
+        battery_v: 24.0,
+        wheels: [Behaviour::Good; 2],
+        joints: [Behaviour::Good; 4],
         time_jump_us: 0,
-        frame: (0x201, vec![0; 8]),
-    }
-}
-
-/// The latest snapshot of each producer, as the tasks around the control tick keep them.
-#[derive(Default)]
-pub struct Producers {
-    remote: RemoteUpdate,
-    imu: ImuState,
-    mag: MagState,
-    logic: LogicBus,
-    health: SystemHealth,
-}
-
-impl Producers {
-    pub fn run(&mut self, phase: &Phase, tick: u16, now_us: u64) {
-        if phase.radio_sends && tick.is_multiple_of(7) {
-            self.remote = remote_update(phase, now_us);
-        }
-        if phase.imu_sends && tick.is_multiple_of(5) {
-            self.imu = ImuState {
-                accel_mps2: phase.accel,
-                gyro_dps: phase.gyro,
-                gyro_bias_dps: phase.gyro_bias,
-                ts_us: now_us,
-                ..ImuState::default()
-            };
-        }
-        if tick.is_multiple_of(20) {
-            self.mag = MagState {
-                mag_ut: phase.mag,
-                ts_us: now_us,
-            };
-        }
-        if phase.logic_sends && tick.is_multiple_of(10) {
-            let (vx, wz) = phase.sticks;
-            self.logic = LogicBus {
-                hl_cmd: HighLevelCommand { vx, wz },
-                hl_valid: true,
-                cmd: ChassisCommand {
-                    wheels: [WheelCommand {
-                        current_ma: phase.direct_ma.unwrap_or_default(),
-                    }; 2],
-                    ..ChassisCommand::default()
-                },
-                cmd_valid: phase.direct_ma.is_some(),
-                ts_us: now_us,
-            };
-        }
-        self.health.can[0].state = phase.can1;
-        self.health.imu_calibrated = phase.calibrated;
-        self.health.imu.errors = phase.imu_errors;
-    }
-
-    pub fn inputs(&self) -> ControlInputs<'_> {
-        ControlInputs {
-            remote: &self.remote,
-            imu: &self.imu,
-            mag: &self.mag,
-            logic: &self.logic,
-            health: &self.health,
-        }
-    }
-}
-
-fn remote_update(phase: &Phase, now_us: u64) -> RemoteUpdate {
-    RemoteUpdate {
-        state: RemoteState {
-            vx: phase.sticks.0,
-            wz: phase.sticks.1,
-            ts_us: now_us,
-            ..RemoteState::default()
-        },
-        operator: OperatorState {
-            enabled: phase.enabled,
-            disabled: !phase.enabled,
-            e_stop: phase.e_stop,
-            dead_man: false,
-            mode: DriveMode::Manual,
-            ts_us: now_us,
-        },
-        diagnostics: RemoteDiagnostics {
-            quality: phase.quality,
-            frames: 1,
-            failsafe: phase.failsafe,
-            frame_ts_us: now_us,
-            good_ts_us: now_us,
-            ..RemoteDiagnostics::default()
-        },
+        clock: Clock::Runs,
+        frame: (0x300, vec![0; 8]),
     }
 }

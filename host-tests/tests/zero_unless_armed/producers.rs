@@ -1,0 +1,107 @@
+//! The tasks around the control tick.
+
+use robot_app::{
+    domain::{
+        ChassisCommand, HighLevelCommand, ImuState, MagState, OperatorState, RemoteDiagnostics,
+        RemoteState, RemoteUpdate, SystemHealth, WheelCommand,
+    },
+    logic::LogicBus,
+    tick::ControlInputs,
+};
+
+use crate::phase::Phase;
+
+/// The latest snapshot of each producer, as the tasks keep them.
+#[derive(Default)]
+pub struct Producers {
+    remote: RemoteUpdate,
+    imu: ImuState,
+    mag: MagState,
+    logic: LogicBus,
+    health: SystemHealth,
+}
+
+impl Producers {
+    pub fn run(&mut self, phase: &Phase, tick: u16, now_us: u64) {
+        if phase.radio_sends && tick.is_multiple_of(7) {
+            self.remote = remote_update(phase, now_us);
+        }
+        if phase.imu_sends && tick.is_multiple_of(5) {
+            self.imu = ImuState {
+                accel_mps2: phase.accel,
+                gyro_dps: phase.gyro,
+                gyro_bias_dps: phase.gyro_bias,
+                ts_us: now_us,
+                ..ImuState::default()
+            };
+        }
+        if tick.is_multiple_of(20) {
+            self.mag = MagState {
+                mag_ut: phase.mag,
+                ts_us: now_us,
+            };
+        }
+        if phase.logic_sends && tick.is_multiple_of(10) {
+            self.logic = logic_bus(phase, now_us);
+        }
+        for (bus, state) in self.health.can.iter_mut().zip(phase.buses) {
+            bus.state = state;
+        }
+        self.health.imu_calibrated = phase.calibrated;
+        self.health.imu.errors = phase.imu_errors;
+        self.health.battery_v = phase.battery_v;
+    }
+
+    pub fn inputs(&self) -> ControlInputs<'_> {
+        ControlInputs {
+            remote: &self.remote,
+            imu: &self.imu,
+            mag: &self.mag,
+            logic: &self.logic,
+            health: &self.health,
+        }
+    }
+}
+
+fn logic_bus(phase: &Phase, now_us: u64) -> LogicBus {
+    let (vx, wz) = phase.sticks;
+    let (current_ma, joint) = phase.direct.unwrap_or_default();
+    LogicBus {
+        hl_cmd: HighLevelCommand { vx, wz },
+        hl_valid: true,
+        cmd: ChassisCommand {
+            wheels: [WheelCommand { current_ma }; 2],
+            joints: [joint; 4],
+        },
+        cmd_valid: phase.direct.is_some(),
+        ts_us: now_us,
+    }
+}
+
+fn remote_update(phase: &Phase, now_us: u64) -> RemoteUpdate {
+    RemoteUpdate {
+        state: RemoteState {
+            channels: phase.channels,
+            vx: phase.sticks.0,
+            wz: phase.sticks.1,
+            select: phase.channels[2],
+            ts_us: now_us,
+        },
+        operator: OperatorState {
+            enabled: phase.enabled,
+            disabled: !phase.enabled,
+            e_stop: phase.e_stop,
+            dead_man: phase.channels[3] > 0.7,
+            mode: phase.mode,
+            ts_us: now_us,
+        },
+        diagnostics: RemoteDiagnostics {
+            quality: phase.quality,
+            frames: 1,
+            failsafe: phase.failsafe,
+            frame_ts_us: now_us,
+            good_ts_us: now_us,
+            ..RemoteDiagnostics::default()
+        },
+    }
+}

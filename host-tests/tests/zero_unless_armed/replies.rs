@@ -1,0 +1,70 @@
+//! What the joints said, on its way to the board and as the board may have understood it.
+
+use crate::wire::{Make, Motion};
+
+/// Replies take a tick.
+pub struct Replies {
+    make: Make,
+    under_way: Vec<(u16, [u8; 8])>,
+    /// The last one of each joint that is a report beyond doubt, and those after it that may be one.
+    believable: [Vec<Motion>; 4],
+    faults: [bool; 4],
+}
+
+impl Replies {
+    pub fn new(make: Make) -> Self {
+        Self {
+            make,
+            under_way: Vec::new(),
+            believable: Default::default(),
+            faults: [false; 4],
+        }
+    }
+
+    pub fn extend(&mut self, reply: Option<(u16, [u8; 8])>) {
+        self.under_way.extend(reply);
+    }
+
+    pub fn take(&mut self) -> Vec<(u16, [u8; 8])> {
+        std::mem::take(&mut self.under_way)
+    }
+
+    /// Every frame that comes in on the joints' bus, whoever sent it.
+    pub fn note(&mut self, id: u16, data: &[u8]) {
+        let Ok(data) = <[u8; 8]>::try_from(data) else {
+            return;
+        };
+        for joint in 0..4 {
+            let number = joint as u8 + 1;
+            let (mine, status) = match self.make {
+                Make::Dm4310 => (
+                    id == 0x10 + u16::from(number) && data[0] & 0x0F == number,
+                    data[0] >> 4,
+                ),
+                Make::Rs00 => (id == 0xFD && data[0] == number, 2),
+            };
+            if !mine {
+                continue;
+            }
+            let may_be_register = data[1] == 0 && (data[2] == 0x33 || data[2] == 0x55);
+            if status < 2 && !may_be_register {
+                self.believable[joint].clear();
+            }
+            self.believable[joint].push(self.make.motion(data));
+            // Enough to hold the last report beyond doubt of a motor that is heard in each tick.
+            if self.believable[joint].len() > 400 {
+                self.believable[joint].remove(0);
+            }
+            self.faults[joint] = (8..=14).contains(&status);
+        }
+    }
+
+    pub fn believable(&self, joint: usize) -> &[Motion] {
+        &self.believable[joint]
+    }
+
+    /// True if the last word of a DM4310 was a fault.
+    pub fn tell_of_fault(&self) -> bool {
+        self.faults.contains(&true)
+    }
+}
