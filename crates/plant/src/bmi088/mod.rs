@@ -136,6 +136,10 @@ impl Bmi088 {
         self.thermal.heater_duty = duty.clamp(0.0, 1.0);
     }
 
+    pub(crate) fn heater_duty(&self) -> f64 {
+        self.thermal.heater_duty
+    }
+
     pub(crate) fn temperature_c(&self) -> f64 {
         self.thermal.temperature_c()
     }
