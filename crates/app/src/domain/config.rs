@@ -1,5 +1,7 @@
 //! Values that fit this code to one robot.
 
+use crate::motor::layout::ROBOT_LAYOUT;
+
 /// Wheel geometry (seed section 5.1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
@@ -101,22 +103,6 @@ pub struct JointConfig {
     pub max_speed_rps: f32,
     pub max_kp: f32,
     pub max_kd: f32,
-}
-
-impl Default for JointConfig {
-    /// A DM4310 that turns as the joint does, with what it can give for long and all the way it can tell.
-    fn default() -> Self {
-        Self {
-            direction: 1.0,
-            zero_rad: 0.0,
-            min_rad: -1.5,
-            max_rad: 1.5,
-            max_torque_nm: 3.0,
-            max_speed_rps: 15.0,
-            max_kp: 100.0,
-            max_kd: 5.0,
-        }
-    }
 }
 
 /// Limits of `SafetyPolicy` and `Arming`.
@@ -254,16 +240,11 @@ pub struct RobotConfig {
 
 impl Default for RobotConfig {
     fn default() -> Self {
-        let left = JointConfig::default();
-        let right = JointConfig {
-            direction: -1.0,
-            ..left
-        };
         Self {
             wheel_odom: WheelOdomConfig::default(),
             wheel_ctrl: WheelControllerConfig::default(),
             joint_ctrl: JointControllerConfig::default(),
-            joints: [left, left, right, right],
+            joints: ROBOT_LAYOUT.joint_configs(),
             safety: SafetyConfig::default(),
             imu: ImuCalibration::default(),
             mag: MagCalibration::default(),

@@ -188,7 +188,7 @@ impl Joint {
         }
     }
 
-    /// The frame of this slot. `None` as command: no torque.
+    /// The frame of this slot. `None` as command: no torque, before anything else.
     fn next_frame(
         &mut self,
         command: Option<&JointCommand>,
@@ -198,17 +198,17 @@ impl Joint {
         self.said = Said::Other;
         self.sent = JointCommand::default();
         self.obeyed = None;
+        let has_torque = matches!(self.phase, Phase::Enabling | Phase::Enabled { .. });
+        if command.is_none() && has_torque {
+            self.phase = Phase::Disabled;
+            return self.slot.motor.disable();
+        }
         if let Some(frame) = self.upkeep(now_us) {
             return frame;
         }
         match command {
             Some(command) => self.obey(command, config, now_us),
-            None => {
-                if matches!(self.phase, Phase::Enabling | Phase::Enabled { .. }) {
-                    self.phase = Phase::Disabled;
-                }
-                self.slot.motor.disable()
-            }
+            None => self.slot.motor.disable(),
         }
     }
 
