@@ -10,8 +10,10 @@ use crate::drivers::battery::Battery;
 use crate::drivers::buzzer::Buzzer;
 use crate::drivers::status_led::StatusLed;
 use crate::exchange::Exchange;
+use bring_up_log::BringUpLog;
 use change_log::ChangeLog;
 
+mod bring_up_log;
 mod change_log;
 mod summary;
 
@@ -28,6 +30,7 @@ pub async fn run(
     mut battery_v: Writer<'static, f32>,
 ) -> ! {
     let mut changes = ChangeLog::default();
+    let mut bring_up = BringUpLog::default();
     let mut player = IndicationPlayer::default();
     let mut ticker = Ticker::every(PERIOD);
     let mut round: u32 = 0;
@@ -39,10 +42,12 @@ pub async fn run(
         led.show(signal.led);
         buzzer.sound(signal.buzzer);
         changes.report(&diagnostics);
+        bring_up.report_changes(&diagnostics);
         round = round.wrapping_add(1);
         if round.is_multiple_of(SUMMARY_DIVIDER) {
             battery_v.publish(&battery.read_v());
             summary::log(&diagnostics);
+            bring_up.report_joints(&diagnostics);
         }
     }
 }

@@ -19,6 +19,7 @@ pub struct ChangeLog {
     heater: ChangeNotice<HeaterState>,
     line_errors: ChangeNotice<u32>,
     ticks_missed: ChangeNotice<u32>,
+    tuning_revision: ChangeNotice<u32>,
 }
 
 impl ChangeLog {
@@ -28,6 +29,9 @@ impl ChangeLog {
         self.report_lines(d);
         if let Some(missed) = self.ticks_missed.due(d.tick.missed, d.ts_us) {
             defmt::warn!("control ticks missed since boot: {=u32}", missed);
+        }
+        if let Some(revision) = self.tuning_revision.due(d.tuning.revision, d.ts_us) {
+            defmt::info!("settings changed {=u32} times since boot", revision);
         }
     }
 

@@ -6,7 +6,6 @@ use crate::domain::JointFeedback;
 const STILL_RAD: f32 = 0.02;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Turn {
     #[default]
     Still,
@@ -16,7 +15,6 @@ pub enum Turn {
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct JointReading {
     /// Angle in joint coordinates.
     pub pos_mrad: i32,

@@ -1,0 +1,61 @@
+//! What one reads while bringing up hardware: the step, the motor on trial, and how the joints are being turned.
+
+use robot_app::bring_up::{BringUpStatus, BringUpStep, JointReading, JointWatch, Turn};
+use robot_app::diagnostics::{ChangeNotice, DiagnosticsSnapshot};
+
+/// Silent while bring-up is off.
+#[derive(Default)]
+pub struct BringUpLog {
+    status: ChangeNotice<BringUpStatus>,
+    watch: JointWatch,
+}
+
+impl BringUpLog {
+    pub fn report_changes(&mut self, d: &DiagnosticsSnapshot) {
+        let Some(status) = self.status.due(d.bring_up, d.ts_us) else {
+            return;
+        };
+        let by = if status.by_radio {
+            "radio"
+        } else {
+            "tuning channel"
+        };
+        match status.step {
+            BringUpStep::OneMotor => defmt::warn!(
+                "bring-up by {=str}: {}, motor {=u8}, {}",
+                by,
+                status.step,
+                status.motor,
+                status.trial
+            ),
+            step => defmt::warn!("bring-up by {=str}: {}", by, step),
+        }
+    }
+
+    /// A few times a second.
+    pub fn report_joints(&mut self, d: &DiagnosticsSnapshot) {
+        if d.bring_up.step == BringUpStep::Off {
+            return;
+        }
+        let [left_front, left_rear, right_front, right_rear] = self.watch.look(&d.motor.joints);
+        defmt::info!(
+            "joints: left front {=i32} mrad {=str}, left rear {=i32} mrad {=str}, right front {=i32} mrad {=str}, right rear {=i32} mrad {=str}",
+            left_front.pos_mrad,
+            turning(left_front),
+            left_rear.pos_mrad,
+            turning(left_rear),
+            right_front.pos_mrad,
+            turning(right_front),
+            right_rear.pos_mrad,
+            turning(right_rear)
+        );
+    }
+}
+
+fn turning(reading: JointReading) -> &'static str {
+    match reading.turn {
+        Turn::Still => "still",
+        Turn::Forward => "turning forward",
+        Turn::Back => "turning back",
+    }
+}
