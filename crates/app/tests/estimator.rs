@@ -268,6 +268,25 @@ fn a_turn_goes_on_through_samples_that_are_not_used() {
     assert!((bench.yaw_rad() - 2.0).abs() < 6e-3, "{}", bench.yaw_rad());
 }
 
+/// 100 ms at both ends of ±12 g would tilt the smoothed gravity by 20°.
+#[test]
+fn a_blow_beyond_the_range_does_not_tilt_the_robot() {
+    let mut bench = Bench::settled();
+    bench.imu.accel_mps2 = [117.6, -117.6, 9.8];
+    bench.imu.saturated = true;
+    bench.run(0.1);
+    assert!(bench.estimate.valid);
+    bench.imu.accel_mps2 = LEVEL;
+    bench.imu.saturated = false;
+    bench.run(0.5);
+    assert!(bench.tilt_rad() < 0.2_f32.to_radians());
+    bench.imu.gyro_dps = [0.0, 0.0, 1_000.0];
+    bench.imu.saturated = true;
+    bench.run(0.09);
+    let [.., yaw_rad] = bench.estimate.rpy_rad;
+    assert!((yaw_rad.to_degrees() - 90.0).abs() < 6.0, "{yaw_rad}");
+}
+
 #[test]
 fn a_field_that_no_sensor_measures_changes_nothing() {
     for bad in [f32::NAN, f32::INFINITY, f32::MAX, 9_000.0] {

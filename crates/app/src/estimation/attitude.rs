@@ -40,13 +40,16 @@ impl AttitudeFilter {
         }
     }
 
-    /// One IMU sample, whose rate held over the `dt_s` before it.
-    pub fn feed_imu(&mut self, gyro_rps: Vector3, accel_mps2: Vector3, dt_s: f32) {
+    /// One IMU sample, whose rate held over the `dt_s` before it. Without an acceleration the gyro alone carries on.
+    pub fn feed_imu(&mut self, gyro_rps: Vector3, accel_mps2: Option<Vector3>, dt_s: f32) {
         self.rate_rps = vector::sub(gyro_rps, self.bias.bias_rps());
         self.gyro_turned = self
             .gyro_turned
             .after(step_rotation(self.rate_rps, dt_s))
             .normalised();
+        let Some(accel_mps2) = accel_mps2 else {
+            return;
+        };
         let rest_rate = self.rest.feed(gyro_rps, accel_mps2, MAX_BIAS_RPS);
         let Some(level_accel) = self.correct_inclination(accel_mps2) else {
             return;

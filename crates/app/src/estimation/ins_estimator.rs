@@ -103,7 +103,9 @@ impl InsEstimator {
         }
         let dt_s = if continuous { seconds(gap_us) } else { 0.0 };
         let gyro_rps = imu.gyro_dps.map(f32::to_radians);
-        self.attitude.feed_imu(gyro_rps, imu.accel_mps2, dt_s);
+        // Cut off at the end of its range a blow no longer averages out, and would tilt the robot by degrees.
+        let accel_mps2 = (!imu.saturated).then_some(imu.accel_mps2);
+        self.attitude.feed_imu(gyro_rps, accel_mps2, dt_s);
         self.settled_samples = self.settled_samples.saturating_add(1);
     }
 
