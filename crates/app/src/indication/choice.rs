@@ -68,7 +68,8 @@ impl Indication {
 
 fn stop(safety: &SafetyStatus) -> Option<Indication> {
     let has = |flags| safety.flags.intersects(flags);
-    if has(SafetyFlags::E_STOP) {
+    // Without the radio nobody knows where the switch is.
+    if has(SafetyFlags::E_STOP) && !has(SafetyFlags::REMOTE_LOST) {
         Some(Indication::EStop)
     } else if has(SafetyFlags::BATTERY_EMPTY) {
         Some(Indication::BatteryEmpty)
