@@ -1,0 +1,126 @@
+//! `robotctl calibrate` as a user runs it: files in, values and plots out.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::{Command, Output},
+};
+
+const UP: [[f64; 3]; 8] = [
+    [0.0, 0.0, 1.0],
+    [0.0, 0.0, -1.0],
+    [0.0, 1.0, 0.0],
+    [0.0, -1.0, 0.0],
+    [1.0, 0.0, 0.0],
+    [-1.0, 0.0, 0.0],
+    [0.6, 0.0, 0.8],
+    [0.0, 0.8, -0.6],
+];
+
+fn directory(test: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
+    // What an earlier run left.
+    let _ = fs::remove_dir_all(&path);
+    fs::create_dir_all(&path).unwrap();
+    path
+}
+
+/// Two seconds at 100 Hz a side, from a sensor with an offset of 0.2 m/s² in x and 1 % too much in z.
+fn accel_table(sides: &[[f64; 3]]) -> String {
+    let mut text = String::from("t,ax,ay,az\n");
+    for (row, side) in sides.iter().flat_map(|side| [side; 200]).enumerate() {
+        let [x, y, z] = side.map(|part| part * 9.806_65);
+        let (t, z) = (row as f64 * 0.01, z * 1.01);
+        text.push_str(&format!("{t:.2},{:.5},{y:.5},{z:.5}\n", x + 0.2));
+    }
+    text
+}
+
+fn robotctl(directory: &Path, arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_robotctl"));
+    command.current_dir(directory).args(arguments);
+    command.env("RUST_BACKTRACE", "0").output().unwrap()
+}
+
+fn value(directory: &Path, table: &str, key: &str) -> f64 {
+    let text = fs::read_to_string(directory.join("calibration.toml")).unwrap();
+    let file: toml::Table = text.parse().unwrap();
+    file[table][key].as_float().unwrap()
+}
+
+#[test]
+fn a_table_becomes_values_and_a_page() {
+    let directory = directory("calibrate-accel");
+    fs::write(directory.join("a.csv"), accel_table(&UP[..4])).unwrap();
+    fs::write(directory.join("b.csv"), accel_table(&UP[4..])).unwrap();
+    fs::write(
+        directory.join("calibration.toml"),
+        "[heater]\ntarget-c = 45.0\n",
+    )
+    .unwrap();
+
+    let output = robotctl(&directory, &["calibrate", "accel", "a.csv", "b.csv"]);
+    assert!(output.status.success(), "{output:?}");
+    let found = |key| value(&directory, "imu-calibration", key);
+    assert!((found("accel-bias-x-mps2") - 0.2).abs() < 1e-4);
+    assert!((found("accel-scale-z") - 1.0 / 1.01).abs() < 1e-5);
+    assert_eq!(value(&directory, "heater", "target-c"), 45.0, "others stay");
+    let page = fs::read_to_string(directory.join("calibration-accel.html")).unwrap();
+    assert!(page.contains("<svg") && page.contains("upside down"));
+}
+
+#[test]
+fn values_in_force_while_recording_are_taken_out() {
+    let directory = directory("calibrate-again");
+    fs::write(directory.join("a.csv"), accel_table(&UP)).unwrap();
+    // The robot subtracted 0.1 from what the sensor said: 0.3 in truth.
+    fs::write(
+        directory.join("active.toml"),
+        "[imu-calibration]\naccel-bias-x-mps2 = 0.1\n",
+    )
+    .unwrap();
+    let arguments = ["calibrate", "accel", "a.csv", "--active", "active.toml"];
+    assert!(robotctl(&directory, &arguments).status.success());
+    let found = value(&directory, "imu-calibration", "accel-bias-x-mps2");
+    assert!((found - 0.3).abs() < 1e-4, "{found}");
+}
+
+#[test]
+fn a_missing_side_is_told_and_nothing_is_written() {
+    let directory = directory("calibrate-missing");
+    fs::write(directory.join("a.csv"), accel_table(&UP[1..])).unwrap();
+    let output = robotctl(&directory, &["calibrate", "accel", "a.csv"]);
+    assert!(!output.status.success());
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert!(message.contains("missing: top up (+z)"), "{message}");
+    assert!(!directory.join("calibration.toml").exists());
+}
+
+#[test]
+fn a_magnetometer_table_becomes_values_and_a_page() {
+    let directory = directory("calibrate-mag");
+    let mut text = String::from("t,mx,my,mz\n");
+    for row in 0..600 {
+        // From pole to pole in fifteen turns; a magnet of 30 µT in y, and x twice as much stretched as y and z shrink.
+        let (height, turn) = (1.0 - (f64::from(row) + 0.5) / 300.0, f64::from(row) * 0.157);
+        let radius = (1.0 - height * height).sqrt();
+        let [x, y, z] = [radius * turn.cos(), radius * turn.sin(), height].map(|v| v * 50.0);
+        let t = f64::from(row) * 0.02;
+        text.push_str(&format!(
+            "{t},{:.4},{:.4},{:.4}\n",
+            x * 1.21,
+            y / 1.1 + 30.0,
+            z / 1.1
+        ));
+    }
+    fs::write(directory.join("m.csv"), text).unwrap();
+    let output = robotctl(&directory, &["calibrate", "mag", "m.csv"]);
+    assert!(output.status.success(), "{output:?}");
+    let found = |key| value(&directory, "mag-calibration", key);
+    assert!((found("bias-y-ut") - 30.0).abs() < 0.01);
+    assert!((found("soft-iron-xx") - 1.0 / 1.21).abs() < 1e-4);
+    assert!((found("soft-iron-zz") - 1.1).abs() < 1e-4);
+    assert!(found("soft-iron-xy").abs() < 1e-4);
+    let page = fs::read_to_string(directory.join("calibration-mag.html")).unwrap();
+    assert!(page.matches("<circle").count() > 1_000);
+}

@@ -1,0 +1,63 @@
+//! docs/tuning.md lists the settings that the firmware has, with their numbers, units and ranges.
+
+use robot_app::tuning::{PARAMETERS, Parameter, ParameterGroup, ParameterKind};
+
+const FIRST_JOINT: u8 = 16;
+const JOINTS: std::ops::RangeInclusive<u8> = FIRST_JOINT..=19;
+
+fn row(group: &ParameterGroup, parameter: &Parameter) -> String {
+    let (numbers, name) = if group.number == FIRST_JOINT {
+        ("16 to 19".to_owned(), "joint-…")
+    } else {
+        (group.number.to_string(), group.name)
+    };
+    let Parameter {
+        index,
+        unit,
+        min,
+        max,
+        ..
+    } = parameter;
+    let range = match parameter.kind {
+        ParameterKind::Float => format!("{min} … {max}"),
+        ParameterKind::Integer => format!("integer, {min} … {max}"),
+        ParameterKind::Sign => "sign".to_owned(),
+    };
+    let name = format!("{name}.{}", parameter.name);
+    format!("| {numbers} | {index} | `{name}` | {unit} | {range} |")
+}
+
+#[test]
+fn the_table_has_every_setting_and_no_other() {
+    let groups = PARAMETERS
+        .iter()
+        .filter(|group| !JOINTS.contains(&group.number) || group.number == FIRST_JOINT);
+    let expected: Vec<String> = groups
+        .flat_map(|group| group.parameters.iter().map(move |p| row(group, p)))
+        .collect();
+    let documented: Vec<&str> = include_str!("../../../docs/tuning.md")
+        .lines()
+        .skip_while(|line| *line != "## Settings")
+        .filter(|line| line.starts_with("| ") && line.contains('`'))
+        .collect();
+    assert_eq!(documented, expected, "expected:\n{}", expected.join("\n"));
+}
+
+#[test]
+fn all_joints_have_the_same_settings() {
+    let rows = |group: &ParameterGroup| -> Vec<String> {
+        let representative = ParameterGroup {
+            number: FIRST_JOINT,
+            ..*group
+        };
+        let parameters = group.parameters.iter();
+        parameters.map(|p| row(&representative, p)).collect()
+    };
+    let joints: Vec<_> = PARAMETERS
+        .iter()
+        .filter(|group| JOINTS.contains(&group.number))
+        .map(rows)
+        .collect();
+    assert_eq!(joints.len(), 4);
+    assert!(joints.iter().all(|joint| joint == &joints[0]));
+}
