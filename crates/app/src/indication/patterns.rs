@@ -145,7 +145,7 @@ mod tests {
                 let slower = rate.min(other_rate);
                 let faster = rate.max(other_rate);
                 assert!(
-                    colours != other_colours || faster >= 2 * slower + 1,
+                    colours != other_colours || faster > 2 * slower,
                     "{one:?} looks like {other:?}"
                 );
             }

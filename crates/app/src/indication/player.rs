@@ -76,8 +76,8 @@ mod tests {
             play(&mut player, Indication::Ready, 0),
             (Colour::Blue, true)
         );
-        assert_eq!(play(&mut player, Indication::Ready, 70).1, true);
-        assert_eq!(play(&mut player, Indication::Ready, 80).1, false);
+        assert!(play(&mut player, Indication::Ready, 70).1);
+        assert!(!play(&mut player, Indication::Ready, 80).1);
         assert_eq!(
             play(&mut player, Indication::Ready, 700),
             (Colour::Off, false)
@@ -86,8 +86,8 @@ mod tests {
             play(&mut player, Indication::Armed, 710),
             (Colour::Green, true)
         );
-        assert_eq!(play(&mut player, Indication::Armed, 1_009).1, true);
-        assert_eq!(play(&mut player, Indication::Armed, 1_010).1, false);
+        assert!(play(&mut player, Indication::Armed, 1_009).1);
+        assert!(!play(&mut player, Indication::Armed, 1_010).1);
         assert_eq!(
             play(&mut player, Indication::Armed, 60_000),
             (Colour::Green, false)
