@@ -18,3 +18,22 @@ pub(super) fn correct_by_matrix(raw: Vector3, bias: Vector3, matrix: [Vector3; 3
     let offset_free = vector::sub(raw, bias);
     matrix.map(|row| vector::dot(row, offset_free))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By hand: raw − bias is (1, 2, −3); rows (2, 1, 0), (1, 3, −1), (0, −1, 4) of it are 4, 10 and −14.
+    #[test]
+    fn the_matrix_takes_the_field_without_its_offset() {
+        let matrix = [[2.0, 1.0, 0.0], [1.0, 3.0, -1.0], [0.0, -1.0, 4.0]];
+        let corrected = correct_by_matrix([11.0, -18.0, 27.0], [10.0, -20.0, 30.0], matrix);
+        assert_eq!(corrected, [4.0, 10.0, -14.0]);
+    }
+
+    #[test]
+    fn each_axis_has_its_own_offset_and_scale() {
+        let corrected = correct([3.0, 4.0, 5.0], [1.0, 2.0, 3.0], [2.0, 0.5, -1.0]);
+        assert_eq!(corrected, [4.0, 1.0, -2.0]);
+    }
+}
