@@ -1,6 +1,8 @@
 //! What a user chooses at build time.
 
+use robot_app::domain::{BusId, CanFrame, RobotConfig};
 use robot_app::input::RemoteFormat;
+use robot_app::motor::layout::{MotorLayout, ROBOT_LAYOUT, RS00_LAYOUT};
 
 /// The receiver plugged into the board's DBUS connector: SBUS, or what the environment variable `ROBOT_REMOTE` says.
 pub const REMOTE_FORMAT: RemoteFormat = match option_env!("ROBOT_REMOTE") {
@@ -14,6 +16,41 @@ const fn remote_format(name: &str) -> RemoteFormat {
         b"dbus" => RemoteFormat::Dbus,
         _ => wrong_remote(),
     }
+}
+
+/// DM4310 joints, or what the environment variable `ROBOT_JOINTS` says.
+const CHOSEN_LAYOUT: MotorLayout = match option_env!("ROBOT_JOINTS") {
+    None => ROBOT_LAYOUT,
+    Some(name) => layout(name),
+};
+
+/// Which motor sits where.
+pub static LAYOUT: MotorLayout = CHOSEN_LAYOUT;
+
+/// What boot, panic and fault handlers send: it stops every motor.
+pub static SAFE_FRAMES: [(BusId, CanFrame); 5] = CHOSEN_LAYOUT.safe_frames();
+
+/// Settings at boot.
+pub fn robot_config() -> RobotConfig {
+    RobotConfig {
+        joints: LAYOUT.joint_configs(),
+        ..RobotConfig::default()
+    }
+}
+
+const fn layout(name: &str) -> MotorLayout {
+    match name.as_bytes() {
+        b"dm4310" => ROBOT_LAYOUT,
+        b"rs00" => RS00_LAYOUT,
+        _ => wrong_joints(),
+    }
+}
+
+#[expect(clippy::panic, reason = "stops the build, not the robot")]
+const fn wrong_joints() -> MotorLayout {
+    panic!(
+        "ROBOT_JOINTS must be dm4310 or rs00: `ROBOT_JOINTS=rs00 cargo run --release`, or unset it for DM4310"
+    )
 }
 
 #[expect(clippy::panic, reason = "stops the build, not the robot")]

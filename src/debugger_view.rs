@@ -1,14 +1,16 @@
-//! The diagnostics of the last tick under a stable symbol, for LiveWatch in a debugger.
+//! The diagnostics under a stable symbol, for LiveWatch in a debugger.
 
 use core::cell::UnsafeCell;
 use core::mem::MaybeUninit;
+use core::sync::atomic::{AtomicBool, Ordering};
 
 use robot_app::diagnostics::DiagnosticsSnapshot;
 
-/// Written by the control tick, read by nobody on the chip.
+/// The control tick's own diagnostics; a debugger may look at any time.
+#[repr(transparent)]
 pub struct DebuggerView(UnsafeCell<DiagnosticsSnapshot>);
 
-// SAFETY: the only access on the chip is the write in `DebuggerView::show`, whose contract allows one context.
+// SAFETY: the only access on the chip is through the one reference that `take` hands out.
 unsafe impl Sync for DebuggerView {}
 
 /// `g_robotapp_diag` as in ROBOT_CPP (seed section 0.7).
@@ -19,12 +21,14 @@ pub static g_robotapp_diag: DebuggerView = DebuggerView(UnsafeCell::new(
     unsafe { MaybeUninit::zeroed().assume_init() },
 ));
 
-impl DebuggerView {
-    /// # Safety
-    /// Only one context may call this.
-    pub unsafe fn show(&self, diagnostics: &DiagnosticsSnapshot) {
-        // SAFETY: the pointer is that of a static, and nobody else accesses it (contract). Volatile, because only
-        // the debugger reads it.
-        unsafe { self.0.get().write_volatile(*diagnostics) };
+/// The one reference, with everything at its default. `None` after the first call.
+pub fn take() -> Option<&'static mut DiagnosticsSnapshot> {
+    static TAKEN: AtomicBool = AtomicBool::new(false);
+    if TAKEN.swap(true, Ordering::Relaxed) {
+        return None;
     }
+    // SAFETY: the swap above lets one call through, so this reference is unique.
+    let diagnostics = unsafe { &mut *g_robotapp_diag.0.get() };
+    *diagnostics = DiagnosticsSnapshot::default();
+    Some(diagnostics)
 }

@@ -20,6 +20,7 @@ use robot_app::logic::LogicBus;
 use robot_snapshot::{Snapshot, Writer};
 use static_cell::StaticCell;
 
+use crate::config;
 use crate::drivers::radio_uart::RadioLine;
 
 /// The newest IMU sample and how the sensor fares.
@@ -74,7 +75,7 @@ impl Exchange {
             remote: Snapshot::new(RemoteUpdate::default()),
             logic_bus: Snapshot::new(LogicBus::default()),
             battery_v: Snapshot::new(0.0),
-            config: Snapshot::new(RobotConfig::default()),
+            config: Snapshot::new(config::robot_config()),
             diagnostics: Snapshot::new(DiagnosticsSnapshot::default()),
         })
     }

@@ -10,9 +10,9 @@ use cortex_m_rt::{ExceptionFrame, exception};
 use embassy_stm32::pac::can::Can;
 use embassy_stm32::pac::{CAN1, CAN2, RCC};
 use robot_app::domain::{BusId, CanFrame, LastWords};
-use robot_app::motor;
 
 use crate::board;
+use crate::config::SAFE_FRAMES;
 use crate::drivers::can::transmit::{self, MailboxesFull};
 use crate::last_words;
 
@@ -146,7 +146,7 @@ fn send_zero_torque() {
 
 /// A dead bus is given up at the first frame that finds no place.
 fn send_safe_frames(can: Can, bus: BusId) {
-    for (_, frame) in motor::safe_frames().iter().filter(|(on, _)| *on == bus) {
+    for (_, frame) in SAFE_FRAMES.iter().filter(|(on, _)| *on == bus) {
         if send_when_free(can, frame).is_err() {
             return;
         }

@@ -29,7 +29,6 @@ use defmt_rtt as _;
 use embassy_executor::{Executor, Spawner};
 use embassy_time::{Duration, Instant};
 use robot_app::domain::{LastWords, ResetCause};
-use robot_app::motor;
 use static_cell::StaticCell;
 
 use board::Board;
@@ -74,6 +73,7 @@ fn main() -> ! {
         last_run,
         writers.config,
         writers.diagnostics,
+        defmt::unwrap!(debugger_view::take()),
     );
 
     let sensor = executors::start_sensor();
@@ -135,7 +135,7 @@ fn send_zero_torque(ports: &mut [CanPort; 2]) {
             port.begin_tick(Instant::now().as_micros());
         }
     }
-    for (bus, frame) in &motor::safe_frames() {
+    for (bus, frame) in &config::SAFE_FRAMES {
         for port in ports.iter_mut().filter(|port| port.bus() == *bus) {
             while !port.has_room() && start.elapsed() < SAFE_FRAMES_TIMEOUT {}
             port.send(frame);

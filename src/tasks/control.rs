@@ -3,28 +3,38 @@
 use embassy_time::{Duration, Instant, Ticker};
 use robot_app::control::UserController;
 use robot_app::diagnostics::DiagnosticsSnapshot;
-use robot_app::domain::{CalibrationState, LateTasks, RobotConfig, SystemHealth};
+use robot_app::domain::{CalibrationState, LateTasks, RemoteUpdate, RobotConfig, SystemHealth};
+use robot_app::logic::LogicBus;
 use robot_app::tick::{ControlInputs, ControlLoop};
-use robot_snapshot::Writer;
+use robot_snapshot::{Follower, Writer};
 
-use crate::debugger_view::g_robotapp_diag;
+use crate::config::{self, LAYOUT};
 use crate::drivers::can::CanPort;
 use crate::drivers::watchdog::Watchdog;
-use crate::exchange::{Exchange, RADIO_LINE};
+use crate::exchange::{Exchange, ImuReport, MagReport, RADIO_LINE};
 use crate::{LastRun, deadlines, last_words};
 
 const PERIOD: Duration = Duration::from_hz(1_000);
 /// Diagnostics go to the status task every tenth tick.
 const DIAGNOSTICS_DIVIDER: u32 = 10;
 
+/// What the other tasks publish.
+struct Inputs {
+    imu: Follower<'static, ImuReport>,
+    mag: Follower<'static, MagReport>,
+    remote: Follower<'static, RemoteUpdate>,
+    logic: Follower<'static, LogicBus>,
+    battery_v: Follower<'static, f32>,
+}
+
 /// Everything the control tick owns.
 pub struct ControlContext {
-    exchange: &'static Exchange,
+    inputs: Inputs,
     ports: [CanPort; 2],
     watchdog: Watchdog,
     last_run: LastRun,
     late_tasks: LateTasks,
-    control_loop: ControlLoop<UserController>,
+    control_loop: ControlLoop<UserController, &'static mut DiagnosticsSnapshot>,
     config: Writer<'static, RobotConfig>,
     /// Of the configuration last published.
     config_revision: u32,
@@ -39,14 +49,26 @@ impl ControlContext {
         last_run: LastRun,
         config: Writer<'static, RobotConfig>,
         diagnostics: Writer<'static, DiagnosticsSnapshot>,
+        debugger_view: &'static mut DiagnosticsSnapshot,
     ) -> Self {
         Self {
-            exchange,
+            inputs: Inputs {
+                imu: exchange.imu.follower(),
+                mag: exchange.mag.follower(),
+                remote: exchange.remote.follower(),
+                logic: exchange.logic_bus.follower(),
+                battery_v: exchange.battery_v.follower(),
+            },
             ports,
             watchdog,
             last_run,
             late_tasks: LateTasks::default(),
-            control_loop: ControlLoop::new(RobotConfig::default(), UserController::default()),
+            control_loop: ControlLoop::with_diagnostics(
+                &LAYOUT,
+                config::robot_config(),
+                UserController::default(),
+                debugger_view,
+            ),
             config,
             config_revision: 0,
             diagnostics,
@@ -69,7 +91,7 @@ pub async fn run(mut context: ControlContext) -> ! {
 pub fn robotapp_control_tick(context: &mut ControlContext) {
     let now_us = Instant::now().as_micros();
     let ControlContext {
-        exchange,
+        inputs,
         ports,
         watchdog,
         last_run,
@@ -88,10 +110,8 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
 
     note_late_tasks(late_tasks);
 
-    let imu = exchange.imu.latest();
-    let mag = exchange.mag.latest();
-    let remote = exchange.remote.latest();
-    let logic = exchange.logic_bus.latest();
+    let imu = inputs.imu.latest();
+    let mag = inputs.mag.latest();
     let health = SystemHealth {
         can: ports.each_ref().map(CanPort::health),
         imu: imu.health,
@@ -102,13 +122,13 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
         late_tasks: *late_tasks,
         reset_cause: last_run.reset_cause,
         last_words: last_run.last_words,
-        battery_v: exchange.battery_v.latest(),
+        battery_v: *inputs.battery_v.latest(),
     };
     let inputs = ControlInputs {
-        remote: &remote,
+        remote: inputs.remote.latest(),
         imu: &imu.state,
         mag: &mag.state,
-        logic: &logic,
+        logic: inputs.logic.latest(),
         health: &health,
     };
     let outputs = control_loop.tick(&inputs, now_us);
@@ -125,8 +145,6 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
         config.publish(outputs.config);
     }
 
-    // SAFETY: this task is the only caller.
-    unsafe { g_robotapp_diag.show(outputs.diagnostics) };
     if outputs
         .diagnostics
         .tick

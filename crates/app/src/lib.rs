@@ -29,7 +29,7 @@
 //! - logic task, 100 Hz: `logic::LogicStage::step`.
 //! - control task, 1 kHz: `tick::ControlLoop::on_can_frame` for each received frame, then
 //!   `tick::ControlLoop::tick(&inputs, now_us)`; send `outputs.frames`, publish the rest.
-//! - boot, panic and fault handlers: send `motor::safe_frames()` raw.
+//! - boot, panic and fault handlers: send the layout's `safe_frames` raw.
 
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]

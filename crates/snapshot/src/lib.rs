@@ -95,6 +95,21 @@ impl<T: Copy> Snapshot<T> {
     /// The newest published value, whole. Never waits for the writer; see the module text for
     /// when a copy is repeated.
     pub fn latest(&self) -> T {
+        self.read().1
+    }
+
+    /// A reader that keeps its copy.
+    pub fn follower(&self) -> Follower<'_, T> {
+        let (seen, copy) = self.read();
+        Follower {
+            snapshot: self,
+            seen,
+            copy,
+        }
+    }
+
+    /// The newest value and the number of its publication.
+    fn read(&self) -> (u32, T) {
         loop {
             let newest = self.published.load(Ordering::Acquire);
             let copy = self.slot(newest).load();
@@ -106,7 +121,7 @@ impl<T: Copy> Snapshot<T> {
                 // SAFETY: publication `newest` was complete when its number was read, and the next
                 // one to use its slot, `newest + 2`, had not begun when the copy ended: every word
                 // comes from one value.
-                return unsafe { copy.assume_init() };
+                return (newest, unsafe { copy.assume_init() });
             }
             spin_loop();
         }
@@ -119,6 +134,24 @@ impl<T: Copy> Snapshot<T> {
         } else {
             odd
         }
+    }
+}
+
+/// A reader for a rate higher than the writer's: copies only what it has not seen.
+pub struct Follower<'a, T> {
+    snapshot: &'a Snapshot<T>,
+    /// Number of the publication that `copy` is of.
+    seen: u32,
+    copy: T,
+}
+
+impl<T: Copy> Follower<'_, T> {
+    /// As [`Snapshot::latest`].
+    pub fn latest(&mut self) -> &T {
+        if self.snapshot.published.load(Ordering::Acquire) != self.seen {
+            (self.seen, self.copy) = self.snapshot.read();
+        }
+        &self.copy
     }
 }
 

@@ -36,6 +36,19 @@ fn reads_as_the_initial_value_then_as_the_newest() {
 }
 
 #[test]
+fn a_follower_starts_with_the_value_there_is_and_keeps_up() {
+    let snapshot = Snapshot::new(message(3));
+    let mut follower = snapshot.follower();
+    assert_eq!(*follower.latest(), message(3));
+    let mut writer = snapshot.writer().expect("first request");
+    for number in 4..9 {
+        writer.publish(&message(number));
+        assert_eq!(*follower.latest(), message(number));
+        assert_eq!(*follower.latest(), message(number));
+    }
+}
+
+#[test]
 fn there_is_one_writer() {
     let snapshot = Snapshot::new(0_u64);
     assert!(snapshot.writer().is_some());

@@ -33,6 +33,18 @@ fn a_value_is_whole() {
 }
 
 #[test]
+fn a_follower_sees_whole_values_that_never_go_back() {
+    explore(3, 3, |snapshot| {
+        let mut follower = snapshot.follower();
+        let [first, second] = *follower.latest();
+        assert_eq!(first, second, "torn value");
+        let [after, second] = *follower.latest();
+        assert_eq!(after, second, "torn value");
+        assert!(after >= first, "{after} followed after {first}");
+    });
+}
+
+#[test]
 fn values_never_go_back() {
     explore(2, 2, |snapshot| {
         let [before, _] = snapshot.latest();

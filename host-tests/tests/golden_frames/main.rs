@@ -8,7 +8,7 @@ mod rs00;
 use robot_app::{
     domain::{BusId, DriveMode, MotorCurrent, RemoteUpdate},
     input::{DbusFrame, DbusSwitch, RemoteFormat, RemoteMapping, RemoteReceiver, SbusFrame},
-    motor::{m3508, safe_frames},
+    motor::{layout::ROBOT_LAYOUT, m3508},
 };
 
 const SBUS_CENTRED: [u8; 25] = [
@@ -173,7 +173,8 @@ fn m3508_currents() {
 /// 0x200 with all zero on CAN1; FF FF FF FF FF FF FF FD for motors 1 to 4 on CAN2.
 #[test]
 fn safe_frames_stop_every_motor() {
-    let frames: Vec<(BusId, u16, Vec<u8>)> = safe_frames()
+    let frames: Vec<(BusId, u16, Vec<u8>)> = ROBOT_LAYOUT
+        .safe_frames()
         .iter()
         .map(|(bus, frame)| (*bus, frame.id().raw(), frame.payload().to_vec()))
         .collect();

@@ -18,10 +18,10 @@ pub struct WheelCommand {
     pub current_ma: f32,
 }
 
-/// How a joint motor closes its loop.
+/// How a joint motor closes its loop. A whole word, so that a command has no padding and is copied fast.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[repr(u8)]
+#[repr(u32)]
 pub enum JointMode {
     /// Enabled without torque: turns freely.
     #[default]

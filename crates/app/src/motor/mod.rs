@@ -8,7 +8,6 @@
 //! | `wheel`, `joint` | one motor each: set-up, enabling, faults, frozen reports |
 //! | `joint_limits` | what a joint may be asked for |
 //! | `manager` | all of them: feedback in, frames out |
-//! | `safe_frames` | what stops them all |
 
 pub mod dm4310;
 mod interface;
@@ -19,8 +18,6 @@ pub mod m3508;
 mod manager;
 pub mod mit;
 pub mod rs00;
-mod safe_frames;
 mod wheel;
 
 pub(crate) use manager::MotorManager;
-pub use safe_frames::safe_frames;

@@ -1,5 +1,7 @@
 //! All stages in the order in which data flows.
 
+use core::borrow::BorrowMut;
+
 use heapless::Vec;
 
 use crate::{
@@ -58,8 +60,13 @@ struct Stopped {
 }
 
 /// State of all stages of the tick. Same calls, same results, bit for bit.
+///
+/// `D` is where the diagnostics are kept: in here, or in a place of the caller's that a debugger knows.
 #[derive(Clone, Debug)]
-pub struct ControlLoop<C: ChassisController = UserController> {
+pub struct ControlLoop<
+    C: ChassisController = UserController,
+    D: BorrowMut<DiagnosticsSnapshot> = DiagnosticsSnapshot,
+> {
     config: RobotConfig,
     controller: C,
     motors: MotorManager,
@@ -72,7 +79,7 @@ pub struct ControlLoop<C: ChassisController = UserController> {
     bring_up: BringUp,
     tick: TickStats,
     sensors: SensorsSnapshot,
-    diagnostics: DiagnosticsSnapshot,
+    diagnostics: D,
     frames: Vec<(BusId, CanFrame), 8>,
 }
 
@@ -83,6 +90,17 @@ impl<C: ChassisController> ControlLoop<C> {
     }
 
     pub fn with_layout(layout: &'static MotorLayout, config: RobotConfig, controller: C) -> Self {
+        Self::with_diagnostics(layout, config, controller, DiagnosticsSnapshot::default())
+    }
+}
+
+impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> {
+    pub fn with_diagnostics(
+        layout: &'static MotorLayout,
+        config: RobotConfig,
+        controller: C,
+        diagnostics: D,
+    ) -> Self {
         Self {
             config,
             controller,
@@ -95,7 +113,7 @@ impl<C: ChassisController> ControlLoop<C> {
             bring_up: BringUp::default(),
             tick: TickStats::default(),
             sensors: SensorsSnapshot::default(),
-            diagnostics: DiagnosticsSnapshot::default(),
+            diagnostics,
             frames: Vec::new(),
         }
     }
@@ -103,7 +121,7 @@ impl<C: ChassisController> ControlLoop<C> {
     /// Every frame received since the last tick, in order of arrival.
     pub fn on_can_frame(&mut self, bus: BusId, frame: &CanFrame, now_us: u64) {
         self.motors.route_frame(bus, frame, now_us);
-        let diagnostics = &self.diagnostics;
+        let diagnostics: &DiagnosticsSnapshot = self.diagnostics.borrow();
         let gate = TuningGate::of(diagnostics.arming.state, &diagnostics.operator);
         let Self {
             tuning,
@@ -127,22 +145,24 @@ impl<C: ChassisController> ControlLoop<C> {
         self.act(inputs, permit.as_ref(), trial, now_us);
         self.reply();
         self.record(inputs, now_us);
+        let diagnostics: &DiagnosticsSnapshot = self.diagnostics.borrow();
         ControlOutputs {
             frames: &self.frames,
             sensors: &self.sensors,
-            estimate: &self.diagnostics.estimate,
-            diagnostics: &self.diagnostics,
+            estimate: &diagnostics.estimate,
+            diagnostics,
             config: &self.config,
         }
     }
 
     /// The estimator keeps what it makes of its settings; all other stages read them in each tick.
     fn take_config(&mut self) {
+        let diagnostics = self.diagnostics.borrow_mut();
         let status = *self.tuning.status();
-        if status.revision != self.diagnostics.tuning.revision {
+        if status.revision != diagnostics.tuning.revision {
             self.estimator.set_odometry(&self.config.wheel_odom);
         }
-        self.diagnostics.tuning = status;
+        diagnostics.tuning = status;
     }
 
     fn sense(&mut self, inputs: &ControlInputs<'_>, now_us: u64) {
@@ -151,7 +171,7 @@ impl<C: ChassisController> ControlLoop<C> {
         sensors.mag = *inputs.mag;
         sensors.motor = *self.motors.feedback(&self.config, now_us);
         sensors.ts_us = now_us;
-        self.diagnostics.estimate =
+        self.diagnostics.borrow_mut().estimate =
             *self
                 .estimator
                 .step(&sensors.imu, &sensors.mag, &sensors.motor, now_us);
@@ -159,7 +179,7 @@ impl<C: ChassisController> ControlLoop<C> {
 
     /// The command of bring-up, which replaces any other.
     fn try_out(&mut self, inputs: &ControlInputs<'_>, now_us: u64) -> Option<ChassisCommand> {
-        let diagnostics = &mut self.diagnostics;
+        let diagnostics = self.diagnostics.borrow_mut();
         diagnostics.remote_diag = inputs.remote.diagnostics.at(now_us);
         let command = self.bring_up.step(
             &BringUpInputs {
@@ -177,7 +197,7 @@ impl<C: ChassisController> ControlLoop<C> {
     }
 
     fn judge(&mut self, inputs: &ControlInputs<'_>, now_us: u64) -> Option<TorquePermit> {
-        let diagnostics = &mut self.diagnostics;
+        let diagnostics = self.diagnostics.borrow_mut();
         diagnostics.safety = self.policy.evaluate(
             &SafetyInputs {
                 config: &self.config.safety,
@@ -239,14 +259,14 @@ impl<C: ChassisController> ControlLoop<C> {
                 ChassisCommand::default()
             }
         };
-        if self.diagnostics.safety.clear_faults {
+        if self.diagnostics.borrow().safety.clear_faults {
             self.motors.clear_faults();
         }
         let (frames, sent) = self.motors.compose(&wanted, permit, &self.config, now_us);
         self.frames.clear();
         // Room for twice as many.
         let _ = self.frames.extend_from_slice(&frames);
-        self.diagnostics.command = sent;
+        self.diagnostics.borrow_mut().command = sent;
     }
 
     fn reply(&mut self) {
@@ -276,7 +296,7 @@ impl<C: ChassisController> ControlLoop<C> {
     ) -> ChassisCommand {
         let output = self.controller.step(&ChassisControllerInput {
             sensors: &self.sensors,
-            estimate: &self.diagnostics.estimate,
+            estimate: &self.diagnostics.borrow().estimate,
             wheel_odom_cfg: &self.config.wheel_odom,
             wheel_ctrl_cfg: &self.config.wheel_ctrl,
             joint_ctrl_cfg: &self.config.joint_ctrl,
@@ -293,7 +313,7 @@ impl<C: ChassisController> ControlLoop<C> {
     }
 
     fn record(&mut self, inputs: &ControlInputs<'_>, now_us: u64) {
-        let diagnostics = &mut self.diagnostics;
+        let diagnostics = self.diagnostics.borrow_mut();
         let health = inputs.health;
         diagnostics.ts_us = now_us;
         diagnostics.remote = inputs.remote.state;
