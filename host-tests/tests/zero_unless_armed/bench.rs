@@ -32,6 +32,8 @@ pub struct Tick {
     /// Counts of wheels 0 and 1.
     pub wheels: [i32; 2],
     pub joints: [Option<JointFrame>; 4],
+    /// Of the tuning channel, on any bus.
+    pub replies: Vec<[u8; 8]>,
 }
 
 impl Tick {
@@ -131,9 +133,14 @@ impl<C: ChassisController> Bench<C> {
     fn tick(&mut self, phase: &Phase) {
         let inputs = self.producers.inputs();
         let fault = self.replies.tell_of_fault();
-        let allowed = self
-            .rules
-            .allow(&inputs, phase.wheels, phase.joints, fault, self.now_us);
+        let allowed = self.rules.allow(
+            &inputs,
+            phase.wheels,
+            phase.joints,
+            fault,
+            self.tuned,
+            self.now_us,
+        );
         let outputs = self.control.tick(&inputs, self.now_us);
         assert_sound(outputs.estimate);
         let frames = outputs.frames.to_vec();
@@ -145,7 +152,7 @@ impl<C: ChassisController> Bench<C> {
         let mut wheel_frames = 0;
         for frame in &frames {
             match understand(frame, self.make) {
-                Sent::TuningReply => {}
+                Sent::TuningReply(reply) => tick.replies.push(reply),
                 Sent::Wheels(counts) => {
                     wheel_frames += 1;
                     self.check_wheels(counts, allowed);

@@ -8,6 +8,7 @@ mod motors;
 mod phase;
 mod producers;
 mod replies;
+mod requests;
 mod rules;
 mod stops;
 mod walk;

@@ -52,13 +52,15 @@ pub struct Rules {
 }
 
 impl Rules {
-    /// `joint_fault`: a joint's last answer told of a fault.
+    /// `joint_fault`: a joint's last answer told of a fault. `bring_up`: a step of it was asked for, so that a held
+    /// dead-man switch may take the place of a command.
     pub fn allow(
         &mut self,
         inputs: &ControlInputs<'_>,
         wheels: [Behaviour; 2],
         joints: [Behaviour; 4],
         joint_fault: bool,
+        bring_up: bool,
         now_us: u64,
     ) -> Allowed {
         // Nothing that must last is believed to last while the clock does not run evenly.
@@ -70,7 +72,8 @@ impl Rules {
         self.last_us = now_us;
         let battery_ok = self.battery_ok(inputs, dt_us);
         let run = self.pilot_wants(inputs, battery_ok, now_us);
-        let fresh_command = is_fresh(inputs.logic.ts_us, COMMAND_TIMEOUT_US, now_us);
+        let fresh_command = is_fresh(inputs.logic.ts_us, COMMAND_TIMEOUT_US, now_us)
+            || bring_up && operator.dead_man;
         let hot = |motor: &Behaviour| matches!(motor, Behaviour::Hot(celsius) if *celsius > 90);
         let too_long = 500_000 + SLACK_US;
         let wheel_hot = self.wheel_hot.for_us(wheels.iter().any(hot), dt_us) > too_long;

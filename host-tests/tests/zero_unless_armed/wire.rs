@@ -140,7 +140,7 @@ pub enum Sent {
     Wheels([i32; 4]),
     /// Joint 0 to 3.
     Joint(usize, JointFrame),
-    TuningReply,
+    TuningReply([u8; 8]),
 }
 
 /// Panics for a frame that has no business on this bus.
@@ -153,7 +153,7 @@ pub fn understand((bus, frame): &(BusId, CanFrame), make: Make) -> Sent {
         f32::from_le_bytes([e, f, g, h]),
     ];
     match (*bus, id) {
-        (_, 0x7A2) => Sent::TuningReply,
+        (_, 0x7A2) => Sent::TuningReply(data),
         (BusId::Can1, 0x200) => Sent::Wheels(std::array::from_fn(|slot| {
             i16::from_be_bytes([data[2 * slot], data[2 * slot + 1]]).into()
         })),
