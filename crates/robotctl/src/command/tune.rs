@@ -1,12 +1,12 @@
 //! `robotctl tune`: the robot's settings over CAN.
 
-use std::path::PathBuf;
+use std::{num::NonZeroI16, path::PathBuf};
 
 use anyhow::{Context, Result, bail};
 use robotctl::{
     can_link::CanDevice,
     parameter_file::ParameterFile,
-    tuning::{self, Named, Patience, TuningClient, WheelGeometry},
+    tuning::{self, BringUpStep, Motor, Named, Patience, Trial, TuningClient, WheelGeometry},
 };
 
 #[derive(clap::Args)]
@@ -40,6 +40,47 @@ enum Action {
     Save { file: PathBuf },
     /// Show the wheel geometry or change parts of it, in the frames of ROBOT_CPP
     Wheel(Wheel),
+    /// Start or end bring-up of new hardware (docs/bring-up.md); the robot must be disarmed
+    BringUp {
+        #[command(subcommand)]
+        step: Step,
+    },
+}
+
+#[derive(clap::Subcommand)]
+enum Step {
+    Off,
+    /// Nothing moves; the log shows the joints
+    ReadOnly,
+    /// Motors enabled without torque
+    ZeroTorque,
+    /// A little torque on one motor while the pilot holds the dead-man stick: by the drive stick, or as given here
+    Motor {
+        motor: Motor,
+        /// mN·m of a joint (at most 500) or mA of a wheel (at most 1000)
+        #[arg(long, allow_negative_numbers = true, conflicts_with = "hold")]
+        torque: Option<NonZeroI16>,
+        /// Softly keep the angle the motor has when the stick is taken
+        #[arg(long)]
+        hold: bool,
+    },
+}
+
+impl Step {
+    fn request(&self) -> BringUpStep {
+        match *self {
+            Self::Off => BringUpStep::Off,
+            Self::ReadOnly => BringUpStep::ReadOnly,
+            Self::ZeroTorque => BringUpStep::ZeroTorque,
+            Self::Motor {
+                motor, hold: true, ..
+            } => BringUpStep::OneMotor(motor, Trial::Hold),
+            Self::Motor { motor, torque, .. } => {
+                let trial = torque.map_or(Trial::Stick, Trial::Fixed);
+                BringUpStep::OneMotor(motor, trial)
+            }
+        }
+    }
 }
 
 #[derive(clap::Args)]
@@ -68,6 +109,7 @@ impl Tune {
             Action::Apply { file } => self.apply(file),
             Action::Save { file } => self.save(file),
             Action::Wheel(wheel) => self.wheel(wheel),
+            Action::BringUp { step } => Ok(self.client()?.bring_up(step.request())?),
         }
     }
 

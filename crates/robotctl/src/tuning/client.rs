@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use robot_app::tuning::Refusal;
 
 use super::{
-    Named, WheelGeometry,
+    BringUpStep, Named, WheelGeometry,
     request::{self, Reply, Request},
 };
 use crate::can_link::{CanLink, CanLinkError};
@@ -109,6 +109,11 @@ impl TuningClient {
         let request = Request::WriteGeometry(geometry.to_bytes());
         self.exchange(request, || "wheel geometry".to_owned())
             .map(drop)
+    }
+
+    pub fn bring_up(&mut self, step: BringUpStep) -> Result<(), TuningError> {
+        let request = Request::BringUp(step.to_bytes());
+        self.exchange(request, || "bring-up".to_owned()).map(drop)
     }
 
     /// Asks again if no reply comes: requests say what to be, not what to change, so twice is as good as once.

@@ -9,6 +9,7 @@ const WRITE_GEOMETRY: u8 = 0x10;
 const READ_GEOMETRY: u8 = 0x11;
 const WRITE_PARAMETER: u8 = 0x20;
 const READ_PARAMETER: u8 = 0x21;
+const BRING_UP: u8 = 0x40;
 const REFUSED: u8 = 0xEE;
 
 /// A request, and how to know its reply.
@@ -26,6 +27,8 @@ pub(super) enum Request {
     ReadGeometry,
     /// The bytes after the command.
     WriteGeometry([u8; 7]),
+    /// The bytes after the command.
+    BringUp([u8; 7]),
 }
 
 /// What the robot says to a request.
@@ -52,9 +55,8 @@ impl Request {
                 CanFrame::new(WRITE_ID, [WRITE_PARAMETER, group, index, 0, a, b, c, d])
             }
             Self::ReadGeometry => CanFrame::new(READ_ID, [READ_GEOMETRY, 0, 0, 0, 0, 0, 0, 0]),
-            Self::WriteGeometry([a, b, c, d, e, f, g]) => {
-                CanFrame::new(WRITE_ID, [WRITE_GEOMETRY, a, b, c, d, e, f, g])
-            }
+            Self::WriteGeometry(bytes) => write(WRITE_GEOMETRY, bytes),
+            Self::BringUp(bytes) => write(BRING_UP, bytes),
         }
     }
 
@@ -74,7 +76,9 @@ impl Request {
         let ours = match self {
             Self::Read { .. } => frame.payload().starts_with(&asked[..4]),
             Self::ReadGeometry => command == READ_GEOMETRY,
-            Self::Write { .. } | Self::WriteGeometry(_) => frame.payload() == asked,
+            Self::Write { .. } | Self::WriteGeometry(_) | Self::BringUp(_) => {
+                frame.payload() == asked
+            }
         };
         ours.then_some(Reply::Done(rest))
     }
@@ -83,9 +87,13 @@ impl Request {
     fn address(&self) -> [u8; 2] {
         match *self {
             Self::Read { group, index } | Self::Write { group, index, .. } => [group, index],
-            Self::ReadGeometry | Self::WriteGeometry(_) => [0, 0],
+            Self::ReadGeometry | Self::WriteGeometry(_) | Self::BringUp(_) => [0, 0],
         }
     }
+}
+
+fn write(command: u8, [a, b, c, d, e, f, g]: [u8; 7]) -> CanFrame {
+    CanFrame::new(WRITE_ID, [command, a, b, c, d, e, f, g])
 }
 
 /// Of the reply to a read setting.

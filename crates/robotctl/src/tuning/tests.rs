@@ -219,3 +219,16 @@ fn what_the_robot_has_already_is_not_written() {
     apply(&mut client, &file(&values)).unwrap();
     assert_eq!(bus.0.borrow().requests, 1, "one read");
 }
+
+#[test]
+fn bring_up_is_asked_for_and_too_much_torque_refused() {
+    let (_, mut client) = robot();
+    let joint = |milli: i16| {
+        BringUpStep::OneMotor(Motor::RightRear, Trial::Fixed(milli.try_into().unwrap()))
+    };
+    for step in [BringUpStep::ReadOnly, joint(500), BringUpStep::Off] {
+        client.bring_up(step).unwrap();
+    }
+    let error = client.bring_up(joint(501)).unwrap_err();
+    assert!(error.to_string().contains("out of its range"), "{error}");
+}
