@@ -82,17 +82,17 @@ mod tests {
     use super::*;
     use crate::domain::HeaterConfig;
 
-    /// Warmth after each whole second, at 10 Hz, of a temperature that follows `celsius` of the time in s.
+    /// Warmth after each whole second, at 50 Hz, of a temperature that follows `celsius` of the time in s.
     fn warmth(config: HeaterConfig, celsius: impl Fn(f32) -> Option<f32>) -> Vec<Warmth> {
         let mut gate = TemperatureGate::default();
         let mut heater = Heater::new(config);
         let mut each_second = Vec::new();
-        for tick in 0..=600u64 {
-            let ts_us = 1 + tick * 100_000;
-            let temperature = celsius(tick as f32 / 10.0);
+        for tick in 0..=3_000u64 {
+            let ts_us = 1 + tick * 20_000;
+            let temperature = celsius(tick as f32 / 50.0);
             heater.step(temperature, ts_us);
             let warmth = gate.step(temperature, &heater, ts_us);
-            if tick % 10 == 0 {
+            if tick % 50 == 0 {
                 each_second.push(warmth);
             }
         }
@@ -129,6 +129,14 @@ mod tests {
         assert!(drifting.iter().all(|warmth| *warmth == Warmth::Unsettled));
     }
 
+    /// 3.5 K below the target it gives 0.7, and 0.035 more each second: all it has after 9 s. Fifteen more must pass.
+    #[test]
+    fn a_heater_that_still_has_something_to_give_is_waited_for() {
+        let warmths = warmth(HeaterConfig::default(), |_| Some(36.5));
+        let settled = first(&warmths, Warmth::Settled).unwrap();
+        assert!((23..=26).contains(&settled), "{settled}");
+    }
+
     #[test]
     fn without_heater_steady_is_enough() {
         let off = HeaterConfig {
@@ -145,5 +153,8 @@ mod tests {
         assert_eq!(first(&warmths, Warmth::Unknown), Some(20));
         let back = warmth(HeaterConfig::default(), |t| (t > 30.0).then_some(22.0));
         assert_eq!(back[31], Warmth::Unsettled, "it is waited for again");
+        let lost = warmth(HeaterConfig::default(), |t| (t < 30.0).then_some(22.0));
+        assert_eq!(lost[49], Warmth::Unsettled, "20 s from the last one");
+        assert_eq!(lost[50], Warmth::Unknown);
     }
 }

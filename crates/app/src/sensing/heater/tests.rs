@@ -64,7 +64,8 @@ fn a_cold_package_is_warmed_and_held() {
     assert!(hottest_c < 42.0, "{hottest_c}");
 }
 
-/// Ten minutes at full heat that cannot reach the target must not be stored up.
+/// Ten minutes at full heat that cannot reach the target must not be stored up: with five times the heat all at once
+/// it still goes less than 1 K too far. (Stored up, it would go 3 K too far.)
 #[test]
 fn a_supply_too_weak_for_the_target_does_not_wind_up() {
     let mut heater = heater();
@@ -72,12 +73,12 @@ fn a_supply_too_weak_for_the_target_does_not_wind_up() {
     island.heat(&mut heater, 600, |_, _| ());
     assert!((island.celsius - 32.0).abs() < 0.2);
     assert!(heater.at_limit());
-    island.full_heat_k = 33.0;
+    island.full_heat_k = 60.0;
     let mut hottest_c: f32 = 0.0;
     island.heat(&mut heater, 120, |celsius, _| {
         hottest_c = hottest_c.max(celsius);
     });
-    assert!(hottest_c < 42.0, "{hottest_c}");
+    assert!(hottest_c < 41.0, "{hottest_c}");
 }
 
 #[test]
@@ -136,6 +137,12 @@ fn the_configuration_can_switch_it_off_but_not_break_it() {
         |c| c.max_duty = -1.0,
     ];
     for change in broken {
-        assert_eq!(at(39.0, change).duty, 0.0);
+        let mut config = HeaterConfig::default();
+        change(&mut config);
+        let mut heater = Heater::new(config);
+        for step in 1..=10 {
+            heater.step(Some(39.0), step * 5_000);
+            assert_eq!(heater.status().duty, 0.0);
+        }
     }
 }
