@@ -102,6 +102,19 @@ pub struct CanStats {
     pub errors: u64,
 }
 
+/// How the run goes, cheap to ask for at any time.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Progress {
+    /// Control ticks.
+    pub missed: u64,
+    /// As in `Stats`.
+    pub cpu_load: f64,
+    /// How long each CAN bus was busy since power-on.
+    pub can_busy: [Ps; 2],
+    /// Different ones.
+    pub board_errors: usize,
+}
+
 /// CPU, chip, board and world, and what is known of the image that runs on them.
 pub struct Machine {
     cpu: Cpu,
@@ -225,6 +238,16 @@ impl Machine {
             resets: self.resets.clone(),
             can: [0, 1].map(|bus| self.can_stats(bus)).to_vec(),
             flash: self.flash_use(),
+        }
+    }
+
+    pub fn progress(&self) -> Progress {
+        let (run, soc) = (self.cpu.stats(), self.cpu.soc());
+        Progress {
+            missed: run.missed_ticks(),
+            cpu_load: run.cpu_load(),
+            can_busy: [0, 1].map(|bus| soc.can_stats(bus).busy),
+            board_errors: soc.errors.list().len(),
         }
     }
 

@@ -11,7 +11,7 @@ use super::{
 use crate::{
     board_errors::BoardError,
     machine::diagnostics::meaning::Meaning,
-    machine::{LogLine, Machine, MachineError, Stats},
+    machine::{LogLine, Machine, MachineError, Progress, Stats},
     pty::CanPort,
 };
 
@@ -32,7 +32,9 @@ pub trait Board {
     /// Total, heading and inclination error in degrees; `None` in a gap of the reference.
     fn attitude_error_deg(&mut self, q_wxyz: [f64; 4]) -> Option<[f64; 3]>;
     fn take_log(&mut self) -> Vec<LogLine>;
+    /// All that was measured; takes its time in a long run.
     fn stats(&mut self) -> Stats;
+    fn progress(&mut self) -> Progress;
     /// Resets since power-on.
     fn resets(&mut self) -> usize;
     fn board_errors(&mut self) -> Vec<BoardError>;
@@ -105,6 +107,10 @@ impl Board for Machine {
 
     fn stats(&mut self) -> Stats {
         Machine::stats(self)
+    }
+
+    fn progress(&mut self) -> Progress {
+        Machine::progress(self)
     }
 
     fn resets(&mut self) -> usize {

@@ -6,7 +6,7 @@ use super::{
     board::Board,
     signals::{SignalTable, Values},
 };
-use crate::machine::Stats;
+use crate::machine::Progress;
 
 const NAMES: [&str; 9] = [
     "emu.board_errors",
@@ -20,15 +20,15 @@ const NAMES: [&str; 9] = [
     "emu.att_error.inclination_deg",
 ];
 
-/// Run statistics are worked out this often, and at the end.
-const STATS_PERIOD: Ps = 100 * time::MS;
+/// How the run goes is looked at this often, and at the end.
+const PERIOD: Ps = 100 * time::MS;
 
 /// Keeps the `emu.*` values up to date.
 pub struct RunSignals {
-    stats_due: Ps,
+    due: Ps,
     counters: [Option<f64>; 5],
-    /// When the statistics were last worked out, and how long each CAN bus had been busy by then, in seconds.
-    can_busy: (Ps, [f64; 2]),
+    /// When that was last, and how long each CAN bus had been busy by then.
+    can_busy: (Ps, [Ps; 2]),
     quaternion: Option<[usize; 4]>,
     valid: Option<usize>,
 }
@@ -41,9 +41,9 @@ impl RunSignals {
     pub fn new(table: &SignalTable) -> Self {
         let part = |i: usize| table.index(&format!("diag.estimate.q_wxyz.{i}"));
         Self {
-            stats_due: 0,
+            due: 0,
             counters: [None; 5],
-            can_busy: (0, [0.0; 2]),
+            can_busy: (0, [0; 2]),
             quaternion: match [part(0), part(1), part(2), part(3)] {
                 [Some(w), Some(x), Some(y), Some(z)] => Some([w, x, y, z]),
                 _ => None,
@@ -54,14 +54,14 @@ impl RunSignals {
 
     /// Appends the run's own values to those of world and firmware, taken at `now`.
     pub fn append(&mut self, board: &mut impl Board, now: Ps, last: bool, values: &mut Values) {
-        if now >= self.stats_due || last {
-            self.stats_due = now + STATS_PERIOD;
-            let stats = board.stats();
-            let [can1, can2] = self.can_load(&stats, now);
+        if now >= self.due || last {
+            self.due = now + PERIOD;
+            let progress = board.progress();
+            let [can1, can2] = self.can_load(&progress, now);
             self.counters = [
-                Some(board.board_errors().len() as f64),
-                Some(stats.cpu_load),
-                Some(stats.missed as f64),
+                Some(progress.board_errors as f64),
+                Some(progress.cpu_load),
+                Some(progress.missed as f64),
                 can1,
                 can2,
             ];
@@ -74,13 +74,12 @@ impl RunSignals {
         values.extend((0..3).map(|i| error.map(|e| e[i])));
     }
 
-    /// Busy share of each bus since the statistics were last worked out.
-    fn can_load(&mut self, stats: &Stats, now: Ps) -> [Option<f64>; 2] {
+    /// Busy share of each bus since the last look.
+    fn can_load(&mut self, progress: &Progress, now: Ps) -> [Option<f64>; 2] {
         let (before, busy_before) = self.can_busy;
-        let busy = [0, 1].map(|i| stats.can.get(i).map(|bus| bus.load * time::to_seconds(now)));
-        self.can_busy = (now, busy.map(Option::unwrap_or_default));
-        let elapsed = time::to_seconds(now - before);
-        [0, 1].map(|i| Some((busy[i]? - busy_before[i]) / elapsed).filter(|_| now > before))
+        self.can_busy = (now, progress.can_busy);
+        let elapsed = (now > before).then(|| (now - before) as f64);
+        [0, 1].map(|bus| Some((progress.can_busy[bus] - busy_before[bus]) as f64 / elapsed?))
     }
 
     /// The firmware's attitude, while it calls it valid.

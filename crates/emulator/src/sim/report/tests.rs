@@ -10,7 +10,7 @@ use robot_plant::{
 use super::*;
 use crate::{
     board_errors::BoardError,
-    machine::{CanStats, LogLine, MachineError, Stats},
+    machine::{CanStats, LogLine, MachineError, Progress, Stats},
     pty::CanPort,
     sim::{
         board::Board,
@@ -118,6 +118,10 @@ impl Board for Waves {
 
     fn resets(&mut self) -> usize {
         0
+    }
+
+    fn progress(&mut self) -> Progress {
+        Progress::default()
     }
 
     fn stats(&mut self) -> Stats {

@@ -4,7 +4,7 @@ use robot_plant::time::{MS, US};
 
 use super::*;
 use crate::{
-    machine::{MachineError, diagnostics::meaning::Meaning},
+    machine::{MachineError, Progress, diagnostics::meaning::Meaning},
     sim::scenario::Deed,
 };
 
@@ -82,6 +82,10 @@ impl Board for Double {
 
     fn take_log(&mut self) -> Vec<LogLine> {
         Vec::new()
+    }
+
+    fn progress(&mut self) -> Progress {
+        Progress::default()
     }
 
     fn stats(&mut self) -> Stats {
