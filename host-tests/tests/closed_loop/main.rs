@@ -1,5 +1,6 @@
 //! The app drives the simulated robot through its real wire formats.
 
+mod legs;
 mod robot;
 
 use robot::Robot;

@@ -4,8 +4,8 @@ use robot_app::{
     control::UserController,
     diagnostics::DiagnosticsSnapshot,
     domain::{
-        BusId, CanFrame, HeaterConfig, ImuCalibration, ImuState, MagCalibration, MagState, RemoteUpdate,
-        RobotConfig, SafetyConfig, StandardId, SystemHealth,
+        BusId, CanFrame, HeaterConfig, ImuCalibration, ImuState, MagCalibration, MagState,
+        RemoteUpdate, RobotConfig, SafetyConfig, StandardId, SystemHealth,
     },
     input::{RemoteFormat, RemoteMapping, RemoteReceiver},
     logic::{LogicBus, LogicInputs, LogicStage, UserLogic},
@@ -76,10 +76,7 @@ impl Robot {
             imu: ImuState::default(),
             mag: MagState::default(),
             logic: LogicBus::default(),
-            health: SystemHealth {
-                battery_v: 24.0,
-                ..SystemHealth::default()
-            },
+            health: SystemHealth::default(),
             diagnostics: DiagnosticsSnapshot::default(),
             wheel_currents_ma: [0.0; 2],
             mag_started_at: None,
@@ -150,6 +147,9 @@ impl Robot {
             self.read_imu();
         }
         self.serve_mag();
+        if self.now.is_multiple_of(240 * MS) {
+            self.health.battery_v = self.signal("truth.battery_v") as f32;
+        }
         if self.now.is_multiple_of(10 * MS) {
             let inputs = LogicInputs {
                 config: &SafetyConfig::default(),

@@ -39,14 +39,8 @@ impl Excess {
         dt_us: u32,
         hold_us: u32,
     ) -> bool {
-        self.exceeded = if self.exceeded {
-            !inside(margin)
-        } else {
-            self.debounce.held(!inside(0.0), dt_us, hold_us)
-        };
-        if self.exceeded {
-            self.debounce.restart();
-        }
+        let held = self.debounce.held(!inside(0.0), dt_us, hold_us);
+        self.exceeded = if self.exceeded { !inside(margin) } else { held };
         self.exceeded
     }
 }

@@ -260,6 +260,8 @@ fn hot_motors_stop_their_own_kind_until_they_are_cool() {
         assert!(bench.run(3_000).wheels_stop);
         bench.motor.wheels[wheel].temperature_c = 80;
         assert!(!bench.run(1).wheels_stop);
+        bench.motor.wheels[wheel].temperature_c = 91;
+        assert_eq!(bench.ms_until(SafetyFlags::WHEEL_HOT), Some(500));
     }
     for joint in 0..4 {
         let mut bench = Bench::new();
@@ -327,8 +329,10 @@ fn an_unmeasured_battery_is_low_and_nan_is_empty() {
     assert!(bench.run(1_000).global_stop);
     let mut unwatched = Bench::new();
     unwatched.config.battery_low_v = 0.0;
-    unwatched.health.battery_v = 0.0;
-    assert_eq!(unwatched.run(5_000).flags, SafetyFlags::NONE);
+    for battery_v in [0.0, 12.0] {
+        unwatched.health.battery_v = battery_v;
+        assert_eq!(unwatched.run(5_000).flags, SafetyFlags::NONE);
+    }
 }
 
 /// Twice the arc tangent of 0.6 is 1.08 rad; the limit is 0.9.

@@ -1,0 +1,170 @@
+//! The joints against the world's DM4310: armed they hold, and what stops them leaves the wheels alone.
+
+use robot_app::{
+    domain::JointMode,
+    safety::{SafetyFlags, SafetyVerdict},
+};
+
+use super::*;
+
+fn enabled(robot: &Robot) -> [bool; 4] {
+    [0, 1, 2, 3].map(|joint| robot.signal(&format!("can.joint.{joint}.enabled")) == 1.0)
+}
+
+fn stop_frames(robot: &Robot) -> f64 {
+    let frames = |joint| robot.signal(&format!("can.joint.{joint}.stop_frames"));
+    (0..4).map(frames).sum()
+}
+
+fn assert_limp(robot: &Robot) {
+    assert_eq!(enabled(robot), [false; 4], "at {} s", robot.seconds());
+}
+
+/// Milliseconds from now until no joint is enabled any more.
+fn ms_to_limp(robot: &mut Robot) -> f64 {
+    let start = robot.seconds();
+    let mut last_enabled = start;
+    robot.run_until(start + 0.5, |robot| {
+        if enabled(robot) != [false; 4] {
+            last_enabled = robot.seconds();
+        }
+    });
+    (last_enabled - start) * 1_000.0
+}
+
+/// Enable off and e-stop thrown for 1.1 s.
+fn clear(robot: &mut Robot) {
+    let e_stop = |thrown| RemoteInput {
+        e_stop: Some(thrown),
+        enable: Some(false),
+        ..ENABLE
+    };
+    let now = robot.seconds();
+    robot.remote(sticks(0.0, 0.0));
+    robot.remote(e_stop(true));
+    robot.run_until(now + 1.1, |_| ());
+    robot.remote(e_stop(false));
+    robot.run_until(now + 1.3, |_| ());
+}
+
+#[test]
+fn joints_are_limp_until_armed_and_hold_their_pose_then() {
+    let mut robot = Robot::new(PlantKind::Stand, RadioKind::Sbus);
+    robot.run_until(2.5, assert_limp);
+    robot.remote(ENABLE);
+    robot.run_until(2.7, |_| ());
+    let pose = robot.diagnostics().command.joints;
+    robot.run_until(4.0, |robot| assert_eq!(enabled(robot), [true; 4]));
+    for (joint, command) in pose.iter().enumerate() {
+        let is_rad = robot.signal(&format!("truth.joint.{joint}.pos_rad"));
+        assert_eq!(command.mode, JointMode::Mit);
+        assert_eq!((command.kp, command.kd), (20.0, 1.0));
+        assert!((f64::from(command.pos_rad) - is_rad).abs() < 0.02);
+    }
+    robot.remote(DISABLE);
+    // The frame may start 7 ms later and lasts 3 ms; a joint's slot comes every 2 ms.
+    assert!(ms_to_limp(&mut robot) <= 13.0);
+    let before = stop_frames(&robot);
+    robot.run_until(robot.seconds() + 0.1, assert_limp);
+    let sent = stop_frames(&robot) - before;
+    assert!(
+        (sent - 200.0).abs() <= 4.0,
+        "{sent} in 100 ms to four joints"
+    );
+}
+
+/// `(fault, flag, goes on by itself)`.
+#[test]
+fn a_bad_joint_stops_all_joints_and_the_wheels_go_on() {
+    let cases = [
+        ("motor-3-fault", SafetyFlags::JOINT_FAULT, false),
+        ("motor-4-gone", SafetyFlags::JOINT_SILENT, true),
+        // Their own time-out of 100 ms is a fault that the drives keep.
+        ("can2-empty", SafetyFlags::JOINT_SILENT, false),
+    ];
+    for (fault, flag, goes_on) in cases {
+        let mut robot = driving(PlantKind::Stand, RadioKind::Sbus);
+        robot.fault(fault, true);
+        robot.run_until(6.0, |_| ());
+        let safety = robot.diagnostics().safety;
+        assert!(safety.flags.intersects(flag), "{fault}: {safety:?}");
+        assert_eq!(safety.verdict, SafetyVerdict::PartialStop, "{fault}");
+        robot.run_until(6.5, |robot| {
+            let obeying = enabled(robot).into_iter().filter(|enabled| *enabled);
+            assert_eq!(obeying.count(), 0, "{fault}");
+        });
+        let speed = robot.signal("truth.wheel.0.speed_mps");
+        assert!((speed / 0.6 - 1.0).abs() < 0.05, "{fault}: {speed} m/s");
+        robot.fault(fault, false);
+        robot.run_until(8.0, |_| ());
+        assert_eq!(enabled(&robot), [goes_on; 4], "{fault} over");
+        if !goes_on {
+            clear(&mut robot);
+            robot.remote(ENABLE);
+            robot.run_until(robot.seconds() + 1.0, |_| ());
+            assert_eq!(enabled(&robot), [true; 4], "{fault} cleared");
+        }
+    }
+}
+
+#[test]
+fn a_fallen_robot_is_limp_until_it_is_up_and_cleared() {
+    let mut robot = driving(PlantKind::Rolling, RadioKind::Sbus);
+    robot.fault("tilted", true);
+    robot.run_until(7.0, |_| ());
+    assert!(
+        robot
+            .diagnostics()
+            .safety
+            .latched
+            .intersects(SafetyFlags::TILT)
+    );
+    robot.run_until(8.0, |robot| {
+        assert_still(robot);
+        assert_limp(robot);
+    });
+    robot.fault("tilted", false);
+    robot.run_until(12.0, |robot| {
+        assert_still(robot);
+        assert_limp(robot);
+    });
+    clear(&mut robot);
+    let latched = robot.diagnostics().safety.latched;
+    assert!(!latched.intersects(SafetyFlags::TILT), "{latched:?}");
+    robot.remote(ENABLE);
+    robot.run_until(robot.seconds() + 0.5, |_| ());
+    assert_eq!(enabled(&robot), [true; 4]);
+}
+
+#[test]
+fn a_low_battery_forbids_the_next_drive_and_an_empty_one_ends_this_one() {
+    let mut robot = driving(PlantKind::Stand, RadioKind::Sbus);
+    robot.fault("battery-low", true);
+    robot.run_until(7.0, |_| ());
+    assert!(robot.armed());
+    let safety = robot.diagnostics().safety;
+    assert_eq!(safety.flags, SafetyFlags::BATTERY_LOW);
+    robot.remote(sticks(0.0, 0.0));
+    robot.remote(DISABLE);
+    robot.run_until(7.2, |_| ());
+    robot.remote(ENABLE);
+    robot.run_until(7.4, assert_limp_later);
+    assert_eq!(blockers(&robot), ["battery-low"]);
+
+    let mut robot = driving(PlantKind::Stand, RadioKind::Sbus);
+    robot.fault("battery-empty", true);
+    robot.run_until(6.5, |_| ());
+    robot.fault("battery-empty", false);
+    robot.run_until(8.0, |robot| {
+        assert_still(robot);
+        assert_limp(robot);
+    });
+    let latched = robot.diagnostics().safety.latched;
+    assert_eq!(latched, SafetyFlags::BATTERY_EMPTY);
+}
+
+fn assert_limp_later(robot: &Robot) {
+    if robot.seconds() > 7.25 {
+        assert_limp(robot);
+    }
+}
