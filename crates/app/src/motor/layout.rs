@@ -126,8 +126,8 @@ impl MotorLayout {
     /// If a bus is overloaded or two motors use the same identifier.
     pub const fn new(wheels: WheelGroup, joints: [JointSlot; 4]) -> Self {
         checks::no_identifier_clashes(&wheels, &joints);
-        checks::frames_fit_mailboxes(&wheels, &joints);
         checks::load_fits_bus(&wheels, &joints);
+        checks::frames_fit_mailboxes(&wheels, &joints);
         checks::limits_are_sound(&wheels, &joints);
         Self { wheels, joints }
     }
@@ -164,3 +164,6 @@ impl MotorLayout {
         ]
     }
 }
+
+#[cfg(test)]
+mod tests;

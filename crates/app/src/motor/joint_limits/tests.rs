@@ -1,0 +1,189 @@
+use proptest::{num::f32::ANY, prelude::*};
+
+use super::*;
+
+const CONFIG: JointConfig = JointConfig {
+    direction: 1.0,
+    zero_rad: 0.0,
+    min_rad: -1.5,
+    max_rad: 1.0,
+    max_torque_nm: 3.0,
+    max_speed_rps: 15.0,
+    max_kp: 100.0,
+    max_kd: 5.0,
+};
+const MOTOR: MotorLimits = MotorLimits {
+    max_torque_nm: 7.0,
+    horizon_s: 0.004,
+};
+const AT_REST: JointMotion = JointMotion {
+    pos_rad: 0.0,
+    vel_rps: 0.0,
+};
+
+fn mit(pos_rad: f32, vel_rps: f32, kp: f32, kd: f32, tau_nm: f32) -> JointCommand {
+    JointCommand {
+        mode: JointMode::Mit,
+        pos_rad,
+        vel_rps,
+        kp,
+        kd,
+        tau_nm,
+    }
+}
+
+/// In double precision, from the motor's formula, `ahead_s` from now.
+fn torque_nm(command: &JointCommand, motion: JointMotion, ahead_s: f64) -> f64 {
+    let [pos, vel, kp, kd, tau] = [
+        command.pos_rad,
+        command.vel_rps,
+        command.kp,
+        command.kd,
+        command.tau_nm,
+    ]
+    .map(f64::from);
+    let (q, speed) = (f64::from(motion.pos_rad), f64::from(motion.vel_rps));
+    kp * (pos - q - speed * ahead_s) + kd * (vel - speed) + tau
+}
+
+#[test]
+fn a_modest_command_passes_as_it_is() {
+    let command = mit(0.1, 0.5, 20.0, 0.5, 0.25);
+    assert_eq!(limited(&command, AT_REST, &CONFIG, MOTOR), command);
+}
+
+/// 100 · 0.5 + 1 · 10 − 0 = 60 N·m is twenty times the limit.
+#[test]
+fn too_much_torque_is_scaled_down_as_a_whole() {
+    let command = mit(0.5, 10.0, 100.0, 1.0, 0.0);
+    let got = limited(&command, AT_REST, &CONFIG, MOTOR);
+    assert_eq!((got.pos_rad, got.vel_rps), (0.5, 10.0));
+    assert!((got.kp - 5.0).abs() < 1e-5 && (got.kd - 0.05).abs() < 1e-6);
+}
+
+/// The stiff spring is at its target, but the joint flies past at 10 rad/s: 0.04 rad on, it would push 4 N·m.
+#[test]
+fn torque_is_limited_for_where_the_joint_will_be() {
+    let motion = JointMotion {
+        pos_rad: 0.5,
+        vel_rps: 10.0,
+    };
+    let got = limited(&mit(0.5, 0.0, 100.0, 0.0, 0.0), motion, &CONFIG, MOTOR);
+    assert!((got.kp - 75.0).abs() < 1e-4, "{got:?}");
+}
+
+#[test]
+fn the_weaker_of_settings_and_motor_decides() {
+    let weak = MotorLimits {
+        max_torque_nm: 0.5,
+        ..MOTOR
+    };
+    let got = limited(&mit(0.0, 0.0, 0.0, 0.0, 9.0), AT_REST, &CONFIG, weak);
+    assert_eq!(got.tau_nm, 0.5);
+}
+
+#[test]
+fn a_damper_does_not_push_a_joint_out_that_comes_back() {
+    let coming_back = JointMotion {
+        pos_rad: 1.1,
+        vel_rps: -4.0,
+    };
+    let got = limited(&mit(1.0, 0.0, 0.0, 2.0, 0.0), coming_back, &CONFIG, MOTOR);
+    assert_eq!((got.kp, got.kd, got.tau_nm), (0.0, 0.0, 0.0));
+    let still_leaving = JointMotion {
+        vel_rps: 1.0,
+        ..coming_back
+    };
+    let got = limited(&mit(1.0, 0.0, 0.0, 2.0, 0.0), still_leaving, &CONFIG, MOTOR);
+    assert_eq!(got.kd, 2.0);
+}
+
+#[test]
+fn the_other_modes_keep_to_angle_and_speed() {
+    let command = JointCommand {
+        mode: JointMode::PositionSpeed,
+        ..mit(9.0, -99.0, 1.0, 1.0, 1.0)
+    };
+    let expected = JointCommand {
+        mode: JointMode::PositionSpeed,
+        ..mit(1.0, 15.0, 0.0, 0.0, 0.0)
+    };
+    assert_eq!(limited(&command, AT_REST, &CONFIG, MOTOR), expected);
+    let at_end = JointMotion {
+        pos_rad: 1.0,
+        vel_rps: 0.0,
+    };
+    let speed = |vel_rps| JointCommand {
+        mode: JointMode::Speed,
+        vel_rps,
+        ..JointCommand::default()
+    };
+    assert_eq!(limited(&speed(2.0), at_end, &CONFIG, MOTOR), speed(0.0));
+    assert_eq!(limited(&speed(-2.0), at_end, &CONFIG, MOTOR), speed(-2.0));
+    assert_eq!(limited(&speed(-99.0), at_end, &CONFIG, MOTOR), speed(-15.0));
+}
+
+#[test]
+fn limits_that_are_no_numbers_allow_nothing() {
+    let nan = f32::NAN;
+    for config in [
+        JointConfig {
+            max_torque_nm: nan,
+            ..CONFIG
+        },
+        JointConfig {
+            max_speed_rps: nan,
+            ..CONFIG
+        },
+        JointConfig {
+            max_kp: nan,
+            ..CONFIG
+        },
+        JointConfig {
+            max_kd: nan,
+            ..CONFIG
+        },
+        JointConfig {
+            min_rad: nan,
+            ..CONFIG
+        },
+        JointConfig {
+            min_rad: 2.0,
+            ..CONFIG
+        },
+    ] {
+        let got = limited(&mit(0.1, 0.0, 20.0, 1.0, 1.0), AT_REST, &config, MOTOR);
+        assert_eq!(got, JointCommand::default(), "{config:?}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 2_000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn whatever_is_asked_the_torque_stays_inside(
+        fields in [ANY; 5],
+        scale in 0.1_f32..1e4,
+        pos_rad in -3.0_f32..3.0,
+        vel_rps in -30.0_f32..30.0,
+    ) {
+        let bounded = fields.map(|field| if field.is_finite() { field % scale } else { field });
+        let [pos, vel, kp, kd, tau] = bounded;
+        let motion = JointMotion { pos_rad, vel_rps };
+        let got = limited(&mit(pos, vel, kp, kd, tau), motion, &CONFIG, MOTOR);
+        prop_assert!([got.pos_rad, got.vel_rps, got.kp, got.kd, got.tau_nm].iter().all(|x| x.is_finite()));
+        prop_assert!((-1.5..=1.0).contains(&got.pos_rad) && got.vel_rps.abs() <= 15.0);
+        prop_assert!((0.0..=100.0).contains(&got.kp) && (0.0..=5.0).contains(&got.kd));
+        for ahead_s in [0.0, 0.002, 0.004] {
+            let torque = torque_nm(&got, motion, ahead_s);
+            prop_assert!(torque.abs() <= 3.0 + 1e-3, "{got:?} {torque}");
+        }
+        let now_nm = torque_nm(&got, motion, 0.0);
+        if pos_rad >= 1.0 {
+            prop_assert!(now_nm <= 1e-3, "{got:?} {now_nm}");
+        }
+        if pos_rad <= -1.5 {
+            prop_assert!(now_nm >= -1e-3, "{got:?} {now_nm}");
+        }
+    }
+}

@@ -1,0 +1,140 @@
+use super::*;
+use crate::motor::mit::MitRanges;
+
+const RANGES: MitRanges = MitRanges {
+    p_max_rad: 12.5,
+    v_max_rps: 30.0,
+    t_max_nm: 10.0,
+};
+
+fn dm4310(number: u8, master_id: u16) -> JointMotor {
+    JointMotor::Dm4310(Dm4310::new(number, master_id, RANGES).unwrap())
+}
+
+fn rs00(number: u8, host: u8) -> JointMotor {
+    JointMotor::Rs00(Rs00::new(number, host).unwrap())
+}
+
+/// The robot's joints with other motors and on other buses.
+fn joints(change: impl FnOnce(&mut [JointSlot; 4])) -> MotorLayout {
+    let mut joints = *ROBOT_LAYOUT.joints();
+    change(&mut joints);
+    MotorLayout::new(*ROBOT_LAYOUT.wheels(), joints)
+}
+
+#[test]
+fn makes_may_be_mixed() {
+    let layout = joints(|joints| {
+        joints[2].motor = rs00(3, 0xFD);
+        joints[3].motor = rs00(4, 0xFD);
+    });
+    assert_eq!(layout.joints()[0], ROBOT_LAYOUT.joints()[0]);
+}
+
+#[test]
+#[should_panic(expected = "two joints on one bus use the same identifier")]
+fn two_motors_with_one_number() {
+    joints(|joints| joints[1].motor = dm4310(1, 0x12));
+}
+
+#[test]
+#[should_panic(expected = "two joints on one bus use the same identifier")]
+fn two_dm4310_replying_alike() {
+    joints(|joints| joints[1].motor = dm4310(2, 0x11));
+}
+
+#[test]
+#[should_panic(expected = "two joints on one bus use the same identifier")]
+fn an_rs00_replying_as_a_dm4310_does() {
+    joints(|joints| joints[1].motor = rs00(2, 0x11));
+}
+
+#[test]
+#[should_panic(expected = "two joints on one bus use the same identifier")]
+fn a_reply_that_is_another_motors_command() {
+    joints(|joints| joints[1].motor = dm4310(2, 0x101));
+}
+
+#[test]
+#[should_panic(expected = "a joint's reply has the identifier of its commands")]
+fn a_reply_that_is_the_motors_own_command() {
+    joints(|joints| joints[1].motor = dm4310(2, 0x002));
+}
+
+/// Its speed commands would be 0x201: feedback of the left wheel.
+#[test]
+#[should_panic(expected = "identifier of the wheels' speed controllers")]
+fn a_joint_on_the_wheels_bus() {
+    joints(|joints| joints[0].bus = BusId::Can1);
+}
+
+#[test]
+#[should_panic(expected = "identifier of the tuning channel or of register access")]
+fn a_reply_on_the_tuning_channel() {
+    joints(|joints| joints[0].motor = dm4310(1, 0x7A0));
+}
+
+#[test]
+#[should_panic(expected = "both wheels have the same number")]
+fn two_wheels_with_one_number() {
+    let mut wheels = *ROBOT_LAYOUT.wheels();
+    wheels.escs[1] = wheels.escs[0];
+    MotorLayout::new(wheels, *ROBOT_LAYOUT.joints());
+}
+
+/// Four commands and four replies of 135 bits a millisecond are 108 %.
+#[test]
+#[should_panic(expected = "CAN2 would be loaded above 80 %")]
+fn four_joints_in_every_tick() {
+    joints(|joints| {
+        for joint in joints {
+            joint.schedule = Schedule::new(1, 0).unwrap();
+        }
+    });
+}
+
+#[test]
+#[should_panic(expected = "more than two frames for motors on CAN2 in one tick")]
+fn three_joints_in_one_tick() {
+    joints(|joints| joints[2].schedule = joints[0].schedule);
+}
+
+/// The wheels' three frames a tick are 40.5 %; two joints in every tick are 54 % more.
+#[test]
+#[should_panic(expected = "CAN1 would be loaded above 80 %")]
+fn joints_in_every_tick_beside_the_wheels() {
+    joints(|joints| {
+        for (number, joint) in (9..).zip(joints.iter_mut().take(2)) {
+            joint.bus = BusId::Can1;
+            joint.motor = dm4310(number, 0x10 + u16::from(number));
+            joint.schedule = Schedule::new(1, 0).unwrap();
+        }
+    });
+}
+
+#[test]
+#[should_panic(expected = "a joint's torque limit is beyond what its motor may give")]
+fn more_torque_than_the_motor_has() {
+    joints(|joints| joints[0].config.max_torque_nm = 7.5);
+}
+
+#[test]
+fn schedules_are_short_powers_of_two() {
+    for every in 0..=u8::MAX {
+        let allowed = [1, 2, 4, 8].contains(&every);
+        assert_eq!(Schedule::new(every, 0).is_some(), allowed, "{every}");
+        assert_eq!(Schedule::new(every, every), None);
+    }
+    let due: Vec<bool> = (0..=255_u8)
+        .map(|tick| Schedule::new(4, 3).unwrap().is_due(tick))
+        .collect();
+    assert!(
+        due.chunks(4)
+            .all(|ticks| ticks == [false, false, false, true])
+    );
+}
+
+#[test]
+fn both_layouts_stop_alike() {
+    assert_eq!(RS00_LAYOUT.safe_frames(), ROBOT_LAYOUT.safe_frames());
+}
