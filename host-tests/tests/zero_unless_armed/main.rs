@@ -68,7 +68,7 @@ fn a_controller_that_asks_for_nan_gets_zero() {
 #[test]
 fn every_cause_disarms_until_the_switch_moves() {
     type Cause = fn(&mut Phase);
-    let causes: [(&str, Cause); 10] = [
+    let causes: [(&str, Cause); 11] = [
         ("switch", |phase| phase.enabled = false),
         ("e-stop", |phase| phase.e_stop = true),
         ("failsafe", |phase| phase.failsafe = true),
@@ -76,6 +76,7 @@ fn every_cause_disarms_until_the_switch_moves() {
         ("quality nan", |phase| phase.quality = f32::NAN),
         ("silence", |phase| phase.radio_sends = false),
         ("imu", |phase| phase.imu_sends = false),
+        ("late task", |phase| phase.late_task = true),
         ("imu errors", |phase| phase.imu_errors = 100),
         ("nan", |phase| phase.gyro = [f32::NAN; 3]),
         ("overflow", |phase| phase.accel = [f32::MAX; 3]),

@@ -34,6 +34,9 @@ pub struct Phase {
     pub mag: [f32; 3],
     pub calibrated: bool,
     pub buses: [BusErrorState; 2],
+    /// Frames that failed to leave, since the last that did.
+    pub tx_failures: [u32; 2],
+    pub late_task: bool,
     pub logic_sends: bool,
     /// Past the controller: current of both wheels in mA, and every joint's command.
     pub direct: Option<(f32, JointCommand)>,
@@ -138,7 +141,12 @@ pub fn phase() -> impl Strategy<Value = Phase> {
         mostly([0.0, 20.0, -45.0], any::<[f32; 3]>()),
         mostly(true, Just(false)),
     );
-    let bus = || mostly(BusErrorState::Active, Just(BusErrorState::BusOff));
+    let bus = || {
+        (
+            mostly(BusErrorState::Active, Just(BusErrorState::BusOff)),
+            mostly(0, any::<u32>()),
+        )
+    };
     let bad = || mostly(Behaviour::Good, behaviour());
     let motors = (
         [bus(), bus()],
@@ -151,6 +159,7 @@ pub fn phase() -> impl Strategy<Value = Phase> {
         mostly(true, Just(false)),
         mostly(None, direct.prop_map(Some)),
         mostly(0, any::<u32>()),
+        mostly(false, Just(true)),
         mostly(0, any::<u64>()),
         mostly(Clock::Runs, clock()),
         frame(),
@@ -172,16 +181,18 @@ pub fn phase() -> impl Strategy<Value = Phase> {
             gyro_bias: imu.3,
             mag: imu.4,
             calibrated: imu.5,
-            buses: motors.0,
+            buses: motors.0.map(|(state, _)| state),
+            tx_failures: motors.0.map(|(_, failures)| failures),
             wheels: motors.1,
             joints: motors.2,
             battery_v: motors.3,
             logic_sends: rest.0,
             direct: rest.1,
             imu_errors: rest.2,
-            time_jump_us: rest.3,
-            clock: rest.4,
-            frame: rest.5,
+            late_task: rest.3,
+            time_jump_us: rest.4,
+            clock: rest.5,
+            frame: rest.6,
         },
     )
 }
@@ -209,6 +220,8 @@ pub fn good(ticks: u16, enabled: bool) -> Phase {
         mag: [0.0, 20.0, -45.0],
         calibrated: true,
         buses: [BusErrorState::Active; 2],
+        tx_failures: [0; 2],
+        late_task: false,
         logic_sends: true,
         direct: None,
         imu_errors: 0,

@@ -44,9 +44,11 @@ impl Producers {
         if phase.logic_sends && tick.is_multiple_of(10) {
             self.logic = logic_bus(phase, now_us);
         }
-        for (bus, state) in self.health.can.iter_mut().zip(phase.buses) {
-            bus.state = state;
+        for (bus, health) in self.health.can.iter_mut().enumerate() {
+            health.state = phase.buses[bus];
+            health.tx_failures_in_row = phase.tx_failures[bus];
         }
+        self.health.late_tasks.mag = phase.late_task;
         self.health.imu_calibrated = phase.calibrated;
         self.health.imu.errors = phase.imu_errors;
         self.health.battery_v = phase.battery_v;

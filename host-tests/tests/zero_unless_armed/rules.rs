@@ -7,6 +7,7 @@ use crate::motors::Behaviour;
 
 const REMOTE_TIMEOUT_US: u64 = 100_000;
 const IMU_TIMEOUT_US: u64 = 25_000;
+const MAX_TX_FAILURES: u32 = 20;
 const COMMAND_TIMEOUT_US: u64 = 50_000;
 /// A stop whose cause must last has come at the latest this long after its time: 20 ms of jumping clock and a tick.
 const SLACK_US: u64 = 25_000;
@@ -81,14 +82,12 @@ impl Rules {
         let gone = joints.contains(&Behaviour::Gone);
         let joint_gone = self.joint_gone.for_us(gone, dt_us) > 50_000 + SLACK_US;
         let fault_stands = self.fault_stands(joint_fault);
-        let [can1, can2] = &inputs.health.can;
-        let joints_run = run
-            && can2.state != BusErrorState::BusOff
-            && !joint_hot
-            && !joint_gone
-            && !fault_stands;
+        let [can1_ok, can2_ok] = inputs.health.can.map(|bus| {
+            bus.state != BusErrorState::BusOff && bus.tx_failures_in_row <= MAX_TX_FAILURES
+        });
+        let joints_run = run && can2_ok && !joint_hot && !joint_gone && !fault_stands;
         Allowed {
-            wheels: run && fresh_command && can1.state != BusErrorState::BusOff && !wheel_hot,
+            wheels: run && fresh_command && can1_ok && !wheel_hot,
             joints: joints_run,
             commands: joints_run && fresh_command,
         }
@@ -106,6 +105,7 @@ impl Rules {
             || link.failsafe
             || !good_quality
             || !inputs.health.imu_calibrated
+            || inputs.health.late_tasks.any()
             || !is_fresh(inputs.imu.ts_us, IMU_TIMEOUT_US, now_us)
             || !battery_ok;
         if stopped && self.driving {

@@ -69,7 +69,7 @@ fn armed_joints_are_enabled_and_obey() {
 #[test]
 fn each_stop_takes_its_own_actuators_and_latches_if_it_must() {
     type Cause = fn(&mut Phase);
-    let cases: [(&str, Cause, [bool; 2], bool); 13] = [
+    let cases: [(&str, Cause, [bool; 2], bool); 15] = [
         (
             "can1 off",
             |p| p.buses[0] = BusErrorState::BusOff,
@@ -79,6 +79,18 @@ fn each_stop_takes_its_own_actuators_and_latches_if_it_must() {
         (
             "can2 off",
             |p| p.buses[1] = BusErrorState::BusOff,
+            [true, false],
+            true,
+        ),
+        (
+            "can1 congested",
+            |p| p.tx_failures[0] = 21,
+            [false, true],
+            true,
+        ),
+        (
+            "can2 congested",
+            |p| p.tx_failures[1] = 21,
             [true, false],
             true,
         ),
@@ -164,9 +176,11 @@ fn each_stop_takes_its_own_actuators_and_latches_if_it_must() {
 #[test]
 fn whatever_is_wrong_forbids_arming() {
     type Cause = fn(&mut Phase);
-    let causes: [(&str, Cause); 12] = [
+    let causes: [(&str, Cause); 14] = [
         ("can1 off", |p| p.buses[0] = BusErrorState::BusOff),
         ("can2 off", |p| p.buses[1] = BusErrorState::BusOff),
+        ("can2 congested", |p| p.tx_failures[1] = 21),
+        ("late task", |p| p.late_task = true),
         ("wheel hot", |p| p.wheels[1] = Behaviour::Hot(120)),
         ("wheel frozen", |p| p.wheels[0] = Behaviour::Frozen),
         ("joint hot", |p| p.joints[2] = Behaviour::Hot(120)),
