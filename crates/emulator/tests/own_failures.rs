@@ -32,8 +32,11 @@ struct Reaction {
 /// A board that drives at `t = 4 s` and a bit, and what it sent since.
 struct Run {
     machine: Machine,
-    /// Places of the two wheel currents and of the count of zero frames on CAN2.
-    signals: [usize; 3],
+    /// Places of the two wheel currents.
+    currents: Vec<usize>,
+    /// Of each joint's count of disable frames, and of whether it is enabled.
+    joint_stops: Vec<usize>,
+    joint_enabled: Vec<usize>,
     events: Vec<WireEvent>,
 }
 
@@ -43,14 +46,15 @@ impl Run {
         let mut machine = job.machine().expect("the machine starts");
         let names = machine.world_names();
         let place = |name: &str| names.iter().position(|n| n == name).expect(name);
-        let signals = [
-            place("can.m3508.0.current_ma"),
-            place("can.m3508.1.current_ma"),
-            place("can.joint.0.stop_frames"),
-        ];
+        let joints = |what| (0..4).map(move |joint| format!("can.joint.{joint}.{what}"));
         let mut run = Self {
+            currents: vec![
+                place("can.m3508.0.current_ma"),
+                place("can.m3508.1.current_ma"),
+            ],
+            joint_stops: joints("stop_frames").map(|name| place(&name)).collect(),
+            joint_enabled: joints("enabled").map(|name| place(&name)).collect(),
             machine,
-            signals,
             events: Vec::new(),
         };
         run.until(from_seconds(2.5));
@@ -65,6 +69,13 @@ impl Run {
         });
         run.until(from_seconds(4.0));
         assert!(run.events.iter().any(|e| run.is_torque(e)), "it drives");
+        let holds = |place: &usize| run.events.iter().rfind(|e| e.signal == *place);
+        assert!(
+            run.joint_enabled
+                .iter()
+                .all(|place| holds(place).is_some_and(|e| e.value == 1.0)),
+            "every joint holds"
+        );
         run.events.clear();
         run
     }
@@ -80,12 +91,15 @@ impl Run {
             .with_world(|world| world.drain_wire_events(events));
     }
 
+    /// A wheel's current, or a joint that begins to hold.
     fn is_torque(&self, event: &WireEvent) -> bool {
-        self.signals[..2].contains(&event.signal) && event.value != 0.0
+        let motor =
+            self.currents.contains(&event.signal) || self.joint_enabled.contains(&event.signal);
+        motor && event.value != 0.0
     }
 
-    /// From when on each bus has zero torque, looked for from `from` to `to`: CAN1 after its last frame with torque,
-    /// CAN2 with its first zero frame.
+    /// From when on each bus has zero torque, looked for from `from` to `to`: after the last frame with torque, every
+    /// wheel has got its zero current and every joint its disable frame.
     fn zero_from(&self, from: Ps, to: Ps) -> [Option<Ps>; 2] {
         let seen = || self.events.iter().filter(|e| (from..to).contains(&e.at));
         let last_torque = seen().filter(|e| self.is_torque(e)).map(|e| e.at).max();
@@ -95,12 +109,11 @@ impl Run {
                 .map(|e| e.at)
                 .min()
         };
-        let wheels = self.signals[..2]
-            .iter()
-            .map(calm)
-            .collect::<Option<Vec<_>>>();
-        let can1 = wheels.and_then(|w| w.into_iter().max());
-        [can1, calm(&self.signals[2])].map(|at| at.map(|at| at - from))
+        let all_calm = |signals: &[usize]| {
+            let each = signals.iter().map(calm).collect::<Option<Vec<_>>>();
+            each.and_then(|at| at.into_iter().max())
+        };
+        [all_calm(&self.currents), all_calm(&self.joint_stops)].map(|at| at.map(|at| at - from))
     }
 }
 
