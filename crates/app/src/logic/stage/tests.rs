@@ -123,6 +123,19 @@ fn the_users_logic_decides_in_its_mode_and_starts_anew_each_time() {
 }
 
 #[test]
+fn the_users_logic_starts_anew_when_the_pilot_lets_it_run_again() {
+    let mut stage = LogicStage::new(Counting::default());
+    let mut current_ma = |enabled| {
+        let mut remote = remote(DriveMode::Custom);
+        remote.operator.enabled = enabled;
+        let bus = step(&mut stage, &remote, None, NOW_US);
+        bus.cmd_valid.then_some(bus.cmd.wheels[0].current_ma)
+    };
+    let currents = [true, true, false, true].map(&mut current_ma);
+    assert_eq!(currents, [Some(1.0), Some(2.0), None, Some(1.0)]);
+}
+
+#[test]
 fn the_users_logic_as_shipped_wants_nothing() {
     let bus = step(
         &mut LogicStage::new(UserLogic),
