@@ -274,6 +274,67 @@ fn the_adapter_notes_replies_of_the_tuning_channel() {
     }
 }
 
+/// Frames of every kind with random payloads, floats at their worst, and faults in between.
+#[test]
+fn no_frame_makes_a_joint_stronger_than_its_motor_or_its_numbers_infinite() {
+    for (kind, peak_nm) in [(JointKind::Dm4310, 7.0), (JointKind::Rs00, 14.0)] {
+        let mut bench = Bench::new(kind);
+        // A generator of its own: the numbers of Knuth's MMIX.
+        let mut state = 1_u64;
+        let mut random = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            state >> 16
+        };
+        let floats = [
+            0.0,
+            1.0,
+            -2.0,
+            f32::MAX,
+            f32::MIN,
+            f32::MIN_POSITIVE,
+            f32::NAN,
+            f32::INFINITY,
+        ];
+        let mut most_nm: f64 = 0.0;
+        for _ in 0..1_000 {
+            let id = 1 + random() as u32 % 4;
+            let first = floats[random() as usize % floats.len()].to_le_bytes();
+            let second = floats[random() as usize % floats.len()].to_le_bytes();
+            let two_floats = [first, second].concat().try_into().expect("eight bytes");
+            match random() % 8 {
+                0 => bench.send(id, service([0xFB, 0xFC, 0xFD, 0xFE][random() as usize % 4])),
+                1 | 2 => bench.send(id, service(0xFC)),
+                3 => bench.send(id, random().to_be_bytes()),
+                4 => bench.send(0x100 + id, two_floats),
+                5 => bench.send(0x200 + id, two_floats),
+                6 => {
+                    let register = [9, 0x15, 0x16, 0x17][random() as usize % 4];
+                    let [a, b, c, d] = first;
+                    bench.send(0x7FF, [id as u8, 0, 0x55, register, a, b, c, d]);
+                }
+                _ => {
+                    let [mode, tail] = [random() as u8 % 4, 0xFC];
+                    let service = [0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, mode, tail];
+                    bench.send(id, service);
+                    bench.send(0x7FF, [id as u8, 0, 0x55, 10, mode, 0, 0, 0]);
+                }
+            }
+            bench.wait((1 + random() % 40) * MS);
+            for joint in 0..4 {
+                let torque_nm = bench.signal(&format!("truth.joint.{joint}.torque_nm"));
+                let speed_rps = bench.signal(&format!("truth.joint.{joint}.vel_rps"));
+                let asked_nm = bench.signal(&format!("can.joint.{joint}.torque_nm"));
+                assert!(torque_nm.abs() <= peak_nm && asked_nm.is_finite());
+                assert!(speed_rps.abs() < 60.0, "{speed_rps}");
+                most_nm = most_nm.max(torque_nm.abs());
+            }
+        }
+        assert_eq!(most_nm, peak_nm, "{kind:?}");
+    }
+}
+
 #[test]
 fn a_frame_beyond_the_model_is_complained_of() {
     let mut bench = Bench::new(JointKind::Dm4310);

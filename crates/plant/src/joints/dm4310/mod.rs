@@ -29,6 +29,7 @@ const RATING: Rating = Rating {
 const TIMEOUT_UNIT: Ps = 50 * US;
 /// Identifiers of the fault `motor-N-wrong-id` are this much too high.
 const WRONG_ID: u32 = 8;
+const STANDARD_ID: u32 = 0x7FF;
 
 /// ERR of a motor that has switched itself off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -144,11 +145,11 @@ impl Dm4310 {
     }
 
     fn esc_id(&self) -> u32 {
-        self.registers.esc_id + u32::from(self.faults.wrong_id) * WRONG_ID
+        (self.registers.esc_id + u32::from(self.faults.wrong_id) * WRONG_ID) & STANDARD_ID
     }
 
     fn mst_id(&self) -> u32 {
-        self.registers.mst_id + u32::from(self.faults.wrong_id) * WRONG_ID
+        (self.registers.mst_id + u32::from(self.faults.wrong_id) * WRONG_ID) & STANDARD_ID
     }
 
     pub(crate) fn step(&mut self, shaft: Shaft, supply_v: f64, now: Ps, dt_s: f64) {
