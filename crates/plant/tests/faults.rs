@@ -143,16 +143,16 @@ fn the_imu_starts_warm_unless_told_and_full_heat_adds_25_kelvin_to_the_board() {
     let mut warm = world(WorldConfig::default());
     assert_eq!(signal(&warm, "truth.imu.temperature_c"), 40.0);
     warm.set_heater_duty(1.0, 0);
-    warm.advance(90 * SECOND);
+    warm.advance(60 * SECOND);
     let warm_c = signal(&warm, "truth.imu.temperature_c");
-    assert!((warm_c - 55.0).abs() < 0.2, "{warm_c}");
+    assert!((warm_c - 55.0).abs() < 0.5, "{warm_c}");
     let mut cold = world(WorldConfig {
         imu_temperature_c: Some(15.0),
         ..WorldConfig::default()
     });
     assert_eq!(signal(&cold, "truth.imu.temperature_c"), 15.0);
     cold.set_heater_duty(1.0, 0);
-    cold.advance(90 * SECOND);
+    cold.advance(60 * SECOND);
     let cold_c = signal(&cold, "truth.imu.temperature_c");
-    assert!((cold_c - 40.0).abs() < 0.2, "{cold_c}");
+    assert!((cold_c - 40.0).abs() < 0.5, "{cold_c}");
 }

@@ -21,18 +21,17 @@ impl World {
     /// The next instant at which something happens here that the board could see by itself: a character on the radio
     /// line, a motor's frame, the end of a magnetometer conversion. Mechanics in between need no visit.
     pub fn next_event(&self) -> Ps {
-        self.escs
-            .iter()
-            .map(|esc| esc.next_feedback())
-            .chain([self.radio.next_event(self.now), self.mag.next_event()])
-            .chain(
-                self.joints
-                    .iter()
-                    .filter_map(|joint| joint.reply_at())
-                    .filter(|at| *at > self.now),
-            )
-            .min()
-            .unwrap_or(Ps::MAX)
+        let [left, right] = &self.escs;
+        let mut next = left.next_feedback().min(right.next_feedback());
+        next = next.min(self.radio.next_event(self.now));
+        next = next.min(self.mag.next_event());
+        for joint in &self.joints {
+            match joint.reply_at() {
+                Some(at) if at > self.now => next = next.min(at),
+                _ => {}
+            }
+        }
+        next
     }
 
     /// Brings the world up to `now`; never called with an earlier time than before.
