@@ -157,12 +157,12 @@ fn a_wheel_that_repeats_its_last_feedback_is_frozen() {
     let mut robot = Robot::armed(JointKind::Dm4310);
     robot.command.wheels[0].current_ma = 1_500.0;
     robot.run(0.5);
-    assert!(robot.diagnostics().motor.wheels[0].rpm > 60);
+    assert!(robot.diagnostics().sensors.motor.wheels[0].rpm > 60);
     robot.fault("motor-0-frozen", true);
     robot.run(0.045);
-    assert!(!robot.diagnostics().motor.wheels[0].frozen);
+    assert!(!robot.diagnostics().sensors.motor.wheels[0].frozen);
     robot.run(0.015);
-    let [left, right] = robot.diagnostics().motor.wheels;
+    let [left, right] = robot.diagnostics().sensors.motor.wheels;
     assert!(left.frozen && !right.frozen);
 }
 
@@ -171,12 +171,12 @@ fn a_wheel_that_repeats_its_last_feedback_at_rest_is_frozen_once_it_is_told_to_m
     let mut robot = Robot::armed(JointKind::Dm4310);
     robot.fault("motor-0-frozen", true);
     robot.run(0.3);
-    assert!(!robot.diagnostics().motor.wheels[0].frozen);
+    assert!(!robot.diagnostics().sensors.motor.wheels[0].frozen);
     robot.command.wheels[0].current_ma = 2_000.0;
     robot.run(0.095);
-    assert!(!robot.diagnostics().motor.wheels[0].frozen);
+    assert!(!robot.diagnostics().sensors.motor.wheels[0].frozen);
     robot.run(0.01);
-    assert!(robot.diagnostics().motor.wheels[0].frozen);
+    assert!(robot.diagnostics().sensors.motor.wheels[0].frozen);
 }
 
 #[test]
@@ -184,6 +184,6 @@ fn a_stalled_wheel_is_not_frozen() {
     let mut robot = Robot::armed(JointKind::Dm4310);
     robot.command.wheels[0].current_ma = 900.0;
     robot.run_watching(1.0, |robot| {
-        assert!(!robot.diagnostics().motor.wheels[0].frozen);
+        assert!(!robot.diagnostics().sensors.motor.wheels[0].frozen);
     });
 }

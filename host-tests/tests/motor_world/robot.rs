@@ -109,11 +109,11 @@ impl Robot {
     }
 
     pub fn joint(&self, joint: usize) -> &JointFeedback {
-        &self.diagnostics.motor.joints[joint]
+        &self.diagnostics.sensors.motor.joints[joint]
     }
 
     pub fn states(&self) -> [JointState; 4] {
-        self.diagnostics.motor.joints.map(|joint| joint.state)
+        self.diagnostics.sensors.motor.joints.map(|joint| joint.state)
     }
 
     /// Frames of the last tick.

@@ -46,15 +46,12 @@ pub fn send(can: Can, frame: &CanFrame) -> Result<(), MailboxesFull> {
         .into_iter()
         .find(|&mailbox| status.tme(mailbox))
         .ok_or(MailboxesFull)?;
-    let payload = frame.payload();
-    let mut data = [0; 8];
-    for (byte, &value) in data.iter_mut().zip(payload) {
-        *byte = value;
-    }
-    let [d0, d1, d2, d3, d4, d5, d6, d7] = data;
+    let [d0, d1, d2, d3, d4, d5, d6, d7] = frame.padded_payload();
     let registers = can.tx(mailbox);
     // A CAN frame holds at most 8 bytes, so the length fits.
-    registers.tdtr().write(|w| w.set_dlc(payload.len() as u8));
+    registers
+        .tdtr()
+        .write(|w| w.set_dlc(frame.payload().len() as u8));
     registers
         .tdlr()
         .write_value(regs::Tdlr(u32::from_le_bytes([d0, d1, d2, d3])));

@@ -37,7 +37,8 @@ impl BringUpLog {
         if d.bring_up.step == BringUpStep::Off {
             return;
         }
-        let [left_front, left_rear, right_front, right_rear] = self.watch.look(&d.motor.joints);
+        let [left_front, left_rear, right_front, right_rear] =
+            self.watch.look(&d.sensors.motor.joints);
         defmt::info!(
             "joints: left front {=i32} mrad {=str}, left rear {=i32} mrad {=str}, right front {=i32} mrad {=str}, right rear {=i32} mrad {=str}",
             left_front.pos_mrad,

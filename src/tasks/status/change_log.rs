@@ -77,7 +77,7 @@ impl ChangeLog {
         let calibration = &d.imu_status.calibration;
         match self.calibration.due(calibration.state, d.ts_us) {
             Some(CalibrationState::Done) => {
-                let [x, y, z] = d.imu.gyro_bias_dps;
+                let [x, y, z] = d.sensors.imu.gyro_bias_dps;
                 defmt::info!("gyro offset found: {=f32} {=f32} {=f32} dps", x, y, z);
                 if calibration.warmth == Warmth::Unknown {
                     defmt::warn!("the imu tells no temperature: the gyro offset may drift");

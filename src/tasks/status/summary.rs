@@ -5,7 +5,7 @@ use robot_app::diagnostics::DiagnosticsSnapshot;
 /// Whole thousandths and degrees: a decimal fraction of a float would print nine digits.
 pub fn log(d: &DiagnosticsSnapshot) {
     let [roll_rad, pitch_rad, yaw_rad] = d.estimate.rpy_rad;
-    let [left, right] = &d.motor.wheels;
+    let [left, right] = &d.sensors.motor.wheels;
     let [left_command, right_command] = &d.command.wheels;
     let [vx_mps, ..] = d.estimate.vel_mps;
     defmt::info!(

@@ -3,9 +3,12 @@
 use super::{
     ChassisController, ChassisControllerInput, ChassisControllerOutput, pose_hold::PoseHold,
 };
-use crate::domain::{
-    ChassisCommand, HighLevelCommand, WheelCommand, WheelControllerConfig, WheelFeedback,
-    WheelOdomConfig,
+use crate::{
+    domain::{
+        ChassisCommand, HighLevelCommand, WheelCommand, WheelControllerConfig, WheelFeedback,
+        WheelOdomConfig,
+    },
+    math::scalar,
 };
 
 /// Keeps the pose of the joints from when they were enabled.
@@ -65,7 +68,7 @@ fn wheel_command(
     } else {
         ctrl.open_loop_ma_per_mps * target_mps
     };
-    let limit_ma = ctrl.current_limit_ma.max(0.0);
+    let limit_ma = scalar::max(ctrl.current_limit_ma, 0.0);
     WheelCommand {
         current_ma: sign * forward_ma.clamp(-limit_ma, limit_ma),
     }

@@ -4,9 +4,8 @@ use super::TickStats;
 use crate::{
     bring_up::BringUpStatus,
     domain::{
-        BusHealth, ChassisCommand, ImuState, ImuStatus, LastWords, LateTasks, MagState,
-        MotorFeedback, OperatorState, RadioLineHealth, RemoteDiagnostics, RemoteState, ResetCause,
-        SensorHealth, StateEstimate,
+        BusHealth, ChassisCommand, ImuStatus, LastWords, LateTasks, OperatorState, RadioLineHealth,
+        RemoteDiagnostics, RemoteState, ResetCause, SensorHealth, SensorsSnapshot, StateEstimate,
     },
     logic::LogicBus,
     safety::{ArmingStatus, SafetyStatus},
@@ -21,9 +20,7 @@ pub struct DiagnosticsSnapshot {
     pub remote: RemoteState,
     pub operator: OperatorState,
     pub remote_diag: RemoteDiagnostics,
-    pub imu: ImuState,
-    pub mag: MagState,
-    pub motor: MotorFeedback,
+    pub sensors: SensorsSnapshot,
     pub estimate: StateEstimate,
     pub logic: LogicBus,
     /// What left the board in this tick, after limits and safety.
@@ -35,15 +32,15 @@ pub struct DiagnosticsSnapshot {
     pub imu_health: SensorHealth,
     pub mag_health: SensorHealth,
     pub radio_line: RadioLineHealth,
-    pub imu_calibrated: bool,
     /// Heater, start-up calibration, rejected samples.
     pub imu_status: ImuStatus,
-    pub bring_up: BringUpStatus,
     pub tuning: TuningStatus,
     pub tick: TickStats,
-    pub late_tasks: LateTasks,
-    pub reset_cause: ResetCause,
+    pub battery_v: f32,
     /// Of the run before this one.
     pub last_words: LastWords,
-    pub battery_v: f32,
+    pub bring_up: BringUpStatus,
+    pub reset_cause: ResetCause,
+    pub imu_calibrated: bool,
+    pub late_tasks: LateTasks,
 }

@@ -29,13 +29,14 @@ impl StandardId {
     }
 }
 
-/// A data frame with an 11-bit identifier.
+/// A data frame with an 11-bit identifier. Whole words, because frames are copied all the time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[repr(C, align(4))]
 pub struct CanFrame {
+    data: [u8; 8],
     id: StandardId,
     len: u8,
-    data: [u8; 8],
 }
 
 impl CanFrame {
@@ -59,6 +60,11 @@ impl CanFrame {
     /// The bytes on the wire, 0 to 8 of them.
     pub fn payload(&self) -> &[u8] {
         self.data.get(..usize::from(self.len)).unwrap_or(&self.data)
+    }
+
+    /// The bytes on the wire, zeros after them.
+    pub const fn padded_payload(&self) -> [u8; 8] {
+        self.data
     }
 
     /// All eight bytes, or `None` for a shorter frame.

@@ -58,6 +58,25 @@ pub struct ChassisCommand {
     pub joints: [JointCommand; 4],
 }
 
+impl ChassisCommand {
+    /// No current, no torque: the default as a constant.
+    pub const STOP: Self = {
+        let wheel = WheelCommand { current_ma: 0.0 };
+        let joint = JointCommand {
+            mode: JointMode::Off,
+            pos_rad: 0.0,
+            vel_rps: 0.0,
+            kp: 0.0,
+            kd: 0.0,
+            tau_nm: 0.0,
+        };
+        Self {
+            wheels: [wheel; 2],
+            joints: [joint; 4],
+        }
+    };
+}
+
 /// A motor current that may leave the board: finite and inside the limit it was made with.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MotorCurrent {

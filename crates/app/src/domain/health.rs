@@ -17,9 +17,6 @@ pub enum BusErrorState {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(C)]
 pub struct BusHealth {
-    pub state: BusErrorState,
-    pub transmit_errors: u8,
-    pub receive_errors: u8,
     pub tx_frames: u32,
     /// Frames taken back because they had not left within their tick.
     pub tx_aborted: u32,
@@ -31,6 +28,9 @@ pub struct BusHealth {
     /// Frames lost because the queue to the control tick was full.
     pub rx_queue_full: u32,
     pub bus_off_count: u32,
+    pub state: BusErrorState,
+    pub transmit_errors: u8,
+    pub receive_errors: u8,
 }
 
 /// Health of one sensor, kept by the sensor task.
@@ -109,13 +109,13 @@ pub struct SystemHealth {
     pub imu: SensorHealth,
     pub mag: SensorHealth,
     pub radio_line: RadioLineHealth,
-    /// Start-up gyro calibration finished.
-    pub imu_calibrated: bool,
     pub imu_status: ImuStatus,
-    pub late_tasks: LateTasks,
-    pub reset_cause: ResetCause,
-    /// Of the run before this one.
-    pub last_words: LastWords,
     /// 0 while not measured.
     pub battery_v: f32,
+    /// Of the run before this one.
+    pub last_words: LastWords,
+    pub reset_cause: ResetCause,
+    /// Start-up gyro calibration finished.
+    pub imu_calibrated: bool,
+    pub late_tasks: LateTasks,
 }

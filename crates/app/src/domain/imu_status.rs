@@ -18,11 +18,11 @@ pub enum HeaterState {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct HeaterStatus {
-    pub state: HeaterState,
     /// On-fraction, 0 … 1.
     pub duty: f32,
     /// Last valid temperature of the package; 0 before the first.
     pub temperature_c: f32,
+    pub state: HeaterState,
 }
 
 /// What the start-up calibration of the gyro waits for.
@@ -57,11 +57,11 @@ pub enum Warmth {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct CalibrationStatus {
+    /// Part of the still second that has been measured, 0 … 1.
+    pub progress: f32,
     pub state: CalibrationState,
     /// The temperature it goes by; kept once it is done.
     pub warmth: Warmth,
-    /// Part of the still second that has been measured, 0 … 1.
-    pub progress: f32,
 }
 
 /// Samples that were rejected since boot, by reason.
@@ -78,7 +78,7 @@ pub struct ImuRejects {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct ImuStatus {
+    pub rejects: ImuRejects,
     pub heater: HeaterStatus,
     pub calibration: CalibrationStatus,
-    pub rejects: ImuRejects,
 }

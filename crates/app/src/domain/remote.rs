@@ -1,6 +1,7 @@
 //! What the pilot's radio says.
 
 use super::age_us;
+use crate::math::scalar;
 
 /// Sticks and switches, normalised.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -95,7 +96,7 @@ impl RemoteDiagnostics {
         self.age_us = age_us(self.good_ts_us, now_us);
         let silence_us = age_us(self.frame_ts_us, now_us);
         if silence_us > 0 {
-            self.frame_rate_hz = self.frame_rate_hz.min(2_000_000.0 / silence_us as f32);
+            self.frame_rate_hz = scalar::min(self.frame_rate_hz, 2_000_000.0 / silence_us as f32);
         }
         self
     }

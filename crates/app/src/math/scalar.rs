@@ -16,6 +16,27 @@ pub fn inverse_sqrt(x: f32) -> f32 {
     y
 }
 
+/// As `f32::min`, which is a call into a library here: the core has no such instruction.
+pub fn min(a: f32, b: f32) -> f32 {
+    if a < b || b.is_nan() { a } else { b }
+}
+
+/// As `f32::max`.
+pub fn max(a: f32, b: f32) -> f32 {
+    if a > b || b.is_nan() { a } else { b }
+}
+
+/// Into `low` … `high`, `low` ≤ `high`; NaN gives `low`. Unlike `f32::clamp` it has no way to panic.
+pub fn clamp(value: f32, low: f32, high: f32) -> f32 {
+    if value > high {
+        high
+    } else if value > low {
+        value
+    } else {
+        low
+    }
+}
+
 /// √x; 0 for anything that is not a normal positive number.
 pub fn sqrt(x: f32) -> f32 {
     x * inverse_sqrt(x)
@@ -68,6 +89,24 @@ pub fn asin(x: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn clamping_ends_at_the_limits() {
+        let inside = [-2.0, -1.0, 0.5, 1.0, f32::INFINITY].map(|value| clamp(value, -1.0, 1.0));
+        assert_eq!(inside, [-1.0, -1.0, 0.5, 1.0, 1.0]);
+        assert_eq!(clamp(f32::NAN, -1.0, 1.0), -1.0);
+    }
+
+    #[test]
+    fn min_and_max_are_those_of_the_standard_library() {
+        let values = [-1.0, 0.0, 2.5, f32::INFINITY, f32::NEG_INFINITY, f32::NAN];
+        for a in values {
+            for b in values {
+                assert_eq!(min(a, b).to_bits(), a.min(b).to_bits(), "{a} {b}");
+                assert_eq!(max(a, b).to_bits(), a.max(b).to_bits(), "{a} {b}");
+            }
+        }
+    }
 
     #[test]
     fn inverse_sqrt_is_as_good_as_the_hardware() {

@@ -16,8 +16,9 @@ use super::{
     layout::JointSlot,
     mit::MitTargets,
 };
-use crate::domain::{
-    CanFrame, JointCommand, JointConfig, JointFeedback, JointMode, JointState, age_us,
+use crate::{
+    domain::{CanFrame, JointCommand, JointConfig, JointFeedback, JointMode, JointState, age_us},
+    math::scalar,
 };
 
 /// An enable frame goes out in each slot for this long …
@@ -133,9 +134,10 @@ impl Joint {
     }
 
     fn on_report(&mut self, report: Report, ts_us: u64) {
-        self.frozen = self
-            .freeze_watch
-            .is_frozen(&report, self.obeyed.as_ref(), ts_us);
+        if let Some(last) = &self.report {
+            let obeyed = self.obeyed.as_ref();
+            self.frozen = self.freeze_watch.is_frozen(last, &report, obeyed, ts_us);
+        }
         self.report = Some(report);
         if let Status::Fault(code) = report.status {
             self.on_fault(code);
@@ -304,7 +306,7 @@ impl Joint {
             self.phase = Phase::Disabled;
             return self.slot.motor.disable();
         }
-        let max_torque_nm = config.max_torque_nm.min(limits.max_torque_nm);
+        let max_torque_nm = scalar::min(config.max_torque_nm, limits.max_torque_nm);
         self.slot
             .motor
             .command(allowed.mode, &targets, max_torque_nm)
@@ -339,29 +341,30 @@ impl Motor for Joint {
         if !self.is_silent {
             return;
         }
-        self.freeze_watch = FreezeWatch::default();
+        self.freeze_watch.restart(now_us);
         match &mut self.phase {
             Phase::SettingUp(set_up) => set_up.on_silence(now_us),
             _ => self.set_up(self.mode),
         }
     }
 
-    fn feedback(&self, config: &JointConfig) -> JointFeedback {
+    fn feedback(&self, config: &JointConfig, feedback: &mut JointFeedback) {
         let Some(report) = &self.report else {
-            return JointFeedback::default();
+            return;
         };
-        let motion = axis::joint_motion(&report.motion, config);
-        JointFeedback {
-            pos_rad: motion.pos_rad,
-            vel_rps: motion.vel_rps,
-            torque_nm: axis::joint_torque_nm(&report.motion, config),
-            temperature_c: report.temperature_c,
-            state: self.state(),
-            fault_code: self.fault_code,
-            frozen: self.frozen,
-            age_us: self.age_us,
-            ts_us: self.report_ts_us,
+        feedback.state = self.state();
+        feedback.fault_code = self.fault_code;
+        feedback.frozen = self.frozen;
+        feedback.age_us = self.age_us;
+        if feedback.ts_us == self.report_ts_us {
+            return;
         }
+        let motion = axis::joint_motion(&report.motion, config);
+        feedback.pos_rad = motion.pos_rad;
+        feedback.vel_rps = motion.vel_rps;
+        feedback.torque_nm = axis::joint_torque_nm(&report.motion, config);
+        feedback.temperature_c = report.temperature_c;
+        feedback.ts_us = self.report_ts_us;
     }
 
     fn drive(

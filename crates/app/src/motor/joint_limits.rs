@@ -1,7 +1,10 @@
 //! What a joint may be asked for: soft limits, speed, gains and torque, all in joint coordinates.
 
 use super::mit::{KD_MAX, KP_MAX};
-use crate::domain::{JointCommand, JointConfig, JointMode};
+use crate::{
+    domain::{JointCommand, JointConfig, JointMode},
+    math::scalar,
+};
 
 /// Where the joint is and how fast it turns.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,18 +76,18 @@ fn limited_mit(
     config: &JointConfig,
     motor: MotorLimits,
 ) -> JointCommand {
-    let limit_nm = config.max_torque_nm.min(motor.max_torque_nm).max(0.0);
+    let limit_nm = scalar::max(scalar::min(config.max_torque_nm, motor.max_torque_nm), 0.0);
     let allowed = JointCommand {
         mode: JointMode::Mit,
         pos_rad: inside(command.pos_rad, config),
         vel_rps,
-        kp: command.kp.max(0.0).min(config.max_kp.clamp(0.0, KP_MAX)),
-        kd: command.kd.max(0.0).min(config.max_kd.clamp(0.0, KD_MAX)),
+        kp: scalar::clamp(command.kp, 0.0, scalar::clamp(config.max_kp, 0.0, KP_MAX)),
+        kd: scalar::clamp(command.kd, 0.0, scalar::clamp(config.max_kd, 0.0, KD_MAX)),
         tau_nm: within(command.tau_nm, limit_nm),
     };
     let torque_nm = predicted_torque_nm(&allowed, motion);
     let later_nm = torque_nm - allowed.kp * motion.vel_rps * motor.horizon_s;
-    let largest_nm = torque_nm.abs().max(later_nm.abs());
+    let largest_nm = scalar::max(torque_nm.abs(), later_nm.abs());
     let scale = if not_outwards(torque_nm, motion, config) != torque_nm {
         0.0
     } else if largest_nm > limit_nm {
@@ -110,19 +113,22 @@ fn predicted_torque_nm(command: &JointCommand, motion: JointMotion) -> f32 {
 /// Zero instead of what would drive the joint past a soft limit that it has reached.
 fn not_outwards(value: f32, motion: JointMotion, config: &JointConfig) -> f32 {
     if motion.pos_rad >= config.max_rad {
-        value.min(0.0)
+        scalar::min(value, 0.0)
     } else if motion.pos_rad <= config.min_rad {
-        value.max(0.0)
+        scalar::max(value, 0.0)
     } else {
         value
     }
 }
 
 fn inside(pos_rad: f32, config: &JointConfig) -> f32 {
-    pos_rad.max(config.min_rad).min(config.max_rad)
+    scalar::clamp(pos_rad, config.min_rad, config.max_rad)
 }
 
 fn within(value: f32, limit: f32) -> f32 {
-    let limit = limit.max(0.0);
-    value.max(-limit).min(limit)
+    let limit = scalar::max(limit, 0.0);
+    scalar::clamp(value, -limit, limit)
 }
+
+#[cfg(test)]
+mod tests;

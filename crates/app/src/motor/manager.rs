@@ -17,8 +17,8 @@ use crate::{
     safety::TorquePermit,
 };
 
-/// At most two on each bus (see [`MotorLayout`]).
-pub type MotorFrames = Vec<(BusId, CanFrame), 4>;
+/// Frames of one tick: at most two a bus for motors (see [`MotorLayout`]) and one for a reply.
+pub type TickFrames = Vec<(BusId, CanFrame), 6>;
 
 /// The motors of one layout.
 #[derive(Clone, Debug)]
@@ -26,7 +26,6 @@ pub struct MotorManager {
     layout: &'static MotorLayout,
     wheels: [Wheel; 2],
     joints: [Joint; 4],
-    feedback: MotorFeedback,
 }
 
 impl MotorManager {
@@ -36,39 +35,38 @@ impl MotorManager {
             layout,
             wheels: group.escs.map(|esc| Wheel::new(esc, group.max_current_ma)),
             joints: layout.joints().each_ref().map(Joint::new),
-            feedback: MotorFeedback::default(),
         }
     }
 
-    /// Takes any received frame; what is no motor feedback leaves no trace.
-    pub fn route_frame(&mut self, bus: BusId, frame: &CanFrame, ts_us: u64) {
+    /// True if the frame was the feedback of a motor; any other leaves no trace.
+    pub fn route_frame(&mut self, bus: BusId, frame: &CanFrame, ts_us: u64) -> bool {
         if self.layout.wheels().bus == bus {
             for wheel in &mut self.wheels {
                 if wheel.receive(frame, ts_us) {
-                    return;
+                    return true;
                 }
             }
         }
         for (joint, slot) in self.joints.iter_mut().zip(self.layout.joints()) {
             if slot.bus == bus && joint.receive(frame, ts_us) {
-                return;
+                return true;
             }
         }
+        false
     }
 
     /// Feedback with ages brought up to `now_us`; once a tick, before [`compose`](Self::compose).
-    pub fn feedback(&mut self, config: &RobotConfig, now_us: u64) -> &MotorFeedback {
-        for (wheel, out) in self.wheels.iter_mut().zip(&mut self.feedback.wheels) {
+    pub fn feedback(&mut self, config: &RobotConfig, now_us: u64, feedback: &mut MotorFeedback) {
+        for (wheel, out) in self.wheels.iter_mut().zip(&mut feedback.wheels) {
             wheel.watch(config.wheel_ctrl.feedback_timeout_us, now_us);
-            *out = wheel.feedback(&config.wheel_ctrl);
+            wheel.feedback(&config.wheel_ctrl, out);
         }
-        let joints = self.joints.iter_mut().zip(&mut self.feedback.joints);
+        let joints = self.joints.iter_mut().zip(&mut feedback.joints);
         for ((joint, out), joint_config) in joints.zip(&config.joints) {
             joint.watch(config.safety.joint_timeout_us, now_us);
-            *out = joint.feedback(joint_config);
+            joint.feedback(joint_config, out);
         }
-        self.feedback.ts_us = now_us;
-        &self.feedback
+        feedback.ts_us = now_us;
     }
 
     /// Joint motors in fault are told to forget it in their next slot, and set up again.
@@ -89,7 +87,7 @@ impl MotorManager {
         permit.is_some_and(|permit| joints.any(|slot| permit.allows_joints(slot.bus)))
     }
 
-    /// The frames of this tick, and the commands that are in them. Without a permit for a motor they are exactly zero:
+    /// Adds the frames of this tick and notes the commands that are in them. Without a permit for a motor they are exactly zero:
     /// zero current for a wheel, the disable frame for a joint. They are sent all the same: a wheel's speed controller
     /// may hold its last command, a joint's motor only replies when told something.
     pub fn compose(
@@ -98,11 +96,11 @@ impl MotorManager {
         permit: Option<&TorquePermit>,
         config: &RobotConfig,
         now_us: u64,
-    ) -> (MotorFrames, ChassisCommand) {
-        let mut frames = MotorFrames::new();
-        let wheels = self.drive_wheels(command, permit, config, now_us, &mut frames);
-        let joints = self.drive_joints(command, permit, config, now_us, &mut frames);
-        (frames, ChassisCommand { wheels, joints })
+        frames: &mut TickFrames,
+        sent: &mut ChassisCommand,
+    ) {
+        sent.wheels = self.drive_wheels(command, permit, config, now_us, frames);
+        self.drive_joints(command, permit, config, now_us, frames, &mut sent.joints);
     }
 
     fn drive_wheels(
@@ -111,7 +109,7 @@ impl MotorManager {
         permit: Option<&TorquePermit>,
         config: &RobotConfig,
         now_us: u64,
-        frames: &mut MotorFrames,
+        frames: &mut TickFrames,
     ) -> [WheelCommand; 2] {
         let bus = self.layout.wheels().bus;
         let permitted = permit.is_some_and(|permit| permit.allows_wheels(bus));
@@ -136,12 +134,12 @@ impl MotorManager {
         permit: Option<&TorquePermit>,
         config: &RobotConfig,
         now_us: u64,
-        frames: &mut MotorFrames,
-    ) -> [JointCommand; 4] {
-        let mut sent = [JointCommand::default(); 4];
+        frames: &mut TickFrames,
+        sent: &mut [JointCommand; 4],
+    ) {
         let slots = self.layout.joints().iter().zip(&mut self.joints);
         let orders = command.joints.iter().zip(&config.joints);
-        for (((slot, joint), (command, config)), sent) in slots.zip(orders).zip(&mut sent) {
+        for (((slot, joint), (command, config)), sent) in slots.zip(orders).zip(sent) {
             let permitted = permit.is_some_and(|permit| permit.allows_joints(slot.bus));
             let output: JointOutput = joint.drive(command, config, permitted, now_us);
             *sent = output.sent;
@@ -150,6 +148,8 @@ impl MotorManager {
                 let _ = frames.push((slot.bus, frame));
             }
         }
-        sent
     }
 }
+
+#[cfg(test)]
+mod tests;

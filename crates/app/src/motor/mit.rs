@@ -1,6 +1,8 @@
 //! The 64 bits that DM4310 and RS00 share: five numbers as unsigned codes over each motor's own ranges (hardware.md
 //! sections 8.1 and 9; reference C code in seed 003, section 3).
 
+use crate::math::scalar;
+
 /// Position and velocity the codes can tell, symmetric about zero, in the motor's own coordinates at the output shaft.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MitRanges {
@@ -93,8 +95,8 @@ impl MitReport {
 
 /// `float_to_uint` of the reference code.
 fn code(value: f32, min: f32, max: f32, last_code: f32) -> u16 {
-    let finite = if value.is_nan() { 0.0 } else { value };
-    let inside = finite.max(min).min(max);
+    let number = if value.is_nan() { 0.0 } else { value };
+    let inside = scalar::clamp(number, min, max);
     ((inside - min) * last_code / (max - min)) as u16
 }
 
@@ -108,7 +110,7 @@ pub(super) fn finite_within(value: f32, limit: f32) -> f32 {
     if value.is_nan() {
         return 0.0;
     }
-    value.max(-limit).min(limit)
+    scalar::clamp(value, -limit, limit)
 }
 
 #[cfg(test)]

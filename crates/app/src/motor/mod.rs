@@ -20,4 +20,4 @@ pub mod mit;
 pub mod rs00;
 mod wheel;
 
-pub(crate) use manager::MotorManager;
+pub(crate) use manager::{MotorManager, TickFrames};

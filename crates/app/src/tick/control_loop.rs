@@ -6,16 +6,16 @@ use heapless::Vec;
 
 use crate::{
     bring_up::{BringUp, BringUpInputs},
-    control::{ChassisController, ChassisControllerInput, UserController},
-    diagnostics::{DiagnosticsSnapshot, TickStats},
+    control::{ChassisController, ChassisControllerInput, ChassisControllerOutput, UserController},
+    diagnostics::DiagnosticsSnapshot,
     domain::{
         BusId, CanFrame, ChassisCommand, HighLevelCommand, ImuState, MagState, RemoteUpdate,
-        RobotConfig, SensorsSnapshot, StateEstimate, SystemHealth, age_us,
+        RobotConfig, StateEstimate, SystemHealth, age_us,
     },
     estimation::InsEstimator,
     logic::LogicBus,
     motor::{
-        MotorManager,
+        MotorManager, TickFrames,
         layout::{MotorLayout, ROBOT_LAYOUT},
     },
     safety::{Arming, ArmingInputs, SafetyInputs, SafetyPolicy, TorquePermit},
@@ -37,19 +37,18 @@ pub struct ControlInputs<'a> {
 pub struct ControlOutputs<'a> {
     /// To be sent now, or never: the next tick brings newer ones.
     pub frames: &'a [(BusId, CanFrame)],
-    pub sensors: &'a SensorsSnapshot,
     pub estimate: &'a StateEstimate,
     pub diagnostics: &'a DiagnosticsSnapshot,
     /// As `diagnostics.tuning.revision` counts it.
     pub config: &'a RobotConfig,
 }
 
-/// Who decides the currents of this tick.
-enum Demand {
+/// Who decides the commands of this tick.
+enum Demand<'a> {
     /// Nobody: no motor may move, or no command is fresh and valid.
     Stop,
     /// The logic bus or bring-up, past the controller.
-    Direct(ChassisCommand),
+    Direct(&'a ChassisCommand),
     Control(HighLevelCommand),
 }
 
@@ -77,10 +76,8 @@ pub struct ControlLoop<
     /// Of the tuning channel, for the next tick: one a bus.
     replies: Vec<(BusId, CanFrame), 2>,
     bring_up: BringUp,
-    tick: TickStats,
-    sensors: SensorsSnapshot,
     diagnostics: D,
-    frames: Vec<(BusId, CanFrame), 8>,
+    frames: TickFrames,
 }
 
 impl<C: ChassisController> ControlLoop<C> {
@@ -111,16 +108,16 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
             tuning: TuningChannel::default(),
             replies: Vec::new(),
             bring_up: BringUp::default(),
-            tick: TickStats::default(),
-            sensors: SensorsSnapshot::default(),
             diagnostics,
-            frames: Vec::new(),
+            frames: TickFrames::new(),
         }
     }
 
     /// Every frame received since the last tick, in order of arrival.
     pub fn on_can_frame(&mut self, bus: BusId, frame: &CanFrame, now_us: u64) {
-        self.motors.route_frame(bus, frame, now_us);
+        if self.motors.route_frame(bus, frame, now_us) {
+            return;
+        }
         let diagnostics: &DiagnosticsSnapshot = self.diagnostics.borrow();
         let gate = TuningGate::of(diagnostics.arming.state, &diagnostics.operator);
         let Self {
@@ -137,18 +134,17 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
 
     /// One tick; `now_us` is when it began.
     pub fn tick(&mut self, inputs: &ControlInputs<'_>, now_us: u64) -> ControlOutputs<'_> {
-        self.tick.tick(now_us);
+        self.diagnostics.borrow_mut().tick.tick(now_us);
         self.take_config();
         self.sense(inputs, now_us);
         let trial = self.try_out(inputs, now_us);
         let permit = self.judge(inputs, now_us);
-        self.act(inputs, permit.as_ref(), trial, now_us);
+        self.act(inputs, permit.as_ref(), trial.as_ref(), now_us);
         self.reply();
         self.record(inputs, now_us);
         let diagnostics: &DiagnosticsSnapshot = self.diagnostics.borrow();
         ControlOutputs {
             frames: &self.frames,
-            sensors: &self.sensors,
             estimate: &diagnostics.estimate,
             diagnostics,
             config: &self.config,
@@ -166,15 +162,21 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
     }
 
     fn sense(&mut self, inputs: &ControlInputs<'_>, now_us: u64) {
-        let sensors = &mut self.sensors;
-        sensors.imu = *inputs.imu;
-        sensors.mag = *inputs.mag;
-        sensors.motor = *self.motors.feedback(&self.config, now_us);
+        let DiagnosticsSnapshot {
+            sensors, estimate, ..
+        } = self.diagnostics.borrow_mut();
+        if sensors.imu.ts_us != inputs.imu.ts_us {
+            sensors.imu = *inputs.imu;
+        }
+        if sensors.mag.ts_us != inputs.mag.ts_us {
+            sensors.mag = *inputs.mag;
+        }
+        self.motors
+            .feedback(&self.config, now_us, &mut sensors.motor);
         sensors.ts_us = now_us;
-        self.diagnostics.borrow_mut().estimate =
-            *self
-                .estimator
-                .step(&sensors.imu, &sensors.mag, &sensors.motor, now_us);
+        *estimate = *self
+            .estimator
+            .step(&sensors.imu, &sensors.mag, &sensors.motor, now_us);
     }
 
     /// The command of bring-up, which replaces any other.
@@ -187,7 +189,7 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
                 operator: &inputs.remote.operator,
                 remote_age_us: diagnostics.remote_diag.age_us,
                 arming: diagnostics.arming.state,
-                motor: &self.sensors.motor,
+                motor: &diagnostics.sensors.motor,
                 wheel_odom: &self.config.wheel_odom,
             },
             now_us,
@@ -205,7 +207,7 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
                 operator: &inputs.remote.operator,
                 imu_ts_us: inputs.imu.ts_us,
                 estimate: &diagnostics.estimate,
-                motor: &self.sensors.motor,
+                motor: &diagnostics.sensors.motor,
                 motor_timeout_us: self.config.wheel_ctrl.feedback_timeout_us,
                 command_ts_us: inputs.logic.ts_us,
                 health: inputs.health,
@@ -220,7 +222,7 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
                 operator: &inputs.remote.operator,
                 estimate_valid: diagnostics.estimate.valid,
                 calibrated: inputs.health.imu_calibrated,
-                motor: &self.sensors.motor,
+                motor: &diagnostics.sensors.motor,
                 read_only: self.bring_up.blocks_arming(),
                 safety: &diagnostics.safety,
             },
@@ -234,7 +236,7 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
         &mut self,
         inputs: &ControlInputs<'_>,
         permit: Option<&TorquePermit>,
-        trial: Option<ChassisCommand>,
+        trial: Option<&ChassisCommand>,
         now_us: u64,
     ) {
         let stopped = Stopped {
@@ -248,25 +250,38 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
         } else {
             self.demand(inputs.logic, now_us)
         };
+        let output;
         let wanted = match demand {
-            Demand::Control(hl_cmd) => self.control(inputs, hl_cmd, &stopped),
+            Demand::Control(hl_cmd) => {
+                output = self.control(inputs, hl_cmd, &stopped);
+                if output.cmd_valid {
+                    &output.cmd
+                } else {
+                    &ChassisCommand::STOP
+                }
+            }
             Demand::Direct(command) => {
                 self.controller.reset();
                 command
             }
             Demand::Stop => {
                 self.controller.reset();
-                ChassisCommand::default()
+                &ChassisCommand::STOP
             }
         };
-        if self.diagnostics.borrow().safety.clear_faults {
+        let diagnostics = self.diagnostics.borrow_mut();
+        if diagnostics.safety.clear_faults {
             self.motors.clear_faults();
         }
-        let (frames, sent) = self.motors.compose(&wanted, permit, &self.config, now_us);
         self.frames.clear();
-        // Room for twice as many.
-        let _ = self.frames.extend_from_slice(&frames);
-        self.diagnostics.borrow_mut().command = sent;
+        self.motors.compose(
+            wanted,
+            permit,
+            &self.config,
+            now_us,
+            &mut self.frames,
+            &mut diagnostics.command,
+        );
     }
 
     fn reply(&mut self) {
@@ -276,11 +291,11 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
         self.tuning.begin_tick();
     }
 
-    fn demand(&self, logic: &LogicBus, now_us: u64) -> Demand {
+    fn demand<'a>(&self, logic: &'a LogicBus, now_us: u64) -> Demand<'a> {
         if age_us(logic.ts_us, now_us) > self.config.safety.command_timeout_us {
             Demand::Stop
         } else if logic.cmd_valid {
-            Demand::Direct(logic.cmd)
+            Demand::Direct(&logic.cmd)
         } else if logic.hl_valid {
             Demand::Control(logic.hl_cmd)
         } else {
@@ -293,10 +308,11 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
         inputs: &ControlInputs<'_>,
         hl_cmd: HighLevelCommand,
         stopped: &Stopped,
-    ) -> ChassisCommand {
-        let output = self.controller.step(&ChassisControllerInput {
-            sensors: &self.sensors,
-            estimate: &self.diagnostics.borrow().estimate,
+    ) -> ChassisControllerOutput {
+        let diagnostics: &DiagnosticsSnapshot = self.diagnostics.borrow();
+        self.controller.step(&ChassisControllerInput {
+            sensors: &diagnostics.sensors,
+            estimate: &diagnostics.estimate,
             wheel_odom_cfg: &self.config.wheel_odom,
             wheel_ctrl_cfg: &self.config.wheel_ctrl,
             joint_ctrl_cfg: &self.config.joint_ctrl,
@@ -304,31 +320,26 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
             hl_cmd,
             wheels_stopped: stopped.wheels,
             joints_stopped: stopped.joints,
-        });
-        if output.cmd_valid {
-            output.cmd
-        } else {
-            ChassisCommand::default()
-        }
+        })
     }
 
     fn record(&mut self, inputs: &ControlInputs<'_>, now_us: u64) {
         let diagnostics = self.diagnostics.borrow_mut();
         let health = inputs.health;
         diagnostics.ts_us = now_us;
-        diagnostics.remote = inputs.remote.state;
+        if diagnostics.remote.ts_us != inputs.remote.state.ts_us {
+            diagnostics.remote = inputs.remote.state;
+        }
         diagnostics.operator = inputs.remote.operator;
-        diagnostics.imu = self.sensors.imu;
-        diagnostics.mag = self.sensors.mag;
-        diagnostics.motor = self.sensors.motor;
-        diagnostics.logic = *inputs.logic;
+        if diagnostics.logic.ts_us != inputs.logic.ts_us {
+            diagnostics.logic = *inputs.logic;
+        }
         diagnostics.can = health.can;
         diagnostics.imu_health = health.imu;
         diagnostics.mag_health = health.mag;
         diagnostics.radio_line = health.radio_line;
         diagnostics.imu_calibrated = health.imu_calibrated;
         diagnostics.imu_status = health.imu_status;
-        diagnostics.tick = self.tick;
         diagnostics.late_tasks = health.late_tasks;
         diagnostics.reset_cause = health.reset_cause;
         diagnostics.last_words = health.last_words;
