@@ -1,10 +1,11 @@
-//! The developer commands: `cargo xtask sim` and `cargo xtask test`.
+//! The developer commands: `cargo xtask sim`, `cargo xtask soak` and `cargo xtask test`.
 
 mod emulator;
 mod firmware;
 mod job;
 mod prerequisites;
 mod sim;
+mod soak;
 mod test;
 mod tool;
 mod workspace;
@@ -25,6 +26,8 @@ struct Args {
 enum Command {
     /// Build the release image, boot it in the emulated C board and run a scenario.
     Sim(sim::Args),
+    /// Let faults from a seed have their way with the image for simulated hours.
+    Soak(soak::Args),
     /// Everything CI runs: format, clippy, host tests, loom, image checks, emulator tests.
     Test,
 }
@@ -32,6 +35,7 @@ enum Command {
 fn main() -> ExitCode {
     let outcome = match Args::parse().command {
         Command::Sim(args) => sim::run(&args),
+        Command::Soak(args) => soak::run(&args),
         Command::Test => test::run(),
     };
     outcome.unwrap_or_else(|error| {

@@ -2,12 +2,13 @@
 //!
 //! `core` runs the Cortex-M4F, `soc` holds the STM32F407's peripherals, `wiring` is the board's schematic,
 //! `machine` joins them to the world of `robot-plant`, `pty` offers its CAN buses to tools on this computer,
-//! `sim` runs scenarios on the machine.
+//! `sim` runs scenarios on the machine, `soak` keeps it busy for hours.
 
 pub mod board_errors;
 pub mod core;
 pub mod machine;
 mod pty;
 pub mod sim;
+pub mod soak;
 mod soc;
 mod wiring;
