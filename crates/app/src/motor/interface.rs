@@ -19,8 +19,9 @@ pub trait Motor {
     /// Once a tick: ages its reports. Silence beyond `timeout_us` means that the motor may have lost its settings.
     fn watch(&mut self, timeout_us: u32, now_us: u64);
 
-    /// The last report, as old as [`watch`](Self::watch) found it.
-    fn feedback(&self, config: &Self::Config) -> Self::Feedback;
+    /// Brings `feedback` up to the last report, as old as [`watch`](Self::watch) found it. Settings that have changed
+    /// count from the next report on.
+    fn feedback(&self, config: &Self::Config, feedback: &mut Self::Feedback);
 
     /// Once a tick, last. Exactly zero torque unless `permitted`.
     fn drive(

@@ -85,8 +85,8 @@ impl Motor for Wheel {
         self.feedback.age_us = age_us(self.feedback.ts_us, now_us);
     }
 
-    fn feedback(&self, _config: &WheelControllerConfig) -> WheelFeedback {
-        self.feedback
+    fn feedback(&self, _config: &WheelControllerConfig, feedback: &mut WheelFeedback) {
+        *feedback = self.feedback;
     }
 
     fn drive(
@@ -97,8 +97,13 @@ impl Motor for Wheel {
         _now_us: u64,
     ) -> MotorCurrent {
         self.sent = if permitted {
-            let wanted = MotorCurrent::clamped(command.current_ma, config.current_limit_ma);
-            MotorCurrent::clamped(wanted.ma(), self.max_current_ma)
+            // A limit that is no number stays one, and allows nothing.
+            let limit_ma = if config.current_limit_ma > self.max_current_ma {
+                self.max_current_ma
+            } else {
+                config.current_limit_ma
+            };
+            MotorCurrent::clamped(command.current_ma, limit_ma)
         } else {
             MotorCurrent::ZERO
         };

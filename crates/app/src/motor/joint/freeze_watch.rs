@@ -11,10 +11,9 @@ const ODD_TORQUE_NM: f32 = 1.0;
 /// … for this long while nothing in the reports changes.
 const STUCK_REPORT_US: u64 = 100_000;
 
-/// Compares each report with the ones before it.
+/// Compares each report with the one before it.
 #[derive(Clone, Debug, Default)]
 pub struct FreezeWatch {
-    last: Option<Report>,
     frozen: bool,
     /// Last report with another angle than the one before.
     position_changed_us: u64,
@@ -23,25 +22,37 @@ pub struct FreezeWatch {
 }
 
 impl FreezeWatch {
-    /// True if `report` belongs to a frozen series; once frozen, only another report thaws it. `obeyed` is what an enabled motor was last told in MIT mode.
-    pub fn is_frozen(&mut self, report: &Report, obeyed: Option<&MitTargets>, ts_us: u64) -> bool {
-        let same_position = self
-            .last
-            .is_some_and(|last| last.motion.position_code == report.motion.position_code);
-        let odd_torque = obeyed.is_some_and(|targets| is_torque_odd(report, targets));
+    /// True if `report`, which comes after `last`, belongs to a frozen series; once frozen, only another report thaws
+    /// it. `obeyed` is what an enabled motor was last told in MIT mode.
+    pub fn is_frozen(
+        &mut self,
+        last: &Report,
+        report: &Report,
+        obeyed: Option<&MitTargets>,
+        ts_us: u64,
+    ) -> bool {
+        let same_position = last.motion.position_code == report.motion.position_code;
         if !same_position {
             self.position_changed_us = ts_us;
         }
-        let same_report = self.last == Some(*report);
-        if !same_report || !odd_torque {
+        let same_report = same_position && last == report;
+        if !same_report || !obeyed.is_some_and(|targets| is_torque_odd(report, targets)) {
             self.plausible_us = ts_us;
         }
-        self.last = Some(*report);
         let stuck_position = report.motion.vel_rps.abs() > MOVING_RPS
             && ts_us.saturating_sub(self.position_changed_us) >= STUCK_POSITION_US;
         let stuck_report = ts_us.saturating_sub(self.plausible_us) >= STUCK_REPORT_US;
         self.frozen = stuck_position || stuck_report || (self.frozen && same_report);
         self.frozen
+    }
+
+    /// What was reported up to now tells nothing of later reports.
+    pub fn restart(&mut self, now_us: u64) {
+        *self = Self {
+            frozen: false,
+            position_changed_us: now_us,
+            plausible_us: now_us,
+        };
     }
 }
 
