@@ -101,6 +101,32 @@ fn a_fault_that_is_still_there_comes_back_at_once() {
     }
 }
 
+const DISABLE: [u8; 8] = [0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFD];
+const ENABLE: [u8; 8] = [0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFC];
+
+/// A motor that was switched off by something else is switched on again, a few times a second at most.
+#[test]
+fn a_motor_that_somebody_disables_is_enabled_again() {
+    let mut robot = armed_holding(JointKind::Dm4310);
+    robot.hear_from_a_stranger(1, DISABLE);
+    assert_eq!(robot.joint_signals("can.joint.{}.enabled")[0], 0.0);
+    robot.run(0.3);
+    assert_eq!(robot.states(), [JointState::Enabled; 4]);
+    assert_eq!(robot.joint_signals("can.joint.{}.enabled"), [1.0; 4]);
+    let mut enable_frames = 0;
+    for _ in 0..1_000 {
+        robot.hear_from_a_stranger(1, DISABLE);
+        robot.run(1e-3);
+        enable_frames += robot
+            .sent()
+            .iter()
+            .filter(|(_, frame)| frame.id().raw() == 1 && frame.payload() == ENABLE)
+            .count();
+    }
+    // Five slots in 10 ms, once every 250 ms.
+    assert!((5..=25).contains(&enable_frames), "{enable_frames}");
+}
+
 #[test]
 fn a_motor_with_another_identifier_is_silent() {
     for kind in BOTH {

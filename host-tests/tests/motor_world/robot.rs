@@ -113,7 +113,11 @@ impl Robot {
     }
 
     pub fn states(&self) -> [JointState; 4] {
-        self.diagnostics.sensors.motor.joints.map(|joint| joint.state)
+        self.diagnostics
+            .sensors
+            .motor
+            .joints
+            .map(|joint| joint.state)
     }
 
     /// Frames of the last tick.
@@ -202,6 +206,26 @@ impl Robot {
         }
     }
 
+    /// Somebody else on CAN2 sends a frame.
+    pub fn hear_from_a_stranger(&mut self, id: u32, data: [u8; 8]) {
+        let sent = WireFrame {
+            id,
+            extended: false,
+            remote: false,
+            dlc: 8,
+            data,
+        };
+        self.deliver(CanBusId::Can2, &sent);
+    }
+
+    fn deliver(&mut self, wire: CanBusId, sent: &WireFrame) {
+        for node in 0..self.world.can_nodes(wire) {
+            if self.world.can_present(wire, node) {
+                self.world.can_received(wire, node, sent, self.now);
+            }
+        }
+    }
+
     fn receive(&mut self) {
         for (bus, wire) in [(BusId::Can1, CanBusId::Can1), (BusId::Can2, CanBusId::Can2)] {
             for node in 0..self.world.can_nodes(wire) {
@@ -217,7 +241,8 @@ impl Robot {
     }
 
     fn send(&mut self) {
-        for (bus, frame) in &self.sent {
+        let frames = std::mem::take(&mut self.sent);
+        for (bus, frame) in &frames {
             let wire = match bus {
                 BusId::Can1 => CanBusId::Can1,
                 BusId::Can2 => CanBusId::Can2,
@@ -229,11 +254,8 @@ impl Robot {
                 dlc: 8,
                 data: frame.full_payload().expect("motors take full frames"),
             };
-            for node in 0..self.world.can_nodes(wire) {
-                if self.world.can_present(wire, node) {
-                    self.world.can_received(wire, node, &sent, self.now);
-                }
-            }
+            self.deliver(wire, &sent);
         }
+        self.sent = frames;
     }
 }

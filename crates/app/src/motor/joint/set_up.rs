@@ -82,3 +82,6 @@ impl SetUp {
 fn is_due(asked_us: Option<u64>, patience_us: u64, now_us: u64) -> bool {
     asked_us.is_none_or(|asked_us| now_us.saturating_sub(asked_us) >= patience_us)
 }
+
+#[cfg(test)]
+mod tests;
