@@ -77,16 +77,17 @@ fn wheel_command(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::domain::{JointControllerConfig, OperatorState, SensorsSnapshot, StateEstimate};
+    use crate::domain::{
+        JointControllerConfig, JointState, OperatorState, SensorsSnapshot, StateEstimate,
+    };
 
-    fn step(hl_cmd: HighLevelCommand, rpm: [i16; 2], age_us: u32) -> [f32; 2] {
-        let mut sensors = SensorsSnapshot::default();
-        for (wheel, rpm) in sensors.motor.wheels.iter_mut().zip(rpm) {
-            wheel.rpm = rpm;
-            wheel.age_us = age_us;
-        }
-        let output = DefaultController::default().step(&ChassisControllerInput {
-            sensors: &sensors,
+    fn command(
+        controller: &mut DefaultController,
+        sensors: &SensorsSnapshot,
+        hl_cmd: HighLevelCommand,
+    ) -> ChassisCommand {
+        let output = controller.step(&ChassisControllerInput {
+            sensors,
             estimate: &StateEstimate::default(),
             wheel_odom_cfg: &WheelOdomConfig::default(),
             wheel_ctrl_cfg: &WheelControllerConfig::default(),
@@ -97,7 +98,37 @@ mod tests {
             joints_stopped: false,
         });
         assert!(output.cmd_valid);
-        output.cmd.wheels.map(|wheel| wheel.current_ma)
+        output.cmd
+    }
+
+    fn step(hl_cmd: HighLevelCommand, rpm: [i16; 2], age_us: u32) -> [f32; 2] {
+        let mut sensors = SensorsSnapshot::default();
+        for (wheel, rpm) in sensors.motor.wheels.iter_mut().zip(rpm) {
+            wheel.rpm = rpm;
+            wheel.age_us = age_us;
+        }
+        let command = command(&mut DefaultController::default(), &sensors, hl_cmd);
+        command.wheels.map(|wheel| wheel.current_ma)
+    }
+
+    #[test]
+    fn each_drive_holds_the_pose_it_began_with() {
+        let mut controller = DefaultController::default();
+        let mut held_rad = |reset: bool, is_rad: f32| {
+            let mut sensors = SensorsSnapshot::default();
+            for joint in &mut sensors.motor.joints {
+                joint.state = JointState::Enabled;
+                joint.pos_rad = is_rad;
+            }
+            if reset {
+                controller.reset();
+            }
+            let command = command(&mut controller, &sensors, HighLevelCommand::default());
+            command.joints.map(|joint| joint.pos_rad)
+        };
+        assert_eq!(held_rad(false, 0.25), [0.25; 4]);
+        assert_eq!(held_rad(false, -0.5), [0.25; 4]);
+        assert_eq!(held_rad(true, -0.5), [-0.5; 4]);
     }
 
     /// By hand: 0.05 · 1.5 m/s = 0.075 m/s, times 60 A per m/s = 4.5 A; the right motor sits mirrored.
