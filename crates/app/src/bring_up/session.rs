@@ -90,7 +90,7 @@ impl BringUp {
     /// From the tuning channel, which makes sure that the robot is disarmed.
     pub fn request(&mut self, request: BringUpRequest) {
         self.control = Control::TuningChannel;
-        self.enter(request);
+        self.stage = request;
     }
 
     /// Before `Arming` in each tick. The command that goes to the motors in place of any other, with the permit and the
@@ -111,13 +111,6 @@ impl BringUp {
         &self.status
     }
 
-    fn enter(&mut self, stage: BringUpRequest) {
-        if stage != self.stage {
-            self.trial.reset();
-        }
-        self.stage = stage;
-    }
-
     fn follow_radio(&mut self, inputs: &BringUpInputs<'_>, now_us: u64) {
         let held =
             inputs.may_change() && inputs.operator.e_stop && inputs.remote.wz > GESTURE_STICK;
@@ -125,8 +118,7 @@ impl BringUp {
             self.control = Control::Radio {
                 switch_counts: false,
             };
-            self.motor = TestMotor::FIRST;
-            self.enter(BringUpRequest::ReadOnly);
+            self.stage = BringUpRequest::ReadOnly;
         }
         if inputs.may_change() {
             self.select(inputs);
@@ -147,14 +139,14 @@ impl BringUp {
             Some(Flick::Down) => self.motor.previous(),
             None => self.motor,
         };
-        self.enter(match inputs.operator.mode {
+        self.stage = match inputs.operator.mode {
             DriveMode::Manual => BringUpRequest::ReadOnly,
             DriveMode::Pc => BringUpRequest::ZeroTorque,
             DriveMode::Custom => BringUpRequest::OneMotor(Trial {
                 motor: self.motor,
                 action: TrialAction::StickTorque,
             }),
-        });
+        };
     }
 
     fn command(&mut self, inputs: &BringUpInputs<'_>, now_us: u64) -> Option<ChassisCommand> {

@@ -76,5 +76,9 @@ mod tests {
         assert!(refused(|config| {
             config.mag.soft_iron = [[1.0, 0.8, 0.8], [0.8, 1.0, -0.8], [0.8, -0.8, 1.0]];
         }));
+        // Two axes mirrored: the determinant, 0.25, does not show it.
+        assert!(refused(|config| {
+            config.mag.soft_iron = [[0.5, 1.0, 1.0], [1.0, 0.5, 1.0], [1.0, 1.0, 1.0]];
+        }));
     }
 }

@@ -189,6 +189,22 @@ fn a_dead_man_stick_held_while_arming_gives_nothing() {
 }
 
 #[test]
+fn a_lost_radio_is_no_letting_go() {
+    let mut bench = Bench::started();
+    bench.mode(DriveMode::Manual);
+    bench.mode(DriveMode::Custom);
+    bench.remote.vx = 0.5;
+    bench.operator.dead_man = true;
+    bench.arm();
+    bench.operator.dead_man = false;
+    bench.remote_age_us = 50_001;
+    bench.run_ms(1_000);
+    bench.operator.dead_man = true;
+    bench.remote_age_us = 5_000;
+    assert_eq!(bench.run_ms(1_000), Some(ChassisCommand::default()));
+}
+
+#[test]
 fn being_disarmed_locks_the_trial_again() {
     let mut bench = Bench::started();
     bench.mode(DriveMode::Manual);

@@ -126,6 +126,16 @@ fn a_stick_held_from_the_start_gives_nothing() {
 }
 
 #[test]
+fn letting_go_takes_a_fifth_of_a_second() {
+    for (ms, active) in [(199, 0), (202, 10)] {
+        let mut bench = Bench::new(2, TrialAction::FixedTorque(1.0));
+        bench.run_ms(ms);
+        bench.dead_man = DeadMan::Held;
+        assert_eq!(bench.run_ms(10), active, "{ms} ms");
+    }
+}
+
+#[test]
 fn three_seconds_of_torque_are_enough() {
     let mut bench = Bench::held(2, TrialAction::StickTorque);
     assert_eq!(bench.run_ms(10_000), 3_001);

@@ -79,6 +79,16 @@ fn an_old_client_reads_the_defaults() {
     assert_eq!(bench.reply(TuningGate::Shut, 0x7A1, &[0x11]), expected);
 }
 
+/// 60.6 mm and 19.206 are nearer to 61 and 1921.
+#[test]
+fn what_an_old_client_reads_is_rounded() {
+    let mut bench = Bench::default();
+    bench.config.wheel_odom.wheel_radius_m = 0.0606;
+    bench.config.wheel_odom.gear_ratio = 19.206;
+    let expected = [0x11, 61, 0, 0xA4, 0x01, 0x81, 0x07, 0x02];
+    assert_eq!(bench.read(&[0x11]), expected);
+}
+
 /// IEEE 754 by hand: 30,000 = 0x46EA6000, 8,000 = 0x45FA0000.
 #[test]
 fn any_setting_is_written_and_read() {
@@ -249,6 +259,8 @@ fn bring_up_is_asked_for_and_echoed() {
     assert!(bench.bring_up.blocks_arming());
     let too_much = bench.write(&[0x40, 3, 2, 0, 0xF5, 0x01, 0, 0]);
     assert_eq!(too_much, [0xEE, 0x40, 4, 0, 0, 0, 0, 0]);
+    let reserved = bench.write(&[0x40, 3, 2, 0, 0x2C, 0x01, 0, 1]);
+    assert_eq!(reserved, [0xEE, 0x40, 4, 0, 0, 0, 0, 0]);
     assert!(bench.bring_up.blocks_arming());
     bench.write(&[0x40, 0, 0, 0, 0, 0, 0, 0]);
     assert!(!bench.bring_up.blocks_arming());

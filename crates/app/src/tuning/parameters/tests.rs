@@ -109,3 +109,13 @@ fn wire_numbers_stay() {
     assert_eq!(read(18, 0), -1.0);
     assert_eq!(read(19, 3), 1.5);
 }
+
+#[test]
+fn the_soft_iron_matrix_stays_symmetric() {
+    for (index, row, column) in [(6, 0, 1), (7, 0, 2), (8, 1, 2)] {
+        let mut config = RobotConfig::default();
+        find(6, index).unwrap().write(&mut config, 0.25).unwrap();
+        let matrix = config.mag.soft_iron;
+        assert_eq!((matrix[row][column], matrix[column][row]), (0.25, 0.25));
+    }
+}
