@@ -30,6 +30,6 @@ pub enum CanLinkError {
     SetUp { command: &'static str },
     #[error("the adapter refused a frame: is the bus connected, powered and terminated?")]
     FrameRefused,
-    #[error("the CAN adapter failed: {0}")]
+    #[error("the CAN adapter failed: is it still connected?")]
     Failed(#[from] std::io::Error),
 }

@@ -23,11 +23,9 @@ pub enum ApplyError {
         value: f32,
         allowed: String,
     },
-    #[error("{source}; nothing was written")]
+    #[error("nothing was written")]
     Unwritten { source: TuningError },
-    #[error(
-        "{source}; {written} of {all} settings were written: repeat the command when that is mended"
-    )]
+    #[error("{written} of {all} settings were written; mend the cause and repeat the command")]
     Partly {
         source: TuningError,
         written: usize,
