@@ -49,7 +49,7 @@ impl JointMotor {
     pub fn hear(&mut self, frame: JointFrame, behaviour: Behaviour) -> Option<(u16, [u8; 8])> {
         let reply_id = match self.make {
             Make::Dm4310 => 0x10 + u16::from(self.number),
-            Make::Rs00 => 0xFD,
+            Make::Rs00 => 0xF0 + u16::from(self.number),
         };
         match behaviour {
             Behaviour::Gone => return None,

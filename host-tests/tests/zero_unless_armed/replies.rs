@@ -41,7 +41,7 @@ impl Replies {
                     id == 0x10 + u16::from(number) && data[0] & 0x0F == number,
                     data[0] >> 4,
                 ),
-                Make::Rs00 => (id == 0xFD && data[0] == number, 2),
+                Make::Rs00 => (id == 0xF0 + u16::from(number) && data[0] == number, 2),
             };
             if !mine {
                 continue;

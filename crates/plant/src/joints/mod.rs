@@ -77,14 +77,14 @@ pub(crate) struct Joint {
     direction: f64,
 }
 
-/// ESC_ID or motor identifier 1 to 4; DM4310 reply under 0x11 to 0x14, RS00 all under the host's 0xFD.
+/// ESC_ID or motor identifier 1 to 4; DM4310 reply under 0x11 to 0x14, RS00 under host identifiers set to 0xF1 to 0xF4.
 pub(crate) fn drives(kind: JointKind) -> [Joint; JOINTS] {
     std::array::from_fn(|joint| {
         let id = joint as u32 + 1;
         Joint {
             drive: match kind {
                 JointKind::Dm4310 => Drive::Dm4310(Dm4310::new(id, 0x10 + id)),
-                JointKind::Rs00 => Drive::Rs00(Rs00::new(id, 0xFD)),
+                JointKind::Rs00 => Drive::Rs00(Rs00::new(id, 0xF0 + id)),
             },
             direction: DIRECTION[joint],
         }

@@ -17,7 +17,8 @@ pub const ROBOT_LAYOUT: MotorLayout = MotorLayout::new(
     ],
 );
 
-/// With RS00 joints: commands 0x001 … 0x004, all replies 0x0FD.
+/// With RS00 joints: commands 0x001 … 0x004, replies 0x0F1 … 0x0F4. Each motor gets a host identifier of its own: with one
+/// for all, replies that fall together collide and neither gets through.
 pub const RS00_LAYOUT: MotorLayout = MotorLayout::new(
     WHEELS,
     [
@@ -46,7 +47,6 @@ const DM4310_RANGES: MitRanges = MitRanges {
 /// Peak torque of the weaker version of the motor.
 const DM4310_PEAK_NM: f32 = 7.0;
 const RS00_PEAK_NM: f32 = 14.0;
-const RS00_HOST: u8 = 0xFD;
 
 const LEFT: JointConfig = JointConfig {
     direction: 1.0,
@@ -79,7 +79,7 @@ const fn dm4310_joint(number: u8, config: JointConfig) -> JointSlot {
 }
 
 const fn rs00_joint(number: u8, config: JointConfig) -> JointSlot {
-    match Rs00::new(number, RS00_HOST) {
+    match Rs00::new(number, 0xF0 | number) {
         Some(motor) => joint(number, JointMotor::Rs00(motor), config, RS00_PEAK_NM),
         None => unreachable!(),
     }
