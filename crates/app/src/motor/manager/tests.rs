@@ -33,7 +33,7 @@ fn wheel_feedback_reaches_its_wheel_only_from_its_bus() {
 
 #[test]
 fn joint_replies_reach_their_joint_only_from_their_bus() {
-    for (layout, id) in [(&ROBOT_LAYOUT, 0x13), (&RS00_LAYOUT, 0xFD)] {
+    for (layout, id) in [(&ROBOT_LAYOUT, 0x13), (&RS00_LAYOUT, 0xF3)] {
         let mut manager = MotorManager::new(layout);
         let reply = frame(id, [3, 0x7F, 0xFF, 0x7F, 0xF7, 0xFF, 0, 30]);
         assert!(!manager.route_frame(BusId::Can1, &reply, 1_000));
