@@ -1,8 +1,8 @@
 //! Tells a sensor at its limits from one that talks nonsense.
 //!
 //! A robot can go beyond ±2000 °/s or ±12 g for a moment: such a sample is used and marked. It cannot change its turn
-//! rate by 1000 °/s from one sample to the next, nor stay beyond the range, nor wake up there. After such a sample
-//! nothing counts until a few quiet ones in a row.
+//! rate by 1000 °/s from one sample to the next, nor stay beyond the range, nor wake up there. A wrong sample among good
+//! ones costs that sample; when there has been no good one for a while, nothing counts until a few quiet ones in a row.
 
 use super::{
     ImuSampleError,
@@ -13,8 +13,8 @@ use crate::domain::age_us;
 /// Full scale of both dies, and the code that no two's complement range has a twin of.
 const FULL_SCALE: u16 = 32_767;
 /// 1000 °/s: within 5 ms that is 3500 rad/s². The wildest of twelve motions recorded by hand (the BROAD trials) makes
-/// 252 °/s.
-const MAX_GYRO_STEP: u16 = 16_384;
+/// 252 °/s. A flip of either of the two upper bits is more.
+const MAX_GYRO_STEP: u16 = 16_383;
 /// Samples further apart than this are not compared.
 const MAX_GAP_US: u32 = 20_000;
 /// Samples in a row at the end of the range, 100 ms: as much as a blow or a spin may take.
@@ -23,15 +23,16 @@ const MAX_SATURATED: u8 = 20;
 const PROBATION: u8 = 4;
 
 #[derive(Clone, Copy, Debug)]
-struct LastSample {
-    gyro_counts: [i16; 3],
+struct GyroSample {
+    counts: [i16; 3],
     ts_us: u64,
 }
 
 /// Call [`judge`](Self::judge) with every sample that was read.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Plausibility {
-    last: Option<LastSample>,
+    last: Option<GyroSample>,
+    last_good: Option<GyroSample>,
     saturated_in_row: u8,
     on_probation: u8,
 }
@@ -44,24 +45,18 @@ impl Plausibility {
         gyro: &GyroRaw,
         ts_us: u64,
     ) -> Result<bool, ImuSampleError> {
-        let gyro_saturated = is_saturated(gyro.counts);
-        let saturated = gyro_saturated || is_saturated(accel.counts);
-        let wild = match self.last {
-            Some(last) if age_us(last.ts_us, ts_us) <= MAX_GAP_US => {
-                is_wild(last.gyro_counts, gyro.counts)
-            }
-            _ => gyro_saturated,
-        };
-        self.last = Some(LastSample {
-            gyro_counts: gyro.counts,
+        let sample = GyroSample {
+            counts: gyro.counts,
             ts_us,
-        });
+        };
+        let saturated = is_saturated(gyro.counts) || is_saturated(accel.counts);
         self.saturated_in_row = if saturated {
             self.saturated_in_row.saturating_add(1)
         } else {
             0
         };
-        if wild || (saturated && self.on_probation > 0) {
+        let before = self.last.replace(sample);
+        if !self.is_sane(&sample, before) {
             self.on_probation = PROBATION;
             return Err(ImuSampleError::Implausible);
         }
@@ -70,10 +65,42 @@ impl Plausibility {
             return Err(ImuSampleError::Saturated);
         }
         if self.on_probation > 0 {
-            self.on_probation = self.on_probation.saturating_sub(1);
+            self.on_probation = if saturated {
+                PROBATION
+            } else {
+                self.on_probation.saturating_sub(1)
+            };
             return Err(ImuSampleError::Implausible);
         }
+        self.last_good = Some(sample);
         Ok(saturated)
+    }
+
+    fn is_sane(&mut self, sample: &GyroSample, before: Option<GyroSample>) -> bool {
+        if let Some(good) = self.last_good.filter(|good| sample.comes_after(good)) {
+            let sane = sample.can_follow(&good);
+            if sane {
+                self.on_probation = 0;
+            }
+            return sane;
+        }
+        match before.filter(|before| sample.comes_after(before)) {
+            Some(before) => sample.can_follow(&before),
+            None => !is_saturated(sample.counts),
+        }
+    }
+}
+
+impl GyroSample {
+    fn comes_after(&self, other: &Self) -> bool {
+        age_us(other.ts_us, self.ts_us) <= MAX_GAP_US
+    }
+
+    fn can_follow(&self, other: &Self) -> bool {
+        self.counts
+            .iter()
+            .zip(other.counts)
+            .all(|(now, before)| now.abs_diff(before) <= MAX_GYRO_STEP)
     }
 }
 
@@ -81,13 +108,6 @@ fn is_saturated(counts: [i16; 3]) -> bool {
     counts
         .iter()
         .any(|count| count.unsigned_abs() >= FULL_SCALE)
-}
-
-fn is_wild(before: [i16; 3], now: [i16; 3]) -> bool {
-    before
-        .iter()
-        .zip(now)
-        .any(|(before, now)| now.abs_diff(*before) > MAX_GYRO_STEP)
 }
 
 #[cfg(test)]
@@ -165,15 +185,16 @@ mod tests {
             let mut bench = Bench::new();
             let (accel, gyro) = axis;
             // Up to the range in steps that a robot can make.
-            for part in [3, 2] {
-                let passed = bench.feed(REST, gyro.map(|count| count / part));
+            for thirds in [1, 2] {
+                let passed = bench.feed(REST, gyro.map(|count| count / 3 * thirds));
                 assert_eq!(passed, Ok(false));
             }
             let accepted = (0..40)
                 .take_while(|_| bench.feed(accel, gyro).is_ok())
                 .count();
             assert_eq!(accepted, 20, "100 ms");
-            assert!((0..200).all(|_| bench.feed(accel, gyro).is_err()));
+            let mut later = (0..200).map(|_| bench.feed(accel, gyro));
+            assert!(later.all(|verdict| verdict == Err(ImuSampleError::Saturated)));
         }
     }
 
@@ -194,11 +215,38 @@ mod tests {
                 assert!(bench.feed(accel, gyro).is_err());
             }
         }
-        bench.feed(REST, [i16::MIN; 3]).unwrap_err();
+        for _ in 0..10 {
+            bench.feed(REST, [extreme(); 3]).unwrap_err();
+        }
         let back: Vec<bool> = (0..8)
             .map(|_| bench.feed(REST, [1, 2, 3]).is_ok())
             .collect();
         assert!(!back[3] && back[6], "{back:?}");
+    }
+
+    #[test]
+    fn after_nonsense_only_samples_inside_the_range_count() {
+        let mut bench = Bench::new();
+        for rate in [i16::MAX, i16::MIN, i16::MAX, i16::MIN, i16::MAX] {
+            bench.feed(REST, [rate; 3]).unwrap_err();
+        }
+        for _ in 0..10 {
+            let stuck = bench.feed(REST, [i16::MAX; 3]);
+            assert_eq!(stuck, Err(ImuSampleError::Implausible));
+        }
+    }
+
+    /// A bit that flips on the wire, once or three times in a row.
+    #[test]
+    fn a_wrong_sample_among_good_ones_costs_that_sample_alone() {
+        for (bit, times) in [(14, 1), (15, 1), (15, 3)] {
+            let mut bench = Bench::new();
+            for _ in 0..times {
+                let flipped = bench.feed(REST, [3, -2 ^ (1 << bit), 1]);
+                assert_eq!(flipped, Err(ImuSampleError::Implausible));
+            }
+            assert_eq!(bench.feed(REST, [2, -1, 0]), Ok(false));
+        }
     }
 
     #[test]
