@@ -9,6 +9,7 @@ use std::{
 
 use mcap::{McapError, WriteOptions, Writer, records::MessageHeader};
 use robot_plant::time::{MS, NS, Ps, SECOND};
+use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::{
@@ -104,7 +105,12 @@ impl Recording {
         Ok(())
     }
 
-    fn write(&mut self, channel_id: u16, at: Ps, message: &Value) -> Result<(), McapError> {
+    fn write(
+        &mut self,
+        channel_id: u16,
+        at: Ps,
+        message: &impl Serialize,
+    ) -> Result<(), McapError> {
         let header = MessageHeader {
             channel_id,
             sequence: self.sequence,
@@ -112,16 +118,16 @@ impl Recording {
             publish_time: at / NS,
         };
         self.sequence += 1;
-        let data = message.to_string();
-        self.writer.write_to_known_channel(&header, data.as_bytes())
+        // Numbers, texts and string keys: nothing that JSON refuses.
+        let data = serde_json::to_vec(message).unwrap_or_default();
+        self.writer.write_to_known_channel(&header, &data)
     }
 
     fn write_sample(&mut self, at: Ps, values: &Values) -> Result<(), McapError> {
         let topics = std::mem::take(&mut self.topics);
         for topic in &topics {
-            let message = topic.tree.json(values);
-            if message != json!({}) {
-                self.write(topic.channel, at, &message)?;
+            if topic.tree.has_value(values) {
+                self.write(topic.channel, at, &topic.tree.with(values))?;
             }
         }
         self.topics = topics;

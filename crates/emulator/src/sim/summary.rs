@@ -223,8 +223,10 @@ fn flags_seen(result: &RunResult) -> Vec<String> {
 fn subtree(result: &RunResult, prefix: &str) -> Value {
     let names = result.table.names().iter().enumerate();
     let inside = names.filter_map(|(place, name)| Some((name.strip_prefix(prefix)?, place)));
-    match Tree::new(inside).json(&result.last_values) {
-        Value::Object(fields) if fields.is_empty() => Value::Null,
-        values => values,
+    let tree = Tree::new(inside);
+    if !tree.has_value(&result.last_values) {
+        return Value::Null;
     }
+    // Numbers and string keys: nothing that JSON refuses.
+    serde_json::to_value(tree.with(&result.last_values)).unwrap_or_default()
 }

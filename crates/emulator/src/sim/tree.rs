@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Serialize, Serializer};
 use serde_json::{Map, Value, json};
 
 use super::signals::Values;
@@ -25,16 +26,16 @@ impl Tree {
     }
 
     /// Present values; what has none is left out of objects and null in arrays.
-    pub fn json(&self, values: &Values) -> Value {
+    pub fn with<'a>(&'a self, values: &'a Values) -> impl Serialize + 'a {
+        Filled { tree: self, values }
+    }
+
+    /// False for what an object leaves out.
+    pub fn has_value(&self, values: &Values) -> bool {
         match self {
-            Self::Leaf(place) => values[*place].map_or(Value::Null, number),
-            Self::Array(items) => items.iter().map(|t| t.json(values)).collect(),
-            Self::Object(fields) => fields
-                .iter()
-                .map(|(name, tree)| (name.clone(), tree.json(values)))
-                .filter(|(_, value)| !value.is_null() && *value != json!({}))
-                .collect::<Map<_, _>>()
-                .into(),
+            Self::Leaf(place) => values[*place].is_some_and(f64::is_finite),
+            Self::Array(_) => true,
+            Self::Object(fields) => fields.values().any(|tree| tree.has_value(values)),
         }
     }
 
@@ -56,12 +57,35 @@ impl Tree {
     }
 }
 
+/// A tree with the values of an instant: written a hundred times a second, so without a copy in between.
+struct Filled<'a> {
+    tree: &'a Tree,
+    values: &'a Values,
+}
+
+impl Serialize for Filled<'_> {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        let values = self.values;
+        match self.tree {
+            Tree::Leaf(place) => match values[*place] {
+                Some(value) => number(value, to),
+                None => to.serialize_unit(),
+            },
+            Tree::Array(items) => to.collect_seq(items.iter().map(|tree| Filled { tree, values })),
+            Tree::Object(fields) => {
+                let present = fields.iter().filter(|(_, tree)| tree.has_value(values));
+                to.collect_map(present.map(|(name, tree)| (name, Filled { tree, values })))
+            }
+        }
+    }
+}
+
 /// Whole numbers without a fraction, so that counters read as counters.
-fn number(value: f64) -> Value {
+fn number<S: Serializer>(value: f64, to: S) -> Result<S::Ok, S::Error> {
     if value.fract() == 0.0 && value.abs() < 1e15 {
-        json!(value as i64)
+        to.serialize_i64(value as i64)
     } else {
-        json!(value)
+        to.serialize_f64(value)
     }
 }
 
@@ -107,7 +131,7 @@ mod tests {
         let tree = Tree::new(names.iter().enumerate().map(|(i, n)| (*n, i)));
         let values = vec![Some(1.5), Some(-2.0), Some(3.0), None];
         let expected = json!({ "t": 3, "wheel": [{ "rpm": 1.5 }, { "rpm": -2 }] });
-        assert_eq!(tree.json(&values), expected);
+        assert_eq!(serde_json::to_value(tree.with(&values)).unwrap(), expected);
         assert_eq!(
             tree.schema()["properties"]["wheel"]["items"]["properties"]["rpm"]["type"],
             "number"

@@ -5,7 +5,8 @@ use crate::core::{
     memory::FLASH,
 };
 
-const SLOTS: usize = 1 << 15;
+/// One for each halfword of the largest image the design allows, and twice that: no two blocks of it share one.
+const SLOTS: usize = 1 << 17;
 
 #[derive(Clone, Copy, Default)]
 struct Slot {
