@@ -1,0 +1,150 @@
+//! The matrix as the table of `docs/safety.md`.
+
+use std::{fs, path::PathBuf};
+
+use robot_plant::time::MS;
+
+use crate::{
+    Cells,
+    expected::{After, Armed, Arms, Disarmed, Flags, Group, Row},
+    judge,
+    observed::{Observed, Phase, Wire},
+    support,
+};
+
+const BEGIN: &str = "<!-- matrix: written by ROBOT_WRITE_MATRIX=1 cargo test --test matrix -->";
+const END: &str = "<!-- matrix ends -->";
+
+fn path() -> PathBuf {
+    support::repository().join("docs/safety.md")
+}
+
+/// Text before the matrix, the matrix, text after it.
+fn parts(text: &str) -> (&str, &str, &str) {
+    let (before, rest) = text
+        .split_once(BEGIN)
+        .expect("docs/safety.md has the matrix's begin");
+    let (matrix, after) = rest
+        .split_once(END)
+        .expect("docs/safety.md has the matrix's end");
+    (before, matrix, after)
+}
+
+pub fn write(rows: &[Row], cells: &Cells) {
+    let text = fs::read_to_string(path()).expect("docs/safety.md is there");
+    let (before, _, after) = parts(&text);
+    let table = table(rows, |index, phase| cells.get(&(index, phase)));
+    let text = format!("{before}{BEGIN}\n\n{table}\n{END}{after}");
+    fs::write(path(), text).expect("docs/safety.md can be written");
+}
+
+/// The document has the same rows and outcomes; measured times may differ.
+pub fn check(rows: &[Row]) {
+    let text = fs::read_to_string(path()).expect("docs/safety.md is there");
+    let (_, matrix, _) = parts(&text);
+    let lines = |text: &str| {
+        let lines = text.lines().map(without_measured);
+        lines.filter(|line| !line.is_empty()).collect::<Vec<_>>()
+    };
+    let (written, wanted) = (lines(matrix), lines(&table(rows, |_, _| None)));
+    for (written, wanted) in written.iter().zip(&wanted) {
+        assert_eq!(
+            written, wanted,
+            "write docs/safety.md again: ROBOT_WRITE_MATRIX=1"
+        );
+    }
+    assert_eq!(written.len(), wanted.len());
+}
+
+/// Measured times stand in brackets.
+fn without_measured(line: &str) -> String {
+    let mut kept = String::new();
+    let mut rest = line;
+    while let Some((before, inside)) = rest.split_once(" [") {
+        kept += before;
+        rest = inside.split_once(']').map_or("", |(_, after)| after);
+    }
+    kept + rest
+}
+
+fn table<'a>(rows: &[Row], seen: impl Fn(usize, Phase) -> Option<&'a Observed>) -> String {
+    let mut text =
+        "| fault | armed, driving | armed, idle | disarmed |\n|---|---|---|---|\n".to_owned();
+    for (index, row) in rows.iter().enumerate() {
+        let cell = |phase| cell(row, phase, seen(index, phase));
+        let [driving, idle, disarmed] = Phase::ALL.map(cell);
+        let fault = row.fault;
+        text += &format!("| `{fault}` | {driving} | {idle} | {disarmed} |\n");
+    }
+    text
+}
+
+/// One cell for the terminal.
+pub fn line(row: &Row, phase: Phase, seen: &Observed) -> String {
+    let flags: Vec<&str> = seen.flags.iter().map(String::as_str).collect();
+    let cell = cell(row, phase, Some(seen));
+    format!(
+        "{:<20} {phase:<15} {cell}; seen: {}",
+        row.fault,
+        flags.join(" ")
+    )
+}
+
+fn cell(row: &Row, phase: Phase, seen: Option<&Observed>) -> String {
+    match phase {
+        Phase::Driving => armed(&row.driving, seen),
+        Phase::Idle => armed(&row.idle, seen),
+        Phase::Disarmed => disarmed(&row.disarmed),
+    }
+}
+
+fn armed(wanted: &Armed, seen: Option<&Observed>) -> String {
+    let wheels = group(wanted.wheels, seen.map(|seen| (&seen.wheels[..], seen)));
+    let joints = group(wanted.joints, seen.map(|seen| (&seen.joints[..], seen)));
+    let after = match wanted.after {
+        After::Off => "stays off",
+        After::Drives => "drives on",
+        After::WheelsOnly => "wheels drive on",
+        After::JointsOnly => "joints hold on",
+        After::WhatRan => "what stopped stays off",
+    };
+    let flags = flags(&wanted.flags);
+    format!("wheels {wheels}, joints {joints}; {flags}{after}")
+}
+
+fn group(wanted: Group, seen: Option<(&[Wire], &Observed)>) -> String {
+    match wanted {
+        Group::Zero(limit) => {
+            let measured = seen.and_then(|(wires, seen)| judge::zero_from(wires, seen));
+            let measured = measured.map_or(String::new(), |at| {
+                format!(" [{:.1} ms]", at as f64 / MS as f64)
+            });
+            format!("0 within {limit} ms{measured}")
+        }
+        Group::Runs => "run".into(),
+        Group::Either => "may stop".into(),
+        Group::Unreachable => "out of reach".into(),
+    }
+}
+
+fn disarmed(wanted: &Disarmed) -> String {
+    let arms = |when, arms| match arms {
+        Arms::Yes => format!("arms {when}"),
+        Arms::No => format!("no arming {when}"),
+        Arms::Either => format!("may arm {when}"),
+    };
+    let flags = flags(&wanted.flags);
+    let during = arms("during it", wanted.arms_during);
+    let after = arms("after it", wanted.arms_after);
+    format!("0; {flags}{during}, {after}")
+}
+
+fn flags(flags: &Flags) -> String {
+    if flags.must.is_empty() && flags.may.is_empty() {
+        return String::new();
+    }
+    let must = flags.must.iter().map(|flag| format!("`{flag}`"));
+    let may = flags.may.iter().map(|flag| format!("(`{flag}`)"));
+    let all: Vec<String> = must.chain(may).collect();
+    format!("{}; ", all.join(" "))
+}

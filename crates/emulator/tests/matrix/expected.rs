@@ -1,0 +1,429 @@
+//! What must happen, from the design's safety rules, the seed's section 0.6 and the devices' datasheets; nothing here
+//! is taken from what the firmware does. Times count from the start of the fault.
+
+/// What the actuators of one kind do while the fault is there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Group {
+    /// No torque from this many ms on.
+    Zero(f64),
+    /// Obeys as before.
+    Runs,
+    /// Runs on or stops: the fault is at the edge of a limit.
+    Either,
+    /// No frame can get there; the device itself decides.
+    Unreachable,
+}
+
+/// What moves without the pilot's doing anything but keep pushing the stick, when the fault is gone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum After {
+    /// Nothing.
+    Off,
+    /// All.
+    Drives,
+    /// Wheels only.
+    WheelsOnly,
+    /// Joints only.
+    JointsOnly,
+    /// What the fault stopped stays off, the rest drives on.
+    WhatRan,
+}
+
+/// An armed phase.
+#[derive(Clone, Debug)]
+pub struct Armed {
+    pub wheels: Group,
+    pub joints: Group,
+    pub flags: Flags,
+    pub after: After,
+}
+
+/// The disarmed phase: nothing moves; does the enable switch arm while the fault is there, and after it?
+#[derive(Clone, Debug)]
+pub struct Disarmed {
+    pub flags: Flags,
+    pub arms_during: Arms,
+    pub arms_after: Arms,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Arms {
+    Yes,
+    No,
+    Either,
+}
+
+/// Safety flags that rise.
+#[derive(Clone, Debug, Default)]
+pub struct Flags {
+    /// Every one of them.
+    pub must: Vec<&'static str>,
+    /// Any of them besides; no other.
+    pub may: Vec<&'static str>,
+}
+
+#[derive(Clone, Debug)]
+pub struct Row {
+    pub fault: &'static str,
+    pub driving: Armed,
+    pub idle: Armed,
+    pub disarmed: Disarmed,
+    /// How long after the end of the fault it may take until all is back.
+    pub back_within_ms: f64,
+    /// The chip is reset.
+    pub resets: bool,
+    /// Parts of what the board complains of, because the fault makes it.
+    pub complaints: &'static [&'static str],
+}
+
+fn flags(must: &[&'static str], may: &[&'static str]) -> Flags {
+    Flags {
+        must: must.to_vec(),
+        may: may.to_vec(),
+    }
+}
+
+/// The same in both armed phases; disarmed, it forbids arming as long as it is there.
+fn row(fault: &'static str, wheels: Group, joints: Group, flags: Flags, after: After) -> Row {
+    let armed = Armed {
+        wheels,
+        joints,
+        flags: flags.clone(),
+        after,
+    };
+    Row {
+        fault,
+        driving: armed.clone(),
+        idle: armed,
+        disarmed: Disarmed {
+            flags,
+            arms_during: Arms::No,
+            arms_after: Arms::Yes,
+        },
+        back_within_ms: 1_000.0,
+        resets: false,
+        complaints: &[],
+    }
+}
+
+/// Everything stops within these ms and stays so until the pilot arms again.
+fn global(fault: &'static str, within_ms: f64, flags: Flags) -> Row {
+    let zero = Group::Zero(within_ms);
+    row(fault, zero, zero, flags, After::Off)
+}
+
+/// Nothing needs it.
+fn harmless(fault: &'static str, flags: Flags) -> Row {
+    row(fault, Group::Runs, Group::Runs, flags, After::Drives).arms_during(Arms::Yes)
+}
+
+impl Row {
+    fn arms_during(mut self, arms: Arms) -> Self {
+        self.disarmed.arms_during = arms;
+        self
+    }
+
+    /// A human must look first: the enable switch alone does not arm again.
+    fn latched(mut self) -> Self {
+        self.disarmed.arms_after = Arms::No;
+        self
+    }
+
+    /// Cannot be seen while nothing turns.
+    fn unseen_at_rest(mut self) -> Self {
+        self.idle = Armed {
+            wheels: Group::Runs,
+            joints: Group::Runs,
+            flags: Flags::default(),
+            after: After::Drives,
+        };
+        self.disarmed = Disarmed {
+            flags: Flags::default(),
+            arms_during: Arms::Yes,
+            arms_after: Arms::Yes,
+        };
+        self
+    }
+
+    fn complaining(mut self, of: &'static [&'static str]) -> Self {
+        self.complaints = of;
+        self
+    }
+
+    fn back_within_ms(mut self, ms: f64) -> Self {
+        self.back_within_ms = ms;
+        self
+    }
+
+    fn resetting(mut self) -> Self {
+        self.resets = true;
+        self
+    }
+}
+
+/// Every row, in the order of the document.
+pub fn rows() -> Vec<Row> {
+    [
+        radio(),
+        sensors(),
+        buses(),
+        wheels(),
+        joints(),
+        power_and_pose(),
+        image(),
+    ]
+    .concat()
+}
+
+/// A frame every 7 ms takes 3 ms; then 3 ms to zero on both buses (design, section 6).
+const NEXT_FRAME_MS: f64 = 7.0 + 3.0 + 3.0;
+/// The last good frame may be 100 ms old, and ended up to 7 ms before the fault or up to 3 ms after its start.
+const REMOTE_LOST_MS: f64 = 100.0 + 3.0 + 3.0;
+
+fn radio() -> Vec<Row> {
+    let lost = flags(&["remote-lost"], &["remote-quality", "remote-failsafe"]);
+    let mut rows = vec![
+        global("e-stop", NEXT_FRAME_MS, flags(&["e-stop"], &[])),
+        global("sbus-silent", REMOTE_LOST_MS, lost.clone()),
+        global(
+            "sbus-failsafe",
+            NEXT_FRAME_MS,
+            flags(&["remote-failsafe"], &["remote-lost", "remote-quality"]),
+        ),
+        global("sbus-frame-lost", REMOTE_LOST_MS, lost),
+        global(
+            "sbus-noise",
+            1_000.0,
+            flags(&["remote-quality"], &["remote-lost"]),
+        )
+        .complaining(&["USART3"])
+        .arms_during(Arms::Either),
+    ];
+    // Fewer than half of the last 64 frames good: too bad to drive.
+    for fault in ["sbus-loss-10", "sbus-loss-20", "sbus-loss-30"] {
+        rows.push(harmless(fault, Flags::default()));
+    }
+    let quality = || flags(&[], &["remote-quality", "remote-lost"]);
+    for fault in ["sbus-loss-40", "sbus-loss-50", "sbus-loss-60"] {
+        let edge = row(
+            fault,
+            Group::Either,
+            Group::Either,
+            quality(),
+            After::WhatRan,
+        );
+        rows.push(edge.arms_during(Arms::Either));
+    }
+    for fault in ["sbus-loss-70", "sbus-loss-80", "sbus-loss-90"] {
+        let bad = global(fault, 1_000.0, quality());
+        rows.push(bad.arms_during(Arms::Either));
+    }
+    rows
+}
+
+fn sensors() -> Vec<Row> {
+    // Stale is not latched; a sensor that answers nonsense or repeats itself has its samples rejected, and errors that
+    // add up are.
+    let dead = flags(&["imu-stale"], &["imu-errors", "estimate-invalid"]);
+    let wrong = || flags(&["imu-stale", "imu-errors"], &["estimate-invalid", "tilt"]);
+    vec![
+        global("imu-gone", 35.0, dead),
+        global("imu-frozen", 100.0, wrong()).latched(),
+        global("imu-extreme", 100.0, wrong()).latched(),
+        harmless("mag-gone", flags(&[], &[])),
+        harmless("i2c-held", flags(&[], &[])),
+    ]
+}
+
+/// One bus faulty: its own actuators stop, the others run on.
+fn buses() -> Vec<Row> {
+    let can1 = |fault, must: &[&'static str], may: &[&'static str]| {
+        row(
+            fault,
+            Group::Unreachable,
+            Group::Runs,
+            flags(must, may),
+            After::Drives,
+        )
+    };
+    // A DM4310 that hears nothing for 100 ms goes limp by itself and says so until it is cleared.
+    let can2 = |fault, must: &[&'static str], may: &[&'static str]| {
+        row(
+            fault,
+            Group::Runs,
+            Group::Zero(105.0),
+            flags(must, may),
+            After::WheelsOnly,
+        )
+    };
+    // A controller that went off its bus tries to come back 1.6 s after the last failure at the latest.
+    let slow = |row: Row| row.back_within_ms(1_800.0);
+    let wheels_silent = ["wheel-left-silent", "wheel-right-silent"];
+    let joints_silent = ["joint-silent", "joint-fault"];
+    vec![
+        slow(can1(
+            "can1-broken",
+            &["can1-fault"],
+            &[&wheels_silent[..], &["can1-congested"]].concat(),
+        )),
+        can1("can1-empty", &wheels_silent, &["can1-congested"]),
+        can1("rogue-node-can1", &["can1-congested"], &wheels_silent),
+        slow(can2(
+            "can2-broken",
+            &["can2-fault"],
+            &[&joints_silent[..], &["can2-congested"]].concat(),
+        )),
+        can2(
+            "can2-empty",
+            &["joint-silent"],
+            &["can2-congested", "joint-fault"],
+        ),
+        can2("rogue-node-can2", &["can2-congested"], &joints_silent),
+    ]
+}
+
+fn wheels() -> Vec<Row> {
+    let mut rows = Vec::new();
+    for (gone, wrong_id, frozen, hot, silent) in [
+        (
+            "motor-0-gone",
+            "motor-0-wrong-id",
+            "motor-0-frozen",
+            "motor-0-hot",
+            "wheel-left-silent",
+        ),
+        (
+            "motor-1-gone",
+            "motor-1-wrong-id",
+            "motor-1-frozen",
+            "motor-1-hot",
+            "wheel-right-silent",
+        ),
+    ] {
+        // Control of a silent wheel falls back to open loop.
+        rows.push(harmless(gone, flags(&[silent], &[])));
+        rows.push(harmless(wrong_id, flags(&[silent], &[])));
+        let stopped = row(
+            frozen,
+            Group::Zero(110.0),
+            Group::Runs,
+            flags(&["wheel-frozen"], &[]),
+            After::JointsOnly,
+        );
+        rows.push(stopped.unseen_at_rest());
+        // Not latched: what has cooled down may go on.
+        let stopped = row(
+            hot,
+            Group::Zero(600.0),
+            Group::Runs,
+            flags(&["wheel-hot"], &[]),
+            After::Drives,
+        );
+        rows.push(stopped);
+    }
+    rows
+}
+
+fn joints() -> Vec<Row> {
+    let mut rows = Vec::new();
+    for [gone, wrong_id, frozen, hot, fault] in [
+        [
+            "motor-2-gone",
+            "motor-2-wrong-id",
+            "motor-2-frozen",
+            "motor-2-hot",
+            "motor-2-fault",
+        ],
+        [
+            "motor-3-gone",
+            "motor-3-wrong-id",
+            "motor-3-frozen",
+            "motor-3-hot",
+            "motor-3-fault",
+        ],
+        [
+            "motor-4-gone",
+            "motor-4-wrong-id",
+            "motor-4-frozen",
+            "motor-4-hot",
+            "motor-4-fault",
+        ],
+        [
+            "motor-5-gone",
+            "motor-5-wrong-id",
+            "motor-5-frozen",
+            "motor-5-hot",
+            "motor-5-fault",
+        ],
+    ] {
+        let joints = |fault, within_ms, flags, after| {
+            row(fault, Group::Runs, Group::Zero(within_ms), flags, after)
+        };
+        let silent = || flags(&["joint-silent"], &["joint-fault"]);
+        rows.push(joints(gone, 60.0, silent(), After::Drives));
+        rows.push(joints(wrong_id, 110.0, silent(), After::Drives));
+        // A leg at rest repeats its position rightly.
+        rows.push(harmless(frozen, Flags::default()));
+        rows.push(joints(
+            hot,
+            600.0,
+            flags(&["joint-hot"], &[]),
+            After::Drives,
+        ));
+        rows.push(joints(fault, 10.0, flags(&["joint-fault"], &[]), After::WheelsOnly).latched());
+    }
+    rows
+}
+
+fn power_and_pose() -> Vec<Row> {
+    vec![
+        harmless("battery-low", flags(&["battery-low"], &[])).arms_during(Arms::No),
+        // Empty for 1 s, by a reading every 250 ms.
+        global(
+            "battery-empty",
+            1_300.0,
+            flags(&["battery-low", "battery-empty"], &[]),
+        )
+        .latched(),
+        // 0.9 rad at 2 rad/s, and 50 ms to be sure.
+        global("tilted", 600.0, flags(&["tilt"], &["estimate-invalid"])).latched(),
+    ]
+}
+
+/// Design, section 6: panic 1 ms; hang: reset within 60 ms, zero within 20 ms of it.
+fn image() -> Vec<Row> {
+    let mut rows = Vec::new();
+    for fault in ["panic", "panic-thread", "hard-fault", "stack-overflow"] {
+        rows.push(global(fault, 1.0, Flags::default()).resetting());
+    }
+    let late = || {
+        flags(
+            &[],
+            &[
+                "task-late",
+                "imu-stale",
+                "estimate-invalid",
+                "remote-lost",
+                "remote-quality",
+                "command-stale",
+            ],
+        )
+    };
+    for fault in [
+        "task-stuck-control",
+        "task-stuck-sensor",
+        "task-stuck-thread",
+        "task-asleep-imu",
+        "task-asleep-mag",
+        "task-asleep-sbus",
+        "task-asleep-logic",
+        "task-asleep-status",
+    ] {
+        rows.push(global(fault, 80.0, late()).resetting());
+    }
+    for row in &mut rows {
+        // The new boot knows nothing of the fault.
+        row.disarmed.arms_during = Arms::Yes;
+    }
+    rows
+}

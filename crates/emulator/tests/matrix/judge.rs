@@ -1,0 +1,141 @@
+//! Compares what was seen with what must happen.
+
+use robot_plant::time::{MS, Ps};
+
+use crate::{
+    expected::{After, Armed, Arms, Disarmed, Flags, Group, Row},
+    observed::{Observed, Phase, Wire},
+};
+
+/// The end of the fault, or of the run, as it is then.
+const LATELY: Ps = 200 * MS;
+
+/// What is not as it must be, in words.
+pub fn complaints(row: &Row, phase: Phase, seen: &Observed) -> Vec<String> {
+    let mut all = match phase {
+        Phase::Driving => armed(&row.driving, seen, true),
+        Phase::Idle => armed(&row.idle, seen, false),
+        Phase::Disarmed => disarmed(&row.disarmed, seen),
+    };
+    if let Some(at) = seen.torque_unarmed.first() {
+        let at = *at as f64 / MS as f64;
+        all.push(format!(
+            "torque left the board unarmed at {at:.1} ms of the run"
+        ));
+    }
+    let resets = usize::from(row.resets);
+    if seen.resets != resets {
+        all.push(format!("{} resets instead of {resets}", seen.resets));
+    }
+    let is_expected = |error: &&String| !row.complaints.iter().any(|part| error.contains(part));
+    let errors = seen.board_errors.iter().filter(is_expected);
+    all.extend(errors.map(|error| format!("board error: {error}")));
+    all
+}
+
+fn armed(wanted: &Armed, seen: &Observed, driving: bool) -> Vec<String> {
+    let mut all = flags(&wanted.flags, seen);
+    // An idle wheel has no current to be seen.
+    let (wheels, joints) = (wheels(seen), joints(seen));
+    all.extend(group("wheels", wanted.wheels, wheels, seen, driving));
+    all.extend(group("joints", wanted.joints, joints, seen, true));
+    let ran = |wires| zero_from(wires, seen).is_none();
+    let (wheels_move, joints_move) = match wanted.after {
+        After::Off => (false, false),
+        After::Drives => (true, true),
+        After::WheelsOnly => (true, false),
+        After::JointsOnly => (false, true),
+        After::WhatRan => (ran(wheels) || !driving && ran(joints), ran(joints)),
+    };
+    let obey = |from, to| wheels.iter().any(|wheel| wheel.told_torque_in(from, to));
+    let hold = |from, to| joints.iter().any(|joint| joint.had_torque_in(from, to));
+    all.extend(after("wheels", wheels_move, obey, seen));
+    all.extend(after("joints", joints_move, hold, seen));
+    all
+}
+
+fn wheels(seen: &Observed) -> &[Wire] {
+    &seen.wheels
+}
+
+fn joints(seen: &Observed) -> &[Wire] {
+    &seen.joints
+}
+
+/// When the last motor of the group had no torque any more; `None` while one has. Counted from when the fault struck.
+pub fn zero_from(wires: &[Wire], seen: &Observed) -> Option<Ps> {
+    let each = wires.iter().map(|wire| wire.zero_from(seen.fault_ended));
+    let all: Option<Vec<Ps>> = each.collect();
+    all?.into_iter()
+        .max()
+        .map(|at| at.saturating_sub(seen.struck))
+}
+
+fn group(
+    name: &str,
+    wanted: Group,
+    wires: &[Wire],
+    seen: &Observed,
+    seen_to_run: bool,
+) -> Vec<String> {
+    let end = seen.fault_ended;
+    let ms = |at: Ps| at as f64 / MS as f64;
+    let zero = zero_from(wires, seen).map(ms);
+    let complaint = match (wanted, zero) {
+        (Group::Zero(limit), None) => {
+            format!("{name} have torque, and should not after {limit} ms")
+        }
+        (Group::Zero(limit), Some(at)) if at > limit => {
+            format!("{name} have no torque after {at:.2} ms only, limit {limit}")
+        }
+        (Group::Runs, Some(at)) if seen_to_run && at < ms(end - LATELY) => {
+            format!("{name} stopped after {at:.2} ms and should not")
+        }
+        (Group::Runs, _) if !seen.armed_at_fault_end => format!("{name}: disarmed"),
+        (Group::Unreachable, _) if wires.iter().any(|w| w.spoke_in(end - LATELY, end)) => {
+            format!("{name} get frames, and the fault should keep them away")
+        }
+        _ => return Vec::new(),
+    };
+    vec![complaint]
+}
+
+fn after(name: &str, moves: bool, moved: impl Fn(Ps, Ps) -> bool, seen: &Observed) -> Vec<String> {
+    let complaint = if moves && !moved(seen.ended - LATELY, seen.ended) {
+        format!("{name} do not come back after the fault")
+    } else if !moves && moved(seen.fault_ended, seen.ended) {
+        format!("{name} move by themselves after the fault")
+    } else {
+        return Vec::new();
+    };
+    vec![complaint]
+}
+
+fn disarmed(wanted: &Disarmed, seen: &Observed) -> Vec<String> {
+    let mut all = flags(&wanted.flags, seen);
+    for (when, wanted, did) in [
+        ("during", wanted.arms_during, seen.armed_during_fault),
+        ("after", wanted.arms_after, seen.armed_after_fault),
+    ] {
+        match wanted {
+            Arms::Yes if !did => all.push(format!("does not arm {when} the fault")),
+            Arms::No if did => all.push(format!("arms {when} the fault")),
+            _ => {}
+        }
+    }
+    all
+}
+
+fn flags(wanted: &Flags, seen: &Observed) -> Vec<String> {
+    let rose = |flag: &&&str| seen.flags.contains(**flag);
+    let missing = wanted.must.iter().filter(|flag| !rose(flag));
+    let missing = missing.map(|flag| format!("flag {flag} did not rise"));
+    let known = |flag: &&String| {
+        let mut all = wanted.must.iter().chain(&wanted.may);
+        all.any(|known| known == flag)
+    };
+    let extra = seen.flags.iter().filter(|flag| !known(flag));
+    missing
+        .chain(extra.map(|flag| format!("flag {flag} rose")))
+        .collect()
+}

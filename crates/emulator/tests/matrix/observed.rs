@@ -1,0 +1,112 @@
+//! What a run showed, on the wire and by the firmware's own account.
+
+use std::collections::BTreeSet;
+
+use robot_plant::time::{MS, Ps};
+
+/// What the robot is doing when the fault starts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Phase {
+    /// Armed, wheels turning, legs held.
+    Driving,
+    /// Armed, sticks centred.
+    Idle,
+    Disarmed,
+}
+
+impl Phase {
+    pub const ALL: [Self; 3] = [Self::Driving, Self::Idle, Self::Disarmed];
+}
+
+impl std::fmt::Display for Phase {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Driving => "armed, driving",
+            Self::Idle => "armed, idle",
+            Self::Disarmed => "disarmed",
+        })
+    }
+}
+
+/// What the wire of one motor last said of its torque: the commanded current of a wheel (mA), the state of a joint
+/// (1 = enabled). Times since the fault started; nothing before it.
+#[derive(Clone, Debug, Default)]
+pub struct Wire {
+    /// At the instant of the fault.
+    pub before: f64,
+    pub changes: Vec<(Ps, f64)>,
+}
+
+impl Wire {
+    pub fn last(&self) -> f64 {
+        self.changes.last().map_or(self.before, |(_, value)| *value)
+    }
+
+    /// The value at the end of `from ..= to`.
+    pub fn at(&self, time: Ps) -> f64 {
+        let earlier = self.changes.iter().rev().find(|(at, _)| *at <= time);
+        earlier.map_or(self.before, |(_, value)| *value)
+    }
+
+    /// From when on it stays zero until `end`; `None` where it does not.
+    pub fn zero_from(&self, end: Ps) -> Option<Ps> {
+        if self.at(end) != 0.0 {
+            return None;
+        }
+        let mut zero = if self.before == 0.0 { Some(0) } else { None };
+        for (at, value) in self.changes.iter().filter(|(at, _)| *at <= end) {
+            if *value != 0.0 {
+                zero = None;
+            } else if zero.is_none() {
+                zero = Some(*at);
+            }
+        }
+        zero
+    }
+
+    /// Told to give torque, not only left with an old command.
+    pub fn told_torque_in(&self, from: Ps, to: Ps) -> bool {
+        let inside = self
+            .changes
+            .iter()
+            .filter(|(at, _)| (from..=to).contains(at));
+        inside.into_iter().any(|(_, value)| *value != 0.0)
+    }
+
+    pub fn had_torque_in(&self, from: Ps, to: Ps) -> bool {
+        self.at(from) != 0.0 || self.told_torque_in(from, to)
+    }
+
+    /// True where something was said.
+    pub fn spoke_in(&self, from: Ps, to: Ps) -> bool {
+        self.changes.iter().any(|(at, _)| (from..=to).contains(at))
+    }
+}
+
+/// One run.
+#[derive(Clone, Debug, Default)]
+pub struct Observed {
+    /// Left, right.
+    pub wheels: [Wire; 2],
+    pub joints: [Wire; 4],
+    /// When the fault took effect: a failure of the image waits for the function it strikes.
+    pub struck: Ps,
+    /// When the fault ended, and the run; since the fault started.
+    pub fault_ended: Ps,
+    pub ended: Ps,
+    /// Safety flags that rose while the fault was there.
+    pub flags: BTreeSet<String>,
+    /// While the fault was there: resets of the chip.
+    pub resets: usize,
+    pub armed_at_fault_end: bool,
+    pub armed_at_end: bool,
+    /// Disarmed phase: the switch went off and on while the fault was there, and once more after it.
+    pub armed_during_fault: bool,
+    pub armed_after_fault: bool,
+    /// Instants with torque on a wire though the firmware was not armed.
+    pub torque_unarmed: Vec<Ps>,
+    pub board_errors: Vec<String>,
+}
+
+/// The firmware's word is up to two samples old, and a command is on its way for a millisecond.
+pub const ARMED_SLACK: Ps = 5 * MS;
