@@ -1,7 +1,7 @@
 //! The joints against the world's DM4310: armed they hold, and what stops them leaves the wheels alone.
 
 use robot_app::{
-    domain::JointMode,
+    domain::{ChassisCommand, JointCommand, JointMode},
     safety::{SafetyFlags, SafetyVerdict},
 };
 
@@ -105,6 +105,41 @@ fn a_bad_joint_stops_all_joints_and_the_wheels_go_on() {
             assert_eq!(enabled(&robot), [true; 4], "{fault} cleared");
         }
     }
+}
+
+/// A DM4310 is deaf for 150 ms while it takes a new mode.
+#[test]
+fn a_new_mode_stops_all_joints_for_a_moment() {
+    let mut robot = driving(PlantKind::Stand, RadioKind::Sbus);
+    let hold = JointCommand {
+        mode: JointMode::Mit,
+        kp: 20.0,
+        kd: 1.0,
+        ..JointCommand::default()
+    };
+    let turn = JointCommand {
+        mode: JointMode::Speed,
+        vel_rps: 1.0,
+        ..JointCommand::default()
+    };
+    let mut command = ChassisCommand {
+        joints: [hold; 4],
+        ..ChassisCommand::default()
+    };
+    robot.direct = Some(command);
+    robot.run_until(5.2, |_| ());
+    command.joints[2] = turn;
+    robot.direct = Some(command);
+    let mut silent_ms = 0;
+    robot.run_until(5.8, |robot| {
+        let safety = robot.diagnostics().safety;
+        silent_ms += u32::from(safety.flags.intersects(SafetyFlags::JOINT_SILENT));
+        assert!(robot.armed() && !safety.wheels_stop);
+    });
+    assert!((50..200).contains(&silent_ms), "{silent_ms} ms");
+    assert_eq!(enabled(&robot), [true; 4]);
+    let speed_rps = robot.signal("truth.joint.2.vel_rps");
+    assert!((speed_rps - 1.0).abs() < 0.1, "{speed_rps} rad/s");
 }
 
 #[test]

@@ -4,8 +4,8 @@ use robot_app::{
     control::UserController,
     diagnostics::DiagnosticsSnapshot,
     domain::{
-        BusId, CanFrame, HeaterConfig, ImuCalibration, ImuState, MagCalibration, MagState,
-        RemoteUpdate, RobotConfig, SafetyConfig, StandardId, SystemHealth,
+        BusId, CanFrame, ChassisCommand, HeaterConfig, ImuCalibration, ImuState, MagCalibration,
+        MagState, RemoteUpdate, RobotConfig, SafetyConfig, StandardId, SystemHealth,
     },
     input::{RemoteFormat, RemoteMapping, RemoteReceiver},
     logic::{LogicBus, LogicInputs, LogicStage, UserLogic},
@@ -45,6 +45,8 @@ pub struct Robot {
     diagnostics: DiagnosticsSnapshot,
     wheel_currents_ma: [f64; 2],
     mag_started_at: Option<Ps>,
+    /// What a user's logic would command past the controller, if any.
+    pub direct: Option<ChassisCommand>,
     /// Every byte sent on CAN so far, folded into one number.
     pub sent_digest: u64,
 }
@@ -80,6 +82,7 @@ impl Robot {
             diagnostics: DiagnosticsSnapshot::default(),
             wheel_currents_ma: [0.0; 2],
             mag_started_at: None,
+            direct: None,
             sent_digest: 0,
         };
         robot.bring_up_imu();
@@ -158,6 +161,10 @@ impl Robot {
                 diagnostics: &self.diagnostics,
             };
             self.logic = self.logic_stage.step(&inputs, self.now / US);
+            if let Some(command) = self.direct {
+                self.logic.cmd = command;
+                self.logic.cmd_valid = true;
+            }
         }
         self.control_tick();
     }
