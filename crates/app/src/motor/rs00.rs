@@ -1,5 +1,5 @@
 //! RobStride RS00 in its MIT protocol (hardware.md section 9, seed 003): standard identifiers, one reply to each frame,
-//! all motors reply under the host's identifier.
+//! under the host's identifier and with the motor's number in byte 0.
 
 use super::{
     dm4310::two_floats,

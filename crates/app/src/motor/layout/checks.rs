@@ -138,27 +138,22 @@ const fn assert_own_ids_differ(motor: &JointMotor) {
     );
 }
 
+/// Nor may RS00 share a host identifier, although byte 0 of a reply names the motor: two replies at a time would destroy
+/// each other on the bus.
 const fn assert_ids_differ(one: &JointMotor, other: &JointMotor) {
     let (one_ids, other_ids) = (one.identifiers(), other.identifiers());
     let mut i = 0;
     while i < one_ids.len() {
         let mut k = 0;
         while k < other_ids.len() {
-            let both_replies = i + 1 == one_ids.len() && k + 1 == other_ids.len();
             assert!(
-                one_ids[i].raw() != other_ids[k].raw()
-                    || (both_replies && replies_name_motor(one, other)),
+                one_ids[i].raw() != other_ids[k].raw(),
                 "two joints on one bus use the same identifier"
             );
             k += 1;
         }
         i += 1;
     }
-}
-
-/// All RS00 reply to the host, with their number in byte 0.
-const fn replies_name_motor(one: &JointMotor, other: &JointMotor) -> bool {
-    matches!((one, other), (JointMotor::Rs00(_), JointMotor::Rs00(_)))
 }
 
 pub const fn limits_are_sound(wheels: &WheelGroup, joints: &Joints) {

@@ -25,8 +25,8 @@ fn joints(change: impl FnOnce(&mut [JointSlot; 4])) -> MotorLayout {
 #[test]
 fn makes_may_be_mixed() {
     let layout = joints(|joints| {
-        joints[2].motor = rs00(3, 0xFD);
-        joints[3].motor = rs00(4, 0xFD);
+        joints[2].motor = rs00(3, 0xF3);
+        joints[3].motor = rs00(4, 0xF4);
     });
     assert_eq!(layout.joints()[0], ROBOT_LAYOUT.joints()[0]);
 }
@@ -47,6 +47,15 @@ fn two_dm4310_replying_alike() {
 #[should_panic(expected = "two joints on one bus use the same identifier")]
 fn an_rs00_replying_as_a_dm4310_does() {
     joints(|joints| joints[1].motor = rs00(2, 0x11));
+}
+
+#[test]
+#[should_panic(expected = "two joints on one bus use the same identifier")]
+fn two_rs00_with_one_host() {
+    joints(|joints| {
+        joints[0].motor = rs00(1, 0xFD);
+        joints[1].motor = rs00(2, 0xFD);
+    });
 }
 
 #[test]
