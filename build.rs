@@ -1,4 +1,4 @@
-//! Puts `memory.x` where the linker looks for it, and builds anew for another receiver (`src/config.rs`).
+//! Puts `memory.x` where the linker looks for it, and builds anew for other parts (`src/config.rs`).
 use std::{env, fs, path::PathBuf};
 
 fn main() {
@@ -7,4 +7,5 @@ fn main() {
     println!("cargo:rustc-link-search={}", out.display());
     println!("cargo:rerun-if-changed=memory.x");
     println!("cargo:rerun-if-env-changed=ROBOT_REMOTE");
+    println!("cargo:rerun-if-env-changed=ROBOT_JOINTS");
 }

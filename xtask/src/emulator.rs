@@ -9,7 +9,7 @@ use std::{
 use anyhow::Context;
 
 use crate::{
-    firmware::{self, Remote},
+    firmware::{self, Parts},
     job::{self, Job},
     prerequisites::{self, EMULATOR},
     tool, workspace,
@@ -26,7 +26,7 @@ pub fn run(program: &'static str, passed_on: &[OsString]) -> anyhow::Result<Exit
     let mut command = Command::new(path);
     command.args(passed_on);
     if needs_an_image(passed_on) {
-        let (build_image, elf) = firmware::build(Remote::chosen()?)?;
+        let (build_image, elf) = firmware::build(&Parts::chosen()?)?;
         jobs.push(build_image);
         command.arg("--elf").arg::<PathBuf>(elf);
     }
@@ -56,7 +56,7 @@ fn build(program: &'static str) -> anyhow::Result<(Job, PathBuf)> {
         .join(HOST_PROFILE)
         .join(program);
     let job = Job {
-        name: "emulator",
+        name: "emulator".to_owned(),
         command,
     };
     Ok((job, path))

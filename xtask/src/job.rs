@@ -21,12 +21,12 @@ const WORTH_A_LINE: Duration = Duration::from_secs(2);
 const LOG_TAIL_LINES: usize = 60;
 
 pub struct Job {
-    pub name: &'static str,
+    pub name: String,
     pub command: Command,
 }
 
 struct Running {
-    name: &'static str,
+    name: String,
     child: Child,
     log: PathBuf,
     started: Instant,
@@ -157,10 +157,13 @@ impl Status {
 mod tests {
     use super::*;
 
-    fn job(name: &'static str, program: &str, argument: &str) -> Job {
+    fn job(name: &str, program: &str, argument: &str) -> Job {
         let mut command = Command::new(program);
         command.arg(argument);
-        Job { name, command }
+        Job {
+            name: name.to_owned(),
+            command,
+        }
     }
 
     #[test]

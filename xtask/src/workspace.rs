@@ -22,14 +22,9 @@ pub fn host_target_dir() -> PathBuf {
     }
 }
 
-/// Its own folder, so that the image and the emulator can be built at the same time.
-pub fn firmware_target_dir() -> PathBuf {
-    host_target_dir().join("firmware")
-}
-
-/// Its own folder, so that neither image makes the other one out of date.
-pub fn dbus_firmware_target_dir() -> PathBuf {
-    host_target_dir().join("firmware-dbus")
+/// A folder of its own, so that an image and the emulator can be built at the same time.
+pub fn firmware_target_dir(name: &str) -> PathBuf {
+    host_target_dir().join(name)
 }
 
 /// Logs of finished builds.

@@ -5,7 +5,7 @@ pub mod image;
 
 use std::{env, path::PathBuf, process::Command};
 
-use anyhow::{Context, bail};
+use anyhow::Context;
 
 use crate::{
     job::Job,
@@ -24,34 +24,62 @@ enum Compiler {
     Distribution,
 }
 
-/// Which receiver the image listens to (`src/config.rs`).
-#[derive(Clone, Copy)]
-pub enum Remote {
-    Sbus,
-    Dbus,
+/// Which parts the image is for (`src/config.rs`).
+pub struct Parts {
+    remote: &'static str,
+    joints: &'static str,
 }
 
-impl Remote {
-    /// As `ROBOT_REMOTE` says; SBUS if it says nothing.
+impl Parts {
+    /// Those that need no variable.
+    pub const DEFAULT: Self = Self {
+        remote: "sbus",
+        joints: "dm4310",
+    };
+    /// All the others.
+    pub const OTHER: Self = Self {
+        remote: "dbus",
+        joints: "rs00",
+    };
+
+    /// As `ROBOT_REMOTE` and `ROBOT_JOINTS` say.
     pub fn chosen() -> anyhow::Result<Self> {
-        match env::var("ROBOT_REMOTE").as_deref() {
-            Err(env::VarError::NotPresent) | Ok("sbus") => Ok(Self::Sbus),
-            Ok("dbus") => Ok(Self::Dbus),
-            other => bail!("ROBOT_REMOTE must be sbus or dbus, or unset for SBUS: it is {other:?}"),
+        Ok(Self {
+            remote: chosen("ROBOT_REMOTE", &["sbus", "dbus"])?,
+            joints: chosen("ROBOT_JOINTS", &["dm4310", "rs00"])?,
+        })
+    }
+
+    /// Its own folder, so that no image makes another one out of date.
+    fn target_dir(&self) -> PathBuf {
+        let Self { remote, joints } = self;
+        if (*remote, *joints) == (Self::DEFAULT.remote, Self::DEFAULT.joints) {
+            workspace::firmware_target_dir("firmware")
+        } else {
+            workspace::firmware_target_dir(&format!("firmware-{remote}-{joints}"))
         }
     }
 }
 
-/// The build, ready to start, and the image it makes; installs what it needs.
-pub fn build(remote: Remote) -> anyhow::Result<(Job, PathBuf)> {
-    let (name, word, target_dir) = match remote {
-        Remote::Sbus => ("firmware", "sbus", workspace::firmware_target_dir()),
-        Remote::Dbus => (
-            "firmware-dbus",
-            "dbus",
-            workspace::dbus_firmware_target_dir(),
-        ),
+/// What a variable says; without it the first of `words`.
+fn chosen(variable: &str, words: &[&'static str]) -> anyhow::Result<&'static str> {
+    let said = match env::var(variable) {
+        Err(env::VarError::NotPresent) => words.first().copied(),
+        Ok(said) => words.iter().copied().find(|word| *word == said),
+        Err(env::VarError::NotUnicode(_)) => None,
     };
+    said.with_context(|| {
+        let words = words.join(" or ");
+        format!(
+            "{variable} must be {words}, or unset: it is {:?}",
+            env::var(variable)
+        )
+    })
+}
+
+/// The build, ready to start, and the image it makes; installs what it needs.
+pub fn build(parts: &Parts) -> anyhow::Result<(Job, PathBuf)> {
+    let target_dir = parts.target_dir();
     let mut command = match compiler()? {
         Compiler::Rustup => tool::cargo(),
         Compiler::Distribution => distribution::cargo()?,
@@ -59,7 +87,10 @@ pub fn build(remote: Remote) -> anyhow::Result<(Job, PathBuf)> {
     command.args(["build", "--release", "--package", PACKAGE]);
     command.args(["--target", BOARD, "--target-dir"]);
     command.arg(&target_dir);
-    command.env("ROBOT_REMOTE", word);
+    command.env("ROBOT_REMOTE", parts.remote);
+    command.env("ROBOT_JOINTS", parts.joints);
+    let name = target_dir.file_name().unwrap_or_default();
+    let name = name.to_string_lossy().into_owned();
     let elf = target_dir.join(BOARD).join("release").join(PACKAGE);
     Ok((Job { name, command }, elf))
 }
@@ -70,7 +101,7 @@ pub fn clippy() -> Option<Command> {
         let mut command = tool::cargo();
         command.args(["clippy", "--release", "--package", PACKAGE]);
         command.args(["--target", BOARD, "--target-dir"]);
-        command.arg(workspace::firmware_target_dir());
+        command.arg(Parts::DEFAULT.target_dir());
         command.args(["--", "-D", "warnings"]);
         command
     })

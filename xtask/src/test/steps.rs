@@ -5,7 +5,7 @@ use std::{env, path::Path, process::Command};
 use super::totals::{self, Totals};
 use crate::{
     emulator::HOST_PROFILE,
-    firmware::{self, Remote, image::Image},
+    firmware::{self, Parts, image::Image},
     job,
     prerequisites::{self, EMULATOR},
     tool, workspace,
@@ -23,14 +23,14 @@ pub struct Step {
 pub fn all() -> anyhow::Result<Vec<Step>> {
     prerequisites::ensure(&EMULATOR)?;
     let host = tool::host_triple()?;
-    let (build, elf) = firmware::build(Remote::Sbus)?;
-    let (build_dbus, elf_dbus) = firmware::build(Remote::Dbus)?;
+    let (build, elf) = firmware::build(&Parts::DEFAULT)?;
+    let (build_other, elf_other) = firmware::build(&Parts::OTHER)?;
     let (checked, booted) = (elf.clone(), elf);
     let mut steps = vec![
         of_command("format", cargo(&["fmt", "--all", "--check"])),
         of_command("clippy, host", clippy_host(&host)),
         step("build the images", move || {
-            job::run_all(vec![build, build_dbus]).map(|()| Totals::PASSED)
+            job::run_all(vec![build, build_other]).map(|()| Totals::PASSED)
         }),
         step("clippy, firmware", || match firmware::clippy() {
             Some(command) => totals::of_command(command),
@@ -43,7 +43,7 @@ pub fn all() -> anyhow::Result<Vec<Step>> {
     ];
     let host_tests = test_host(&host);
     let loom = loom(&host);
-    let emulator_tests = test_emulator(&host, &booted, &elf_dbus);
+    let emulator_tests = test_emulator(&host, &booted, &elf_other);
     steps.push(of_runner("host tests", host_tests));
     steps.push(of_runner("loom", loom));
     steps.push(of_runner("emulator tests", emulator_tests));
@@ -106,7 +106,7 @@ fn test_host(host: &str) -> Command {
     ])
 }
 
-fn test_emulator(host: &str, elf: &Path, elf_dbus: &Path) -> Command {
+fn test_emulator(host: &str, elf: &Path, elf_other: &Path) -> Command {
     let mut command = cargo(&[
         "test",
         "--package",
@@ -120,7 +120,7 @@ fn test_emulator(host: &str, elf: &Path, elf_dbus: &Path) -> Command {
         "--show-output",
     ]);
     command.env("ROBOT_ELF", elf);
-    command.env("ROBOT_ELF_DBUS", elf_dbus);
+    command.env("ROBOT_ELF_DBUS_RS00", elf_other);
     command
 }
 
