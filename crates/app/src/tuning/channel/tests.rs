@@ -265,3 +265,36 @@ fn bring_up_is_asked_for_and_echoed() {
     bench.write(&[0x40, 0, 0, 0, 0, 0, 0, 0]);
     assert!(!bench.bring_up.blocks_arming());
 }
+
+proptest::proptest! {
+    /// Mostly real requests, each with any value: whatever the channel let in is in range and fits together.
+    #[test]
+    fn no_sequence_of_requests_makes_a_configuration_that_is_none(
+        requests in proptest::collection::vec(
+            (
+                proptest::prelude::prop_oneof![8 => 1u8..20, 1 => proptest::prelude::any::<u8>()],
+                0u8..16,
+                proptest::prelude::prop_oneof![
+                    -2.0f32..2.0,
+                    -600.0f32..600.0,
+                    proptest::num::f32::ANY,
+                ],
+                proptest::prelude::any::<[u8; 7]>(),
+            ),
+            1..60,
+        ),
+    ) {
+        let mut bench = Bench::default();
+        for (group, index, value, geometry) in requests {
+            let [a, b, c, d] = value.to_le_bytes();
+            bench.write(&[0x20, group, index, 0, a, b, c, d]);
+            let [radius, track, e, ratio, f, signs, _] = geometry;
+            bench.write(&[0x10, radius, 0, track, e & 7, ratio, f & 63, signs & 7]);
+        }
+        proptest::prop_assert_eq!(consistency::check(&bench.config), Ok(()));
+        for parameter in crate::tuning::PARAMETERS.iter().flat_map(|group| group.parameters) {
+            let value = parameter.read(&bench.config);
+            proptest::prop_assert!((parameter.min..=parameter.max).contains(&value));
+        }
+    }
+}
