@@ -151,7 +151,7 @@ pub fn phase() -> impl Strategy<Value = Phase> {
     let motors = (
         [bus(), bus()],
         [bad(), bad()],
-        mostly([Behaviour::Good; 4], [bad(), bad(), bad(), bad()]),
+        prop_oneof![Just([Behaviour::Good; 4]), [bad(), bad(), bad(), bad()]],
         mostly(24.0, prop_oneof![any::<f32>(), 15.0f32..25.0]),
     );
     let direct = (prop_oneof![Just(3_000.0), any::<f32>()], joint_command());
