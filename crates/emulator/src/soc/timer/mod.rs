@@ -114,7 +114,8 @@ impl Timer {
     /// Interrupt line and next event after anything changed.
     fn settle(&mut self, ctx: &mut Ctx<'_>) {
         ctx.irq.set(self.irq(), self.sr & self.dier & FLAGS != 0);
-        let Some(cycle) = self.counter.next_flag(self.dier & !self.sr & FLAGS) else {
+        let awaited = self.dier & !self.sr & FLAGS | self.pending_preload();
+        let Some(cycle) = self.counter.next_flag(awaited) else {
             return;
         };
         let at = self.epoch + cycles_to_ps(cycle, self.clock_hz);
@@ -124,6 +125,15 @@ impl Timer {
             ctx.scheduler
                 .at(at, Target::Timer(self.number), self.generation);
         }
+    }
+
+    /// The update event, if it will change what a channel drives onto its pin.
+    fn pending_preload(&self) -> u32 {
+        let pending = (0..4).any(|channel| {
+            let compare = self.counter.compare[channel];
+            self.ccer >> (4 * channel) & 1 == 1 && compare.written != compare.active
+        });
+        if pending { UIF } else { 0 }
     }
 
     fn value(&self, register: u32) -> Result<u32, Unmodelled> {

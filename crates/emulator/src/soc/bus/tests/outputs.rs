@@ -1,3 +1,5 @@
+use robot_plant::time::US;
+
 use super::*;
 
 const GPIOD: u32 = 0x4002_0C00;
@@ -51,6 +53,28 @@ fn an_led_is_dimmed_by_its_timer() {
     // On another alternate function the timer does not reach the pin.
     bench.write(GPIOH + 0x24, 3 << 8);
     assert_eq!(truth(&bench, "truth.led.b"), 0.0);
+}
+
+/// RM0090 18.3.9: with OCxPE the new value is taken at the next update event.
+#[test]
+fn a_new_duty_reaches_the_pin_with_the_next_period() {
+    let mut bench = board();
+    bench.write(GPIOH, 0b10 << 20);
+    bench.write(GPIOH + 0x24, 2 << 8);
+    // 84 MHz / 84 / 1000: a period of 1 ms.
+    bench.write(TIM5 + 0x28, 83);
+    bench.write(TIM5 + 0x2C, 999);
+    bench.write(TIM5 + 0x18, PWM1);
+    bench.write(TIM5 + 0x20, 1);
+    bench.write(TIM5 + 0x14, 1);
+    bench.write(TIM5, 1);
+    let start = bench.now;
+    bench.run_until(start + 300 * US);
+    bench.write(TIM5 + 0x34, 250);
+    bench.run_until(start + 990 * US);
+    assert_eq!(truth(&bench, "truth.led.b"), 0.0);
+    bench.run_until(start + 1_010 * US);
+    assert_eq!(truth(&bench, "truth.led.b"), 0.25);
 }
 
 #[test]
