@@ -7,7 +7,7 @@
 //! |---|---|
 //! | [`domain`] | the types all stages share, plain `repr(C)` data in SI units unless the name says otherwise |
 //! | [`input`] | radio bytes → `RemoteUpdate` (stick and switch state, operator state, link diagnostics) |
-//! | [`sensing`] | sensor register bytes → calibrated `ImuState`, `MagState`; the bring-up sequences as data |
+//! | [`sensing`] | sensor register bytes → calibrated `ImuState`, `MagState`, the heater's duty; the bring-up sequences as data |
 //! | [`estimation`] | IMU, magnetometer, wheels → `StateEstimate` |
 //! | [`logic`] | remote → `LogicBus` (high-level command) |
 //! | [`control`] | `LogicBus` and estimate → `ChassisCommand`; `control/user_controller.rs` is where a user writes theirs |
@@ -23,9 +23,12 @@
 //! - sbus task: `input::RemoteReceiver::feed(bytes, ts_us, |update| publish)`, or `reject` if the UART flagged one of
 //!   the bytes.
 //! - sensor task: walk `sensing::bmi088::INIT` and `sensing::ist8310::INIT`; then every 5 ms transfer
-//!   `bmi088::ACCEL_READ`/`GYRO_READ` and hand both answers to `sensing::ImuPipeline::process`; every 20 ms write
-//!   `ist8310::START_SINGLE_SHOT`, wait `ist8310::MEASUREMENT_US`, read `ist8310::READ_LEN` bytes from
-//!   `ist8310::READ_FROM` and hand them to `sensing::MagPipeline::process`.
+//!   `bmi088::ACCEL_READ`/`GYRO_READ` and hand both answers to `sensing::ImuPipeline::process`, or say `process_silence`,
+//!   and set the heater to `heater_duty`; every 20 ms write `ist8310::START_SINGLE_SHOT`, wait
+//!   `ist8310::MEASUREMENT_US`, read `ist8310::READ_LEN` bytes from `ist8310::READ_FROM` and hand them to
+//!   `sensing::MagPipeline::process`.
+//! - status task, 100 Hz: `indication::Indication::of` what diagnostics say, and `indication::IndicationPlayer::step`
+//!   for LED and buzzer.
 //! - logic task, 100 Hz: `logic::LogicStage::step`.
 //! - control task, 1 kHz: `tick::ControlLoop::on_can_frame` for each received frame, then
 //!   `tick::ControlLoop::tick(&inputs, now_us)`; send `outputs.frames`, publish the rest.
