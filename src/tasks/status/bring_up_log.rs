@@ -28,6 +28,9 @@ impl BringUpLog {
                 status.motor,
                 status.trial
             ),
+            step if status.by_radio => {
+                defmt::warn!("bring-up by {=str}: {}, motor {=u8} chosen", by, step, status.motor);
+            }
             step => defmt::warn!("bring-up by {=str}: {}", by, step),
         }
     }
