@@ -29,7 +29,12 @@ impl BringUpLog {
                 status.trial
             ),
             step if status.by_radio => {
-                defmt::warn!("bring-up by {=str}: {}, motor {=u8} chosen", by, step, status.motor);
+                defmt::warn!(
+                    "bring-up by {=str}: {}, motor {=u8} chosen",
+                    by,
+                    step,
+                    status.motor
+                );
             }
             step => defmt::warn!("bring-up by {=str}: {}", by, step),
         }
