@@ -376,7 +376,6 @@ impl Motor for Joint {
     ) -> JointOutput {
         let due = self.slot.schedule.is_due(self.tick);
         self.tick = self.tick.wrapping_add(1);
-        let permitted = permitted && !self.is_silent;
         if !permitted {
             self.sent = JointCommand::default();
             self.obeyed = None;
