@@ -110,3 +110,33 @@ impl Motor for Wheel {
         self.sent
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of settings and layout the smaller limit counts; one that is no number allows nothing.
+    #[test]
+    fn current_is_limited_by_settings_and_layout() {
+        for (setting_ma, expected_ma) in [
+            (4_000.0, 4_000.0),
+            (16_000.0, 10_000.0),
+            (f32::INFINITY, 10_000.0),
+            (-1.0, 0.0),
+            (f32::NAN, 0.0),
+        ] {
+            let esc = EscId::new(1).unwrap();
+            let config = WheelControllerConfig {
+                current_limit_ma: setting_ma,
+                ..WheelControllerConfig::default()
+            };
+            let command = WheelCommand {
+                current_ma: -30_000.0,
+            };
+            let mut wheel = Wheel::new(esc, 10_000.0);
+            let sent = wheel.drive(&command, &config, true, 0);
+            assert_eq!(sent.ma(), -expected_ma, "{setting_ma}");
+            assert_eq!(wheel.drive(&command, &config, false, 0).ma(), 0.0);
+        }
+    }
+}

@@ -27,3 +27,42 @@ pub fn motor_targets(joint: &JointCommand, config: &JointConfig) -> MitTargets {
         torque_nm: config.direction * joint.tau_nm,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motor::layout::ROBOT_LAYOUT;
+
+    /// A mirrored motor that stands at 0.5 rad when its joint is at zero: joint 0.3 is motor 0.5 − 0.3.
+    #[test]
+    fn a_mirrored_and_displaced_motor_follows_its_joint() {
+        let [config, ..] = ROBOT_LAYOUT.joint_configs();
+        let config = JointConfig {
+            direction: -1.0,
+            zero_rad: 0.5,
+            ..config
+        };
+        let command = JointCommand {
+            pos_rad: 0.3,
+            vel_rps: 2.0,
+            kp: 20.0,
+            kd: 1.0,
+            tau_nm: 0.7,
+            ..JointCommand::default()
+        };
+        let targets = motor_targets(&command, &config);
+        assert!((targets.pos_rad - 0.2).abs() < 1e-6);
+        assert_eq!((targets.vel_rps, targets.torque_nm), (-2.0, -0.7));
+        assert_eq!((targets.kp, targets.kd), (20.0, 1.0));
+        let report = MitReport {
+            position_code: 0,
+            pos_rad: 0.2,
+            vel_rps: -2.0,
+            torque_nm: -0.7,
+        };
+        let motion = joint_motion(&report, &config);
+        assert!((motion.pos_rad - 0.3).abs() < 1e-6);
+        assert_eq!(motion.vel_rps, 2.0);
+        assert_eq!(joint_torque_nm(&report, &config), 0.7);
+    }
+}
