@@ -156,7 +156,11 @@ proptest! {
 #[test]
 fn wheel_geometry_changes_only_while_disarmed() {
     let request = [0x10, 60, 0, 0xA4, 0x01, 0x80, 0x07, 0x02];
-    let disarmed = [good(1_500, false), with_frame(false, 0x7A0, request)];
+    let disarmed = [
+        good(1_500, false),
+        with_frame(false, 0x7A0, request),
+        good(10, false),
+    ];
     let ticks = run_all(Make::Dm4310, &disarmed);
     let replies: Vec<_> = ticks.iter().flat_map(|tick| &tick.replies).collect();
     assert_eq!(replies, [&request; 2], "one on each bus");

@@ -19,7 +19,7 @@ use crate::{
         layout::{MotorLayout, ROBOT_LAYOUT},
     },
     safety::{Arming, ArmingInputs, SafetyInputs, SafetyPolicy, TorquePermit},
-    tuning::{TuningChannel, TuningGate},
+    tuning::{REPLY_PERIOD_TICKS, TuningChannel, TuningGate},
 };
 
 /// The latest snapshot of each producer.
@@ -73,7 +73,7 @@ pub struct ControlLoop<
     policy: SafetyPolicy,
     arming: Arming,
     tuning: TuningChannel,
-    /// Of the tuning channel, for the next tick: one a bus.
+    /// Of the tuning channel, for its next slot: one a bus.
     replies: Vec<(BusId, CanFrame), 2>,
     bring_up: BringUp,
     diagnostics: D,
@@ -285,10 +285,14 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
     }
 
     fn reply(&mut self) {
+        let diagnostics: &DiagnosticsSnapshot = self.diagnostics.borrow();
+        if !diagnostics.tick.count.is_multiple_of(REPLY_PERIOD_TICKS) {
+            return;
+        }
         // Motors take two of three mailboxes (layout), a reply the third.
         let _ = self.frames.extend_from_slice(&self.replies);
         self.replies.clear();
-        self.tuning.begin_tick();
+        self.tuning.begin_slot();
     }
 
     fn demand<'a>(&self, logic: &'a LogicBus, now_us: u64) -> Demand<'a> {

@@ -1,4 +1,4 @@
-//! Requests in, at most one reply a tick and bus out.
+//! Requests in, at most one reply a slot and bus out.
 
 use super::{
     Refusal, TuningStatus, consistency, parameters,
@@ -29,21 +29,24 @@ impl TuningGate {
     }
 }
 
+/// 250 replies a second and bus at most: what the layout's load leaves room for.
+pub const REPLY_PERIOD_TICKS: u32 = 4;
+
 #[derive(Clone, Debug, Default)]
 pub struct TuningChannel {
-    /// Index = `BusId`: a reply was made in this tick.
+    /// Index = `BusId`: a reply was made in this slot.
     replied: [bool; 2],
     status: TuningStatus,
 }
 
 impl TuningChannel {
-    /// Before the frames of each tick.
-    pub fn begin_tick(&mut self) {
+    /// Every [`REPLY_PERIOD_TICKS`], after the replies of the slot before went out.
+    pub fn begin_slot(&mut self) {
         self.replied = [false; 2];
     }
 
     /// Takes any received frame and gives the reply, for the same bus. A client that waits for each reply always gets
-    /// one; of more requests in one tick all but the first are left undone, so that replies never fill a bus.
+    /// one; of more requests in one slot all but the first are left undone, so that replies never fill a bus.
     pub fn on_frame(
         &mut self,
         bus: BusId,

@@ -12,7 +12,7 @@ mod refusal;
 mod status;
 mod wheel_geometry;
 
-pub use channel::{TuningChannel, TuningGate};
+pub use channel::{REPLY_PERIOD_TICKS, TuningChannel, TuningGate};
 pub use parameter::{Parameter, ParameterGroup, ParameterKind};
 pub use parameters::PARAMETERS;
 pub use protocol::{READ_ID, REPLY_ID, WRITE_ID};

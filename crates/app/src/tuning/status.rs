@@ -7,7 +7,7 @@ pub struct TuningStatus {
     /// Requests that were done, reads included.
     pub accepted: u32,
     pub refused: u32,
-    /// Requests left undone and unanswered: a second one in the same tick on the same bus.
+    /// Requests left undone and unanswered: a second one in the same slot on the same bus.
     pub dropped: u32,
     /// Grows whenever a setting changes.
     pub revision: u32,

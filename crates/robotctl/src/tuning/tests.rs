@@ -36,7 +36,7 @@ impl CanLink for Bus {
     fn send(&mut self, frame: &CanFrame) -> Result<(), CanLinkError> {
         let robot = &mut *self.0.borrow_mut();
         robot.requests += 1;
-        robot.channel.begin_tick();
+        robot.channel.begin_slot();
         let reply = robot.channel.on_frame(
             BusId::Can2,
             frame,

@@ -10,6 +10,7 @@ use super::{JointMotor, JointSlot, Schedule, WheelGroup};
 use crate::{
     domain::BusId,
     motor::{dm4310, m3508},
+    tuning::REPLY_PERIOD_TICKS,
 };
 
 /// Standard frame of eight bytes with every possible stuff bit and the pause after it.
@@ -45,13 +46,12 @@ pub const fn load_fits_bus(wheels: &WheelGroup, joints: &Joints) {
 }
 
 /// One command frame for all wheels, one feedback frame from each, at 1 kHz; a command and a reply for each joint in
-/// its slots.
+/// its slots; a request and a reply in each slot of the tuning channel.
 const fn bits_per_second(wheels: &WheelGroup, joints: &Joints, bus: BusId) -> u32 {
-    let mut frames = if same(wheels.bus, bus) {
-        (1 + wheels.escs.len() as u32) * TICKS_PER_SECOND
-    } else {
-        0
-    };
+    let mut frames = 2 * TICKS_PER_SECOND / REPLY_PERIOD_TICKS;
+    if same(wheels.bus, bus) {
+        frames += (1 + wheels.escs.len() as u32) * TICKS_PER_SECOND;
+    }
     let mut index = 0;
     while index < joints.len() {
         if same(joints[index].bus, bus) {

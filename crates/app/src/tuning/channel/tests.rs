@@ -30,7 +30,7 @@ impl Bench {
 
     /// The reply to the first request of a tick.
     fn reply(&mut self, gate: TuningGate, id: u16, payload: &[u8]) -> [u8; 8] {
-        self.channel.begin_tick();
+        self.channel.begin_slot();
         let reply = self.ask(gate, id, payload).unwrap();
         assert_eq!(reply.id().raw(), 0x7A2);
         reply.full_payload().unwrap()
@@ -209,9 +209,9 @@ fn a_write_is_done_whole_or_not_at_all() {
 }
 
 #[test]
-fn one_request_a_tick_and_bus() {
+fn one_request_a_slot_and_bus() {
     let mut bench = Bench::default();
-    bench.channel.begin_tick();
+    bench.channel.begin_slot();
     assert!(bench.ask(TuningGate::Open, 0x7A1, &[0x11]).is_some());
     assert_eq!(bench.ask(TuningGate::Open, 0x7A0, &GEOMETRY), None);
     assert!(bench.unchanged());
@@ -224,7 +224,7 @@ fn one_request_a_tick_and_bus() {
     } = &mut bench;
     let other_bus = channel.on_frame(BusId::Can2, &read, TuningGate::Open, config, bring_up);
     assert!(other_bus.is_some());
-    bench.channel.begin_tick();
+    bench.channel.begin_slot();
     assert!(bench.ask(TuningGate::Open, 0x7A0, &GEOMETRY).is_some());
 }
 
