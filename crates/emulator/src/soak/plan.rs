@@ -17,6 +17,10 @@ use crate::{
 /// Calibration and set-up are over, as a rule.
 const BOOTED: Ps = 2_500 * MS;
 
+/// Identifiers of the tuning channel.
+const WRITE: u32 = 0x7A0;
+const READ: u32 = 0x7A1;
+
 /// Who acts next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Actor {
@@ -94,6 +98,8 @@ impl Plan {
         let mut at = start;
         self.remote(at, switches(false, false));
         at += self.dice.time(50.0, 500.0);
+        let bring_up = self.bring_up();
+        self.then(at, Deed::Can(CanBusId::Can1, bring_up));
         if self.dice.chance(0.7) {
             self.remote(at, switches(false, true));
             at += self.dice.time(1_100.0, 1_500.0);
@@ -115,6 +121,34 @@ impl Plan {
         at
     }
 
+    /// Off, mostly: else one of the three steps, with one motor to try out and how.
+    fn bring_up(&mut self) -> CanFrame {
+        let step = match self.dice.unit() {
+            u if u < 0.7 => 0,
+            u if u < 0.75 => 1,
+            u if u < 0.8 => 2,
+            _ => 3,
+        };
+        let (motor, action, value) = if step < 3 {
+            (0, 0, 0)
+        } else {
+            let motor = (self.dice.bits() % 6) as u8;
+            let most = if motor < 2 { 1_100.0 } else { 550.0 };
+            let value = self.dice.between(-most, most) as i16;
+            let kinds = [(0, value), (0, 0), (1, 0)];
+            let (action, value) = self.dice.pick(&kinds).copied().unwrap_or_default();
+            (motor, action, value)
+        };
+        let [low, high] = value.to_le_bytes();
+        CanFrame {
+            id: WRITE,
+            extended: false,
+            remote: false,
+            dlc: 8,
+            data: [0x40, step, motor, action, low, high, 0, 0],
+        }
+    }
+
     fn sticks(&mut self) -> RemoteInput {
         let mut axis = || match self.dice.unit() {
             u if u < 0.2 => 0.0,
@@ -123,11 +157,14 @@ impl Plan {
             _ => self.dice.between(-1.0, 1.0),
         };
         let (vx, wz) = (axis(), axis());
+        // The dead-man stick of bring-up.
+        let left_x = self.dice.chance(0.5);
         let mode = self.dice.chance(0.1).then(|| (self.dice.bits() % 3) as u8);
         RemoteInput {
             vx: Some(vx),
             wz: Some(wz),
             mode,
+            left_x: Some(f64::from(left_x)),
             ..RemoteInput::default()
         }
     }
@@ -173,8 +210,6 @@ impl Plan {
     }
 
     fn request(&mut self) -> CanFrame {
-        const WRITE: u32 = 0x7A0;
-        const READ: u32 = 0x7A1;
         let junk = self.dice.bits().to_le_bytes();
         let [group, index, .., length] = junk;
         let (id, data, dlc) = match self.dice.bits() % 6 {
@@ -209,6 +244,7 @@ fn switches(enable: bool, e_stop: bool) -> RemoteInput {
         e_stop: Some(e_stop),
         vx: Some(0.0),
         wz: Some(0.0),
+        left_x: Some(0.0),
         ..RemoteInput::default()
     }
 }

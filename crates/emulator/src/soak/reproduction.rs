@@ -53,7 +53,8 @@ fn state(earlier: &[&Action]) -> Vec<Deed> {
                     vx: input.vx.or(pilot.vx),
                     wz: input.wz.or(pilot.wz),
                     mode: input.mode.or(pilot.mode),
-                    ..pilot
+                    left_x: input.left_x.or(pilot.left_x),
+                    left_y: input.left_y.or(pilot.left_y),
                 };
             }
             Deed::StartFault(name) => {
@@ -101,6 +102,8 @@ fn remote_text(input: &RemoteInput) -> String {
     field("e_stop", input.e_stop.map(|v| v.to_string()));
     field("vx", input.vx.map(|v| format!("{v:?}")));
     field("wz", input.wz.map(|v| format!("{v:?}")));
+    field("left_x", input.left_x.map(|v| format!("{v:?}")));
+    field("left_y", input.left_y.map(|v| format!("{v:?}")));
     field("mode", input.mode.map(|v| v.to_string()));
     fields.join(", ")
 }

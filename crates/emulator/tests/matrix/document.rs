@@ -99,26 +99,42 @@ fn cell(row: &Row, phase: Phase, seen: Option<&Observed>) -> String {
 }
 
 fn armed(wanted: &Armed, seen: Option<&Observed>) -> String {
-    let wheels = group(wanted.wheels, seen.map(|seen| (&seen.wheels[..], seen)));
-    let joints = group(wanted.joints, seen.map(|seen| (&seen.joints[..], seen)));
+    let flags = flags(&wanted.flags);
     let after = match wanted.after {
         After::Off => "stays off",
-        After::Drives => "drives on",
-        After::WheelsOnly => "wheels drive on",
-        After::JointsOnly => "joints hold on",
+        After::Drives => "then drives on",
+        After::WheelsOnly => "then wheels drive on",
+        After::JointsOnly => "then joints hold on",
         After::WhatRan => "what stopped stays off",
     };
-    let flags = flags(&wanted.flags);
-    format!("wheels {wheels}, joints {joints}; {flags}{after}")
+    let wheels = seen.map(|seen| measured(&seen.wheels, seen));
+    let joints = seen.map(|seen| measured(&seen.joints, seen));
+    match (wanted.wheels, wanted.joints) {
+        (Group::Runs, Group::Runs) => format!("{flags}runs on"),
+        (Group::Either, Group::Either) => format!("{flags}may stop; {after}"),
+        (Group::Zero(wheels_ms), Group::Zero(joints_ms)) if wheels_ms == joints_ms => {
+            let both = wheels.zip(joints);
+            let both = both.map(|(wheels, joints)| format!(" [wheels {wheels}, joints {joints}]"));
+            let both = both.unwrap_or_default();
+            format!("{flags}all 0 within {wheels_ms} ms{both}; {after}")
+        }
+        _ => {
+            let wheels = group(wanted.wheels, wheels);
+            let joints = group(wanted.joints, joints);
+            format!("{flags}wheels {wheels}, joints {joints}; {after}")
+        }
+    }
 }
 
-fn group(wanted: Group, seen: Option<(&[Wire], &Observed)>) -> String {
+fn measured(wires: &[Wire], seen: &Observed) -> String {
+    let zero = judge::zero_from(wires, seen);
+    zero.map_or("–".into(), |at| format!("{:.1}", at as f64 / MS as f64))
+}
+
+fn group(wanted: Group, measured: Option<String>) -> String {
     match wanted {
         Group::Zero(limit) => {
-            let measured = seen.and_then(|(wires, seen)| judge::zero_from(wires, seen));
-            let measured = measured.map_or(String::new(), |at| {
-                format!(" [{:.1} ms]", at as f64 / MS as f64)
-            });
+            let measured = measured.map_or(String::new(), |ms| format!(" [{ms}]"));
             format!("0 within {limit} ms{measured}")
         }
         Group::Runs => "run".into(),
@@ -136,7 +152,7 @@ fn disarmed(wanted: &Disarmed) -> String {
     let flags = flags(&wanted.flags);
     let during = arms("during it", wanted.arms_during);
     let after = arms("after it", wanted.arms_after);
-    format!("0; {flags}{during}, {after}")
+    format!("{flags}{during}, {after}")
 }
 
 fn flags(flags: &Flags) -> String {
