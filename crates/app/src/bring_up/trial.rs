@@ -7,8 +7,11 @@ use super::{
     request::{TestMotor, Trial, TrialAction},
     status::TrialState,
 };
-use crate::domain::{
-    ChassisCommand, JointCommand, JointMode, MotorFeedback, WheelCommand, WheelOdomConfig,
+use crate::{
+    domain::{
+        ChassisCommand, JointCommand, JointMode, MotorFeedback, WheelCommand, WheelOdomConfig,
+    },
+    math::scalar,
 };
 
 /// All that a trial looks at in one tick.
@@ -217,7 +220,11 @@ fn wheel_command(action: TrialAction, motion: &Motion, drive: f32) -> WheelComma
     let limit_ma = limits::WHEEL_CURRENT_MA;
     let current_ma = match torque_share(action, drive) {
         Some(share) => share * limit_ma,
-        None => (-limits::BRAKE_MA_PER_RPS * motion.vel_rps).clamp(-limit_ma, limit_ma),
+        None => scalar::clamp(
+            -limits::BRAKE_MA_PER_RPS * motion.vel_rps,
+            -limit_ma,
+            limit_ma,
+        ),
     };
     WheelCommand { current_ma }
 }
@@ -236,7 +243,8 @@ fn joint_command(action: TrialAction, motion: &Motion, pose_rad: f32, drive: f32
         };
     }
     let damping_nm = limits::HOLD_KD * motion.vel_rps;
-    let stiffness_nm = (limits::HOLD_KP * (pose_rad - motion.pos_rad)).clamp(
+    let stiffness_nm = scalar::clamp(
+        limits::HOLD_KP * (pose_rad - motion.pos_rad),
         damping_nm - limits::HOLD_TORQUE_NM,
         damping_nm + limits::HOLD_TORQUE_NM,
     );

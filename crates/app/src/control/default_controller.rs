@@ -70,7 +70,7 @@ fn wheel_command(
     };
     let limit_ma = scalar::max(ctrl.current_limit_ma, 0.0);
     WheelCommand {
-        current_ma: sign * forward_ma.clamp(-limit_ma, limit_ma),
+        current_ma: sign * scalar::clamp(forward_ma, -limit_ma, limit_ma),
     }
 }
 

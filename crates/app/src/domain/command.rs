@@ -1,5 +1,7 @@
 //! Commands on their way from the pilot to the motors.
 
+use crate::math::scalar;
+
 /// What the pilot or a planner wants, normalised (seed section 3.3).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
@@ -95,7 +97,7 @@ impl MotorCurrent {
         }
         let limit = limit_ma.clamp(0.0, Self::FULL_SCALE_MA);
         Self {
-            ma: requested_ma.clamp(-limit, limit),
+            ma: scalar::clamp(requested_ma, -limit, limit),
         }
     }
 

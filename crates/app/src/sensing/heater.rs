@@ -2,7 +2,10 @@
 //!
 //! Held off whenever the temperature is not known or too high; what it does in each case is in `docs/sensors.md`.
 
-use crate::domain::{HeaterConfig, HeaterState, HeaterStatus, age_us};
+use crate::{
+    domain::{HeaterConfig, HeaterState, HeaterStatus, age_us},
+    math::scalar,
+};
 
 /// Away from the target by at most this: warm.
 pub(super) const NEAR_TARGET_K: f32 = 3.0;
@@ -102,9 +105,9 @@ impl Heater {
         let winds_up = (wanted >= max_duty && error_k > 0.0) || (wanted <= 0.0 && error_k < 0.0);
         if !winds_up {
             let grown = self.integral + self.config.ki * error_k * dt_s;
-            self.integral = grown.clamp(0.0, max_duty);
+            self.integral = scalar::clamp(grown, 0.0, max_duty);
         }
-        wanted.clamp(0.0, max_duty)
+        scalar::clamp(wanted, 0.0, max_duty)
     }
 
     /// 0 for NaN.
