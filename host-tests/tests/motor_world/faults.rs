@@ -101,6 +101,19 @@ fn a_fault_that_is_still_there_comes_back_at_once() {
     }
 }
 
+/// Too short to count as silence, but a DM4310's time-out is back at the factory's: none.
+#[test]
+fn a_motor_whose_supply_fails_for_a_moment_is_set_up_anew() {
+    let mut robot = armed_holding(JointKind::Dm4310);
+    robot.fault("motor-2-gone", true);
+    robot.run(0.03);
+    robot.fault("motor-2-gone", false);
+    robot.run(1.0);
+    assert_eq!(robot.joint_signals("can.joint.{}.enabled"), [1.0; 4]);
+    robot.run_without_board(110, |_, _| {});
+    assert_eq!(robot.joint_signals("can.joint.{}.enabled"), [0.0; 4]);
+}
+
 const DISABLE: [u8; 8] = [0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFD];
 const ENABLE: [u8; 8] = [0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFC];
 
@@ -114,8 +127,11 @@ fn a_motor_that_somebody_disables_is_enabled_again() {
     assert_eq!(robot.states(), [JointState::Enabled; 4]);
     assert_eq!(robot.joint_signals("can.joint.{}.enabled"), [1.0; 4]);
     let mut enable_frames = 0;
-    for _ in 0..1_000 {
-        robot.hear_from_a_stranger(1, DISABLE);
+    for ms in 0..1_000 {
+        // Between two of them there is time to set the motor up anew.
+        if ms % 50 == 0 {
+            robot.hear_from_a_stranger(1, DISABLE);
+        }
         robot.run(1e-3);
         enable_frames += robot
             .sent()
@@ -123,8 +139,8 @@ fn a_motor_that_somebody_disables_is_enabled_again() {
             .filter(|(_, frame)| frame.id().raw() == 1 && frame.payload() == ENABLE)
             .count();
     }
-    // Five slots in 10 ms, once every 250 ms.
-    assert!((5..=25).contains(&enable_frames), "{enable_frames}");
+    // Once every 250 ms, for five slots in 10 ms at most.
+    assert!((4..=25).contains(&enable_frames), "{enable_frames}");
 }
 
 #[test]

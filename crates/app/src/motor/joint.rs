@@ -163,7 +163,8 @@ impl Joint {
                     0
                 };
                 if *disabled_replies >= DISABLED_REPLIES {
-                    self.phase = Phase::Disabled;
+                    // Its supply may have failed for a moment, and taken the settings with it.
+                    self.set_up(self.mode);
                 }
             }
             Phase::Disabled | Phase::Fault => {}
