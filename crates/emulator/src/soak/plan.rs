@@ -177,6 +177,9 @@ impl Plan {
         };
         let lasts = if name.starts_with("rogue") {
             self.dice.time(1.0, 300.0)
+        } else if name.ends_with("-gone") || name.ends_with("-wrong-id") {
+            // What has no supply, or gets another identifier, takes its time to boot.
+            self.dice.time(100.0, 4_000.0)
         } else {
             self.dice.time(10.0, 4_000.0)
         };
