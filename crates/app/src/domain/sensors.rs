@@ -93,7 +93,7 @@ pub struct JointFeedback {
     pub state: JointState,
     /// The motor's own fault code, 0 = none: DM4310 the ERR nibble if it is 8 or more, RS00 the fault word.
     pub fault_code: u32,
-    /// Position stands still although the motor reports speed.
+    /// Its reports contradict themselves or what was commanded: it repeats an old one.
     pub frozen: bool,
     /// Since `ts_us`; `u32::MAX` before the first report.
     pub age_us: u32,
