@@ -51,8 +51,8 @@ pub struct IndicationInputs<'a> {
 }
 
 const RADIO: SafetyFlags = SafetyFlags::REMOTE_LOST
-    .and(SafetyFlags::REMOTE_FAILSAFE)
-    .and(SafetyFlags::REMOTE_QUALITY);
+    .union(SafetyFlags::REMOTE_FAILSAFE)
+    .union(SafetyFlags::REMOTE_QUALITY);
 
 impl Indication {
     pub fn of(inputs: &IndicationInputs<'_>) -> Self {

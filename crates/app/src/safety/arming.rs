@@ -62,11 +62,11 @@ impl ArmingBlockers {
             .map(|(_, name)| *name)
     }
 
-    const fn and(self, other: Self) -> Self {
+    const fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    fn set(&mut self, blocker: Self, active: bool) {
+    fn add_if(&mut self, blocker: Self, active: bool) {
         if active {
             self.0 |= blocker.0;
         }
@@ -160,7 +160,7 @@ impl Arming {
         let mut blockers = self.disarming(fresh, inputs);
         match self.state {
             ArmingState::Disarmed => {
-                blockers = blockers.and(only_forbidding(inputs));
+                blockers = blockers.union(only_forbidding(inputs));
                 if blockers.is_empty() {
                     self.state = ArmingState::Armed;
                 }
@@ -214,16 +214,16 @@ impl Arming {
     /// What forbids arming and ends it.
     fn disarming(&self, fresh: bool, inputs: &ArmingInputs<'_>) -> ArmingBlockers {
         let mut blockers = ArmingBlockers::NONE;
-        blockers.set(ArmingBlockers::REMOTE_NOT_FRESH, !fresh);
-        blockers.set(ArmingBlockers::ENABLE_OFF, !inputs.operator.enabled);
-        blockers.set(
+        blockers.add_if(ArmingBlockers::REMOTE_NOT_FRESH, !fresh);
+        blockers.add_if(ArmingBlockers::ENABLE_OFF, !inputs.operator.enabled);
+        blockers.add_if(
             ArmingBlockers::ENABLE_NOT_CYCLED,
             inputs.operator.enabled && !matches!(self.request, Request::Asked { .. }),
         );
-        blockers.set(ArmingBlockers::ESTIMATE_INVALID, !inputs.estimate_valid);
-        blockers.set(ArmingBlockers::CALIBRATION_PENDING, !inputs.calibrated);
-        blockers.set(ArmingBlockers::SAFETY_STOP, inputs.safety.global_stop);
-        blockers.set(ArmingBlockers::BRING_UP_READ_ONLY, inputs.read_only);
+        blockers.add_if(ArmingBlockers::ESTIMATE_INVALID, !inputs.estimate_valid);
+        blockers.add_if(ArmingBlockers::CALIBRATION_PENDING, !inputs.calibrated);
+        blockers.add_if(ArmingBlockers::SAFETY_STOP, inputs.safety.global_stop);
+        blockers.add_if(ArmingBlockers::BRING_UP_READ_ONLY, inputs.read_only);
         blockers
     }
 }
@@ -234,17 +234,17 @@ fn only_forbidding(inputs: &ArmingInputs<'_>) -> ArmingBlockers {
     let mut blockers = ArmingBlockers::NONE;
     let stick_limit = inputs.config.stick_centre;
     let sticks = [inputs.remote.vx, inputs.remote.wz];
-    blockers.set(
+    blockers.add_if(
         ArmingBlockers::STICKS_NOT_CENTRED,
         !sticks.iter().all(|stick| stick.abs() <= stick_limit),
     );
-    blockers.set(
+    blockers.add_if(
         ArmingBlockers::SAFETY_STOP,
         inputs.safety.verdict != SafetyVerdict::Run,
     );
     let joints_ready = inputs.motor.joints.iter().all(is_ready);
-    blockers.set(ArmingBlockers::JOINTS_NOT_READY, !joints_ready);
-    blockers.set(
+    blockers.add_if(ArmingBlockers::JOINTS_NOT_READY, !joints_ready);
+    blockers.add_if(
         ArmingBlockers::BATTERY_LOW,
         inputs.safety.flags.intersects(SafetyFlags::BATTERY_LOW),
     );

@@ -39,7 +39,7 @@ impl BatteryWatch {
             dt_us,
             HOLD_US,
         );
-        flags.set(SafetyFlags::BATTERY_LOW, low);
-        flags.set(SafetyFlags::BATTERY_EMPTY, empty);
+        flags.add_if(SafetyFlags::BATTERY_LOW, low);
+        flags.add_if(SafetyFlags::BATTERY_EMPTY, empty);
     }
 }

@@ -96,17 +96,17 @@ impl SafetyFlags {
     }
 
     #[must_use]
-    pub const fn and(self, other: Self) -> Self {
+    pub const fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
     /// What both sets have.
     #[must_use]
-    pub(super) const fn common(self, other: Self) -> Self {
+    pub(super) const fn intersection(self, other: Self) -> Self {
         Self(self.0 & other.0)
     }
 
-    pub(super) fn set(&mut self, flag: Self, active: bool) {
+    pub(super) fn add_if(&mut self, flag: Self, active: bool) {
         if active {
             self.0 |= flag.0;
         }

@@ -34,7 +34,7 @@ impl HeatWatch {
         };
         let wheels_hot = self.wheels.step(wheels_cool, MARGIN_C, dt_us, HOLD_US);
         let joints_hot = self.joints.step(joints_cool, MARGIN_C, dt_us, HOLD_US);
-        flags.set(SafetyFlags::WHEEL_HOT, wheels_hot);
-        flags.set(SafetyFlags::JOINT_HOT, joints_hot);
+        flags.add_if(SafetyFlags::WHEEL_HOT, wheels_hot);
+        flags.add_if(SafetyFlags::JOINT_HOT, joints_hot);
     }
 }

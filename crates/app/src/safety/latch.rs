@@ -31,7 +31,9 @@ impl Latches {
         if self.clearing {
             self.latched = SafetyFlags::NONE;
         }
-        self.latched = self.latched.and(present.common(SafetyFlags::LATCHING));
+        self.latched = self
+            .latched
+            .union(present.intersection(SafetyFlags::LATCHING));
         (self.latched, clear_faults)
     }
 }

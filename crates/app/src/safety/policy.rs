@@ -59,13 +59,13 @@ impl SafetyPolicy {
         self.battery
             .judge(battery_v, inputs.config, dt_us, &mut flags);
         let fallen = self.tilt.fallen(inputs.estimate, inputs.config, dt_us);
-        flags.set(SafetyFlags::TILT, fallen);
+        flags.add_if(SafetyFlags::TILT, fallen);
         let command_age_us = age_us(inputs.command_ts_us, now_us);
-        flags.set(
+        flags.add_if(
             SafetyFlags::COMMAND_STALE,
             command_age_us > inputs.config.command_timeout_us,
         );
-        flags.set(SafetyFlags::TASK_LATE, inputs.health.late_tasks.any());
+        flags.add_if(SafetyFlags::TASK_LATE, inputs.health.late_tasks.any());
         self.conclude(flags, inputs, dt_us)
     }
 
@@ -80,16 +80,16 @@ impl SafetyPolicy {
 
     fn judge_sensors(&mut self, inputs: &SafetyInputs<'_>, now_us: u64, flags: &mut SafetyFlags) {
         let (health, config) = (inputs.health, inputs.config);
-        flags.set(SafetyFlags::ESTIMATE_INVALID, !inputs.estimate.valid);
-        flags.set(
+        flags.add_if(SafetyFlags::ESTIMATE_INVALID, !inputs.estimate.valid);
+        flags.add_if(
             SafetyFlags::IMU_STALE,
             age_us(inputs.imu_ts_us, now_us) > config.imu_timeout_us,
         );
-        flags.set(
+        flags.add_if(
             SafetyFlags::IMU_ERRORS,
             self.imu_errors.exceeded(health.imu.errors, config, now_us),
         );
-        flags.set(
+        flags.add_if(
             SafetyFlags::MAG_ERRORS,
             self.mag_errors.exceeded(health.mag.errors, config, now_us),
         );
@@ -103,14 +103,14 @@ impl SafetyPolicy {
         dt_us: u32,
     ) -> SafetyStatus {
         let link_bad = SafetyFlags::REMOTE_LOST
-            .and(SafetyFlags::REMOTE_FAILSAFE)
-            .and(SafetyFlags::REMOTE_QUALITY);
+            .union(SafetyFlags::REMOTE_FAILSAFE)
+            .union(SafetyFlags::REMOTE_QUALITY);
         let gesture =
             !present.intersects(link_bad) && inputs.operator.disabled && inputs.operator.e_stop;
         let hold_us = inputs.config.clear_hold_us;
         let (latched, clear_faults) = self.latches.step(present, gesture, dt_us, hold_us);
-        let flags = present.and(latched);
-        self.flags_seen = self.flags_seen.and(flags);
+        let flags = present.union(latched);
+        self.flags_seen = self.flags_seen.union(flags);
         SafetyStatus {
             latched,
             clear_faults,
@@ -122,44 +122,44 @@ impl SafetyPolicy {
 
 fn judge_remote(inputs: &SafetyInputs<'_>, flags: &mut SafetyFlags) {
     let (remote, config) = (inputs.remote, inputs.config);
-    flags.set(
+    flags.add_if(
         SafetyFlags::REMOTE_LOST,
         remote.age_us > config.remote_timeout_us,
     );
-    flags.set(SafetyFlags::REMOTE_FAILSAFE, remote.failsafe);
+    flags.add_if(SafetyFlags::REMOTE_FAILSAFE, remote.failsafe);
     let good_enough = remote.quality >= config.min_remote_quality;
-    flags.set(
+    flags.add_if(
         SafetyFlags::REMOTE_QUALITY,
         remote.frames > 0 && !good_enough,
     );
-    flags.set(SafetyFlags::E_STOP, inputs.operator.e_stop);
+    flags.add_if(SafetyFlags::E_STOP, inputs.operator.e_stop);
 }
 
 fn judge_buses(inputs: &SafetyInputs<'_>, flags: &mut SafetyFlags) {
     let [can1, can2] = &inputs.health.can;
     let faulty = |bus: &BusHealth| bus.state == BusErrorState::BusOff;
     let congested = |bus: &BusHealth| bus.tx_failures_in_row > inputs.config.max_tx_failures;
-    flags.set(SafetyFlags::CAN1_FAULT, faulty(can1));
-    flags.set(SafetyFlags::CAN2_FAULT, faulty(can2));
-    flags.set(SafetyFlags::CAN1_CONGESTED, congested(can1));
-    flags.set(SafetyFlags::CAN2_CONGESTED, congested(can2));
+    flags.add_if(SafetyFlags::CAN1_FAULT, faulty(can1));
+    flags.add_if(SafetyFlags::CAN2_FAULT, faulty(can2));
+    flags.add_if(SafetyFlags::CAN1_CONGESTED, congested(can1));
+    flags.add_if(SafetyFlags::CAN2_CONGESTED, congested(can2));
 }
 
 fn judge_wheels(inputs: &SafetyInputs<'_>, flags: &mut SafetyFlags) {
     let [left, right] = &inputs.motor.wheels;
     let timeout_us = inputs.motor_timeout_us;
-    flags.set(SafetyFlags::WHEEL_LEFT_SILENT, left.age_us > timeout_us);
-    flags.set(SafetyFlags::WHEEL_RIGHT_SILENT, right.age_us > timeout_us);
-    flags.set(SafetyFlags::WHEEL_FROZEN, left.frozen || right.frozen);
+    flags.add_if(SafetyFlags::WHEEL_LEFT_SILENT, left.age_us > timeout_us);
+    flags.add_if(SafetyFlags::WHEEL_RIGHT_SILENT, right.age_us > timeout_us);
+    flags.add_if(SafetyFlags::WHEEL_FROZEN, left.frozen || right.frozen);
 }
 
 fn judge_joints(inputs: &SafetyInputs<'_>, flags: &mut SafetyFlags) {
     for joint in &inputs.motor.joints {
         let silent =
             joint.state == JointState::Silent || joint.age_us > inputs.config.joint_timeout_us;
-        flags.set(SafetyFlags::JOINT_SILENT, silent);
-        flags.set(SafetyFlags::JOINT_FAULT, joint.state == JointState::Fault);
-        flags.set(SafetyFlags::JOINT_FROZEN, joint.frozen);
+        flags.add_if(SafetyFlags::JOINT_SILENT, silent);
+        flags.add_if(SafetyFlags::JOINT_FAULT, joint.state == JointState::Fault);
+        flags.add_if(SafetyFlags::JOINT_FROZEN, joint.frozen);
     }
 }
 

@@ -70,17 +70,17 @@ fn stops_come_before_everything_and_in_order_of_urgency() {
     let tilt = SafetyFlags::TILT;
     let lost = SafetyFlags::REMOTE_LOST;
     let stale = SafetyFlags::IMU_STALE;
-    let all = e_stop.and(empty).and(tilt).and(stale);
-    assert_eq!(stopped(all, empty.and(tilt)), Indication::EStop);
-    let no_e_stop = empty.and(tilt).and(lost).and(stale);
+    let all = e_stop.union(empty).union(tilt).union(stale);
+    assert_eq!(stopped(all, empty.union(tilt)), Indication::EStop);
+    let no_e_stop = empty.union(tilt).union(lost).union(stale);
     assert_eq!(stopped(no_e_stop, empty), Indication::BatteryEmpty);
-    let fallen = tilt.and(lost).and(stale);
+    let fallen = tilt.union(lost).union(stale);
     assert_eq!(stopped(fallen, tilt), Indication::LatchedStop);
-    assert_eq!(stopped(lost.and(stale), none), Indication::RadioLost);
+    assert_eq!(stopped(lost.union(stale), none), Indication::RadioLost);
     for radio in [SafetyFlags::REMOTE_FAILSAFE, SafetyFlags::REMOTE_QUALITY] {
         assert_eq!(stopped(radio, none), Indication::RadioLost);
     }
-    assert_eq!(stopped(e_stop.and(lost), none), Indication::RadioLost);
+    assert_eq!(stopped(e_stop.union(lost), none), Indication::RadioLost);
     assert_eq!(stopped(stale, none), Indication::Fault);
     assert_eq!(stopped(SafetyFlags::TASK_LATE, none), Indication::Fault);
 }

@@ -356,7 +356,7 @@ fn a_fallen_robot_stops_until_it_is_upright_and_cleared() {
     assert_eq!(bench.run(100).flags, SafetyFlags::NONE);
     assert_eq!(
         bench.tick().flags_seen,
-        SafetyFlags::TILT.and(SafetyFlags::E_STOP)
+        SafetyFlags::TILT.union(SafetyFlags::E_STOP)
     );
 }
 
