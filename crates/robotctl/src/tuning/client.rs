@@ -13,7 +13,7 @@ use crate::can_link::{CanLink, CanLinkError};
 /// How long replies are waited for.
 #[derive(Clone, Copy, Debug)]
 pub struct Patience {
-    /// The robot answers within two milliseconds.
+    /// The robot answers within six milliseconds.
     pub each_try: Duration,
     pub tries: u32,
 }
