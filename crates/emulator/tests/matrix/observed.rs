@@ -110,3 +110,31 @@ pub struct Observed {
 
 /// The firmware's word is up to two samples old, and a command is on its way for a millisecond.
 pub const ARMED_SLACK: Ps = 5 * MS;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn wire(before: f64, changes: &[(Ps, f64)]) -> Wire {
+        Wire {
+            before,
+            changes: changes.to_vec(),
+        }
+    }
+
+    #[test]
+    fn zero_counts_from_the_first_zero_after_the_last_torque() {
+        let stopped = wire(5.0, &[(1, 5.0), (2, 0.0), (3, 4.0), (6, 0.0), (7, 0.0)]);
+        assert_eq!(stopped.zero_from(9), Some(6));
+        assert_eq!(stopped.zero_from(4), None, "it still had torque then");
+        assert_eq!(wire(0.0, &[(3, 0.0)]).zero_from(9), Some(0));
+        assert_eq!(wire(2.0, &[]).zero_from(9), None);
+    }
+
+    #[test]
+    fn an_old_command_is_torque_but_no_new_one() {
+        let held = wire(5.0, &[(1, 5.0)]);
+        assert!(held.had_torque_in(3, 9) && !held.told_torque_in(3, 9));
+        assert!(held.spoke_in(0, 2) && !held.spoke_in(2, 9));
+    }
+}
