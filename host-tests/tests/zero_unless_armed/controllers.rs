@@ -58,3 +58,17 @@ impl ChassisController for Integrator {
         self.0 = 0.0;
     }
 }
+
+/// Asks for something and says itself that it is not to be done.
+pub struct Unsure(pub Rogue);
+
+impl ChassisController for Unsure {
+    fn step(&mut self, input: &ChassisControllerInput<'_>) -> ChassisControllerOutput {
+        ChassisControllerOutput {
+            cmd_valid: false,
+            ..self.0.step(input)
+        }
+    }
+
+    fn reset(&mut self) {}
+}

@@ -15,7 +15,7 @@ mod walk;
 mod wire;
 
 use bench::{Bench, LIMIT_COUNTS};
-use controllers::{Integrator, Rogue};
+use controllers::{Integrator, Rogue, Unsure};
 use phase::{Phase, good, joint_command, phases};
 use proptest::prelude::*;
 use robot_app::{
@@ -62,6 +62,15 @@ fn with_everything_in_order_the_rogue_drives_at_its_limit() {
 fn a_controller_that_asks_for_nan_gets_zero() {
     let driven = driven(&[good(1_000, false), good(500, true)], f32::NAN);
     assert_eq!(driven, 0);
+}
+
+#[test]
+fn an_output_that_is_not_valid_is_zero() {
+    let left = run(
+        &[good(1_000, false), good(500, true)],
+        Unsure(Rogue::wheels(5_000.0)),
+    );
+    assert_eq!(left, [0; 1_500]);
 }
 
 /// Each of these ends the drive, and the robot does not start again when it is over.
