@@ -10,8 +10,9 @@ pub const JOINT_SPEED_RPS: f32 = 3.0;
 pub const WHEEL_SPEED_RPS: f32 = 10.0;
 /// Stiffness of a held joint, N·m/rad.
 pub const HOLD_KP: f32 = 5.0;
-/// Damping of a held joint, N·m·s/rad.
-pub const HOLD_KD: f32 = 0.2;
+/// Damping of a held joint, N·m·s/rad: by itself, which is what a soft limit may leave of it, 0.45 N·m at the greatest
+/// speed.
+pub const HOLD_KD: f32 = 0.15;
 /// What stiffness and damping of a held joint may ask for together. Below the limit of a joint because the motor goes
 /// on computing with its own newer angle until the next command.
 pub const HOLD_TORQUE_NM: f32 = 0.45;

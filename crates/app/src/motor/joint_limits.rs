@@ -26,8 +26,10 @@ pub struct MotorLimits {
 ///
 /// In MIT mode the torque that the motor will give, `kp`·(p − q) + `kd`·(v − q̇) + τ, is kept within the torque limit by
 /// scaling `kp`, `kd` and τ alike, for where the joint is and where it will be at its present speed until the next
-/// command; and at or beyond a soft limit it never points outwards. In the other modes the motor limits torque itself;
-/// there the target stays inside the soft limits, and a speed outwards becomes zero at them.
+/// command; and at or beyond a soft limit it never points outwards. The target stays inside the soft limits; of a joint
+/// that is beyond one already, no further out than the joint is, so that holding it there does not throw it back. In the
+/// other modes the motor limits torque itself; there the target stays inside the soft limits, and a speed outwards
+/// becomes zero at them.
 pub fn limited(
     command: &JointCommand,
     motion: JointMotion,
@@ -79,7 +81,7 @@ fn limited_mit(
     let limit_nm = scalar::max(scalar::min(config.max_torque_nm, motor.max_torque_nm), 0.0);
     let allowed = JointCommand {
         mode: JointMode::Mit,
-        pos_rad: inside(command.pos_rad, config),
+        pos_rad: no_further_out(command.pos_rad, motion, config),
         vel_rps,
         kp: scalar::clamp(command.kp, 0.0, scalar::clamp(config.max_kp, 0.0, KP_MAX)),
         kd: scalar::clamp(command.kd, 0.0, scalar::clamp(config.max_kd, 0.0, KD_MAX)),
@@ -123,6 +125,15 @@ fn not_outwards(value: f32, motion: JointMotion, config: &JointConfig) -> f32 {
 
 fn inside(pos_rad: f32, config: &JointConfig) -> f32 {
     scalar::clamp(pos_rad, config.min_rad, config.max_rad)
+}
+
+/// Inside the soft limits or, beyond one, between the joint and its travel.
+fn no_further_out(pos_rad: f32, motion: JointMotion, config: &JointConfig) -> f32 {
+    scalar::clamp(
+        pos_rad,
+        scalar::min(config.min_rad, motion.pos_rad),
+        scalar::max(config.max_rad, motion.pos_rad),
+    )
 }
 
 fn within(value: f32, limit: f32) -> f32 {

@@ -231,6 +231,16 @@ fn a_held_joint_never_pulls_with_more_than_half_a_newton_metre() {
     }
 }
 
+/// Where a soft limit keeps the target from following the joint outwards, no stiffness makes up for the damping.
+#[test]
+fn damping_alone_is_not_more_than_half_a_newton_metre() {
+    let mut bench = Bench::held(2, TrialAction::Hold);
+    bench.motor.joints[0].vel_rps = 3.0;
+    let held = bench.tick().joints[0];
+    assert!(held.kd * 3.0 <= 0.5);
+    assert_ne!(held.kd, 0.0);
+}
+
 /// 600 rpm at the rotor of a 20:1 gear are 3.1416 rad/s, times 200 mA.
 #[test]
 fn a_held_wheel_is_braked() {

@@ -98,6 +98,28 @@ fn a_damper_does_not_push_a_joint_out_that_comes_back() {
     assert_eq!(got.kd, 2.0);
 }
 
+/// Its zero is wrong, or it rests on a stop out there: 20 · (1.0 − 4.0) N·m would throw it back at the torque limit.
+#[test]
+fn a_joint_held_beyond_its_soft_limit_is_not_thrown_back() {
+    for (pos_rad, outwards) in [(4.0, 1.0), (-4.0, -1.0)] {
+        let there = JointMotion {
+            pos_rad,
+            vel_rps: 0.0,
+        };
+        let target = |command: &JointCommand| limited(command, there, &CONFIG, MOTOR);
+        let held = mit(pos_rad, 0.0, 20.0, 1.0, 0.0);
+        assert_eq!(target(&held), held);
+        let further_out = mit(pos_rad + outwards, 0.0, 20.0, 1.0, 0.0);
+        assert_eq!(target(&further_out), held);
+        let back_inside = target(&mit(0.0, 0.0, 20.0, 1.0, 0.0));
+        let torque_nm = torque_nm(&back_inside, there, 0.0);
+        assert!(
+            (torque_nm * outwards as f64 + 3.0).abs() < 1e-3,
+            "asked to, it comes back"
+        );
+    }
+}
+
 #[test]
 fn the_other_modes_keep_to_angle_and_speed() {
     let command = JointCommand {
@@ -172,7 +194,8 @@ proptest! {
         let motion = JointMotion { pos_rad, vel_rps };
         let got = limited(&mit(pos, vel, kp, kd, tau), motion, &CONFIG, MOTOR);
         prop_assert!([got.pos_rad, got.vel_rps, got.kp, got.kd, got.tau_nm].iter().all(|x| x.is_finite()));
-        prop_assert!((-1.5..=1.0).contains(&got.pos_rad) && got.vel_rps.abs() <= 15.0);
+        let (furthest_back, furthest_out) = (pos_rad.min(-1.5), pos_rad.max(1.0));
+        prop_assert!((furthest_back..=furthest_out).contains(&got.pos_rad) && got.vel_rps.abs() <= 15.0);
         prop_assert!((0.0..=100.0).contains(&got.kp) && (0.0..=5.0).contains(&got.kd));
         for ahead_s in [0.0, 0.002, 0.004] {
             let torque = torque_nm(&got, motion, ahead_s);
