@@ -122,6 +122,22 @@ fn register_answers() {
     assert_eq!(answer([3, 0, 0x34, 0x15, 0, 0, 0x48, 0x41]), None);
 }
 
+/// Read as a reply, each would be a disabled motor near −12.5 rad.
+#[test]
+fn a_late_register_answer_is_no_reply() {
+    for order in [0x33, 0x55] {
+        for index in [9, 10, 0x15, 0x16, 0x17] {
+            let answer = frame(0x13, &[3, 0, order, index, 0xD0, 0x07, 0, 0]);
+            assert_eq!(motor().decode(&answer), None);
+        }
+        assert!(
+            motor()
+                .decode(&frame(0x13, &[3, 0, order, 0x7F, 0xF7, 0xFF, 41, 52]))
+                .is_some()
+        );
+    }
+}
+
 /// Status, the driver's and the winding's temperature; angle, speed and torque are the codes half a step below zero.
 #[test]
 fn replies() {

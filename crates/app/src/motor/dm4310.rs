@@ -39,6 +39,16 @@ pub enum Register {
     TorqueRange = 0x17,
 }
 
+impl Register {
+    const ALL: [Self; 5] = [
+        Self::Timeout,
+        Self::ControlMode,
+        Self::PositionRange,
+        Self::VelocityRange,
+        Self::TorqueRange,
+    ];
+}
+
 /// Values of [`Register::ControlMode`]. A motor ignores command frames of any other mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
@@ -200,9 +210,10 @@ impl Dm4310 {
         )
     }
 
-    /// `None` unless it is a whole reply of this motor with a documented status.
+    /// `None` unless it is a whole reply of this motor with a documented status. A late answer to a register request is
+    /// none: read as a reply, it is a motor at the end of its range.
     pub fn decode(&self, frame: &CanFrame) -> Option<Feedback> {
-        if frame.id() != self.master_id {
+        if frame.id() != self.master_id || self.is_register_answer(frame) {
             return None;
         }
         let [head, p_high, p_low, v_high, v_t, t_low, driver_c, winding_c] =
@@ -216,6 +227,18 @@ impl Dm4310 {
             driver_c,
             winding_c,
         })
+    }
+
+    /// An ordinary reply looks like this only 0.02 or 0.03 rad from the lower end of the range, at 24 rad/s backwards or
+    /// more (of ±12.5 rad and ±30 rad/s).
+    fn is_register_answer(&self, frame: &CanFrame) -> bool {
+        let [number, 0, READ | WRITE, index, ..] = frame.padded_payload() else {
+            return false;
+        };
+        number == self.number
+            && Register::ALL
+                .iter()
+                .any(|&register| register as u8 == index)
     }
 
     /// The value of `register`, if this is the answer to its read or write. It differs from other replies only in
