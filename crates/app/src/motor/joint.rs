@@ -287,10 +287,11 @@ impl Joint {
     }
 
     fn command_frame(&mut self, command: &JointCommand, config: &JointConfig) -> CanFrame {
+        let period_s = self.slot.schedule.period_s();
         let limits = MotorLimits {
             max_torque_nm: self.slot.max_torque_nm,
-            // The report is up to one period old, and so is the command when the next one comes.
-            horizon_s: 2.0 * self.slot.schedule.period_s(),
+            // The report is up to one period old, or more after lost ones; the command is one when the next comes.
+            horizon_s: period_s + scalar::max(period_s, self.age_us as f32 * 1e-6),
         };
         let allowed = match &self.report {
             Some(report) => {
@@ -387,3 +388,6 @@ impl Motor for Joint {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
