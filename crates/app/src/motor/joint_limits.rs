@@ -13,6 +13,15 @@ pub struct JointMotion {
     pub vel_rps: f32,
 }
 
+impl JointMotion {
+    fn after(self, seconds: f32) -> Self {
+        Self {
+            pos_rad: self.pos_rad + self.vel_rps * seconds,
+            ..self
+        }
+    }
+}
+
 /// What the motor's place in the layout adds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotorLimits {
@@ -29,7 +38,7 @@ pub struct MotorLimits {
 /// command; and at or beyond a soft limit it never points outwards. The target stays inside the soft limits; of a joint
 /// that is beyond one already, no further out than the joint is, so that holding it there does not throw it back. In the
 /// other modes the motor limits torque itself; there the target stays inside the soft limits, and a speed outwards
-/// becomes zero at them.
+/// becomes zero at them, or where the joint would be at them before the next command.
 pub fn limited(
     command: &JointCommand,
     motion: JointMotion,
@@ -51,7 +60,11 @@ pub fn limited(
         },
         JointMode::Speed => JointCommand {
             mode: JointMode::Speed,
-            vel_rps: not_outwards(vel_rps, motion, config),
+            vel_rps: not_outwards(
+                not_outwards(vel_rps, motion, config),
+                motion.after(motor.horizon_s),
+                config,
+            ),
             ..JointCommand::default()
         },
     }

@@ -145,6 +145,25 @@ fn the_other_modes_keep_to_angle_and_speed() {
     assert_eq!(limited(&speed(-99.0), at_end, &CONFIG, MOTOR), speed(-15.0));
 }
 
+/// 10 rad/s are 0.04 rad in the 4 ms until the next command, and 0.5 rad in 50 ms without reports.
+#[test]
+fn a_speed_outwards_ends_before_the_soft_limit_is_passed() {
+    let speed_at = |pos_rad, horizon_s| {
+        let command = JointCommand {
+            mode: JointMode::Speed,
+            ..mit(0.0, 10.0, 0.0, 0.0, 0.0)
+        };
+        let motion = JointMotion {
+            pos_rad,
+            vel_rps: 10.0,
+        };
+        let motor = MotorLimits { horizon_s, ..MOTOR };
+        limited(&command, motion, &CONFIG, motor).vel_rps
+    };
+    assert_eq!((speed_at(0.95, 0.004), speed_at(0.97, 0.004)), (10.0, 0.0));
+    assert_eq!((speed_at(0.45, 0.05), speed_at(0.55, 0.05)), (10.0, 0.0));
+}
+
 #[test]
 fn limits_that_are_no_numbers_allow_nothing() {
     let nan = f32::NAN;
