@@ -119,6 +119,34 @@ fn in_the_third_step_one_motor_turns_while_the_stick_is_held() {
     }
 }
 
+/// The joint stands at 0 and may go from −1.5 to −0.5 rad: a new robot whose zero is not set yet. 5 N·m/rad to the limit
+/// would be 2.5 N·m.
+#[test]
+fn a_joint_beyond_its_soft_limit_is_held_as_softly_as_any() {
+    let [a, b, c, d] = (-0.5f32).to_le_bytes();
+    for make in [Make::Dm4310, Make::Rs00] {
+        let phases = [
+            good(1_500, false),
+            with_frame(false, 0x7A0, [0x20, 16, 3, 0, a, b, c, d]),
+            good(10, false),
+            bring_up(3, 2, 1, 0),
+            stick(300, false),
+            stick(300, true),
+        ];
+        let ticks = run_all(make, &phases);
+        let replies = ticks.iter().flat_map(|tick| &tick.replies);
+        assert_eq!(replies.filter(|reply| reply[0] == 0xEE).count(), 0);
+        let held =
+            |tick: &Tick| matches!(tick.joints[0], Some(JointFrame::Mit(mit)) if !mit.is_off(make));
+        assert!(ticks.iter().any(held));
+        assert!(
+            torques(&ticks, make)
+                .iter()
+                .all(|nm| *nm <= BRING_UP_NM + 0.05)
+        );
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..ProptestConfig::default() })]
 
