@@ -1,6 +1,9 @@
 //! Damiao DM4310 (hardware.md section 8): standard identifiers, one reply to each frame.
 
-use super::mit::{MitCommand, MitRanges, MitReport, finite_within};
+use super::{
+    mit::{MitCommand, MitRanges, MitReport},
+    set_point::{self, finite_within, two_floats},
+};
 use crate::domain::{CanFrame, StandardId};
 
 /// Carries register reads and writes to every motor; the payload says to which.
@@ -180,14 +183,8 @@ impl Dm4310 {
 
     /// Both are clamped to the motor's ranges, the speed from below at 0; an angle that is no number does not move it.
     pub fn position_speed(&self, pos_rad: f32, max_speed_rps: f32) -> CanFrame {
-        let speed = if pos_rad.is_nan() { 0.0 } else { max_speed_rps };
-        CanFrame::new(
-            self.position_speed_id,
-            two_floats(
-                finite_within(pos_rad, self.ranges.p_max_rad),
-                finite_within(speed, self.ranges.v_max_rps).max(0.0),
-            ),
-        )
+        let payload = set_point::position_speed(pos_rad, max_speed_rps, &self.ranges);
+        CanFrame::new(self.position_speed_id, payload)
     }
 
     /// Clamped to the motor's range, NaN becomes 0.
@@ -252,11 +249,4 @@ impl Dm4310 {
         };
         (number == self.number && index == register as u8).then(|| u32::from_le_bytes([a, b, c, d]))
     }
-}
-
-/// Little-endian, as DM4310 and RS00 take their set-points.
-pub(super) fn two_floats(first: f32, second: f32) -> [u8; 8] {
-    let [a, b, c, d] = first.to_le_bytes();
-    let [e, f, g, h] = second.to_le_bytes();
-    [a, b, c, d, e, f, g, h]
 }

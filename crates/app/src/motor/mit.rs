@@ -105,14 +105,6 @@ fn value(code: u16, max: f32, last_code: f32) -> f32 {
     f32::from(code) * (2.0 * max) / last_code - max
 }
 
-/// Clamps to ±`limit`; NaN becomes 0. For modes whose frames carry plain floats.
-pub(super) fn finite_within(value: f32, limit: f32) -> f32 {
-    if value.is_nan() {
-        return 0.0;
-    }
-    scalar::clamp(value, -limit, limit)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -2,8 +2,8 @@
 //! under the host's identifier and with the motor's number in byte 0.
 
 use super::{
-    dm4310::two_floats,
-    mit::{MitCommand, MitRanges, MitReport, finite_within},
+    mit::{MitCommand, MitRanges, MitReport},
+    set_point::{self, finite_within, two_floats},
 };
 use crate::domain::{CanFrame, StandardId};
 
@@ -158,14 +158,8 @@ impl Rs00 {
 
     /// Both are clamped to the motor's ranges, the speed from below at 0; an angle that is no number does not move it.
     pub fn position_speed(&self, pos_rad: f32, max_speed_rps: f32) -> CanFrame {
-        let speed = if pos_rad.is_nan() { 0.0 } else { max_speed_rps };
-        CanFrame::new(
-            self.position_id,
-            two_floats(
-                finite_within(pos_rad, RANGES.p_max_rad),
-                finite_within(speed, RANGES.v_max_rps).max(0.0),
-            ),
-        )
+        let payload = set_point::position_speed(pos_rad, max_speed_rps, &RANGES);
+        CanFrame::new(self.position_id, payload)
     }
 
     /// Clamped to the motor's range, NaN becomes 0. The torque limit goes out as a current limit.
