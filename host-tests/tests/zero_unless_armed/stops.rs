@@ -64,95 +64,97 @@ fn armed_joints_are_enabled_and_obey() {
     }
 }
 
-/// `(what, wheels go on, joints go on, all goes on by itself when it is over)`, with one second of the cause. What was
-/// latched goes on after the clearing gesture and the enable switch.
+type Cause = fn(&mut Phase);
+
+/// What; wheels go on; joints go on; all goes on by itself when it is over.
+const STOPS: [(&str, Cause, [bool; 2], bool); 15] = [
+    (
+        "can1 off",
+        |p| p.buses[0] = BusErrorState::BusOff,
+        [false, true],
+        true,
+    ),
+    (
+        "can2 off",
+        |p| p.buses[1] = BusErrorState::BusOff,
+        [true, false],
+        true,
+    ),
+    (
+        "can1 congested",
+        |p| p.tx_failures[0] = 21,
+        [false, true],
+        true,
+    ),
+    (
+        "can2 congested",
+        |p| p.tx_failures[1] = 21,
+        [true, false],
+        true,
+    ),
+    (
+        "wheel hot",
+        |p| p.wheels[1] = Behaviour::Hot(120),
+        [false, true],
+        true,
+    ),
+    (
+        "wheel frozen",
+        |p| p.wheels[0] = Behaviour::Frozen,
+        [false, true],
+        false,
+    ),
+    (
+        "wheel gone",
+        |p| p.wheels[0] = Behaviour::Gone,
+        [true, true],
+        true,
+    ),
+    (
+        "joint hot",
+        |p| p.joints[2] = Behaviour::Hot(120),
+        [true, false],
+        true,
+    ),
+    (
+        "joint gone",
+        |p| p.joints[3] = Behaviour::Gone,
+        [true, false],
+        true,
+    ),
+    (
+        "joint fault",
+        |p| p.joints[0] = Behaviour::Fault(0xA),
+        [true, false],
+        false,
+    ),
+    (
+        "joint frozen",
+        |p| p.joints[1] = Behaviour::Frozen,
+        [true, false],
+        false,
+    ),
+    ("battery low", |p| p.battery_v = 20.0, [true, true], true),
+    ("battery unknown", |p| p.battery_v = 0.0, [true, true], true),
+    (
+        "battery empty",
+        |p| p.battery_v = 18.0,
+        [false, false],
+        false,
+    ),
+    (
+        "battery nan",
+        |p| p.battery_v = f32::NAN,
+        [false, false],
+        false,
+    ),
+];
+
+/// With one second of each cause. What was latched goes on after the clearing gesture and the enable switch.
 #[test]
 fn each_stop_takes_its_own_actuators_and_latches_if_it_must() {
-    type Cause = fn(&mut Phase);
-    let cases: [(&str, Cause, [bool; 2], bool); 15] = [
-        (
-            "can1 off",
-            |p| p.buses[0] = BusErrorState::BusOff,
-            [false, true],
-            true,
-        ),
-        (
-            "can2 off",
-            |p| p.buses[1] = BusErrorState::BusOff,
-            [true, false],
-            true,
-        ),
-        (
-            "can1 congested",
-            |p| p.tx_failures[0] = 21,
-            [false, true],
-            true,
-        ),
-        (
-            "can2 congested",
-            |p| p.tx_failures[1] = 21,
-            [true, false],
-            true,
-        ),
-        (
-            "wheel hot",
-            |p| p.wheels[1] = Behaviour::Hot(120),
-            [false, true],
-            true,
-        ),
-        (
-            "wheel frozen",
-            |p| p.wheels[0] = Behaviour::Frozen,
-            [false, true],
-            false,
-        ),
-        (
-            "wheel gone",
-            |p| p.wheels[0] = Behaviour::Gone,
-            [true, true],
-            true,
-        ),
-        (
-            "joint hot",
-            |p| p.joints[2] = Behaviour::Hot(120),
-            [true, false],
-            true,
-        ),
-        (
-            "joint gone",
-            |p| p.joints[3] = Behaviour::Gone,
-            [true, false],
-            true,
-        ),
-        (
-            "joint fault",
-            |p| p.joints[0] = Behaviour::Fault(0xA),
-            [true, false],
-            false,
-        ),
-        (
-            "joint frozen",
-            |p| p.joints[1] = Behaviour::Frozen,
-            [true, false],
-            false,
-        ),
-        ("battery low", |p| p.battery_v = 20.0, [true, true], true),
-        ("battery unknown", |p| p.battery_v = 0.0, [true, true], true),
-        (
-            "battery empty",
-            |p| p.battery_v = 18.0,
-            [false, false],
-            false,
-        ),
-        (
-            "battery nan",
-            |p| p.battery_v = f32::NAN,
-            [false, false],
-            false,
-        ),
-    ];
     for make in [Make::Dm4310, Make::Rs00] {
-        for (name, cause, goes_on, recovers) in cases {
+        for (name, cause, goes_on, recovers) in STOPS {
             let name = format!("{name}, {make:?}");
             let mut bad = good(1_200, true);
             cause(&mut bad);
@@ -175,7 +177,6 @@ fn each_stop_takes_its_own_actuators_and_latches_if_it_must() {
 /// With the robot disarmed; only what goes away by itself lets it arm.
 #[test]
 fn whatever_is_wrong_forbids_arming() {
-    type Cause = fn(&mut Phase);
     let causes: [(&str, Cause); 14] = [
         ("can1 off", |p| p.buses[0] = BusErrorState::BusOff),
         ("can2 off", |p| p.buses[1] = BusErrorState::BusOff),
