@@ -6,12 +6,17 @@ use robot_app::domain::{
 };
 use robot_app::safety::{ArmingBlockers, ArmingState, SafetyFlags};
 
+/// In the order of `ChassisCommand`.
+const JOINT_NAMES: [&str; 4] = ["left front", "left rear", "right front", "right rear"];
+
 /// What was logged last.
 #[derive(Default)]
 pub struct ChangeLog {
     arming: ChangeNotice<ArmingState>,
     blockers: ChangeNotice<ArmingBlockers>,
     flags: ChangeNotice<SafetyFlags>,
+    /// Fault code of each joint.
+    joint_faults: [ChangeNotice<u32>; 4],
     buses: [ChangeNotice<BusErrorState>; 2],
     imu_ready: ChangeNotice<bool>,
     mag_ready: ChangeNotice<bool>,
@@ -25,6 +30,7 @@ pub struct ChangeLog {
 impl ChangeLog {
     pub fn report(&mut self, d: &DiagnosticsSnapshot) {
         self.report_arming(d);
+        self.report_joints(d);
         self.report_sensors(d);
         self.report_lines(d);
         if let Some(missed) = self.ticks_missed.due(d.tick.missed, d.ts_us) {
@@ -48,6 +54,18 @@ impl ChangeLog {
         }
         if let Some(flags) = self.flags.due(d.safety.flags, d.ts_us) {
             defmt::warn!("safety: {} -> {}", flags, d.safety.verdict);
+        }
+    }
+
+    /// Codes are the motor's own (docs/motors.md).
+    fn report_joints(&mut self, d: &DiagnosticsSnapshot) {
+        let notices = JOINT_NAMES.into_iter().zip(&mut self.joint_faults);
+        for ((name, notice), joint) in notices.zip(&d.sensors.motor.joints) {
+            match notice.due(joint.fault_code, d.ts_us) {
+                Some(0) => defmt::info!("{=str} joint: fault cleared", name),
+                Some(code) => defmt::error!("{=str} joint: motor fault {=u32:#x}", name, code),
+                None => {}
+            }
         }
     }
 
