@@ -14,7 +14,7 @@ pub enum Indication {
     EStop,
     /// Charge or change the battery; everything stopped.
     BatteryEmpty,
-    /// A stop that stays until a human has looked and cleared it.
+    /// A stop that stays until a human has looked and cleared it; nothing is armed.
     LatchedStop,
     /// No radio, or a bad one.
     RadioLost,
@@ -56,7 +56,7 @@ const RADIO: SafetyFlags = SafetyFlags::REMOTE_LOST
 
 impl Indication {
     pub fn of(inputs: &IndicationInputs<'_>) -> Self {
-        if let Some(stop) = stop(inputs.safety) {
+        if let Some(stop) = stop(inputs) {
             return stop;
         }
         match inputs.arming.state {
@@ -66,14 +66,17 @@ impl Indication {
     }
 }
 
-fn stop(safety: &SafetyStatus) -> Option<Indication> {
+fn stop(inputs: &IndicationInputs<'_>) -> Option<Indication> {
+    let safety = inputs.safety;
+    // Whoever goes near to look must not find that the other motors are live.
+    let all_still = safety.global_stop || inputs.arming.state == ArmingState::Disarmed;
     let has = |flags| safety.flags.intersects(flags);
     // Without the radio nobody knows where the switch is.
     if has(SafetyFlags::E_STOP) && !has(SafetyFlags::REMOTE_LOST) {
         Some(Indication::EStop)
     } else if has(SafetyFlags::BATTERY_EMPTY) {
         Some(Indication::BatteryEmpty)
-    } else if !safety.latched.is_empty() {
+    } else if !safety.latched.is_empty() && all_still {
         Some(Indication::LatchedStop)
     } else if has(RADIO) {
         Some(Indication::RadioLost)

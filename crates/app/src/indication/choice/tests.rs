@@ -85,14 +85,16 @@ fn stops_come_before_everything_and_in_order_of_urgency() {
     assert_eq!(stopped(SafetyFlags::TASK_LATE, none), Indication::Fault);
 }
 
+/// While armed its wheels may still turn: nobody must take the robot for stopped and go near.
 #[test]
-fn a_latched_stop_of_the_joints_is_shown_while_armed_too() {
-    let shown = armed(|s| {
+fn a_latched_stop_of_the_joints_calls_for_a_look_only_when_disarmed() {
+    let faulty = |s: &mut Situation| {
         s.safety.joints_stop = true;
         s.safety.flags = SafetyFlags::JOINT_FAULT;
         s.safety.latched = SafetyFlags::JOINT_FAULT;
-    });
-    assert_eq!(shown, Indication::LatchedStop);
+    };
+    assert_eq!(armed(faulty), Indication::ArmedInPart);
+    assert_eq!(disarmed(faulty), Indication::LatchedStop);
 }
 
 #[test]
