@@ -1,4 +1,4 @@
-//! RS00 frames by the MIT protocol reference (seed 003); floats by IEEE 754, little-endian.
+//! RS00 frames by the maker's MIT protocol reference; floats by IEEE 754, little-endian.
 
 use robot_app::{
     domain::{CanFrame, StandardId},

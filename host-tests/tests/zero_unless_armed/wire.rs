@@ -1,4 +1,4 @@
-//! What a motor understands of the frames on its bus: hardware.md sections 7 to 9, seed 003. Written apart from the
+//! What a motor understands of the frames on its bus: hardware.md sections 7 to 9. Written apart from the
 //! firmware's own codecs.
 
 use robot_app::domain::{BusId, CanFrame};

@@ -1,4 +1,4 @@
-//! Bring-up of new hardware in three steps: read only, zero torque, a little torque on one motor (seed 000, 测试安全性).
+//! Bring-up of new hardware in three steps: read only, zero torque, a little torque on one motor (测试安全性).
 //!
 //! Started from the radio or the tuning channel, ended by an off request or a reboot. It only replaces the command: for
 //! torque the robot must be armed and permitted to move as ever.

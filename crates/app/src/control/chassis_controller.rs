@@ -1,4 +1,4 @@
-//! The interface of a controller (seed section 3.4).
+//! The interface of a controller (ROBOT_CPP 3.4).
 
 use crate::domain::{
     ChassisCommand, HighLevelCommand, JointControllerConfig, OperatorState, SensorsSnapshot,

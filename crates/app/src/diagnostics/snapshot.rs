@@ -1,4 +1,4 @@
-//! `DiagnosticsSnapshot`, ROBOT_CPP's LiveWatch structure (seed section 0.7).
+//! `DiagnosticsSnapshot`, the LiveWatch structure of ROBOT_CPP 0.7.
 
 use super::TickStats;
 use crate::{

@@ -2,7 +2,7 @@
 
 use crate::motor::layout::ROBOT_LAYOUT;
 
-/// Wheel geometry (seed section 5.1).
+/// Wheel geometry (ROBOT_CPP 5.1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct WheelOdomConfig {
@@ -40,7 +40,7 @@ impl WheelOdomConfig {
     }
 }
 
-/// Wheel speed controller (seed section 5.1).
+/// Wheel speed controller (ROBOT_CPP 5.1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct WheelControllerConfig {

@@ -1,4 +1,4 @@
-//! The estimator of the main chain (seed section 0.4).
+//! The estimator of the main chain (ROBOT_CPP 0.4).
 
 use super::{attitude::AttitudeFilter, wheel_odometry::WheelOdometry};
 use crate::{

@@ -1,4 +1,4 @@
-//! The output of the logic stage (seed section 3.3).
+//! The output of the logic stage (ROBOT_CPP 3.3).
 
 use super::LogicDecision;
 use crate::domain::{ChassisCommand, HighLevelCommand};

@@ -1,4 +1,4 @@
-//! 100 Hz decision what to do (seed section 2.2.5).
+//! 100 Hz decision what to do (ROBOT_CPP 2.2.5).
 //!
 //! The mode switch says who decides: the sticks, the PC, or the user's own logic. It may move while the robot is armed:
 //! the new source's command counts from the next round, within 10 ms, whatever the old one wanted, and without a valid

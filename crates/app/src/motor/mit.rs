@@ -1,5 +1,5 @@
 //! The 64 bits that DM4310 and RS00 share: five numbers as unsigned codes over each motor's own ranges (hardware.md
-//! sections 8.1 and 9; reference C code in seed 003, section 3).
+//! sections 8.1 and 9; C code of the RS00 MIT reference, section 3).
 
 use crate::math::scalar;
 

@@ -1,4 +1,4 @@
-//! RobStride RS00 in its MIT protocol (hardware.md section 9, seed 003): standard identifiers, one reply to each frame,
+//! RobStride RS00 in its MIT protocol (hardware.md section 9): standard identifiers, one reply to each frame,
 //! under the host's identifier and with the motor's number in byte 0.
 
 use super::{
@@ -33,7 +33,7 @@ pub enum RunMode {
     Speed = 2,
 }
 
-/// The motor's own faults (seed 003, section 4.5). Bits stay where the motor puts them.
+/// The motor's own faults (its MIT reference, section 4.5). Bits stay where the motor puts them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Faults(u32);
 

@@ -1,4 +1,4 @@
-//! The packing that Damiao and RobStride share (hardware.md 8.1 and 9, seed 003 section 3): fields of 16 and 12 bits,
+//! The packing that Damiao and RobStride share (hardware.md 8.1 and 9): fields of 16 and 12 bits,
 //! most significant first, each spread evenly over its range.
 
 /// Coding ranges, each from minus to plus; not what the motor can do.

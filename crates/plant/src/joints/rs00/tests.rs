@@ -1,4 +1,4 @@
-//! Frames written by hand from seed 003 and hardware.md section 12.
+//! Frames written by hand from the maker's MIT reference and hardware.md section 12.
 
 use super::*;
 use crate::{
