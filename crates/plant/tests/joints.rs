@@ -110,13 +110,13 @@ fn four_dm4310_answer_under_their_own_identifiers() {
 }
 
 #[test]
-fn four_rs00_answer_the_same_host() {
+fn four_rs00_answer_under_the_hosts_they_are_set_to() {
     let mut bench = Bench::new(JointKind::Rs00);
     for id in 1..=4 {
         bench.send(id, service(0xFC));
         let replies = bench.wait(MS);
         assert_eq!(replies.len(), 1);
-        assert_eq!((replies[0].id, replies[0].data[0]), (0xFD, id as u8));
+        assert_eq!((replies[0].id, replies[0].data[0]), (0xF0 + id, id as u8));
     }
     assert_eq!(bench.signal("can.joint.3.enabled"), 1.0);
 }
