@@ -73,12 +73,12 @@ mod tests {
     #[test]
     fn new_measurements_are_taken_once_with_their_times() {
         let file = recording(&[
-            ("/diag", 10, r#"{"mag":{"mag_ut":[0,0,0]}}"#),
-            ("/truth", 20, r#"{"mag":{"mag_ut":[9,9,9]}}"#),
-            ("/diag", 20, r#"{"mag":{"mag_ut":[20,-1.5,-40]}}"#),
-            ("/diag", 30, r#"{"mag":{"mag_ut":[20,-1.5,-40]}}"#),
-            ("/diag", 40, r#"{"mag":{"mag_ut":[21,-1.5,-40]}}"#),
-            ("/diag", 50, r#"{"imu":{"accel_mps2":[0,0,9.81]}}"#),
+            ("/diag", 10, r#"{"sensors":{"mag":{"mag_ut":[0,0,0]}}}"#),
+            ("/truth", 20, r#"{"sensors":{"mag":{"mag_ut":[9,9,9]}}}"#),
+            ("/diag", 20, r#"{"sensors":{"mag":{"mag_ut":[20,-1.5,-40]}}}"#),
+            ("/diag", 30, r#"{"sensors":{"mag":{"mag_ut":[20,-1.5,-40]}}}"#),
+            ("/diag", 40, r#"{"sensors":{"mag":{"mag_ut":[21,-1.5,-40]}}}"#),
+            ("/diag", 50, r#"{"sensors":{"imu":{"accel_mps2":[0,0,9.81]}}}"#),
         ]);
         let found = samples(&file, Sensor::Magnetometer).unwrap();
         let at = |t_s, x| Sample {

@@ -28,8 +28,8 @@ impl Sensor {
     /// Place of the vector in the messages of `/diag`.
     fn diagnostics_field(self) -> &'static str {
         match self {
-            Self::Accelerometer => "/imu/accel_mps2",
-            Self::Magnetometer => "/mag/mag_ut",
+            Self::Accelerometer => "/sensors/imu/accel_mps2",
+            Self::Magnetometer => "/sensors/mag/mag_ut",
         }
     }
 }
