@@ -75,10 +75,26 @@ mod tests {
         let file = recording(&[
             ("/diag", 10, r#"{"sensors":{"mag":{"mag_ut":[0,0,0]}}}"#),
             ("/truth", 20, r#"{"sensors":{"mag":{"mag_ut":[9,9,9]}}}"#),
-            ("/diag", 20, r#"{"sensors":{"mag":{"mag_ut":[20,-1.5,-40]}}}"#),
-            ("/diag", 30, r#"{"sensors":{"mag":{"mag_ut":[20,-1.5,-40]}}}"#),
-            ("/diag", 40, r#"{"sensors":{"mag":{"mag_ut":[21,-1.5,-40]}}}"#),
-            ("/diag", 50, r#"{"sensors":{"imu":{"accel_mps2":[0,0,9.81]}}}"#),
+            (
+                "/diag",
+                20,
+                r#"{"sensors":{"mag":{"mag_ut":[20,-1.5,-40]}}}"#,
+            ),
+            (
+                "/diag",
+                30,
+                r#"{"sensors":{"mag":{"mag_ut":[20,-1.5,-40]}}}"#,
+            ),
+            (
+                "/diag",
+                40,
+                r#"{"sensors":{"mag":{"mag_ut":[21,-1.5,-40]}}}"#,
+            ),
+            (
+                "/diag",
+                50,
+                r#"{"sensors":{"imu":{"accel_mps2":[0,0,9.81]}}}"#,
+            ),
         ]);
         let found = samples(&file, Sensor::Magnetometer).unwrap();
         let at = |t_s, x| Sample {
