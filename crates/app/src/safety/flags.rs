@@ -46,6 +46,8 @@ impl SafetyFlags {
     pub const WHEEL_FROZEN: Self = Self(1 << 23);
     /// A joint motor repeats an old position.
     pub const JOINT_FROZEN: Self = Self(1 << 24);
+    /// A joint motor replies, but could not be set up or enabled for a second: other settings, another motor.
+    pub const JOINT_NOT_READY: Self = Self(1 << 25);
 
     /// Any of these stops every actuator.
     pub const GLOBAL_STOP: Self = Self(
@@ -64,8 +66,13 @@ impl SafetyFlags {
     /// Any of these stops both wheels.
     pub const WHEELS_STOP: Self = Self(Self::WHEEL_HOT.0 | Self::WHEEL_FROZEN.0);
     /// Any of these stops all joints: legs with a dead joint cannot stand on the others.
-    pub const JOINTS_STOP: Self =
-        Self(Self::JOINT_HOT.0 | Self::JOINT_FAULT.0 | Self::JOINT_SILENT.0 | Self::JOINT_FROZEN.0);
+    pub const JOINTS_STOP: Self = Self(
+        Self::JOINT_HOT.0
+            | Self::JOINT_FAULT.0
+            | Self::JOINT_SILENT.0
+            | Self::JOINT_FROZEN.0
+            | Self::JOINT_NOT_READY.0,
+    );
     /// Any of these stops what is on the bus. Index = `BusId`.
     pub const BUS_STOP: [Self; 2] = [
         Self(Self::CAN1_FAULT.0 | Self::CAN1_CONGESTED.0),
@@ -79,7 +86,8 @@ impl SafetyFlags {
             | Self::BATTERY_EMPTY.0
             | Self::JOINT_FAULT.0
             | Self::WHEEL_FROZEN.0
-            | Self::JOINT_FROZEN.0,
+            | Self::JOINT_FROZEN.0
+            | Self::JOINT_NOT_READY.0,
     );
 
     pub const fn bits(self) -> u32 {
@@ -122,7 +130,7 @@ impl SafetyFlags {
 }
 
 /// Not a constant: tools read the names of the bits out of the image.
-static FLAG_NAMES: [(SafetyFlags, &str); 25] = [
+static FLAG_NAMES: [(SafetyFlags, &str); 26] = [
     (SafetyFlags::REMOTE_LOST, "remote-lost"),
     (SafetyFlags::REMOTE_FAILSAFE, "remote-failsafe"),
     (SafetyFlags::REMOTE_QUALITY, "remote-quality"),
@@ -148,6 +156,7 @@ static FLAG_NAMES: [(SafetyFlags, &str); 25] = [
     (SafetyFlags::JOINT_SILENT, "joint-silent"),
     (SafetyFlags::WHEEL_FROZEN, "wheel-frozen"),
     (SafetyFlags::JOINT_FROZEN, "joint-frozen"),
+    (SafetyFlags::JOINT_NOT_READY, "joint-not-ready"),
 ];
 
 #[cfg(feature = "defmt")]

@@ -1,8 +1,8 @@
 //! The only place that decides whether outputs must stop (ROBOT_CPP 0.6, design.md section 3).
 
 use super::{
-    SafetyFlags, SafetyStatus, battery::BatteryWatch, error_account::ErrorAccount, heat::HeatWatch,
-    latch::Latches, tilt::TiltWatch,
+    SafetyFlags, SafetyStatus, battery::BatteryWatch, debounce::Debounce,
+    error_account::ErrorAccount, heat::HeatWatch, latch::Latches, tilt::TiltWatch,
 };
 use crate::domain::{
     BusErrorState, BusHealth, JointState, MotorFeedback, OperatorState, RemoteDiagnostics,
@@ -11,6 +11,8 @@ use crate::domain::{
 
 /// Longest step of time that counts for anything that must last: a jump of the clock is no duration.
 const MAX_DT_US: u32 = 20_000;
+/// Set-up and enabling take a tenth of it; a DM4310 that writes a register is silent meanwhile, which starts it anew.
+const JOINT_READY_US: u32 = 1_000_000;
 
 /// All the policy looks at.
 #[derive(Clone, Copy, Debug)]
@@ -38,6 +40,7 @@ pub struct SafetyPolicy {
     tilt: TiltWatch,
     heat: HeatWatch,
     battery: BatteryWatch,
+    joint_unready: Debounce,
     latches: Latches,
     flags_seen: SafetyFlags,
     ts_us: u64,
@@ -52,7 +55,7 @@ impl SafetyPolicy {
         self.judge_sensors(inputs, now_us, &mut flags);
         judge_buses(inputs, &mut flags);
         judge_wheels(inputs, &mut flags);
-        judge_joints(inputs, &mut flags);
+        self.judge_joints(inputs, dt_us, &mut flags);
         self.heat
             .judge(inputs.motor, inputs.config, dt_us, &mut flags);
         let battery_v = inputs.health.battery_v;
@@ -93,6 +96,20 @@ impl SafetyPolicy {
             SafetyFlags::MAG_ERRORS,
             self.mag_errors.exceeded(health.mag.errors, config, now_us),
         );
+    }
+
+    fn judge_joints(&mut self, inputs: &SafetyInputs<'_>, dt_us: u32, flags: &mut SafetyFlags) {
+        let mut unready = false;
+        for joint in &inputs.motor.joints {
+            let silent =
+                joint.state == JointState::Silent || joint.age_us > inputs.config.joint_timeout_us;
+            flags.add_if(SafetyFlags::JOINT_SILENT, silent);
+            flags.add_if(SafetyFlags::JOINT_FAULT, joint.state == JointState::Fault);
+            flags.add_if(SafetyFlags::JOINT_FROZEN, joint.frozen);
+            unready |= matches!(joint.state, JointState::SettingUp | JointState::Enabling);
+        }
+        let unready = self.joint_unready.held(unready, dt_us, JOINT_READY_US);
+        flags.add_if(SafetyFlags::JOINT_NOT_READY, unready);
     }
 
     /// Adds what is latched to what is `present`.
@@ -151,16 +168,6 @@ fn judge_wheels(inputs: &SafetyInputs<'_>, flags: &mut SafetyFlags) {
     flags.add_if(SafetyFlags::WHEEL_LEFT_SILENT, left.age_us > timeout_us);
     flags.add_if(SafetyFlags::WHEEL_RIGHT_SILENT, right.age_us > timeout_us);
     flags.add_if(SafetyFlags::WHEEL_FROZEN, left.frozen || right.frozen);
-}
-
-fn judge_joints(inputs: &SafetyInputs<'_>, flags: &mut SafetyFlags) {
-    for joint in &inputs.motor.joints {
-        let silent =
-            joint.state == JointState::Silent || joint.age_us > inputs.config.joint_timeout_us;
-        flags.add_if(SafetyFlags::JOINT_SILENT, silent);
-        flags.add_if(SafetyFlags::JOINT_FAULT, joint.state == JointState::Fault);
-        flags.add_if(SafetyFlags::JOINT_FROZEN, joint.frozen);
-    }
 }
 
 #[cfg(test)]

@@ -233,6 +233,24 @@ fn a_bad_joint_stops_all_joints_and_no_wheel() {
     }
 }
 
+/// A second; a moment of silence, as a motor takes a new setting, starts it anew.
+#[test]
+fn a_joint_that_never_gets_ready_stops_all_joints_for_good() {
+    for state in [JointState::SettingUp, JointState::Enabling] {
+        let mut bench = Bench::new();
+        bench.motor.joints[2].state = state;
+        assert_eq!(bench.run(600).flags, SafetyFlags::NONE);
+        bench.motor.joints[2].state = JointState::Silent;
+        bench.run(150);
+        bench.motor.joints[2].state = state;
+        assert_eq!(bench.ms_until(SafetyFlags::JOINT_NOT_READY), Some(1_000));
+        bench.motor.joints[2].state = JointState::Disabled;
+        let later = bench.run(5_000);
+        assert_eq!(later.latched, SafetyFlags::JOINT_NOT_READY);
+        assert_eq!(stops(&later), [false, false, true, true]);
+    }
+}
+
 #[test]
 fn a_frozen_wheel_stops_both_wheels_for_good_and_no_joint() {
     for wheel in 0..2 {
