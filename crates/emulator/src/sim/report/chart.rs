@@ -132,7 +132,11 @@ pub fn label_style() -> TextStyle<'static> {
         .pos(Pos::new(HPos::Left, VPos::Top))
 }
 
-/// A range around all finite values, with room above and below; never empty.
+/// Values all smaller than this are shown as zero.
+const NOTHING: f64 = 1e-6;
+
+/// A range around all finite values, with room above and below; never empty, and no smaller than its labels can tell
+/// where everything is zero.
 fn padded(values: impl Iterator<Item = f64>) -> Range<f64> {
     let finite = values.filter(|v| v.is_finite());
     let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
@@ -141,9 +145,11 @@ fn padded(values: impl Iterator<Item = f64>) -> Range<f64> {
     if low > high {
         return 0.0..1.0;
     }
-    let room = ((high - low) * 0.08)
-        .max(high.abs().max(low.abs()) * 1e-3)
-        .max(1e-6);
+    let size = high.abs().max(low.abs());
+    if size < NOTHING {
+        return -1.0..1.0;
+    }
+    let room = ((high - low) * 0.08).max(size * 1e-3);
     low - room..high + room
 }
 
