@@ -12,7 +12,7 @@
 //! | [`logic`] | remote → `LogicBus` (high-level command) |
 //! | [`control`] | `LogicBus` and estimate → `ChassisCommand`; `control/user_controller.rs` is where a user writes theirs |
 //! | [`safety`] | health → flags and verdict; arming; the permit without which no current leaves the board |
-//! | [`motor`] | CAN frames ↔ motors; zero-current frames; the bus budget |
+//! | [`motor`] | CAN frames ↔ motors; which motor sits where; the frames that stop them all |
 //! | [`tuning`] | CAN requests → changed `RobotConfig`, replies |
 //! | [`bring_up`] | radio or tuning request → the command that tries out new hardware |
 //! | [`diagnostics`] | one `DiagnosticsSnapshot` of all of the above |
