@@ -14,6 +14,7 @@
 //! | [`safety`] | health → flags and verdict; arming; the permit without which no current leaves the board |
 //! | [`motor`] | CAN frames ↔ motors; which motor sits where; the frames that stop them all |
 //! | [`tuning`] | CAN requests → changed `RobotConfig`, replies |
+//! | [`params`] | `RobotConfig` ↔ flash; which sector, when, and what to do when it fails |
 //! | [`bring_up`] | radio or tuning request → the command that tries out new hardware |
 //! | [`diagnostics`] | one `DiagnosticsSnapshot` of all of the above |
 //! | [`indication`] | state → what LED and buzzer tell people |
@@ -57,6 +58,7 @@ pub mod input;
 pub mod logic;
 mod math;
 pub mod motor;
+pub mod params;
 pub mod safety;
 pub mod sensing;
 pub mod tick;

@@ -8,6 +8,7 @@ use crate::{
         RemoteDiagnostics, RemoteState, ResetCause, SensorHealth, SensorsSnapshot, StateEstimate,
     },
     logic::LogicBus,
+    params::ParamStatus,
     safety::{ArmingStatus, SafetyStatus},
     tuning::TuningStatus,
 };
@@ -35,6 +36,7 @@ pub struct DiagnosticsSnapshot {
     /// Heater, start-up calibration, rejected samples.
     pub imu_status: ImuStatus,
     pub tuning: TuningStatus,
+    pub params: ParamStatus,
     pub tick: TickStats,
     pub battery_v: f32,
     /// Of the run before this one.

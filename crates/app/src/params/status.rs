@@ -1,0 +1,83 @@
+//! The parameter store for diagnostics, and what it asks the control tick for.
+
+/// What the store is about.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[repr(u8)]
+pub enum ParamState {
+    /// Flash holds what is in use.
+    #[default]
+    Saved = 0,
+    /// Something changed; it is saved once nothing has changed for 500 ms.
+    Settling = 1,
+    /// Armed, or motors may still turn: flash is left alone.
+    WaitingForRest = 2,
+    Saving = 3,
+    /// A sector is being erased: the chip stands still.
+    Erasing = 4,
+    /// The last attempt failed; the next one comes after 1, 10, 60 or 300 s.
+    BackingOff = 5,
+}
+
+/// Why an attempt failed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[repr(u8)]
+pub enum ParamError {
+    /// None has.
+    #[default]
+    None = 0,
+    /// The flash controller reported an error.
+    Flash = 1,
+    /// A record read back differently.
+    NotProgrammed = 2,
+    /// A sector was not blank after its erase.
+    NotErased = 3,
+    /// No sector left that can be written.
+    Full = 4,
+}
+
+/// Counters since boot unless the name says otherwise.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(C)]
+pub struct ParamStatus {
+    /// Grows with every change of the other fields.
+    pub revision: u32,
+    /// Records saved and read back (ROBOT_CPP's `g_app_params_save_ok`).
+    pub save_ok: u32,
+    /// Attempts that failed, erases among them.
+    pub save_failed: u32,
+    pub erases: u32,
+    /// Times a sector became the active one, since the store was new.
+    pub generation: u32,
+    /// Reading the store at boot, a sector erase included.
+    pub boot_us: u32,
+    /// The longest time the chip stood still for an erase after boot.
+    pub longest_stall_us: u32,
+    /// Found at boot; bits are positions in `tuning::PARAMETERS`.
+    pub loaded: u32,
+    /// Found, but of an unknown version or with a value out of range: the defaults are in use.
+    pub refused: u32,
+    /// Groups whose values are not in flash yet.
+    pub unsaved: u32,
+    /// Places in the active sector that hold neither a record nor nothing, as found at boot.
+    pub damaged: u16,
+    /// Records of another firmware, kept but not used.
+    pub foreign: u16,
+    /// Records that fit before the next sector is begun.
+    pub free_slots: u16,
+    pub state: ParamState,
+    pub last_error: ParamError,
+}
+
+/// What the parameter task wants to do to flash; the control tick says when it may.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u8)]
+pub enum FlashRequest {
+    #[default]
+    None = 0,
+    /// Words of 16 µs each, up to 100 µs.
+    Program = 1,
+    /// Everything on the chip waits for 0.25 to 0.5 s.
+    Erase = 2,
+}
