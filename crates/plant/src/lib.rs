@@ -1,8 +1,9 @@
 //! The world around the C board: robot, motors, sensors and radio, each speaking its real wire format.
 //!
-//! Nothing here knows the chip, and nothing here uses the firmware's codecs: a codec must not be tested against itself.
+//! Of the chip only the cells of its flash are here, which outlive it without power. Nothing here uses the firmware's codecs: a codec must not be tested against itself.
 
 pub mod can_adapter;
+pub mod flash_chip;
 pub mod recording;
 pub mod time;
 pub mod wire;

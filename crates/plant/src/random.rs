@@ -15,6 +15,7 @@ pub(crate) enum Stream {
     RightMotor = 6,
     SpiGarbage = 7,
     RadioLosses = 8,
+    Flash = 9,
 }
 
 /// PCG XSL 128/64: the same seed and stream give the same numbers on every machine.
@@ -30,6 +31,10 @@ impl Random {
     }
 
     pub(crate) fn byte(&mut self) -> u8 {
+        self.0.random()
+    }
+
+    pub(crate) fn word(&mut self) -> u32 {
         self.0.random()
     }
 

@@ -1,0 +1,188 @@
+//! The flash cells of the STM32F407 (RM0090 3.4–3.6): what programming, erasing and a power cut leave in them.
+//!
+//! Times, keys and registers are the flash controller's; here every operation is done at once. Addresses are the
+//! processor's, from [`BASE`]. The parameter store's tests meet the cells through `embedded_storage`'s `NorFlash`.
+
+mod cells;
+mod defects;
+mod nor_flash;
+mod power;
+mod sectors;
+
+#[cfg(test)]
+mod tests;
+
+use std::ops::{Range, RangeInclusive};
+
+use thiserror::Error;
+
+use crate::random::{Random, Stream};
+use cells::Cells;
+use defects::Defects;
+use power::{Outcome, Power};
+
+pub use defects::{EraseFault, StuckBit};
+pub use power::Phase;
+pub use sectors::{BASE, PARAMETER_SECTORS, SECTOR_COUNT, sector_range};
+
+const WORD: u32 = 4;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum FlashError {
+    #[error("the flash is without power")]
+    PowerLost,
+    #[error("{0:#010x} is not the address of a word")]
+    NotAligned(u32),
+    #[error("{0:#010x} lies outside of the flash")]
+    OutOfRange(u32),
+    #[error("the flash has no sector {0}")]
+    NoSuchSector(u8),
+}
+
+/// Contents, wear and defects of a run of sectors. Everything random in it follows from the seed.
+#[derive(Clone, Debug)]
+pub struct FlashChip {
+    addresses: Range<u32>,
+    cells: Cells,
+    defects: Defects,
+    power: Power,
+    erases: [u32; SECTOR_COUNT as usize],
+    programs: u64,
+    random: Random,
+}
+
+impl FlashChip {
+    /// All 12 sectors of 1 MiB, erased.
+    pub fn whole(seed: u64) -> Self {
+        Self::blank(0..=SECTOR_COUNT - 1, seed)
+    }
+
+    /// Sectors 1–3 alone, where the parameters are kept, erased.
+    pub fn parameters(seed: u64) -> Self {
+        Self::blank(PARAMETER_SECTORS, seed)
+    }
+
+    fn blank(sectors: RangeInclusive<u8>, seed: u64) -> Self {
+        let addresses =
+            sectors::start_address(*sectors.start())..sectors::start_address(*sectors.end() + 1);
+        Self {
+            cells: Cells::blank(addresses.len()),
+            addresses,
+            defects: Defects::default(),
+            power: Power::default(),
+            erases: [0; SECTOR_COUNT as usize],
+            programs: 0,
+            random: Random::new(seed, Stream::Flash),
+        }
+    }
+
+    /// Draws from here on as a chip made with `seed` would.
+    pub fn reseed(&mut self, seed: u64) {
+        self.random = Random::new(seed, Stream::Flash);
+    }
+
+    /// Puts `bytes` there as if erased and programmed well before. Counts as no step and no wear.
+    pub fn set_contents(&mut self, address: u32, bytes: &[u8]) -> Result<(), FlashError> {
+        let range = self.range(address, bytes.len())?;
+        self.cells.set(range, bytes);
+        Ok(())
+    }
+
+    /// What the cells read as this time: an unstable bit is drawn anew with every call.
+    pub fn read(&mut self, address: u32, bytes: &mut [u8]) -> Result<(), FlashError> {
+        self.power.check()?;
+        let range = self.range(address, bytes.len())?;
+        self.cells.read(range, bytes, &mut self.random);
+        self.defects.distort(address, bytes);
+        Ok(())
+    }
+
+    /// Programs a word: bits go from 1 to 0 only. The chip gives no error for a 0 that should become 1.
+    pub fn program_word(&mut self, address: u32, value: u32) -> Result<(), FlashError> {
+        if !address.is_multiple_of(WORD) {
+            return Err(FlashError::NotAligned(address));
+        }
+        let start = self.range(address, WORD as usize)?.start;
+        let outcome = self.power.begin_step()?;
+        match outcome {
+            Outcome::CutBefore => {}
+            Outcome::CutInTheMiddle => self.cells.program_torn(start, value, &mut self.random),
+            Outcome::Done | Outcome::CutAfter => self.cells.program(start, value),
+        }
+        self.programs += u64::from(outcome != Outcome::CutBefore);
+        outcome.result()
+    }
+
+    /// Erases sector 0 … 11, as far as the chip holds it and its defects let it.
+    pub fn erase(&mut self, sector: u8) -> Result<(), FlashError> {
+        let addresses = sector_range(sector).ok_or(FlashError::NoSuchSector(sector))?;
+        let range = self.range(addresses.start, addresses.len())?;
+        let outcome = self.power.begin_step()?;
+        match outcome {
+            Outcome::CutBefore => {}
+            Outcome::CutInTheMiddle => self.cells.erase_torn(range, &mut self.random),
+            Outcome::Done | Outcome::CutAfter => match self.defects.erase_fault(sector) {
+                None => self.cells.erase(range),
+                Some(EraseFault::DoesNothing) => {}
+                Some(EraseFault::LeavesSomeWords) => {
+                    self.cells.erase_in_part(range, &mut self.random);
+                }
+            },
+        }
+        if outcome != Outcome::CutBefore
+            && let Some(count) = self.erases.get_mut(usize::from(sector))
+        {
+            *count += 1;
+        }
+        outcome.result()
+    }
+
+    /// Erases of the sector that began, torn ones too: each of them wears it.
+    pub fn erases(&self, sector: u8) -> u32 {
+        self.erases.get(usize::from(sector)).copied().unwrap_or(0)
+    }
+
+    /// Words whose programming began.
+    pub fn programs(&self) -> u64 {
+        self.programs
+    }
+
+    /// Programs and erases begun since the chip was made: the next one is the step of this number.
+    pub fn steps(&self) -> u64 {
+        self.power.steps()
+    }
+
+    /// Takes the power away at the step of that number, counted as [`Self::steps`] does.
+    pub fn cut_at(&mut self, step: u64, phase: Phase) {
+        self.power.cut_at(step, phase);
+    }
+
+    pub fn is_powered(&self) -> bool {
+        self.power.check().is_ok()
+    }
+
+    /// Gives the power back and forgets a cut that was still to come.
+    pub fn power_up(&mut self) {
+        self.power = self.power.restored();
+    }
+
+    /// The cell is stuck from now on, whatever is written.
+    pub fn stick(&mut self, bit: StuckBit) {
+        self.defects.stick(bit);
+    }
+
+    /// Erases of the sector fail that way from now on, or work again.
+    pub fn set_erase_fault(&mut self, sector: u8, fault: Option<EraseFault>) {
+        self.defects.set_erase_fault(sector, fault);
+    }
+
+    /// Place of `length` bytes at `address` among the cells.
+    fn range(&self, address: u32, length: usize) -> Result<Range<usize>, FlashError> {
+        let outside = FlashError::OutOfRange(address);
+        let start = address.checked_sub(self.addresses.start).ok_or(outside)? as usize;
+        if start.saturating_add(length) > self.addresses.len() {
+            return Err(outside);
+        }
+        Ok(start..start + length)
+    }
+}

@@ -1,0 +1,59 @@
+//! Worn-out cells and sectors.
+
+use super::SECTOR_COUNT;
+
+/// A cell that reads the same for ever.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StuckBit {
+    /// Of the byte.
+    pub address: u32,
+    /// 0 … 7.
+    pub bit: u8,
+    pub value: bool,
+}
+
+/// How the erase of a worn-out sector ends. The chip reports neither.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EraseFault {
+    DoesNothing,
+    /// A word in 64 or so keeps what it held.
+    LeavesSomeWords,
+}
+
+#[derive(Clone, Debug, Default)]
+pub(super) struct Defects {
+    stuck: Vec<StuckBit>,
+    erase: [Option<EraseFault>; SECTOR_COUNT as usize],
+}
+
+impl Defects {
+    pub fn stick(&mut self, bit: StuckBit) {
+        self.stuck.push(bit);
+    }
+
+    pub fn set_erase_fault(&mut self, sector: u8, fault: Option<EraseFault>) {
+        if let Some(place) = self.erase.get_mut(usize::from(sector)) {
+            *place = fault;
+        }
+    }
+
+    pub fn erase_fault(&self, sector: u8) -> Option<EraseFault> {
+        self.erase.get(usize::from(sector)).copied().flatten()
+    }
+
+    /// Puts the stuck bits into what was read at `address`.
+    pub fn distort(&self, address: u32, bytes: &mut [u8]) {
+        for stuck in &self.stuck {
+            let offset = stuck.address.checked_sub(address);
+            let Some(byte) = offset.and_then(|offset| bytes.get_mut(offset as usize)) else {
+                continue;
+            };
+            let mask = 1 << (stuck.bit & 7);
+            *byte = if stuck.value {
+                *byte | mask
+            } else {
+                *byte & !mask
+            };
+        }
+    }
+}
