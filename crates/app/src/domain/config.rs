@@ -1,6 +1,6 @@
 //! Values that fit this code to one robot.
 
-use crate::motor::layout::ROBOT_LAYOUT;
+use crate::motor::layout::{MotorLayout, ROBOT_LAYOUT};
 
 /// Wheel geometry (ROBOT_CPP 5.1).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -240,11 +240,18 @@ pub struct RobotConfig {
 
 impl Default for RobotConfig {
     fn default() -> Self {
+        Self::for_layout(&ROBOT_LAYOUT)
+    }
+}
+
+impl RobotConfig {
+    /// The defaults of a robot with these motors.
+    pub fn for_layout(layout: &MotorLayout) -> Self {
         Self {
             wheel_odom: WheelOdomConfig::default(),
             wheel_ctrl: WheelControllerConfig::default(),
             joint_ctrl: JointControllerConfig::default(),
-            joints: ROBOT_LAYOUT.joint_configs(),
+            joints: layout.joint_configs(),
             safety: SafetyConfig::default(),
             imu: ImuCalibration::default(),
             mag: MagCalibration::default(),

@@ -64,6 +64,14 @@ impl JointMotor {
             Self::Rs00(motor) => motor.identifiers(),
         }
     }
+
+    /// The make's number in stored settings (docs/parameters.md); never changes.
+    pub const fn make(&self) -> u8 {
+        match self {
+            Self::Dm4310(_) => 1,
+            Self::Rs00(_) => 2,
+        }
+    }
 }
 
 /// One joint motor.

@@ -43,6 +43,8 @@ pub enum ParamError {
 pub struct ParamStatus {
     /// Grows with every change of the other fields.
     pub revision: u32,
+    /// The `TuningStatus::revision` that `unsaved` and `state` know of: a younger change is not saved.
+    pub seen: u32,
     /// Records saved and read back (ROBOT_CPP's `g_app_params_save_ok`).
     pub save_ok: u32,
     /// Attempts that failed, erases among them.
@@ -56,13 +58,14 @@ pub struct ParamStatus {
     pub longest_stall_us: u32,
     /// Found at boot; bits are positions in `tuning::PARAMETERS`.
     pub loaded: u32,
-    /// Found, but of an unknown version or with a value out of range: the defaults are in use.
+    /// Found, but of a later version or with values that are not allowed: the defaults are in use, and the record stays
+    /// until someone changes the group.
     pub refused: u32,
     /// Groups whose values are not in flash yet.
     pub unsaved: u32,
     /// Places in the active sector that hold neither a record nor nothing, as found at boot.
     pub damaged: u16,
-    /// Records of another firmware, kept but not used.
+    /// Records of groups this firmware does not have, or of another make of joint motor: kept but not used.
     pub foreign: u16,
     /// Records that fit before the next sector is begun.
     pub free_slots: u16,

@@ -18,8 +18,12 @@ use crate::{
         MotorManager, TickFrames,
         layout::{MotorLayout, ROBOT_LAYOUT},
     },
-    safety::{Arming, ArmingInputs, SafetyInputs, SafetyPolicy, TorquePermit},
-    tuning::{REPLY_PERIOD_TICKS, TuningChannel, TuningGate},
+    params::{FlashRequest, ParamStatus},
+    safety::{
+        Arming, ArmingInputs, FlashGrant, FlashPermit, FlashPermitInputs, SafetyInputs,
+        SafetyPolicy, TorquePermit, WatchdogPeriod,
+    },
+    tuning::{REPLY_PERIOD_TICKS, TuningAccess, TuningChannel, TuningGate},
 };
 
 /// The latest snapshot of each producer.
@@ -30,6 +34,10 @@ pub struct ControlInputs<'a> {
     pub mag: &'a MagState,
     pub logic: &'a LogicBus,
     pub health: &'a SystemHealth,
+    pub params: &'a ParamStatus,
+    /// What the parameter store would do to flash.
+    pub flash_request: FlashRequest,
+    pub watchdog: WatchdogPeriod,
 }
 
 /// What one tick produced.
@@ -41,6 +49,7 @@ pub struct ControlOutputs<'a> {
     pub diagnostics: &'a DiagnosticsSnapshot,
     /// As `diagnostics.tuning.revision` counts it.
     pub config: &'a RobotConfig,
+    pub flash: FlashGrant,
 }
 
 /// Who decides the commands of this tick.
@@ -72,6 +81,7 @@ pub struct ControlLoop<
     estimator: InsEstimator,
     policy: SafetyPolicy,
     arming: Arming,
+    flash: FlashPermit,
     tuning: TuningChannel,
     /// Of the tuning channel, for its next slot: one a bus.
     replies: Vec<(BusId, CanFrame), 2>,
@@ -105,7 +115,8 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
             estimator: InsEstimator::new(config.wheel_odom),
             policy: SafetyPolicy::default(),
             arming: Arming::default(),
-            tuning: TuningChannel::default(),
+            flash: FlashPermit::default(),
+            tuning: TuningChannel::new(layout),
             replies: Vec::new(),
             bring_up: BringUp::default(),
             diagnostics,
@@ -126,10 +137,22 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
             bring_up,
             ..
         } = self;
-        if let Some(reply) = tuning.on_frame(bus, frame, gate, config, bring_up) {
+        let access = TuningAccess {
+            config,
+            bring_up,
+            params: &diagnostics.params,
+        };
+        if let Some(reply) = tuning.on_frame(bus, frame, gate, access) {
             // The channel gives one a bus and tick.
             let _ = self.replies.push((bus, reply));
         }
+    }
+
+    /// Before the first tick after the whole chip stood still for `stall_us` (a flash erase): nobody else is to blame
+    /// for what did not happen meanwhile.
+    pub fn after_stall(&mut self, stall_us: u32, now_us: u64) {
+        self.diagnostics.borrow_mut().tick.stalled(stall_us);
+        self.motors.after_stall(stall_us, now_us);
     }
 
     /// One tick; `now_us` is when it began.
@@ -138,7 +161,8 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
         self.take_config();
         self.sense(inputs, now_us);
         let trial = self.try_out(inputs, now_us);
-        let permit = self.judge(inputs, now_us);
+        let flash = self.guard_flash(inputs, now_us);
+        let permit = self.judge(inputs, flash.blocks_arming, now_us);
         self.act(inputs, permit.as_ref(), trial.as_ref(), now_us);
         self.reply();
         self.record(inputs, now_us);
@@ -148,6 +172,7 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
             estimate: &diagnostics.estimate,
             diagnostics,
             config: &self.config,
+            flash,
         }
     }
 
@@ -198,7 +223,27 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
         command
     }
 
-    fn judge(&mut self, inputs: &ControlInputs<'_>, now_us: u64) -> Option<TorquePermit> {
+    fn guard_flash(&mut self, inputs: &ControlInputs<'_>, now_us: u64) -> FlashGrant {
+        let diagnostics: &DiagnosticsSnapshot = self.diagnostics.borrow();
+        self.flash.step(
+            &FlashPermitInputs {
+                request: inputs.flash_request,
+                watchdog: inputs.watchdog,
+                arming: diagnostics.arming.state,
+                enabled: inputs.remote.operator.enabled,
+                motor: &diagnostics.sensors.motor,
+                wheel_timeout_us: self.config.wheel_ctrl.feedback_timeout_us,
+            },
+            now_us,
+        )
+    }
+
+    fn judge(
+        &mut self,
+        inputs: &ControlInputs<'_>,
+        flash_busy: bool,
+        now_us: u64,
+    ) -> Option<TorquePermit> {
         let diagnostics = self.diagnostics.borrow_mut();
         diagnostics.safety = self.policy.evaluate(
             &SafetyInputs {
@@ -224,6 +269,7 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
                 calibrated: inputs.health.imu_calibrated,
                 motor: &diagnostics.sensors.motor,
                 read_only: self.bring_up.blocks_arming(),
+                flash_busy,
                 safety: &diagnostics.safety,
             },
             now_us,
@@ -348,5 +394,8 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
         diagnostics.reset_cause = health.reset_cause;
         diagnostics.last_words = health.last_words;
         diagnostics.battery_v = health.battery_v;
+        if diagnostics.params.revision != inputs.params.revision {
+            diagnostics.params = *inputs.params;
+        }
     }
 }

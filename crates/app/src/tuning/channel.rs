@@ -1,13 +1,15 @@
 //! Requests in, at most one reply a slot and bus out.
 
 use super::{
-    Refusal, TuningStatus, consistency, parameters,
-    protocol::{self, Request},
+    PARAMETERS, Refusal, TuningStatus, consistency, parameters,
+    protocol::{self, Request, Restored},
     wheel_geometry::WheelGeometry,
 };
 use crate::{
     bring_up::BringUp,
     domain::{BusId, CanFrame, OperatorState, RobotConfig},
+    motor::layout::MotorLayout,
+    params::ParamStatus,
     safety::ArmingState,
 };
 
@@ -32,14 +34,32 @@ impl TuningGate {
 /// 250 replies a second and bus at most: what the layout's load leaves room for.
 pub const REPLY_PERIOD_TICKS: u32 = 4;
 
-#[derive(Clone, Debug, Default)]
+/// What requests read and change.
+#[derive(Debug)]
+pub struct TuningAccess<'a> {
+    pub config: &'a mut RobotConfig,
+    pub bring_up: &'a mut BringUp,
+    pub params: &'a ParamStatus,
+}
+
+#[derive(Clone, Debug)]
 pub struct TuningChannel {
+    /// Says what the defaults are.
+    layout: &'static MotorLayout,
     /// Index = `BusId`: a reply was made in this slot.
     replied: [bool; 2],
     status: TuningStatus,
 }
 
 impl TuningChannel {
+    pub fn new(layout: &'static MotorLayout) -> Self {
+        Self {
+            layout,
+            replied: [false; 2],
+            status: TuningStatus::default(),
+        }
+    }
+
     /// Every [`REPLY_PERIOD_TICKS`], after the replies of the slot before went out.
     pub fn begin_slot(&mut self) {
         self.replied = [false; 2];
@@ -52,9 +72,13 @@ impl TuningChannel {
         bus: BusId,
         frame: &CanFrame,
         gate: TuningGate,
-        config: &mut RobotConfig,
-        bring_up: &mut BringUp,
+        access: TuningAccess<'_>,
     ) -> Option<CanFrame> {
+        let TuningAccess {
+            config,
+            bring_up,
+            params,
+        } = access;
         let request = Request::decode(frame)?;
         if core::mem::replace(self.replied.get_mut(bus as usize)?, true) {
             self.status.dropped = self.status.dropped.wrapping_add(1);
@@ -69,6 +93,7 @@ impl TuningChannel {
                 let value = parameters::find(group, index)?.read(config);
                 Ok(protocol::parameter_reply(group, index, value))
             }
+            Request::ReadStore => Ok(protocol::store_reply(params, self.status.revision)),
             _ if gate == TuningGate::Shut => Err(Refusal::Armed),
             Request::WriteGeometry(geometry) => self
                 .change(config, |candidate| geometry.apply(candidate))
@@ -82,6 +107,9 @@ impl TuningChannel {
                 self.change(config, |candidate| parameter.write(candidate, value))
                     .map(|()| protocol::echo(frame))
             }
+            Request::RestoreDefaults(restored) => self
+                .change(config, restore(restored, self.layout))
+                .map(|()| protocol::echo(frame)),
             Request::BringUp(request) => {
                 bring_up.request(request);
                 Ok(protocol::echo(frame))
@@ -123,6 +151,25 @@ impl TuningChannel {
                 protocol::refusal_reply(request, reason)
             }
         }
+    }
+}
+
+fn restore(
+    restored: Restored,
+    layout: &MotorLayout,
+) -> impl FnOnce(&mut RobotConfig) -> Result<(), Refusal> {
+    move |config| {
+        let defaults = RobotConfig::for_layout(layout);
+        let Restored::Group(number) = restored else {
+            *config = defaults;
+            return Ok(());
+        };
+        PARAMETERS
+            .iter()
+            .find(|group| group.number == number)
+            .ok_or(Refusal::UnknownParameter)?
+            .copy(&defaults, config);
+        Ok(())
     }
 }
 

@@ -4,7 +4,7 @@
 //! [`PARAMETERS`] lists everything that can be changed.
 
 mod channel;
-mod consistency;
+pub(crate) mod consistency;
 mod parameter;
 mod parameters;
 mod protocol;
@@ -12,8 +12,8 @@ mod refusal;
 mod status;
 mod wheel_geometry;
 
-pub use channel::{REPLY_PERIOD_TICKS, TuningChannel, TuningGate};
-pub use parameter::{Parameter, ParameterGroup, ParameterKind};
+pub use channel::{REPLY_PERIOD_TICKS, TuningAccess, TuningChannel, TuningGate};
+pub use parameter::{Parameter, ParameterGroup, ParameterKind, Scope};
 pub use parameters::PARAMETERS;
 pub use protocol::{READ_ID, REPLY_ID, WRITE_ID};
 pub use refusal::Refusal;

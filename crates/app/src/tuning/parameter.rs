@@ -28,13 +28,42 @@ pub struct Parameter {
     pub(super) set: fn(&mut RobotConfig, f32),
 }
 
-/// Settings that belong together.
+/// What the values of a group are true for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scope {
+    Robot,
+    /// The joint with this position in the motor layout, with the make of motor it has now: zeros and limits of another
+    /// make would be wrong.
+    Joint(usize),
+}
+
+/// Settings that belong together. They are saved together (docs/parameters.md).
 #[derive(Debug)]
 pub struct ParameterGroup {
     /// Never changes.
     pub number: u8,
     pub name: &'static str,
+    /// Grows by one with every firmware that appends settings to the group.
+    pub version: u8,
+    pub scope: Scope,
+    /// In the order of their indices, which begin at 0 and leave none out.
     pub parameters: &'static [Parameter],
+}
+
+impl ParameterGroup {
+    /// Makes this group in `to` what it is in `from`.
+    pub fn copy(&self, from: &RobotConfig, to: &mut RobotConfig) {
+        for parameter in self.parameters {
+            (parameter.set)(to, parameter.read(from));
+        }
+    }
+
+    /// True if each value is the same, bit for bit.
+    pub fn is_same(&self, one: &RobotConfig, other: &RobotConfig) -> bool {
+        self.parameters
+            .iter()
+            .all(|parameter| parameter.read(one).to_bits() == parameter.read(other).to_bits())
+    }
 }
 
 impl Parameter {
@@ -43,7 +72,7 @@ impl Parameter {
     }
 
     /// Unchanged unless `value` is one this setting may take by itself.
-    pub(super) fn write(&self, config: &mut RobotConfig, value: f32) -> Result<(), Refusal> {
+    pub(crate) fn write(&self, config: &mut RobotConfig, value: f32) -> Result<(), Refusal> {
         if !value.is_finite() {
             return Err(Refusal::NotFinite);
         }

@@ -1,6 +1,6 @@
 //! Everything that can be tuned. Numbers of groups and settings are on the wire: add, never renumber.
 
-use super::{Parameter, ParameterGroup, Refusal};
+use super::{Parameter, ParameterGroup, Refusal, Scope};
 
 mod joints;
 mod safety;
@@ -12,56 +12,78 @@ pub static PARAMETERS: [ParameterGroup; 11] = [
     ParameterGroup {
         number: WHEEL_GEOMETRY,
         name: "wheel-geometry",
+        version: 1,
+        scope: Scope::Robot,
         parameters: &wheels::GEOMETRY,
     },
     ParameterGroup {
         number: 2,
         name: "wheel-controller",
+        version: 1,
+        scope: Scope::Robot,
         parameters: &wheels::CONTROLLER,
     },
     ParameterGroup {
         number: 3,
         name: "joint-controller",
+        version: 1,
+        scope: Scope::Robot,
         parameters: &joints::CONTROLLER,
     },
     ParameterGroup {
         number: 4,
         name: "safety",
+        version: 1,
+        scope: Scope::Robot,
         parameters: &safety::SAFETY,
     },
     ParameterGroup {
         number: 5,
         name: "imu-calibration",
+        version: 1,
+        scope: Scope::Robot,
         parameters: &sensors::IMU,
     },
     ParameterGroup {
         number: 6,
         name: "mag-calibration",
+        version: 1,
+        scope: Scope::Robot,
         parameters: &sensors::MAG,
     },
     ParameterGroup {
         number: 7,
         name: "heater",
+        version: 1,
+        scope: Scope::Robot,
         parameters: &sensors::HEATER,
     },
     ParameterGroup {
         number: 16,
         name: "joint-left-front",
+        version: 1,
+        scope: Scope::Joint(0),
         parameters: &joints::LEFT_FRONT,
     },
     ParameterGroup {
         number: 17,
         name: "joint-left-rear",
+        version: 1,
+        scope: Scope::Joint(1),
         parameters: &joints::LEFT_REAR,
     },
     ParameterGroup {
         number: 18,
         name: "joint-right-front",
+        version: 1,
+        scope: Scope::Joint(2),
         parameters: &joints::RIGHT_FRONT,
     },
     ParameterGroup {
         number: 19,
         name: "joint-right-rear",
+        version: 1,
+        scope: Scope::Joint(3),
         parameters: &joints::RIGHT_REAR,
     },
 ];

@@ -4,6 +4,7 @@ use super::{Refusal, wheel_geometry::WheelGeometry};
 use crate::{
     bring_up::BringUpRequest,
     domain::{CanFrame, StandardId},
+    params::{ParamState, ParamStatus},
 };
 
 const fn id(raw: u16) -> StandardId {
@@ -23,6 +24,8 @@ const WRITE_GEOMETRY: u8 = 0x10;
 const READ_GEOMETRY: u8 = 0x11;
 const WRITE_PARAMETER: u8 = 0x20;
 const READ_PARAMETER: u8 = 0x21;
+const RESTORE_DEFAULTS: u8 = 0x30;
+const READ_STORE: u8 = 0x31;
 const BRING_UP: u8 = 0x40;
 /// No old client takes it for the answer to 0x10 or 0x11.
 const REFUSED: u8 = 0xEE;
@@ -33,7 +36,17 @@ pub enum Request {
     ReadGeometry,
     WriteParameter { group: u8, index: u8, value: f32 },
     ReadParameter { group: u8, index: u8 },
+    RestoreDefaults(Restored),
+    ReadStore,
     BringUp(BringUpRequest),
+}
+
+/// What gets its defaults back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Restored {
+    AllGroups,
+    /// The group with this number.
+    Group(u8),
 }
 
 impl Request {
@@ -53,7 +66,10 @@ impl Request {
     fn decode_write(frame: &CanFrame) -> Result<Self, Refusal> {
         let known = matches!(
             frame.payload(),
-            [] | [WRITE_GEOMETRY | WRITE_PARAMETER | BRING_UP, ..]
+            [] | [
+                WRITE_GEOMETRY | WRITE_PARAMETER | RESTORE_DEFAULTS | BRING_UP,
+                ..
+            ]
         );
         if !known {
             return Err(Refusal::UnknownCommand);
@@ -65,6 +81,12 @@ impl Request {
                 index,
                 value: f32::from_le_bytes([a, b, c, d]),
             }),
+            [RESTORE_DEFAULTS, 0, 0, 0, 0, 0, 0, 0] => {
+                Ok(Self::RestoreDefaults(Restored::AllGroups))
+            }
+            [RESTORE_DEFAULTS, group, 0, 0, 0, 0, 0, 0] => {
+                Ok(Self::RestoreDefaults(Restored::Group(group)))
+            }
             [BRING_UP, step, motor, action, low, high, 0, 0] => {
                 let value = i16::from_le_bytes([low, high]);
                 BringUpRequest::from_fields(step, motor, action, value)
@@ -81,6 +103,7 @@ impl Request {
         match *payload {
             [READ_GEOMETRY, ..] => Ok(Self::ReadGeometry),
             [READ_PARAMETER, group, index, ..] => Ok(Self::ReadParameter { group, index }),
+            [READ_STORE, ..] => Ok(Self::ReadStore),
             [] | [READ_PARAMETER, ..] => Err(Refusal::WrongLength),
             _ => Err(Refusal::UnknownCommand),
         }
@@ -95,6 +118,36 @@ pub fn geometry_reply(geometry: WheelGeometry) -> CanFrame {
 pub fn parameter_reply(group: u8, index: u8, value: f32) -> CanFrame {
     let [a, b, c, d] = value.to_le_bytes();
     CanFrame::new(REPLY_ID, [READ_PARAMETER, group, index, 0, a, b, c, d])
+}
+
+/// `revision` is `TuningStatus::revision` now: what the store has not seen yet counts as one more unsaved group.
+pub fn store_reply(params: &ParamStatus, revision: u32) -> CanFrame {
+    let overtaken = params.seen != revision;
+    let state = if overtaken {
+        ParamState::Settling
+    } else {
+        params.state
+    };
+    let unsaved = (params.unsaved.count_ones() as u8).saturating_add(u8::from(overtaken));
+    let [ok_low, ok_high] = saturated(params.save_ok);
+    let [failed_low, failed_high] = saturated(params.save_failed);
+    CanFrame::new(
+        REPLY_ID,
+        [
+            READ_STORE,
+            state as u8,
+            params.last_error as u8,
+            unsaved,
+            ok_low,
+            ok_high,
+            failed_low,
+            failed_high,
+        ],
+    )
+}
+
+fn saturated(count: u32) -> [u8; 2] {
+    u16::try_from(count).unwrap_or(u16::MAX).to_le_bytes()
 }
 
 /// A write that was done is answered with its own bytes.

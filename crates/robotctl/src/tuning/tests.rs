@@ -10,7 +10,9 @@ use std::{
 use robot_app::{
     bring_up::BringUp,
     domain::{BusId, CanFrame, RobotConfig, StandardId},
-    tuning::{Refusal, TuningChannel, TuningGate},
+    motor::layout::ROBOT_LAYOUT,
+    params::ParamStatus,
+    tuning::{Refusal, TuningAccess, TuningChannel, TuningGate},
 };
 
 use super::*;
@@ -23,6 +25,7 @@ struct Robot {
     channel: TuningChannel,
     config: RobotConfig,
     gate: TuningGate,
+    params: ParamStatus,
     /// Replies that the bus still loses.
     to_lose: usize,
     requests: usize,
@@ -41,8 +44,11 @@ impl CanLink for Bus {
             BusId::Can2,
             frame,
             robot.gate,
-            &mut robot.config,
-            &mut BringUp::default(),
+            TuningAccess {
+                config: &mut robot.config,
+                bring_up: &mut BringUp::default(),
+                params: &robot.params,
+            },
         );
         // Traffic of the motors comes first.
         let feedback = StandardId::new(0x201).unwrap();
@@ -62,7 +68,8 @@ impl CanLink for Bus {
 
 fn robot() -> (Bus, TuningClient) {
     let bus = Bus(Rc::new(RefCell::new(Robot {
-        channel: TuningChannel::default(),
+        channel: TuningChannel::new(&ROBOT_LAYOUT),
+        params: ParamStatus::default(),
         config: RobotConfig::default(),
         gate: TuningGate::Open,
         to_lose: 0,

@@ -4,28 +4,45 @@ use super::*;
 use crate::{
     bring_up::BringUpStep,
     domain::{StandardId, WheelOdomConfig},
+    motor::layout::ROBOT_LAYOUT,
+    params::{ParamError, ParamState},
 };
 
 /// ROBOT_CPP 5.3: radius 75 mm, track 450 mm, ratio 36.00, left wheel reversed.
 const GEOMETRY: [u8; 8] = [0x10, 75, 0, 0xC2, 0x01, 0x10, 0x0E, 0x01];
 
-#[derive(Default)]
 struct Bench {
     channel: TuningChannel,
     config: RobotConfig,
     bring_up: BringUp,
+    params: ParamStatus,
+}
+
+impl Default for Bench {
+    fn default() -> Self {
+        Self {
+            channel: TuningChannel::new(&ROBOT_LAYOUT),
+            config: RobotConfig::default(),
+            bring_up: BringUp::default(),
+            params: ParamStatus::default(),
+        }
+    }
 }
 
 impl Bench {
     fn ask(&mut self, gate: TuningGate, id: u16, payload: &[u8]) -> Option<CanFrame> {
         let id = StandardId::new(id).unwrap();
         let frame = CanFrame::from_payload(id, payload).unwrap();
-        let Self {
-            channel,
-            config,
-            bring_up,
-        } = self;
-        channel.on_frame(BusId::Can1, &frame, gate, config, bring_up)
+        self.ask_on(BusId::Can1, gate, &frame)
+    }
+
+    fn ask_on(&mut self, bus: BusId, gate: TuningGate, frame: &CanFrame) -> Option<CanFrame> {
+        let access = TuningAccess {
+            config: &mut self.config,
+            bring_up: &mut self.bring_up,
+            params: &self.params,
+        };
+        self.channel.on_frame(bus, frame, gate, access)
     }
 
     /// The reply to the first request of a tick.
@@ -111,7 +128,7 @@ fn any_setting_is_written_and_read() {
 fn every_refusal_says_why_and_changes_nothing() {
     const NAN: [u8; 4] = [0x00, 0x00, 0xC0, 0x7F];
     let [n0, n1, n2, n3] = NAN;
-    let writes: [(&[u8], [u8; 5]); 14] = [
+    let writes: [(&[u8], [u8; 5]); 18] = [
         // No command, a short, an unknown one, a read on the identifier of writes.
         (&[], [0xEE, 0x00, 1, 0, 0]),
         (
@@ -120,10 +137,14 @@ fn every_refusal_says_why_and_changes_nothing() {
         ),
         (&[0x20, 2, 2], [0xEE, 0x20, 1, 2, 2]),
         (&[0x40, 1], [0xEE, 0x40, 1, 0, 0]),
+        (&[0x30, 2], [0xEE, 0x30, 1, 0, 0]),
+        (&[0x31, 0, 0, 0, 0, 0, 0, 0], [0xEE, 0x31, 2, 0, 0]),
         (&[0x12, 0, 0, 0, 0, 0, 0, 0], [0xEE, 0x12, 2, 0, 0]),
         (&[0x11], [0xEE, 0x11, 2, 0, 0]),
         // No such setting.
         (&[0x20, 99, 1, 0, 0, 0, 0, 0], [0xEE, 0x20, 3, 99, 1]),
+        (&[0x30, 99, 0, 0, 0, 0, 0, 0], [0xEE, 0x30, 3, 0, 0]),
+        (&[0x30, 2, 0, 0, 0, 0, 0, 1], [0xEE, 0x30, 4, 0, 0]),
         // Ratio 0, radius 0, a bit that has no meaning, a byte that must be 0, -1.0 mA as current limit.
         (&[0x10, 75, 0, 0xC2, 0x01, 0, 0, 0], [0xEE, 0x10, 4, 0, 0]),
         (
@@ -149,8 +170,9 @@ fn every_refusal_says_why_and_changes_nothing() {
         assert_eq!((status.accepted, status.refused), (0, 2));
         assert_eq!(status.last_refusal, expected[2]);
     }
-    let reads: [(&[u8], [u8; 5]); 5] = [
+    let reads: [(&[u8], [u8; 5]); 6] = [
         (&[], [0xEE, 0x00, 1, 0, 0]),
+        (&[0x30], [0xEE, 0x30, 2, 0, 0]),
         (&[0x21, 2], [0xEE, 0x21, 1, 2, 0]),
         (&[0x21, 2, 200], [0xEE, 0x21, 3, 2, 200]),
         (
@@ -177,6 +199,7 @@ fn nothing_is_written_while_armed() {
             [0x20, 2, 2, 0, 0, 0x60, 0xEA, 0x46],
             [0xEE, 0x20, 5, 2, 2, 0, 0, 0],
         ),
+        ([0x30, 0, 0, 0, 0, 0, 0, 0], [0xEE, 0x30, 5, 0, 0, 0, 0, 0]),
         ([0x40, 2, 0, 0, 0, 0, 0, 0], [0xEE, 0x40, 5, 0, 0, 0, 0, 0]),
     ] {
         assert_eq!(bench.reply(TuningGate::Shut, 0x7A0, &payload), expected);
@@ -217,12 +240,7 @@ fn one_request_a_slot_and_bus() {
     assert!(bench.unchanged());
     assert_eq!(bench.channel.status().dropped, 1);
     let read = CanFrame::from_payload(protocol::READ_ID, &[0x11]).unwrap();
-    let Bench {
-        channel,
-        config,
-        bring_up,
-    } = &mut bench;
-    let other_bus = channel.on_frame(BusId::Can2, &read, TuningGate::Open, config, bring_up);
+    let other_bus = bench.ask_on(BusId::Can2, TuningGate::Open, &read);
     assert!(other_bus.is_some());
     bench.channel.begin_slot();
     assert!(bench.ask(TuningGate::Open, 0x7A0, &GEOMETRY).is_some());
@@ -264,6 +282,83 @@ fn bring_up_is_asked_for_and_echoed() {
     assert!(bench.bring_up.blocks_arming());
     bench.write(&[0x40, 0, 0, 0, 0, 0, 0, 0]);
     assert!(!bench.bring_up.blocks_arming());
+}
+
+/// Speed 3.5 m/s = 0x40600000, target 30 °C = 0x41F00000; both are other groups than 16.
+fn tuned() -> Bench {
+    let mut bench = Bench::default();
+    bench.write(&[0x20, 2, 0, 0, 0x00, 0x00, 0x60, 0x40]);
+    bench.write(&[0x20, 7, 0, 0, 0x00, 0x00, 0xF0, 0x41]);
+    assert_eq!(bench.config.wheel_ctrl.max_vx_mps, 3.5);
+    assert_eq!(bench.config.heater.target_c, 30.0);
+    bench
+}
+
+#[test]
+fn one_group_gets_its_defaults_back_or_all_do() {
+    let mut bench = tuned();
+    let one = [0x30, 2, 0, 0, 0, 0, 0, 0];
+    assert_eq!(bench.write(&one), one);
+    assert_eq!(bench.config.wheel_ctrl.max_vx_mps, 1.5);
+    assert_eq!(bench.config.heater.target_c, 30.0);
+    assert_eq!(bench.channel.status().revision, 3);
+    let all = [0x30, 0, 0, 0, 0, 0, 0, 0];
+    assert_eq!(bench.write(&all), all);
+    assert_eq!(bench.config, RobotConfig::default());
+    assert_eq!(bench.channel.status().revision, 4);
+}
+
+/// As `ROBOT_LAYOUT`, but for the left rear joint.
+static OTHER_ROBOT: MotorLayout = {
+    let mut joints = *ROBOT_LAYOUT.joints();
+    joints[1].config.max_kp = 50.0;
+    MotorLayout::new(*ROBOT_LAYOUT.wheels(), joints)
+};
+
+#[test]
+fn the_defaults_are_those_of_the_robot_s_motor_layout() {
+    let mut bench = Bench {
+        channel: TuningChannel::new(&OTHER_ROBOT),
+        ..Bench::default()
+    };
+    bench.write(&[0x30, 16, 0, 0, 0, 0, 0, 0]);
+    assert_eq!(bench.config, RobotConfig::default());
+    bench.write(&[0x30, 17, 0, 0, 0, 0, 0, 0]);
+    assert_eq!(bench.config.joints[1].max_kp, 50.0);
+    bench.config = RobotConfig::default();
+    bench.write(&[0x30, 0, 0, 0, 0, 0, 0, 0]);
+    assert_eq!(bench.config.joints[1].max_kp, 50.0);
+}
+
+/// State 5 = backing off, error 2 = read back differently, groups 1 and 4 of the table; 300 = 0x012C.
+#[test]
+fn anyone_may_ask_whether_everything_is_saved() {
+    let mut bench = Bench::default();
+    assert_eq!(bench.read(&[0x31]), [0x31, 0, 0, 0, 0, 0, 0, 0]);
+    bench.params = ParamStatus {
+        state: ParamState::BackingOff,
+        last_error: ParamError::NotProgrammed,
+        unsaved: 0b1001,
+        save_ok: 300,
+        save_failed: 70_000,
+        ..ParamStatus::default()
+    };
+    let expected = [0x31, 5, 2, 2, 0x2C, 0x01, 0xFF, 0xFF];
+    assert_eq!(bench.read(&[0x31]), expected);
+    assert_eq!(bench.reply(TuningGate::Shut, 0x7A1, &[0x31]), expected);
+}
+
+/// The store looks at the settings only now and then: a change it has not seen yet is not called saved.
+#[test]
+fn a_change_is_unsaved_from_the_moment_of_its_reply() {
+    let mut bench = tuned();
+    assert_eq!(bench.read(&[0x31])[..4], [0x31, 1, 0, 1]);
+    bench.params.seen = 2;
+    bench.params.unsaved = 0b10;
+    bench.params.state = ParamState::Saving;
+    assert_eq!(bench.read(&[0x31])[..4], [0x31, 3, 0, 1]);
+    bench.write(&[0x20, 7, 0, 0, 0x00, 0x00, 0x00, 0x42]);
+    assert_eq!(bench.read(&[0x31])[..4], [0x31, 1, 0, 2]);
 }
 
 proptest::proptest! {

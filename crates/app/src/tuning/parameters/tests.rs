@@ -71,6 +71,45 @@ fn the_limits_are_exact_and_the_default_lies_between() {
     }
 }
 
+/// A stored record is read by position (docs/parameters.md).
+#[test]
+fn indices_begin_at_zero_and_leave_none_out() {
+    for group in &PARAMETERS {
+        let indices: Vec<u8> = group.parameters.iter().map(|p| p.index).collect();
+        let expected: Vec<u8> = (0..group.parameters.len() as u8).collect();
+        assert_eq!(indices, expected, "{}", group.name);
+    }
+}
+
+/// Number, version and settings of each group as robots in the field have stored them. A group that grows gets a new
+/// version and a new line; the old lines stay.
+#[test]
+fn a_group_that_grows_gets_a_new_version() {
+    let stored: [(u8, u8, usize); 11] = [
+        (1, 1, 5),
+        (2, 1, 6),
+        (3, 1, 2),
+        (4, 1, 15),
+        (5, 1, 12),
+        (6, 1, 9),
+        (7, 1, 4),
+        (16, 1, 8),
+        (17, 1, 8),
+        (18, 1, 8),
+        (19, 1, 8),
+    ];
+    for group in &PARAMETERS {
+        let now = (group.number, group.version, group.parameters.len());
+        assert!(stored.contains(&now), "{now:?}");
+        let versions = |(number, ..): &&(u8, u8, usize)| *number == group.number;
+        let newest = stored.iter().filter(versions).max_by_key(|line| line.1);
+        assert_eq!(newest, Some(&now), "{}", group.name);
+        for (_, version, count) in stored.iter().filter(versions) {
+            assert!((*version < group.version) == (*count < group.parameters.len()));
+        }
+    }
+}
+
 /// An `f32` holds every integer up to 2^24.
 #[test]
 fn integers_travel_exactly() {
