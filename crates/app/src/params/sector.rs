@@ -1,0 +1,91 @@
+//! One flash sector: its head and its 127 slots (docs/parameters.md).
+//!
+//! | word of the head | holds | programmed |
+//! |---|---|---|
+//! | 0 | `CLEAN`: an erase came back and every word read blank | after the erase |
+//! | 1 | opened: anything but blank means that slots may have been written | before the first slot |
+//! | 2–5, 6–9 | twice the same: magic and format, generation, its complement, CRC-32 of these three | after the last copied slot |
+//! | 10 | proof: anything but blank means that the head was read back | last |
+
+use super::slot::{BLANK, SLOT_BYTES, checksum};
+
+pub(super) const SECTORS: u8 = 3;
+pub(super) const SECTOR_BYTES: u32 = 16 * 1024;
+/// The head takes the place of slot 0.
+pub(super) const FIRST_SLOT: u8 = 1;
+pub(super) const LAST_SLOT: u8 = 127;
+
+/// Half the bits are ones: neither an erased word nor one programmed to zero is mistaken for it.
+pub(super) const CLEAN: [u8; 4] = *b"\xC1\xEA\x5E\xD0";
+/// The digit is the format's number.
+const MAGIC: [u8; 4] = *b"PRM1";
+
+/// Where in the head, in bytes.
+pub(super) const OPENED_AT: usize = 4;
+pub(super) const COPIES_AT: usize = 8;
+pub(super) const HEAD_PROOF_AT: usize = 40;
+pub(super) const HEAD_BYTES: usize = 44;
+
+/// One of the two copies.
+const COPY_BYTES: usize = 16;
+
+/// What a sector is good for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum SectorState {
+    /// Blank from a finished erase.
+    Clean,
+    /// Complete when it was begun: all records there were, then those saved since.
+    Headed { generation: u32 },
+    /// To be erased before anything else.
+    Garbage,
+}
+
+/// Both copies of a head's commitment.
+pub(super) fn commitment(generation: u32) -> [u8; 2 * COPY_BYTES] {
+    let mut bytes = [0; 2 * COPY_BYTES];
+    for copy in bytes.chunks_exact_mut(COPY_BYTES) {
+        let words = [u32::from_le_bytes(MAGIC), generation, !generation];
+        for (place, word) in copy.chunks_exact_mut(4).zip(words) {
+            place.copy_from_slice(&word.to_le_bytes());
+        }
+        if let Some((words, crc)) = copy.split_last_chunk_mut::<4>() {
+            *crc = checksum(words).to_le_bytes();
+        }
+    }
+    bytes
+}
+
+/// The first 128 bytes of a sector, read once.
+pub(super) struct Head {
+    pub bytes: [u8; SLOT_BYTES],
+}
+
+impl Head {
+    /// Of the first copy that is right.
+    pub fn generation(&self) -> Option<u32> {
+        let copies = &self.bytes[COPIES_AT..HEAD_PROOF_AT];
+        copies.chunks_exact(COPY_BYTES).find_map(|copy| {
+            let word = copy.get(4..8)?;
+            let generation = u32::from_le_bytes(word.try_into().ok()?);
+            let expected = commitment(generation);
+            (copy == &expected[..COPY_BYTES]).then_some(generation)
+        })
+    }
+
+    pub fn is_proven(&self) -> bool {
+        let proof = &self.bytes[HEAD_PROOF_AT..HEAD_BYTES];
+        proof.iter().any(|byte| *byte != BLANK)
+    }
+
+    /// The mark is there, and nothing else.
+    pub fn is_clean(&self) -> bool {
+        let (mark, rest) = self.bytes.split_at(OPENED_AT);
+        mark == CLEAN && rest.iter().all(|byte| *byte == BLANK)
+    }
+}
+
+/// Of a slot, or with slot 0 of the head, from the start of the store.
+pub(super) fn offset(sector: u8, slot: u8) -> u32 {
+    let sector = u32::from(sector).wrapping_mul(SECTOR_BYTES);
+    sector.wrapping_add(u32::from(slot).wrapping_mul(SLOT_BYTES as u32))
+}

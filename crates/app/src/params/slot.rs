@@ -1,0 +1,128 @@
+//! One place for a record: 32 words that hold a record, nothing, or what a power cut left (docs/parameters.md).
+//!
+//! | word | holds | programmed |
+//! |---|---|---|
+//! | 0 | guard: anything but blank means the slot is taken; its value is never looked at | first |
+//! | 1 | key, version, count of values, variant: a byte each | then |
+//! | 2… | the values, blank after the last | then |
+//! | 30 | proof: anything but blank means that the slot was read back | last |
+//! | 31 | CRC-32 (ISO-HDLC) of words 1 to 29 | before the proof |
+//!
+//! Words are little-endian. Blank is all ones.
+
+use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
+use heapless::Vec;
+
+/// Values one record may have.
+pub const MAX_VALUES: usize = 28;
+
+pub(super) const SLOT_BYTES: usize = 128;
+pub(super) const BLANK: u8 = 0xFF;
+/// Where in a slot, in bytes.
+pub(super) const BODY_AT: usize = 4;
+pub(super) const PROOF_AT: usize = 120;
+pub(super) const CRC_AT: usize = 124;
+const VALUES_AT: usize = 8;
+
+/// What a record is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RecordId {
+    /// `ParameterGroup::number`.
+    pub key: u8,
+    /// Records of one key that must not be mistaken for each other, such as those for motors of different makes.
+    pub variant: u8,
+}
+
+/// What is stored under one identity.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Record {
+    pub id: RecordId,
+    /// Of the meaning of the values.
+    pub version: u8,
+    /// Any bits; the store does not look at them.
+    pub values: Vec<u32, MAX_VALUES>,
+}
+
+/// A slot as read once. Words torn by a power cut may read differently the next time, so nothing is judged twice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Slot {
+    pub bytes: [u8; SLOT_BYTES],
+}
+
+impl Slot {
+    /// Guard and proof are blank: they are programmed by themselves.
+    pub fn of(record: &Record) -> Self {
+        let mut bytes = [BLANK; SLOT_BYTES];
+        let count = record.values.len() as u8;
+        let header = [record.id.key, record.version, count, record.id.variant];
+        bytes[BODY_AT..VALUES_AT].copy_from_slice(&header);
+        let places = bytes[VALUES_AT..PROOF_AT].chunks_exact_mut(4);
+        for (place, value) in places.zip(&record.values) {
+            place.copy_from_slice(&value.to_le_bytes());
+        }
+        let crc = checksum(&bytes[BODY_AT..PROOF_AT]);
+        bytes[CRC_AT..].copy_from_slice(&crc.to_le_bytes());
+        Self { bytes }
+    }
+
+    pub fn is_blank(&self) -> bool {
+        self.bytes.iter().all(|byte| *byte == BLANK)
+    }
+
+    /// What the header says, be it right or not.
+    pub fn claimed_id(&self) -> RecordId {
+        RecordId {
+            key: self.bytes[4],
+            variant: self.bytes[7],
+        }
+    }
+
+    pub fn is_intact(&self) -> bool {
+        let crc = checksum(&self.bytes[BODY_AT..PROOF_AT]);
+        self.count() <= MAX_VALUES && self.bytes[CRC_AT..] == crc.to_le_bytes()
+    }
+
+    /// Read back once already: what it holds stays as it reads now.
+    pub fn is_proven(&self) -> bool {
+        self.bytes[PROOF_AT..CRC_AT]
+            .iter()
+            .any(|byte| *byte != BLANK)
+    }
+
+    /// Guard and proof aside, which mean something only by not being blank.
+    pub fn holds_the_same(&self, other: &Self) -> bool {
+        self.bytes[BODY_AT..PROOF_AT] == other.bytes[BODY_AT..PROOF_AT]
+            && self.bytes[CRC_AT..] == other.bytes[CRC_AT..]
+    }
+
+    /// Only of an intact slot.
+    pub fn record(&self) -> Record {
+        let places = self.bytes[VALUES_AT..PROOF_AT].chunks_exact(4);
+        let words = places.filter_map(|place| Some(u32::from_le_bytes(place.try_into().ok()?)));
+        Record {
+            id: self.claimed_id(),
+            version: self.bytes[5],
+            values: words.take(self.count().min(MAX_VALUES)).collect(),
+        }
+    }
+
+    /// The words between guard and proof, without the blank ones at the end.
+    pub fn body(&self) -> &[u8] {
+        let body = &self.bytes[BODY_AT..PROOF_AT];
+        let last = body.iter().rposition(|byte| *byte != BLANK);
+        let length = last.map_or(0, |last| (last | 3).wrapping_add(1));
+        body.get(..length).unwrap_or(body)
+    }
+
+    fn count(&self) -> usize {
+        usize::from(self.bytes[6])
+    }
+}
+
+/// CRC-32 as in zip and Ethernet.
+pub(super) fn checksum(bytes: &[u8]) -> u32 {
+    Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC).checksum(bytes)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,141 @@
+//! What the sectors hold.
+
+use embedded_storage::nor_flash::NorFlash;
+use heapless::Vec;
+
+use super::{Active, FIRST_SLOT, LAST_SLOT, MAX_RECORDS, SECTORS, Store};
+use crate::params::{
+    RecordId,
+    sector::{Head, SectorState, offset},
+    slot::{SLOT_BYTES, Slot},
+};
+
+/// From the newest slot to the oldest, over all sectors with a head.
+#[derive(Debug)]
+pub(super) struct Walk {
+    /// 0 is the active sector.
+    rank: u8,
+    slot: u8,
+    /// Met already, in a newer copy.
+    seen: Vec<RecordId, MAX_RECORDS>,
+}
+
+impl Walk {
+    pub fn new() -> Self {
+        Self {
+            rank: 0,
+            slot: LAST_SLOT,
+            seen: Vec::new(),
+        }
+    }
+
+    /// The record met last is met again.
+    pub fn step_back(&mut self) {
+        self.slot = self.slot.saturating_add(1);
+        self.seen.pop();
+    }
+}
+
+impl<F: NorFlash> Store<F> {
+    /// Learns everything anew, except which sectors failed.
+    pub(super) fn scan(&mut self) {
+        for sector in 0..SECTORS {
+            let state = self.read_state(sector);
+            self.set_state(sector, state);
+        }
+        self.rotation = None;
+        self.active = Active::FULL;
+        self.damaged = 0;
+        if let Some((sector, _)) = self.newest(0) {
+            self.scan_active(sector);
+        }
+    }
+
+    fn scan_active(&mut self, sector: u8) {
+        self.active.head_is_proven = self.read_head(sector).is_proven();
+        self.active.next_slot = FIRST_SLOT;
+        for place in FIRST_SLOT..=LAST_SLOT {
+            let slot = self.read_slot(sector, place);
+            if slot.is_blank() {
+                continue;
+            }
+            self.active.next_slot = place.saturating_add(1);
+            self.active.slot_is_proven = slot.is_proven();
+            if !slot.is_intact() {
+                self.damaged = self.damaged.saturating_add(1);
+            }
+        }
+    }
+
+    fn read_state(&mut self, sector: u8) -> SectorState {
+        let head = self.read_head(sector);
+        if let Some(generation) = head.generation() {
+            return SectorState::Headed { generation };
+        }
+        if head.is_clean() && self.has_blank_slots(sector) {
+            return SectorState::Clean;
+        }
+        SectorState::Garbage
+    }
+
+    pub(super) fn has_blank_slots(&mut self, sector: u8) -> bool {
+        (FIRST_SLOT..=LAST_SLOT).all(|slot| self.read_slot(sector, slot).is_blank())
+    }
+
+    pub(super) fn set_state(&mut self, sector: u8, state: SectorState) {
+        if let Some(sector) = self.sectors.get_mut(usize::from(sector)) {
+            sector.state = state;
+        }
+    }
+
+    /// Sector and generation; rank 0 has the highest.
+    pub(super) fn newest(&self, rank: u8) -> Option<(u8, u32)> {
+        let mut taken = [false; SECTORS as usize];
+        let mut found = None;
+        for _ in 0..=rank {
+            found = None;
+            for ((sector, number), taken) in self.sectors.iter().zip(0..).zip(&taken) {
+                if let SectorState::Headed { generation } = sector.state
+                    && !taken
+                    && found.is_none_or(|(_, highest)| generation > highest)
+                {
+                    found = Some((number, generation));
+                }
+            }
+            *taken.get_mut(usize::from(found?.0))? = true;
+        }
+        found
+    }
+
+    /// The newest copy of a record not met yet.
+    pub(super) fn next_newest(&mut self, walk: &mut Walk) -> Option<Slot> {
+        while let Some((sector, _)) = self.newest(walk.rank) {
+            while walk.slot >= FIRST_SLOT {
+                let slot = self.read_slot(sector, walk.slot);
+                walk.slot = walk.slot.saturating_sub(1);
+                let id = slot.claimed_id();
+                if !walk.seen.contains(&id) && slot.is_intact() && walk.seen.push(id).is_ok() {
+                    return Some(slot);
+                }
+            }
+            walk.rank = walk.rank.saturating_add(1);
+            walk.slot = LAST_SLOT;
+        }
+        None
+    }
+
+    pub(super) fn read_head(&mut self, sector: u8) -> Head {
+        Head {
+            bytes: self.read_slot(sector, 0).bytes,
+        }
+    }
+
+    /// What cannot be read is neither blank nor a record.
+    pub(super) fn read_slot(&mut self, sector: u8, slot: u8) -> Slot {
+        let mut bytes = [0; SLOT_BYTES];
+        if self.flash.read(offset(sector, slot), &mut bytes).is_err() {
+            bytes = [0; SLOT_BYTES];
+        }
+        Slot { bytes }
+    }
+}

@@ -1,0 +1,75 @@
+//! From a full sector to the next: every record moves, then the head makes it the active one.
+
+use embedded_storage::nor_flash::NorFlash;
+
+use super::{Active, FIRST_SLOT, LAST_SLOT, Store, Walk};
+use crate::params::{
+    ParamError,
+    sector::{OPENED_AT, SectorState},
+};
+
+#[derive(Debug)]
+pub(super) struct Rotation {
+    target: u8,
+    next_slot: u8,
+    walk: Walk,
+}
+
+impl<F: NorFlash> Store<F> {
+    pub(super) fn clean_sector(&self) -> Option<u8> {
+        let mut numbered = self.sectors.iter().zip(0..);
+        let clean = numbered.find(|(sector, _)| sector.state == SectorState::Clean);
+        clean.map(|(_, number)| number)
+    }
+
+    /// From here on the sector needs an erase before it counts as clean again.
+    pub(super) fn open_sector(&mut self, target: u8) -> Result<(), ParamError> {
+        self.set_state(target, SectorState::Garbage);
+        self.program(target, 0, OPENED_AT, &[0; 4])?;
+        self.rotation = Some(Rotation {
+            target,
+            next_slot: FIRST_SLOT,
+            walk: Walk::new(),
+        });
+        Ok(())
+    }
+
+    /// One record, or after the last one the head.
+    pub(super) fn move_one(&mut self) -> Result<(), ParamError> {
+        let Some(mut rotation) = self.rotation.take() else {
+            return Ok(());
+        };
+        let place = rotation.next_slot;
+        // One slot at least must be left for what is to be saved.
+        if place > LAST_SLOT {
+            self.set_failed(rotation.target, true);
+            return Err(ParamError::Full);
+        }
+        let Some(slot) = self.next_newest(&mut rotation.walk) else {
+            return self.commit(&rotation);
+        };
+        rotation.next_slot = place.saturating_add(1);
+        let written = self.write_slot(rotation.target, place, &slot);
+        if written.is_err() {
+            rotation.walk.step_back();
+        }
+        self.rotation = Some(rotation);
+        written
+    }
+
+    fn commit(&mut self, rotation: &Rotation) -> Result<(), ParamError> {
+        let generation = self.newest(0).map_or(0, |(_, generation)| generation);
+        let generation = generation.saturating_add(1);
+        if let Err(error) = self.write_head(rotation.target, generation) {
+            // It may count as a head all the same.
+            self.scan();
+            return Err(error);
+        }
+        self.set_state(rotation.target, SectorState::Headed { generation });
+        self.active = Active {
+            next_slot: rotation.next_slot,
+            ..Active::FULL
+        };
+        Ok(())
+    }
+}
