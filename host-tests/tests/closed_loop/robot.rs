@@ -9,7 +9,8 @@ use robot_app::{
     },
     input::{RemoteFormat, RemoteMapping, RemoteReceiver},
     logic::{LogicBus, LogicInputs, LogicStage, UserLogic},
-    safety::ArmingState,
+    params::{FlashRequest, ParamStatus},
+    safety::{ArmingState, WatchdogPeriod},
     sensing::{
         ImuPipeline, MagPipeline,
         bmi088::{self, ACCEL_READ, GYRO_READ},
@@ -205,6 +206,9 @@ impl Robot {
                 mag: &self.mag,
                 logic: &self.logic,
                 health: &self.health,
+                params: &ParamStatus::default(),
+                flash_request: FlashRequest::None,
+                watchdog: WatchdogPeriod::Short,
             },
             now_us,
         );

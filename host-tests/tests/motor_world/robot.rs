@@ -10,7 +10,8 @@ use robot_app::{
     },
     logic::LogicBus,
     motor::layout::{MotorLayout, ROBOT_LAYOUT, RS00_LAYOUT},
-    safety::ArmingState,
+    params::{FlashRequest, ParamStatus},
+    safety::{ArmingState, WatchdogPeriod},
     tick::{ControlInputs, ControlLoop},
 };
 use robot_plant::{
@@ -175,6 +176,9 @@ impl Robot {
             mag: &mag,
             logic: &logic,
             health: &health,
+            params: &ParamStatus::default(),
+            flash_request: FlashRequest::None,
+            watchdog: WatchdogPeriod::Short,
         };
         let outputs = self.control.tick(&inputs, now_us);
         self.sent = outputs.frames.to_vec();

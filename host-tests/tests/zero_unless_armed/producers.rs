@@ -6,6 +6,8 @@ use robot_app::{
         RemoteState, RemoteUpdate, SystemHealth, WheelCommand,
     },
     logic::LogicBus,
+    params::{FlashRequest, ParamStatus},
+    safety::WatchdogPeriod,
     tick::ControlInputs,
 };
 
@@ -19,6 +21,7 @@ pub struct Producers {
     mag: MagState,
     logic: LogicBus,
     health: SystemHealth,
+    params: ParamStatus,
 }
 
 impl Producers {
@@ -61,6 +64,9 @@ impl Producers {
             mag: &self.mag,
             logic: &self.logic,
             health: &self.health,
+            params: &self.params,
+            flash_request: FlashRequest::None,
+            watchdog: WatchdogPeriod::Short,
         }
     }
 }

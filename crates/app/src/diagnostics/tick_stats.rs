@@ -18,10 +18,20 @@ pub struct TickStats {
     pub max_jitter_us: u32,
     /// Whole periods in which no tick ran.
     pub missed: u32,
+    /// Times the whole chip stood still for a flash erase.
+    pub stalls: u32,
+    pub longest_stall_us: u32,
     pub ts_us: u64,
 }
 
 impl TickStats {
+    /// The chip stood still since the last tick: the next one is the first of a new series, neither late nor missed.
+    pub fn stalled(&mut self, stall_us: u32) {
+        self.stalls = self.stalls.saturating_add(1);
+        self.longest_stall_us = self.longest_stall_us.max(stall_us);
+        self.ts_us = 0;
+    }
+
     /// Time that runs backwards counts as standing still.
     pub fn tick(&mut self, now_us: u64) {
         if self.ts_us > 0 {
@@ -49,5 +59,19 @@ mod tests {
         assert_eq!((stats.count, stats.missed), (5, 2));
         assert_eq!((stats.dt_us, stats.jitter_us), (1_000, 0));
         assert_eq!(stats.max_jitter_us, 1_997);
+    }
+
+    #[test]
+    fn a_stall_is_neither_missed_nor_jitter() {
+        let mut stats = TickStats::default();
+        stats.tick(1_000);
+        stats.stalled(250_700);
+        for now_us in [251_900, 252_900, 253_903] {
+            stats.tick(now_us);
+        }
+        assert_eq!((stats.count, stats.missed), (4, 0));
+        assert_eq!((stats.dt_us, stats.max_jitter_us), (1_003, 3));
+        stats.stalled(3_000);
+        assert_eq!((stats.stalls, stats.longest_stall_us), (2, 250_700));
     }
 }

@@ -106,6 +106,14 @@ impl Joint {
         self.clear_wanted = matches!(self.phase, Phase::Fault);
     }
 
+    /// The last report is as old as it would be without the stall.
+    pub fn after_stall(&mut self, stall_us: u32, now_us: u64) {
+        if self.report.is_some() {
+            self.report_ts_us = self.report_ts_us.saturating_add(stall_us.into());
+        }
+        self.freeze_watch.restart(now_us);
+    }
+
     fn state(&self) -> JointState {
         if self.is_silent {
             return JointState::Silent;

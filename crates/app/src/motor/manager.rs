@@ -69,6 +69,16 @@ impl MotorManager {
         feedback.ts_us = now_us;
     }
 
+    /// The whole chip stood still for `stall_us`: no motor was silent because it received no answer.
+    pub fn after_stall(&mut self, stall_us: u32, now_us: u64) {
+        for wheel in &mut self.wheels {
+            wheel.after_stall(stall_us);
+        }
+        for joint in &mut self.joints {
+            joint.after_stall(stall_us, now_us);
+        }
+    }
+
     /// Joint motors in fault are told to forget it in their next slot, and set up again.
     pub fn clear_faults(&mut self) {
         for joint in &mut self.joints {

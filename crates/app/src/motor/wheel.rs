@@ -41,6 +41,20 @@ impl Wheel {
         }
     }
 
+    /// Reports are as old as they would be without the stall.
+    pub fn after_stall(&mut self, stall_us: u32) {
+        if self.feedback.ts_us == 0 {
+            return;
+        }
+        for ts_us in [
+            &mut self.feedback.ts_us,
+            &mut self.angle_changed_us,
+            &mut self.plausible_us,
+        ] {
+            *ts_us = ts_us.saturating_add(stall_us.into());
+        }
+    }
+
     /// `now` is a report, `self.feedback` the one before. Once frozen, only another report thaws it.
     fn is_frozen(&mut self, now: &WheelFeedback) -> bool {
         let last = &self.feedback;

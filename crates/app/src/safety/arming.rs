@@ -41,6 +41,8 @@ impl ArmingBlockers {
     pub const BRING_UP_READ_ONLY: Self = Self(1 << 8);
     /// Low, or not measured.
     pub const BATTERY_LOW: Self = Self(1 << 9);
+    /// Settings are being written to flash, or room is made for them.
+    pub const FLASH_BUSY: Self = Self(1 << 10);
 
     pub const fn bits(self) -> u32 {
         self.0
@@ -74,7 +76,7 @@ impl ArmingBlockers {
 }
 
 /// Not a constant: tools read the names of the bits out of the image.
-static BLOCKER_NAMES: [(ArmingBlockers, &str); 10] = [
+static BLOCKER_NAMES: [(ArmingBlockers, &str); 11] = [
     (ArmingBlockers::REMOTE_NOT_FRESH, "remote-not-fresh"),
     (ArmingBlockers::ENABLE_OFF, "enable-off"),
     (ArmingBlockers::ENABLE_NOT_CYCLED, "enable-not-cycled"),
@@ -85,6 +87,7 @@ static BLOCKER_NAMES: [(ArmingBlockers, &str); 10] = [
     (ArmingBlockers::JOINTS_NOT_READY, "joints-not-ready"),
     (ArmingBlockers::BRING_UP_READ_ONLY, "bring-up-read-only"),
     (ArmingBlockers::BATTERY_LOW, "battery-low"),
+    (ArmingBlockers::FLASH_BUSY, "flash-busy"),
 ];
 
 #[cfg(feature = "defmt")]
@@ -125,6 +128,8 @@ pub struct ArmingInputs<'a> {
     pub motor: &'a MotorFeedback,
     /// Bring-up is in the step in which nothing may move.
     pub read_only: bool,
+    /// See `FlashPermit`, which grants nothing to an armed robot.
+    pub flash_busy: bool,
     pub safety: &'a SafetyStatus,
 }
 
@@ -244,6 +249,7 @@ fn only_forbidding(inputs: &ArmingInputs<'_>) -> ArmingBlockers {
     );
     let joints_ready = inputs.motor.joints.iter().all(is_ready);
     blockers.add_if(ArmingBlockers::JOINTS_NOT_READY, !joints_ready);
+    blockers.add_if(ArmingBlockers::FLASH_BUSY, inputs.flash_busy);
     blockers.add_if(
         ArmingBlockers::BATTERY_LOW,
         inputs.safety.flags.intersects(SafetyFlags::BATTERY_LOW),

@@ -5,6 +5,7 @@ mod battery;
 mod debounce;
 mod error_account;
 mod flags;
+mod flash_permit;
 mod heat;
 mod latch;
 mod permit;
@@ -14,6 +15,7 @@ mod tilt;
 
 pub use arming::{ArmedToken, Arming, ArmingBlockers, ArmingInputs, ArmingState, ArmingStatus};
 pub use flags::SafetyFlags;
+pub use flash_permit::{FlashGrant, FlashPermit, FlashPermitInputs, WatchdogPeriod};
 pub use permit::TorquePermit;
 pub use policy::{SafetyInputs, SafetyPolicy};
 pub use status::{SafetyStatus, SafetyVerdict};

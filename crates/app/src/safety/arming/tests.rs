@@ -8,6 +8,7 @@ struct Bench {
     disabled: bool,
     calibrated: bool,
     read_only: bool,
+    flash_busy: bool,
     vx: f32,
     motor: MotorFeedback,
     safety: SafetyStatus,
@@ -27,6 +28,7 @@ impl Bench {
             disabled: true,
             calibrated: true,
             read_only: false,
+            flash_busy: false,
             vx: 0.0,
             motor,
             safety: SafetyStatus::of(SafetyFlags::NONE),
@@ -58,6 +60,7 @@ impl Bench {
                 calibrated: self.calibrated,
                 motor: &self.motor,
                 read_only: self.read_only,
+                flash_busy: self.flash_busy,
                 safety: &self.safety,
             };
             let (now, token) = self.arming.step(&inputs, self.now_us);
@@ -172,6 +175,19 @@ fn reading_only_forbids_arming_and_disarms() {
         result,
         (ArmingBlockers::BRING_UP_READ_ONLY, ArmingState::Disarmed)
     );
+}
+
+#[test]
+fn a_flip_while_flash_is_busy_arms_when_it_is_done() {
+    let result = with_wrong(|bench| bench.flash_busy = true);
+    assert_eq!(result, (ArmingBlockers::FLASH_BUSY, ArmingState::Armed));
+    let mut bench = Bench::new();
+    bench.flash_busy = true;
+    bench.run(1);
+    bench.flip_on();
+    assert_eq!(bench.run(600).blockers, ArmingBlockers::FLASH_BUSY);
+    bench.flash_busy = false;
+    assert_eq!(bench.run(1).state, ArmingState::Armed);
 }
 
 #[test]
