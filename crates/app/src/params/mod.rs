@@ -1,10 +1,14 @@
 //! Settings that survive a power cut (ROBOT_CPP 5.2, docs/parameters.md).
 
+mod record;
+mod saver;
 mod sector;
+mod service;
 mod slot;
 mod status;
 mod store;
 
+pub use service::ParamService;
 pub use slot::{MAX_VALUES, Record, RecordId};
 pub use status::{FlashRequest, ParamError, ParamState, ParamStatus};
 pub use store::{MAX_RECORDS, Progress, Store, StoreReport};
