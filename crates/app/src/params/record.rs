@@ -88,3 +88,5 @@ fn id(group: &ParameterGroup, layout: &MotorLayout) -> RecordId {
     }
 }
 
+#[cfg(test)]
+mod tests;

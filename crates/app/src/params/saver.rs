@@ -101,3 +101,5 @@ impl Saver {
     }
 }
 
+#[cfg(test)]
+mod tests;
