@@ -1,0 +1,71 @@
+//! The power goes at every step of the workload: before it, in the middle of it, after it.
+
+use robot_plant::flash_chip::{FlashChip, Phase};
+
+use crate::{
+    bench::{Ledger, Tally, boot, read},
+    workload::{Moment, moments, nth_save},
+};
+use robot_app::params::Store;
+
+/// How a word or a sector is torn is drawn; each of these draws differently.
+const SEEDS: u64 = 5;
+
+#[test]
+fn after_a_cut_each_record_is_the_old_or_the_new_one() {
+    let mut tally = Tally::default();
+    for moment in moments() {
+        for step in moment.steps.clone() {
+            cut(&moment, step, Phase::Before, 0, &mut tally);
+            cut(&moment, step, Phase::After, 0, &mut tally);
+            for seed in 0..SEEDS {
+                cut(&moment, step, Phase::Middle, seed, &mut tally);
+            }
+        }
+    }
+    tally.assert_none_lost("one cut");
+    assert!(tally.cuts > 10_000);
+}
+
+fn cut(moment: &Moment, step: u64, phase: Phase, seed: u64, tally: &mut Tally) {
+    let case = format!("step {step}, {phase:?}, seed {seed}");
+    let mut chip = moment.chip.clone();
+    chip.reseed(step << 8 | seed);
+    chip.cut_at(step, phase);
+    let ledger = moment.run(&mut chip);
+    assert!(!chip.is_powered(), "{case}: the step was never done");
+    tally.cuts += 1;
+    chip.power_up();
+    look_without_settling(&mut chip, &ledger, tally, &case);
+    settle_and_go_on(chip, ledger, step as usize, tally, &case);
+}
+
+/// A boot that is not allowed to program anything.
+fn look_without_settling(chip: &mut FlashChip, ledger: &Ledger, tally: &mut Tally, case: &str) {
+    let found = read(&mut Store::open(chip));
+    tally.check(ledger, &found, case);
+}
+
+/// What the first boot finds stays; the next saves work, and stay too.
+pub fn settle_and_go_on(
+    mut chip: FlashChip,
+    mut ledger: Ledger,
+    count: usize,
+    tally: &mut Tally,
+    case: &str,
+) {
+    let Ok((_, found)) = boot(&mut chip) else {
+        tally.failed_saves += 1;
+        return;
+    };
+    tally.check(&ledger, &found, case);
+    ledger.settle(&found);
+    let (mut store, found) = boot(&mut chip).expect("settled");
+    tally.check(&ledger, &found, case);
+    for count in [count, count + 1] {
+        let saved = ledger.save(&mut store, &nth_save(1_000_000 + count));
+        tally.check_save(saved, case);
+    }
+    let (_, found) = boot(&mut chip).expect("settled");
+    tally.check(&ledger, &found, case);
+}

@@ -1,0 +1,9 @@
+//! The parameter store on the chip's flash cells: power cuts at every step, damage, defects, wear.
+//!
+//! What is right comes from a ledger of the saves the store has confirmed, kept outside of it.
+
+mod bench;
+mod first_cut;
+mod many_cuts;
+mod second_cut;
+mod workload;

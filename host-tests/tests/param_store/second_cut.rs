@@ -1,0 +1,75 @@
+//! The power goes again while the store recovers from the first cut and saves.
+
+use robot_plant::flash_chip::{FlashChip, Phase};
+
+use crate::{
+    bench::{Ledger, Tally, boot, tidy},
+    first_cut::settle_and_go_on,
+    workload::{Moment, moments, nth_save},
+};
+
+/// Of the saves that only append one in so many is tried; all that change the sector are.
+const APPENDS: usize = 8;
+/// Of the steps of the recovery one in so many, from another one after each first cut.
+const STRIDE: u64 = 3;
+/// More steps than an append takes.
+const MANY_STEPS: u64 = 40;
+
+#[test]
+fn a_cut_in_the_recovery_from_a_cut_loses_nothing() {
+    let mut tally = Tally::default();
+    for (number, moment) in moments().iter().enumerate() {
+        let changes_sector = moment.steps.end - moment.steps.start > MANY_STEPS;
+        if !changes_sector && number % APPENDS != 0 {
+            continue;
+        }
+        for step in moment.steps.clone() {
+            let (chip, ledger) = after_first_cut(moment, step);
+            cut_again_everywhere(&chip, &ledger, step, &mut tally);
+        }
+    }
+    tally.assert_none_lost("a second cut");
+    assert!(tally.cuts > 10_000);
+}
+
+fn after_first_cut(moment: &Moment, step: u64) -> (FlashChip, Ledger) {
+    let mut chip = moment.chip.clone();
+    chip.reseed(step);
+    chip.cut_at(step, Phase::Middle);
+    let ledger = moment.run(&mut chip);
+    chip.power_up();
+    (chip, ledger)
+}
+
+fn cut_again_everywhere(chip: &FlashChip, ledger: &Ledger, step: u64, tally: &mut Tally) {
+    let mut whole = chip.clone();
+    recover(&mut whole, ledger.clone(), step);
+    let first = chip.steps() + step % STRIDE;
+    for second in (first..whole.steps()).step_by(STRIDE as usize) {
+        let phase = if second % 4 == 0 {
+            Phase::After
+        } else {
+            Phase::Middle
+        };
+        let case = format!("step {step} Middle, then {second} {phase:?}");
+        let mut chip = chip.clone();
+        chip.cut_at(second, phase);
+        let ledger = recover(&mut chip, ledger.clone(), step);
+        tally.cuts += 1;
+        chip.power_up();
+        settle_and_go_on(chip, ledger, second as usize, tally, &case);
+    }
+}
+
+/// A boot, what the store wants to tidy up, and a save, up to the end or the cut.
+fn recover(chip: &mut FlashChip, mut ledger: Ledger, step: u64) -> Ledger {
+    let record = nth_save(2_000_000 + step as usize);
+    if let Ok((mut store, found)) = boot(chip) {
+        ledger.settle(&found);
+        // A cut ends it where it ends.
+        if tidy(&mut store).is_ok() && ledger.save(&mut store, &record).is_ok() {
+            let _ = tidy(&mut store);
+        }
+    }
+    ledger
+}
