@@ -87,6 +87,7 @@ pub struct Board {
     pub buzzer: Buzzer,
     pub battery: Battery,
     pub iwdg: Peri<'static, peripherals::IWDG>,
+    pub flash: Peri<'static, peripherals::FLASH>,
 }
 
 /// SPI1 and the pins of the BMI088.
@@ -115,6 +116,7 @@ impl Board {
     /// Starts clocks, CAN and the receiver. `p` exists once, so this runs once.
     pub fn start(p: Peripherals, remote_format: RemoteFormat) -> Self {
         enable_flash_caches();
+        start_cycle_counter();
         for (irq, priority) in PRIORITIES {
             irq.set_priority(priority);
         }
@@ -158,6 +160,7 @@ impl Board {
             buzzer: start_buzzer(p.TIM4, p.PD14),
             battery: Battery::new(p.ADC3, p.PF10.degrade_adc()),
             iwdg: p.IWDG,
+            flash: p.FLASH,
         }
     }
 }
@@ -241,6 +244,14 @@ fn enable_flash_caches() {
         w.set_dcen(true);
         w.set_prften(true);
     });
+}
+
+/// It goes on while the CPU stands still (`drivers/clock_repair.rs`).
+fn start_cycle_counter() {
+    if let Some(mut core) = cortex_m::Peripherals::take() {
+        core.DCB.enable_trace();
+        core.DWT.enable_cycle_counter();
+    }
 }
 
 /// 1 kHz, which the copper cannot follow.

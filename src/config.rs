@@ -1,6 +1,6 @@
 //! What a user chooses at build time.
 
-use robot_app::domain::{BusId, CanFrame, RobotConfig};
+use robot_app::domain::{BusId, CanFrame};
 use robot_app::input::RemoteFormat;
 use robot_app::motor::layout::{MotorLayout, ROBOT_LAYOUT, RS00_LAYOUT};
 
@@ -29,14 +29,6 @@ pub static LAYOUT: MotorLayout = CHOSEN_LAYOUT;
 
 /// What boot, panic and fault handlers send: it stops every motor.
 pub static SAFE_FRAMES: [(BusId, CanFrame); 5] = CHOSEN_LAYOUT.safe_frames();
-
-/// Settings at boot.
-pub fn robot_config() -> RobotConfig {
-    RobotConfig {
-        joints: LAYOUT.joint_configs(),
-        ..RobotConfig::default()
-    }
-}
 
 const fn layout(name: &str) -> MotorLayout {
     match name.as_bytes() {

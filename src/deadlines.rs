@@ -13,10 +13,18 @@ pub enum Watched {
     Sbus,
     Logic,
     Status,
+    Params,
 }
 
 impl Watched {
-    const ALL: [Self; 5] = [Self::Imu, Self::Mag, Self::Sbus, Self::Logic, Self::Status];
+    const ALL: [Self; 6] = [
+        Self::Imu,
+        Self::Mag,
+        Self::Sbus,
+        Self::Logic,
+        Self::Status,
+        Self::Params,
+    ];
 
     fn last_check_in(self) -> &'static AtomicU32 {
         static IMU: AtomicU32 = AtomicU32::new(0);
@@ -24,12 +32,14 @@ impl Watched {
         static SBUS: AtomicU32 = AtomicU32::new(0);
         static LOGIC: AtomicU32 = AtomicU32::new(0);
         static STATUS: AtomicU32 = AtomicU32::new(0);
+        static PARAMS: AtomicU32 = AtomicU32::new(0);
         match self {
             Self::Imu => &IMU,
             Self::Mag => &MAG,
             Self::Sbus => &SBUS,
             Self::Logic => &LOGIC,
             Self::Status => &STATUS,
+            Self::Params => &PARAMS,
         }
     }
 
@@ -48,7 +58,7 @@ impl Watched {
 /// Every watched task runs at least each 10 ms. With the watchdog's longest period this gives a reset within 60 ms.
 const DEADLINE_US: u32 = 25_000;
 
-/// Gives every task a first deadline, counted from now.
+/// Gives every task a first deadline, counted from now: at boot and after a stall.
 pub fn start() {
     for task in Watched::ALL {
         task.check_in();
@@ -64,6 +74,7 @@ pub fn late_tasks() -> LateTasks {
         sbus: Watched::Sbus.is_late(now_us),
         logic: Watched::Logic.is_late(now_us),
         status: Watched::Status.is_late(now_us),
+        params: Watched::Params.is_late(now_us),
     }
 }
 

@@ -7,20 +7,23 @@
 //! | [`Exchange::remote`] | sbus task | logic, control | each radio frame, 70 to 143 Hz |
 //! | [`Exchange::logic_bus`] | logic task | control | 100 Hz |
 //! | [`Exchange::battery_v`] | status task | control | 4 Hz |
-//! | [`Exchange::config`] | control task | imu, mag, logic | when tuning changed it |
+//! | [`Exchange::config`] | control task | imu, mag, logic, params | when tuning changed it |
+//! | [`Exchange::params`] | params task | control | when it changes |
+//! | [`Exchange::flash_grant`] | control task | params | when it changes |
 //! | [`Exchange::diagnostics`] | control task | status | 100 Hz |
 //! | [`RADIO_LINE`] | radio UART interrupt | sbus, status | each radio frame |
 //! | `drivers/can/receive.rs`, queues | CAN receive interrupts | control | each CAN frame |
 //! | `deadlines.rs`, check-ins | every task below control | control | at least 100 Hz |
+//! | `stall.rs`, stalls | params task, while no other can run | every task that ticks, `radio_uart.rs` | each erase |
 //! | `debugger_view.rs` | control task | a debugger | 1 kHz |
 
 use robot_app::diagnostics::DiagnosticsSnapshot;
 use robot_app::domain::{ImuState, ImuStatus, MagState, RemoteUpdate, RobotConfig, SensorHealth};
 use robot_app::logic::LogicBus;
+use robot_app::params::{FlashRequest, ParamStatus};
 use robot_snapshot::{Snapshot, Writer};
 use static_cell::StaticCell;
 
-use crate::config;
 use crate::drivers::radio_uart::RadioLine;
 
 /// The newest IMU sample and how the sensor fares.
@@ -38,6 +41,27 @@ pub struct MagReport {
     pub health: SensorHealth,
 }
 
+/// The settings in use.
+#[derive(Clone, Copy)]
+pub struct ConfigUpdate {
+    pub config: RobotConfig,
+    /// As `TuningStatus::revision` counts.
+    pub revision: u32,
+}
+
+/// What the parameter store is about.
+#[derive(Clone, Copy, Default)]
+pub struct ParamsReport {
+    pub status: ParamStatus,
+    /// What it would do to flash.
+    pub request: FlashRequest,
+}
+
+/// What the control tick lets the parameter store do to flash.
+#[derive(Clone, Copy, Default)]
+#[repr(align(4))]
+pub struct FlashPermission(pub FlashRequest);
+
 /// The newest value of each message between tasks.
 pub struct Exchange {
     pub imu: Snapshot<ImuReport>,
@@ -46,7 +70,9 @@ pub struct Exchange {
     pub logic_bus: Snapshot<LogicBus>,
     /// 0 while not measured.
     pub battery_v: Snapshot<f32>,
-    pub config: Snapshot<RobotConfig>,
+    pub config: Snapshot<ConfigUpdate>,
+    pub params: Snapshot<ParamsReport>,
+    pub flash_grant: Snapshot<FlashPermission>,
     pub diagnostics: Snapshot<DiagnosticsSnapshot>,
 }
 
@@ -62,20 +88,28 @@ pub struct Writers {
     pub remote: Writer<'static, RemoteUpdate>,
     pub logic_bus: Writer<'static, LogicBus>,
     pub battery_v: Writer<'static, f32>,
-    pub config: Writer<'static, RobotConfig>,
+    pub config: Writer<'static, ConfigUpdate>,
+    pub params: Writer<'static, ParamsReport>,
+    pub flash_grant: Writer<'static, FlashPermission>,
     pub diagnostics: Writer<'static, DiagnosticsSnapshot>,
 }
 
 impl Exchange {
-    /// Call once, at boot: a second call panics. Every message starts with its default, which stops the robot.
-    pub fn init() -> &'static Self {
+    /// Call once, at boot: a second call panics. `config` are the settings at boot; every other message starts with its
+    /// default, which stops the robot.
+    pub fn init(config: RobotConfig) -> &'static Self {
         EXCHANGE.init_with(|| Self {
             imu: Snapshot::new(ImuReport::default()),
             mag: Snapshot::new(MagReport::default()),
             remote: Snapshot::new(RemoteUpdate::default()),
             logic_bus: Snapshot::new(LogicBus::default()),
             battery_v: Snapshot::new(0.0),
-            config: Snapshot::new(config::robot_config()),
+            config: Snapshot::new(ConfigUpdate {
+                config,
+                revision: 0,
+            }),
+            params: Snapshot::new(ParamsReport::default()),
+            flash_grant: Snapshot::new(FlashPermission::default()),
             diagnostics: Snapshot::new(DiagnosticsSnapshot::default()),
         })
     }
@@ -89,6 +123,8 @@ impl Exchange {
             logic_bus: self.logic_bus.writer()?,
             battery_v: self.battery_v.writer()?,
             config: self.config.writer()?,
+            params: self.params.writer()?,
+            flash_grant: self.flash_grant.writer()?,
             diagnostics: self.diagnostics.writer()?,
         })
     }

@@ -23,16 +23,19 @@ mod executors;
 mod fault;
 mod isr_cell;
 mod last_words;
+mod stall;
 mod tasks;
 
 use defmt_rtt as _;
 use embassy_executor::{Executor, Spawner};
 use embassy_time::{Duration, Instant};
-use robot_app::domain::{LastWords, ResetCause};
+use robot_app::domain::{LastWords, ResetCause, RobotConfig};
+use robot_app::params::ParamService;
 use static_cell::StaticCell;
 
 use board::Board;
 use drivers::can::CanPort;
+use drivers::param_flash::ParamFlash;
 use drivers::reset_cause;
 use drivers::watchdog::Watchdog;
 use exchange::Exchange;
@@ -63,7 +66,8 @@ fn main() -> ! {
     send_zero_torque(&mut ports);
     log_boot(last_run);
 
-    let exchange = Exchange::init();
+    let (params, config) = load_settings(ParamFlash::new(board.flash));
+    let exchange = Exchange::init(config);
     let writers = defmt::unwrap!(exchange.take_writers());
     deadlines::start();
     let control = ControlContext::new(
@@ -71,7 +75,9 @@ fn main() -> ! {
         ports,
         Watchdog::start(board.iwdg),
         last_run,
+        &config,
         writers.config,
+        writers.flash_grant,
         writers.diagnostics,
         defmt::unwrap!(debugger_view::take()),
     );
@@ -103,6 +109,11 @@ fn main() -> ! {
                 exchange,
                 writers.logic_bus
             )));
+            spawner.spawn(defmt::unwrap!(tasks::params::run(
+                params,
+                exchange,
+                writers.params
+            )));
             spawner.spawn(defmt::unwrap!(tasks::status::run(
                 exchange,
                 board.led,
@@ -111,6 +122,23 @@ fn main() -> ! {
                 writers.battery_v
             )));
         })
+}
+
+/// May erase a sector: nothing moves yet, and the watchdog does not run yet.
+fn load_settings(flash: ParamFlash) -> (ParamService<ParamFlash>, RobotConfig) {
+    let start = Instant::now();
+    let (mut service, config) = ParamService::boot(flash, &config::LAYOUT);
+    service.note_boot(start.elapsed().as_micros() as u32);
+    let status = service.status();
+    defmt::info!(
+        "settings: {=u32} groups from flash, {=u32} refused, {=u16} foreign, {=u16} damaged places, {=u32} us",
+        status.loaded.count_ones(),
+        status.refused.count_ones(),
+        status.foreign,
+        status.damaged,
+        status.boot_us
+    );
+    (service, config)
 }
 
 fn log_boot(last_run: LastRun) {

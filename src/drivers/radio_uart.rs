@@ -15,6 +15,7 @@ use robot_app::domain::RadioLineHealth;
 use robot_app::input::RemoteFormat;
 
 use crate::exchange::RADIO_LINE;
+use crate::stall::StallWatch;
 
 /// SBUS and DBUS both run at 100 kBd.
 const BAUD: u32 = 100_000;
@@ -103,6 +104,7 @@ pub struct RadioUart {
     ring: ReadableRingBuffer<'static, u8>,
     /// Errors that spoilt a burst already.
     reported: u32,
+    stalls: StallWatch,
 }
 
 /// What arrived since the last read.
@@ -142,6 +144,7 @@ impl RadioUart {
         Self {
             ring,
             reported: RADIO_LINE.health().errors(),
+            stalls: StallWatch::new(),
         }
     }
 
@@ -149,6 +152,11 @@ impl RadioUart {
     pub async fn read<'a>(&mut self, bytes: &'a mut [u8]) -> Burst<'a> {
         loop {
             self.wait().await;
+            if self.stalls.news().is_some() {
+                // Of what came meanwhile the ring holds the end, and not from the start of a frame.
+                self.ring.clear();
+                continue;
+            }
             let (mut count, mut left) = self.read_ring(bytes);
             // Only after the bytes: the interrupt preempts this task, so the error of a byte in the ring is counted.
             let errors = RADIO_LINE.health().errors();

@@ -1,25 +1,85 @@
 //! The independent watchdog: resets the chip when the control tick stops feeding it.
 
 use embassy_stm32::Peri;
+use embassy_stm32::pac;
+use embassy_stm32::pac::iwdg::vals::{Key, Pr};
 use embassy_stm32::peripherals::IWDG;
-use embassy_stm32::wdg::IndependentWatchdog;
+use robot_app::safety::WatchdogPeriod;
 
-/// Nominal period. Its clock, the LSI, runs at 17 to 47 kHz (STM32F407 datasheet table 35; nominal 32 kHz), so the
-/// real period is 12 to 34 ms. Together with the deadlines of `deadlines.rs` (25 ms) any hang ends in a reset
-/// within 60 ms.
-const PERIOD_US: u32 = 18_000;
+/// Prescaler and reload value of a period. Its clock, the LSI, runs at 17 to 47 kHz (STM32F407 datasheet table 35;
+/// nominal 32 kHz).
+struct Period {
+    prescaler: Pr,
+    reload: u16,
+}
 
-pub struct Watchdog(IndependentWatchdog<'static, IWDG>);
+/// 12 to 34 ms. Together with the deadlines of `deadlines.rs` (25 ms) any hang ends in a reset within 60 ms.
+const SHORT: Period = Period {
+    prescaler: Pr::DIVIDE_BY4,
+    reload: 143,
+};
+/// 1.09 to 3.0 s: a 16 KiB sector takes at most 0.5 s to erase.
+const LONG: Period = Period {
+    prescaler: Pr::DIVIDE_BY64,
+    reload: 799,
+};
+
+pub struct Watchdog {
+    _token: Peri<'static, IWDG>,
+    period: WatchdogPeriod,
+    /// What it changes to.
+    becomes: WatchdogPeriod,
+}
 
 impl Watchdog {
     /// Starts the watchdog; nothing but a reset can stop it.
-    pub fn start(iwdg: Peri<'static, IWDG>) -> Self {
-        let mut watchdog = IndependentWatchdog::new(iwdg, PERIOD_US);
-        watchdog.unleash();
-        Self(watchdog)
+    pub fn start(token: Peri<'static, IWDG>) -> Self {
+        set(&SHORT);
+        pac::IWDG.kr().write(|w| w.set_key(Key::START));
+        Self {
+            _token: token,
+            period: WatchdogPeriod::Short,
+            becomes: WatchdogPeriod::Short,
+        }
+    }
+
+    /// What is in force.
+    pub fn period(&self) -> WatchdogPeriod {
+        self.period
+    }
+
+    /// Begins a change of the period, if it is not as wanted; a later [`feed`](Self::feed) ends it.
+    pub fn set_long(&mut self, long: bool) {
+        let (wanted, period) = if long {
+            (WatchdogPeriod::Long, &LONG)
+        } else {
+            (WatchdogPeriod::Short, &SHORT)
+        };
+        if self.period == wanted || self.period == WatchdogPeriod::Changing {
+            return;
+        }
+        set(period);
+        self.becomes = wanted;
+        self.period = WatchdogPeriod::Changing;
     }
 
     pub fn feed(&mut self) {
-        self.0.pet();
+        // The registers arrive in the watchdog's clock domain within five of its cycles, and count from the next feed.
+        let arrived = self.period == WatchdogPeriod::Changing && !is_updating();
+        pac::IWDG.kr().write(|w| w.set_key(Key::RESET));
+        if arrived {
+            self.period = self.becomes;
+        }
     }
+}
+
+fn set(period: &Period) {
+    pac::IWDG.kr().write(|w| w.set_key(Key::ENABLE));
+    pac::IWDG.pr().write(|w| w.set_pr(period.prescaler));
+    pac::IWDG.rlr().write(|w| w.set_rl(period.reload));
+}
+
+fn is_updating() -> bool {
+    let status = pac::IWDG.sr().read();
+    status.pvu() || status.rvu()
 }

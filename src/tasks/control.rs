@@ -1,17 +1,21 @@
 //! 1 kHz: CAN frames and snapshots in, CAN frames out. The one task that feeds the watchdog.
 
-use embassy_time::{Duration, Instant, Ticker};
+use embassy_time::{Duration, Instant};
 use robot_app::control::UserController;
 use robot_app::diagnostics::DiagnosticsSnapshot;
 use robot_app::domain::{CalibrationState, LateTasks, RemoteUpdate, RobotConfig, SystemHealth};
 use robot_app::logic::LogicBus;
+use robot_app::params::FlashRequest;
 use robot_app::tick::{ControlInputs, ControlLoop};
 use robot_snapshot::{Follower, Writer};
 
-use crate::config::{self, LAYOUT};
+use crate::config::LAYOUT;
 use crate::drivers::can::CanPort;
 use crate::drivers::watchdog::Watchdog;
-use crate::exchange::{Exchange, ImuReport, MagReport, RADIO_LINE};
+use crate::exchange::{
+    ConfigUpdate, Exchange, FlashPermission, ImuReport, MagReport, ParamsReport, RADIO_LINE,
+};
+use crate::stall::{StallWatch, SteadyTicker};
 use crate::{LastRun, deadlines, last_words};
 
 const PERIOD: Duration = Duration::from_hz(1_000);
@@ -25,6 +29,7 @@ struct Inputs {
     remote: Follower<'static, RemoteUpdate>,
     logic: Follower<'static, LogicBus>,
     battery_v: Follower<'static, f32>,
+    params: Follower<'static, ParamsReport>,
 }
 
 /// Everything the control tick owns.
@@ -34,10 +39,14 @@ pub struct ControlContext {
     watchdog: Watchdog,
     last_run: LastRun,
     late_tasks: LateTasks,
+    stalls: StallWatch,
     control_loop: ControlLoop<UserController, &'static mut DiagnosticsSnapshot>,
-    config: Writer<'static, RobotConfig>,
+    config: Writer<'static, ConfigUpdate>,
     /// Of the configuration last published.
     config_revision: u32,
+    flash_grant: Writer<'static, FlashPermission>,
+    /// As last published.
+    granted: FlashRequest,
     diagnostics: Writer<'static, DiagnosticsSnapshot>,
 }
 
@@ -47,7 +56,9 @@ impl ControlContext {
         ports: [CanPort; 2],
         watchdog: Watchdog,
         last_run: LastRun,
-        config: Writer<'static, RobotConfig>,
+        start: &RobotConfig,
+        config: Writer<'static, ConfigUpdate>,
+        flash_grant: Writer<'static, FlashPermission>,
         diagnostics: Writer<'static, DiagnosticsSnapshot>,
         debugger_view: &'static mut DiagnosticsSnapshot,
     ) -> Self {
@@ -58,19 +69,23 @@ impl ControlContext {
                 remote: exchange.remote.follower(),
                 logic: exchange.logic_bus.follower(),
                 battery_v: exchange.battery_v.follower(),
+                params: exchange.params.follower(),
             },
             ports,
             watchdog,
             last_run,
             late_tasks: LateTasks::default(),
+            stalls: StallWatch::new(),
             control_loop: ControlLoop::with_diagnostics(
                 &LAYOUT,
-                config::robot_config(),
+                *start,
                 UserController::default(),
                 debugger_view,
             ),
             config,
             config_revision: 0,
+            flash_grant,
+            granted: FlashRequest::None,
             diagnostics,
         }
     }
@@ -78,7 +93,7 @@ impl ControlContext {
 
 #[embassy_executor::task]
 pub async fn run(mut context: ControlContext) -> ! {
-    let mut ticker = Ticker::every(PERIOD);
+    let mut ticker = SteadyTicker::every(PERIOD);
     loop {
         ticker.next().await;
         robotapp_control_tick(&mut context);
@@ -96,12 +111,19 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
         watchdog,
         last_run,
         late_tasks,
+        stalls,
         control_loop,
         config,
         config_revision,
+        flash_grant,
+        granted,
         diagnostics,
     } = context;
 
+    if let Some(stall_us) = stalls.news() {
+        ports.iter_mut().for_each(CanPort::drop_backlog);
+        control_loop.after_stall(stall_us, now_us);
+    }
     for port in ports.iter_mut() {
         port.begin_tick(now_us);
         let bus = port.bus();
@@ -124,12 +146,16 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
         last_words: last_run.last_words,
         battery_v: *inputs.battery_v.latest(),
     };
+    let params = inputs.params.latest();
     let inputs = ControlInputs {
         remote: inputs.remote.latest(),
         imu: &imu.state,
         mag: &mag.state,
         logic: inputs.logic.latest(),
         health: &health,
+        params: &params.status,
+        flash_request: params.request,
+        watchdog: watchdog.period(),
     };
     let outputs = control_loop.tick(&inputs, now_us);
 
@@ -142,7 +168,15 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
     let revision = outputs.diagnostics.tuning.revision;
     if revision != *config_revision {
         *config_revision = revision;
-        config.publish(outputs.config);
+        config.publish(&ConfigUpdate {
+            config: *outputs.config,
+            revision,
+        });
+    }
+    let flash = outputs.flash;
+    if flash.granted != *granted {
+        *granted = flash.granted;
+        flash_grant.publish(&FlashPermission(flash.granted));
     }
 
     if outputs
@@ -153,6 +187,7 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
     {
         diagnostics.publish(outputs.diagnostics);
     }
+    watchdog.set_long(flash.needs_long_watchdog);
     if !late_tasks.any() {
         watchdog.feed();
     }

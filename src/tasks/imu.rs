@@ -1,6 +1,6 @@
 //! 200 Hz: BMI088 → calibrated IMU samples, and its heater. A lost sensor is brought up again for as long as it takes.
 
-use embassy_time::{Duration, Instant, Ticker};
+use embassy_time::{Duration, Instant};
 use robot_app::sensing::ImuPipeline;
 use robot_snapshot::Writer;
 
@@ -9,6 +9,7 @@ use crate::deadlines::{Watched, sleep_checking_in};
 use crate::drivers::bmi088::Bmi088;
 use crate::drivers::heater::Heater;
 use crate::exchange::{Exchange, ImuReport};
+use crate::stall::SteadyTicker;
 
 const PERIOD: Duration = Duration::from_hz(200);
 /// Bad samples in a row after which the sensor counts as lost.
@@ -30,7 +31,7 @@ pub async fn run(
     exchange: &'static Exchange,
     output: Writer<'static, ImuReport>,
 ) -> ! {
-    let config = exchange.config.latest();
+    let config = exchange.config.latest().config;
     let mut task = ImuTask {
         exchange,
         pipeline: ImuPipeline::new(config.imu, config.heater),
@@ -53,12 +54,12 @@ pub async fn run(
 
 impl ImuTask {
     async fn sample_until_lost(&mut self, sensor: &mut Bmi088<'_>) {
-        let mut ticker = Ticker::every(PERIOD);
+        let mut ticker = SteadyTicker::every(PERIOD);
         let mut bad_in_row: u32 = 0;
         while bad_in_row < LOST_AFTER {
             ticker.next().await;
             Watched::Imu.check_in();
-            let config = self.exchange.config.latest();
+            let config = self.exchange.config.latest().config;
             self.pipeline.set_config(&config.imu, &config.heater);
             if self.sample(sensor).await {
                 bad_in_row = 0;

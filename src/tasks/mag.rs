@@ -1,6 +1,6 @@
 //! 50 Hz: IST8310 → calibrated magnetometer samples. A lost sensor is brought up again for as long as it takes.
 
-use embassy_time::{Duration, Instant, Ticker};
+use embassy_time::{Duration, Instant};
 use robot_app::sensing::MagPipeline;
 use robot_snapshot::Writer;
 
@@ -8,6 +8,7 @@ use crate::board::MagBus;
 use crate::deadlines::{Watched, sleep_checking_in};
 use crate::drivers::ist8310::Ist8310;
 use crate::exchange::{Exchange, MagReport};
+use crate::stall::SteadyTicker;
 
 /// 50 Hz in two halves, so that the task meets its deadline in between.
 const HALF_PERIOD: Duration = Duration::from_millis(10);
@@ -30,7 +31,7 @@ pub async fn run(
 ) -> ! {
     let mut task = MagTask {
         exchange,
-        pipeline: MagPipeline::new(exchange.config.latest().mag),
+        pipeline: MagPipeline::new(exchange.config.latest().config.mag),
         report: MagReport::default(),
         output,
     };
@@ -49,13 +50,13 @@ pub async fn run(
 
 impl MagTask {
     async fn sample_until_lost(&mut self, sensor: &mut Ist8310<'_>) {
-        let mut ticker = Ticker::every(HALF_PERIOD);
+        let mut ticker = SteadyTicker::every(HALF_PERIOD);
         let mut bad_in_row: u32 = 0;
         while bad_in_row < LOST_AFTER {
             ticker.next().await;
             Watched::Mag.check_in();
             self.pipeline
-                .set_calibration(&self.exchange.config.latest().mag);
+                .set_calibration(&self.exchange.config.latest().config.mag);
             if self.sample(sensor).await {
                 bad_in_row = 0;
             } else {

@@ -4,5 +4,6 @@ pub mod control;
 pub mod imu;
 pub mod logic;
 pub mod mag;
+pub mod params;
 pub mod sbus;
 pub mod status;

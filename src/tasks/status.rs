@@ -1,6 +1,6 @@
 //! LED, buzzer, battery voltage and the log. Checks for changes of state at 100 Hz, sums up at 4 Hz.
 
-use embassy_time::{Duration, Instant, Ticker};
+use embassy_time::{Duration, Instant};
 use robot_app::diagnostics::DiagnosticsSnapshot;
 use robot_app::indication::{Indication, IndicationInputs, IndicationPlayer};
 use robot_snapshot::Writer;
@@ -10,6 +10,7 @@ use crate::drivers::battery::Battery;
 use crate::drivers::buzzer::Buzzer;
 use crate::drivers::status_led::StatusLed;
 use crate::exchange::Exchange;
+use crate::stall::SteadyTicker;
 use bring_up_log::BringUpLog;
 use change_log::ChangeLog;
 
@@ -32,7 +33,7 @@ pub async fn run(
     let mut changes = ChangeLog::default();
     let mut bring_up = BringUpLog::default();
     let mut player = IndicationPlayer::default();
-    let mut ticker = Ticker::every(PERIOD);
+    let mut ticker = SteadyTicker::every(PERIOD);
     let mut round: u32 = 0;
     loop {
         ticker.next().await;

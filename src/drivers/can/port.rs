@@ -4,7 +4,7 @@ use embassy_stm32::pac::can::Can;
 use robot_app::domain::{BusErrorState, BusHealth, BusId, CanFrame};
 
 use super::link::Link;
-use super::receive::FrameSource;
+use super::receive::{FrameSource, Losses};
 use super::transmit::{self, Outcomes};
 
 /// Receive queues, transmit mailboxes and link state of one bus.
@@ -49,6 +49,19 @@ impl CanPort {
         self.link.step(now_us);
         self.count_outcomes(outcomes);
         self.read_error_state();
+    }
+
+    /// After a stall of the whole chip: what is in the queues came at unknown times, and what is missing is no fault.
+    pub fn drop_backlog(&mut self) {
+        for source in &mut self.sources {
+            while source.queue.dequeue().is_some() {}
+        }
+        let (overruns, queue_full) = self.losses();
+        let [fifo0, _] = &self.sources;
+        fifo0.forgive(&Losses {
+            overruns: overruns.wrapping_sub(self.health.rx_overruns),
+            queue_full: queue_full.wrapping_sub(self.health.rx_queue_full),
+        });
     }
 
     /// Passes every received frame with its arrival time to `sink`.
@@ -100,9 +113,16 @@ impl CanPort {
         } else {
             BusErrorState::Active
         };
+        (self.health.rx_overruns, self.health.rx_queue_full) = self.losses();
+    }
+
+    /// Of both FIFOs, in hardware and in the queue.
+    fn losses(&self) -> (u32, u32) {
         let [fifo0, fifo1] = &self.sources;
         let (fifo0, fifo1) = (fifo0.losses(), fifo1.losses());
-        health.rx_overruns = fifo0.overruns.wrapping_add(fifo1.overruns);
-        health.rx_queue_full = fifo0.queue_full.wrapping_add(fifo1.queue_full);
+        (
+            fifo0.overruns.wrapping_add(fifo1.overruns),
+            fifo0.queue_full.wrapping_add(fifo1.queue_full),
+        )
     }
 }

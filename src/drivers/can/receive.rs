@@ -46,6 +46,17 @@ impl FrameSource {
             queue_full: self.losses.queue_full.load(Ordering::Relaxed),
         }
     }
+
+    /// Takes losses that were nobody's fault off the counters.
+    pub fn forgive(&self, losses: &Losses) {
+        let counters = self.losses;
+        counters
+            .overruns
+            .fetch_sub(losses.overruns, Ordering::Relaxed);
+        counters
+            .queue_full
+            .fetch_sub(losses.queue_full, Ordering::Relaxed);
+    }
 }
 
 struct LossCounters {
@@ -167,7 +178,7 @@ impl<R: ReceiveFifo> FifoIsr<R> {
 }
 
 fn count(counter: &AtomicU32) {
-    // Only this handler writes the counter, so load and store need no exchange.
+    // Nobody who writes the counter can preempt this handler, so load and store need no exchange.
     counter.store(
         counter.load(Ordering::Relaxed).wrapping_add(1),
         Ordering::Relaxed,

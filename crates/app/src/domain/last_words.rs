@@ -9,6 +9,7 @@ pub struct LateTasks {
     pub sbus: bool,
     pub logic: bool,
     pub status: bool,
+    pub params: bool,
 }
 
 impl LateTasks {
@@ -29,6 +30,8 @@ impl LateTasks {
             LastWords::LogicLate
         } else if self.status {
             LastWords::StatusLate
+        } else if self.params {
+            LastWords::ParamsLate
         } else {
             LastWords::Silent
         }
@@ -51,10 +54,11 @@ pub enum LastWords {
     SbusLate = 6,
     LogicLate = 7,
     StatusLate = 8,
+    ParamsLate = 9,
 }
 
 impl LastWords {
-    const ALL: [Self; 9] = [
+    const ALL: [Self; 10] = [
         Self::Silent,
         Self::Panic,
         Self::HardFault,
@@ -64,6 +68,7 @@ impl LastWords {
         Self::SbusLate,
         Self::LogicLate,
         Self::StatusLate,
+        Self::ParamsLate,
     ];
 
     /// For memory that survives the reset.
@@ -87,6 +92,7 @@ impl LastWords {
             Self::SbusLate => "task sbus was late",
             Self::LogicLate => "task logic was late",
             Self::StatusLate => "task status was late",
+            Self::ParamsLate => "task params was late",
         }
     }
 }
@@ -107,7 +113,7 @@ mod tests {
         let known: Vec<u8> = (0..=u8::MAX)
             .filter(|&code| LastWords::from_code(code).is_some())
             .collect();
-        assert_eq!(known, (0..=8).collect::<Vec<u8>>());
+        assert_eq!(known, (0..=9).collect::<Vec<u8>>());
         for code in known {
             assert_eq!(LastWords::from_code(code).map(LastWords::code), Some(code));
         }
@@ -136,6 +142,13 @@ mod tests {
                     ..none
                 },
                 "status",
+            ),
+            (
+                LateTasks {
+                    params: true,
+                    ..none
+                },
+                "params",
             ),
         ] {
             assert!(late.any());

@@ -1,0 +1,96 @@
+//! The clock, right even after the chip stood still.
+//!
+//! The time driver counts half turns of a 16-bit timer (32.768 ms each) in its interrupt. Of those that pass while no
+//! interrupt can run it sees at most two. The cycle counter of the core goes on and tells how many there were.
+
+use cortex_m::peripheral::DWT;
+use cortex_m::register::basepri;
+use embassy_stm32::pac::TIM2;
+use embassy_time::Instant;
+
+/// All interrupts below priority 0, which the time driver alone has (`board.rs`).
+const BELOW_TIME_DRIVER: u8 = 0x10;
+/// The system clock.
+const CYCLES_PER_US: u32 = 168;
+/// Ticks of half a turn.
+const HALF_TURN: u16 = 0x8000;
+/// Keeps this far from the timer's events, in µs: after one, until its interrupt has run; before the next, until the
+/// missing ones are made up for.
+const AFTER_EVENT: u16 = 64;
+const BEFORE_EVENT: u16 = 1_024;
+
+/// Runs `work`, during which no interrupt can run, then `repaired` with the time that passed in µs, once the clock is
+/// right again and before any other interrupt runs. Only for thread mode.
+pub fn keep_time<R>(work: impl FnOnce() -> R, repaired: impl FnOnce(u32)) -> R {
+    // SAFETY: postpones interrupts until the same function lets them in again; no lock relies on them running.
+    unsafe { basepri::write(BELOW_TIME_DRIVER) };
+    wait_between_events();
+    let (result, gap) = cortex_m::interrupt::free(|_| {
+        let before = Moment::now();
+        let result = work();
+        wait_between_events();
+        (result, Gap::since(&before))
+    });
+    // The driver's interrupt has run now, on what the timer's flags told it.
+    for _ in 0..gap.missing_half_turns {
+        make_up_for_half_turn();
+    }
+    let elapsed_us = gap.elapsed_us;
+    repaired(elapsed_us);
+    // SAFETY: the state before; thread mode runs with all interrupts let in.
+    unsafe { basepri::write(0) };
+    result
+}
+
+struct Moment {
+    cycles: u32,
+    now_us: u64,
+}
+
+impl Moment {
+    fn now() -> Self {
+        Self {
+            cycles: DWT::cycle_count(),
+            now_us: Instant::now().as_micros(),
+        }
+    }
+}
+
+struct Gap {
+    elapsed_us: u32,
+    /// That the driver's interrupt will not count by itself.
+    missing_half_turns: u64,
+}
+
+impl Gap {
+    /// While the driver's interrupt is held back, after a wait between events.
+    fn since(before: &Moment) -> Self {
+        let (status, counter) = (TIM2.sr().read(), TIM2.cnt().read() as u16);
+        let cycles = DWT::cycle_count().wrapping_sub(before.cycles);
+        let roughly_us = before
+            .now_us
+            .saturating_add((cycles / CYCLES_PER_US).into());
+        // The timer shows the low half of the true time.
+        let off_us = counter.wrapping_sub(roughly_us as u16) as i16;
+        let now_us = roughly_us.saturating_add_signed(off_us.into());
+        let half_turns = |us: u64| us / u64::from(HALF_TURN);
+        let seen = u64::from(status.uif()).saturating_add(status.ccif(0).into());
+        Self {
+            elapsed_us: now_us.saturating_sub(before.now_us) as u32,
+            missing_half_turns: half_turns(now_us)
+                .saturating_sub(half_turns(before.now_us))
+                .saturating_sub(seen),
+        }
+    }
+}
+
+fn wait_between_events() {
+    let safe = AFTER_EVENT..HALF_TURN.saturating_sub(BEFORE_EVENT);
+    while !safe.contains(&(TIM2.cnt().read() as u16 % HALF_TURN)) {}
+}
+
+/// Raises the event of channel 1 (RM0090 18.4.6), which is the driver's half turn, and lets its interrupt count it.
+fn make_up_for_half_turn() {
+    TIM2.egr().write(|w| w.set_ccg(0, true));
+    while TIM2.sr().read().ccif(0) {}
+}

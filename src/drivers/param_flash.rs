@@ -1,0 +1,99 @@
+//! Sectors 1 to 3 of the internal flash, where the parameter store lives (RM0090 section 3, `hardware.md` 3).
+
+use embassy_stm32::flash::{Bank1Region1, Blocking, Error, Flash};
+use embassy_stm32::pac::FLASH;
+use embassy_stm32::pac::flash::vals::Psize;
+use embassy_stm32::{Peri, peripherals};
+use embedded_storage::nor_flash::{ErrorType, NorFlash, ReadNorFlash};
+
+use crate::stall;
+
+/// Sector 0 holds the vector table; offsets here count from sector 1, so it cannot be reached.
+const SECTOR_1: u32 = 0x4000;
+/// Sector 4, where the code begins, cannot be reached either.
+const CAPACITY: u32 = 3 * 0x4000;
+
+/// The unlock sequence (RM0090 3.9.2).
+const KEYS: [u32; 2] = [0x4567_0123, 0xCDEF_89AB];
+
+/// While a word is programmed or a sector erased the CPU stands still as soon as it needs the flash, which is at once.
+pub struct ParamFlash(Bank1Region1<'static, Blocking>);
+
+impl ParamFlash {
+    pub fn new(flash: Peri<'static, peripherals::FLASH>) -> Self {
+        let regions = Flash::new_blocking(flash).into_blocking_regions();
+        Self(regions.bank1_region1)
+    }
+}
+
+impl ErrorType for ParamFlash {
+    type Error = Error;
+}
+
+impl ReadNorFlash for ParamFlash {
+    const READ_SIZE: usize = 1;
+
+    fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), Error> {
+        let from = place(offset, bytes.len())?;
+        self.0.blocking_read(from, bytes)
+    }
+
+    fn capacity(&self) -> usize {
+        CAPACITY as usize
+    }
+}
+
+impl NorFlash for ParamFlash {
+    const WRITE_SIZE: usize = 4;
+    const ERASE_SIZE: usize = 0x4000;
+
+    /// Word by word; interrupts run in between.
+    fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), Error> {
+        let from = place(offset, bytes.len())?;
+        let result = self.0.blocking_write(from, bytes);
+        forget_cached_data();
+        result
+    }
+
+    fn erase(&mut self, from: u32, to: u32) -> Result<(), Error> {
+        let len = to.checked_sub(from).ok_or(Error::Size)?;
+        let from = place(from, len as usize)?;
+        let to = from.saturating_add(len);
+        stall::stand_still(|| {
+            use_full_width();
+            let result = self.0.blocking_erase(from, to);
+            forget_cached_data();
+            result
+        })
+    }
+}
+
+/// Where `len` bytes at `offset` lie from the start of flash.
+fn place(offset: u32, len: usize) -> Result<u32, Error> {
+    let end = u32::try_from(len)
+        .ok()
+        .and_then(|len| offset.checked_add(len));
+    if end.is_none_or(|end| end > CAPACITY) {
+        return Err(Error::Size);
+    }
+    Ok(offset.saturating_add(SECTOR_1))
+}
+
+/// 32 bits at a time halve the time of an erase. The HAL leaves the width as it finds it when it erases, and at 8 bits
+/// when it has written.
+fn use_full_width() {
+    if FLASH.cr().read().lock() {
+        for key in KEYS {
+            FLASH.keyr().write_value(key);
+        }
+    }
+    FLASH.cr().modify(|w| w.set_psize(Psize::PSIZE32));
+}
+
+/// The data cache does not notice what happens to the cells (RM0090 3.5.4), and can only be reset while it is off.
+fn forget_cached_data() {
+    FLASH.acr().modify(|w| w.set_dcen(false));
+    FLASH.acr().modify(|w| w.set_dcrst(true));
+    FLASH.acr().modify(|w| w.set_dcrst(false));
+    FLASH.acr().modify(|w| w.set_dcen(true));
+}

@@ -1,0 +1,97 @@
+//! Settings to flash, in small steps, each with the control tick's permission.
+
+use embassy_time::{Duration, Instant};
+use robot_app::params::{FlashRequest, ParamService};
+use robot_snapshot::{Follower, Writer};
+
+use crate::deadlines::Watched;
+use crate::drivers::param_flash::ParamFlash;
+use crate::exchange::{ConfigUpdate, Exchange, FlashPermission, ParamsReport};
+use crate::stall::{StallWatch, SteadyTicker};
+
+const PERIOD: Duration = Duration::from_hz(1_000);
+/// The service announces a step before it takes it.
+const STEPS_A_GRANT: u32 = 2;
+
+struct ParamsTask {
+    service: ParamService<ParamFlash>,
+    config: Follower<'static, ConfigUpdate>,
+    grant: Follower<'static, FlashPermission>,
+    stalls: StallWatch,
+    asked: FlashRequest,
+    steps: u32,
+    report: ParamsReport,
+    output: Writer<'static, ParamsReport>,
+}
+
+#[embassy_executor::task]
+pub async fn run(
+    service: ParamService<ParamFlash>,
+    exchange: &'static Exchange,
+    output: Writer<'static, ParamsReport>,
+) -> ! {
+    let mut task = ParamsTask {
+        service,
+        config: exchange.config.follower(),
+        grant: exchange.flash_grant.follower(),
+        stalls: StallWatch::new(),
+        asked: FlashRequest::None,
+        steps: 0,
+        report: ParamsReport::default(),
+        output,
+    };
+    let mut ticker = SteadyTicker::every(PERIOD);
+    loop {
+        ticker.next().await;
+        task.step();
+        Watched::Params.check_in();
+    }
+}
+
+impl ParamsTask {
+    /// Asks, waits for the grant, uses it, takes the request back, waits until the grant is gone, and only then asks
+    /// anew: so the control tick decides about each step.
+    fn step(&mut self) {
+        let grant = self.grant.latest().0;
+        let granted = if grant == self.asked {
+            grant
+        } else {
+            FlashRequest::None
+        };
+        let ConfigUpdate { config, revision } = self.config.latest();
+        let now_us = Instant::now().as_micros();
+        let wanted = self.service.step(config, *revision, granted, now_us);
+        if let Some(stall_us) = self.stalls.news() {
+            self.service.note_stall(stall_us);
+            defmt::info!(
+                "flash sector erased, the chip stood still for {=u32} us",
+                stall_us
+            );
+        }
+        if granted != FlashRequest::None {
+            self.steps = self.steps.saturating_add(1);
+        }
+        if self.steps >= STEPS_A_GRANT {
+            self.steps = 0;
+            self.asked = FlashRequest::None;
+        } else if self.asked != wanted
+            && (granted != FlashRequest::None || grant == FlashRequest::None)
+        {
+            self.asked = wanted;
+            self.steps = 0;
+        }
+        self.publish();
+    }
+
+    fn publish(&mut self) {
+        let status = self.service.status();
+        if self.report.request == self.asked && self.report.status.revision == status.revision {
+            return;
+        }
+        self.report = ParamsReport {
+            status: *status,
+            request: self.asked,
+        };
+        self.output.publish(&self.report);
+    }
+}
