@@ -1,0 +1,156 @@
+//! What a boot makes of what it finds.
+
+use robot_app::{
+    domain::RobotConfig,
+    motor::layout::{ROBOT_LAYOUT, RS00_LAYOUT},
+    params::ParamState,
+};
+
+use crate::{
+    dump::{self, slot},
+    robot::{Chip, Robot},
+};
+
+const HEATER: u32 = 1 << 6;
+const SAFETY: u32 = 1 << 3;
+const GEOMETRY: u32 = 1 << 0;
+const LEFT_FRONT: u32 = 1 << 7;
+
+/// One erase makes a sector of which it is known that it is blank.
+#[test]
+fn a_new_chip_has_the_defaults_and_is_ready_for_a_save() {
+    let chip = Chip::blank();
+    let robot = Robot::boot(&chip);
+    assert_eq!(robot.config, RobotConfig::default());
+    assert_eq!((chip.erases(), robot.status().erases), (1, 1));
+    let status = robot.status();
+    assert_eq!((status.loaded, status.refused, status.foreign), (0, 0, 0));
+    assert_eq!(status.state, ParamState::Saved);
+    assert_eq!(status.generation, 0);
+    assert_eq!(Robot::boot(&chip).status().erases, 0);
+}
+
+#[test]
+fn what_was_saved_is_there_after_a_reboot() {
+    let chip = Chip::blank();
+    let mut robot = Robot::boot(&chip);
+    robot.change(|config| {
+        config.heater.target_c = 37.5;
+        config.joints[3].zero_rad = -1.25;
+    });
+    robot.save();
+    assert_eq!(robot.status().save_ok, 2);
+    let again = Robot::boot(&chip);
+    assert_eq!(again.config, robot.config);
+    assert_eq!(again.status().loaded, HEATER | 1 << 10);
+    // The other groups have defaults, which no one changed: they are in no record.
+    assert_eq!(again.status().generation, 1);
+}
+
+/// Values are those of docs/parameters.md's example.
+#[test]
+fn a_dump_written_by_hand_is_understood() {
+    let chip = dump::chip(
+        41,
+        &[
+            slot([7, 1, 0], &[30.0, 0.5, 0.25, 1.0]),
+            slot([1, 1, 0], &[0.075, 0.45, 36.0, -1.0, 1.0]),
+            slot([7, 1, 0], &[45.0, 0.5, 0.25, 0.75]),
+        ],
+    );
+    let robot = Robot::boot(&chip);
+    let mut expected = RobotConfig::default();
+    expected.heater.target_c = 45.0;
+    expected.heater.kp = 0.5;
+    expected.heater.ki = 0.25;
+    expected.heater.max_duty = 0.75;
+    expected.wheel_odom.wheel_radius_m = 0.075;
+    expected.wheel_odom.wheel_track_m = 0.45;
+    expected.wheel_odom.gear_ratio = 36.0;
+    expected.wheel_odom.rpm_sign_left = -1.0;
+    expected.wheel_odom.rpm_sign_right = 1.0;
+    assert_eq!(robot.config, expected);
+    let status = robot.status();
+    assert_eq!(status.loaded, HEATER | GEOMETRY);
+    assert_eq!((status.generation, status.free_slots), (41, 124));
+    assert_eq!((status.damaged, status.refused), (0, 0));
+}
+
+#[test]
+fn a_damaged_record_falls_back_to_the_one_before_it() {
+    let mut torn = slot([7, 1, 0], &[45.0, 0.5, 0.25, 0.75]);
+    torn[9] ^= 0x10;
+    let older = slot([7, 1, 0], &[30.0, 0.5, 0.25, 1.0]);
+    let robot = Robot::boot(&dump::chip(1, &[older, torn]));
+    assert_eq!(robot.config.heater.target_c, 30.0);
+    assert_eq!(robot.status().damaged, 1);
+}
+
+/// Another firmware's group, a later version, a value out of range and a joint of the other make.
+fn others_records() -> [Vec<u8>; 4] {
+    [
+        slot([200, 9, 3], &[1.0, 2.0, 3.0]),
+        slot([7, 2, 0], &[45.0, 0.5, 0.25, 0.75, 9.0]),
+        slot([4, 1, 0], &[f32::NAN; 15]),
+        slot([16, 1, 2], &[1.0, 0.5, -1.0, 1.0, 3.0, 15.0, 100.0, 5.0]),
+    ]
+}
+
+#[test]
+fn what_is_not_understood_has_defaults_and_is_told() {
+    let robot = Robot::boot(&dump::chip(1, &others_records()));
+    assert_eq!(robot.config, RobotConfig::default());
+    let status = robot.status();
+    assert_eq!(status.refused, HEATER | SAFETY);
+    assert_eq!((status.loaded, status.foreign), (0, 2));
+    assert_eq!(status.state, ParamState::Saved);
+}
+
+/// 300 saves fill two sectors.
+#[test]
+fn what_is_not_understood_stays_in_flash_bit_for_bit() {
+    let chip = dump::chip(1, &others_records());
+    let mut robot = Robot::boot(&chip);
+    for number in 0..300u16 {
+        robot.change(|config| config.wheel_odom.wheel_track_m = 0.3 + f32::from(number) * 1e-3);
+        robot.save();
+    }
+    assert_eq!(
+        (robot.status().save_ok, robot.status().generation),
+        (300, 3)
+    );
+    for record in others_records() {
+        assert!(dump::copies(&chip.dump(), &record) >= 1);
+    }
+    let again = Robot::boot(&chip);
+    assert_eq!(again.status().refused, HEATER | SAFETY);
+    assert_eq!(again.status().foreign, 2);
+    let rs00 = Robot::boot_with(&chip, &RS00_LAYOUT);
+    assert_eq!(rs00.config.joints[0].zero_rad, 0.5);
+    assert_eq!(rs00.status().loaded, GEOMETRY | LEFT_FRONT);
+}
+
+#[test]
+fn a_refused_group_is_saved_once_someone_changes_it() {
+    let chip = dump::chip(1, &others_records());
+    let mut robot = Robot::boot(&chip);
+    robot.change(|config| config.safety.stick_centre = 0.1);
+    robot.save();
+    let again = Robot::boot(&chip);
+    assert_eq!(again.status().loaded, SAFETY);
+    assert_eq!(again.config.safety, robot.config.safety);
+}
+
+#[test]
+fn each_make_of_motors_keeps_its_own_joint_settings() {
+    let chip = Chip::blank();
+    for (layout, zero_rad) in [(&ROBOT_LAYOUT, 0.25), (&RS00_LAYOUT, -0.75)] {
+        let mut robot = Robot::boot_with(&chip, layout);
+        assert_eq!(robot.config.joints[1].zero_rad, 0.0);
+        robot.change(|config| config.joints[1].zero_rad = zero_rad);
+        robot.save();
+    }
+    let zero = |layout| Robot::boot_with(&chip, layout).config.joints[1].zero_rad;
+    assert_eq!(zero(&ROBOT_LAYOUT), 0.25);
+    assert_eq!(zero(&RS00_LAYOUT), -0.75);
+}

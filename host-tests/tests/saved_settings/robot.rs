@@ -1,0 +1,175 @@
+//! The parameter task of a robot, with the flash it works on.
+
+use std::{
+    cell::{Cell, RefCell},
+    rc::Rc,
+};
+
+use embedded_storage::nor_flash::{
+    ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
+};
+use robot_app::{
+    domain::RobotConfig,
+    motor::layout::{MotorLayout, ROBOT_LAYOUT},
+    params::{FlashRequest, ParamService, ParamState, ParamStatus},
+};
+use robot_plant::flash_chip::{FlashChip, PARAMETER_SECTORS};
+
+/// The flash controller and the cells behind it. Clones are the same chip.
+#[derive(Clone)]
+pub struct Chip {
+    pub cells: Rc<RefCell<FlashChip>>,
+    /// Reports an error instead of programming.
+    pub refuses_words: Rc<Cell<bool>>,
+}
+
+#[derive(Debug)]
+pub struct Refused;
+
+impl NorFlashError for Refused {
+    fn kind(&self) -> NorFlashErrorKind {
+        NorFlashErrorKind::Other
+    }
+}
+
+impl ErrorType for Chip {
+    type Error = Refused;
+}
+
+impl ReadNorFlash for Chip {
+    const READ_SIZE: usize = FlashChip::READ_SIZE;
+
+    fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), Refused> {
+        let mut cells = self.cells.borrow_mut();
+        ReadNorFlash::read(&mut *cells, offset, bytes).map_err(|_| Refused)
+    }
+
+    fn capacity(&self) -> usize {
+        self.cells.borrow().capacity()
+    }
+}
+
+impl NorFlash for Chip {
+    const WRITE_SIZE: usize = FlashChip::WRITE_SIZE;
+    const ERASE_SIZE: usize = FlashChip::ERASE_SIZE;
+
+    fn erase(&mut self, from: u32, to: u32) -> Result<(), Refused> {
+        let mut cells = self.cells.borrow_mut();
+        NorFlash::erase(&mut *cells, from, to).map_err(|_| Refused)
+    }
+
+    fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), Refused> {
+        if self.refuses_words.get() {
+            return Err(Refused);
+        }
+        NorFlash::write(&mut *self.cells.borrow_mut(), offset, bytes).map_err(|_| Refused)
+    }
+}
+
+impl Chip {
+    pub fn blank() -> Self {
+        Self {
+            cells: Rc::new(RefCell::new(FlashChip::parameters(1))),
+            refuses_words: Rc::default(),
+        }
+    }
+
+    pub fn erases(&self) -> u32 {
+        let cells = self.cells.borrow();
+        PARAMETER_SECTORS.map(|sector| cells.erases(sector)).sum()
+    }
+
+    /// Sectors 1 to 3.
+    pub fn dump(&self) -> Vec<u8> {
+        let mut bytes = vec![0; 3 * 16 * 1024];
+        ReadNorFlash::read(&mut *self.cells.borrow_mut(), 0, &mut bytes).unwrap();
+        bytes
+    }
+}
+
+pub struct Robot {
+    pub chip: Chip,
+    service: ParamService<Chip>,
+    pub config: RobotConfig,
+    revision: u32,
+    now_us: u64,
+    asked: FlashRequest,
+    /// Disarmed and standing still.
+    pub rests: bool,
+}
+
+impl Robot {
+    pub fn boot(chip: &Chip) -> Self {
+        Self::boot_with(chip, &ROBOT_LAYOUT)
+    }
+
+    pub fn boot_with(chip: &Chip, layout: &'static MotorLayout) -> Self {
+        let (service, config) = ParamService::boot(chip.clone(), layout);
+        Self {
+            chip: chip.clone(),
+            service,
+            config,
+            revision: 0,
+            now_us: 2_000_000,
+            asked: FlashRequest::None,
+            rests: true,
+        }
+    }
+
+    pub fn change(&mut self, change: impl FnOnce(&mut RobotConfig)) {
+        change(&mut self.config);
+        self.revision = self.revision.wrapping_add(1);
+    }
+
+    /// One millisecond. Programs a slot or erases a sector, not more.
+    pub fn step(&mut self) {
+        let granted = if self.rests {
+            self.asked
+        } else {
+            FlashRequest::None
+        };
+        let before = (self.chip.cells.borrow().programs(), self.chip.erases());
+        self.now_us += 1_000;
+        self.asked = self
+            .service
+            .step(&self.config, self.revision, granted, self.now_us);
+        let words = self.chip.cells.borrow().programs() - before.0;
+        let erases = self.chip.erases() - before.1;
+        assert!(words <= 32, "{words} words at once");
+        match granted {
+            FlashRequest::None => assert_eq!((words, erases), (0, 0)),
+            FlashRequest::Program => assert_eq!(erases, 0),
+            FlashRequest::Erase => assert!(erases <= 1),
+        }
+    }
+
+    pub fn run_ms(&mut self, duration_ms: u32) {
+        for _ in 0..duration_ms {
+            self.step();
+        }
+    }
+
+    /// Until everything is saved, a spare sector included.
+    pub fn save(&mut self) {
+        for _ in 0..10_000 {
+            self.step();
+            let status = self.service.status();
+            if status.state == ParamState::Saved && self.asked == FlashRequest::None {
+                return;
+            }
+        }
+        panic!("not saved: {:?}", self.service.status());
+    }
+
+    pub fn status(&self) -> ParamStatus {
+        *self.service.status()
+    }
+
+    pub fn asked(&self) -> FlashRequest {
+        self.asked
+    }
+
+    pub fn seconds(&self) -> f64 {
+        self.now_us as f64 / 1e6
+    }
+}
