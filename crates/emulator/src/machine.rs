@@ -18,7 +18,9 @@ use crate::{
 
 pub mod diagnostics;
 pub mod faults;
+pub mod flash;
 mod log;
+mod power;
 mod rtt;
 mod stack;
 
@@ -69,6 +71,7 @@ pub struct Distribution {
 pub struct Stats {
     pub ticks: u64,
     pub missed: u64,
+    pub longest_gap_us: LongestGapUs,
     pub tick_instructions: Distribution,
     pub release_jitter_us: Distribution,
     /// Counts of release jitter in 0.5 µs bins, for the histogram.
@@ -81,6 +84,13 @@ pub struct Stats {
     pub resets: Vec<String>,
     pub can: Vec<CanStats>,
     pub flash: FlashUse,
+}
+
+/// Longest time from one control tick to the next, by what the firmware last said of itself before it.
+#[derive(Clone, Copy, Debug, Default, serde::Serialize)]
+pub struct LongestGapUs {
+    pub armed: f64,
+    pub disarmed: f64,
 }
 
 #[derive(Clone, Debug, Default, serde::Serialize)]
@@ -113,6 +123,8 @@ pub struct Progress {
     pub can_busy: [Ps; 2],
     /// Different ones.
     pub board_errors: usize,
+    pub flash_erases: u64,
+    pub flash_programs: u64,
 }
 
 /// CPU, chip, board and world, and what is known of the image that runs on them.
@@ -123,7 +135,11 @@ pub struct Machine {
     log: Option<DefmtLog>,
     diagnostics: Diagnostics,
     stack: StackWatch,
+    /// Deepest stack before the last loss of power.
+    stack_peak: u64,
     resets: Vec<String>,
+    /// How long a power cut at a step of the flash lasts.
+    off_time: Ps,
 }
 
 /// The log ring is emptied at least this often.
@@ -142,7 +158,9 @@ impl Machine {
             log: DefmtLog::new(&bytes)?,
             diagnostics: Diagnostics::find(&bytes, &image).map_err(MachineError::Image)?,
             stack: StackWatch::of(&image),
+            stack_peak: 0,
             resets: Vec::new(),
+            off_time: power::OFF_TIME,
             cpu,
             image,
         })
@@ -167,9 +185,14 @@ impl Machine {
                     self.poll_log();
                     if thread {
                         self.diagnostics.copy_from(&self.cpu);
+                        self.cpu.set_armed(self.diagnostics.armed());
                     }
                 }
+                Pause::Reset(ResetCause::PowerOn) => {
+                    self.power_off(self.cpu.now() + self.off_time);
+                }
                 Pause::Reset(cause) => self.reset(cause),
+                Pause::PowerReturns => self.power_up(),
             }
         }
         Ok(())
@@ -229,12 +252,16 @@ impl Machine {
         Stats {
             ticks: run.tick_count(),
             missed: run.missed_ticks(),
+            longest_gap_us: LongestGapUs {
+                armed: run.longest_gap().armed as f64 / US as f64,
+                disarmed: run.longest_gap().disarmed as f64 / US as f64,
+            },
             tick_instructions: run.tick_instructions(),
             release_jitter_us: run.release_jitter_us(),
             jitter_bins: run.jitter_bins(),
             cpu_load: run.cpu_load(),
             executors: run.shares(),
-            stack_peak_bytes: self.stack.peak(&self.cpu),
+            stack_peak_bytes: self.stack_peak.max(self.stack.peak(&self.cpu)),
             resets: self.resets.clone(),
             can: [0, 1].map(|bus| self.can_stats(bus)).to_vec(),
             flash: self.flash_use(),
@@ -243,11 +270,14 @@ impl Machine {
 
     pub fn progress(&self) -> Progress {
         let (run, soc) = (self.cpu.stats(), self.cpu.soc());
+        let flash = soc.flash().history().stats();
         Progress {
             missed: run.missed_ticks(),
             cpu_load: run.cpu_load(),
             can_busy: [0, 1].map(|bus| soc.can_stats(bus).busy),
             board_errors: soc.errors.list().len(),
+            flash_erases: flash.erases,
+            flash_programs: flash.programs,
         }
     }
 
@@ -256,7 +286,7 @@ impl Machine {
     }
 
     fn flash_use(&self) -> FlashUse {
-        let counted = self.cpu.soc().flash_stats();
+        let counted = self.cpu.soc().flash().history().stats();
         FlashUse {
             erases: counted.erases,
             programs: counted.programs,

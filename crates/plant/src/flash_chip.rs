@@ -171,6 +171,11 @@ impl FlashChip {
         self.defects.stick(bit);
     }
 
+    /// No bit is stuck any more.
+    pub fn mend_bits(&mut self) {
+        self.defects.mend_bits();
+    }
+
     /// Erases of the sector fail that way from now on, or work again.
     pub fn set_erase_fault(&mut self, sector: u8, fault: Option<EraseFault>) {
         self.defects.set_erase_fault(sector, fault);

@@ -150,6 +150,7 @@ pub struct World {
     playback: Option<Playback>,
     indicators: Indicators,
     faults: ActiveFaults,
+    board_supply: bool,
     signal_names: Vec<String>,
     wire_events: Vec<WireEvent>,
     complaints: Vec<String>,
@@ -189,6 +190,7 @@ impl World {
             playback,
             indicators: Indicators::default(),
             faults: ActiveFaults::default(),
+            board_supply: true,
             wire_events: Vec::new(),
             complaints: Vec::new(),
         })

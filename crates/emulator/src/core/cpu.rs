@@ -26,6 +26,7 @@ mod context;
 mod hooks;
 mod sabotage;
 mod sleep;
+mod standstill;
 #[cfg(test)]
 mod tests;
 
@@ -34,6 +35,7 @@ use hooks::with_soc;
 use sabotage::Saboteur;
 pub use sabotage::{Harm, Sabotage};
 use sleep::SleepKind;
+use standstill::Standstill;
 
 /// Why `Cpu::run` came back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,8 +44,10 @@ pub enum Pause {
     Limit,
     /// WFE or WFI found nothing to do; `thread` when no handler is active.
     Asleep { thread: bool },
-    /// The chip must be reset, then `Cpu::reset` called.
+    /// The chip must be reset, then `Cpu::reset` called; after `PowerOn`, which is the loss of power, `power_off`.
     Reset(ResetCause),
+    /// The board was without power long enough: `Cpu::power_up` must be called.
+    PowerReturns,
 }
 
 /// The run cannot go on.
@@ -58,6 +62,7 @@ pub struct Halt {
 enum Stop {
     Interrupt,
     Limit,
+    Standstill,
     ExceptionReturn(u32),
     SupervisorCall,
     Fault(Fault),
@@ -94,6 +99,7 @@ pub struct State {
     limit_cycle: u64,
     /// An interrupt may be deliverable: look at the next block boundary.
     attention: bool,
+    standstill: Standstill,
     /// The event register of WFE.
     event: bool,
     stop: Option<Stop>,
@@ -130,6 +136,7 @@ impl Cpu {
             due_cycle: 0,
             limit_cycle: 0,
             attention: false,
+            standstill: Standstill::default(),
             event: false,
             stop: None,
             tick_entry,
@@ -195,6 +202,11 @@ impl Cpu {
         self.state().struck_at
     }
 
+    /// Whether the firmware is armed, as it last said.
+    pub fn set_armed(&mut self, armed: bool) {
+        self.state_mut().stats.set_armed(armed);
+    }
+
     pub fn stats(&self) -> &Execution {
         &self.state().stats
     }
@@ -226,6 +238,11 @@ impl Cpu {
         state.limit_cycle = state.clock.cycle_at(until);
         state.refresh_due();
         loop {
+            if !self.state().standstill.is_over()
+                && let Some(pause) = self.stand_still()?
+            {
+                return Ok(pause);
+            }
             if let Some(kind) = self.asleep {
                 if let Some(pause) = self.sleep(kind)? {
                     return Ok(pause);
@@ -250,7 +267,7 @@ impl Cpu {
         state.settle();
         let stop = state.stop.take();
         match (stop, result) {
-            (Some(Stop::Interrupt | Stop::Limit), _) => Ok(None),
+            (Some(Stop::Interrupt | Stop::Limit | Stop::Standstill), _) => Ok(None),
             (Some(Stop::ExceptionReturn(code)), _) => {
                 self.return_from_exception(code).map(|()| None)
             }

@@ -8,7 +8,7 @@ use object::{
     read::elf::{ElfFile, FileHeader, ProgramHeader},
 };
 
-use crate::core::memory::{FLASH, FLASH_ALIAS};
+use crate::core::memory::{FLASH, FLASH_ALIAS, PARAMETER_FLASH};
 
 /// Bytes at their load addresses in flash.
 #[derive(Debug)]
@@ -40,6 +40,10 @@ pub enum ImageError {
     Elf(#[from] object::Error),
     #[error("segment of {size} bytes at 0x{address:08X} is not in the 1 MiB flash")]
     OutsideFlash { address: u32, size: usize },
+    #[error(
+        "segment of {size} bytes at 0x{address:08X} reaches into sectors 1-3, which hold parameters"
+    )]
+    AmongParameters { address: u32, size: usize },
 }
 
 impl Image {
@@ -55,6 +59,12 @@ impl Image {
             let address = header.p_paddr(endian);
             if !FLASH.contains(address, data.len() as u32) {
                 return Err(ImageError::OutsideFlash {
+                    address,
+                    size: data.len(),
+                });
+            }
+            if PARAMETER_FLASH.overlaps(address, data.len() as u32) {
+                return Err(ImageError::AmongParameters {
                     address,
                     size: data.len(),
                 });

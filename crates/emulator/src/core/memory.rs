@@ -15,6 +15,11 @@ impl Region {
         addr >= self.base
             && u64::from(addr) + u64::from(len) <= u64::from(self.base) + u64::from(self.size)
     }
+
+    pub fn overlaps(self, addr: u32, len: u32) -> bool {
+        u64::from(addr) < u64::from(self.base) + u64::from(self.size)
+            && u64::from(addr) + u64::from(len) > u64::from(self.base)
+    }
 }
 
 pub const FLASH: Region = Region {
@@ -25,6 +30,15 @@ pub const FLASH: Region = Region {
 pub const FLASH_ALIAS: Region = Region {
     base: 0,
     size: 0x10_0000,
+};
+/// Sectors 1–3: their cells belong to the flash interface, and every access of the core goes there.
+pub const PARAMETER_FLASH: Region = Region {
+    base: 0x0800_4000,
+    size: 0xC000,
+};
+pub const PARAMETER_FLASH_ALIAS: Region = Region {
+    base: 0x4000,
+    ..PARAMETER_FLASH
 };
 pub const CCM: Region = Region {
     base: 0x1000_0000,
@@ -48,12 +62,11 @@ pub const HANG: Region = Region {
 const UNIQUE_ID: u32 = 0x1FFF_7A10;
 const FLASH_SIZE_KIB: u32 = 0x1FFF_7A22;
 
-/// Maps the memories and fills them as they are at power-on: flash and OTP erased, RAM full of noise.
+/// Maps the memories and fills them as they are at power-on: flash and OTP erased, RAM full of noise. Sectors 1–3 are
+/// left out.
 /// SRAM may not hold code: the engine would then look at every store for changes of it.
 pub fn map<D>(engine: &mut Unicorn<'_, D>) -> Result<(), uc_error> {
     for (region, rights) in [
-        (FLASH, Prot::READ | Prot::EXEC),
-        (FLASH_ALIAS, Prot::READ | Prot::EXEC),
         (SYSTEM_MEMORY, Prot::READ),
         (HANG, Prot::READ | Prot::EXEC),
         (SRAM, Prot::READ | Prot::WRITE),
@@ -61,15 +74,38 @@ pub fn map<D>(engine: &mut Unicorn<'_, D>) -> Result<(), uc_error> {
     ] {
         engine.mem_map(region.base.into(), region.size.into(), rights)?;
     }
-    for region in [FLASH, FLASH_ALIAS, SYSTEM_MEMORY] {
-        engine.mem_write(region.base.into(), &vec![0xFF; region.size as usize])?;
+    for (flash, hole) in [
+        (FLASH, PARAMETER_FLASH),
+        (FLASH_ALIAS, PARAMETER_FLASH_ALIAS),
+    ] {
+        for part in around(flash, hole) {
+            engine.mem_map(part.base.into(), part.size.into(), Prot::READ | Prot::EXEC)?;
+            engine.mem_write(part.base.into(), &vec![0xFF; part.size as usize])?;
+        }
     }
+    let system = vec![0xFF; SYSTEM_MEMORY.size as usize];
+    engine.mem_write(SYSTEM_MEMORY.base.into(), &system)?;
     for region in [SRAM, CCM] {
         engine.mem_write(region.base.into(), &power_on_noise(region))?;
     }
     engine.mem_write(HANG.base.into(), &endless_loop())?;
     engine.mem_write(UNIQUE_ID.into(), b"EMULATEDBRD1")?;
     engine.mem_write(FLASH_SIZE_KIB.into(), &1024_u16.to_le_bytes())
+}
+
+/// What lies below and above `hole`.
+fn around(whole: Region, hole: Region) -> [Region; 2] {
+    let (hole_end, end) = (hole.base + hole.size, whole.base + whole.size);
+    [
+        Region {
+            base: whole.base,
+            size: hole.base - whole.base,
+        },
+        Region {
+            base: hole_end,
+            size: end - hole_end,
+        },
+    ]
 }
 
 /// NOPs and a branch back to the first: long enough to be quick to emulate, short against any deadline.
@@ -98,7 +134,7 @@ pub fn power_on_noise(region: Region) -> Vec<u8> {
         .collect()
 }
 
-/// The memories as DMA and the flash controller reach them through the engine.
+/// The memories as DMA reaches them through the engine: not the parameters.
 pub struct EngineMemory<'u, 'a, D>(pub &'u mut Unicorn<'a, D>);
 
 impl<D> GuestMemory for EngineMemory<'_, '_, D> {
@@ -107,18 +143,16 @@ impl<D> GuestMemory for EngineMemory<'_, '_, D> {
     }
 
     fn write(&mut self, addr: u32, data: &[u8]) -> bool {
-        if FLASH.contains(addr, data.len() as u32) {
-            let alias = addr - FLASH.base + FLASH_ALIAS.base;
-            if self.0.mem_write(alias.into(), data).is_err() {
-                return false;
-            }
-        }
-        is_memory(addr, data.len()) && self.0.mem_write(addr.into(), data).is_ok()
+        is_memory(addr, data.len())
+            && !FLASH.contains(addr, data.len() as u32)
+            && self.0.mem_write(addr.into(), data).is_ok()
     }
 }
 
 fn is_memory(addr: u32, len: usize) -> bool {
-    [FLASH, SRAM, CCM, SYSTEM_MEMORY]
+    let len = len as u32;
+    let in_memory = [FLASH, SRAM, CCM, SYSTEM_MEMORY]
         .iter()
-        .any(|r| r.contains(addr, len as u32))
+        .any(|r| r.contains(addr, len));
+    in_memory && !PARAMETER_FLASH.overlaps(addr, len)
 }

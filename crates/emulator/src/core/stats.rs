@@ -23,7 +23,21 @@ pub struct Execution {
     ticks: Vec<TickEntry>,
     /// Index of the first tick after each boot but the first.
     boots: Vec<usize>,
+    /// Index of the first tick of each grid but the first: a boot starts one, and a stall of a period and more.
+    grids: Vec<usize>,
     missed: u64,
+    /// Since the last tick the core stood still for so long.
+    stood_still: Ps,
+    /// As the machine last knew it.
+    armed: bool,
+    longest_gap: LongestGap,
+}
+
+/// Longest time from one control tick to the next within a boot, stalls included.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LongestGap {
+    pub armed: Ps,
+    pub disarmed: Ps,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -31,6 +45,8 @@ struct TickEntry {
     at: Ps,
     /// Instructions of the tick's context up to here.
     executed: u64,
+    /// The core stood still before it: it may be late for no fault of the image.
+    held_up: bool,
 }
 
 impl Default for Execution {
@@ -41,7 +57,11 @@ impl Default for Execution {
             idle_cycles: 0,
             ticks: Vec::new(),
             boots: Vec::new(),
+            grids: Vec::new(),
             missed: 0,
+            stood_still: 0,
+            armed: false,
+            longest_gap: LongestGap::default(),
         }
     }
 }
@@ -57,20 +77,50 @@ impl Execution {
         self.idle_cycles = 0;
     }
 
+    /// The core fetched nothing for so long. Neither busy nor idle.
+    pub fn stood_still(&mut self, time: Ps) {
+        self.stood_still += time;
+    }
+
+    /// Whether the firmware is armed, for the gaps that end from now on.
+    pub fn set_armed(&mut self, armed: bool) {
+        self.armed = armed;
+    }
+
     /// The control tick's function was entered.
     pub fn tick_entered(&mut self, at: Ps, context: Exception) {
+        let stood_still = std::mem::take(&mut self.stood_still);
         let first = self.boots.last().copied().unwrap_or(0);
         if let Some(before) = self.ticks.get(first..).and_then(|run| run.last()) {
-            self.missed += ((at - before.at + TICK / 2) / TICK).saturating_sub(1);
+            let gap = at - before.at;
+            // A stall is the flash's doing; its length stands under `flash` and among the gaps.
+            self.missed += ((gap.saturating_sub(stood_still) + TICK / 2) / TICK).saturating_sub(1);
+            let longest = if self.armed {
+                &mut self.longest_gap.armed
+            } else {
+                &mut self.longest_gap.disarmed
+            };
+            *longest = gap.max(*longest);
+        }
+        if stood_still >= TICK {
+            self.grids.push(self.ticks.len());
         }
         self.ticks.push(TickEntry {
             at,
             executed: self.executed[context.index()],
+            held_up: stood_still > 0,
         });
     }
 
     pub fn rebooted(&mut self) {
+        self.stood_still = 0;
+        self.armed = false;
         self.boots.push(self.ticks.len());
+        self.grids.push(self.ticks.len());
+    }
+
+    pub fn longest_gap(&self) -> LongestGap {
+        self.longest_gap
     }
 
     pub fn tick_count(&self) -> u64 {
@@ -91,7 +141,8 @@ impl Execution {
         )
     }
 
-    /// Deviation of each tick from the 1 ms grid of its boot, counted from the earliest.
+    /// Deviation of each tick from the 1 ms grid of its boot, counted from the earliest. A stall of the flash starts
+    /// a new grid, and ticks held up by one do not count.
     pub fn release_jitter_us(&self) -> Distribution {
         distribution(
             self.jitter()
@@ -134,26 +185,27 @@ impl Execution {
             .collect()
     }
 
-    /// The ticks of each boot.
-    fn runs(&self) -> impl Iterator<Item = &[TickEntry]> {
-        let ends = self.boots.iter().copied().chain([self.ticks.len()]);
-        let starts = std::iter::once(0).chain(self.boots.iter().copied());
+    /// The ticks, cut where the runs begin that `starts` lists.
+    fn runs<'a>(&'a self, starts: &'a [usize]) -> impl Iterator<Item = &'a [TickEntry]> {
+        let ends = starts.iter().copied().chain([self.ticks.len()]);
+        let starts = std::iter::once(0).chain(starts.iter().copied());
         starts.zip(ends).map(|(start, end)| &self.ticks[start..end])
     }
 
     fn pairs(&self) -> impl Iterator<Item = (TickEntry, TickEntry)> {
-        self.runs()
+        self.runs(&self.boots)
             .flat_map(|run| run.windows(2).map(|w| (w[0], w[1])))
     }
 
     fn jitter(&self) -> Vec<Ps> {
         let mut all = Vec::with_capacity(self.ticks.len());
-        for run in self.runs() {
+        for run in self.runs(&self.grids) {
+            let run: Vec<&TickEntry> = run.iter().filter(|tick| !tick.held_up).collect();
             let Some(first) = run.first() else { continue };
             // Phase on the grid, half a period of head-room so that early ticks do not wrap.
-            let phase = |t: &TickEntry| (t.at + TICK + TICK / 2 - first.at % TICK) % TICK;
+            let phase = |t: &&TickEntry| (t.at + TICK + TICK / 2 - first.at % TICK) % TICK;
             let earliest = run.iter().map(phase).min().unwrap_or(0);
-            all.extend(run.iter().map(|t| phase(t) - earliest));
+            all.extend(run.iter().map(|tick| phase(tick) - earliest));
         }
         all
     }
@@ -194,5 +246,32 @@ mod tests {
         run.rebooted();
         run.tick_entered(90_000 * US, control);
         assert_eq!(run.missed_ticks(), 1, "none is due while the chip boots");
+    }
+
+    #[test]
+    fn a_stall_of_the_flash_is_a_gap_and_neither_missed_ticks_nor_jitter() {
+        let mut run = Execution::default();
+        let control = Exception::from_irq(53);
+        run.tick_entered(5_000 * US, control);
+        run.tick_entered(6_000 * US, control);
+        run.stood_still(250_000 * US);
+        // The grid begins anew, 300 µs off the old one.
+        for at in [256_010_u64, 257_310, 258_310] {
+            run.tick_entered(at * US, control);
+        }
+        run.set_armed(true);
+        run.stood_still(16 * US);
+        run.tick_entered(259_326 * US, control);
+        assert_eq!(run.missed_ticks(), 0);
+        assert_eq!(run.release_jitter_us().max, 0.0);
+        let gaps = LongestGap {
+            armed: 1_016 * US,
+            disarmed: 250_010 * US,
+        };
+        assert_eq!(run.longest_gap(), gaps);
+        // One tick is really missing beside a second stall.
+        run.stood_still(250_000 * US);
+        run.tick_entered((259_326 + 252_000) * US, control);
+        assert_eq!(run.missed_ticks(), 1);
     }
 }

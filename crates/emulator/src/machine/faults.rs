@@ -1,4 +1,4 @@
-//! What can go wrong inside the chip, by name: the program itself fails. A reset ends every one of them.
+//! What can go wrong on the board itself, by name: the program fails, which a reset ends; the flash; the supply.
 
 use robot_plant::world::FaultInfo;
 
@@ -33,17 +33,28 @@ enum Failure {
     Asleep,
 }
 
+#[derive(Clone, Copy, Debug)]
+enum Kind {
+    /// The program fails there.
+    Program(Place, Failure),
+    PowerCut,
+    FlashStuckBits,
+    FlashEraseFails,
+}
+
 struct Entry {
     info: FaultInfo,
-    place: Place,
-    failure: Failure,
+    kind: Kind,
 }
 
 const fn entry(name: &'static str, place: Place, failure: Failure, what: &'static str) -> Entry {
+    board(name, Kind::Program(place, failure), what)
+}
+
+const fn board(name: &'static str, kind: Kind, what: &'static str) -> Entry {
     Entry {
         info: FaultInfo { name, what },
-        place,
-        failure,
+        kind,
     }
 }
 
@@ -61,6 +72,9 @@ const ENTRIES: &[Entry] = &[
     entry("task-asleep-sbus", Place::Task("sbus"), Failure::Asleep, "the sbus task is never run, all others are"),
     entry("task-asleep-logic", Place::Task("logic"), Failure::Asleep, "the logic task is never run, all others are"),
     entry("task-asleep-status", Place::Task("status"), Failure::Asleep, "the status task is never run, all others are"),
+    board("power-cut", Kind::PowerCut, "the board and its sensors have no power; motors, radio and PC have; then it boots"),
+    board("flash-stuck-bits", Kind::FlashStuckBits, "one bit in every word of the parameter sectors is stuck at 1"),
+    board("flash-erase-fails", Kind::FlashEraseFails, "erasing a parameter sector takes its time and does nothing"),
 ];
 
 /// Every fault of the machine.
@@ -75,28 +89,41 @@ impl Machine {
             .iter()
             .find(|entry| entry.info.name == name)
             .ok_or_else(|| FaultError::Unknown(name.to_owned()))?;
-        let sabotage = entry.sabotage(&self.image, &self.cpu)?;
-        if active {
-            self.cpu.sabotage(sabotage);
-        } else {
-            self.cpu.end_sabotage(sabotage);
+        match entry.kind {
+            Kind::Program(place, failure) => {
+                let sabotage = entry.sabotage(place, failure, &self.image, &self.cpu)?;
+                if active {
+                    self.cpu.sabotage(sabotage);
+                } else {
+                    self.cpu.end_sabotage(sabotage);
+                }
+            }
+            Kind::PowerCut => self.switch_power(!active),
+            Kind::FlashStuckBits => self.set_worn_words(active),
+            Kind::FlashEraseFails => self.set_erases_fail(active),
         }
         Ok(())
     }
 }
 
 impl Entry {
-    fn sabotage(&self, image: &Image, cpu: &Cpu) -> Result<Sabotage, FaultError> {
+    fn sabotage(
+        &self,
+        place: Place,
+        failure: Failure,
+        image: &Image,
+        cpu: &Cpu,
+    ) -> Result<Sabotage, FaultError> {
         let symbol = |name: &str| self.present(image.symbol(name), name);
         Ok(Sabotage {
-            entry: match self.place {
+            entry: match place {
                 Place::ControlTick => symbol(CONTROL_TICK)?,
                 Place::Task(task) => {
                     let poll = poll_function(image, cpu, task);
                     self.present(poll, &format!("task {task}, spawned"))?
                 }
             },
-            harm: match self.failure {
+            harm: match failure {
                 Failure::Panic => Harm::GoTo(symbol("_defmt_panic")?),
                 Failure::HardFault => Harm::Undefined,
                 Failure::StackOverflow => Harm::StackAt(symbol("_stack_end")?),

@@ -11,7 +11,7 @@ use crate::{
         dma::{Beat, Dma, request_map::RequestLine, unserved::Unserved},
         dma_request::DmaRequests,
         exti::Exti,
-        flash::{Flash, FlashStats},
+        flash::Flash,
         gpio::Gpio,
         i2c::I2c,
         iwdg::Iwdg,
@@ -31,7 +31,7 @@ use crate::{
 pub struct Blocks {
     pub rcc: Rcc,
     pwr: Pwr,
-    flash: Flash,
+    pub flash: Flash,
     gpio: [Gpio; 9],
     syscfg: Syscfg,
     exti: Exti,
@@ -143,16 +143,15 @@ impl Blocks {
     }
 
     pub fn take_reset_request(&mut self) -> Option<ResetCause> {
+        if self.flash.take_power_failure() {
+            return Some(ResetCause::PowerOn);
+        }
         self.iwdg
             .take_reset_request()
             .then_some(ResetCause::IndependentWatchdog)
     }
 
     /// Frames and load of CAN1 (0) or CAN2 (1).
-    pub fn flash_stats(&self) -> FlashStats {
-        self.flash.stats()
-    }
-
     pub fn can_stats(&self, bus: usize) -> CanBusStats {
         self.can.stats(bus)
     }

@@ -10,7 +10,7 @@ use crate::{
         can_bus::CanBusStats,
         clocks::ClockTree,
         dma_request::DmaRequests,
-        flash::FlashStats,
+        flash::Flash,
         guest_memory::GuestMemory,
         irq::IrqLines,
         memory_map::{self, Block, Bus},
@@ -91,16 +91,47 @@ impl Soc {
         self.outputs_changed(now);
     }
 
-    /// A reset that a peripheral asked for; the machine carries it out with `reset` and restarts the CPU.
+    /// A reset that a peripheral asked for, or the loss of power as `PowerOn`; the machine carries it out with `reset` and restarts the CPU.
     pub fn take_reset_request(&mut self) -> Option<ResetCause> {
         self.blocks.take_reset_request()
     }
 
-    /// Frames and load of CAN1 (0) or CAN2 (1).
-    pub fn flash_stats(&self) -> FlashStats {
-        self.blocks.flash_stats()
+    pub fn flash(&self) -> &Flash {
+        &self.blocks.flash
     }
 
+    pub fn flash_mut(&mut self) -> &mut Flash {
+        &mut self.blocks.flash
+    }
+
+    /// A load of the core from the sectors of flash that hold parameters.
+    pub fn load_parameters(
+        &mut self,
+        addr: u32,
+        size: u8,
+        now: Ps,
+        mem: &mut dyn GuestMemory,
+    ) -> Result<u32, Unmodelled> {
+        self.run_due(now, mem)?;
+        Ok(self.blocks.flash.load(addr, size))
+    }
+
+    /// A store of the core to them.
+    pub fn store_parameters(
+        &mut self,
+        addr: u32,
+        size: u8,
+        value: u32,
+        now: Ps,
+        mem: &mut dyn GuestMemory,
+    ) -> Result<(), Unmodelled> {
+        self.run_due(now, mem)?;
+        let (blocks, mut ctx) = split!(self, now);
+        blocks.flash.store(addr, size, value, &mut ctx);
+        Ok(())
+    }
+
+    /// Frames and load of CAN1 (0) or CAN2 (1).
     pub fn can_stats(&self, bus: usize) -> CanBusStats {
         self.blocks.can_stats(bus)
     }
@@ -187,6 +218,7 @@ impl Soc {
             Target::CanBus(_) => Block::Can,
             Target::Adc3 => Block::Adc,
             Target::Iwdg => Block::Iwdg,
+            Target::Flash => Block::Flash,
         };
         let (blocks, mut ctx) = split!(self, now);
         blocks.get(block).event(tag, &mut ctx);

@@ -1,6 +1,6 @@
-//! SRAM, CCM and flash as a bus master sees them.
+//! SRAM, CCM and flash as DMA sees them.
 
-/// The CPU owns the memories; DMA and the flash controller borrow them.
+/// The CPU owns the memories; DMA borrows them.
 pub trait GuestMemory {
     /// False where no memory answers.
     fn read(&mut self, addr: u32, out: &mut [u8]) -> bool;

@@ -16,6 +16,7 @@ pub enum Target {
     CanBus(u8),
     Adc3,
     Iwdg,
+    Flash,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -31,6 +31,10 @@ impl Defects {
         self.stuck.push(bit);
     }
 
+    pub fn mend_bits(&mut self) {
+        self.stuck.clear();
+    }
+
     pub fn set_erase_fault(&mut self, sector: u8, fault: Option<EraseFault>) {
         if let Some(place) = self.erase.get_mut(usize::from(sector)) {
             *place = fault;

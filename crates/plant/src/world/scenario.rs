@@ -23,27 +23,38 @@ impl World {
         self.faults.set(fault, active);
         match fault {
             Fault::SbusSilent if active => self.radio.unplug(self.now),
-            Fault::ImuGone | Fault::ImuFrozen | Fault::ImuExtreme => self.imu.set_faults(
-                ImuFaults {
-                    gone: self.faults.has(Fault::ImuGone),
-                    frozen: self.faults.has(Fault::ImuFrozen),
-                    extreme: self.faults.has(Fault::ImuExtreme),
-                },
-                self.now,
-            ),
-            Fault::MagGone | Fault::I2cHeld => self.mag.set_faults(
-                MagFaults {
-                    gone: self.faults.has(Fault::MagGone),
-                    bus_held: self.faults.has(Fault::I2cHeld),
-                },
-                self.now,
-            ),
+            Fault::ImuGone
+            | Fault::ImuFrozen
+            | Fault::ImuExtreme
+            | Fault::MagGone
+            | Fault::I2cHeld => self.set_sensor_faults(),
             _ => {}
         }
         if let Some(motor) = MOTORS.iter().position(|faults| faults.includes(fault)) {
             self.set_motor_faults(motor);
         }
         Ok(())
+    }
+
+    /// The board's power, which its sensors share; motors, radio and PC have their own.
+    pub fn set_board_supply(&mut self, on: bool) {
+        self.board_supply = on;
+        self.set_sensor_faults();
+    }
+
+    fn set_sensor_faults(&mut self) {
+        let has = |fault| self.faults.has(fault);
+        let imu = ImuFaults {
+            gone: has(Fault::ImuGone) || !self.board_supply,
+            frozen: has(Fault::ImuFrozen),
+            extreme: has(Fault::ImuExtreme),
+        };
+        let mag = MagFaults {
+            gone: has(Fault::MagGone) || !self.board_supply,
+            bus_held: has(Fault::I2cHeld),
+        };
+        self.imu.set_faults(imu, self.now);
+        self.mag.set_faults(mag, self.now);
     }
 
     /// Wheels are the motors 0 and 1, joints follow.

@@ -7,7 +7,7 @@ use super::{Block, State, Stop, context, sabotage};
 use crate::{
     core::{
         faults::Fault,
-        memory::{CCM, EngineMemory, Region, SRAM},
+        memory::{CCM, EngineMemory, PARAMETER_FLASH, PARAMETER_FLASH_ALIAS, Region, SRAM},
         system::{Surroundings, System},
     },
     soc::{bus::Soc, guest_memory::GuestMemory, peripheral::Unmodelled, reset::ResetCause},
@@ -21,6 +21,10 @@ pub(super) fn install(engine: &mut Unicorn<'static, State>) -> Result<(), uc_err
     engine.mmio_map(base, size, Some(read_peripheral), Some(write_peripheral))?;
     let (base, size) = PRIVATE_PERIPHERALS;
     engine.mmio_map(base, size, Some(read_private), Some(write_private))?;
+    for region in [PARAMETER_FLASH, PARAMETER_FLASH_ALIAS] {
+        let (base, size) = (region.base.into(), region.size.into());
+        engine.mmio_map(base, size, Some(load_parameters), Some(store_parameters))?;
+    }
     engine.ctl_set_tlb_type(TlbType::VIRTUAL)?;
     engine.add_tlb_hook(0, u64::from(u32::MAX), page_rights)?;
     engine.add_block_hook(1, 0, block_begins)?;
@@ -105,7 +109,9 @@ fn boundary(engine: &mut Unicorn<'_, State>) {
     if state.stop.is_some() {
         return;
     }
-    if state.clock.cycles >= state.limit_cycle {
+    if !state.standstill.is_over() {
+        state.stop = Some(Stop::Standstill);
+    } else if state.clock.cycles >= state.limit_cycle {
         state.stop = Some(Stop::Limit);
     } else if !state.system.nvic.waits_for_masks_only() {
         state.attention = false;
@@ -160,6 +166,9 @@ impl State {
             self.attention = true;
             self.event |= self.system.pending_is_event();
         }
+        let stalled_until = soc.flash().stalled_until();
+        self.standstill.flash_works_until(stalled_until);
+        self.attention |= stalled_until.is_some();
         if let Some(cause) = soc.take_reset_request() {
             self.stop = Some(Stop::Reset(cause));
         }
@@ -210,6 +219,30 @@ fn write_peripheral(engine: &mut Unicorn<'_, State>, offset: u64, size: usize, v
     let addr = (PERIPHERALS.0 + offset) as u32;
     let done = with_soc(engine, |soc, now, memory| {
         soc.write(addr, size as u8, value as u32, now, memory)
+    });
+    if let Err(access) = done {
+        refuse(engine, access);
+    }
+    leave_if_stopped(engine);
+}
+
+fn load_parameters(engine: &mut Unicorn<'_, State>, offset: u64, size: usize) -> u64 {
+    let addr = PARAMETER_FLASH.base + offset as u32;
+    let value = with_soc(engine, |soc, now, memory| {
+        soc.load_parameters(addr, size as u8, now, memory)
+    });
+    let value = value.unwrap_or_else(|access| {
+        refuse(engine, access);
+        0
+    });
+    leave_if_stopped(engine);
+    value.into()
+}
+
+fn store_parameters(engine: &mut Unicorn<'_, State>, offset: u64, size: usize, value: u64) {
+    let addr = PARAMETER_FLASH.base + offset as u32;
+    let done = with_soc(engine, |soc, now, memory| {
+        soc.store_parameters(addr, size as u8, value as u32, now, memory)
     });
     if let Err(access) = done {
         refuse(engine, access);

@@ -30,14 +30,10 @@ impl Cpu {
         let masks = context::masks(&self.engine);
         loop {
             hooks::run_due(&mut self.engine);
-            let state = self.state_mut();
-            match state.stop.take() {
-                Some(Stop::Reset(cause)) => return Ok(Some(Pause::Reset(cause))),
-                Some(Stop::Unmodelled(access)) => {
-                    return Err(self.halt_in_block(access.to_string()));
-                }
-                _ => {}
+            if let Some(pause) = self.ended_by_chip()? {
+                return Ok(Some(pause));
             }
+            let state = self.state_mut();
             if state.wakes(kind, masks) {
                 return Ok(None);
             }
@@ -45,6 +41,15 @@ impl Cpu {
                 return Ok(Some(Pause::Limit));
             }
             state.skip_idle();
+        }
+    }
+
+    /// What chip or world did while no code ran.
+    pub(super) fn ended_by_chip(&mut self) -> Result<Option<Pause>, Halt> {
+        match self.state_mut().stop.take() {
+            Some(Stop::Reset(cause)) => Ok(Some(Pause::Reset(cause))),
+            Some(Stop::Unmodelled(access)) => Err(self.halt_in_block(access.to_string())),
+            _ => Ok(None),
         }
     }
 }

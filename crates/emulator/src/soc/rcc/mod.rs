@@ -66,6 +66,9 @@ impl Default for Rcc {
 impl Rcc {
     /// Adds the flag of a reset that just happened; every internal reset also pulls NRST (RM0090 figure 20).
     pub fn note_reset(&mut self, cause: ResetCause) {
+        if cause == ResetCause::PowerOn {
+            (self.csr, self.bdcr) = (0, 0);
+        }
         self.csr |= csr::PINRSTF
             | match cause {
                 ResetCause::PowerOn => csr::PORRSTF | csr::BORRSTF,

@@ -1,0 +1,49 @@
+//! The flash interface's data cache at its worst: it holds every word the core could have read while it was on, and
+//! never lets go of one until it is reset (RM0090 3.5.2).
+
+use std::collections::HashMap;
+
+#[derive(Debug, Default)]
+pub struct DataCache {
+    /// Words that differ, or may, from what the cells hold.
+    stale: HashMap<u32, u32>,
+    on: bool,
+    /// It was on at some time since its last reset.
+    may_hold: bool,
+}
+
+impl DataCache {
+    pub fn switch(&mut self, on: bool) {
+        self.on = on;
+        self.may_hold |= on;
+    }
+
+    /// Takes effect only while the cache is off.
+    pub fn reset(&mut self) {
+        if !self.on {
+            self.stale.clear();
+            self.may_hold = false;
+        }
+    }
+
+    /// What the core gets instead of the cells' word at `address`.
+    pub fn word(&self, address: u32) -> Option<u32> {
+        self.stale.get(&address).copied().filter(|_| self.on)
+    }
+
+    /// A store goes to the cells and to the cache, where it always succeeds.
+    pub fn programmed(&mut self, address: u32, word: u32) {
+        if self.may_hold {
+            self.stale.insert(address, word);
+        }
+    }
+
+    /// An erase goes to the cells only.
+    pub fn erased(&mut self, before: impl Iterator<Item = (u32, u32)>) {
+        if self.may_hold {
+            for (address, word) in before {
+                self.stale.entry(address).or_insert(word);
+            }
+        }
+    }
+}

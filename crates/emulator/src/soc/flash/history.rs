@@ -1,0 +1,55 @@
+//! What was done to the flash since power-on.
+
+use std::ops::Range;
+
+use robot_plant::time::Ps;
+
+/// A program or an erase that the image asked for, cut short or not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FlashStep {
+    /// When it began; the core stood still from then on.
+    pub at: Ps,
+    pub kind: FlashStepKind,
+    /// Of the word, or of the sector's first one.
+    pub address: u32,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FlashStepKind {
+    Program,
+    Erase,
+}
+
+/// Counted since power-on. The one bank of this chip serves no fetch while it works.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FlashStats {
+    pub erases: u64,
+    pub programs: u64,
+    pub longest_stall: Ps,
+}
+
+#[derive(Debug, Default)]
+pub struct History {
+    steps: Vec<FlashStep>,
+    stats: FlashStats,
+}
+
+impl History {
+    pub fn begun(&mut self, step: FlashStep, work: &Range<Ps>) {
+        match step.kind {
+            FlashStepKind::Program => self.stats.programs += 1,
+            FlashStepKind::Erase => self.stats.erases += 1,
+        }
+        let stall = work.end - work.start;
+        self.stats.longest_stall = self.stats.longest_stall.max(stall);
+        self.steps.push(step);
+    }
+
+    pub fn steps(&self) -> &[FlashStep] {
+        &self.steps
+    }
+
+    pub fn stats(&self) -> FlashStats {
+        self.stats
+    }
+}

@@ -1,0 +1,426 @@
+//! Flash interface (RM0090 3.9): wait states, caches, lock, and programming and erasing of the parameter sectors.
+//!
+//! The core runs from the one bank there is: it stands still while the flash works. The other sectors hold the image
+//! and are never written.
+
+mod data_cache;
+mod history;
+mod registers;
+mod times;
+mod work;
+
+#[cfg(test)]
+mod tests;
+
+use robot_plant::{
+    flash_chip::{FlashChip, PARAMETER_SECTORS, Phase, sector_range},
+    time::Ps,
+};
+
+use crate::soc::{
+    access::Access,
+    irq::Irq,
+    peripheral::{Ctx, Peripheral, Unmodelled},
+    scheduler::Target,
+};
+use data_cache::DataCache;
+use history::History;
+use registers::{acr, cr, sr};
+use times::Parallelism;
+use work::{UnderWay, Work};
+
+pub use history::{FlashStep, FlashStepKind};
+pub use times::FlashTimes;
+pub use work::PlannedCut;
+
+/// One wait state each 30 MHz at 2.7–3.6 V (RM0090 table 10).
+const HZ_PER_WAIT_STATE: u32 = 30_000_000;
+
+/// Written to KEYR one after the other they open CR; anything else keeps it shut until the next reset.
+const KEYS: [u32; 2] = [0x4567_0123, 0xCDEF_89AB];
+
+const FLASH_IRQ: Irq = 4;
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Lock {
+    #[default]
+    Locked,
+    FirstKeyGiven,
+    Open,
+    UntilReset,
+}
+
+#[derive(Debug)]
+pub struct Flash {
+    acr: u32,
+    lock: Lock,
+    cr: u32,
+    sr: u32,
+    /// Sectors 1–3.
+    chip: FlashChip,
+    cache: DataCache,
+    times: FlashTimes,
+    under_way: Option<UnderWay>,
+    history: History,
+    planned_cut: Option<PlannedCut>,
+    /// The board loses its power now.
+    power_fails: bool,
+    /// Number of the scheduler event that still counts.
+    generation: u32,
+}
+
+impl Default for Flash {
+    fn default() -> Self {
+        Self {
+            acr: 0,
+            lock: Lock::default(),
+            cr: 0,
+            sr: 0,
+            chip: FlashChip::parameters(0),
+            cache: DataCache::default(),
+            times: FlashTimes::default(),
+            under_way: None,
+            history: History::default(),
+            planned_cut: None,
+            power_fails: false,
+            generation: 0,
+        }
+    }
+}
+
+impl Flash {
+    pub fn history(&self) -> &History {
+        &self.history
+    }
+
+    /// The cells, to be looked at or harmed from outside.
+    pub fn chip(&mut self) -> &mut FlashChip {
+        &mut self.chip
+    }
+
+    pub fn set_times(&mut self, times: FlashTimes) {
+        self.times = times;
+    }
+
+    pub fn plan_cut(&mut self, cut: PlannedCut) {
+        self.planned_cut = Some(cut);
+    }
+
+    /// True once when a planned cut has come.
+    pub fn take_power_failure(&mut self) -> bool {
+        std::mem::take(&mut self.power_fails)
+    }
+
+    /// Until when no fetch is served.
+    pub fn stalled_until(&self) -> Option<Ps> {
+        self.under_way.as_ref().map(|under_way| under_way.time.end)
+    }
+
+    /// A load from sectors 1–3, of 1, 2 or 4 bytes.
+    pub fn load(&mut self, address: u32, size: u8) -> u32 {
+        if self.under_way.as_ref().is_some_and(|w| w.cut.is_none()) {
+            // The bus holds the load until the cells have it.
+            self.reach_the_cells();
+        }
+        let access = Access::new(address, size);
+        let cached = self.cache.word(access.register);
+        access.read_of(cached.unwrap_or_else(|| read_cells(&mut self.chip, access.register)))
+    }
+
+    /// A store to sectors 1–3.
+    pub fn store(&mut self, address: u32, size: u8, value: u32, ctx: &mut Ctx<'_>) {
+        let Some(parallelism) = self.programs(address, ctx) else {
+            return;
+        };
+        if size != parallelism.bytes() {
+            let needed = parallelism.bytes();
+            let what = format!("{size} bytes stored where PSIZE programs {needed} at once");
+            return self.refuse(sr::PGPERR, address, &what, ctx);
+        }
+        let access = Access::new(address, size);
+        let work = Work::Program {
+            address: access.register,
+            word: access.written_over(u32::MAX, value),
+            stored: access.written_over(0, u32::MAX),
+        };
+        self.begin(work, self.times.program(), ctx);
+    }
+
+    /// How many bits a store programs; otherwise the store is refused.
+    fn programs(&mut self, address: u32, ctx: &mut Ctx<'_>) -> Option<Parallelism> {
+        if self.lock != Lock::Open || self.cr & cr::PG == 0 {
+            self.refuse(sr::PGSERR, address, "a store while PG is 0", ctx);
+            return None;
+        }
+        let parallelism = Parallelism::of(self.cr);
+        if parallelism.is_none() {
+            let what = "a store with PSIZE = 64 bits, without a programming voltage";
+            self.refuse(sr::PGPERR, address, what, ctx);
+        }
+        parallelism
+    }
+
+    fn refuse(&mut self, flag: u32, address: u32, what: &str, ctx: &mut Ctx<'_>) {
+        ctx.errors.report(
+            ctx.now,
+            format!("FLASH: {what} at {address:#010x}: ignored"),
+        );
+        self.sr |= flag;
+        self.update_interrupt(ctx);
+    }
+
+    fn begin(&mut self, work: Work, duration: Ps, ctx: &mut Ctx<'_>) {
+        // The bus holds what is asked for until that before it is done; if the power goes first, it never comes.
+        let start = match &self.under_way {
+            Some(before) if before.cut.is_some() => return,
+            Some(before) => before.time.end,
+            None if self.power_fails => return,
+            None => ctx.now,
+        };
+        self.reach_the_cells();
+        let step = self.history.steps().len();
+        let cut = self.planned_cut.take_if(|cut| cut.step == step);
+        let time = start..start + duration;
+        let begun = FlashStep {
+            at: start,
+            kind: work.kind(),
+            address: work.address(),
+        };
+        self.history.begun(begun, &time);
+        if cut.is_some_and(|cut| cut.phase == Phase::Before) {
+            self.under_way = None;
+            self.power_fails = true;
+            return;
+        }
+        let under_way = UnderWay {
+            time,
+            work: Some(work),
+            cut,
+        };
+        self.generation += 1;
+        ctx.scheduler
+            .at(under_way.next_event(), Target::Flash, self.generation);
+        self.under_way = Some(under_way);
+    }
+
+    /// The work under way is done, as far as the contents go.
+    fn reach_the_cells(&mut self) {
+        let Some(work) = self.under_way.as_mut().and_then(|w| w.work.take()) else {
+            return;
+        };
+        match work {
+            Work::Program {
+                address,
+                word,
+                stored,
+            } => {
+                let visible = self.cache.word(address);
+                let before = visible.unwrap_or_else(|| read_cells(&mut self.chip, address));
+                self.cache
+                    .programmed(address, word & stored | before & !stored);
+            }
+            Work::Erase { sector } => {
+                let words = sector_range(sector).into_iter().flat_map(|s| s.step_by(4));
+                let chip = &mut self.chip;
+                self.cache
+                    .erased(words.map(|address| (address, read_cells(chip, address))));
+            }
+        }
+        work.perform(&mut self.chip)
+            .expect("a word or a sector of the powered chip");
+    }
+
+    fn end_work(&mut self, ctx: &mut Ctx<'_>) {
+        self.reach_the_cells();
+        self.under_way = None;
+        // Without its interrupt the end is not shown (RM0090 3.9.4).
+        if self.cr & cr::EOPIE != 0 {
+            self.sr |= sr::EOP;
+        }
+        self.update_interrupt(ctx);
+    }
+
+    fn update_interrupt(&self, ctx: &mut Ctx<'_>) {
+        let ended = self.cr & cr::EOPIE != 0 && self.sr & sr::EOP != 0;
+        let failed = self.cr & cr::ERRIE != 0 && self.sr & sr::ERRORS != 0;
+        ctx.irq.set(FLASH_IRQ, ended || failed);
+    }
+
+    fn give_key(&mut self, key: u32, ctx: &mut Ctx<'_>) {
+        self.lock = match (self.lock, key) {
+            (Lock::Locked, key) if key == KEYS[0] => Lock::FirstKeyGiven,
+            (Lock::FirstKeyGiven, key) if key == KEYS[1] => Lock::Open,
+            (Lock::Open, _) => Lock::Open,
+            _ => {
+                let message = format!("FLASH: wrong key {key:#010x}: CR stays locked until reset");
+                ctx.errors.report(ctx.now, message);
+                Lock::UntilReset
+            }
+        };
+    }
+
+    fn write_control(&mut self, value: u32, ctx: &mut Ctx<'_>) -> Result<(), Unmodelled> {
+        if self.lock != Lock::Open {
+            ctx.errors
+                .report(ctx.now, "FLASH: CR written while locked: ignored");
+            return Ok(());
+        }
+        self.cr = value & cr::KEPT;
+        self.update_interrupt(ctx);
+        if value & cr::LOCK != 0 {
+            self.lock = Lock::Locked;
+        }
+        if value & cr::STRT != 0 && value & (cr::SER | cr::MER) != 0 {
+            self.begin_erase(value, ctx)?;
+        }
+        Ok(())
+    }
+
+    fn begin_erase(&mut self, control: u32, ctx: &mut Ctx<'_>) -> Result<(), Unmodelled> {
+        let sector = cr::sector(control);
+        if control & cr::MER != 0 || !PARAMETER_SECTORS.contains(&sector) {
+            let what = format!("erase of what the image runs from ({control:#010x})");
+            return Err(unmodelled(0x10, &what));
+        }
+        let address = Work::Erase { sector }.address();
+        if control & cr::PG != 0 {
+            self.refuse(sr::PGSERR, address, "an erase while PG is 1", ctx);
+            return Ok(());
+        }
+        match Parallelism::of(control) {
+            Some(by) => self.begin(Work::Erase { sector }, self.times.erase(by), ctx),
+            None => {
+                let what = "an erase with PSIZE = 64 bits, without a programming voltage";
+                self.refuse(sr::PGPERR, address, what, ctx);
+            }
+        }
+        Ok(())
+    }
+
+    fn write_access_control(&mut self, value: u32, ctx: &mut Ctx<'_>) {
+        let value = value & acr::KNOWN;
+        if value & acr::RESET_CACHES != 0 && self.acr & acr::ICEN_DCEN != 0 {
+            ctx.errors.report(
+                ctx.now,
+                "FLASH: ACR cache reset while the caches are on: ignored",
+            );
+        }
+        self.acr = value;
+        if value & acr::DCRST != 0 {
+            self.cache.reset();
+        }
+        self.cache.switch(value & acr::DCEN != 0);
+        self.check_speed(ctx);
+    }
+
+    /// Files a board error where `hclk_hz` asks for more wait states than set.
+    pub fn check_speed(&self, ctx: &mut Ctx<'_>) {
+        let needed = ctx
+            .clocks
+            .hclk_hz
+            .div_ceil(HZ_PER_WAIT_STATE)
+            .saturating_sub(1);
+        let set = self.acr & acr::LATENCY;
+        if set < needed {
+            let hclk_hz = ctx.clocks.hclk_hz;
+            ctx.errors.report(
+                ctx.now,
+                format!("FLASH: {set} wait states at HCLK {hclk_hz} Hz, needs {needed}: fetches return garbage"),
+            );
+        }
+    }
+
+    fn status(&self) -> u32 {
+        self.sr | if self.under_way.is_some() { sr::BSY } else { 0 }
+    }
+
+    fn control(&self) -> u32 {
+        self.cr
+            | if self.lock == Lock::Open { 0 } else { cr::LOCK }
+            | match self.under_way.as_ref().and_then(|w| w.work) {
+                Some(Work::Erase { .. }) => cr::STRT,
+                _ => 0,
+            }
+    }
+}
+
+impl Peripheral for Flash {
+    fn read(&mut self, offset: u32, size: u8, _ctx: &mut Ctx<'_>) -> Result<u32, Unmodelled> {
+        let access = Access::new(offset, size);
+        match access.register {
+            0x00 => Ok(access.read_of(self.acr)),
+            0x0C => Ok(access.read_of(self.status())),
+            0x10 => Ok(access.read_of(self.control())),
+            _ => Err(unmodelled(offset, "read")),
+        }
+    }
+
+    fn write(
+        &mut self,
+        offset: u32,
+        size: u8,
+        value: u32,
+        ctx: &mut Ctx<'_>,
+    ) -> Result<(), Unmodelled> {
+        let access = Access::new(offset, size);
+        match access.register {
+            0x00 => self.write_access_control(access.written_over(self.acr, value), ctx),
+            0x04 => self.give_key(value, ctx),
+            0x0C => {
+                self.sr &= !(access.written_over(0, value) & sr::CLEARABLE);
+                self.update_interrupt(ctx);
+            }
+            0x10 => return self.write_control(access.written_over(self.cr, value), ctx),
+            _ => return Err(unmodelled(offset, &format!("write of {value:#010x}"))),
+        }
+        Ok(())
+    }
+
+    fn event(&mut self, tag: u32, ctx: &mut Ctx<'_>) {
+        if tag != self.generation {
+            return;
+        }
+        let cut = self.under_way.as_ref().and_then(|w| w.cut);
+        if cut.is_none_or(|cut| cut.phase == Phase::After) {
+            self.end_work(ctx);
+        }
+        if let Some(cut) = cut {
+            self.chip.reseed(cut.seed);
+            self.power_fails = true;
+        }
+    }
+
+    /// The contents stay; what was under way is torn.
+    fn reset(&mut self, ctx: &mut Ctx<'_>) {
+        if let Some(work) = self.under_way.take().and_then(|w| w.work) {
+            work.tear(&mut self.chip);
+        }
+        self.acr = 0;
+        self.lock = Lock::default();
+        self.cr = 0;
+        self.sr = 0;
+        self.cache = DataCache::default();
+        self.power_fails = false;
+        self.generation += 1;
+        ctx.irq.set(FLASH_IRQ, false);
+    }
+}
+
+fn read_cells(chip: &mut FlashChip, address: u32) -> u32 {
+    let mut bytes = [0; 4];
+    chip.read(address, &mut bytes)
+        .expect("a word of the powered chip");
+    u32::from_le_bytes(bytes)
+}
+
+fn unmodelled(offset: u32, what: &str) -> Unmodelled {
+    let names = ["ACR", "KEYR", "OPTKEYR", "SR", "CR", "OPTCR"];
+    let register = names.get((offset / 4) as usize).map_or_else(
+        || format!("FLASH+{offset:#x}"),
+        |name| format!("FLASH.{name}"),
+    );
+    Unmodelled {
+        register,
+        what: what.to_owned(),
+    }
+}
