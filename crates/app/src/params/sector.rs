@@ -89,3 +89,6 @@ pub(super) fn offset(sector: u8, slot: u8) -> u32 {
     let sector = u32::from(sector).wrapping_mul(SECTOR_BYTES);
     sector.wrapping_add(u32::from(slot).wrapping_mul(SLOT_BYTES as u32))
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,1 +1,197 @@
+use embedded_storage::nor_flash::{ErrorType, NorFlashErrorKind, ReadNorFlash};
 
+use super::*;
+use crate::params::{RecordId, sector::offset};
+
+const SIZE: usize = 3 * 0x4000;
+
+/// Bits go from 1 to 0, and every operation is noted.
+struct Cells {
+    bytes: Vec<u8>,
+    /// Offset and length of what was programmed; an erase has length 0.
+    log: Vec<(u32, usize)>,
+    /// Bits that stay 1 in the word at that offset.
+    stuck: Option<(u32, u8)>,
+}
+
+type Vec<T> = std::vec::Vec<T>;
+
+impl Cells {
+    fn blank() -> Self {
+        Self {
+            bytes: vec![0xFF; SIZE],
+            log: Vec::new(),
+            stuck: None,
+        }
+    }
+}
+
+impl ErrorType for Cells {
+    type Error = NorFlashErrorKind;
+}
+
+impl ReadNorFlash for Cells {
+    const READ_SIZE: usize = 1;
+
+    fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), NorFlashErrorKind> {
+        bytes.copy_from_slice(&self.bytes[offset as usize..][..bytes.len()]);
+        Ok(())
+    }
+
+    fn capacity(&self) -> usize {
+        SIZE
+    }
+}
+
+impl NorFlash for Cells {
+    const WRITE_SIZE: usize = 4;
+    const ERASE_SIZE: usize = 0x4000;
+
+    fn erase(&mut self, from: u32, to: u32) -> Result<(), NorFlashErrorKind> {
+        self.log.push((from, 0));
+        self.bytes[from as usize..to as usize].fill(0xFF);
+        Ok(())
+    }
+
+    fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), NorFlashErrorKind> {
+        assert!(offset.is_multiple_of(4) && bytes.len().is_multiple_of(4));
+        self.log.push((offset, bytes.len()));
+        for (cell, byte) in self.bytes[offset as usize..].iter_mut().zip(bytes) {
+            *cell &= byte;
+        }
+        if let Some((stuck, ones)) = self.stuck {
+            self.bytes[stuck as usize] |= ones;
+        }
+        Ok(())
+    }
+}
+
+fn record(key: u8, value: u32) -> Record {
+    Record {
+        id: RecordId { key, variant: 0 },
+        version: 1,
+        values: [value].into_iter().collect(),
+    }
+}
+
+/// Steps until the record is stored.
+fn save<F: NorFlash>(store: &mut Store<F>, record: &Record) -> usize {
+    for steps in 1..300 {
+        if store.work(Some(record)) == Ok(Progress::Stored) {
+            return steps;
+        }
+    }
+    panic!("never stored");
+}
+
+fn tidy<F: NorFlash>(store: &mut Store<F>) {
+    while store.next(false) != FlashRequest::None {
+        assert_eq!(store.work(None), Ok(Progress::Worked));
+    }
+}
+
+fn values<F: NorFlash>(store: &mut Store<F>) -> Vec<(u8, u32)> {
+    let mut found = Vec::new();
+    store.for_each(|record| found.push((record.id.key, record.values[0])));
+    found.sort_unstable();
+    found
+}
+
+#[test]
+fn a_new_chip_wants_an_erase_and_then_nothing() {
+    let mut cells = Cells::blank();
+    let mut store = Store::open(&mut cells);
+    assert_eq!(store.report(), StoreReport::default());
+    assert_eq!(store.next(false), FlashRequest::Erase);
+    assert_eq!(store.next(true), FlashRequest::Erase);
+    assert_eq!(store.work(None), Ok(Progress::Worked));
+    assert_eq!(store.next(false), FlashRequest::None);
+    assert_eq!(store.work(None), Ok(Progress::Worked));
+    assert_eq!(store.next(true), FlashRequest::Program);
+    let erases = cells.log.iter().filter(|(_, length)| *length == 0);
+    assert_eq!(erases.count(), 1);
+}
+
+#[test]
+fn opening_and_reading_writes_nothing() {
+    let mut cells = Cells::blank();
+    save(&mut Store::open(&mut cells), &record(1, 10));
+    cells.log.clear();
+    let mut store = Store::open(&mut cells);
+    assert_eq!(values(&mut store), [(1, 10)]);
+    assert_eq!(store.report().free_slots, 126);
+    assert_eq!(store.report().generation, 1);
+    assert!(cells.log.is_empty());
+}
+
+#[test]
+fn a_slot_is_programmed_guard_first_checksum_and_proof_last() {
+    let mut cells = Cells::blank();
+    save(&mut Store::open(&mut cells), &record(1, 10));
+    cells.log.clear();
+    save(&mut Store::open(&mut cells), &record(1, 11));
+    let slot = offset(0, 2);
+    let order = [(slot, 4), (slot + 4, 8), (slot + 124, 4), (slot + 120, 4)];
+    assert_eq!(cells.log, order);
+}
+
+#[test]
+fn a_full_sector_moves_on_head_last_and_an_erase_follows() {
+    let mut cells = Cells::blank();
+    let mut store = Store::open(&mut cells);
+    for value in 0..127 {
+        save(&mut store, &record((value % 3) as u8, value));
+        tidy(&mut store);
+    }
+    assert_eq!(store.report().free_slots, 0);
+    assert_eq!(store.next(false), FlashRequest::None);
+    store.flash.log.clear();
+    // Opens, moves three, writes the head, appends.
+    assert_eq!(save(&mut store, &record(0, 1000)), 6);
+    assert_eq!(store.next(false), FlashRequest::Erase);
+    let report = store.report();
+    assert_eq!((report.generation, report.free_slots), (2, 123));
+    assert_eq!(values(&mut store), [(0, 1000), (1, 124), (2, 125)]);
+    let first = |wanted| cells.log.iter().position(|(at, _)| *at == wanted);
+    let head = first(offset(1, 0) + 8).unwrap();
+    assert_eq!(first(offset(1, 0) + 4), Some(0));
+    assert!(first(offset(1, 3) + 120).unwrap() < head);
+    assert!(first(offset(1, 4)).unwrap() > head);
+}
+
+/// A bit of the first value cannot be cleared.
+#[test]
+fn a_slot_that_does_not_take_a_record_is_left_behind() {
+    let mut cells = Cells::blank();
+    save(&mut Store::open(&mut cells), &record(1, 10));
+    cells.stuck = Some((offset(0, 2) + 8, 0x80));
+    let mut store = Store::open(&mut cells);
+    assert_eq!(
+        store.work(Some(&record(1, 11))),
+        Err(ParamError::NotProgrammed)
+    );
+    assert_eq!(values(&mut store), [(1, 10)]);
+    assert!(save(&mut store, &record(1, 11)) <= 2);
+    assert_eq!(values(&mut store), [(1, 11)]);
+    let mut again = Store::open(&mut cells);
+    assert_eq!(values(&mut again), [(1, 11)]);
+    assert_eq!(again.report().damaged, 1);
+    assert_eq!(again.next(false), FlashRequest::Erase);
+}
+
+/// The older copy of a damaged record is taken, in the same sector and in the backup.
+#[test]
+fn a_damaged_record_falls_back_to_its_older_copy() {
+    let mut cells = Cells::blank();
+    let mut store = Store::open(&mut cells);
+    for value in 0..128 {
+        save(&mut store, &record(1, value));
+        tidy(&mut store);
+    }
+    // The moved copy of 126 and the new 127 are all there is in the active sector.
+    for (damaged, found) in [(2, 126), (1, 126)] {
+        cells.bytes[offset(1, damaged) as usize + 8] ^= 1;
+        assert_eq!(values(&mut Store::open(&mut cells)), [(1, found)]);
+    }
+    assert_eq!(Store::open(&mut cells).report().damaged, 2);
+}

@@ -1,0 +1,50 @@
+use super::*;
+
+/// As docs/parameters.md says it, generation 7, the checksum computed with zlib.
+const COPY: [u8; 16] = *b"PRM1\x07\0\0\0\xF8\xFF\xFF\xFF\x44\xB1\xDB\x7C";
+
+fn head_with(at: usize, bytes: &[u8]) -> Head {
+    let mut head = Head {
+        bytes: [BLANK; SLOT_BYTES],
+    };
+    head.bytes[at..at + bytes.len()].copy_from_slice(bytes);
+    head
+}
+
+#[test]
+fn a_head_is_committed_as_documented() {
+    assert_eq!(commitment(7), [COPY, COPY].concat()[..]);
+}
+
+#[test]
+fn one_copy_of_the_head_is_enough() {
+    assert_eq!(head_with(8, &COPY).generation(), Some(7));
+    assert_eq!(head_with(24, &COPY).generation(), Some(7));
+    assert_eq!(head_with(12, &COPY).generation(), None);
+    for bit in 0..COPY.len() * 8 {
+        let mut flipped = COPY;
+        flipped[bit / 8] ^= 1 << (bit % 8);
+        assert_eq!(head_with(8, &flipped).generation(), None, "bit {bit}");
+        let mut both = head_with(8, &flipped);
+        both.bytes[24..40].copy_from_slice(&COPY);
+        assert_eq!(both.generation(), Some(7));
+    }
+}
+
+/// A power cut in an erase may leave a sector that reads blank, or zeros.
+#[test]
+fn only_the_mark_makes_a_blank_sector_clean() {
+    assert!(head_with(0, b"\xC1\xEA\x5E\xD0").is_clean());
+    assert!(!head_with(0, &[BLANK; 4]).is_clean());
+    assert!(!head_with(0, &[0; 4]).is_clean());
+    let mut opened = head_with(0, b"\xC1\xEA\x5E\xD0");
+    opened.bytes[4] = 0x7F;
+    assert!(!opened.is_clean());
+}
+
+#[test]
+fn slots_lie_128_bytes_apart_and_sectors_16_kib() {
+    assert_eq!(offset(0, 1), 0x80);
+    assert_eq!(offset(1, 0), 0x4000);
+    assert_eq!(offset(2, 127), 0xBF80);
+}
