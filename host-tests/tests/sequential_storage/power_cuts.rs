@@ -1,0 +1,250 @@
+//! Cuts at every step of saves around three changes of the sector; then a boot, a save, and a boot again.
+
+use std::{ops::Range, sync::LazyLock};
+
+use embedded_storage::nor_flash::ReadNorFlash;
+use robot_plant::flash_chip::{FlashChip, Phase, sector_range};
+
+use crate::{
+    flash::erases,
+    settings::{Found, KEYS, Save, load, store},
+};
+
+/// Saves before and after each change of the sector that are cut too.
+const NEIGHBOURS: usize = 6;
+const SECTOR_CHANGES: usize = 3;
+/// Of the steps of a sector change and of the recovery after it: so many apart are cut twice.
+const FIRST_CUTS_APART: usize = 4;
+const SECOND_CUTS_APART: usize = 2;
+
+/// The first save after a cut.
+const NEXT: Save = Save {
+    key: 0,
+    number: 1_000_000,
+};
+
+/// Cut points, and after how many of them something is wrong.
+#[derive(Debug, Default)]
+struct Figures {
+    cuts: u32,
+    /// A record acknowledged before the cut is missing or older afterwards, and nothing says so.
+    lost: u32,
+    /// The crate repaired what it can, and still a boot or the next save fails: erasing everything is what it advises.
+    needs_erase_all: u32,
+    /// The interrupted save was there in the first boot and is gone after the next save.
+    undone: u32,
+    /// The save after the cut was acknowledged and is gone in the boot after it.
+    next_lost: u32,
+    /// An intact record that nobody stored.
+    strange: u32,
+}
+
+impl Figures {
+    fn harm(&self) -> u32 {
+        self.lost + self.needs_erase_all + self.undone + self.next_lost + self.strange
+    }
+}
+
+/// What is torn by a cut in the middle of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Step {
+    /// The first or last word of a sector, by which the crate tells whether it is open, in use or closed.
+    Marker,
+    Word,
+    Erase,
+}
+
+impl Step {
+    /// Rare steps are torn in more ways.
+    fn seeds(self) -> Range<u64> {
+        match self {
+            Self::Marker | Self::Erase => 0..60,
+            Self::Word => 0..5,
+        }
+    }
+}
+
+/// The chip before a save, and the newest save of each key on it.
+struct Before {
+    chip: FlashChip,
+    stored: [Found; KEYS as usize],
+    save: Save,
+}
+
+impl Before {
+    fn steps(&self) -> Range<u64> {
+        let mut chip = self.chip.clone();
+        store(&mut chip, self.save).unwrap();
+        self.chip.steps()..chip.steps()
+    }
+
+    fn cut(&self, step: u64, phase: Phase, seed: u64) -> FlashChip {
+        let mut chip = self.chip.clone();
+        chip.reseed(seed);
+        chip.cut_at(step, phase);
+        assert!(store(&mut chip, self.save).is_err());
+        chip.power_up();
+        chip
+    }
+
+    /// Told by what the step leaves changed.
+    fn kind(&self, step: u64) -> Step {
+        let before = &mut self.cut(step, Phase::Before, 0);
+        let after = &mut self.cut(step, Phase::After, 0);
+        if erases(after) > erases(before) {
+            Step::Erase
+        } else if markers(after) != markers(before) {
+            Step::Marker
+        } else {
+            Step::Word
+        }
+    }
+
+    /// What a boot may find for the key; the newest last.
+    fn allowed(&self, key: u8) -> [Found; 2] {
+        let old = self.stored[usize::from(key)];
+        let new = Found::Save(self.save);
+        if key == self.save.key {
+            [old, new]
+        } else {
+            [old, old]
+        }
+    }
+
+    /// Boots, saves and boots again.
+    fn recover(&self, mut chip: FlashChip, figures: &mut Figures) {
+        let first = load(&mut chip);
+        let acknowledged = store(&mut chip, NEXT).is_ok();
+        let second = load(&mut chip);
+        let (mut lost, mut undone) = (false, false);
+        for key in 0..KEYS {
+            let allowed = self.allowed(key);
+            let (found, later) = (first[usize::from(key)], second[usize::from(key)]);
+            let wrong = |found| !matches!(found, Found::Error) && !allowed.contains(&found);
+            lost |= wrong(found) || (key != NEXT.key && wrong(later));
+            undone |=
+                key != NEXT.key && found == allowed[1] && later == allowed[0] && found != later;
+        }
+        let error = first.contains(&Found::Error) || second.contains(&Found::Error);
+        let strange = first.contains(&Found::Strange) || second.contains(&Found::Strange);
+        let next = second[usize::from(NEXT.key)];
+        figures.cuts += 1;
+        figures.lost += u32::from(lost);
+        figures.needs_erase_all += u32::from(error || !acknowledged);
+        figures.undone += u32::from(undone);
+        figures.next_lost += u32::from(acknowledged && next != Found::Save(NEXT));
+        figures.strange += u32::from(strange);
+    }
+}
+
+/// First and last words of the sectors.
+fn markers(chip: &mut FlashChip) -> [[u8; 4]; 6] {
+    [0, 0x3FFC, 0x4000, 0x7FFC, 0x8000, 0xBFFC].map(|offset| {
+        let mut word = [0; 4];
+        ReadNorFlash::read(chip, offset, &mut word).unwrap();
+        word
+    })
+}
+
+/// The saves around each of the first three that erase.
+static SAVES: LazyLock<Vec<Before>> = LazyLock::new(|| {
+    let mut chip = FlashChip::parameters(0);
+    let mut stored = [Found::Nothing; KEYS as usize];
+    let (mut all, mut changes) = (Vec::new(), Vec::<usize>::new());
+    while changes.len() < SECTOR_CHANGES || changes.iter().any(|at| all.len() <= at + NEIGHBOURS) {
+        let save = Save::nth(all.len() as u32);
+        let before = chip.clone();
+        store(&mut chip, save).unwrap();
+        if erases(&chip) > erases(&before) {
+            changes.push(all.len());
+        }
+        all.push(Before {
+            chip: before,
+            stored,
+            save,
+        });
+        stored[usize::from(save.key)] = Found::Save(save);
+    }
+    let near = |index: usize| changes.iter().any(|at| at.abs_diff(index) <= NEIGHBOURS);
+    let picked = all.into_iter().enumerate().filter(|(i, _)| near(*i));
+    picked.map(|(_, before)| before).collect()
+});
+
+#[test]
+fn a_word_or_an_erase_torn_by_a_power_cut_costs_acknowledged_records() {
+    let [mut between, mut word, mut marker, mut erase] = [(); 4].map(|()| Figures::default());
+    for before in SAVES.iter() {
+        for step in before.steps() {
+            before.recover(before.cut(step, Phase::After, 0), &mut between);
+            let kind = before.kind(step);
+            let figures = match kind {
+                Step::Marker => &mut marker,
+                Step::Word => &mut word,
+                Step::Erase => &mut erase,
+            };
+            for seed in kind.seeds() {
+                before.recover(before.cut(step, Phase::Middle, seed), figures);
+            }
+        }
+    }
+    println!("cut between two steps: {between:?}");
+    println!("cut in a record's word: {word:?}");
+    println!("cut in a sector's marker: {marker:?}");
+    println!("cut in an erase: {erase:?}");
+    assert_eq!(between.harm(), 0);
+    assert!(word.undone > 0);
+    assert!(marker.lost > 0 && marker.needs_erase_all > 0);
+    assert!(erase.lost > 0 && erase.needs_erase_all > 0);
+}
+
+/// Noise that stays the same from read to read is enough.
+#[test]
+fn a_record_moved_out_of_a_sector_is_gone_if_the_erase_of_that_sector_was_cut() {
+    let mut damaged = 0;
+    for before in SAVES.iter() {
+        let steps = before.steps();
+        let Some(step) = steps.clone().find(|&step| before.kind(step) == Step::Erase) else {
+            continue;
+        };
+        let mut chip = before.cut(step, Phase::Before, 0);
+        let erased = before.cut(step, Phase::After, 0);
+        let sector = (1..=3)
+            .find(|&n| erased.erases(n) > chip.erases(n))
+            .unwrap();
+        let noise: Vec<u8> = (0..0x4000_u32)
+            .map(|n| (n.wrapping_mul(2_654_435_761) >> 24) as u8 & 0x7E)
+            .collect();
+        chip.set_contents(sector_range(sector).unwrap().start, &noise)
+            .unwrap();
+        let mut figures = Figures::default();
+        before.recover(chip, &mut figures);
+        damaged += figures.lost;
+    }
+    assert!(damaged > 0);
+}
+
+#[test]
+fn two_cuts_between_steps_are_survived() {
+    let mut twice = Figures::default();
+    for before in SAVES.iter() {
+        let steps = before.steps();
+        if !steps.clone().any(|step| before.kind(step) == Step::Erase) {
+            continue;
+        }
+        for step in steps.step_by(FIRST_CUTS_APART) {
+            let cut = before.cut(step, Phase::After, 0);
+            let mut recovered = cut.clone();
+            store(&mut recovered, before.save).unwrap();
+            for step in (cut.steps()..recovered.steps()).step_by(SECOND_CUTS_APART) {
+                let mut chip = cut.clone();
+                chip.cut_at(step, Phase::After);
+                assert!(store(&mut chip, before.save).is_err());
+                chip.power_up();
+                before.recover(chip, &mut twice);
+            }
+        }
+    }
+    println!("cut twice between steps: {twice:?}");
+    assert!(twice.cuts > 0);
+    assert_eq!(twice.harm(), 0);
+}
