@@ -19,6 +19,22 @@ pub enum ParamState {
     BackingOff = 5,
 }
 
+impl ParamState {
+    const ALL: [Self; 6] = [
+        Self::Saved,
+        Self::Settling,
+        Self::WaitingForRest,
+        Self::Saving,
+        Self::Erasing,
+        Self::BackingOff,
+    ];
+
+    /// The numbers are on the wire (docs/tuning.md) and never change.
+    pub fn from_code(code: u8) -> Option<Self> {
+        Self::ALL.into_iter().find(|state| *state as u8 == code)
+    }
+}
+
 /// Why an attempt failed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -35,6 +51,21 @@ pub enum ParamError {
     NotErased = 3,
     /// No sector left that can be written.
     Full = 4,
+}
+
+impl ParamError {
+    const ALL: [Self; 5] = [
+        Self::None,
+        Self::Flash,
+        Self::NotProgrammed,
+        Self::NotErased,
+        Self::Full,
+    ];
+
+    /// The numbers are on the wire (docs/tuning.md) and never change.
+    pub fn from_code(code: u8) -> Option<Self> {
+        Self::ALL.into_iter().find(|error| *error as u8 == code)
+    }
 }
 
 /// Counters since boot unless the name says otherwise.

@@ -6,7 +6,10 @@ use anyhow::{Context, Result, bail};
 use robotctl::{
     can_link::CanDevice,
     parameter_file::ParameterFile,
-    tuning::{self, BringUpStep, Motor, Named, Patience, Trial, TuningClient, WheelGeometry},
+    tuning::{
+        self, BringUpStep, Motor, Named, Patience, SaveError, SavePatience, Trial, TuningClient,
+        WheelGeometry,
+    },
 };
 
 #[derive(clap::Args)]
@@ -38,6 +41,16 @@ enum Action {
     Apply { file: PathBuf },
     /// Write the present values of all settings to a file
     Save { file: PathBuf },
+    /// Give a group of settings its defaults back, or all of them; the robot must be disarmed
+    Defaults {
+        /// Such as `heater`; all groups if left out
+        group: Option<String>,
+        /// Do it: the values the robot has now are lost
+        #[arg(long)]
+        yes: bool,
+    },
+    /// Show whether the robot has saved its settings
+    Status,
     /// Show the wheel geometry or change parts of it, in the frames of ROBOT_CPP
     Wheel(Wheel),
     /// Start or end bring-up of new hardware (docs/bring-up.md); the robot must be disarmed
@@ -108,6 +121,8 @@ impl Tune {
             Action::Set { name, value } => self.set(name, *value),
             Action::Apply { file } => self.apply(file),
             Action::Save { file } => self.save(file),
+            Action::Defaults { group, yes } => self.defaults(group.as_deref(), *yes),
+            Action::Status => self.status(),
             Action::Wheel(wheel) => self.wheel(wheel),
             Action::BringUp { step } => Ok(self.client()?.bring_up(step.request())?),
         }
@@ -156,12 +171,13 @@ impl Tune {
         let before = client.read(named)?;
         client.write(named, value)?;
         println!("{} (was {before})", shown(named, value));
-        Ok(())
+        confirm_saved(&mut client)
     }
 
     fn apply(&self, path: &std::path::Path) -> Result<()> {
         let file = ParameterFile::load(path)?;
-        for applied in tuning::apply(&mut self.client()?, &file)? {
+        let mut client = self.client()?;
+        for applied in tuning::apply(&mut client, &file)? {
             let was = if applied.before == applied.after {
                 "unchanged".to_owned()
             } else {
@@ -169,7 +185,7 @@ impl Tune {
             };
             println!("{} ({was})", shown(applied.named, applied.after));
         }
-        Ok(())
+        confirm_saved(&mut client)
     }
 
     fn save(&self, path: &std::path::Path) -> Result<()> {
@@ -180,6 +196,29 @@ impl Tune {
         }
         file.save(path)?;
         println!("{} settings in {}", file.iter().len(), path.display());
+        Ok(())
+    }
+
+    fn defaults(&self, group: Option<&str>, yes: bool) -> Result<()> {
+        let group = group.map(tuning::find_group).transpose()?;
+        let whose = group.map_or("all groups", |group| group.name);
+        if !yes {
+            bail!(
+                "this replaces the robot's settings of {whose} by the defaults; add --yes to do it (`robotctl tune \
+                 save FILE` keeps a copy)"
+            );
+        }
+        let mut client = self.client()?;
+        client.restore_defaults(group)?;
+        println!("{whose}: defaults");
+        confirm_saved(&mut client)
+    }
+
+    fn status(&self) -> Result<()> {
+        match self.client()?.store()? {
+            Some(report) => println!("{report}"),
+            None => println!("this firmware saves no settings: they last until it is reset"),
+        }
         Ok(())
     }
 
@@ -202,7 +241,10 @@ impl Tune {
         let direction = |reversed| if reversed { "reversed" } else { "forward" };
         println!("left motor {}", direction(wanted.left_reversed));
         println!("right motor {}", direction(wanted.right_reversed));
-        Ok(())
+        if wanted == before {
+            return Ok(());
+        }
+        confirm_saved(&mut client)
     }
 }
 
@@ -220,6 +262,17 @@ impl Wheel {
             right_reversed: self.right_reversed.unwrap_or(before.right_reversed),
         })
     }
+}
+
+/// Returns when the robot may be switched off.
+fn confirm_saved(client: &mut TuningClient) -> Result<()> {
+    match tuning::wait_until_saved(client, SavePatience::default()) {
+        Ok(_) => println!("saved"),
+        // As it always was with that firmware: no failure of this command.
+        Err(error @ SaveError::NeverSaves) => eprintln!("note: {error}"),
+        Err(error) => return Err(error.into()),
+    }
+    Ok(())
 }
 
 fn shown(named: Named, value: f32) -> String {

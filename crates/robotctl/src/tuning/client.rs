@@ -2,10 +2,10 @@
 
 use std::time::{Duration, Instant};
 
-use robot_app::tuning::Refusal;
+use robot_app::tuning::{ParameterGroup, Refusal};
 
 use super::{
-    BringUpStep, Named, WheelGeometry,
+    BringUpStep, Named, StoreReport, WheelGeometry,
     request::{self, Reply, Request},
 };
 use crate::can_link::{CanLink, CanLinkError};
@@ -109,6 +109,28 @@ impl TuningClient {
         let request = Request::WriteGeometry(geometry.to_bytes());
         self.exchange(request, || "wheel geometry".to_owned())
             .map(drop)
+    }
+
+    /// `None` for all groups.
+    pub fn restore_defaults(
+        &mut self,
+        group: Option<&'static ParameterGroup>,
+    ) -> Result<(), TuningError> {
+        let request = Request::RestoreDefaults(group.map_or(0, |group| group.number));
+        let what = || group.map_or("defaults", |group| group.name).to_owned();
+        self.exchange(request, what).map(drop)
+    }
+
+    /// `None` if the firmware is too old to tell: it saves nothing.
+    pub fn store(&mut self) -> Result<Option<StoreReport>, TuningError> {
+        match self.exchange(Request::ReadStore, || "store".to_owned()) {
+            Ok(reply) => Ok(Some(StoreReport::from_bytes(reply))),
+            Err(TuningError::Refused {
+                reason: Ok(Refusal::UnknownCommand),
+                ..
+            }) => Ok(None),
+            Err(error) => Err(error),
+        }
     }
 
     pub fn bring_up(&mut self, step: BringUpStep) -> Result<(), TuningError> {

@@ -5,6 +5,8 @@ mod bring_up;
 mod client;
 mod name;
 mod request;
+mod saving;
+mod store_report;
 mod wheel_geometry;
 
 #[cfg(test)]
@@ -13,5 +15,7 @@ mod tests;
 pub use apply::{Applied, ApplyError, apply};
 pub use bring_up::{BringUpStep, Motor, Trial};
 pub use client::{Patience, TuningClient, TuningError};
-pub use name::{Named, UnknownName, all, find};
+pub use name::{Named, UnknownName, all, find, find_group};
+pub use saving::{SaveError, SavePatience, wait_until_saved};
+pub use store_report::StoreReport;
 pub use wheel_geometry::{GeometryError, WheelGeometry};

@@ -16,8 +16,9 @@ impl Named {
 }
 
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("there is no setting `{name}`{}", nearest.as_ref().map(|n| format!("; did you mean `{n}`?")).unwrap_or_default())]
+#[error("there is no {what} `{name}`{}", nearest.as_ref().map(|n| format!("; did you mean `{n}`?")).unwrap_or_default())]
 pub struct UnknownName {
+    what: &'static str,
     name: String,
     nearest: Option<String>,
 }
@@ -34,14 +35,23 @@ pub fn all() -> impl Iterator<Item = Named> {
 pub fn find(name: &str) -> Result<Named, UnknownName> {
     let found = all().find(|named| named.full_name() == name);
     found.ok_or_else(|| UnknownName {
+        what: "setting",
         name: name.to_owned(),
-        nearest: nearest(name),
+        nearest: nearest(name, all().map(|named| named.full_name())),
+    })
+}
+
+pub fn find_group(name: &str) -> Result<&'static ParameterGroup, UnknownName> {
+    let found = PARAMETERS.iter().find(|group| group.name == name);
+    found.ok_or_else(|| UnknownName {
+        what: "group",
+        name: name.to_owned(),
+        nearest: nearest(name, PARAMETERS.iter().map(|group| group.name.to_owned())),
     })
 }
 
 /// The name that shares the longest pieces; `None` if none resembles it.
-fn nearest(name: &str) -> Option<String> {
-    let names = all().map(|named| named.full_name());
+fn nearest(name: &str, names: impl Iterator<Item = String>) -> Option<String> {
     let scored = names.map(|candidate| (likeness(name, &candidate), candidate));
     let (score, candidate) = scored.max_by(|a, b| a.0.total_cmp(&b.0))?;
     (score > 0.5).then_some(candidate)
@@ -75,6 +85,9 @@ mod tests {
         let error = find("wheel-geometry.trak-m").unwrap_err().to_string();
         assert!(error.contains("`wheel-geometry.track-m`"), "{error}");
         assert_eq!(find("xyz").unwrap_err().nearest, None);
+        assert_eq!(find_group("heater").unwrap().number, 7);
+        let error = find_group("heatr").unwrap_err().to_string();
+        assert_eq!(error, "there is no group `heatr`; did you mean `heater`?");
     }
 
     #[test]

@@ -9,6 +9,8 @@ const WRITE_GEOMETRY: u8 = 0x10;
 const READ_GEOMETRY: u8 = 0x11;
 const WRITE_PARAMETER: u8 = 0x20;
 const READ_PARAMETER: u8 = 0x21;
+const RESTORE_DEFAULTS: u8 = 0x30;
+const READ_STORE: u8 = 0x31;
 const BRING_UP: u8 = 0x40;
 const REFUSED: u8 = 0xEE;
 
@@ -27,6 +29,9 @@ pub(super) enum Request {
     ReadGeometry,
     /// The bytes after the command.
     WriteGeometry([u8; 7]),
+    /// The group's number; 0 for all.
+    RestoreDefaults(u8),
+    ReadStore,
     /// The bytes after the command.
     BringUp([u8; 7]),
 }
@@ -56,6 +61,8 @@ impl Request {
             }
             Self::ReadGeometry => CanFrame::new(READ_ID, [READ_GEOMETRY, 0, 0, 0, 0, 0, 0, 0]),
             Self::WriteGeometry(bytes) => write(WRITE_GEOMETRY, bytes),
+            Self::RestoreDefaults(group) => write(RESTORE_DEFAULTS, [group, 0, 0, 0, 0, 0, 0]),
+            Self::ReadStore => CanFrame::new(READ_ID, [READ_STORE, 0, 0, 0, 0, 0, 0, 0]),
             Self::BringUp(bytes) => write(BRING_UP, bytes),
         }
     }
@@ -75,10 +82,11 @@ impl Request {
         }
         let ours = match self {
             Self::Read { .. } => frame.payload().starts_with(&asked[..4]),
-            Self::ReadGeometry => command == READ_GEOMETRY,
-            Self::Write { .. } | Self::WriteGeometry(_) | Self::BringUp(_) => {
-                frame.payload() == asked
-            }
+            Self::ReadGeometry | Self::ReadStore => command == asked[0],
+            Self::Write { .. }
+            | Self::WriteGeometry(_)
+            | Self::RestoreDefaults(_)
+            | Self::BringUp(_) => frame.payload() == asked,
         };
         ours.then_some(Reply::Done(rest))
     }
@@ -87,7 +95,11 @@ impl Request {
     fn address(&self) -> [u8; 2] {
         match *self {
             Self::Read { group, index } | Self::Write { group, index, .. } => [group, index],
-            Self::ReadGeometry | Self::WriteGeometry(_) | Self::BringUp(_) => [0, 0],
+            Self::ReadGeometry
+            | Self::WriteGeometry(_)
+            | Self::RestoreDefaults(_)
+            | Self::ReadStore
+            | Self::BringUp(_) => [0, 0],
         }
     }
 }
@@ -134,6 +146,20 @@ mod tests {
             Request::WriteGeometry(geometry).frame(),
             frame(0x7A0, [0x10, 0x50, 0, 0x2C, 0x01, 0x80, 0x07, 0x02])
         );
+    }
+
+    #[test]
+    fn defaults_and_store_are_the_documented_bytes() {
+        assert_eq!(
+            Request::RestoreDefaults(7).frame(),
+            frame(0x7A0, [0x30, 7, 0, 0, 0, 0, 0, 0])
+        );
+        let ask = Request::ReadStore;
+        assert_eq!(ask.frame(), frame(0x7A1, [0x31, 0, 0, 0, 0, 0, 0, 0]));
+        let reply = frame(0x7A2, [0x31, 5, 2, 1, 0x2C, 0x01, 3, 0]);
+        let bytes = [5, 2, 1, 0x2C, 0x01, 3, 0];
+        assert_eq!(ask.reply(&reply), Some(Reply::Done(bytes)));
+        assert_eq!(ask.reply(&frame(0x7A2, [0x30; 8])), None);
     }
 
     #[test]

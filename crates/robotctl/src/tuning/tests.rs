@@ -11,7 +11,7 @@ use robot_app::{
     bring_up::BringUp,
     domain::{BusId, CanFrame, RobotConfig, StandardId},
     motor::layout::ROBOT_LAYOUT,
-    params::ParamStatus,
+    params::{ParamError, ParamState, ParamStatus},
     tuning::{Refusal, TuningAccess, TuningChannel, TuningGate},
 };
 
@@ -26,10 +26,43 @@ struct Robot {
     config: RobotConfig,
     gate: TuningGate,
     params: ParamStatus,
+    /// Looks at the store after which everything is saved.
+    looks_to_save: Option<usize>,
+    /// From before there was a store.
+    is_old: bool,
     /// Replies that the bus still loses.
     to_lose: usize,
     requests: usize,
     replies: VecDeque<CanFrame>,
+}
+
+impl Robot {
+    /// A store that needs some looks until it has saved.
+    fn look(&mut self, frame: &CanFrame) {
+        if frame.payload().first() != Some(&0x31) {
+            return;
+        }
+        match &mut self.looks_to_save {
+            Some(0) => self.params.seen = self.channel.status().revision,
+            Some(left) => *left -= 1,
+            None => {}
+        }
+    }
+
+    /// The firmware's own reply or, from an old one, that it does not know the command (docs/tuning.md).
+    fn reply(&mut self, frame: &CanFrame) -> Option<CanFrame> {
+        if self.is_old && frame.payload().first() == Some(&0x31) {
+            let reply = StandardId::new(0x7A2).unwrap();
+            return Some(CanFrame::new(reply, [0xEE, 0x31, 2, 0, 0, 0, 0, 0]));
+        }
+        self.channel.begin_slot();
+        let access = TuningAccess {
+            config: &mut self.config,
+            bring_up: &mut BringUp::default(),
+            params: &self.params,
+        };
+        self.channel.on_frame(BusId::Can2, frame, self.gate, access)
+    }
 }
 
 #[derive(Clone)]
@@ -39,17 +72,8 @@ impl CanLink for Bus {
     fn send(&mut self, frame: &CanFrame) -> Result<(), CanLinkError> {
         let robot = &mut *self.0.borrow_mut();
         robot.requests += 1;
-        robot.channel.begin_slot();
-        let reply = robot.channel.on_frame(
-            BusId::Can2,
-            frame,
-            robot.gate,
-            TuningAccess {
-                config: &mut robot.config,
-                bring_up: &mut BringUp::default(),
-                params: &robot.params,
-            },
-        );
+        robot.look(frame);
+        let reply = robot.reply(frame);
         // Traffic of the motors comes first.
         let feedback = StandardId::new(0x201).unwrap();
         robot.replies.push_back(CanFrame::new(feedback, [0x21; 8]));
@@ -70,6 +94,8 @@ fn robot() -> (Bus, TuningClient) {
     let bus = Bus(Rc::new(RefCell::new(Robot {
         channel: TuningChannel::new(&ROBOT_LAYOUT),
         params: ParamStatus::default(),
+        looks_to_save: Some(0),
+        is_old: false,
         config: RobotConfig::default(),
         gate: TuningGate::Open,
         to_lose: 0,
@@ -238,4 +264,75 @@ fn bring_up_is_asked_for_and_too_much_torque_refused() {
     }
     let error = client.bring_up(joint(501)).unwrap_err();
     assert!(error.to_string().contains("out of its range"), "{error}");
+}
+
+const QUICK: SavePatience = SavePatience {
+    pause: Duration::ZERO,
+    looks: 5,
+};
+
+fn changed() -> (Bus, TuningClient) {
+    let (bus, mut client) = robot();
+    client
+        .write(find("heater.target-c").unwrap(), 30.0)
+        .unwrap();
+    (bus, client)
+}
+
+#[test]
+fn a_change_is_followed_until_it_is_saved() {
+    let (bus, mut client) = changed();
+    bus.0.borrow_mut().looks_to_save = Some(4);
+    let report = wait_until_saved(&mut client, QUICK).unwrap();
+    assert!(report.is_saved());
+    assert_eq!(bus.0.borrow().looks_to_save, Some(0));
+}
+
+#[test]
+fn what_keeps_the_robot_from_saving_is_told_with_what_to_do() {
+    let (bus, mut client) = changed();
+    bus.0.borrow_mut().looks_to_save = None;
+    let mut complaint = |state, last_error| {
+        bus.0.borrow_mut().params = ParamStatus {
+            state,
+            last_error,
+            unsaved: 1,
+            seen: 1,
+            ..ParamStatus::default()
+        };
+        let error = wait_until_saved(&mut client, QUICK).unwrap_err();
+        error.to_string()
+    };
+    let moving = complaint(ParamState::WaitingForRest, ParamError::None);
+    assert!(moving.contains("enable switch is off"), "{moving}");
+    let failing = complaint(ParamState::BackingOff, ParamError::NotErased);
+    assert!(failing.contains("not blank after its erase"), "{failing}");
+    assert!(failing.contains("tune save"), "{failing}");
+    let busy = complaint(ParamState::Settling, ParamError::None);
+    assert!(busy.contains("changing settings"), "{busy}");
+    assert_eq!(bus.0.borrow().requests, 1 + 3 * 5);
+}
+
+#[test]
+fn an_old_firmware_is_known_to_save_nothing() {
+    let (bus, mut client) = changed();
+    bus.0.borrow_mut().is_old = true;
+    assert_eq!(client.store().unwrap(), None);
+    let error = wait_until_saved(&mut client, QUICK).unwrap_err();
+    assert!(matches!(error, SaveError::NeverSaves));
+}
+
+#[test]
+fn a_group_or_all_get_their_defaults_back() {
+    let (bus, mut client) = changed();
+    let track = find("wheel-geometry.track-m").unwrap();
+    client.write(track, 0.3).unwrap();
+    client
+        .restore_defaults(Some(find_group("heater").unwrap()))
+        .unwrap();
+    let config = bus.0.borrow().config;
+    assert_eq!(config.heater, RobotConfig::default().heater);
+    assert_eq!(config.wheel_odom.wheel_track_m, 0.3);
+    client.restore_defaults(None).unwrap();
+    assert_eq!(bus.0.borrow().config, RobotConfig::default());
 }
