@@ -59,5 +59,6 @@ fn indication(diagnostics: &DiagnosticsSnapshot) -> Indication {
         safety: &diagnostics.safety,
         calibration: &diagnostics.imu_status.calibration,
         bring_up: diagnostics.bring_up.step,
+        params: &diagnostics.params,
     })
 }

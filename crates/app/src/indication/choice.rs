@@ -3,6 +3,7 @@
 use crate::{
     bring_up::BringUpStep,
     domain::{CalibrationState, CalibrationStatus},
+    params::{ParamState, ParamStatus},
     safety::{ArmingBlockers, ArmingState, ArmingStatus, SafetyFlags, SafetyStatus},
 };
 
@@ -38,6 +39,8 @@ pub enum Indication {
     NotReady,
     /// The enable switch is on, but that does not arm: see the arming blockers.
     Refused,
+    /// As `Ready`, but flash takes no settings: what was changed last goes with the power.
+    NotSaved,
     /// The enable switch arms.
     Ready,
 }
@@ -48,6 +51,7 @@ pub struct IndicationInputs<'a> {
     pub safety: &'a SafetyStatus,
     pub calibration: &'a CalibrationStatus,
     pub bring_up: BringUpStep,
+    pub params: &'a ParamStatus,
 }
 
 const RADIO: SafetyFlags = SafetyFlags::REMOTE_LOST
@@ -114,11 +118,17 @@ fn disarmed(inputs: &IndicationInputs<'_>) -> Indication {
         }
     } else if stops_in_part(inputs.safety) || blocked_by(ArmingBlockers::JOINTS_NOT_READY) {
         Indication::NotReady
-    } else if blocked_by(ArmingBlockers::ENABLE_OFF) {
-        Indication::Ready
-    } else {
+    } else if !blocked_by(ArmingBlockers::ENABLE_OFF) {
         Indication::Refused
+    } else if cannot_save(inputs.params) {
+        Indication::NotSaved
+    } else {
+        Indication::Ready
     }
+}
+
+fn cannot_save(params: &ParamStatus) -> bool {
+    params.unsaved != 0 && params.state == ParamState::BackingOff
 }
 
 fn stops_in_part(safety: &SafetyStatus) -> bool {

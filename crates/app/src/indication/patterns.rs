@@ -93,6 +93,10 @@ pub(super) const fn pattern(indication: Indication) -> Pattern {
             &[(Blue, 100), (Off, 100)],
             Beeps::Once(&[(true, 80), (false, 80), (true, 80)]),
         ),
+        Indication::NotSaved => (
+            &[(Blue, 500), (White, 500)],
+            Beeps::Once(&[(true, 80), (false, 80), (true, 80), (false, 80), (true, 80)]),
+        ),
         Indication::Ready => (&[(Blue, 500), (Off, 500)], Beeps::Once(&[(true, 80)])),
     };
     Pattern { led, beeps }
@@ -102,7 +106,7 @@ pub(super) const fn pattern(indication: Indication) -> Pattern {
 mod tests {
     use super::*;
 
-    const ALL: [Indication; 17] = [
+    const ALL: [Indication; 18] = [
         Indication::EStop,
         Indication::BatteryEmpty,
         Indication::LatchedStop,
@@ -119,6 +123,7 @@ mod tests {
         Indication::Calibrating,
         Indication::NotReady,
         Indication::Refused,
+        Indication::NotSaved,
         Indication::Ready,
     ];
 

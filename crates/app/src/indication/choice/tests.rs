@@ -6,6 +6,7 @@ struct Situation {
     safety: SafetyStatus,
     calibration: CalibrationStatus,
     bring_up: BringUpStep,
+    params: ParamStatus,
 }
 
 impl Situation {
@@ -28,6 +29,7 @@ impl Situation {
                 ..CalibrationStatus::default()
             },
             bring_up: BringUpStep::Off,
+            params: ParamStatus::default(),
         }
     }
 
@@ -37,6 +39,7 @@ impl Situation {
             safety: &self.safety,
             calibration: &self.calibration,
             bring_up: self.bring_up,
+            params: &self.params,
         })
     }
 }
@@ -163,4 +166,24 @@ fn disarmed_says_what_it_waits_for() {
     ] {
         assert_eq!(blocked(refused), Indication::Refused);
     }
+}
+
+#[test]
+fn settings_that_cannot_be_saved_are_told_when_nothing_else_is_wrong() {
+    let failing = |s: &mut Situation| {
+        s.params.unsaved = 1;
+        s.params.state = ParamState::BackingOff;
+    };
+    assert_eq!(disarmed(failing), Indication::NotSaved);
+    assert_eq!(armed(failing), Indication::Armed);
+    let refused = disarmed(|s| {
+        failing(s);
+        s.arming.blockers = ArmingBlockers::STICKS_NOT_CENTRED;
+    });
+    assert_eq!(refused, Indication::Refused);
+    // A save on its way, and an erase that failed while everything is saved.
+    let waiting = disarmed(|s| s.params.unsaved = 1);
+    assert_eq!(waiting, Indication::Ready);
+    let no_spare = disarmed(|s| s.params.state = ParamState::BackingOff);
+    assert_eq!(no_spare, Indication::Ready);
 }
