@@ -1,0 +1,138 @@
+//! Cells and sectors that do not work any more: errors that end, nothing lost, the rest goes on being used.
+
+use robot_app::params::{FlashRequest, ParamError, Progress, Store};
+use robot_plant::flash_chip::{EraseFault, FlashChip, PARAMETER_SECTORS, StuckBit};
+
+use crate::{
+    bench::{BootedStore, Contents, Ledger, boot, new_chip, save_all},
+    workload::nth_save,
+};
+
+const SECTOR_1: u32 = 0x0800_4000;
+const SECTOR_BYTES: u32 = 0x4000;
+
+/// Saves as the firmware does, which tries again after an error; gives how many there were.
+fn save_stubbornly(
+    store: &mut BootedStore,
+    ledger: &mut Ledger,
+    count: usize,
+    errors: &mut Vec<ParamError>,
+) {
+    let record = nth_save(count);
+    ledger.begun.push(record.clone());
+    for _ in 0..1000 {
+        match store.work(Some(&record)) {
+            Ok(Progress::Stored) => {
+                ledger.begun.clear();
+                ledger
+                    .saved
+                    .insert((record.id.key, record.id.variant), record);
+                return tidy_stubbornly(store, errors);
+            }
+            Ok(Progress::Worked) => {}
+            Err(error) => errors.push(error),
+        }
+    }
+    panic!("save {count} never succeeds: {errors:?}");
+}
+
+/// Some tries; a store may go on wanting an erase that never works.
+fn tidy_stubbornly(store: &mut BootedStore, errors: &mut Vec<ParamError>) {
+    for _ in 0..4 {
+        if store.next(false) == FlashRequest::None {
+            return;
+        }
+        errors.extend(store.work(None).err());
+    }
+}
+
+/// Five changes of sector, with a boot now and then; gives the errors.
+fn use_for_long(chip: &mut FlashChip, contents: Contents) -> Vec<ParamError> {
+    let mut ledger = Ledger::of(contents);
+    let mut errors = Vec::new();
+    for session in 0..12 {
+        let mut store = Store::open(&mut *chip);
+        for count in 0..50 {
+            save_stubbornly(
+                &mut store,
+                &mut ledger,
+                5_000 + session * 50 + count,
+                &mut errors,
+            );
+        }
+        let (_, found) = boot(chip).unwrap_or_else(|error| panic!("boot: {error:?}"));
+        assert_eq!(ledger.first_loss(&found), None, "session {session}");
+    }
+    errors
+}
+
+fn in_use() -> (FlashChip, Contents) {
+    let mut chip = new_chip(9);
+    let records: Vec<_> = (0..60).map(nth_save).collect();
+    let contents = save_all(&mut chip, &records);
+    (chip, contents)
+}
+
+/// In every word of a slot in turn, and of all three heads, stuck either way.
+#[test]
+fn a_stuck_bit_costs_at_most_a_sector_and_no_record() {
+    let mut errors = 0;
+    for value in [false, true] {
+        for word in 0..32 {
+            for (sector, slot) in [(0, 61), (0, 90), (1, 3), (2, 0), (1, 0)] {
+                let (mut chip, contents) = in_use();
+                let address = SECTOR_1 + sector * SECTOR_BYTES + slot * 128 + word * 4 + word % 4;
+                let bit = (word % 8) as u8;
+                chip.stick(StuckBit {
+                    address,
+                    bit,
+                    value,
+                });
+                let found = use_for_long(&mut chip, contents);
+                assert!(
+                    found.len() < 20,
+                    "{sector} {slot} {word} {value}: {found:?}"
+                );
+                errors += found.len();
+            }
+        }
+    }
+    println!("320 stuck bits, 600 saves each: {errors} failed attempts, 0 records lost");
+    assert!(errors > 0);
+}
+
+#[test]
+fn a_sector_that_cannot_be_erased_is_done_without() {
+    for fault in [EraseFault::DoesNothing, EraseFault::LeavesSomeWords] {
+        for sector in PARAMETER_SECTORS {
+            let (mut chip, contents) = in_use();
+            chip.set_erase_fault(sector, Some(fault));
+            let errors = use_for_long(&mut chip, contents);
+            assert!(errors.contains(&ParamError::NotErased));
+            assert!(errors.iter().all(|error| *error == ParamError::NotErased));
+            // One try after each boot at most.
+            assert!(errors.len() <= 12, "{sector}: {errors:?}");
+        }
+    }
+}
+
+/// Nothing can be erased: what fits is saved, then every attempt says why it fails and the records stay.
+#[test]
+fn with_no_erase_working_the_store_fills_up_and_stays_readable() {
+    let (mut chip, contents) = in_use();
+    for sector in PARAMETER_SECTORS {
+        chip.set_erase_fault(sector, Some(EraseFault::DoesNothing));
+    }
+    let mut ledger = Ledger::of(contents);
+    let mut store = Store::open(&mut chip);
+    // The rest of this sector, and the one that is clean already.
+    for count in 0..67 + 127 - 12 {
+        save_stubbornly(&mut store, &mut ledger, count, &mut Vec::new());
+    }
+    for count in 0..20 {
+        let failed = store.work(Some(&nth_save(7_000 + count)));
+        assert_eq!(failed, Err(ParamError::NotErased));
+    }
+    let (_, found) = boot(&mut chip).expect("boots");
+    assert_eq!(ledger.first_loss(&found), None);
+}
