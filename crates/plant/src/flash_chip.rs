@@ -1,7 +1,7 @@
 //! The flash cells of the STM32F407 (RM0090 3.4–3.6): what programming, erasing and a power cut leave in them.
 //!
 //! Times, keys and registers are the flash controller's; here every operation is done at once. Addresses are the
-//! processor's, from [`BASE`]. The parameter store's tests meet the cells through `embedded_storage`'s `NorFlash`.
+//! processor's. The parameter store's tests meet the cells through `embedded_storage`'s `NorFlash`.
 
 mod cells;
 mod defects;
@@ -12,7 +12,7 @@ mod sectors;
 #[cfg(test)]
 mod tests;
 
-use std::ops::{Range, RangeInclusive};
+use std::ops::Range;
 
 use thiserror::Error;
 
@@ -20,10 +20,11 @@ use crate::random::{Random, Stream};
 use cells::Cells;
 use defects::Defects;
 use power::{Outcome, Power};
+use sectors::{PARAMETER_ADDRESSES, PerSector};
 
 pub use defects::{EraseFault, StuckBit};
 pub use power::Phase;
-pub use sectors::{BASE, PARAMETER_SECTORS, SECTOR_COUNT, sector_range};
+pub use sectors::{PARAMETER_SECTORS, sector_range};
 
 const WORD: u32 = 4;
 
@@ -33,44 +34,31 @@ pub enum FlashError {
     PowerLost,
     #[error("{0:#010x} is not the address of a word")]
     NotAligned(u32),
-    #[error("{0:#010x} lies outside of the flash")]
+    #[error("{0:#010x} lies outside of the parameters' sectors")]
     OutOfRange(u32),
-    #[error("the flash has no sector {0}")]
-    NoSuchSector(u8),
+    #[error("sector {0} is none of the parameters'")]
+    OtherSector(u8),
 }
 
-/// Contents, wear and defects of a run of sectors. Everything random in it follows from the seed.
+/// Contents, wear and defects of sectors 1–3, where the parameters are kept. Everything random in it follows from the seed.
 #[derive(Clone, Debug)]
 pub struct FlashChip {
-    addresses: Range<u32>,
     cells: Cells,
     defects: Defects,
     power: Power,
-    erases: [u32; SECTOR_COUNT as usize],
+    erases: PerSector<u32>,
     programs: u64,
     random: Random,
 }
 
 impl FlashChip {
-    /// All 12 sectors of 1 MiB, erased.
-    pub fn whole(seed: u64) -> Self {
-        Self::blank(0..=SECTOR_COUNT - 1, seed)
-    }
-
-    /// Sectors 1–3 alone, where the parameters are kept, erased.
+    /// Erased, without a defect.
     pub fn parameters(seed: u64) -> Self {
-        Self::blank(PARAMETER_SECTORS, seed)
-    }
-
-    fn blank(sectors: RangeInclusive<u8>, seed: u64) -> Self {
-        let addresses =
-            sectors::start_address(*sectors.start())..sectors::start_address(*sectors.end() + 1);
         Self {
-            cells: Cells::blank(addresses.len()),
-            addresses,
+            cells: Cells::blank(PARAMETER_ADDRESSES.len()),
             defects: Defects::default(),
             power: Power::default(),
-            erases: [0; SECTOR_COUNT as usize],
+            erases: PerSector::default(),
             programs: 0,
             random: Random::new(seed, Stream::Flash),
         }
@@ -113,9 +101,11 @@ impl FlashChip {
         outcome.result()
     }
 
-    /// Erases sector 0 … 11, as far as the chip holds it and its defects let it.
+    /// Erases sector 1, 2 or 3, as far as its defects let it.
     pub fn erase(&mut self, sector: u8) -> Result<(), FlashError> {
-        let addresses = sector_range(sector).ok_or(FlashError::NoSuchSector(sector))?;
+        let addresses = sector_range(sector)
+            .filter(|_| PARAMETER_SECTORS.contains(&sector))
+            .ok_or(FlashError::OtherSector(sector))?;
         let range = self.range(addresses.start, addresses.len())?;
         let outcome = self.power.begin_step()?;
         match outcome {
@@ -130,7 +120,7 @@ impl FlashChip {
             },
         }
         if outcome != Outcome::CutBefore
-            && let Some(count) = self.erases.get_mut(usize::from(sector))
+            && let Some(count) = self.erases.get_mut(sector)
         {
             *count += 1;
         }
@@ -139,7 +129,7 @@ impl FlashChip {
 
     /// Erases of the sector that began, torn ones too: each of them wears it.
     pub fn erases(&self, sector: u8) -> u32 {
-        self.erases.get(usize::from(sector)).copied().unwrap_or(0)
+        self.erases.get(sector).unwrap_or_default()
     }
 
     /// Words whose programming began.
@@ -184,8 +174,10 @@ impl FlashChip {
     /// Place of `length` bytes at `address` among the cells.
     fn range(&self, address: u32, length: usize) -> Result<Range<usize>, FlashError> {
         let outside = FlashError::OutOfRange(address);
-        let start = address.checked_sub(self.addresses.start).ok_or(outside)? as usize;
-        if start.saturating_add(length) > self.addresses.len() {
+        let start = address
+            .checked_sub(PARAMETER_ADDRESSES.start)
+            .ok_or(outside)? as usize;
+        if start.saturating_add(length) > PARAMETER_ADDRESSES.len() {
             return Err(outside);
         }
         Ok(start..start + length)

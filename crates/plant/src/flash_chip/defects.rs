@@ -1,6 +1,6 @@
 //! Worn-out cells and sectors.
 
-use super::SECTOR_COUNT;
+use super::sectors::PerSector;
 
 /// A cell that reads the same for ever.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,7 +23,7 @@ pub enum EraseFault {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Defects {
     stuck: Vec<StuckBit>,
-    erase: [Option<EraseFault>; SECTOR_COUNT as usize],
+    erase: PerSector<Option<EraseFault>>,
 }
 
 impl Defects {
@@ -36,13 +36,13 @@ impl Defects {
     }
 
     pub fn set_erase_fault(&mut self, sector: u8, fault: Option<EraseFault>) {
-        if let Some(place) = self.erase.get_mut(usize::from(sector)) {
+        if let Some(place) = self.erase.get_mut(sector) {
             *place = fault;
         }
     }
 
     pub fn erase_fault(&self, sector: u8) -> Option<EraseFault> {
-        self.erase.get(usize::from(sector)).copied().flatten()
+        self.erase.get(sector).flatten()
     }
 
     /// Puts the stuck bits into what was read at `address`.

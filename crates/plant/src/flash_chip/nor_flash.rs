@@ -5,17 +5,17 @@ use embedded_storage::nor_flash::{
     check_write,
 };
 
-use super::{FlashChip, FlashError, PARAMETER_SECTORS, WORD, sectors::start_address};
+use super::{FlashChip, FlashError, PARAMETER_SECTORS, WORD, sectors::PARAMETER_ADDRESSES};
 
 const SECTOR: u32 = 16 * 1024;
-const CAPACITY: u32 = 3 * SECTOR;
+const CAPACITY: u32 = PARAMETER_ADDRESSES.end - PARAMETER_ADDRESSES.start;
 
 impl NorFlashError for FlashError {
     fn kind(&self) -> NorFlashErrorKind {
         match self {
             Self::PowerLost => NorFlashErrorKind::Other,
             Self::NotAligned(_) => NorFlashErrorKind::NotAligned,
-            Self::OutOfRange(_) | Self::NoSuchSector(_) => NorFlashErrorKind::OutOfBounds,
+            Self::OutOfRange(_) | Self::OtherSector(_) => NorFlashErrorKind::OutOfBounds,
         }
     }
 }
@@ -60,7 +60,7 @@ impl NorFlash for FlashChip {
 }
 
 fn address(offset: u32) -> u32 {
-    start_address(*PARAMETER_SECTORS.start()).saturating_add(offset)
+    PARAMETER_ADDRESSES.start.saturating_add(offset)
 }
 
 fn error(kind: NorFlashErrorKind, offset: u32) -> FlashError {
