@@ -36,6 +36,9 @@ struct Args {
     /// Play a recorded trial (.json beside its .f32.gz) through the sensor models.
     #[arg(long, value_name = "TRIAL.json")]
     imu: Option<PathBuf>,
+    /// Keep the robot's settings in FILE from run to run: its parameter flash, read if it exists, written at the end.
+    #[arg(long, value_name = "FILE")]
+    flash: Option<PathBuf>,
     /// CAN1 as a LAWICEL (slcan) adapter on a pseudo-terminal; implies --realtime, and the run is not reproducible.
     #[arg(long, value_enum, value_name = "pty")]
     can1: Option<CanOutside>,
@@ -143,6 +146,7 @@ fn job(args: &Args) -> anyhow::Result<Job> {
         imu_trial: args.imu.clone(),
         patches: args.patch.clone(),
         can_on_pty: args.can_on_pty(),
+        flash_file: args.flash.clone(),
     })
 }
 

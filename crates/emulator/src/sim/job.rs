@@ -18,7 +18,7 @@ use super::{
     trace::Traces,
 };
 use crate::{
-    machine::{Machine, MachineError, RegisterPatch},
+    machine::{Machine, MachineError, RegisterPatch, flash::PARAMETER_FLASH_BYTES},
     pty::CanPort,
 };
 
@@ -31,6 +31,9 @@ pub struct Job {
     pub patches: Vec<RegisterPatch>,
     /// Buses that a PC takes part in through a pseudo-terminal. What it sends is not reproducible.
     pub can_on_pty: Vec<CanBusId>,
+    /// Keeps the parameter sectors from one run to the next: read if it exists, instead of the scenario's image, and
+    /// written at the end.
+    pub flash_file: Option<PathBuf>,
 }
 
 #[derive(Debug, thiserror::Error)]
@@ -47,6 +50,10 @@ pub enum JobError {
     Recording(#[from] RecordingError),
     #[error(transparent)]
     Report(#[from] ReportError),
+    #[error("cannot read {path}: {source}")]
+    Read { path: PathBuf, source: io::Error },
+    #[error("{path} has {bytes} bytes; the parameter sectors have {PARAMETER_FLASH_BYTES}")]
+    FlashSize { path: PathBuf, bytes: usize },
     #[error("cannot write {path}: {source}")]
     Write { path: PathBuf, source: io::Error },
 }
@@ -73,10 +80,42 @@ impl Job {
         for patch in &self.patches {
             machine.patch_register(*patch);
         }
+        self.set_up_flash(&mut machine)?;
         Ok(machine)
     }
 
-    /// Runs without writing anything.
+    fn set_up_flash(&self, machine: &mut Machine) -> Result<(), JobError> {
+        let setup = &self.scenario.flash;
+        machine.set_flash_times(setup.times);
+        machine.set_flash_seed(setup.seed.unwrap_or(self.scenario.seed));
+        let kept = self.flash_file.as_ref().filter(|file| file.exists());
+        let Some(path) = kept.or(setup.image.as_ref()) else {
+            return Ok(());
+        };
+        let bytes = std::fs::read(path).map_err(|source| JobError::Read {
+            path: path.clone(),
+            source,
+        })?;
+        let whole = <&[u8; PARAMETER_FLASH_BYTES]>::try_from(bytes.as_slice());
+        let whole = whole.map_err(|_| JobError::FlashSize {
+            path: path.clone(),
+            bytes: bytes.len(),
+        })?;
+        machine.set_parameter_flash(whole);
+        Ok(())
+    }
+
+    fn keep_flash(&self, machine: &mut Machine) -> Result<(), JobError> {
+        let Some(path) = &self.flash_file else {
+            return Ok(());
+        };
+        std::fs::write(path, machine.parameter_flash()).map_err(|source| JobError::Write {
+            path: path.clone(),
+            source,
+        })
+    }
+
+    /// Runs without writing anything but the kept flash.
     pub fn run(&self, observers: &mut [&mut dyn Observer]) -> Result<Outcome, JobError> {
         let mut machine = self.machine()?;
         let ports: Result<Vec<_>, _> = self.can_on_pty.iter().copied().map(CanPort::open).collect();
@@ -84,6 +123,7 @@ impl Job {
         let started = Instant::now();
         let result = runner::run(&mut machine, &self.scenario, &mut ports, observers)?;
         let summary = Summary::new(&self.scenario, &result, started.elapsed());
+        self.keep_flash(&mut machine)?;
         Ok(Outcome {
             result,
             summary,

@@ -8,12 +8,14 @@ use super::{
 };
 use crate::machine::Progress;
 
-const NAMES: [&str; 9] = [
+const NAMES: [&str; 11] = [
     "emu.board_errors",
     "emu.cpu_load",
     "emu.missed_ticks",
     "emu.can1.load",
     "emu.can2.load",
+    "emu.flash.erases",
+    "emu.flash.programs",
     "emu.resets",
     "emu.att_error.total_deg",
     "emu.att_error.heading_deg",
@@ -26,7 +28,7 @@ const PERIOD: Ps = 100 * time::MS;
 /// Keeps the `emu.*` values up to date.
 pub struct RunSignals {
     due: Ps,
-    counters: [Option<f64>; 5],
+    counters: [Option<f64>; 7],
     /// When that was last, and how long each CAN bus had been busy by then.
     can_busy: (Ps, [Ps; 2]),
     quaternion: Option<[usize; 4]>,
@@ -42,7 +44,7 @@ impl RunSignals {
         let part = |i: usize| table.index(&format!("diag.estimate.q_wxyz.{i}"));
         Self {
             due: 0,
-            counters: [None; 5],
+            counters: [None; 7],
             can_busy: (0, [0; 2]),
             quaternion: match [part(0), part(1), part(2), part(3)] {
                 [Some(w), Some(x), Some(y), Some(z)] => Some([w, x, y, z]),
@@ -64,6 +66,8 @@ impl RunSignals {
                 Some(progress.missed as f64),
                 can1,
                 can2,
+                Some(progress.flash_erases as f64),
+                Some(progress.flash_programs as f64),
             ];
         }
         let error = self

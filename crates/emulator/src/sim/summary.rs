@@ -15,7 +15,7 @@ use super::{
 };
 use crate::{
     board_errors::BoardError,
-    machine::{CanStats, Distribution, FlashUse},
+    machine::{CanStats, Distribution, FlashUse, LongestGapUs},
     pty::PortStats,
 };
 
@@ -81,6 +81,7 @@ pub struct BoardErrorEntry {
 pub struct Control {
     pub ticks: u64,
     pub missed: u64,
+    pub longest_gap_us: LongestGapUs,
     pub instructions: Distribution,
     pub release_jitter_us: Distribution,
 }
@@ -138,6 +139,7 @@ impl Summary {
             control: Control {
                 ticks: stats.ticks,
                 missed: stats.missed,
+                longest_gap_us: stats.longest_gap_us,
                 instructions: stats.tick_instructions.clone(),
                 release_jitter_us: stats.release_jitter_us.clone(),
             },

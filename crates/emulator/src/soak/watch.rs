@@ -147,6 +147,9 @@ impl Watch {
             Deed::Can(..) => self.tally.frames += 1,
             Deed::StartFault(name) => self.begin(at, name),
             Deed::EndFault(name) => {
+                if is_of_the_machine(name) {
+                    self.chip_fault = Some(at);
+                }
                 self.debts.retain(|debt| debt.cause != *name);
                 let there = self.troubles.iter_mut().filter(|t| t.name == *name);
                 there.for_each(|trouble| trouble.ended = Some(at));
@@ -184,7 +187,7 @@ impl Watch {
 
     fn begin(&mut self, at: Ps, name: &str) {
         self.tally.faults += 1;
-        if crate::machine::faults::all().any(|fault| fault.name == name) {
+        if is_of_the_machine(name) {
             self.chip_fault = Some(at);
             return;
         }
@@ -338,4 +341,8 @@ impl Watch {
             .find(|message| !EXPLAINED.iter().any(|part| message.contains(part)))
             .map(|message| format!("the board complains: {message}"))
     }
+}
+
+fn is_of_the_machine(name: &str) -> bool {
+    crate::machine::faults::all().any(|fault| fault.name == name)
 }

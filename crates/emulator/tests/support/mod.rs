@@ -28,5 +28,6 @@ pub fn job(scenario: Scenario) -> Job {
         imu_trial: None,
         patches: Vec::new(),
         can_on_pty: Vec::new(),
+        flash_file: None,
     }
 }

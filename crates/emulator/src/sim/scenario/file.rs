@@ -1,5 +1,7 @@
 //! The TOML of a scenario and its checks.
 
+use std::path::{Path, PathBuf};
+
 use robot_plant::{
     time::{self, Ps},
     wire::CanFrame,
@@ -8,7 +10,8 @@ use robot_plant::{
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::{Action, Deed, Scenario, ScenarioError};
+use super::{Action, Deed, FlashSetup, Scenario, ScenarioError};
+use crate::machine::flash::FlashTimes;
 use crate::sim::{
     expectation::{Bound, Expectation, NamedFlag, Window},
     faults,
@@ -28,6 +31,8 @@ struct File {
     imu_temperature_c: Option<f64>,
     #[serde(default)]
     seed: u64,
+    #[serde(default)]
+    flash: Flash,
     #[serde(default)]
     allow_board_errors: Vec<String>,
     #[serde(default)]
@@ -57,6 +62,25 @@ enum Joints {
     #[default]
     Dm4310,
     Rs00,
+}
+
+/// The parameter sectors at power-on.
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Flash {
+    /// Relative to the scenario's folder.
+    image: Option<PathBuf>,
+    #[serde(default)]
+    times: Times,
+    seed: Option<u64>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Times {
+    #[default]
+    Typical,
+    Max,
 }
 
 #[derive(Deserialize)]
@@ -179,10 +203,23 @@ pub(super) fn parse(text: &str, file: &str) -> Result<Scenario, ScenarioError> {
         },
         imu_temperature_c: raw.imu_temperature_c,
         seed: raw.seed,
+        flash: read_flash(raw.flash, Path::new(file)),
         actions,
         expectations,
         allow_board_errors: raw.allow_board_errors,
     })
+}
+
+fn read_flash(raw: Flash, scenario: &Path) -> FlashSetup {
+    let folder = scenario.parent().unwrap_or(Path::new(""));
+    FlashSetup {
+        image: raw.image.map(|image| folder.join(image)),
+        times: match raw.times {
+            Times::Typical => FlashTimes::Typical,
+            Times::Max => FlashTimes::Max,
+        },
+        seed: raw.seed,
+    }
 }
 
 fn instant(name: &str, t: f64, seconds: f64) -> Result<Ps, String> {

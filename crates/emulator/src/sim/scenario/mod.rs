@@ -11,6 +11,7 @@ use robot_plant::{
 };
 
 use super::expectation::Expectation;
+use crate::machine::flash::FlashTimes;
 
 /// A checked scenario: every time lies inside the run, every fault exists, every expectation has a window and a bound.
 #[derive(Clone, Debug)]
@@ -24,11 +25,22 @@ pub struct Scenario {
     /// Of the IMU's package at power-on; unset, the board has been on before.
     pub imu_temperature_c: Option<f64>,
     pub seed: u64,
+    pub flash: FlashSetup,
     /// In order of time; what was written first comes first at equal times.
     pub actions: Vec<Action>,
     pub expectations: Vec<Expectation>,
     /// Board errors whose message contains one of these do not fail the run.
     pub allow_board_errors: Vec<String>,
+}
+
+/// The parameter sectors at power-on.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct FlashSetup {
+    /// 48 KiB; unset, the sectors are erased.
+    pub image: Option<PathBuf>,
+    pub times: FlashTimes,
+    /// Of what torn words and sectors look like; unset, the scenario's.
+    pub seed: Option<u64>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
