@@ -1,6 +1,10 @@
 //! `robotctl tune`: the robot's settings over CAN.
 
-use std::{num::NonZeroI16, path::PathBuf};
+use std::{
+    io::{self, Write},
+    num::NonZeroI16,
+    path::PathBuf,
+};
 
 use anyhow::{Context, Result, bail};
 use robotctl::{
@@ -266,11 +270,16 @@ impl Wheel {
 
 /// Returns when the robot may be switched off.
 fn confirm_saved(client: &mut TuningClient) -> Result<()> {
-    match tuning::wait_until_saved(client, SavePatience::default()) {
-        Ok(_) => println!("saved"),
+    print!("saving … ");
+    io::stdout().flush()?;
+    let done = tuning::wait_until_saved(client, SavePatience::default());
+    println!("{}", if done.is_ok() { "saved" } else { "not saved" });
+    match done {
         // As it always was with that firmware: no failure of this command.
         Err(error @ SaveError::NeverSaves) => eprintln!("note: {error}"),
-        Err(error) => return Err(error.into()),
+        done => {
+            done?;
+        }
     }
     Ok(())
 }
