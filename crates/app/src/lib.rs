@@ -31,6 +31,8 @@
 //! - status task, 100 Hz: `indication::Indication::of` what diagnostics say, and `indication::IndicationPlayer::step`
 //!   for LED and buzzer.
 //! - logic task, 100 Hz: `logic::LogicStage::step`.
+//! - boot: `params::ParamService::boot` gives the settings; params task, each ms: `ParamService::step` with what the
+//!   tick grants, which gets what it asks for.
 //! - control task, 1 kHz: `tick::ControlLoop::on_can_frame` for each received frame, then
 //!   `tick::ControlLoop::tick(&inputs, now_us)`; send `outputs.frames`, publish the rest.
 //! - boot, panic and fault handlers: send the layout's `safe_frames` raw.
