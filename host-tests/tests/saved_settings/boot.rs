@@ -6,6 +6,8 @@ use robot_app::{
     params::ParamState,
 };
 
+use robot_plant::flash_chip::Phase;
+
 use crate::{
     dump::{self, slot},
     robot::{Chip, Robot},
@@ -84,6 +86,38 @@ fn a_damaged_record_falls_back_to_the_one_before_it() {
     let robot = Robot::boot(&dump::chip(1, &[older, torn]));
     assert_eq!(robot.config.heater.target_c, 30.0);
     assert_eq!(robot.status().damaged, 1);
+}
+
+/// A word torn by a power cut may read differently at each boot. What the first boot makes of it stays.
+#[test]
+fn a_torn_save_reads_the_same_in_all_later_boots() {
+    let before = Chip::blank();
+    let mut robot = Robot::boot(&before);
+    robot.change(|config| config.heater.kp = 0.5);
+    robot.save();
+    let first_word = before.cells.borrow().steps();
+    let (mut old, mut new) = (0, 0);
+    for (word, seed) in (0..8).flat_map(|word| (0..25).map(move |seed| (word, seed))) {
+        let chip = before.copy(seed);
+        let mut robot = Robot::boot(&chip);
+        let cut = first_word + word;
+        chip.cells.borrow_mut().cut_at(cut, Phase::Middle);
+        robot.change(|config| config.heater.kp = 0.25);
+        robot.run_ms(510);
+        assert!(!chip.cells.borrow().is_powered());
+        chip.cells.borrow_mut().power_up();
+        let kp = Robot::boot(&chip).config.heater.kp;
+        match kp {
+            0.5 => old += 1,
+            0.25 => new += 1,
+            _ => panic!("{kp} was never set"),
+        }
+        for _ in 0..5 {
+            let again = Robot::boot(&chip).config.heater.kp;
+            assert_eq!(again, kp, "word {word}, seed {seed}");
+        }
+    }
+    assert!(old > 0 && new > 0, "{old} old, {new} new");
 }
 
 /// Another firmware's group, a later version, a value out of range and a joint of the other make.

@@ -74,6 +74,16 @@ impl Chip {
         }
     }
 
+    /// Another chip with the same cells, whose random part goes its own way.
+    pub fn copy(&self, seed: u64) -> Self {
+        let mut cells = self.cells.borrow().clone();
+        cells.reseed(seed);
+        Self {
+            cells: Rc::new(RefCell::new(cells)),
+            refuses_words: Rc::default(),
+        }
+    }
+
     pub fn erases(&self) -> u32 {
         let cells = self.cells.borrow();
         PARAMETER_SECTORS.map(|sector| cells.erases(sector)).sum()

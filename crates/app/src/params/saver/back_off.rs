@@ -58,6 +58,15 @@ mod tests {
     }
 
     #[test]
+    fn time_without_a_clock_does_not_shorten_a_pause() {
+        let mut back_off = BackOff::default();
+        back_off.fail(0);
+        back_off.lengthen(500_000);
+        assert!(!back_off.is_over(1_499_999));
+        assert!(back_off.is_over(1_500_000));
+    }
+
+    #[test]
     fn a_success_begins_anew() {
         let mut back_off = BackOff::default();
         attempts_s(&mut back_off, 4);
