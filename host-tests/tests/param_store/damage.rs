@@ -97,8 +97,8 @@ proptest! {
 /// As flash is read by hand: the last slot of the active sector with the key in its second word.
 fn newest_slot(bytes: &[u8], key: u8) -> usize {
     let keys = bytes.chunks(SLOT).map(|slot| slot[4]).enumerate();
-    let held = keys.skip(ACTIVE_HEAD + 1).take(127);
-    let last = held.filter(|(_, found)| *found == key).last();
+    let mut held = keys.skip(ACTIVE_HEAD + 1).take(127);
+    let last = held.rfind(|(_, found)| *found == key);
     last.expect("each key is there").0
 }
 

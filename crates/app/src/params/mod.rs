@@ -1,5 +1,6 @@
 //! Settings that survive a power cut (ROBOT_CPP 5.2, docs/parameters.md).
 
+mod checksum;
 mod record;
 mod saver;
 mod sector;

@@ -7,7 +7,10 @@
 //! | 2–5, 6–9 | twice the same: magic and format, generation, its complement, CRC-32 of these three | after the last copied slot |
 //! | 10 | proof: anything but blank means that the head was read back | last |
 
-use super::slot::{BLANK, SLOT_BYTES, checksum};
+use super::{
+    checksum::checksum,
+    slot::{SLOT_BYTES, is_blank},
+};
 
 pub(super) const SECTORS: u8 = 3;
 pub(super) const SECTOR_BYTES: u32 = 16 * 1024;
@@ -22,7 +25,7 @@ const MAGIC: [u8; 4] = *b"PRM1";
 
 /// Where in the head, in bytes.
 pub(super) const OPENED_AT: usize = 4;
-pub(super) const COPIES_AT: usize = 8;
+pub(super) const COPIES_AT: [usize; 2] = [8, 24];
 pub(super) const HEAD_PROOF_AT: usize = 40;
 pub(super) const HEAD_BYTES: usize = 44;
 
@@ -40,19 +43,16 @@ pub(super) enum SectorState {
     Garbage,
 }
 
-/// Both copies of a head's commitment.
-pub(super) fn commitment(generation: u32) -> [u8; 2 * COPY_BYTES] {
-    let mut bytes = [0; 2 * COPY_BYTES];
-    for copy in bytes.chunks_exact_mut(COPY_BYTES) {
-        let words = [u32::from_le_bytes(MAGIC), generation, !generation];
-        for (place, word) in copy.chunks_exact_mut(4).zip(words) {
-            place.copy_from_slice(&word.to_le_bytes());
-        }
-        if let Some((words, crc)) = copy.split_last_chunk_mut::<4>() {
-            *crc = checksum(words).to_le_bytes();
-        }
-    }
-    bytes
+/// One copy of what commits a head.
+#[inline(never)]
+pub(super) fn commitment(generation: u32) -> [u8; COPY_BYTES] {
+    let mut copy = [0; COPY_BYTES];
+    copy[..4].copy_from_slice(&MAGIC);
+    copy[4..8].copy_from_slice(&generation.to_le_bytes());
+    copy[8..12].copy_from_slice(&(!generation).to_le_bytes());
+    let crc = checksum(&copy[..12]);
+    copy[12..].copy_from_slice(&crc.to_le_bytes());
+    copy
 }
 
 /// The first 128 bytes of a sector, read once.
@@ -63,24 +63,23 @@ pub(super) struct Head {
 impl Head {
     /// Of the first copy that is right.
     pub fn generation(&self) -> Option<u32> {
-        let copies = &self.bytes[COPIES_AT..HEAD_PROOF_AT];
-        copies.chunks_exact(COPY_BYTES).find_map(|copy| {
-            let word = copy.get(4..8)?;
-            let generation = u32::from_le_bytes(word.try_into().ok()?);
-            let expected = commitment(generation);
-            (copy == &expected[..COPY_BYTES]).then_some(generation)
+        COPIES_AT.into_iter().find_map(|at| {
+            let copy = self.bytes.get(at..)?.first_chunk::<COPY_BYTES>()?;
+            let [_, _, _, _, a, b, c, d, ..] = *copy;
+            let generation = u32::from_le_bytes([a, b, c, d]);
+            (*copy == commitment(generation)).then_some(generation)
         })
     }
 
     pub fn is_proven(&self) -> bool {
         let proof = &self.bytes[HEAD_PROOF_AT..HEAD_BYTES];
-        proof.iter().any(|byte| *byte != BLANK)
+        !is_blank(proof)
     }
 
     /// The mark is there, and nothing else.
     pub fn is_clean(&self) -> bool {
         let (mark, rest) = self.bytes.split_at(OPENED_AT);
-        mark == CLEAN && rest.iter().all(|byte| *byte == BLANK)
+        mark == CLEAN && is_blank(rest)
     }
 }
 

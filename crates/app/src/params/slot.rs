@@ -10,8 +10,9 @@
 //!
 //! Words are little-endian. Blank is all ones.
 
-use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 use heapless::Vec;
+
+use super::checksum::checksum;
 
 /// Values one record may have.
 pub const MAX_VALUES: usize = 28;
@@ -66,7 +67,7 @@ impl Slot {
     }
 
     pub fn is_blank(&self) -> bool {
-        self.bytes.iter().all(|byte| *byte == BLANK)
+        is_blank(&self.bytes)
     }
 
     /// What the header says, be it right or not.
@@ -84,9 +85,7 @@ impl Slot {
 
     /// Read back once already: what it holds stays as it reads now.
     pub fn is_proven(&self) -> bool {
-        self.bytes[PROOF_AT..CRC_AT]
-            .iter()
-            .any(|byte| *byte != BLANK)
+        !is_blank(&self.bytes[PROOF_AT..CRC_AT])
     }
 
     /// Guard and proof aside, which mean something only by not being blank.
@@ -119,9 +118,10 @@ impl Slot {
     }
 }
 
-/// CRC-32 as in zip and Ethernet.
-pub(super) fn checksum(bytes: &[u8]) -> u32 {
-    Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC).checksum(bytes)
+/// Out of line, as more of the store: flash is scarce, and none of this is in a hurry.
+#[inline(never)]
+pub(super) fn is_blank(bytes: &[u8]) -> bool {
+    bytes.iter().all(|byte| *byte == BLANK)
 }
 
 #[cfg(test)]

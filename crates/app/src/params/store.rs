@@ -117,7 +117,7 @@ impl<F: NorFlash> Store<F> {
             .saturating_add(1)
             .saturating_sub(self.active.next_slot);
         StoreReport {
-            generation: self.newest(0).map_or(0, |(_, generation)| generation),
+            generation: self.active_sector().map_or(0, |(_, generation)| generation),
             damaged: self.damaged,
             free_slots: free.into(),
         }
@@ -155,7 +155,7 @@ impl<F: NorFlash> Store<F> {
     }
 
     fn plan(&self, want_write: bool) -> Option<Step> {
-        let active = self.newest(0);
+        let active = self.active_sector();
         if let Some((sector, generation)) = active {
             if !self.active.head_is_proven {
                 return Some(Step::ProveHead { sector, generation });

@@ -19,12 +19,6 @@ fn the_record() -> Record {
     }
 }
 
-/// The check value of CRC-32/ISO-HDLC in the catalogue of CRCs.
-#[test]
-fn the_checksum_is_that_of_zip() {
-    assert_eq!(checksum(b"123456789"), 0xCBF4_3926);
-}
-
 #[test]
 fn a_record_lies_in_its_slot_as_documented() {
     assert_eq!(Slot::of(&the_record()).bytes, by_hand());

@@ -2,7 +2,7 @@
 
 use embedded_storage::nor_flash::NorFlash;
 
-use super::{SECTORS, Store};
+use super::{SECTORS, Sector, Store};
 use crate::params::{
     ParamError,
     sector::{CLEAN, HEAD_BYTES, SECTOR_BYTES, SectorState, offset},
@@ -10,18 +10,17 @@ use crate::params::{
 
 impl<F: NorFlash> Store<F> {
     /// Never the active sector. Garbage before the oldest backup; what failed before, after everything else.
+    #[inline(never)]
     pub(super) fn victim(&self) -> Option<u8> {
-        let active = self.newest(0).map(|(sector, _)| sector);
-        let numbered = self.sectors.iter().zip(0..SECTORS);
-        let candidates = numbered.filter(|(_, number)| Some(*number) != active);
-        let victim = candidates.min_by_key(|(sector, _)| {
-            let age = match sector.state {
-                SectorState::Headed { generation } => generation,
-                SectorState::Clean | SectorState::Garbage => 0,
-            };
-            (sector.failed, age)
-        });
-        victim.map(|(_, number)| number)
+        let active = self.active_sector().map(|(sector, _)| sector);
+        let mut victim = None;
+        for (sector, number) in self.sectors.iter().zip(0..SECTORS) {
+            let rank = sector.rank();
+            if Some(number) != active && victim.is_none_or(|(_, lowest)| rank < lowest) {
+                victim = Some((number, rank));
+            }
+        }
+        victim.map(|(number, _)| number)
     }
 
     pub(super) fn erase(&mut self, sector: u8) -> Result<(), ParamError> {
@@ -53,5 +52,16 @@ impl<F: NorFlash> Store<F> {
         if let Some(sector) = self.sectors.get_mut(usize::from(sector)) {
             sector.failed = failed;
         }
+    }
+}
+
+impl Sector {
+    /// The lowest is erased first.
+    fn rank(&self) -> u64 {
+        let age = match self.state {
+            SectorState::Headed { generation } => generation,
+            SectorState::Clean | SectorState::Garbage => 0,
+        };
+        u64::from(self.failed) << 32 | u64::from(age)
     }
 }

@@ -24,6 +24,7 @@ impl<F: NorFlash> Store<F> {
     }
 
     /// Guard first: a bit it leaves half programmed changes nothing. Checksum last: without it there is no record.
+    #[inline(never)]
     pub(super) fn write_slot(
         &mut self,
         sector: u8,
@@ -73,8 +74,11 @@ impl<F: NorFlash> Store<F> {
     }
 
     /// One copy after the other; one that reads back is enough.
+    #[inline(never)]
     pub(super) fn write_head(&mut self, sector: u8, generation: u32) -> Result<(), ParamError> {
-        self.program(sector, 0, COPIES_AT, &commitment(generation))?;
+        for at in COPIES_AT {
+            self.program(sector, 0, at, &commitment(generation))?;
+        }
         if self.read_head(sector).generation() != Some(generation) {
             return Err(ParamError::NotProgrammed);
         }
@@ -82,6 +86,7 @@ impl<F: NorFlash> Store<F> {
     }
 
     /// `at` and the length are multiples of a word.
+    #[inline(never)]
     pub(super) fn program(
         &mut self,
         sector: u8,

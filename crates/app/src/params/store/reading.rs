@@ -13,8 +13,8 @@ use crate::params::{
 /// From the newest slot to the oldest, over all sectors with a head.
 #[derive(Debug)]
 pub(super) struct Walk {
-    /// 0 is the active sector.
-    rank: u8,
+    /// Sectors from this generation on are done with.
+    below: u32,
     slot: u8,
     /// Met already, in a newer copy.
     seen: Vec<RecordId, MAX_RECORDS>,
@@ -23,7 +23,7 @@ pub(super) struct Walk {
 impl Walk {
     pub fn new() -> Self {
         Self {
-            rank: 0,
+            below: u32::MAX,
             slot: LAST_SLOT,
             seen: Vec::new(),
         }
@@ -38,6 +38,7 @@ impl Walk {
 
 impl<F: NorFlash> Store<F> {
     /// Learns everything anew, except which sectors failed.
+    #[inline(never)]
     pub(super) fn scan(&mut self) {
         for sector in 0..SECTORS {
             let state = self.read_state(sector);
@@ -46,7 +47,7 @@ impl<F: NorFlash> Store<F> {
         self.rotation = None;
         self.active = Active::FULL;
         self.damaged = 0;
-        if let Some((sector, _)) = self.newest(0) {
+        if let Some((sector, _)) = self.active_sector() {
             self.scan_active(sector);
         }
     }
@@ -78,6 +79,7 @@ impl<F: NorFlash> Store<F> {
         SectorState::Garbage
     }
 
+    #[inline(never)]
     pub(super) fn has_blank_slots(&mut self, sector: u8) -> bool {
         (FIRST_SLOT..=LAST_SLOT).all(|slot| self.read_slot(sector, slot).is_blank())
     }
@@ -88,28 +90,30 @@ impl<F: NorFlash> Store<F> {
         }
     }
 
-    /// Sector and generation; rank 0 has the highest.
-    pub(super) fn newest(&self, rank: u8) -> Option<(u8, u32)> {
-        let mut taken = [false; SECTORS as usize];
+    /// The active sector and its generation.
+    pub(super) fn active_sector(&self) -> Option<(u8, u32)> {
+        self.newest_below(u32::MAX)
+    }
+
+    /// Sector and generation of the newest one that is older.
+    #[inline(never)]
+    fn newest_below(&self, limit: u32) -> Option<(u8, u32)> {
         let mut found = None;
-        for _ in 0..=rank {
-            found = None;
-            for ((sector, number), taken) in self.sectors.iter().zip(0..).zip(&taken) {
-                if let SectorState::Headed { generation } = sector.state
-                    && !taken
-                    && found.is_none_or(|(_, highest)| generation > highest)
-                {
-                    found = Some((number, generation));
-                }
+        for (sector, number) in self.sectors.iter().zip(0..) {
+            if let SectorState::Headed { generation } = sector.state
+                && generation < limit
+                && found.is_none_or(|(_, highest)| generation > highest)
+            {
+                found = Some((number, generation));
             }
-            *taken.get_mut(usize::from(found?.0))? = true;
         }
         found
     }
 
     /// The newest copy of a record not met yet.
+    #[inline(never)]
     pub(super) fn next_newest(&mut self, walk: &mut Walk) -> Option<Slot> {
-        while let Some((sector, _)) = self.newest(walk.rank) {
+        while let Some((sector, generation)) = self.newest_below(walk.below) {
             while walk.slot >= FIRST_SLOT {
                 let slot = self.read_slot(sector, walk.slot);
                 walk.slot = walk.slot.saturating_sub(1);
@@ -118,7 +122,7 @@ impl<F: NorFlash> Store<F> {
                     return Some(slot);
                 }
             }
-            walk.rank = walk.rank.saturating_add(1);
+            walk.below = generation;
             walk.slot = LAST_SLOT;
         }
         None
@@ -131,6 +135,7 @@ impl<F: NorFlash> Store<F> {
     }
 
     /// What cannot be read is neither blank nor a record.
+    #[inline(never)]
     pub(super) fn read_slot(&mut self, sector: u8, slot: u8) -> Slot {
         let mut bytes = [0; SLOT_BYTES];
         if self.flash.read(offset(sector, slot), &mut bytes).is_err() {

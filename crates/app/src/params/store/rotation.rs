@@ -16,6 +16,7 @@ pub(super) struct Rotation {
 }
 
 impl<F: NorFlash> Store<F> {
+    #[inline(never)]
     pub(super) fn clean_sector(&self) -> Option<u8> {
         let mut numbered = self.sectors.iter().zip(0..);
         let clean = numbered.find(|(sector, _)| sector.state == SectorState::Clean);
@@ -58,7 +59,7 @@ impl<F: NorFlash> Store<F> {
     }
 
     fn commit(&mut self, rotation: &Rotation) -> Result<(), ParamError> {
-        let generation = self.newest(0).map_or(0, |(_, generation)| generation);
+        let generation = self.active_sector().map_or(0, |(_, generation)| generation);
         let generation = generation.saturating_add(1);
         if let Err(error) = self.write_head(rotation.target, generation) {
             // It may count as a head all the same.
