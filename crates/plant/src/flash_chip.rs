@@ -40,7 +40,8 @@ pub enum FlashError {
     OtherSector(u8),
 }
 
-/// Contents, wear and defects of sectors 1–3, where the parameters are kept. Everything random in it follows from the seed.
+/// Contents, wear and defects of sectors 1–3, where the parameters are kept. Everything random in it follows from the
+/// seed.
 #[derive(Clone, Debug)]
 pub struct FlashChip {
     cells: Cells,

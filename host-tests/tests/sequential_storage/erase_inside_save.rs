@@ -4,7 +4,8 @@ use robot_plant::flash_chip::{FlashChip, Phase};
 
 use crate::{
     flash::erases,
-    settings::{Save, load, store},
+    settings::{Keeper, Save},
+    the_crate::SequentialStorage,
 };
 
 /// Saves from a blank chip to the first that erases; the chip before it, and that save.
@@ -13,7 +14,7 @@ fn first_erasing_save() -> (FlashChip, Save) {
     for number in 0.. {
         let before = chip.clone();
         let save = Save::nth(number);
-        store(&mut chip, save).unwrap();
+        assert!(SequentialStorage.save(&mut chip, save));
         if erases(&chip) > 0 {
             return (before, save);
         }
@@ -28,7 +29,7 @@ fn a_save_erases_without_being_asked() {
     let (mut erasing, mut most_words) = (0, 0);
     for number in 0..saves {
         let (erased, words) = (erases(&chip), chip.programs());
-        store(&mut chip, Save::nth(number)).unwrap();
+        assert!(SequentialStorage.save(&mut chip, Save::nth(number)));
         erasing += u32::from(erases(&chip) > erased);
         most_words = most_words.max(chip.programs() - words);
     }
@@ -40,15 +41,15 @@ fn a_save_erases_without_being_asked() {
 fn the_save_after_a_cut_may_erase_twice() {
     let (before, save) = first_erasing_save();
     let mut whole = before.clone();
-    store(&mut whole, save).unwrap();
+    assert!(SequentialStorage.save(&mut whole, save));
     let most = (before.steps()..whole.steps())
         .map(|step| {
             let mut chip = before.clone();
             chip.cut_at(step, Phase::After);
-            assert!(store(&mut chip, save).is_err());
+            assert!(!SequentialStorage.save(&mut chip, save));
             chip.power_up();
             let erased = erases(&chip);
-            store(&mut chip, save).unwrap();
+            assert!(SequentialStorage.save(&mut chip, save));
             erases(&chip) - erased
         })
         .max();
@@ -62,7 +63,7 @@ fn a_boot_may_erase_before_it_has_read_anything() {
         .find(|&step| {
             let mut chip = before.clone();
             chip.cut_at(step, Phase::After);
-            assert!(store(&mut chip, save).is_err());
+            assert!(!SequentialStorage.save(&mut chip, save));
             erases(&chip) > 0
         })
         .unwrap();
@@ -71,10 +72,10 @@ fn a_boot_may_erase_before_it_has_read_anything() {
             let mut chip = before.clone();
             chip.reseed(seed);
             chip.cut_at(erase_step, Phase::Middle);
-            assert!(store(&mut chip, save).is_err());
+            assert!(!SequentialStorage.save(&mut chip, save));
             chip.power_up();
             let erased = erases(&chip);
-            load(&mut chip);
+            SequentialStorage.load(&mut chip);
             erases(&chip) > erased
         })
         .count();
