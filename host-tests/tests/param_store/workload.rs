@@ -32,6 +32,19 @@ pub struct Moment {
 }
 
 impl Moment {
+    /// Saves `record`; `contents` is what must be in the chip before, then after.
+    pub fn at(chip: &mut FlashChip, contents: &mut Contents, record: Record) -> Self {
+        let mut moment = Self {
+            chip: chip.clone(),
+            contents: contents.clone(),
+            record,
+            steps: chip.steps()..0,
+        };
+        *contents = moment.run(chip).saved;
+        moment.steps.end = chip.steps();
+        moment
+    }
+
     /// The save and what follows, up to the end or the power cut.
     pub fn run(&self, chip: &mut FlashChip) -> Ledger {
         let mut ledger = Ledger::of(self.contents.clone());
@@ -54,15 +67,7 @@ pub fn moments() -> Vec<Moment> {
     let mut moments = Vec::new();
     let first = generation(&mut chip);
     for count in BEFORE..end {
-        let mut moment = Moment {
-            chip: chip.clone(),
-            contents: contents.clone(),
-            record: nth_save(count),
-            steps: chip.steps()..0,
-        };
-        contents = moment.run(&mut chip).saved;
-        moment.steps.end = chip.steps();
-        moments.push(moment);
+        moments.push(Moment::at(&mut chip, &mut contents, nth_save(count)));
     }
     let changes = generation(&mut chip) - first;
     assert_eq!(changes as usize, CHANGES_OF_SECTOR);
