@@ -4,9 +4,12 @@ use robot_app::{
     domain::RobotConfig,
     params::{FlashRequest, ParamError, ParamState},
 };
-use robot_plant::flash_chip::{EraseFault, PARAMETER_SECTORS, StuckBit};
+use robot_plant::flash_chip::{EraseFault, StuckBit, sector_range};
 
-use crate::robot::{Chip, Robot};
+use crate::{
+    dump,
+    robot::{Chip, Robot},
+};
 
 #[test]
 fn a_save_comes_half_a_second_after_the_last_change() {
@@ -121,17 +124,25 @@ fn a_worn_out_place_costs_a_second() {
 /// The spare sector cannot be had, but there is room in the active one.
 #[test]
 fn sectors_that_cannot_be_erased_do_not_delay_a_save() {
-    let chip = Chip::blank();
-    let mut robot = Robot::boot(&chip);
-    for sector in PARAMETER_SECTORS {
-        let fault = Some(EraseFault::LeavesSomeWords);
-        chip.cells.borrow_mut().set_erase_fault(sector, fault);
+    let chip = dump::chip(1, &[]);
+    for sector in [2, 3] {
+        let mut cells = chip.cells.borrow_mut();
+        let range = sector_range(sector).unwrap();
+        cells
+            .set_contents(range.start, &vec![0x5A; range.len()])
+            .unwrap();
+        cells.set_erase_fault(sector, Some(EraseFault::DoesNothing));
     }
-    for number in 0..100u8 {
+    let mut robot = Robot::boot(&chip);
+    assert_eq!(robot.status().last_error, ParamError::NotErased);
+    for number in 0..50u8 {
         robot.change(|config| config.heater.target_c = 20.0 + f32::from(number) * 0.1);
         robot.run_ms(520);
         assert_eq!(robot.status().unsaved, 0, "save {number}");
     }
+    // At boot and after 1, 10 and no more of these 26 s.
+    assert_eq!((robot.status().erases, robot.status().save_failed), (3, 3));
+    assert_eq!(robot.status().state, ParamState::BackingOff);
     assert_eq!(Robot::boot(&chip).config, robot.config);
 }
 
