@@ -164,7 +164,7 @@ fn shown(time: Option<Ps>) -> String {
 #[test]
 fn every_failure_of_the_image_ends_without_torque() {
     support::image();
-    let names: Vec<&str> = faults::all().map(|fault| fault.name).collect();
+    let names: Vec<&str> = faults::of_the_program().map(|fault| fault.name).collect();
     let queue = Mutex::new(names.iter());
     let reactions = Mutex::new(Vec::new());
     thread::scope(|scope| {

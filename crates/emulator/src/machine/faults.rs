@@ -72,6 +72,7 @@ const ENTRIES: &[Entry] = &[
     entry("task-asleep-sbus", Place::Task("sbus"), Failure::Asleep, "the sbus task is never run, all others are"),
     entry("task-asleep-logic", Place::Task("logic"), Failure::Asleep, "the logic task is never run, all others are"),
     entry("task-asleep-status", Place::Task("status"), Failure::Asleep, "the status task is never run, all others are"),
+    entry("task-asleep-params", Place::Task("params"), Failure::Asleep, "the params task is never run, all others are"),
     board("power-cut", Kind::PowerCut, "the board and its sensors have no power; motors, radio and PC have; then it boots"),
     board("flash-stuck-bits", Kind::FlashStuckBits, "one bit in every word of the parameter sectors is stuck at 1"),
     board("flash-erase-fails", Kind::FlashEraseFails, "erasing a parameter sector takes its time and does nothing"),
@@ -80,6 +81,13 @@ const ENTRIES: &[Entry] = &[
 /// Every fault of the machine.
 pub fn all() -> impl Iterator<Item = &'static FaultInfo> {
     ENTRIES.iter().map(|entry| &entry.info)
+}
+
+/// Those after which the program no longer does its work, until a reset.
+pub fn of_the_program() -> impl Iterator<Item = &'static FaultInfo> {
+    let failures = ENTRIES.iter();
+    let failures = failures.filter(|entry| matches!(entry.kind, Kind::Program(..)));
+    failures.map(|entry| &entry.info)
 }
 
 impl Machine {

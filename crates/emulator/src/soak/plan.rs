@@ -21,9 +21,6 @@ const BOOTED: Ps = 2_500 * MS;
 const WRITE: u32 = 0x7A0;
 const READ: u32 = 0x7A1;
 
-/// Faults of the machine that somebody has to end.
-const LASTING: [&str; 3] = ["power-cut", "flash-stuck-bits", "flash-erase-fails"];
-
 /// Who acts next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Actor {
@@ -199,8 +196,8 @@ impl Plan {
         let names: Vec<&str> = faults::all().map(|fault| fault.name).collect();
         if let Some(name) = self.dice.pick(&names) {
             self.then(at, Deed::StartFault((*name).to_owned()));
-            // A reset ends the others.
-            if LASTING.contains(name) {
+            let ends_by_reset = faults::of_the_program().any(|fault| fault.name == *name);
+            if !ends_by_reset {
                 let end = at + self.dice.time(10.0, 250.0);
                 self.then(end, Deed::EndFault((*name).to_owned()));
             }

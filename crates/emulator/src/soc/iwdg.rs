@@ -95,8 +95,16 @@ impl Iwdg {
     /// The counter starts again at `from`; it passes zero after one period more (RM0090 table 107: RLR = 0 is one
     /// period).
     fn count_from(&mut self, from: u32, ctx: &mut Ctx<'_>) {
-        let divider = 4u64 << self.prescaler.effective(ctx.now).min(6);
-        let at = ctx.now + cycles_to_ps((u64::from(from) + 1) * divider, LSI_HZ);
+        self.expire_after(u64::from(from) + 1, ctx);
+    }
+
+    /// So many periods of the prescaler from now, which may change its divider on the way.
+    fn expire_after(&mut self, periods: u64, ctx: &mut Ctx<'_>) {
+        let now = period(self.prescaler.effective(ctx.now));
+        let change = self.prescaler.pending.map(|(at, _)| at);
+        let change = change.filter(|at| (ctx.now..Ps::MAX).contains(at));
+        let before = change.map_or(periods, |at| ((at - ctx.now) / now).min(periods));
+        let at = ctx.now + before * now + (periods - before) * period(self.prescaler.value);
         self.expires_at = Some(at);
         if self.watched_at.is_none_or(|watched| at < watched) {
             self.watch(at, ctx);
@@ -149,6 +157,12 @@ impl Iwdg {
             None => register.write(value, ctx.now),
         }
     }
+
+    /// Periods of the prescaler until the counter runs out.
+    fn periods_left(&self, now: Ps) -> Option<u64> {
+        let left = self.expires_at?.saturating_sub(now);
+        Some(left.div_ceil(period(self.prescaler.effective(now))))
+    }
 }
 
 impl Peripheral for Iwdg {
@@ -178,7 +192,15 @@ impl Peripheral for Iwdg {
         let value = access.written_over(0, value);
         match access.register {
             0x0 => self.key(value & 0xFFFF, ctx),
-            0x4 => self.write_guarded("PR", value & 7, ctx),
+            0x4 => {
+                let left = self.periods_left(ctx.now);
+                self.write_guarded("PR", value & 7, ctx);
+                self.cross(ctx);
+                // What is left to count goes on at the new divider once that has crossed.
+                if let Some(periods) = left {
+                    self.expire_after(periods, ctx);
+                }
+            }
             0x8 => self.write_guarded("RLR", value & 0xFFF, ctx),
             0xC => {}
             other => return Err(unmodelled(other, format!("write of {value:#010x}"))),
@@ -201,6 +223,11 @@ impl Peripheral for Iwdg {
     fn reset(&mut self, _ctx: &mut Ctx<'_>) {
         *self = Self::new();
     }
+}
+
+/// One count at that value of PR.
+fn period(prescaler: u32) -> Ps {
+    cycles_to_ps(4 << prescaler.min(6), LSI_HZ)
 }
 
 fn unmodelled(register: u32, what: String) -> Unmodelled {

@@ -171,6 +171,7 @@ pub fn rows() -> Vec<Row> {
         joints(),
         power_and_pose(),
         image(),
+        supply_and_flash(),
     ]
     .concat()
 }
@@ -390,6 +391,24 @@ fn power_and_pose() -> Vec<Row> {
     ]
 }
 
+/// Nothing is saved while armed, and a robot whose settings cannot be kept drives all the same.
+fn supply_and_flash() -> Vec<Row> {
+    // The motors have power of their own: a DM4310 that hears nothing for 100 ms goes limp by itself. The board boots
+    // disarmed, and takes the sensors' calibration and the motors' set-up first.
+    let power_cut = row(
+        "power-cut",
+        Group::Unreachable,
+        Group::Zero(105.0),
+        Flags::default(),
+        After::Off,
+    );
+    vec![
+        power_cut.resetting().back_within_ms(3_000.0),
+        harmless("flash-stuck-bits", Flags::default()),
+        harmless("flash-erase-fails", Flags::default()),
+    ]
+}
+
 /// Design, section 6: panic 1 ms; hang: reset within 60 ms, zero within 20 ms of it.
 fn image() -> Vec<Row> {
     let mut rows = Vec::new();
@@ -418,6 +437,7 @@ fn image() -> Vec<Row> {
         "task-asleep-sbus",
         "task-asleep-logic",
         "task-asleep-status",
+        "task-asleep-params",
     ] {
         rows.push(global(fault, 80.0, late()).resetting());
     }

@@ -8,6 +8,7 @@ use robot_plant::{
 use super::*;
 
 mod sabotage;
+mod standstill;
 
 const TRACE: u32 = 0x2000_0000;
 const CODE: u32 = 0x0800_0200;

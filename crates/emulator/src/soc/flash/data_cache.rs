@@ -18,12 +18,10 @@ impl DataCache {
         self.may_hold |= on;
     }
 
-    /// Takes effect only while the cache is off.
+    /// Empties it; can be done only while it is off.
     pub fn reset(&mut self) {
-        if !self.on {
-            self.stale.clear();
-            self.may_hold = false;
-        }
+        self.stale.clear();
+        self.may_hold = false;
     }
 
     /// What the core gets instead of the cells' word at `address`.

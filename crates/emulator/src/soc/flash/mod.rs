@@ -299,16 +299,20 @@ impl Flash {
 
     fn write_access_control(&mut self, value: u32, ctx: &mut Ctx<'_>) {
         let value = value & acr::KNOWN;
-        if value & acr::RESET_CACHES != 0 && self.acr & acr::ICEN_DCEN != 0 {
-            ctx.errors.report(
-                ctx.now,
-                "FLASH: ACR cache reset while the caches are on: ignored",
-            );
+        let enabled = self.acr | value;
+        for (reset, enable, name) in [
+            (acr::ICRST, acr::ICEN, "instruction"),
+            (acr::DCRST, acr::DCEN, "data"),
+        ] {
+            if value & reset != 0 && enabled & enable != 0 {
+                let message = format!("FLASH: {name} cache reset while it is on: ignored");
+                ctx.errors.report(ctx.now, message);
+            }
         }
-        self.acr = value;
-        if value & acr::DCRST != 0 {
+        if value & acr::DCRST != 0 && enabled & acr::DCEN == 0 {
             self.cache.reset();
         }
+        self.acr = value;
         self.cache.switch(value & acr::DCEN != 0);
         self.check_speed(ctx);
     }

@@ -2,12 +2,12 @@
 
 pub mod acr {
     pub const LATENCY: u32 = 0x7;
+    pub const PRFTEN: u32 = 1 << 8;
+    pub const ICEN: u32 = 1 << 9;
     pub const DCEN: u32 = 1 << 10;
+    pub const ICRST: u32 = 1 << 11;
     pub const DCRST: u32 = 1 << 12;
-    pub const ICEN_DCEN: u32 = 0x600;
-    pub const RESET_CACHES: u32 = 0x1800;
-    /// LATENCY, PRFTEN and the cache bits.
-    pub const KNOWN: u32 = LATENCY | 0x100 | ICEN_DCEN | RESET_CACHES;
+    pub const KNOWN: u32 = LATENCY | PRFTEN | ICEN | DCEN | ICRST | DCRST;
 }
 
 pub mod sr {

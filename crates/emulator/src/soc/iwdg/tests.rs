@@ -97,3 +97,53 @@ fn registers_are_locked_without_the_key() {
     assert_eq!(bench.read(&mut iwdg, RLR), 0xFFF);
     assert!(bench.error_texts()[0].starts_with("IWDG: RLR"));
 }
+
+/// A watchdog of 18 ms that runs, at time 0.
+fn running() -> (Bench, Iwdg) {
+    let (mut bench, mut iwdg) = with_lsi();
+    bench.write(&mut iwdg, KR, 0x5555);
+    bench.write(&mut iwdg, RLR, 143);
+    bench.run(&mut iwdg, MS);
+    bench.write(&mut iwdg, KR, 0xCCCC);
+    bench.write(&mut iwdg, KR, 0xAAAA);
+    (bench, iwdg)
+}
+
+#[test]
+fn a_running_watchdog_is_lengthened_by_pr_rlr_and_a_reload() {
+    let (mut bench, mut iwdg) = running();
+    bench.write(&mut iwdg, KR, 0x5555);
+    bench.write(&mut iwdg, PR, 4);
+    bench.write(&mut iwdg, RLR, 999);
+    assert_eq!(bench.read(&mut iwdg, SR), 3, "PVU and RVU");
+    bench.run(&mut iwdg, MS + 200 * US);
+    assert_eq!(bench.read(&mut iwdg, SR), 0);
+    bench.write(&mut iwdg, KR, 0xAAAA);
+    // 1,000 periods of 64 LSI cycles: 2 s.
+    bench.run(&mut iwdg, MS + 200 * US + 1_999 * MS);
+    assert!(!iwdg.take_reset_request());
+    bench.run(&mut iwdg, MS + 200 * US + 2_000 * MS);
+    assert!(iwdg.take_reset_request());
+}
+
+#[test]
+fn a_new_reload_value_counts_from_the_next_reload_only() {
+    let (mut bench, mut iwdg) = running();
+    bench.write(&mut iwdg, KR, 0x5555);
+    bench.write(&mut iwdg, RLR, 0xFFF);
+    bench.run(&mut iwdg, MS + 18 * MS);
+    assert!(iwdg.take_reset_request());
+}
+
+#[test]
+fn a_new_divider_counts_from_its_crossing_on() {
+    let (mut bench, mut iwdg) = running();
+    bench.write(&mut iwdg, KR, 0x5555);
+    bench.write(&mut iwdg, PR, 1);
+    // One of 144 periods is over when PR has crossed after 156 µs; the others take 250 µs each.
+    let end = MS + 125 * US + 143 * 250 * US;
+    bench.run(&mut iwdg, end - US);
+    assert!(!iwdg.take_reset_request());
+    bench.run(&mut iwdg, end + US);
+    assert!(iwdg.take_reset_request());
+}

@@ -46,6 +46,21 @@ fn reads_the_example_of_the_design() {
 }
 
 #[test]
+fn the_flash_starts_as_the_scenario_says() {
+    let text = format!("{HEAD}[flash]\nimage = \"worn.bin\"\ntimes = \"max\"\nseed = 3\n");
+    let read = Scenario::parse(&text, "scenarios/s.toml").unwrap();
+    let wanted = FlashSetup {
+        image: Some("scenarios/worn.bin".into()),
+        times: FlashTimes::Max,
+        seed: Some(3),
+    };
+    assert_eq!(read.flash, wanted);
+    let plain = Scenario::parse(HEAD, "s.toml").unwrap();
+    assert_eq!(plain.flash, FlashSetup::default());
+    assert_eq!(plain.flash.times, FlashTimes::Typical);
+}
+
+#[test]
 fn errors_name_the_line() {
     assert!(error_of("bogus = 1\n").starts_with("s.toml:4: unknown field `bogus`"));
     let late = error_of("[[at]]\nt = 1\nremote = {}\n[[at]]\nt = 9\nremote = {}\n");
