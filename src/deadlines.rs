@@ -59,15 +59,24 @@ impl Watched {
 const DEADLINE_US: u32 = 25_000;
 
 /// Gives every task a first deadline, counted from now: at boot and after a stall.
+#[inline(never)]
 pub fn start() {
     for task in Watched::ALL {
         task.check_in();
     }
 }
 
+/// Whether any task missed its deadline.
+pub fn any_late(now_us: u64) -> bool {
+    let now_us = now_us as u32;
+    Watched::ALL.iter().any(|task| task.is_late(now_us))
+}
+
 /// The tasks that missed their deadline.
-pub fn late_tasks() -> LateTasks {
-    let now_us = now_us();
+#[cold]
+#[inline(never)]
+pub fn late_tasks(now_us: u64) -> LateTasks {
+    let now_us = now_us as u32;
     LateTasks {
         imu: Watched::Imu.is_late(now_us),
         mag: Watched::Mag.is_late(now_us),

@@ -64,7 +64,13 @@ impl SteadyTicker {
     pub async fn next(&mut self) {
         self.ticker.next().await;
         if self.stalls.news().is_some() {
-            self.ticker.reset();
+            self.restart();
         }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn restart(&mut self) {
+        self.ticker.reset();
     }
 }

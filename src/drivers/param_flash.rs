@@ -33,6 +33,7 @@ impl ErrorType for ParamFlash {
 impl ReadNorFlash for ParamFlash {
     const READ_SIZE: usize = 1;
 
+    #[inline(never)]
     fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), Error> {
         let from = place(offset, bytes.len())?;
         self.0.blocking_read(from, bytes)
@@ -48,6 +49,7 @@ impl NorFlash for ParamFlash {
     const ERASE_SIZE: usize = 0x4000;
 
     /// Word by word; interrupts run in between.
+    #[inline(never)]
     fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), Error> {
         let from = place(offset, bytes.len())?;
         let result = self.0.blocking_write(from, bytes);
@@ -55,6 +57,7 @@ impl NorFlash for ParamFlash {
         result
     }
 
+    #[inline(never)]
     fn erase(&mut self, from: u32, to: u32) -> Result<(), Error> {
         let len = to.checked_sub(from).ok_or(Error::Size)?;
         let from = place(from, len as usize)?;

@@ -6,7 +6,7 @@ use robot_app::diagnostics::DiagnosticsSnapshot;
 use robot_app::domain::{CalibrationState, LateTasks, RemoteUpdate, RobotConfig, SystemHealth};
 use robot_app::logic::LogicBus;
 use robot_app::params::FlashRequest;
-use robot_app::tick::{ControlInputs, ControlLoop};
+use robot_app::tick::{ControlInputs, ControlLoop, DIAGNOSTICS_PERIOD_TICKS};
 use robot_snapshot::{Follower, Writer};
 
 use crate::config::LAYOUT;
@@ -19,8 +19,6 @@ use crate::stall::{StallWatch, SteadyTicker};
 use crate::{LastRun, deadlines, last_words};
 
 const PERIOD: Duration = Duration::from_hz(1_000);
-/// Diagnostics go to the status task every tenth tick.
-const DIAGNOSTICS_DIVIDER: u32 = 10;
 
 /// What the other tasks publish.
 struct Inputs {
@@ -32,13 +30,32 @@ struct Inputs {
     params: Follower<'static, ParamsReport>,
 }
 
+impl Inputs {
+    /// Looks for newer values, and passes on what they say of the sensors' health.
+    fn follow(&mut self, health: &mut SystemHealth) {
+        if let Some(imu) = self.imu.news() {
+            health.imu = imu.health;
+            health.imu_status = imu.status;
+            health.imu_calibrated = imu.status.calibration.state == CalibrationState::Done;
+        }
+        if let Some(mag) = self.mag.news() {
+            health.mag = mag.health;
+        }
+        if let Some(battery_v) = self.battery_v.news() {
+            health.battery_v = *battery_v;
+        }
+        self.remote.latest();
+        self.logic.latest();
+        self.params.latest();
+    }
+}
+
 /// Everything the control tick owns.
 pub struct ControlContext {
     inputs: Inputs,
     ports: [CanPort; 2],
     watchdog: Watchdog,
-    last_run: LastRun,
-    late_tasks: LateTasks,
+    health: SystemHealth,
     stalls: StallWatch,
     control_loop: ControlLoop<UserController, &'static mut DiagnosticsSnapshot>,
     config: Writer<'static, ConfigUpdate>,
@@ -73,8 +90,11 @@ impl ControlContext {
             },
             ports,
             watchdog,
-            last_run,
-            late_tasks: LateTasks::default(),
+            health: SystemHealth {
+                reset_cause: last_run.reset_cause,
+                last_words: last_run.last_words,
+                ..SystemHealth::default()
+            },
             stalls: StallWatch::new(),
             control_loop: ControlLoop::with_diagnostics(
                 &LAYOUT,
@@ -109,8 +129,7 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
         inputs,
         ports,
         watchdog,
-        last_run,
-        late_tasks,
+        health,
         stalls,
         control_loop,
         config,
@@ -130,29 +149,17 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
         port.drain(|frame, ts_us| control_loop.on_can_frame(bus, frame, ts_us));
     }
 
-    note_late_tasks(late_tasks);
+    note_late_tasks(&mut health.late_tasks, now_us);
+    inputs.follow(health);
+    health.can = ports.each_ref().map(CanPort::health);
 
-    let imu = inputs.imu.latest();
-    let mag = inputs.mag.latest();
-    let health = SystemHealth {
-        can: ports.each_ref().map(CanPort::health),
-        imu: imu.health,
-        mag: mag.health,
-        radio_line: RADIO_LINE.health(),
-        imu_calibrated: imu.status.calibration.state == CalibrationState::Done,
-        imu_status: imu.status,
-        late_tasks: *late_tasks,
-        reset_cause: last_run.reset_cause,
-        last_words: last_run.last_words,
-        battery_v: *inputs.battery_v.latest(),
-    };
-    let params = inputs.params.latest();
+    let params = inputs.params.last();
     let inputs = ControlInputs {
-        remote: inputs.remote.latest(),
-        imu: &imu.state,
-        mag: &mag.state,
-        logic: inputs.logic.latest(),
-        health: &health,
+        remote: inputs.remote.last(),
+        imu: &inputs.imu.last().state,
+        mag: &inputs.mag.last().state,
+        logic: inputs.logic.last(),
+        health,
         params: &params.status,
         flash_request: params.request,
         watchdog: watchdog.period(),
@@ -183,19 +190,24 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
         .diagnostics
         .tick
         .count
-        .is_multiple_of(DIAGNOSTICS_DIVIDER)
+        .is_multiple_of(DIAGNOSTICS_PERIOD_TICKS)
     {
+        health.radio_line = RADIO_LINE.health();
         diagnostics.publish(outputs.diagnostics);
     }
     watchdog.set_long(flash.needs_long_watchdog);
-    if !late_tasks.any() {
+    if !health.late_tasks.any() {
         watchdog.feed();
     }
 }
 
 /// A late task stops the robot in this tick. It is logged from here, because the status task may be the late one.
-fn note_late_tasks(noted: &mut LateTasks) {
-    let late = deadlines::late_tasks();
+fn note_late_tasks(noted: &mut LateTasks, now_us: u64) {
+    let late = if deadlines::any_late(now_us) {
+        deadlines::late_tasks(now_us)
+    } else {
+        LateTasks::default()
+    };
     if late == *noted {
         return;
     }

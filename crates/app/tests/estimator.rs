@@ -68,7 +68,8 @@ impl Bench {
             };
         }
         let (imu, mag) = (&self.imu_sample, &self.mag_sample);
-        self.estimate = *self.estimator.step(imu, mag, &self.motor, self.now_us);
+        self.estimator
+            .step(imu, mag, &self.motor, self.now_us, &mut self.estimate);
     }
 
     fn run(&mut self, seconds: f64) {

@@ -31,6 +31,7 @@ mod slot;
 
 use slot::Slot;
 
+use core::mem::MaybeUninit;
 #[cfg(not(loom))]
 use core::{
     hint::spin_loop,
@@ -95,12 +96,16 @@ impl<T: Copy> Snapshot<T> {
     /// The newest published value, whole. Never waits for the writer; see the module text for
     /// when a copy is repeated.
     pub fn latest(&self) -> T {
-        self.read().1
+        let mut copy = MaybeUninit::uninit();
+        self.read(&mut copy);
+        // SAFETY: `read` leaves a whole value.
+        unsafe { copy.assume_init() }
     }
 
     /// A reader that keeps its copy.
     pub fn follower(&self) -> Follower<'_, T> {
-        let (seen, copy) = self.read();
+        let mut copy = MaybeUninit::uninit();
+        let seen = self.read(&mut copy);
         Follower {
             snapshot: self,
             seen,
@@ -108,20 +113,20 @@ impl<T: Copy> Snapshot<T> {
         }
     }
 
-    /// The newest value and the number of its publication.
-    fn read(&self) -> (u32, T) {
+    /// Fills `copy` with the newest value and gives the number of its publication.
+    fn read(&self, copy: &mut MaybeUninit<T>) -> u32 {
         loop {
             let newest = self.published.load(Ordering::Acquire);
-            let copy = self.slot(newest).load();
+            self.slot(newest).load(copy);
             // Pairs with the writer's release fence: whoever saw a word of a later publication
             // also sees that it began.
             fence(Ordering::Acquire);
             let begun = self.begun.load(Ordering::Relaxed);
             if begun.wrapping_sub(newest) <= 1 {
-                // SAFETY: publication `newest` was complete when its number was read, and the next
-                // one to use its slot, `newest + 2`, had not begun when the copy ended: every word
-                // comes from one value.
-                return (newest, unsafe { copy.assume_init() });
+                // Publication `newest` was complete when its number was read, and the next one to
+                // use its slot, `newest + 2`, had not begun when the copy ended: every word comes
+                // from one value.
+                return newest;
             }
             spin_loop();
         }
@@ -142,16 +147,34 @@ pub struct Follower<'a, T> {
     snapshot: &'a Snapshot<T>,
     /// Number of the publication that `copy` is of.
     seen: u32,
-    copy: T,
+    /// A whole value, except while `follow` fills it.
+    copy: MaybeUninit<T>,
 }
 
 impl<T: Copy> Follower<'_, T> {
     /// As [`Snapshot::latest`].
     pub fn latest(&mut self) -> &T {
-        if self.snapshot.published.load(Ordering::Acquire) != self.seen {
-            (self.seen, self.copy) = self.snapshot.read();
+        self.follow();
+        self.last()
+    }
+
+    /// The newest value, if it came since the last look.
+    pub fn news(&mut self) -> Option<&T> {
+        self.follow().then_some(self.last())
+    }
+
+    /// The value of the last look.
+    pub fn last(&self) -> &T {
+        // SAFETY: whole since the follower was made (see the field).
+        unsafe { self.copy.assume_init_ref() }
+    }
+
+    fn follow(&mut self) -> bool {
+        let is_new = self.snapshot.published.load(Ordering::Acquire) != self.seen;
+        if is_new {
+            self.seen = self.snapshot.read(&mut self.copy);
         }
-        &self.copy
+        is_new
     }
 }
 

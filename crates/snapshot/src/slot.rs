@@ -32,9 +32,8 @@ mod target {
             Self(UnsafeCell::new(MaybeUninit::new(init)))
         }
 
-        /// A copy that may mix words of several values if the slot was written meanwhile.
-        pub fn load(&self) -> MaybeUninit<T> {
-            let mut copy = MaybeUninit::<T>::uninit();
+        /// What ends up in `copy` may mix words of several values if the slot was written meanwhile.
+        pub fn load(&self, copy: &mut MaybeUninit<T>) {
             let to = copy.as_mut_ptr().cast::<MaybeUninit<u32>>();
             for index in 0..Self::WORDS {
                 let word = self.word(index).load(Ordering::Relaxed);
@@ -42,7 +41,6 @@ mod target {
                 // that `T` is aligned for it.
                 unsafe { to.add(index).write(word) };
             }
-            copy
         }
 
         /// Must not run twice at a time: `Snapshot` has one writer.
@@ -89,14 +87,12 @@ mod model {
             }
         }
 
-        pub fn load(&self) -> MaybeUninit<T> {
-            let mut copy = MaybeUninit::<T>::uninit();
+        pub fn load(&self, copy: &mut MaybeUninit<T>) {
             let to = copy.as_mut_ptr().cast::<u32>();
             for (index, word) in self.words.iter().enumerate() {
                 // SAFETY: there are as many words as `T` has, and `words` has checked alignment.
                 unsafe { to.add(index).write(word.load(Ordering::Relaxed)) };
             }
-            copy
         }
 
         pub fn store(&self, value: &T) {

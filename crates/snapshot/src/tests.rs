@@ -49,6 +49,20 @@ fn a_follower_starts_with_the_value_there_is_and_keeps_up() {
 }
 
 #[test]
+fn news_is_told_once_and_the_last_look_stays() {
+    let snapshot = Snapshot::new(message(3));
+    let mut follower = snapshot.follower();
+    let mut writer = snapshot.writer().expect("first request");
+    assert_eq!(follower.news(), None);
+    writer.publish(&message(4));
+    writer.publish(&message(5));
+    assert_eq!(*follower.last(), message(3));
+    assert_eq!(follower.news(), Some(&message(5)));
+    assert_eq!(follower.news(), None);
+    assert_eq!(*follower.last(), message(5));
+}
+
+#[test]
 fn there_is_one_writer() {
     let snapshot = Snapshot::new(0_u64);
     assert!(snapshot.writer().is_some());

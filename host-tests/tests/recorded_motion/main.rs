@@ -7,7 +7,7 @@ mod score;
 mod trial;
 
 use robot_app::{
-    domain::{ImuState, MagState, MotorFeedback, WheelOdomConfig},
+    domain::{ImuState, MagState, MotorFeedback, StateEstimate, WheelOdomConfig},
     estimation::InsEstimator,
 };
 use score::{AttitudeError, Rmse};
@@ -28,6 +28,7 @@ enum Sensors {
 fn run(trial: &Trial, sensors: Sensors) -> Rmse {
     let mut estimator = InsEstimator::new(WheelOdomConfig::default());
     let motor = MotorFeedback::default();
+    let mut estimate = StateEstimate::default();
     let mut mag = MagState::default();
     let mut rmse = Rmse::default();
     for (index, row) in trial.rows.iter().enumerate() {
@@ -45,7 +46,7 @@ fn run(trial: &Trial, sensors: Sensors) -> Rmse {
             };
         }
         for step in 0..5 {
-            let estimate = estimator.step(&imu, &mag, &motor, ts_us + step * 1_000);
+            estimator.step(&imu, &mag, &motor, ts_us + step * 1_000, &mut estimate);
             let share = step as f64 / 5.0;
             if let Some(reference) = trial.scored_reference(index, share) {
                 rmse.add(AttitudeError::between(

@@ -52,6 +52,8 @@ impl CanPort {
     }
 
     /// After a stall of the whole chip: what is in the queues came at unknown times, and what is missing is no fault.
+    #[cold]
+    #[inline(never)]
     pub fn drop_backlog(&mut self) {
         for source in &mut self.sources {
             while source.queue.dequeue().is_some() {}

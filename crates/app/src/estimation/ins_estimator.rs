@@ -32,7 +32,8 @@ pub struct InsEstimator {
     mag_ts_us: u64,
     applied_bias_dps: Vector3,
     settled_samples: u16,
-    estimate: StateEstimate,
+    /// Last tick, 0 = none yet.
+    ts_us: u64,
 }
 
 impl InsEstimator {
@@ -45,7 +46,7 @@ impl InsEstimator {
             mag_ts_us: 0,
             applied_bias_dps: [0.0; 3],
             settled_samples: 0,
-            estimate: StateEstimate::default(),
+            ts_us: 0,
         }
     }
 
@@ -54,17 +55,19 @@ impl InsEstimator {
         self.odometry.set_config(odometry);
     }
 
-    /// `motor`: with ages as of `now_us`. What makes the estimate invalid is listed at [`StateEstimate::valid`].
+    /// Renews `estimate`. `motor`: with ages as of `now_us`. What makes the estimate invalid is listed at
+    /// [`StateEstimate::valid`].
     pub fn step(
         &mut self,
         imu: &ImuState,
         mag: &MagState,
         motor: &MotorFeedback,
         now_us: u64,
-    ) -> &StateEstimate {
-        let tick_us = age_us(self.estimate.ts_us, now_us);
-        let first = self.estimate.ts_us == 0;
-        let in_time = first || (now_us > self.estimate.ts_us && tick_us <= MAX_TICK_US);
+        estimate: &mut StateEstimate,
+    ) {
+        let tick_us = age_us(self.ts_us, now_us);
+        let first = self.ts_us == 0;
+        let in_time = first || (now_us > self.ts_us && tick_us <= MAX_TICK_US);
         if !in_time {
             self.settled_samples = 0;
         }
@@ -81,8 +84,8 @@ impl InsEstimator {
         } else {
             seconds(tick_us)
         };
-        self.publish(motor, dt_s, now_us);
-        &self.estimate
+        self.ts_us = now_us;
+        self.publish(motor, dt_s, now_us, estimate);
     }
 
     fn take_imu(&mut self, imu: &ImuState) {
@@ -115,12 +118,17 @@ impl InsEstimator {
         }
     }
 
-    fn publish(&mut self, motor: &MotorFeedback, dt_s: f32, now_us: u64) {
+    fn publish(
+        &mut self,
+        motor: &MotorFeedback,
+        dt_s: f32,
+        now_us: u64,
+        estimate: &mut StateEstimate,
+    ) {
         let imu_age_us = age_us(self.imu_ts_us, now_us);
         let ahead_us = imu_age_us.min(MAX_IMU_AGE_US);
         let orientation = self.attitude.orientation(seconds(ahead_us));
         self.odometry.step(motor, orientation, dt_s);
-        let estimate = &mut self.estimate;
         estimate.q_wxyz = orientation.to_wxyz();
         estimate.rpy_rad = orientation.roll_pitch_yaw();
         estimate.vel_mps = self.odometry.velocity_mps();

@@ -26,6 +26,10 @@ use crate::{
     tuning::{REPLY_PERIOD_TICKS, TuningAccess, TuningChannel, TuningGate},
 };
 
+/// Ticks between two looks at what changes slowly or interests only who watches: that part of the diagnostics is
+/// renewed in the ticks whose count is a multiple of this.
+pub const DIAGNOSTICS_PERIOD_TICKS: u32 = 10;
+
 /// The latest snapshot of each producer.
 #[derive(Clone, Copy, Debug)]
 pub struct ControlInputs<'a> {
@@ -126,9 +130,15 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
 
     /// Every frame received since the last tick, in order of arrival.
     pub fn on_can_frame(&mut self, bus: BusId, frame: &CanFrame, now_us: u64) {
-        if self.motors.route_frame(bus, frame, now_us) {
-            return;
+        if !self.motors.route_frame(bus, frame, now_us) {
+            self.on_other_frame(bus, frame);
         }
+    }
+
+    /// Rare, and never mixed into the code that runs for the frames of motors.
+    #[cold]
+    #[inline(never)]
+    fn on_other_frame(&mut self, bus: BusId, frame: &CanFrame) {
         let diagnostics: &DiagnosticsSnapshot = self.diagnostics.borrow();
         let gate = TuningGate::of(diagnostics.arming.state, &diagnostics.operator);
         let Self {
@@ -146,10 +156,13 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
             // The channel gives one a bus and tick.
             let _ = self.replies.push((bus, reply));
         }
+        self.take_config();
     }
 
     /// Before the first tick after the whole chip stood still for `stall_us` (a flash erase): nobody else is to blame
     /// for what did not happen meanwhile.
+    #[cold]
+    #[inline(never)]
     pub fn after_stall(&mut self, stall_us: u32, now_us: u64) {
         self.diagnostics.borrow_mut().tick.stalled(stall_us);
         self.motors.after_stall(stall_us, now_us);
@@ -158,7 +171,6 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
     /// One tick; `now_us` is when it began.
     pub fn tick(&mut self, inputs: &ControlInputs<'_>, now_us: u64) -> ControlOutputs<'_> {
         self.diagnostics.borrow_mut().tick.tick(now_us);
-        self.take_config();
         self.sense(inputs, now_us);
         let trial = self.try_out(inputs, now_us);
         let flash = self.guard_flash(inputs, now_us);
@@ -176,7 +188,7 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
         }
     }
 
-    /// The estimator keeps what it makes of its settings; all other stages read them in each tick.
+    /// After a request. The estimator keeps what it makes of its settings; all other stages read them in each tick.
     fn take_config(&mut self) {
         let diagnostics = self.diagnostics.borrow_mut();
         let status = *self.tuning.status();
@@ -199,9 +211,9 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
         self.motors
             .feedback(&self.config, now_us, &mut sensors.motor);
         sensors.ts_us = now_us;
-        *estimate = *self
-            .estimator
-            .step(&sensors.imu, &sensors.mag, &sensors.motor, now_us);
+        let (imu, mag) = (&sensors.imu, &sensors.mag);
+        self.estimator
+            .step(imu, mag, &sensors.motor, now_us, estimate);
     }
 
     /// The command of bring-up, which replaces any other.
@@ -384,18 +396,23 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
         if diagnostics.logic.ts_us != inputs.logic.ts_us {
             diagnostics.logic = *inputs.logic;
         }
+        diagnostics.late_tasks = health.late_tasks;
+        if !diagnostics
+            .tick
+            .count
+            .is_multiple_of(DIAGNOSTICS_PERIOD_TICKS)
+        {
+            return;
+        }
         diagnostics.can = health.can;
         diagnostics.imu_health = health.imu;
         diagnostics.mag_health = health.mag;
         diagnostics.radio_line = health.radio_line;
         diagnostics.imu_calibrated = health.imu_calibrated;
         diagnostics.imu_status = health.imu_status;
-        diagnostics.late_tasks = health.late_tasks;
         diagnostics.reset_cause = health.reset_cause;
         diagnostics.last_words = health.last_words;
         diagnostics.battery_v = health.battery_v;
-        if diagnostics.params.revision != inputs.params.revision {
-            diagnostics.params = *inputs.params;
-        }
+        diagnostics.params = *inputs.params;
     }
 }

@@ -2,4 +2,4 @@
 
 mod control_loop;
 
-pub use control_loop::{ControlInputs, ControlLoop, ControlOutputs};
+pub use control_loop::{ControlInputs, ControlLoop, ControlOutputs, DIAGNOSTICS_PERIOD_TICKS};
