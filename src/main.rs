@@ -67,6 +67,7 @@ fn main() -> ! {
     log_boot(last_run);
 
     let (params, config) = load_settings(ParamFlash::new(board.flash));
+    ports.iter_mut().for_each(CanPort::drop_backlog);
     let exchange = Exchange::init(config);
     let writers = defmt::unwrap!(exchange.take_writers());
     deadlines::start();
