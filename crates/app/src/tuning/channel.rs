@@ -1,7 +1,7 @@
 //! Requests in, at most one reply a slot and bus out.
 
 use super::{
-    PARAMETERS, Refusal, TuningStatus, consistency, parameters,
+    PARAMETERS, ParameterGroup, Refusal, TuningStatus, consistency, parameters,
     protocol::{self, Request, Restored},
     wheel_geometry::WheelGeometry,
 };
@@ -130,9 +130,14 @@ impl TuningChannel {
     ) -> Result<(), Refusal> {
         let mut candidate = *config;
         apply(&mut candidate)?;
-        consistency::check(&candidate)?;
-        if candidate != *config {
-            *config = candidate;
+        self.adopt(config, &candidate)
+    }
+
+    fn adopt(&mut self, config: &mut RobotConfig, candidate: &RobotConfig) -> Result<(), Refusal> {
+        consistency::check(candidate)?;
+        let is_same = |group: &ParameterGroup| group.is_same(config, candidate);
+        if !PARAMETERS.iter().all(is_same) {
+            *config = *candidate;
             self.status.revision = self.status.revision.wrapping_add(1);
         }
         Ok(())
