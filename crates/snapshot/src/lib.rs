@@ -63,6 +63,7 @@ unsafe impl<T: Copy + Send> Sync for Snapshot<T> {}
 impl<T: Copy> Snapshot<T> {
     /// A snapshot that reads as `init` until the first publication.
     #[cfg(not(loom))]
+    #[inline(never)]
     pub const fn new(init: T) -> Self {
         Self {
             slots: [Slot::new(init), Slot::new(init)],

@@ -6,6 +6,7 @@ use crate::domain::{JointConfig, MagCalibration, RobotConfig, SafetyConfig};
 /// Least distance of a joint's two soft limits.
 const LEAST_TRAVEL_RAD: f32 = 0.01;
 
+#[inline(never)]
 pub fn check(config: &RobotConfig) -> Result<(), Refusal> {
     let fits = config.joints.iter().all(joint_can_move)
         && battery_limits_in_order(&config.safety)
