@@ -97,6 +97,14 @@ fn extras(report: &Report) -> Vec<(&'static str, String)> {
         ("stack peak", format!("{} bytes", summary.stack_peak_bytes)),
         ("resets", summary.resets.len().to_string()),
     ];
+    let gap = summary.control.longest_gap_us;
+    let ms = |us: f64| format!("{:.2} ms", us / 1_000.0);
+    extras.push(("longest tick gap, armed", ms(gap.armed)));
+    extras.push(("longest tick gap, disarmed", ms(gap.disarmed)));
+    if summary.flash.erases + summary.flash.programs > 0 {
+        let (erases, words) = (summary.flash.erases, summary.flash.programs);
+        extras.push(("flash", format!("{erases} erases, {words} words")));
+    }
     if let Some(error) = &summary.attitude_error {
         extras.push((
             "inclination error, RMSE",

@@ -224,13 +224,23 @@ impl Plots<'_> {
                 rows.push(Lane::new(label, colour, &points, is_on));
             }
         }
+        for (label, signal) in [
+            ("settings written", "emu.flash.programs"),
+            ("flash erased", "emu.flash.erases"),
+        ] {
+            let counts = points(signal).unwrap_or_default();
+            let steps = rises(&counts);
+            if steps.iter().any(|(_, rise)| *rise > Some(0.0)) {
+                rows.push(Lane::new(label, GREY, &steps, |v| v > 0.0));
+            }
+        }
         if rows.is_empty() {
             return Ok(None);
         }
         let end = time::to_seconds(self.report.result.ran).max(1e-3);
         Ok(Some(Figure {
             title: "Arming and safety",
-            caption: "A lane is filled while it is on. Blockers in purple, safety flags in orange.",
+            caption: "A lane is filled while it is on. Blockers in purple, safety flags in orange; the flash to 0.1 s.",
             legend: Vec::new(),
             svg: lanes::draw(&rows, 0.0..end, &self.marks)?,
         }))
@@ -303,6 +313,13 @@ impl Plots<'_> {
             svg: chart::draw_histogram(bins, JITTER_BIN_US, "µs late")?,
         }))
     }
+}
+
+/// By how much a count has risen since the point before.
+fn rises(counts: &[(f64, Option<f64>)]) -> Vec<(f64, Option<f64>)> {
+    let pairs = counts.windows(2);
+    let rise = |pair: &[(f64, Option<f64>)]| Some(pair[1].1? - pair[0].1?);
+    pairs.map(|pair| (pair[1].0, rise(pair))).collect()
 }
 
 /// The whole numbers a signal takes, in order.
