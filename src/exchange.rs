@@ -88,8 +88,13 @@ pub struct Writers {
     pub remote: Writer<'static, RemoteUpdate>,
     pub logic_bus: Writer<'static, LogicBus>,
     pub battery_v: Writer<'static, f32>,
-    pub config: Writer<'static, ConfigUpdate>,
     pub params: Writer<'static, ParamsReport>,
+    pub control: ControlWriters,
+}
+
+/// What the control task writes.
+pub struct ControlWriters {
+    pub config: Writer<'static, ConfigUpdate>,
     pub flash_grant: Writer<'static, FlashPermission>,
     pub diagnostics: Writer<'static, DiagnosticsSnapshot>,
 }
@@ -122,10 +127,12 @@ impl Exchange {
             remote: self.remote.writer()?,
             logic_bus: self.logic_bus.writer()?,
             battery_v: self.battery_v.writer()?,
-            config: self.config.writer()?,
             params: self.params.writer()?,
-            flash_grant: self.flash_grant.writer()?,
-            diagnostics: self.diagnostics.writer()?,
+            control: ControlWriters {
+                config: self.config.writer()?,
+                flash_grant: self.flash_grant.writer()?,
+                diagnostics: self.diagnostics.writer()?,
+            },
         })
     }
 }

@@ -76,10 +76,7 @@ fn main() -> ! {
         ports,
         Watchdog::start(board.iwdg),
         last_run,
-        &config,
-        writers.config,
-        writers.flash_grant,
-        writers.diagnostics,
+        writers.control,
         defmt::unwrap!(debugger_view::take()),
     );
 

@@ -12,8 +12,9 @@ use embassy_time::Instant;
 const BELOW_TIME_DRIVER: u8 = 0x10;
 /// The system clock.
 const CYCLES_PER_US: u32 = 168;
-/// Ticks of half a turn.
-const HALF_TURN: u16 = 0x8000;
+/// Half a turn, in µs, is two to the power of this.
+const HALF_TURN_BITS: u32 = 15;
+const HALF_TURN: u16 = 1 << HALF_TURN_BITS;
 /// Keeps this far from the timer's events, in µs: after one, until its interrupt has run; before the next, until the
 /// missing ones are made up for.
 const AFTER_EVENT: u16 = 64;
@@ -73,7 +74,7 @@ impl Gap {
         // The timer shows the low half of the true time.
         let off_us = counter.wrapping_sub(roughly_us as u16) as i16;
         let now_us = roughly_us.saturating_add_signed(off_us.into());
-        let half_turns = |us: u64| us / u64::from(HALF_TURN);
+        let half_turns = |us: u64| us >> HALF_TURN_BITS;
         let seen = u64::from(status.uif()).saturating_add(status.ccif(0).into());
         Self {
             elapsed_us: now_us.saturating_sub(before.now_us) as u32,

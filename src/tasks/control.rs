@@ -3,17 +3,18 @@
 use embassy_time::{Duration, Instant};
 use robot_app::control::UserController;
 use robot_app::diagnostics::DiagnosticsSnapshot;
-use robot_app::domain::{CalibrationState, LateTasks, RemoteUpdate, RobotConfig, SystemHealth};
+use robot_app::domain::{CalibrationState, LateTasks, RemoteUpdate, SystemHealth};
 use robot_app::logic::LogicBus;
 use robot_app::params::FlashRequest;
-use robot_app::tick::{ControlInputs, ControlLoop, DIAGNOSTICS_PERIOD_TICKS};
-use robot_snapshot::{Follower, Writer};
+use robot_app::tick::{ControlInputs, ControlLoop, ControlOutputs, DIAGNOSTICS_PERIOD_TICKS};
+use robot_snapshot::Follower;
 
 use crate::config::LAYOUT;
 use crate::drivers::can::CanPort;
 use crate::drivers::watchdog::Watchdog;
 use crate::exchange::{
-    ConfigUpdate, Exchange, FlashPermission, ImuReport, MagReport, ParamsReport, RADIO_LINE,
+    ConfigUpdate, ControlWriters, Exchange, FlashPermission, ImuReport, MagReport, ParamsReport,
+    RADIO_LINE,
 };
 use crate::stall::{StallWatch, SteadyTicker};
 use crate::{LastRun, deadlines, last_words};
@@ -58,13 +59,48 @@ pub struct ControlContext {
     health: SystemHealth,
     stalls: StallWatch,
     control_loop: ControlLoop<UserController, &'static mut DiagnosticsSnapshot>,
-    config: Writer<'static, ConfigUpdate>,
+    output: Output,
+}
+
+/// What this task publishes.
+struct Output {
+    writers: ControlWriters,
     /// Of the configuration last published.
     config_revision: u32,
-    flash_grant: Writer<'static, FlashPermission>,
     /// As last published.
     granted: FlashRequest,
-    diagnostics: Writer<'static, DiagnosticsSnapshot>,
+}
+
+impl Output {
+    fn publish(&mut self, outputs: &ControlOutputs<'_>) {
+        let Self {
+            writers,
+            config_revision,
+            granted,
+        } = self;
+        let revision = outputs.diagnostics.tuning.revision;
+        if revision != *config_revision {
+            *config_revision = revision;
+            writers.config.publish(&ConfigUpdate {
+                config: *outputs.config,
+                revision,
+            });
+        }
+        if outputs.flash.granted != *granted {
+            *granted = outputs.flash.granted;
+            writers.flash_grant.publish(&FlashPermission(*granted));
+        }
+        if is_diagnostics_tick(outputs.diagnostics) {
+            writers.diagnostics.publish(outputs.diagnostics);
+        }
+    }
+}
+
+fn is_diagnostics_tick(diagnostics: &DiagnosticsSnapshot) -> bool {
+    diagnostics
+        .tick
+        .count
+        .is_multiple_of(DIAGNOSTICS_PERIOD_TICKS)
 }
 
 impl ControlContext {
@@ -73,10 +109,7 @@ impl ControlContext {
         ports: [CanPort; 2],
         watchdog: Watchdog,
         last_run: LastRun,
-        start: &RobotConfig,
-        config: Writer<'static, ConfigUpdate>,
-        flash_grant: Writer<'static, FlashPermission>,
-        diagnostics: Writer<'static, DiagnosticsSnapshot>,
+        writers: ControlWriters,
         debugger_view: &'static mut DiagnosticsSnapshot,
     ) -> Self {
         Self {
@@ -98,15 +131,15 @@ impl ControlContext {
             stalls: StallWatch::new(),
             control_loop: ControlLoop::with_diagnostics(
                 &LAYOUT,
-                *start,
+                exchange.config.latest().config,
                 UserController::default(),
                 debugger_view,
             ),
-            config,
-            config_revision: 0,
-            flash_grant,
-            granted: FlashRequest::None,
-            diagnostics,
+            output: Output {
+                writers,
+                config_revision: 0,
+                granted: FlashRequest::None,
+            },
         }
     }
 }
@@ -132,11 +165,7 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
         health,
         stalls,
         control_loop,
-        config,
-        config_revision,
-        flash_grant,
-        granted,
-        diagnostics,
+        output,
     } = context;
 
     if let Some(stall_us) = stalls.news() {
@@ -172,30 +201,11 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
         }
     }
 
-    let revision = outputs.diagnostics.tuning.revision;
-    if revision != *config_revision {
-        *config_revision = revision;
-        config.publish(&ConfigUpdate {
-            config: *outputs.config,
-            revision,
-        });
-    }
-    let flash = outputs.flash;
-    if flash.granted != *granted {
-        *granted = flash.granted;
-        flash_grant.publish(&FlashPermission(flash.granted));
-    }
-
-    if outputs
-        .diagnostics
-        .tick
-        .count
-        .is_multiple_of(DIAGNOSTICS_PERIOD_TICKS)
-    {
+    output.publish(&outputs);
+    if is_diagnostics_tick(outputs.diagnostics) {
         health.radio_line = RADIO_LINE.health();
-        diagnostics.publish(outputs.diagnostics);
     }
-    watchdog.set_long(flash.needs_long_watchdog);
+    watchdog.set_long(outputs.flash.needs_long_watchdog);
     if !health.late_tasks.any() {
         watchdog.feed();
     }
