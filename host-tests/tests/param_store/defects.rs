@@ -4,7 +4,7 @@ use robot_app::params::{FlashRequest, ParamError, Progress, Store};
 use robot_plant::flash_chip::{EraseFault, FlashChip, PARAMETER_SECTORS, StuckBit};
 
 use crate::{
-    bench::{BootedStore, Contents, Ledger, boot, new_chip, save_all},
+    bench::{BootedStore, Contents, Ledger, boot, new_chip, record, save_all},
     workload::nth_save,
 };
 
@@ -68,7 +68,9 @@ fn use_for_long(chip: &mut FlashChip, contents: Contents) -> Vec<ParamError> {
 
 fn in_use() -> (FlashChip, Contents) {
     let mut chip = new_chip(9);
-    let records: Vec<_> = (0..60).map(nth_save).collect();
+    // Some that never change again, and so must move along each time.
+    let lasting = (100..106).map(|key| record(key, 1, 1, &[u32::from(key) << 24, 0, u32::MAX, 0]));
+    let records: Vec<_> = lasting.chain((0..54).map(nth_save)).collect();
     let contents = save_all(&mut chip, &records);
     (chip, contents)
 }
@@ -79,7 +81,7 @@ fn a_stuck_bit_costs_at_most_a_sector_and_no_record() {
     let mut errors = 0;
     for value in [false, true] {
         for word in 0..32 {
-            for (sector, slot) in [(0, 61), (0, 90), (1, 3), (2, 0), (1, 0)] {
+            for (sector, slot) in [(0, 61), (0, 90), (1, 3), (1, 15), (2, 0), (1, 0)] {
                 let (mut chip, contents) = in_use();
                 let address = SECTOR_1 + sector * SECTOR_BYTES + slot * 128 + word * 4 + word % 4;
                 let bit = (word % 8) as u8;
@@ -97,8 +99,49 @@ fn a_stuck_bit_costs_at_most_a_sector_and_no_record() {
             }
         }
     }
-    println!("320 stuck bits, 650 saves each: {errors} failed attempts, 0 records lost");
+    println!("384 stuck bits, 650 saves each: {errors} failed attempts, 0 records lost");
     assert!(errors > 0);
+}
+
+/// A bit of the version in every slot: the sector takes no record at all.
+#[test]
+fn a_sector_that_takes_no_record_is_done_without() {
+    for sector in 1..3 {
+        let (mut chip, contents) = in_use();
+        for slot in 1..128 {
+            let address = SECTOR_1 + sector * SECTOR_BYTES + slot * 128 + 5;
+            let (bit, value) = (7, true);
+            chip.stick(StuckBit {
+                address,
+                bit,
+                value,
+            });
+        }
+        let errors = use_for_long(&mut chip, contents);
+        assert!(errors.contains(&ParamError::Full));
+    }
+}
+
+/// Both copies of the head: its sector can never be the active one.
+#[test]
+fn a_sector_that_takes_no_head_is_done_without() {
+    for sector in 1..3 {
+        let (mut chip, contents) = in_use();
+        for copy in [8, 24] {
+            let address = SECTOR_1 + sector * SECTOR_BYTES + copy + 4;
+            // Of the generation's lowest bytes, which are small numbers.
+            let (bit, value) = (7, true);
+            chip.stick(StuckBit {
+                address,
+                bit,
+                value,
+            });
+        }
+        let errors = use_for_long(&mut chip, contents);
+        assert!(errors.contains(&ParamError::NotProgrammed));
+        // It is tried again after a boot at most.
+        assert!(errors.len() <= SESSIONS.len(), "{errors:?}");
+    }
 }
 
 #[test]
@@ -126,7 +169,7 @@ fn with_no_erase_working_the_store_fills_up_and_stays_readable() {
     let mut ledger = Ledger::of(contents);
     let mut store = Store::open(&mut chip);
     // The rest of this sector, and the one that is clean already.
-    for count in 0..67 + 127 - 12 {
+    for count in 0..67 + 127 - 18 {
         save_stubbornly(&mut store, &mut ledger, count, &mut Vec::new());
     }
     for count in 0..20 {

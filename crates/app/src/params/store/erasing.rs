@@ -34,7 +34,7 @@ impl<F: NorFlash> Store<F> {
 
     fn erase_and_mark(&mut self, sector: u8) -> Result<(), ParamError> {
         // If the erase is cut short, neither an old head nor an old mark may be left.
-        self.program(sector, 0, 0, &[0; HEAD_BYTES])?;
+        self.clear_head(sector)?;
         let from = offset(sector, 0);
         let to = from.wrapping_add(SECTOR_BYTES);
         self.flash.erase(from, to).map_err(|_| ParamError::Flash)?;
@@ -46,6 +46,10 @@ impl<F: NorFlash> Store<F> {
             return Err(ParamError::NotProgrammed);
         }
         Ok(())
+    }
+
+    pub(super) fn clear_head(&mut self, sector: u8) -> Result<(), ParamError> {
+        self.program(sector, 0, 0, &[0; HEAD_BYTES])
     }
 
     pub(super) fn set_failed(&mut self, sector: u8, failed: bool) {

@@ -3,7 +3,7 @@
 use embedded_storage::nor_flash::NorFlash;
 use heapless::Vec;
 
-use super::{Active, FIRST_SLOT, LAST_SLOT, MAX_RECORDS, SECTORS, Store};
+use super::{FIRST_SLOT, LAST_SLOT, MAX_RECORDS, SECTORS, Store};
 use crate::params::{
     RecordId,
     sector::{Head, SectorState, offset},
@@ -37,16 +37,13 @@ impl Walk {
 }
 
 impl<F: NorFlash> Store<F> {
-    /// Learns everything anew, except which sectors failed.
+    /// All there is to know at boot.
     #[inline(never)]
     pub(super) fn scan(&mut self) {
         for sector in 0..SECTORS {
             let state = self.read_state(sector);
             self.set_state(sector, state);
         }
-        self.rotation = None;
-        self.active = Active::FULL;
-        self.damaged = 0;
         if let Some((sector, _)) = self.active_sector() {
             self.scan_active(sector);
         }

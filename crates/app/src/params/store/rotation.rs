@@ -62,8 +62,9 @@ impl<F: NorFlash> Store<F> {
         let generation = self.active_sector().map_or(0, |(_, generation)| generation);
         let generation = generation.saturating_add(1);
         if let Err(error) = self.write_head(rotation.target, generation) {
-            // It may count as a head all the same.
-            self.scan();
+            // What is there must not turn out to be a head after all; if clearing fails too, the erase tries again.
+            let _ = self.clear_head(rotation.target);
+            self.set_failed(rotation.target, true);
             return Err(error);
         }
         self.set_state(rotation.target, SectorState::Headed { generation });

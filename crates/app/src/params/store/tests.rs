@@ -10,8 +10,8 @@ struct Cells {
     bytes: Vec<u8>,
     /// Offset and length of what was programmed; an erase has length 0.
     log: Vec<(u32, usize)>,
-    /// Bits that stay 1 in the word at that offset.
-    stuck: Option<(u32, u8)>,
+    /// Bits that are 1 after each write, in the byte at that offset.
+    stuck: Vec<(u32, u8)>,
 }
 
 type Vec<T> = std::vec::Vec<T>;
@@ -21,7 +21,7 @@ impl Cells {
         Self {
             bytes: vec![0xFF; SIZE],
             log: Vec::new(),
-            stuck: None,
+            stuck: Vec::new(),
         }
     }
 }
@@ -59,8 +59,8 @@ impl NorFlash for Cells {
         for (cell, byte) in self.bytes[offset as usize..].iter_mut().zip(bytes) {
             *cell &= byte;
         }
-        if let Some((stuck, ones)) = self.stuck {
-            self.bytes[stuck as usize] |= ones;
+        for (stuck, ones) in &self.stuck {
+            self.bytes[*stuck as usize] |= ones;
         }
         Ok(())
     }
@@ -164,7 +164,7 @@ fn a_full_sector_moves_on_head_last_and_an_erase_follows() {
 fn a_slot_that_does_not_take_a_record_is_left_behind() {
     let mut cells = Cells::blank();
     save(&mut Store::open(&mut cells), &record(1, 10));
-    cells.stuck = Some((offset(0, 2) + 8, 0x80));
+    cells.stuck.push((offset(0, 2) + 8, 0x80));
     let mut store = Store::open(&mut cells);
     assert_eq!(
         store.work(Some(&record(1, 11))),
@@ -194,4 +194,24 @@ fn a_damaged_record_falls_back_to_its_older_copy() {
         assert_eq!(values(&mut Store::open(&mut cells)), [(1, found)]);
     }
     assert_eq!(Store::open(&mut cells).report().damaged, 2);
+}
+
+/// It read as a head at boot, but programming it again breaks it.
+#[test]
+fn records_leave_a_sector_whose_head_cannot_be_made_to_last() {
+    let mut cells = Cells::blank();
+    let mut store = Store::open(&mut cells);
+    save(&mut store, &record(1, 10));
+    tidy(&mut store);
+    // A power cut before the proof.
+    cells.bytes[40..44].fill(0xFF);
+    cells.stuck = vec![(10, 0xFF), (26, 0xFF)];
+    let mut store = Store::open(&mut cells);
+    assert_eq!(store.next(false), FlashRequest::Program);
+    assert_eq!(store.work(None), Err(ParamError::NotProgrammed));
+    assert_eq!(store.report().free_slots, 0);
+    save(&mut store, &record(2, 20));
+    assert_eq!(store.report().generation, 2);
+    assert_eq!(values(&mut store), [(1, 10), (2, 20)]);
+    assert_eq!(values(&mut Store::open(&mut cells)), [(1, 10), (2, 20)]);
 }
