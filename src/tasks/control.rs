@@ -6,7 +6,8 @@ use robot_app::diagnostics::DiagnosticsSnapshot;
 use robot_app::domain::{CalibrationState, LateTasks, RemoteUpdate, SystemHealth};
 use robot_app::logic::LogicBus;
 use robot_app::params::FlashRequest;
-use robot_app::tick::{ControlInputs, ControlLoop, ControlOutputs, DIAGNOSTICS_PERIOD_TICKS};
+use robot_app::tick::robot_loop::{self, RobotLoop};
+use robot_app::tick::{ControlInputs, ControlOutputs, DIAGNOSTICS_PERIOD_TICKS};
 use robot_snapshot::Follower;
 
 use crate::config::LAYOUT;
@@ -58,7 +59,7 @@ pub struct ControlContext {
     watchdog: Watchdog,
     health: SystemHealth,
     stalls: StallWatch,
-    control_loop: ControlLoop<UserController, &'static mut DiagnosticsSnapshot>,
+    control_loop: RobotLoop,
     output: Output,
 }
 
@@ -129,7 +130,7 @@ impl ControlContext {
                 ..SystemHealth::default()
             },
             stalls: StallWatch::new(),
-            control_loop: ControlLoop::with_diagnostics(
+            control_loop: RobotLoop::with_diagnostics(
                 &LAYOUT,
                 exchange.config.latest().config,
                 UserController::default(),
@@ -175,12 +176,14 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
     for port in ports.iter_mut() {
         port.begin_tick(now_us);
         let bus = port.bus();
-        port.drain(|frame, ts_us| control_loop.on_can_frame(bus, frame, ts_us));
+        port.drain(|frame, ts_us| robot_loop::on_can_frame(control_loop, bus, frame, ts_us));
     }
 
     note_late_tasks(&mut health.late_tasks, now_us);
     inputs.follow(health);
-    health.can = ports.each_ref().map(CanPort::health);
+    for (health, port) in health.can.iter_mut().zip(ports.iter()) {
+        *health = *port.health();
+    }
 
     let params = inputs.params.last();
     let inputs = ControlInputs {
@@ -193,7 +196,7 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
         flash_request: params.request,
         watchdog: watchdog.period(),
     };
-    let outputs = control_loop.tick(&inputs, now_us);
+    let outputs = robot_loop::tick(control_loop, &inputs, now_us);
 
     for (bus, frame) in outputs.frames {
         if let Some(port) = ports.iter_mut().find(|port| port.bus() == *bus) {

@@ -31,8 +31,8 @@ impl CanPort {
         self.bus
     }
 
-    pub fn health(&self) -> BusHealth {
-        self.health
+    pub fn health(&self) -> &BusHealth {
+        &self.health
     }
 
     /// Whether the peripheral takes part in bus traffic.
