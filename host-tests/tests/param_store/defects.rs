@@ -1,7 +1,7 @@
 //! Cells and sectors that do not work any more: errors that end, nothing lost, the rest goes on being used.
 
 use robot_app::params::{FlashRequest, ParamError, Progress, Store};
-use robot_plant::flash_chip::{EraseFault, FlashChip, PARAMETER_SECTORS, StuckBit};
+use robot_plant::flash_chip::{EraseFault, FlashChip, PARAMETER_SECTORS, StuckBit, sector_range};
 
 use crate::{
     bench::{BootedStore, Contents, Ledger, boot, new_chip, record, save_all},
@@ -141,6 +141,28 @@ fn a_sector_that_takes_no_head_is_done_without() {
         assert!(errors.contains(&ParamError::NotProgrammed));
         // It is tried again after a boot at most.
         assert!(errors.len() <= SESSIONS.len(), "{errors:?}");
+    }
+}
+
+/// A bit of the mark: each boot would find the sector not clean, and erase it in vain.
+#[test]
+fn a_sector_that_takes_no_mark_is_not_erased_at_each_boot() {
+    for sector in PARAMETER_SECTORS {
+        let (mut chip, contents) = in_use();
+        let address = sector_range(sector).expect("a sector").start;
+        let (bit, value) = (1, true);
+        chip.stick(StuckBit {
+            address,
+            bit,
+            value,
+        });
+        use_for_long(&mut chip, contents);
+        let erases = |chip: &FlashChip| PARAMETER_SECTORS.map(|sector| chip.erases(sector)).sum();
+        let before: u32 = erases(&chip);
+        for _ in 0..20 {
+            tidy_stubbornly(&mut Store::open(&mut chip), &mut Vec::new());
+        }
+        assert!(erases(&chip) - before <= 2, "{sector}");
     }
 }
 
