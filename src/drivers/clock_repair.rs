@@ -18,11 +18,13 @@ const HALF_TURN: u16 = 1 << HALF_TURN_BITS;
 /// Keeps this far from the timer's events, in µs: after one, until its interrupt has run; before the next, until the
 /// missing ones are made up for.
 const AFTER_EVENT: u16 = 64;
-const BEFORE_EVENT: u16 = 1_024;
+const BEFORE_EVENT: u16 = 256;
 
 /// Runs `work`, during which no interrupt can run, then `repaired` with the time that passed in µs, once the clock is
 /// right again and before any other interrupt runs. Only for thread mode.
 pub fn keep_time<R>(work: impl FnOnce() -> R, repaired: impl FnOnce(u32)) -> R {
+    // First with all interrupts, so that hardly any time is left to wait without them.
+    wait_between_events();
     // SAFETY: postpones interrupts until the same function lets them in again; no lock relies on them running.
     unsafe { basepri::write(BELOW_TIME_DRIVER) };
     wait_between_events();
