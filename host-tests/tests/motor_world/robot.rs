@@ -92,6 +92,24 @@ impl Robot {
         }
     }
 
+    /// The whole board stands still for a flash erase; what the motors say meanwhile is lost.
+    pub fn stall(&mut self, ms: u64) {
+        self.run_without_board(ms, |_, _| ());
+        for wire in [CanBusId::Can1, CanBusId::Can2] {
+            for node in 0..self.world.can_nodes(wire) {
+                if self.world.can_pending(wire, node, self.now).is_some() {
+                    self.world.can_sent(wire, node, self.now);
+                }
+            }
+        }
+    }
+
+    /// The firmware tells the tick of the stall.
+    pub fn tell_of_stall(&mut self, ms: u32) {
+        let now_us = self.now_us();
+        self.control.after_stall(ms * 1_000, now_us);
+    }
+
     pub fn fault(&mut self, name: &str, active: bool) {
         self.world.set_fault(name, active).expect("a known fault");
     }

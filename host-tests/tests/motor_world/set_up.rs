@@ -28,6 +28,37 @@ fn motors_are_verified_before_they_count_as_ready() {
     }
 }
 
+/// The longest erase of a sector (STM32F407 datasheet table 40).
+const ERASE_MS: u32 = 500;
+
+/// States of joint 0 in the tenth of a second after an erase.
+fn states_after_stall(kind: JointKind, told: bool) -> Vec<JointState> {
+    let mut robot = Robot::new(kind);
+    robot.run(1.5);
+    robot.stall(ERASE_MS.into());
+    if told {
+        robot.tell_of_stall(ERASE_MS);
+    }
+    let mut states = Vec::new();
+    robot.run_watching(0.1, |robot| states.push(robot.joint(0).state));
+    let latched: Vec<_> = robot.diagnostics().safety.latched.names().collect();
+    assert!(latched.is_empty(), "{latched:?}");
+    let tick = &robot.diagnostics().tick;
+    assert_eq!(
+        (tick.missed, tick.stalls),
+        if told { (0, 1) } else { (500, 0) }
+    );
+    states
+}
+
+#[test]
+fn joints_are_not_set_up_again_because_the_board_stood_still() {
+    for kind in BOTH {
+        assert_eq!(states_after_stall(kind, true), [JointState::Disabled; 100]);
+        assert!(states_after_stall(kind, false).contains(&JointState::Silent));
+    }
+}
+
 /// A motor from the factory has no time-out; set up by the firmware it lets go 100 ms after the last frame.
 #[test]
 fn an_abandoned_dm4310_lets_go() {
