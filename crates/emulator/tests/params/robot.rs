@@ -14,7 +14,7 @@ use robot_plant::{
 };
 
 use crate::{
-    flash_image::{Image, SectorState, sectors},
+    flash_image::{Image, SectorState, states},
     settings::{COUNT, Make, Setting, Settings, calibrated},
     support,
 };
@@ -46,6 +46,9 @@ pub struct Robot {
     places: HashMap<String, usize>,
     meanings: Vec<Option<Meaning>>,
     diag: Vec<f64>,
+    /// When `diag` was read, and whether there was something to read.
+    sampled_at: Ps,
+    known: bool,
     /// On CAN1, CAN2; taken by whoever waits for them.
     replies: [Vec<[u8; 8]>; 2],
     pub events: Vec<WireEvent>,
@@ -83,6 +86,8 @@ impl Robot {
             machine,
             now: 0,
             diag: Vec::new(),
+            sampled_at: 0,
+            known: false,
             replies: Default::default(),
             events: Vec::new(),
         }
@@ -136,8 +141,11 @@ impl Robot {
     /// A value of the firmware's diagnostics; `None` before they can be read.
     pub fn diag(&mut self, name: &str) -> Option<f64> {
         let place = self.places[&format!("diag.{name}")];
-        let known = self.machine.sample_diag(&mut self.diag);
-        known.then(|| self.diag[place])
+        if self.sampled_at != self.now {
+            self.sampled_at = self.now;
+            self.known = self.machine.sample_diag(&mut self.diag);
+        }
+        self.known.then(|| self.diag[place])
     }
 
     /// Names of the flags that are set in a diagnostic.
@@ -175,10 +183,7 @@ impl Robot {
 
     /// A sector is ready to be begun.
     pub fn is_tidy(&mut self) -> bool {
-        let sectors = sectors(&self.machine.parameter_flash());
-        sectors
-            .iter()
-            .any(|sector| sector.state == SectorState::Clean)
+        states(&self.machine.parameter_flash()).contains(&SectorState::Clean)
     }
 
     /// What the board complained of.

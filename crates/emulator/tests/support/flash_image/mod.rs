@@ -6,7 +6,7 @@ mod writing;
 
 use flate2::Crc;
 
-pub use reading::{SectorState, newest, sectors};
+pub use reading::{SectorState, newest, sectors, states};
 pub use writing::Image;
 
 /// Sectors 1–3 of the chip; 0 … 2 here.

@@ -39,6 +39,11 @@ pub fn newest(flash: &[u8]) -> BTreeMap<Id, Stored> {
     slots.filter_map(record).collect()
 }
 
+pub fn states(flash: &[u8]) -> Vec<SectorState> {
+    assert_eq!(flash.len(), STORE_BYTES);
+    flash.chunks_exact(SECTOR_BYTES).map(state).collect()
+}
+
 pub fn sectors(flash: &[u8]) -> Vec<SectorSeen> {
     assert_eq!(flash.len(), STORE_BYTES);
     flash.chunks_exact(SECTOR_BYTES).map(seen).collect()
@@ -47,18 +52,21 @@ pub fn sectors(flash: &[u8]) -> Vec<SectorSeen> {
 fn seen(sector: &[u8]) -> SectorSeen {
     let last = slots(sector).rposition(|slot| !is_blank(slot));
     let used = last.map_or(0, |last| last + 1);
-    let state = match generation(sector) {
-        Some(generation) => SectorState::Headed { generation },
-        None if sector[..4] == CLEAN && is_blank(&sector[4..]) => SectorState::Clean,
-        None => SectorState::Garbage,
-    };
     let damaged = slots(sector)
         .take(used)
         .filter(|slot| record(slot).is_none());
     SectorSeen {
-        state,
+        state: state(sector),
         used,
         damaged: damaged.count(),
+    }
+}
+
+fn state(sector: &[u8]) -> SectorState {
+    match generation(sector) {
+        Some(generation) => SectorState::Headed { generation },
+        None if sector[..4] == CLEAN && is_blank(&sector[4..]) => SectorState::Clean,
+        None => SectorState::Garbage,
     }
 }
 
