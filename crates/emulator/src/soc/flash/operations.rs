@@ -1,0 +1,147 @@
+//! Loads and stores of the core, and what programming and erasing do to cells and cache.
+
+use robot_plant::{
+    flash_chip::{FlashChip, Phase, sector_range},
+    time::Ps,
+};
+
+use super::{
+    Flash, FlashStep, Lock,
+    registers::{cr, sr},
+    times::Parallelism,
+    work::{UnderWay, Work},
+};
+use crate::soc::{access::Access, peripheral::Ctx, scheduler::Target};
+
+impl Flash {
+    /// A load from sectors 1–3, of 1, 2 or 4 bytes.
+    pub fn load(&mut self, address: u32, size: u8) -> u32 {
+        if self.under_way.as_ref().is_some_and(|w| w.cut.is_none()) {
+            // The bus holds the load until the cells have it.
+            self.reach_the_cells();
+        }
+        let access = Access::new(address, size);
+        let cached = self.cache.word(access.register);
+        access.read_of(cached.unwrap_or_else(|| read_cells(&mut self.chip, access.register)))
+    }
+
+    /// A store to sectors 1–3.
+    pub fn store(&mut self, address: u32, size: u8, value: u32, ctx: &mut Ctx<'_>) {
+        let Some(parallelism) = self.programs(address, ctx) else {
+            return;
+        };
+        if size != parallelism.bytes() {
+            let needed = parallelism.bytes();
+            let what = format!("{size} bytes stored where PSIZE programs {needed} at once");
+            return self.refuse(sr::PGPERR, address, &what, ctx);
+        }
+        let access = Access::new(address, size);
+        let work = Work::Program {
+            address: access.register,
+            word: access.written_over(u32::MAX, value),
+            stored: access.written_over(0, u32::MAX),
+        };
+        self.begin(work, self.times.program(), ctx);
+    }
+
+    /// How many bits a store programs; otherwise the store is refused.
+    fn programs(&mut self, address: u32, ctx: &mut Ctx<'_>) -> Option<Parallelism> {
+        if self.lock != Lock::Open || self.cr & cr::PG == 0 {
+            self.refuse(sr::PGSERR, address, "a store while PG is 0", ctx);
+            return None;
+        }
+        let parallelism = Parallelism::of(self.cr);
+        if parallelism.is_none() {
+            let what = "a store with PSIZE = 64 bits, without a programming voltage";
+            self.refuse(sr::PGPERR, address, what, ctx);
+        }
+        parallelism
+    }
+
+    pub(super) fn refuse(&mut self, flag: u32, address: u32, what: &str, ctx: &mut Ctx<'_>) {
+        ctx.errors.report(
+            ctx.now,
+            format!("FLASH: {what} at {address:#010x}: ignored"),
+        );
+        self.sr |= flag;
+        self.update_interrupt(ctx);
+    }
+
+    pub(super) fn begin(&mut self, work: Work, duration: Ps, ctx: &mut Ctx<'_>) {
+        // The bus holds what is asked for until that before it is done; if the power goes first, it never comes.
+        let start = match &self.under_way {
+            Some(before) if before.cut.is_some() => return,
+            Some(before) => before.time.end,
+            None if self.power_fails => return,
+            None => ctx.now,
+        };
+        self.reach_the_cells();
+        let step = self.history.steps().len();
+        let cut = self.planned_cut.take_if(|cut| cut.step == step);
+        let time = start..start + duration;
+        let begun = FlashStep {
+            at: start,
+            kind: work.kind(),
+            address: work.address(),
+        };
+        self.history.begun(begun, &time);
+        if cut.is_some_and(|cut| cut.phase == Phase::Before) {
+            self.under_way = None;
+            self.power_fails = true;
+            return;
+        }
+        let under_way = UnderWay {
+            time,
+            work: Some(work),
+            cut,
+        };
+        self.generation += 1;
+        ctx.scheduler
+            .at(under_way.next_event(), Target::Flash, self.generation);
+        self.under_way = Some(under_way);
+    }
+
+    /// The work under way is done, as far as the contents go.
+    fn reach_the_cells(&mut self) {
+        let Some(work) = self.under_way.as_mut().and_then(|w| w.work.take()) else {
+            return;
+        };
+        match work {
+            Work::Program {
+                address,
+                word,
+                stored,
+            } => {
+                let visible = self.cache.word(address);
+                let before = visible.unwrap_or_else(|| read_cells(&mut self.chip, address));
+                self.cache
+                    .programmed(address, word & stored | before & !stored);
+            }
+            Work::Erase { sector } => {
+                let words = sector_range(sector).into_iter().flat_map(|s| s.step_by(4));
+                let chip = &mut self.chip;
+                self.cache
+                    .erased(words.map(|address| (address, read_cells(chip, address))));
+            }
+        }
+        work.perform(&mut self.chip)
+            .expect("a word or a sector of the powered chip");
+    }
+
+    pub(super) fn end_work(&mut self, ctx: &mut Ctx<'_>) {
+        self.reach_the_cells();
+        self.under_way = None;
+        // Without its interrupt the end is not shown (RM0090 3.9.4).
+        if self.cr & cr::EOPIE != 0 {
+            self.sr |= sr::EOP;
+        }
+        self.update_interrupt(ctx);
+    }
+}
+
+fn read_cells(chip: &mut FlashChip, address: u32) -> u32 {
+    let mut bytes = [0; 4];
+    chip.read(address, &mut bytes)
+        .expect("a word of the powered chip");
+    u32::from_le_bytes(bytes)
+}
