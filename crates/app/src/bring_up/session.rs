@@ -107,6 +107,11 @@ impl BringUp {
         self.stage == BringUpRequest::ReadOnly
     }
 
+    /// In the other steps motors are enabled as soon as the robot is armed.
+    pub fn tries_motors(&self) -> bool {
+        !matches!(self.stage, BringUpRequest::Off | BringUpRequest::ReadOnly)
+    }
+
     pub fn status(&self) -> &BringUpStatus {
         &self.status
     }

@@ -95,6 +95,8 @@ pub struct JointFeedback {
     pub fault_code: u32,
     /// Its reports contradict themselves or what was commanded: it repeats an old one.
     pub frozen: bool,
+    /// By its last report it gives torque, whatever it was told. An RS00 reports no such thing.
+    pub reports_enabled: bool,
     /// Since `ts_us`; `u32::MAX` before the first report.
     pub age_us: u32,
     /// When it was received, 0 = no report yet.
@@ -111,6 +113,7 @@ impl Default for JointFeedback {
             state: JointState::Silent,
             fault_code: 0,
             frozen: false,
+            reports_enabled: false,
             age_us: u32::MAX,
             ts_us: 0,
         }

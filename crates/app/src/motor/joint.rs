@@ -374,6 +374,7 @@ impl Motor for Joint {
         feedback.vel_rps = motion.vel_rps;
         feedback.torque_nm = axis::joint_torque_nm(&report.motion, config);
         feedback.temperature_c = report.temperature_c;
+        feedback.reports_enabled = report.status == Status::Enabled;
         feedback.ts_us = self.report_ts_us;
     }
 

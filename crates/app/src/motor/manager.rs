@@ -38,6 +38,10 @@ impl MotorManager {
         }
     }
 
+    pub fn layout(&self) -> &'static MotorLayout {
+        self.layout
+    }
+
     /// True if the frame was the feedback of a motor; any other leaves no trace.
     pub fn route_frame(&mut self, bus: BusId, frame: &CanFrame, ts_us: u64) -> bool {
         if self.layout.wheels().bus == bus {

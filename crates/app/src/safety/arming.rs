@@ -43,6 +43,8 @@ impl ArmingBlockers {
     pub const BATTERY_LOW: Self = Self(1 << 9);
     /// Settings are being written to flash, or room is made for them.
     pub const FLASH_BUSY: Self = Self(1 << 10);
+    /// A saved setting was refused at boot; its default need not fit this robot.
+    pub const SETTINGS_REFUSED: Self = Self(1 << 11);
 
     pub const fn bits(self) -> u32 {
         self.0
@@ -76,7 +78,7 @@ impl ArmingBlockers {
 }
 
 /// Not a constant: tools read the names of the bits out of the image.
-static BLOCKER_NAMES: [(ArmingBlockers, &str); 11] = [
+static BLOCKER_NAMES: [(ArmingBlockers, &str); 12] = [
     (ArmingBlockers::REMOTE_NOT_FRESH, "remote-not-fresh"),
     (ArmingBlockers::ENABLE_OFF, "enable-off"),
     (ArmingBlockers::ENABLE_NOT_CYCLED, "enable-not-cycled"),
@@ -88,6 +90,7 @@ static BLOCKER_NAMES: [(ArmingBlockers, &str); 11] = [
     (ArmingBlockers::BRING_UP_READ_ONLY, "bring-up-read-only"),
     (ArmingBlockers::BATTERY_LOW, "battery-low"),
     (ArmingBlockers::FLASH_BUSY, "flash-busy"),
+    (ArmingBlockers::SETTINGS_REFUSED, "settings-refused"),
 ];
 
 #[cfg(feature = "defmt")]
@@ -130,6 +133,8 @@ pub struct ArmingInputs<'a> {
     pub read_only: bool,
     /// See `FlashPermit`, which grants nothing to an armed robot.
     pub flash_busy: bool,
+    /// See `ParamStatus::refused`.
+    pub settings_refused: bool,
     pub safety: &'a SafetyStatus,
 }
 
@@ -250,6 +255,7 @@ fn only_forbidding(inputs: &ArmingInputs<'_>) -> ArmingBlockers {
     let joints_ready = inputs.motor.joints.iter().all(is_ready);
     blockers.add_if(ArmingBlockers::JOINTS_NOT_READY, !joints_ready);
     blockers.add_if(ArmingBlockers::FLASH_BUSY, inputs.flash_busy);
+    blockers.add_if(ArmingBlockers::SETTINGS_REFUSED, inputs.settings_refused);
     blockers.add_if(
         ArmingBlockers::BATTERY_LOW,
         inputs.safety.flags.intersects(SafetyFlags::BATTERY_LOW),

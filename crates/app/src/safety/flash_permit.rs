@@ -1,18 +1,18 @@
 //! When flash may be written or erased: never while a motor has torque or is about to get it (docs/parameters.md).
 
+mod rest;
+
+use self::rest::RestWatch;
 use super::ArmingState;
 use crate::{
-    domain::{JointFeedback, JointState, MotorFeedback, WheelFeedback},
+    domain::{BusHealth, MotorFeedback},
+    motor::layout::MotorLayout,
     params::FlashRequest,
 };
 
-/// Motors that were let go come to rest within this time.
-const REST_US: u64 = 500_000;
-/// A joint motor that was silent for this long has switched itself off: its time-out is a tenth of it.
-const SILENT_US: u32 = 1_000_000;
-/// Rotor speed and current below which a wheel stands and nothing drives it; a C620 reports some noise.
-const STILL_RPM: u16 = 60;
-const STILL_MA: f32 = 500.0;
+/// Motors that were let go slow down within this time. Words may be programmed then: each stops the chip for 0.1 ms at
+/// most, and the frames that keep motors off go on.
+const LET_GO_US: u64 = 500_000;
 
 /// How long the watchdog waits now.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -46,9 +46,12 @@ pub struct FlashPermitInputs<'a> {
     pub arming: ArmingState,
     /// The pilot's enable switch.
     pub enabled: bool,
+    /// Bring-up is in a step in which motors are tried out.
+    pub tries_motors: bool,
     pub motor: &'a MotorFeedback,
-    /// A wheel silent for longer has no say.
-    pub wheel_timeout_us: u32,
+    pub layout: &'a MotorLayout,
+    /// Index = `BusId`.
+    pub can: &'a [BusHealth; 2],
 }
 
 /// One request at a time: between two of them the parameter task asks for nothing, so that arming gets its chance.
@@ -56,6 +59,8 @@ pub struct FlashPermitInputs<'a> {
 pub struct FlashPermit {
     grant: FlashGrant,
     armed_us: u64,
+    /// While an erase is asked for and the robot is disarmed.
+    rest: Option<RestWatch>,
 }
 
 impl FlashPermit {
@@ -65,6 +70,7 @@ impl FlashPermit {
             self.armed_us = now_us;
         }
         self.grant = if inputs.request == FlashRequest::None {
+            self.rest = None;
             FlashGrant {
                 blocks_arming: inputs.watchdog != WatchdogPeriod::Short,
                 ..FlashGrant::default()
@@ -77,8 +83,10 @@ impl FlashPermit {
         self.grant
     }
 
-    fn consider(&self, inputs: &FlashPermitInputs<'_>, now_us: u64) -> FlashGrant {
-        let allowed = self.at_rest(inputs, now_us);
+    #[cold]
+    #[inline(never)]
+    fn consider(&mut self, inputs: &FlashPermitInputs<'_>, now_us: u64) -> FlashGrant {
+        let allowed = self.is_allowed(inputs, now_us);
         let erases = inputs.request == FlashRequest::Erase;
         let waits = erases && inputs.watchdog != WatchdogPeriod::Long;
         FlashGrant {
@@ -92,26 +100,23 @@ impl FlashPermit {
         }
     }
 
-    fn at_rest(&self, inputs: &FlashPermitInputs<'_>, now_us: u64) -> bool {
-        let disarmed = inputs.arming == ArmingState::Disarmed
-            && !inputs.enabled
-            && now_us.saturating_sub(self.armed_us) >= REST_US;
-        let stands = |wheel: &WheelFeedback| is_still(wheel, inputs.wheel_timeout_us);
-        disarmed && inputs.motor.wheels.iter().all(stands) && inputs.motor.joints.iter().all(is_off)
-    }
-}
-
-fn is_still(wheel: &WheelFeedback, timeout_us: u32) -> bool {
-    wheel.age_us > timeout_us
-        || (wheel.rpm.unsigned_abs() <= STILL_RPM && wheel.current_ma.abs() <= STILL_MA)
-}
-
-/// Every joint has been told to disable for as long as the robot has been disarmed.
-fn is_off(joint: &JointFeedback) -> bool {
-    match joint.state {
-        JointState::Disabled | JointState::SettingUp | JointState::Fault => true,
-        JointState::Silent => joint.age_us >= SILENT_US,
-        JointState::Enabling | JointState::Enabled => false,
+    fn is_allowed(&mut self, inputs: &FlashPermitInputs<'_>, now_us: u64) -> bool {
+        let disarmed = inputs.arming == ArmingState::Disarmed;
+        if !disarmed || inputs.enabled || inputs.tries_motors {
+            self.rest = None;
+            return false;
+        }
+        let rests = match inputs.request {
+            FlashRequest::None | FlashRequest::Program => {
+                self.rest = None;
+                true
+            }
+            FlashRequest::Erase => self
+                .rest
+                .get_or_insert_with(|| RestWatch::from(now_us))
+                .lasts(inputs.motor, inputs.layout, inputs.can, now_us),
+        };
+        rests && now_us.saturating_sub(self.armed_us) >= LET_GO_US
     }
 }
 

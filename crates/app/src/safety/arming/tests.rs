@@ -9,6 +9,7 @@ struct Bench {
     calibrated: bool,
     read_only: bool,
     flash_busy: bool,
+    settings_refused: bool,
     vx: f32,
     motor: MotorFeedback,
     safety: SafetyStatus,
@@ -29,6 +30,7 @@ impl Bench {
             calibrated: true,
             read_only: false,
             flash_busy: false,
+            settings_refused: false,
             vx: 0.0,
             motor,
             safety: SafetyStatus::of(SafetyFlags::NONE),
@@ -61,6 +63,7 @@ impl Bench {
                 motor: &self.motor,
                 read_only: self.read_only,
                 flash_busy: self.flash_busy,
+                settings_refused: self.settings_refused,
                 safety: &self.safety,
             };
             let (now, token) = self.arming.step(&inputs, self.now_us);
@@ -188,6 +191,13 @@ fn a_flip_while_flash_is_busy_arms_when_it_is_done() {
     assert_eq!(bench.run(600).blockers, ArmingBlockers::FLASH_BUSY);
     bench.flash_busy = false;
     assert_eq!(bench.run(1).state, ArmingState::Armed);
+}
+
+#[test]
+fn refused_settings_forbid_arming() {
+    let result = with_wrong(|bench| bench.settings_refused = true);
+    let expected = (ArmingBlockers::SETTINGS_REFUSED, ArmingState::Armed);
+    assert_eq!(result, expected);
 }
 
 #[test]

@@ -1,4 +1,5 @@
 use super::*;
+use crate::motor::layout::ROBOT_LAYOUT;
 
 struct Bench {
     permit: FlashPermit,
@@ -7,7 +8,9 @@ struct Bench {
     watchdog: WatchdogPeriod,
     arming: ArmingState,
     enabled: bool,
+    tries_motors: bool,
     motor: MotorFeedback,
+    can: [BusHealth; 2],
 }
 
 impl Bench {
@@ -20,7 +23,9 @@ impl Bench {
             watchdog: WatchdogPeriod::Short,
             arming: ArmingState::Disarmed,
             enabled: false,
+            tries_motors: false,
             motor: MotorFeedback::default(),
+            can: Default::default(),
         }
     }
 
@@ -31,14 +36,26 @@ impl Bench {
             watchdog: self.watchdog,
             arming: self.arming,
             enabled: self.enabled,
+            tries_motors: self.tries_motors,
             motor: &self.motor,
-            wheel_timeout_us: 50_000,
+            layout: &ROBOT_LAYOUT,
+            can: &self.can,
         };
         self.permit.step(&inputs, self.now_us)
     }
 
     fn granted(&mut self) -> FlashRequest {
         self.tick().granted
+    }
+
+    fn turn(&mut self) {
+        let wheel = &mut self.motor.wheels[0];
+        (wheel.rpm, wheel.age_us, wheel.ts_us) = (500, 0, self.now_us);
+    }
+
+    /// How many ticks it takes until the request is granted; `None` if it is not within three seconds.
+    fn ticks_to_grant(&mut self) -> Option<u32> {
+        (1..=3_000).find(|_| self.granted() != FlashRequest::None)
     }
 }
 
@@ -58,6 +75,9 @@ fn a_robot_at_rest_may_write_at_once_and_arming_waits() {
 #[test]
 fn an_erase_waits_for_the_long_watchdog_and_arming_until_it_is_short_again() {
     let mut bench = Bench::new(FlashRequest::Erase);
+    for _ in 0..500 {
+        assert_eq!(bench.tick(), FlashGrant::default());
+    }
     for period in [WatchdogPeriod::Short, WatchdogPeriod::Changing] {
         bench.watchdog = period;
         let expected = FlashGrant {
@@ -122,8 +142,7 @@ fn a_grant_outlasts_its_reasons_until_the_request_is_taken_back() {
     let mut bench = Bench::new(FlashRequest::Program);
     bench.tick();
     bench.enabled = true;
-    bench.motor.wheels[0].age_us = 0;
-    bench.motor.wheels[0].rpm = 500;
+    bench.turn();
     let grant = bench.tick();
     assert_eq!(grant.granted, FlashRequest::Program);
     assert!(grant.blocks_arming);
@@ -133,46 +152,62 @@ fn a_grant_outlasts_its_reasons_until_the_request_is_taken_back() {
 }
 
 #[test]
-fn a_wheel_that_turns_or_is_driven_forbids_it_as_long_as_it_reports() {
-    for (rpm, current_ma, age_us, allowed) in [
-        (60, 0.0, 1_000, true),
-        (-60, -500.0, 50_000, true),
-        (61, 0.0, 1_000, false),
-        (-61, 0.0, 1_000, false),
-        (i16::MIN, 0.0, 1_000, false),
-        (0, 501.0, 1_000, false),
-        (0, -501.0, 1_000, false),
-        (0, f32::NAN, 1_000, false),
-        (3_000, 5_000.0, 50_001, true),
-    ] {
-        for side in 0..2 {
-            let mut bench = Bench::new(FlashRequest::Program);
-            let wheel = &mut bench.motor.wheels[side];
-            (wheel.rpm, wheel.current_ma, wheel.age_us) = (rpm, current_ma, age_us);
-            let granted = bench.granted() == FlashRequest::Program;
-            assert_eq!(granted, allowed, "{rpm} rpm, {current_ma} mA, {age_us} µs");
-        }
+fn words_may_be_programmed_while_a_wheel_runs_down() {
+    let mut bench = Bench::new(FlashRequest::Program);
+    bench.turn();
+    assert_eq!(bench.granted(), FlashRequest::Program);
+}
+
+#[test]
+fn motors_that_are_tried_out_forbid_both() {
+    for (request, ticks) in [(FlashRequest::Program, 1), (FlashRequest::Erase, 501)] {
+        let mut bench = Bench::new(request);
+        bench.watchdog = WatchdogPeriod::Long;
+        bench.tries_motors = true;
+        assert_eq!(bench.ticks_to_grant(), None);
+        bench.tries_motors = false;
+        assert_eq!(bench.ticks_to_grant(), Some(ticks));
     }
 }
 
 #[test]
-fn a_joint_must_be_off_or_long_silent() {
-    for (state, age_us, allowed) in [
-        (JointState::Silent, u32::MAX, true),
-        (JointState::Silent, 1_000_000, true),
-        (JointState::Silent, 999_999, false),
-        (JointState::SettingUp, 2_000, true),
-        (JointState::Disabled, 2_000, true),
-        (JointState::Fault, 2_000, true),
-        (JointState::Enabling, 2_000, false),
-        (JointState::Enabled, 2_000, false),
+fn an_erase_needs_half_a_second_of_rest_without_a_break() {
+    let mut bench = Bench::new(FlashRequest::Erase);
+    bench.watchdog = WatchdogPeriod::Long;
+    bench.turn();
+    assert_eq!(bench.ticks_to_grant(), None);
+    // It swings through zero, and comes to rest.
+    bench.motor.wheels[0].rpm = 0;
+    for _ in 0..499 {
+        assert_eq!(bench.granted(), FlashRequest::None);
+    }
+    bench.motor.wheels[0].rpm = -61;
+    assert_eq!(bench.granted(), FlashRequest::None);
+    bench.motor.wheels[0].rpm = 0;
+    assert_eq!(bench.ticks_to_grant(), Some(500));
+}
+
+#[test]
+fn rest_before_a_flip_of_the_switch_does_not_count_after_it() {
+    for disturb in [
+        |bench: &mut Bench, on: bool| bench.enabled = on,
+        |bench: &mut Bench, on: bool| bench.tries_motors = on,
+        |bench: &mut Bench, on: bool| {
+            bench.request = if on {
+                FlashRequest::None
+            } else {
+                FlashRequest::Erase
+            }
+        },
     ] {
-        for place in 0..4 {
-            let mut bench = Bench::new(FlashRequest::Program);
-            let joint = &mut bench.motor.joints[place];
-            (joint.state, joint.age_us) = (state, age_us);
-            let granted = bench.granted() == FlashRequest::Program;
-            assert_eq!(granted, allowed, "{state:?}, {age_us} µs");
+        let mut bench = Bench::new(FlashRequest::Erase);
+        bench.watchdog = WatchdogPeriod::Long;
+        for _ in 0..400 {
+            bench.tick();
         }
+        disturb(&mut bench, true);
+        assert_eq!(bench.granted(), FlashRequest::None);
+        disturb(&mut bench, false);
+        assert_eq!(bench.ticks_to_grant(), Some(501));
     }
 }

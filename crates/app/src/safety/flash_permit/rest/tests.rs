@@ -1,0 +1,161 @@
+use super::*;
+use crate::motor::layout::ROBOT_LAYOUT;
+
+/// Of the wheels, and of the joints.
+const BUSES: [usize; 2] = [0, 1];
+
+/// A robot whose motors report and are at rest.
+struct Bench {
+    watch: RestWatch,
+    now_us: u64,
+    motor: MotorFeedback,
+    can: [BusHealth; 2],
+}
+
+impl Bench {
+    fn new() -> Self {
+        let mut motor = MotorFeedback::default();
+        for wheel in &mut motor.wheels {
+            (wheel.age_us, wheel.ts_us) = (1_000, 999_000);
+        }
+        for joint in &mut motor.joints {
+            (joint.age_us, joint.ts_us) = (2_000, 998_000);
+            joint.state = JointState::Disabled;
+        }
+        Self {
+            watch: RestWatch::from(1_000_000),
+            now_us: 1_000_000,
+            motor,
+            can: Default::default(),
+        }
+    }
+
+    fn lasts(&mut self) -> bool {
+        self.now_us += 1_000;
+        let Self {
+            watch,
+            now_us,
+            motor,
+            can,
+        } = self;
+        watch.lasts(motor, &ROBOT_LAYOUT, can, *now_us)
+    }
+
+    /// Milliseconds until it has lasted long enough; `None` if that is more than three seconds.
+    fn ms_to_rest(&mut self) -> Option<u32> {
+        (1..=3_000).find(|_| self.lasts())
+    }
+}
+
+#[test]
+fn the_layout_has_wheels_and_joints_on_the_buses_these_tests_take_them_for() {
+    assert_eq!(ROBOT_LAYOUT.wheels().bus, BusId::Can1);
+    let mut joints = ROBOT_LAYOUT.joints().iter();
+    assert!(joints.all(|slot| slot.bus == BusId::Can2));
+}
+
+#[test]
+fn rest_must_last_half_a_second() {
+    assert_eq!(Bench::new().ms_to_rest(), Some(500));
+}
+
+#[test]
+fn a_wheel_that_reports_must_stand_and_have_no_current() {
+    for (rpm, current_ma, age_us, rests) in [
+        (60, 0.0, 1_000, true),
+        (-60, -500.0, 999_999, true),
+        (61, 0.0, 1_000, false),
+        (-61, 0.0, 1_000, false),
+        (i16::MIN, 0.0, 1_000, false),
+        // Older than any time limit among the settings.
+        (3_000, 0.0, 999_999, false),
+        (0, 501.0, 1_000, false),
+        (0, -501.0, 1_000, false),
+        (0, f32::NAN, 1_000, false),
+    ] {
+        for side in 0..2 {
+            let mut bench = Bench::new();
+            let wheel = &mut bench.motor.wheels[side];
+            (wheel.rpm, wheel.current_ma, wheel.age_us) = (rpm, current_ma, age_us);
+            let expected = rests.then_some(500);
+            assert_eq!(
+                bench.ms_to_rest(),
+                expected,
+                "{rpm} rpm, {current_ma} mA, {age_us} us"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_joint_that_reports_must_be_off_and_say_so() {
+    for (state, reports_enabled, rests) in [
+        (JointState::Disabled, false, true),
+        (JointState::SettingUp, false, true),
+        (JointState::Fault, false, true),
+        (JointState::Disabled, true, false),
+        (JointState::SettingUp, true, false),
+        (JointState::Fault, true, false),
+        (JointState::Silent, false, false),
+        (JointState::Enabling, false, false),
+        (JointState::Enabled, false, false),
+        (JointState::Enabled, true, false),
+    ] {
+        for place in 0..4 {
+            let mut bench = Bench::new();
+            let joint = &mut bench.motor.joints[place];
+            (joint.state, joint.reports_enabled) = (state, reports_enabled);
+            let expected = rests.then_some(500);
+            assert_eq!(bench.ms_to_rest(), expected, "{state:?} {reports_enabled}");
+        }
+    }
+}
+
+/// Of a motor that fell silent while it ran, as far as anybody knows.
+fn silence_wheel(bench: &mut Bench) {
+    let wheel = &mut bench.motor.wheels[1];
+    (wheel.rpm, wheel.current_ma, wheel.age_us) = (3_000, 5_000.0, 1_000_000);
+}
+
+fn silence_joint(bench: &mut Bench) {
+    let joint = &mut bench.motor.joints[2];
+    (joint.state, joint.reports_enabled, joint.age_us) = (JointState::Silent, true, 1_000_000);
+}
+
+#[test]
+fn a_motor_that_fell_silent_is_off_once_its_bus_has_told_it_so_for_a_second() {
+    let no_ack: fn(&mut BusHealth) = |bus| bus.state = BusErrorState::Passive;
+    let bus_off: fn(&mut BusHealth) = |bus| bus.state = BusErrorState::BusOff;
+    let stuck: fn(&mut BusHealth) = |bus| bus.tx_failures_in_row = 1;
+    for (silence, bus) in [
+        (silence_wheel as fn(&mut Bench), BUSES[0]),
+        (silence_joint, BUSES[1]),
+    ] {
+        let mut bench = Bench::new();
+        silence(&mut bench);
+        assert_eq!(bench.ms_to_rest(), Some(1_499));
+        for harm in [no_ack, bus_off, stuck] {
+            let mut bench = Bench::new();
+            silence(&mut bench);
+            harm(&mut bench.can[bus]);
+            assert_eq!(bench.ms_to_rest(), None);
+            bench.can[bus] = BusHealth::default();
+            assert_eq!(bench.ms_to_rest(), Some(1_499));
+            // The other bus has no say.
+            let mut bench = Bench::new();
+            silence(&mut bench);
+            harm(&mut bench.can[1 - bus]);
+            assert_eq!(bench.ms_to_rest(), Some(1_499));
+        }
+    }
+}
+
+#[test]
+fn motors_never_heard_and_dead_buses_are_at_rest() {
+    let mut bench = Bench::new();
+    bench.motor = MotorFeedback::default();
+    for bus in &mut bench.can {
+        bus.state = BusErrorState::BusOff;
+    }
+    assert_eq!(bench.ms_to_rest(), Some(500));
+}
