@@ -1,6 +1,7 @@
 //! The motors' side of the tick against the world's drives, which are written from the datasheets alone.
 
 mod faults;
+mod flash;
 mod limits;
 mod motion;
 mod robot;

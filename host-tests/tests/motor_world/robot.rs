@@ -11,7 +11,7 @@ use robot_app::{
     logic::LogicBus,
     motor::layout::{MotorLayout, ROBOT_LAYOUT, RS00_LAYOUT},
     params::{FlashRequest, ParamStatus},
-    safety::{ArmingState, WatchdogPeriod},
+    safety::{ArmingState, FlashGrant, WatchdogPeriod},
     tick::{ControlInputs, ControlLoop},
 };
 use robot_plant::{
@@ -24,6 +24,9 @@ pub struct Robot {
     pub command: ChassisCommand,
     pub enabled: bool,
     pub e_stop: bool,
+    /// What the parameter store asks for.
+    pub flash_request: FlashRequest,
+    flash: FlashGrant,
     world: World,
     now: Ps,
     control: ControlLoop<UserController>,
@@ -47,6 +50,8 @@ impl Robot {
             command: ChassisCommand::default(),
             enabled: false,
             e_stop: false,
+            flash_request: FlashRequest::None,
+            flash: FlashGrant::default(),
             world,
             now: 0,
             control: ControlLoop::with_layout(
@@ -123,6 +128,10 @@ impl Robot {
         self.diagnostics.arming.state == ArmingState::Armed
     }
 
+    pub fn flash(&self) -> FlashGrant {
+        self.flash
+    }
+
     pub fn diagnostics(&self) -> &DiagnosticsSnapshot {
         &self.diagnostics
     }
@@ -195,11 +204,12 @@ impl Robot {
             logic: &logic,
             health: &health,
             params: &ParamStatus::default(),
-            flash_request: FlashRequest::None,
+            flash_request: self.flash_request,
             watchdog: WatchdogPeriod::Short,
         };
         let outputs = self.control.tick(&inputs, now_us);
         self.sent = outputs.frames.to_vec();
+        self.flash = outputs.flash;
         self.diagnostics = *outputs.diagnostics;
         self.send();
     }
