@@ -8,28 +8,51 @@ use crate::{
     workload::{Moment, moments, nth_save},
 };
 
-/// Of the saves that only append one in so many is tried; all that change the sector are.
-const APPENDS: usize = 8;
-/// Of the steps of the recovery one in so many, from another one after each first cut.
-const STRIDE: u64 = 3;
 /// More steps than an append takes.
 const MANY_STEPS: u64 = 40;
 
+/// Which second cuts are tried; a change of sector is always among the first ones.
+struct Sample {
+    /// Of the saves that only append, one in so many.
+    appends: usize,
+    /// Of the steps of the recovery one in so many, from another one after each first cut.
+    stride: u64,
+}
+
 #[test]
 fn a_cut_in_the_recovery_from_a_cut_loses_nothing() {
+    let sample = Sample {
+        appends: 8,
+        stride: 3,
+    };
+    let cuts = cut_twice(&sample, "a second cut, sampled");
+    assert!(cuts > 5_000);
+}
+
+#[test]
+#[ignore = "takes half a minute"]
+fn a_cut_at_every_step_of_every_recovery_loses_nothing() {
+    let all = Sample {
+        appends: 1,
+        stride: 1,
+    };
+    cut_twice(&all, "a second cut at every step");
+}
+
+fn cut_twice(sample: &Sample, name: &str) -> u32 {
     let mut tally = Tally::default();
     for (number, moment) in moments().iter().enumerate() {
         let changes_sector = moment.steps.end - moment.steps.start > MANY_STEPS;
-        if !changes_sector && number % APPENDS != 0 {
+        if !changes_sector && number % sample.appends != 0 {
             continue;
         }
         for step in moment.steps.clone() {
             let (chip, ledger) = after_first_cut(moment, step);
-            cut_again_everywhere(&chip, &ledger, step, &mut tally);
+            cut_again(&chip, &ledger, step, sample.stride, &mut tally);
         }
     }
-    tally.assert_none_lost("a second cut");
-    assert!(tally.cuts > 5_000);
+    tally.assert_none_lost(name);
+    tally.cuts
 }
 
 fn after_first_cut(moment: &Moment, step: u64) -> (FlashChip, Ledger) {
@@ -41,11 +64,11 @@ fn after_first_cut(moment: &Moment, step: u64) -> (FlashChip, Ledger) {
     (chip, ledger)
 }
 
-fn cut_again_everywhere(chip: &FlashChip, ledger: &Ledger, step: u64, tally: &mut Tally) {
+fn cut_again(chip: &FlashChip, ledger: &Ledger, step: u64, stride: u64, tally: &mut Tally) {
     let mut whole = chip.clone();
     recover(&mut whole, ledger.clone(), step);
-    let first = chip.steps() + step % STRIDE;
-    for second in (first..whole.steps()).step_by(STRIDE as usize) {
+    let first = chip.steps() + step % stride;
+    for second in (first..whole.steps()).step_by(stride as usize) {
         let phase = if second % 4 == 0 {
             Phase::After
         } else {
