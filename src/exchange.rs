@@ -47,6 +47,8 @@ pub struct ConfigUpdate {
     pub config: RobotConfig,
     /// As `TuningStatus::revision` counts.
     pub revision: u32,
+    /// `TuningStatus::restored`.
+    pub restored: u32,
 }
 
 /// What the parameter store is about.
@@ -112,6 +114,7 @@ impl Exchange {
             config: Snapshot::new(ConfigUpdate {
                 config,
                 revision: 0,
+                restored: 0,
             }),
             params: Snapshot::new(ParamsReport::default()),
             flash_grant: Snapshot::new(FlashPermission::default()),

@@ -8,6 +8,7 @@ use robot_app::logic::LogicBus;
 use robot_app::params::FlashRequest;
 use robot_app::tick::robot_loop::{self, RobotLoop};
 use robot_app::tick::{ControlInputs, ControlOutputs, DIAGNOSTICS_PERIOD_TICKS};
+use robot_app::tuning::TuningStatus;
 use robot_snapshot::Follower;
 
 use crate::config::LAYOUT;
@@ -79,12 +80,15 @@ impl Output {
             config_revision,
             granted,
         } = self;
-        let revision = outputs.diagnostics.tuning.revision;
+        let TuningStatus {
+            revision, restored, ..
+        } = outputs.diagnostics.tuning;
         if revision != *config_revision {
             *config_revision = revision;
             writers.config.publish(&ConfigUpdate {
                 config: *outputs.config,
                 revision,
+                restored,
             });
         }
         if outputs.flash.granted != *granted {

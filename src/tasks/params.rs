@@ -58,9 +58,15 @@ impl ParamsTask {
         } else {
             FlashRequest::None
         };
-        let ConfigUpdate { config, revision } = self.config.latest();
+        let ConfigUpdate {
+            config,
+            revision,
+            restored,
+        } = self.config.latest();
         let now_us = Instant::now().as_micros();
-        let wanted = self.service.step(config, *revision, granted, now_us);
+        let wanted = self
+            .service
+            .step(config, *revision, *restored, granted, now_us);
         if let Some(stall_us) = self.stalls.news() {
             self.service.note_stall(stall_us);
             defmt::info!(

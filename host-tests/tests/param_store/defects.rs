@@ -118,7 +118,9 @@ fn a_sector_that_takes_no_record_is_done_without() {
             });
         }
         let errors = use_for_long(&mut chip, contents);
-        assert!(errors.contains(&ParamError::Full));
+        // A session meets it once, and does not try long.
+        assert!(!errors.is_empty());
+        assert!(errors.len() <= 3 * SESSIONS.len(), "{errors:?}");
     }
 }
 

@@ -3,7 +3,7 @@
 use robot_app::{
     domain::RobotConfig,
     motor::layout::{ROBOT_LAYOUT, RS00_LAYOUT},
-    params::ParamState,
+    params::{FlashRequest, ParamState},
 };
 
 use robot_plant::flash_chip::Phase;
@@ -18,18 +18,43 @@ const SAFETY: u32 = 1 << 3;
 const GEOMETRY: u32 = 1 << 0;
 const LEFT_FRONT: u32 = 1 << 7;
 
-/// One erase makes a sector of which it is known that it is blank.
+/// One erase, once the robot rests, makes a sector of which it is known that it is blank.
 #[test]
-fn a_new_chip_has_the_defaults_and_is_ready_for_a_save() {
+fn a_new_chip_has_the_defaults_and_gets_ready_for_a_save_at_rest() {
     let chip = Chip::blank();
-    let robot = Robot::boot(&chip);
+    let mut robot = Robot::boot(&chip);
     assert_eq!(robot.config, RobotConfig::default());
-    assert_eq!((chip.erases(), robot.status().erases), (1, 1));
     let status = robot.status();
     assert_eq!((status.loaded, status.refused, status.foreign), (0, 0, 0));
+    assert_eq!((status.lost_sectors, status.generation), (0, 0));
     assert_eq!(status.state, ParamState::Saved);
-    assert_eq!(status.generation, 0);
-    assert_eq!(Robot::boot(&chip).status().erases, 0);
+    robot.rests = false;
+    robot.run_ms(10_000);
+    assert_eq!(robot.asked(), FlashRequest::Erase);
+    assert_eq!(chip.erases(), 0);
+    robot.rests = true;
+    robot.save();
+    assert_eq!((chip.erases(), robot.status().erases), (1, 1));
+    assert_eq!(Robot::ready(&chip).status().erases, 0);
+}
+
+/// Whatever is in flash: joints may still hold a torque from before the reset.
+#[test]
+fn a_boot_erases_nothing() {
+    let full_of = |byte| {
+        let chip = Chip::blank();
+        let mut cells = chip.cells.borrow_mut();
+        cells
+            .set_contents(0x0800_4000, &vec![byte; 3 * 16 * 1024])
+            .unwrap();
+        drop(cells);
+        chip
+    };
+    let chips = [Chip::blank(), full_of(0x5A), full_of(0), dump::chip(3, &[])];
+    for chip in chips {
+        Robot::boot(&chip);
+        assert_eq!(chip.erases(), 0);
+    }
 }
 
 #[test]
@@ -172,7 +197,82 @@ fn a_refused_group_is_saved_once_someone_changes_it() {
     robot.save();
     let again = Robot::boot(&chip);
     assert_eq!(again.status().loaded, SAFETY);
+    assert_eq!(robot.status().refused, HEATER);
     assert_eq!(again.config.safety, robot.config.safety);
+}
+
+const STICK_CENTRE: fn(&RobotConfig) -> f32 = |config| config.safety.stick_centre;
+
+/// They are in use already, but flash still holds the record that was refused.
+#[test]
+fn a_refused_group_is_saved_once_it_is_given_its_defaults() {
+    let chip = dump::chip(1, &others_records());
+    let mut robot = Robot::boot(&chip);
+    robot.run_ms(5_000);
+    assert_eq!(robot.status().refused, HEATER | SAFETY);
+    robot.restore(SAFETY);
+    robot.step();
+    assert_eq!(robot.status().unsaved, SAFETY);
+    robot.save();
+    assert_eq!(
+        (robot.status().refused, robot.status().save_ok),
+        (HEATER, 1)
+    );
+    let mut again = Robot::boot(&chip);
+    assert_eq!(
+        (again.status().loaded, again.status().refused),
+        (SAFETY, HEATER)
+    );
+    assert_eq!(
+        STICK_CENTRE(&again.config),
+        STICK_CENTRE(&RobotConfig::default())
+    );
+    // All groups: nothing else is refused, and what is saved already is not saved again.
+    again.restore(0x7FF);
+    again.save();
+    assert_eq!((again.status().refused, again.status().save_ok), (0, 1));
+    assert_eq!(Robot::boot(&chip).status().refused, 0);
+}
+
+#[test]
+fn a_refused_group_stays_refused_until_its_defaults_are_really_in_flash() {
+    let chip = dump::chip(1, &others_records());
+    let mut robot = Robot::ready(&chip);
+    robot.chip.refuses_words.set(true);
+    robot.restore(SAFETY);
+    robot.run_ms(5_000);
+    assert_eq!(robot.status().unsaved, SAFETY);
+    assert_eq!(robot.status().refused, HEATER | SAFETY);
+    robot.chip.refuses_words.set(false);
+    robot.run_ms(70_000);
+    assert_eq!(
+        (robot.status().unsaved, robot.status().refused),
+        (0, HEATER)
+    );
+}
+
+/// The newest sector is ruined while another one is clean: no power cut does that.
+#[test]
+fn older_values_after_damage_are_told() {
+    let chip = Chip::blank();
+    let mut robot = Robot::boot(&chip);
+    for number in 0..200u8 {
+        robot.change(|config| config.heater.target_c = 20.0 + f32::from(number) * 0.1);
+        robot.save();
+    }
+    assert_eq!(robot.status().generation, 2);
+    let mut cells = chip.cells.borrow_mut();
+    cells.set_contents(0x0800_8000, &[0x5A; 16 * 1024]).unwrap();
+    drop(cells);
+    let mut robot = Robot::boot(&chip);
+    assert!((robot.config.heater.target_c - 39.9).abs() > 1.0);
+    assert_eq!(
+        (robot.status().generation, robot.status().lost_sectors),
+        (1, 1)
+    );
+    robot.change(|config| config.heater.target_c = 35.0);
+    robot.save();
+    assert_eq!(robot.status().save_ok, 1);
 }
 
 #[test]

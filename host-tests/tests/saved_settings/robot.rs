@@ -12,6 +12,7 @@ use robot_app::{
     domain::RobotConfig,
     motor::layout::{MotorLayout, ROBOT_LAYOUT},
     params::{FlashRequest, ParamService, ParamState, ParamStatus},
+    tuning::PARAMETERS,
 };
 use robot_plant::flash_chip::{FlashChip, PARAMETER_SECTORS};
 
@@ -102,6 +103,7 @@ pub struct Robot {
     service: ParamService<Chip>,
     pub config: RobotConfig,
     revision: u32,
+    restored: u32,
     now_us: u64,
     asked: FlashRequest,
     /// Disarmed and standing still.
@@ -113,6 +115,13 @@ impl Robot {
         Self::boot_with(chip, &ROBOT_LAYOUT)
     }
 
+    /// Booted and at rest for long enough to make a sector ready.
+    pub fn ready(chip: &Chip) -> Self {
+        let mut robot = Self::boot(chip);
+        robot.save();
+        robot
+    }
+
     pub fn boot_with(chip: &Chip, layout: &'static MotorLayout) -> Self {
         let (service, config) = ParamService::boot(chip.clone(), layout);
         Self {
@@ -120,6 +129,7 @@ impl Robot {
             service,
             config,
             revision: 0,
+            restored: 0,
             now_us: 2_000_000,
             asked: FlashRequest::None,
             rests: true,
@@ -128,6 +138,18 @@ impl Robot {
 
     pub fn change(&mut self, change: impl FnOnce(&mut RobotConfig)) {
         change(&mut self.config);
+        self.revision = self.revision.wrapping_add(1);
+    }
+
+    /// As the tuning channel gives groups their defaults. Bits are positions.
+    pub fn restore(&mut self, groups: u32) {
+        let defaults = RobotConfig::default();
+        for (position, group) in PARAMETERS.iter().enumerate() {
+            if groups & 1 << position != 0 {
+                group.copy(&defaults, &mut self.config);
+            }
+        }
+        self.restored |= groups;
         self.revision = self.revision.wrapping_add(1);
     }
 
@@ -140,9 +162,13 @@ impl Robot {
         };
         let before = (self.chip.cells.borrow().programs(), self.chip.erases());
         self.now_us += 1_000;
-        self.asked = self
-            .service
-            .step(&self.config, self.revision, granted, self.now_us);
+        self.asked = self.service.step(
+            &self.config,
+            self.revision,
+            self.restored,
+            granted,
+            self.now_us,
+        );
         let words = self.chip.cells.borrow().programs() - before.0;
         let erases = self.chip.erases() - before.1;
         assert!(words <= 32, "{words} words at once");

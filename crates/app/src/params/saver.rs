@@ -6,7 +6,7 @@ pub use back_off::BackOff;
 
 use crate::{
     domain::RobotConfig,
-    tuning::{PARAMETERS, ParameterGroup},
+    tuning::{PARAMETERS, ParameterGroup, bit},
 };
 
 /// Nothing is saved before nothing has changed for this long (ROBOT_CPP 5.2).
@@ -15,17 +15,13 @@ const QUIET_US: u64 = 500_000;
 /// A group's position in `PARAMETERS`.
 pub type Position = usize;
 
-/// Of a mask in `ParamStatus`.
-pub const fn bit(position: Position) -> u32 {
-    1u32.wrapping_shl(position as u32)
-}
-
 /// What flash holds, against what is in use.
 #[derive(Clone, Debug)]
 pub struct Saver {
     /// What a boot now would begin with: of a group without a good record, the defaults.
     saved: RobotConfig,
-    /// Bits are positions: an attempt failed, so flash may hold either value.
+    /// Bits are positions: an attempt failed, or a refused record is to be overwritten. Flash may hold another value
+    /// than `saved`.
     uncertain: u32,
     /// Bits are positions: to be saved.
     unsaved: u32,
@@ -48,13 +44,15 @@ impl Saver {
         }
     }
 
-    /// `revision` differs from the last one if `config` does.
-    pub fn observe(&mut self, config: &RobotConfig, revision: u32, now_us: u64) {
+    /// `revision` differs from the last one if `config` or `overruled` does. Bits of `overruled` are positions: groups
+    /// to be saved even if they are what a boot would begin with.
+    pub fn observe(&mut self, config: &RobotConfig, revision: u32, overruled: u32, now_us: u64) {
         if revision == self.seen {
             return;
         }
         self.seen = revision;
         self.changed_at_us = now_us;
+        self.uncertain |= overruled;
         self.unsaved = self.uncertain;
         for (position, group) in PARAMETERS.iter().enumerate() {
             if !group.is_same(config, &self.saved) {

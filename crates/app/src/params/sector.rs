@@ -39,8 +39,10 @@ pub(super) enum SectorState {
     Clean,
     /// Complete when it was begun: all records there were, then those saved since.
     Headed { generation: u32 },
-    /// To be erased before anything else.
+    /// To be erased before use. What reads as no head now might be one at the next boot.
     Garbage,
+    /// As garbage, but for the head: it is blank or cleared, and never comes back.
+    Headless,
 }
 
 /// One copy of what commits a head.
@@ -71,6 +73,19 @@ impl Head {
         })
     }
 
+    /// Something is where both copies were. A change of sectors that was cut short leaves the second one blank, and
+    /// whoever erases a sector clears both first.
+    pub fn is_ruined(&self) -> bool {
+        COPIES_AT.into_iter().all(|at| {
+            let copy = self.bytes.get(at..).and_then(|rest| rest.get(..COPY_BYTES));
+            copy.is_some_and(holds_something)
+        })
+    }
+
+    pub fn is_blank(&self) -> bool {
+        is_blank(&self.bytes)
+    }
+
     pub fn is_proven(&self) -> bool {
         let proof = &self.bytes[HEAD_PROOF_AT..HEAD_BYTES];
         !is_blank(proof)
@@ -81,6 +96,14 @@ impl Head {
         let (mark, rest) = self.bytes.split_at(OPENED_AT);
         mark == CLEAN && is_blank(rest)
     }
+}
+
+/// A bit or so may be stuck, in a blank word or a cleared one.
+fn holds_something(bytes: &[u8]) -> bool {
+    const STUCK: u32 = 2;
+    let ones = |word: &[u8]| word.iter().map(|byte| byte.count_ones()).sum();
+    let mut words = bytes.chunks_exact(4).map(ones);
+    words.any(|ones: u32| ones > STUCK && ones < 32 - STUCK)
 }
 
 /// Of a slot, or with slot 0 of the head, from the start of the store.

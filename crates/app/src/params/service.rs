@@ -5,12 +5,12 @@ use embedded_storage::nor_flash::NorFlash;
 use super::{
     FlashRequest, ParamError, ParamState, ParamStatus, Progress, Store,
     record::{self, Verdict},
-    saver::{BackOff, Position, Saver, bit},
+    saver::{BackOff, Position, Saver},
 };
 use crate::{
     domain::RobotConfig,
     motor::layout::MotorLayout,
-    tuning::{PARAMETERS, ParameterGroup},
+    tuning::{PARAMETERS, ParameterGroup, bit},
 };
 
 /// Steps that prove what is in flash at boot. The store needs two: the head and the last record.
@@ -40,8 +40,8 @@ pub struct ParamService<F> {
 }
 
 impl<F: NorFlash> ParamService<F> {
-    /// Reads the store; what it has no good record for gets its default. May program some words and erase one sector,
-    /// which takes up to 0.5 s: for the time before motors and watchdog run.
+    /// Reads the store; what it has no good record for gets its default. May program some words, but erases nothing:
+    /// motors may still turn.
     pub fn boot(flash: F, layout: &'static MotorLayout) -> (Self, RobotConfig) {
         let mut service = Self {
             store: Store::open(flash),
@@ -51,13 +51,12 @@ impl<F: NorFlash> ParamService<F> {
             erase_pause: BackOff::default(),
             status: ParamStatus::default(),
         };
-        service.status.damaged = service.store.report().damaged;
+        let found = service.store.report();
+        service.status.damaged = found.damaged;
+        service.status.lost_sectors = found.lost_sectors;
         service.settle();
         let config = service.load();
         service.saver = Saver::new(config);
-        if let job @ Job::TidyUp(FlashRequest::Erase) = service.job(0) {
-            service.work(job, &config, 0);
-        }
         service.tell(FlashRequest::None, 0);
         (service, config)
     }
@@ -93,17 +92,20 @@ impl<F: NorFlash> ParamService<F> {
         config
     }
 
-    /// `config` and `revision` (`TuningStatus::revision`) are of the same moment; `granted` is what the control tick
-    /// allows now. Does what was asked for in the step before, if that is allowed: at most one slot or one sector.
+    /// `config`, `revision` and `restored` (of `TuningStatus`) are of the same moment; `granted` is what the control
+    /// tick allows now. Does what was asked for in the step before, if that is allowed: at most one slot or one sector.
     /// Gives what the next step wants to do.
     pub fn step(
         &mut self,
         config: &RobotConfig,
         revision: u32,
+        restored: u32,
         granted: FlashRequest,
         now_us: u64,
     ) -> FlashRequest {
-        self.saver.observe(config, revision, now_us);
+        // What is in use instead of a refused record looks saved; only by a command it becomes what is wanted.
+        let overruled = restored & self.status.refused;
+        self.saver.observe(config, revision, overruled, now_us);
         let job = self.job(now_us);
         // The state is told before the work begins: an erase stops everything, and whoever looks then sees why.
         if job.is_allowed(granted) && self.status.state == job.state_at_work() {
@@ -185,6 +187,7 @@ impl<F: NorFlash> ParamService<F> {
         match (progress, position) {
             (Progress::Stored, Some(position)) => {
                 self.saver.saved(position, config);
+                self.status.refused &= !bit(position);
                 self.program_pause.succeed();
                 self.status.save_ok = self.status.save_ok.wrapping_add(1);
             }

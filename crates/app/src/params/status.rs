@@ -83,14 +83,14 @@ pub struct ParamStatus {
     pub erases: u32,
     /// Times a sector became the active one, since the store was new.
     pub generation: u32,
-    /// Reading the store at boot, a sector erase included.
+    /// Reading the store at boot.
     pub boot_us: u32,
     /// The longest time the chip stood still for an erase after boot.
     pub longest_stall_us: u32,
     /// Found at boot; bits are positions in `tuning::PARAMETERS`.
     pub loaded: u32,
     /// Found, but of a later version or with values that are not allowed: the defaults are in use, and the record stays
-    /// until someone changes the group.
+    /// until someone changes the group or gives it its defaults, and that is saved. A bit set here blocks arming.
     pub refused: u32,
     /// Groups whose values are not in flash yet.
     pub unsaved: u32,
@@ -102,6 +102,9 @@ pub struct ParamStatus {
     pub free_slots: u16,
     pub state: ParamState,
     pub last_error: ParamError,
+    /// Sectors found ruined at boot by something else than a power cut: settings saved there are gone, and older values
+    /// or defaults are in use.
+    pub lost_sectors: u8,
 }
 
 /// What the parameter task wants to do to flash; the control tick says when it may.

@@ -40,6 +40,9 @@ pub struct StoreReport {
     pub damaged: u16,
     /// Records that fit before the next sector is begun.
     pub free_slots: u16,
+    /// Sectors whose head was ruined by something else than a power cut, as found by `open`: what was saved there is
+    /// gone, and an older value or none is in its place.
+    pub lost_sectors: u8,
 }
 
 /// Records in `F`: 48 KiB from offset 0, sectors of 16 KiB, words of 4 bytes.
@@ -54,6 +57,7 @@ pub struct Store<F> {
     active: Active,
     rotation: Option<Rotation>,
     damaged: u16,
+    lost_sectors: u8,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -72,12 +76,38 @@ struct Active {
     head_is_proven: bool,
     /// The last slot that is taken, likewise.
     slot_is_proven: bool,
+    /// It was to be proven and did not take it: the next boot may not find it.
+    head_is_doubtful: bool,
+    failures: InARow,
+}
+
+/// Slots that took no record, one after the other.
+#[derive(Clone, Copy, Debug, Default)]
+struct InARow(u8);
+
+impl InARow {
+    /// Then the sector is taken for worn out.
+    const MAX: u8 = 3;
+
+    /// An error of the controller says nothing about the sector.
+    fn note(&mut self, written: Result<(), ParamError>) {
+        match written {
+            Ok(()) => self.0 = 0,
+            Err(ParamError::NotProgrammed) => self.0 = self.0.saturating_add(1),
+            Err(_) => {}
+        }
+    }
+
+    fn is_too_many(self) -> bool {
+        self.0 >= Self::MAX
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Step {
     ProveHead { sector: u8, generation: u32 },
     ProveSlot { sector: u8 },
+    ClearHead { sector: u8 },
     Append { sector: u8 },
     Open { target: u8 },
     Move,
@@ -96,6 +126,7 @@ impl<F: NorFlash> Store<F> {
             active: Active::FULL,
             rotation: None,
             damaged: 0,
+            lost_sectors: 0,
         };
         store.scan();
         store
@@ -120,6 +151,7 @@ impl<F: NorFlash> Store<F> {
             generation: self.active_sector().map_or(0, |(_, generation)| generation),
             damaged: self.damaged,
             free_slots: free.into(),
+            lost_sectors: self.lost_sectors,
         }
     }
 
@@ -146,6 +178,7 @@ impl<F: NorFlash> Store<F> {
                 self.prove_active_head(sector, generation)
             }
             (Some(Step::ProveSlot { sector }), _) => self.prove_last_slot(sector),
+            (Some(Step::ClearHead { sector }), _) => self.clear_garbage(sector),
             (Some(Step::Open { target }), _) => self.open_sector(target),
             (Some(Step::Move), _) => self.move_one(),
             (Some(Step::Erase { sector }), _) => self.erase(sector),
@@ -167,10 +200,15 @@ impl<F: NorFlash> Store<F> {
         if self.rotation.is_some() {
             return Some(Step::Move);
         }
-        let clean = self.clean_sector();
+        let clean = self.first_in(SectorState::Clean);
         if want_write {
+            // A head that cannot be read now must not come back and hide what is written from here on.
+            if let Some(sector) = self.first_in(SectorState::Garbage) {
+                return Some(Step::ClearHead { sector });
+            }
             if let Some((sector, _)) = active
                 && self.active.next_slot <= LAST_SLOT
+                && !(self.active.failures.is_too_many() && self.has_another_sector())
             {
                 return Some(Step::Append { sector });
             }
@@ -191,6 +229,8 @@ impl Active {
         next_slot: LAST_SLOT.saturating_add(1),
         head_is_proven: true,
         slot_is_proven: true,
+        head_is_doubtful: false,
+        failures: InARow(0),
     };
 }
 

@@ -1,7 +1,7 @@
 //! Requests in, at most one reply a slot and bus out.
 
 use super::{
-    PARAMETERS, ParameterGroup, Refusal, TuningStatus, consistency, parameters,
+    PARAMETERS, ParameterGroup, Refusal, TuningStatus, bit, consistency, parameters,
     protocol::{self, Request, Restored},
     wheel_geometry::WheelGeometry,
 };
@@ -94,6 +94,7 @@ impl TuningChannel {
                 Ok(protocol::parameter_reply(group, index, value))
             }
             Request::ReadStore => Ok(protocol::store_reply(params, self.status.revision)),
+            Request::ReadFindings => Ok(protocol::findings_reply(params)),
             _ if gate == TuningGate::Shut => Err(Refusal::Armed),
             Request::WriteGeometry(geometry) => self
                 .change(config, |candidate| geometry.apply(candidate))
@@ -108,7 +109,7 @@ impl TuningChannel {
                     .map(|()| protocol::echo(frame))
             }
             Request::RestoreDefaults(restored) => self
-                .change(config, restore(restored, self.layout))
+                .restore(config, restored)
                 .map(|()| protocol::echo(frame)),
             Request::BringUp(request) => {
                 bring_up.request(request);
@@ -130,14 +131,37 @@ impl TuningChannel {
     ) -> Result<(), Refusal> {
         let mut candidate = *config;
         apply(&mut candidate)?;
-        self.adopt(config, &candidate)
+        self.adopt(config, &candidate, 0)
     }
 
-    fn adopt(&mut self, config: &mut RobotConfig, candidate: &RobotConfig) -> Result<(), Refusal> {
+    fn restore(&mut self, config: &mut RobotConfig, wanted: Restored) -> Result<(), Refusal> {
+        let defaults = RobotConfig::for_layout(self.layout);
+        let mut candidate = *config;
+        let mut restored = 0;
+        for (position, group) in PARAMETERS.iter().enumerate() {
+            if wanted.covers(group) {
+                group.copy(&defaults, &mut candidate);
+                restored |= bit(position);
+            }
+        }
+        if restored == 0 {
+            return Err(Refusal::UnknownParameter);
+        }
+        self.adopt(config, &candidate, restored)
+    }
+
+    fn adopt(
+        &mut self,
+        config: &mut RobotConfig,
+        candidate: &RobotConfig,
+        restored: u32,
+    ) -> Result<(), Refusal> {
         consistency::check(candidate)?;
         let is_same = |group: &ParameterGroup| group.is_same(config, candidate);
-        if !PARAMETERS.iter().all(is_same) {
+        let restored = self.status.restored | restored;
+        if restored != self.status.restored || !PARAMETERS.iter().all(is_same) {
             *config = *candidate;
+            self.status.restored = restored;
             self.status.revision = self.status.revision.wrapping_add(1);
         }
         Ok(())
@@ -156,25 +180,6 @@ impl TuningChannel {
                 protocol::refusal_reply(request, reason)
             }
         }
-    }
-}
-
-fn restore(
-    restored: Restored,
-    layout: &MotorLayout,
-) -> impl FnOnce(&mut RobotConfig) -> Result<(), Refusal> {
-    move |config| {
-        let defaults = RobotConfig::for_layout(layout);
-        let Restored::Group(number) = restored else {
-            *config = defaults;
-            return Ok(());
-        };
-        PARAMETERS
-            .iter()
-            .find(|group| group.number == number)
-            .ok_or(Refusal::UnknownParameter)?
-            .copy(&defaults, config);
-        Ok(())
     }
 }
 

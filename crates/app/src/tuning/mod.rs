@@ -15,6 +15,7 @@ mod wheel_geometry;
 pub use channel::{REPLY_PERIOD_TICKS, TuningAccess, TuningChannel, TuningGate};
 pub use parameter::{Parameter, ParameterGroup, ParameterKind, Scope};
 pub use parameters::PARAMETERS;
+pub(crate) use parameters::bit;
 pub use protocol::{READ_ID, REPLY_ID, WRITE_ID};
 pub use refusal::Refusal;
 pub use status::TuningStatus;

@@ -90,6 +90,11 @@ pub static PARAMETERS: [ParameterGroup; 11] = [
 
 pub(super) const WHEEL_GEOMETRY: u8 = 1;
 
+/// Of the group at this position of [`PARAMETERS`], in a mask of groups.
+pub(crate) const fn bit(position: usize) -> u32 {
+    1u32.wrapping_shl(position as u32)
+}
+
 /// The setting with these numbers.
 pub(super) fn find(group: u8, index: u8) -> Result<&'static Parameter, Refusal> {
     PARAMETERS

@@ -1,6 +1,6 @@
 //! The bytes of requests and replies, all little-endian.
 
-use super::{Refusal, wheel_geometry::WheelGeometry};
+use super::{PARAMETERS, ParameterGroup, Refusal, bit, wheel_geometry::WheelGeometry};
 use crate::{
     bring_up::BringUpRequest,
     domain::{CanFrame, StandardId},
@@ -26,6 +26,7 @@ const WRITE_PARAMETER: u8 = 0x20;
 const READ_PARAMETER: u8 = 0x21;
 const RESTORE_DEFAULTS: u8 = 0x30;
 const READ_STORE: u8 = 0x31;
+const READ_FINDINGS: u8 = 0x32;
 const BRING_UP: u8 = 0x40;
 /// No old client takes it for the answer to 0x10 or 0x11.
 const REFUSED: u8 = 0xEE;
@@ -38,6 +39,7 @@ pub enum Request {
     ReadParameter { group: u8, index: u8 },
     RestoreDefaults(Restored),
     ReadStore,
+    ReadFindings,
     BringUp(BringUpRequest),
 }
 
@@ -47,6 +49,15 @@ pub enum Restored {
     AllGroups,
     /// The group with this number.
     Group(u8),
+}
+
+impl Restored {
+    pub fn covers(self, group: &ParameterGroup) -> bool {
+        match self {
+            Self::AllGroups => true,
+            Self::Group(number) => number == group.number,
+        }
+    }
 }
 
 impl Request {
@@ -104,6 +115,7 @@ impl Request {
             [READ_GEOMETRY, ..] => Ok(Self::ReadGeometry),
             [READ_PARAMETER, group, index, ..] => Ok(Self::ReadParameter { group, index }),
             [READ_STORE, ..] => Ok(Self::ReadStore),
+            [READ_FINDINGS, ..] => Ok(Self::ReadFindings),
             [] | [READ_PARAMETER, ..] => Err(Refusal::WrongLength),
             _ => Err(Refusal::UnknownCommand),
         }
@@ -142,6 +154,32 @@ pub fn store_reply(params: &ParamStatus, revision: u32) -> CanFrame {
             ok_high,
             failed_low,
             failed_high,
+        ],
+    )
+}
+
+/// What boot found in the store. Bits of the mask are the numbers of groups.
+pub fn findings_reply(params: &ParamStatus) -> CanFrame {
+    let mut refused: u32 = 0;
+    for (position, group) in PARAMETERS.iter().enumerate() {
+        if params.refused & bit(position) != 0 {
+            refused |= 1u32.wrapping_shl(group.number.into());
+        }
+    }
+    let [a, b, c, d] = refused.to_le_bytes();
+    let count = |count| u8::try_from(count).unwrap_or(u8::MAX);
+    let (damaged, foreign) = (count(params.damaged), count(params.foreign));
+    CanFrame::new(
+        REPLY_ID,
+        [
+            READ_FINDINGS,
+            params.lost_sectors,
+            damaged,
+            foreign,
+            a,
+            b,
+            c,
+            d,
         ],
     )
 }

@@ -27,7 +27,7 @@ impl Bench {
 
     fn due(&mut self, at_ms: u64) -> Option<&'static str> {
         let now_us = START_US + at_ms * 1_000;
-        self.saver.observe(&self.config, self.revision, now_us);
+        self.saver.observe(&self.config, self.revision, 0, now_us);
         self.saver.due(now_us).map(|(_, group)| group.name)
     }
 

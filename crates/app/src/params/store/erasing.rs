@@ -9,18 +9,31 @@ use crate::params::{
 };
 
 impl<F: NorFlash> Store<F> {
-    /// Never the active sector. Garbage before the oldest backup; what failed before, after everything else.
+    /// Never the active sector, nor its backup as long as the active one may be gone at the next boot. Garbage before
+    /// the oldest backup; what failed before, after everything else.
     #[inline(never)]
     pub(super) fn victim(&self) -> Option<u8> {
-        let active = self.active_sector().map(|(sector, _)| sector);
+        let active = self.active_sector();
+        let backup = active.and_then(|(_, generation)| self.newest_below(generation));
+        let spared = [active, backup.filter(|_| self.active.head_is_doubtful)];
         let mut victim = None;
         for (sector, number) in self.sectors.iter().zip(0..SECTORS) {
             let rank = sector.rank();
-            if Some(number) != active && victim.is_none_or(|(_, lowest)| rank < lowest) {
+            let is_spared = spared.iter().flatten().any(|(spared, _)| *spared == number);
+            if !is_spared && victim.is_none_or(|(_, lowest)| rank < lowest) {
                 victim = Some((number, rank));
             }
         }
         victim.map(|(number, _)| number)
+    }
+
+    /// One that is clean, or could be erased as far as is known.
+    pub(super) fn has_another_sector(&self) -> bool {
+        let active = self.active_sector().map(|(sector, _)| sector);
+        let mut sectors = self.sectors.iter().zip(0..SECTORS);
+        sectors.any(|(sector, number)| {
+            Some(number) != active && (!sector.failed || sector.state == SectorState::Clean)
+        })
     }
 
     pub(super) fn erase(&mut self, sector: u8) -> Result<(), ParamError> {
@@ -38,6 +51,7 @@ impl<F: NorFlash> Store<F> {
         let from = offset(sector, 0);
         let to = from.wrapping_add(SECTOR_BYTES);
         self.flash.erase(from, to).map_err(|_| ParamError::Flash)?;
+        self.set_state(sector, SectorState::Headless);
         if !(self.read_slot(sector, 0).is_blank() && self.has_blank_slots(sector)) {
             return Err(ParamError::NotErased);
         }
@@ -45,6 +59,13 @@ impl<F: NorFlash> Store<F> {
         if !self.read_head(sector).is_clean() {
             return Err(ParamError::NotProgrammed);
         }
+        Ok(())
+    }
+
+    /// If the controller refuses, it is tried again: better no save than one that a later boot may not find.
+    pub(super) fn clear_garbage(&mut self, sector: u8) -> Result<(), ParamError> {
+        self.clear_head(sector)?;
+        self.set_state(sector, SectorState::Headless);
         Ok(())
     }
 
@@ -64,7 +85,7 @@ impl Sector {
     fn rank(&self) -> u64 {
         let age = match self.state {
             SectorState::Headed { generation } => generation,
-            SectorState::Clean | SectorState::Garbage => 0,
+            SectorState::Clean | SectorState::Garbage | SectorState::Headless => 0,
         };
         u64::from(self.failed) << 32 | u64::from(age)
     }

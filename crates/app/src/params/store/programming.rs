@@ -17,10 +17,10 @@ impl<F: NorFlash> Store<F> {
         let place = self.active.next_slot;
         // Whatever happens, the slot is not tried again.
         self.active.next_slot = place.saturating_add(1);
-        self.active.slot_is_proven = false;
-        self.write_slot(sector, place, &Slot::of(record))?;
-        self.active.slot_is_proven = true;
-        Ok(())
+        let written = self.write_slot(sector, place, &Slot::of(record));
+        self.active.failures.note(written);
+        self.active.slot_is_proven = written.is_ok();
+        written
     }
 
     /// Guard first: a bit it leaves half programmed changes nothing. Checksum last: without it there is no record.
@@ -66,6 +66,7 @@ impl<F: NorFlash> Store<F> {
         if proven == Err(ParamError::NotProgrammed) {
             // Everything moves to the next sector.
             self.active.next_slot = LAST_SLOT.saturating_add(1);
+            self.active.head_is_doubtful = true;
         }
         if proven != Err(ParamError::Flash) {
             self.active.head_is_proven = true;

@@ -40,10 +40,18 @@ impl<F: NorFlash> Store<F> {
     /// All there is to know at boot.
     #[inline(never)]
     pub(super) fn scan(&mut self) {
+        let mut ruined: u8 = 0;
         for sector in 0..SECTORS {
-            let state = self.read_state(sector);
+            let head = self.read_head(sector);
+            let state = self.state_of(sector, &head);
             self.set_state(sector, state);
+            if state == SectorState::Garbage && head.is_ruined() {
+                ruined = ruined.saturating_add(1);
+            }
         }
+        // One may be what is left of an erase that was cut short: a sector is erased only while none is clean.
+        let by_a_cut = u8::from(self.first_in(SectorState::Clean).is_none());
+        self.lost_sectors = ruined.saturating_sub(by_a_cut);
         if let Some((sector, _)) = self.active_sector() {
             self.scan_active(sector);
         }
@@ -65,13 +73,15 @@ impl<F: NorFlash> Store<F> {
         }
     }
 
-    fn read_state(&mut self, sector: u8) -> SectorState {
-        let head = self.read_head(sector);
+    fn state_of(&mut self, sector: u8, head: &Head) -> SectorState {
         if let Some(generation) = head.generation() {
             return SectorState::Headed { generation };
         }
         if head.is_clean() && self.has_blank_slots(sector) {
             return SectorState::Clean;
+        }
+        if head.is_blank() {
+            return SectorState::Headless;
         }
         SectorState::Garbage
     }
@@ -79,6 +89,13 @@ impl<F: NorFlash> Store<F> {
     #[inline(never)]
     pub(super) fn has_blank_slots(&mut self, sector: u8) -> bool {
         (FIRST_SLOT..=LAST_SLOT).all(|slot| self.read_slot(sector, slot).is_blank())
+    }
+
+    #[inline(never)]
+    pub(super) fn first_in(&self, state: SectorState) -> Option<u8> {
+        let mut numbered = self.sectors.iter().zip(0..);
+        let first = numbered.find(|(sector, _)| sector.state == state);
+        first.map(|(_, number)| number)
     }
 
     pub(super) fn set_state(&mut self, sector: u8, state: SectorState) {
@@ -94,7 +111,7 @@ impl<F: NorFlash> Store<F> {
 
     /// Sector and generation of the newest one that is older.
     #[inline(never)]
-    fn newest_below(&self, limit: u32) -> Option<(u8, u32)> {
+    pub(super) fn newest_below(&self, limit: u32) -> Option<(u8, u32)> {
         let mut found = None;
         for (sector, number) in self.sectors.iter().zip(0..) {
             if let SectorState::Headed { generation } = sector.state

@@ -2,7 +2,7 @@
 
 use embedded_storage::nor_flash::NorFlash;
 
-use super::{Active, FIRST_SLOT, LAST_SLOT, Store, Walk};
+use super::{Active, FIRST_SLOT, InARow, LAST_SLOT, Store, Walk};
 use crate::params::{
     ParamError,
     sector::{OPENED_AT, SectorState},
@@ -13,16 +13,10 @@ pub(super) struct Rotation {
     target: u8,
     next_slot: u8,
     walk: Walk,
+    failures: InARow,
 }
 
 impl<F: NorFlash> Store<F> {
-    #[inline(never)]
-    pub(super) fn clean_sector(&self) -> Option<u8> {
-        let mut numbered = self.sectors.iter().zip(0..);
-        let clean = numbered.find(|(sector, _)| sector.state == SectorState::Clean);
-        clean.map(|(_, number)| number)
-    }
-
     /// From here on the sector needs an erase before it counts as clean again.
     pub(super) fn open_sector(&mut self, target: u8) -> Result<(), ParamError> {
         self.set_state(target, SectorState::Garbage);
@@ -31,6 +25,7 @@ impl<F: NorFlash> Store<F> {
             target,
             next_slot: FIRST_SLOT,
             walk: Walk::new(),
+            failures: InARow(0),
         });
         Ok(())
     }
@@ -54,7 +49,12 @@ impl<F: NorFlash> Store<F> {
         if written.is_err() {
             rotation.walk.step_back();
         }
-        self.rotation = Some(rotation);
+        rotation.failures.note(written);
+        if rotation.failures.is_too_many() {
+            self.set_failed(rotation.target, true);
+        } else {
+            self.rotation = Some(rotation);
+        }
         written
     }
 
