@@ -20,6 +20,11 @@ impl Machine {
         self.power_off(self.cpu.now().saturating_add(off_time));
     }
 
+    /// The chip's supply is that from now on, 3300 before; it runs on from 1.8 V.
+    pub fn set_vdd_mv(&mut self, vdd_mv: u32) {
+        self.cpu.with_soc(|soc, _| soc.set_vdd_mv(vdd_mv));
+    }
+
     /// Off until told otherwise, or on.
     pub(super) fn switch_power(&mut self, on: bool) {
         if !on {

@@ -30,7 +30,7 @@ use crate::{
 
 pub struct Blocks {
     pub rcc: Rcc,
-    pwr: Pwr,
+    pub pwr: Pwr,
     pub flash: Flash,
     gpio: [Gpio; 9],
     syscfg: Syscfg,

@@ -104,6 +104,11 @@ impl Soc {
         &mut self.blocks.flash
     }
 
+    /// Of the chip, which runs on from 1.8 V.
+    pub fn set_vdd_mv(&mut self, vdd_mv: u32) {
+        self.blocks.pwr.set_vdd_mv(vdd_mv);
+    }
+
     /// A load of the core from the sectors of flash that hold parameters.
     pub fn load_parameters(
         &mut self,
