@@ -116,7 +116,7 @@ impl Board {
     /// Starts clocks, CAN and the receiver. `p` exists once, so this runs once.
     pub fn start(p: Peripherals, remote_format: RemoteFormat) -> Self {
         enable_flash_caches();
-        start_cycle_counter();
+        watch_supply();
         for (irq, priority) in PRIORITIES {
             irq.set_priority(priority);
         }
@@ -246,12 +246,12 @@ fn enable_flash_caches() {
     });
 }
 
-/// It goes on while the CPU stands still (`drivers/clock_repair.rs`).
-fn start_cycle_counter() {
-    if let Some(mut core) = cortex_m::Peripherals::take() {
-        core.DCB.enable_trace();
-        core.DWT.enable_cycle_counter();
-    }
+/// Detects a supply below 2.9 V, its highest level (RM0090 5.4.1): `drivers/param_flash.rs` asks before it writes.
+fn watch_supply() {
+    pac::PWR.cr1().modify(|w| {
+        w.set_pls(7);
+        w.set_pvde(true);
+    });
 }
 
 /// 1 kHz, which the copper cannot follow.

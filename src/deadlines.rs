@@ -55,7 +55,8 @@ impl Watched {
     }
 }
 
-/// Every watched task runs at least each 10 ms. With the watchdog's longest period this gives a reset within 60 ms.
+/// Every watched task runs at least each 10 ms. With the short period of `drivers/watchdog.rs`, which is in force
+/// whenever the robot is armed, a late task leads to a reset within 60 ms.
 const DEADLINE_US: u32 = 25_000;
 
 /// Gives every task a first deadline, counted from now: at boot and after a stall.

@@ -66,6 +66,7 @@ fn main() -> ! {
     send_zero_torque(&mut ports);
     log_boot(last_run);
 
+    let watchdog = Watchdog::start_long(board.iwdg);
     let (params, config) = load_settings(ParamFlash::new(board.flash));
     ports.iter_mut().for_each(CanPort::drop_backlog);
     let exchange = Exchange::init(config);
@@ -74,7 +75,7 @@ fn main() -> ! {
     let control = ControlContext::new(
         exchange,
         ports,
-        Watchdog::start(board.iwdg),
+        watchdog,
         last_run,
         writers.control,
         defmt::unwrap!(debugger_view::take()),
@@ -122,7 +123,7 @@ fn main() -> ! {
         })
 }
 
-/// May erase a sector: nothing moves yet, and the watchdog does not run yet.
+/// Programs a few words at most: motors may still turn, as whatever happened before left them.
 fn load_settings(flash: ParamFlash) -> (ParamService<ParamFlash>, RobotConfig) {
     let start = Instant::now();
     let (mut service, config) = ParamService::boot(flash, &config::LAYOUT);
@@ -136,6 +137,12 @@ fn load_settings(flash: ParamFlash) -> (ParamService<ParamFlash>, RobotConfig) {
         status.damaged,
         status.boot_us
     );
+    if status.lost_sectors != 0 {
+        defmt::error!(
+            "settings: {=u8} ruined flash sectors, newer settings may be lost: check them all",
+            status.lost_sectors
+        );
+    }
     (service, config)
 }
 

@@ -12,8 +12,9 @@ use crate::drivers::clock_repair;
 static STALLS: AtomicU32 = AtomicU32::new(0);
 static LAST_STALL_US: AtomicU32 = AtomicU32::new(0);
 
-/// Runs `work`, during which the chip stands still. Only for thread mode.
-pub fn stand_still<R>(work: impl FnOnce() -> R) -> R {
+/// Runs `work`, during which the chip stands still. Only for thread mode. `None`, and nothing done, if the clock would
+/// be wrong afterwards.
+pub fn stand_still<R>(work: impl FnOnce() -> R) -> Option<R> {
     clock_repair::keep_time(work, |stall_us| {
         deadlines::start();
         LAST_STALL_US.store(stall_us, Ordering::Relaxed);

@@ -3,6 +3,7 @@
 //! The time driver counts half turns of a 16-bit timer (32.768 ms each) in its interrupt. Of those that pass while no
 //! interrupt can run it sees at most two. The cycle counter of the core goes on and tells how many there were.
 
+use cortex_m::Peripherals;
 use cortex_m::peripheral::DWT;
 use cortex_m::register::basepri;
 use embassy_stm32::pac::TIM2;
@@ -21,8 +22,12 @@ const AFTER_EVENT: u16 = 64;
 const BEFORE_EVENT: u16 = 256;
 
 /// Runs `work`, during which no interrupt can run, then `repaired` with the time that passed in µs, once the clock is
-/// right again and before any other interrupt runs. Only for thread mode.
-pub fn keep_time<R>(work: impl FnOnce() -> R, repaired: impl FnOnce(u32)) -> R {
+/// right again and before any other interrupt runs. Only for thread mode. `None`, and nothing done, if nothing would
+/// tell how long it took.
+pub fn keep_time<R>(work: impl FnOnce() -> R, repaired: impl FnOnce(u32)) -> Option<R> {
+    if !start_cycle_counter() {
+        return None;
+    }
     // First with all interrupts, so that hardly any time is left to wait without them.
     wait_between_events();
     // SAFETY: postpones interrupts until the same function lets them in again; no lock relies on them running.
@@ -42,7 +47,18 @@ pub fn keep_time<R>(work: impl FnOnce() -> R, repaired: impl FnOnce(u32)) -> R {
     repaired(elapsed_us);
     // SAFETY: the state before; thread mode runs with all interrupts let in.
     unsafe { basepri::write(0) };
-    result
+    Some(result)
+}
+
+/// A debugger stops the counter when it goes. False if the counter stands still all the same.
+fn start_cycle_counter() -> bool {
+    // SAFETY: nobody else owns these two, and their one writer runs in thread mode.
+    let mut core = unsafe { Peripherals::steal() };
+    core.DCB.enable_trace();
+    core.DWT.enable_cycle_counter();
+    let before = DWT::cycle_count();
+    cortex_m::asm::delay(CYCLES_PER_US);
+    DWT::cycle_count() != before
 }
 
 struct Moment {

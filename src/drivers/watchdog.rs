@@ -4,6 +4,7 @@ use embassy_stm32::Peri;
 use embassy_stm32::pac;
 use embassy_stm32::pac::iwdg::vals::{Key, Pr};
 use embassy_stm32::peripherals::IWDG;
+use embassy_time::{Duration, Instant};
 use robot_app::safety::WatchdogPeriod;
 
 /// Prescaler and reload value of a period. Its clock, the LSI, runs at 17 to 47 kHz (STM32F407 datasheet table 35;
@@ -13,16 +14,19 @@ struct Period {
     reload: u16,
 }
 
-/// 12 to 34 ms. Together with the deadlines of `deadlines.rs` (25 ms) any hang ends in a reset within 60 ms.
+/// 12 to 34 ms. Together with the deadlines of `deadlines.rs` (25 ms) a hang ends in a reset within 60 ms.
 const SHORT: Period = Period {
     prescaler: Pr::DIVIDE_BY4,
     reload: 143,
 };
-/// 1.09 to 3.0 s: a 16 KiB sector takes at most 0.5 s to erase.
+/// 0.68 to 1.88 s: a 16 KiB sector takes at most 0.5 s to erase. Around an erase and at boot, always disarmed, a hang
+/// ends within 1.9 s.
 const LONG: Period = Period {
-    prescaler: Pr::DIVIDE_BY64,
-    reload: 799,
+    prescaler: Pr::DIVIDE_BY32,
+    reload: 998,
 };
+/// Five cycles of the slowest LSI take 0.3 ms.
+const ARRIVAL_TIMEOUT: Duration = Duration::from_millis(1);
 
 pub struct Watchdog {
     _token: Peri<'static, IWDG>,
@@ -32,15 +36,20 @@ pub struct Watchdog {
 }
 
 impl Watchdog {
-    /// Starts the watchdog; nothing but a reset can stop it.
-    pub fn start(token: Peri<'static, IWDG>) -> Self {
-        set(&SHORT);
-        pac::IWDG.kr().write(|w| w.set_key(Key::START));
-        Self {
+    /// Starts the watchdog with its long period, for what is slow at boot; nothing but a reset can stop it.
+    pub fn start_long(token: Peri<'static, IWDG>) -> Self {
+        let mut watchdog = Self {
             _token: token,
-            period: WatchdogPeriod::Short,
-            becomes: WatchdogPeriod::Short,
-        }
+            period: WatchdogPeriod::Changing,
+            becomes: WatchdogPeriod::Long,
+        };
+        set(&LONG);
+        pac::IWDG.kr().write(|w| w.set_key(Key::START));
+        let start = Instant::now();
+        while is_updating() && start.elapsed() < ARRIVAL_TIMEOUT {}
+        // Until then it counts down from its largest value.
+        watchdog.feed();
+        watchdog
     }
 
     /// What is in force.
