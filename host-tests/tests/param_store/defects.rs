@@ -60,7 +60,8 @@ fn use_for_long(chip: &mut FlashChip, contents: Contents) -> Vec<ParamError> {
             count += 1;
             save_stubbornly(&mut store, &mut ledger, count, &mut errors);
         }
-        let (_, found) = boot(chip).unwrap_or_else(|error| panic!("boot: {error:?}"));
+        let (store, found) = boot(chip).unwrap_or_else(|error| panic!("boot: {error:?}"));
+        assert_eq!(store.report().lost_sectors, 0, "after {count}");
         assert_eq!(ledger.first_loss(&found), None, "after {count}");
     }
     errors

@@ -42,7 +42,9 @@ fn cut(moment: &Moment, step: u64, phase: Phase, seed: u64, tally: &mut Tally) {
 
 /// A boot that is not allowed to program anything.
 fn look_without_settling(chip: &mut FlashChip, ledger: &Ledger, tally: &mut Tally, case: &str) {
-    let found = read(&mut Store::open(chip));
+    let mut store = Store::open(chip);
+    tally.check_report(&store, case);
+    let found = read(&mut store);
     tally.check(ledger, &found, case);
 }
 
@@ -54,10 +56,11 @@ pub fn settle_and_go_on(
     tally: &mut Tally,
     case: &str,
 ) {
-    let Ok((_, found)) = boot(&mut chip) else {
+    let Ok((store, found)) = boot(&mut chip) else {
         tally.failed_saves += 1;
         return;
     };
+    tally.check_report(&store, case);
     tally.check(&ledger, &found, case);
     ledger.settle(&found);
     let (mut store, found) = boot(&mut chip).expect("settled");
@@ -66,7 +69,8 @@ pub fn settle_and_go_on(
         let saved = ledger.save(&mut store, &nth_save(1_000_000 + count));
         tally.check_save(saved, case);
     }
-    let (_, found) = boot(&mut chip).expect("settled");
+    let (store, found) = boot(&mut chip).expect("settled");
+    tally.check_report(&store, case);
     tally.check(&ledger, &found, case);
 }
 

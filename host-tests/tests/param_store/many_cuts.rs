@@ -37,6 +37,7 @@ proptest! {
             tally.check(&ledger, &found, &case);
             chip.cut_at(chip.steps() + steps, phase);
             if let Ok((mut store, found)) = boot(&mut chip) {
+                tally.check_report(&store, &case);
                 tally.check(&ledger, &found, &case);
                 ledger.settle(&found);
                 for _ in 0..SESSION {

@@ -53,7 +53,7 @@ enum Action {
         #[arg(long)]
         yes: bool,
     },
-    /// Show whether the robot has saved its settings
+    /// Show whether the robot has saved its settings, and what it found in flash at boot
     Status,
     /// Show the wheel geometry or change parts of it, in the frames of ROBOT_CPP
     Wheel(Wheel),
@@ -219,9 +219,13 @@ impl Tune {
     }
 
     fn status(&self) -> Result<()> {
-        match self.client()?.store()? {
+        let mut client = self.client()?;
+        match client.store()? {
             Some(report) => println!("{report}"),
             None => println!("this firmware saves no settings: they last until it is reset"),
+        }
+        if let Some(findings) = client.boot_findings()? {
+            println!("{findings}");
         }
         Ok(())
     }

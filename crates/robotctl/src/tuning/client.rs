@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use robot_app::tuning::{ParameterGroup, Refusal};
 
 use super::{
-    BringUpStep, Named, StoreReport, WheelGeometry,
+    BootFindings, BringUpStep, Named, StoreReport, WheelGeometry,
     request::{self, Reply, Request},
 };
 use crate::can_link::{CanLink, CanLinkError};
@@ -123,8 +123,22 @@ impl TuningClient {
 
     /// `None` if the firmware is too old to tell: it saves nothing.
     pub fn store(&mut self) -> Result<Option<StoreReport>, TuningError> {
-        match self.exchange(Request::ReadStore, || "store".to_owned()) {
-            Ok(reply) => Ok(Some(StoreReport::from_bytes(reply))),
+        self.ask_newer(Request::ReadStore, StoreReport::from_bytes)
+    }
+
+    /// `None` if the firmware is too old to tell.
+    pub fn boot_findings(&mut self) -> Result<Option<BootFindings>, TuningError> {
+        self.ask_newer(Request::ReadFindings, BootFindings::from_bytes)
+    }
+
+    /// A request that not every firmware knows.
+    fn ask_newer<T>(
+        &mut self,
+        request: Request,
+        read: impl FnOnce([u8; 7]) -> T,
+    ) -> Result<Option<T>, TuningError> {
+        match self.exchange(request, || "store".to_owned()) {
+            Ok(reply) => Ok(Some(read(reply))),
             Err(TuningError::Refused {
                 reason: Ok(Refusal::UnknownCommand),
                 ..

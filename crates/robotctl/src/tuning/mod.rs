@@ -1,6 +1,7 @@
 //! The robot's tuning channel, seen from the PC (docs/tuning.md).
 
 mod apply;
+mod boot_findings;
 mod bring_up;
 mod client;
 mod name;
@@ -13,6 +14,7 @@ mod wheel_geometry;
 mod tests;
 
 pub use apply::{Applied, ApplyError, apply};
+pub use boot_findings::BootFindings;
 pub use bring_up::{BringUpStep, Motor, Trial};
 pub use client::{Patience, TuningClient, TuningError};
 pub use name::{Named, UnknownName, all, find, find_group};

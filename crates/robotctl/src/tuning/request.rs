@@ -11,6 +11,7 @@ const WRITE_PARAMETER: u8 = 0x20;
 const READ_PARAMETER: u8 = 0x21;
 const RESTORE_DEFAULTS: u8 = 0x30;
 const READ_STORE: u8 = 0x31;
+const READ_FINDINGS: u8 = 0x32;
 const BRING_UP: u8 = 0x40;
 const REFUSED: u8 = 0xEE;
 
@@ -32,6 +33,7 @@ pub(super) enum Request {
     /// The group's number; 0 for all.
     RestoreDefaults(u8),
     ReadStore,
+    ReadFindings,
     /// The bytes after the command.
     BringUp([u8; 7]),
 }
@@ -63,6 +65,7 @@ impl Request {
             Self::WriteGeometry(bytes) => write(WRITE_GEOMETRY, bytes),
             Self::RestoreDefaults(group) => write(RESTORE_DEFAULTS, [group, 0, 0, 0, 0, 0, 0]),
             Self::ReadStore => CanFrame::new(READ_ID, [READ_STORE, 0, 0, 0, 0, 0, 0, 0]),
+            Self::ReadFindings => CanFrame::new(READ_ID, [READ_FINDINGS, 0, 0, 0, 0, 0, 0, 0]),
             Self::BringUp(bytes) => write(BRING_UP, bytes),
         }
     }
@@ -82,7 +85,7 @@ impl Request {
         }
         let ours = match self {
             Self::Read { .. } => frame.payload().starts_with(&asked[..4]),
-            Self::ReadGeometry | Self::ReadStore => command == asked[0],
+            Self::ReadGeometry | Self::ReadStore | Self::ReadFindings => command == asked[0],
             Self::Write { .. }
             | Self::WriteGeometry(_)
             | Self::RestoreDefaults(_)
@@ -99,6 +102,7 @@ impl Request {
             | Self::WriteGeometry(_)
             | Self::RestoreDefaults(_)
             | Self::ReadStore
+            | Self::ReadFindings
             | Self::BringUp(_) => [0, 0],
         }
     }

@@ -51,9 +51,11 @@ impl Robot {
 
     /// The firmware's own reply or, from an old one, that it does not know the command (docs/tuning.md).
     fn reply(&mut self, frame: &CanFrame) -> Option<CanFrame> {
-        if self.is_old && frame.payload().first() == Some(&0x31) {
+        if self.is_old
+            && let Some(command @ (0x31 | 0x32)) = frame.payload().first()
+        {
             let reply = StandardId::new(0x7A2).unwrap();
-            return Some(CanFrame::new(reply, [0xEE, 0x31, 2, 0, 0, 0, 0, 0]));
+            return Some(CanFrame::new(reply, [0xEE, *command, 2, 0, 0, 0, 0, 0]));
         }
         self.channel.begin_slot();
         let access = TuningAccess {
@@ -318,8 +320,33 @@ fn an_old_firmware_is_known_to_save_nothing() {
     let (bus, mut client) = changed();
     bus.0.borrow_mut().is_old = true;
     assert_eq!(client.store().unwrap(), None);
+    assert_eq!(client.boot_findings().unwrap(), None);
     let error = wait_until_saved(&mut client, QUICK).unwrap_err();
     assert!(matches!(error, SaveError::NeverSaves));
+}
+
+#[test]
+fn what_boot_found_is_told_by_name() {
+    let (bus, mut client) = robot();
+    bus.0.borrow_mut().params = ParamStatus {
+        lost_sectors: 1,
+        refused: 1 << 3 | 1 << 10,
+        ..ParamStatus::default()
+    };
+    let findings = client.boot_findings().unwrap().unwrap();
+    assert_eq!(findings.lost_sectors, 1);
+    assert_eq!(findings.refused, [Ok("safety"), Ok("joint-right-rear")]);
+}
+
+/// The group has its defaults already, but flash holds a record that was refused.
+#[test]
+fn defaults_that_change_nothing_wait_for_the_robot_too() {
+    let (bus, mut client) = robot();
+    bus.0.borrow_mut().looks_to_save = Some(3);
+    client.restore_defaults(None).unwrap();
+    assert!(!client.store().unwrap().unwrap().is_saved());
+    wait_until_saved(&mut client, QUICK).unwrap();
+    assert_eq!(bus.0.borrow().looks_to_save, Some(0));
 }
 
 #[test]

@@ -12,6 +12,10 @@ struct Cells {
     log: Vec<(u32, usize)>,
     /// Bits that are 1 after each write, in the byte at that offset.
     stuck: Vec<(u32, u8)>,
+    /// A sector whose head reads as noise, whatever it holds.
+    unreadable: Option<u8>,
+    /// Sectors on which an erase does nothing.
+    worn: Vec<u8>,
 }
 
 type Vec<T> = std::vec::Vec<T>;
@@ -22,6 +26,8 @@ impl Cells {
             bytes: vec![0xFF; SIZE],
             log: Vec::new(),
             stuck: Vec::new(),
+            unreadable: None,
+            worn: Vec::new(),
         }
     }
 }
@@ -33,8 +39,11 @@ impl ErrorType for Cells {
 impl ReadNorFlash for Cells {
     const READ_SIZE: usize = 1;
 
-    fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), NorFlashErrorKind> {
-        bytes.copy_from_slice(&self.bytes[offset as usize..][..bytes.len()]);
+    fn read(&mut self, place: u32, bytes: &mut [u8]) -> Result<(), NorFlashErrorKind> {
+        bytes.copy_from_slice(&self.bytes[place as usize..][..bytes.len()]);
+        if self.unreadable.map(|sector| offset(sector, 0)) == Some(place) {
+            bytes.fill(0x5A);
+        }
         Ok(())
     }
 
@@ -49,7 +58,9 @@ impl NorFlash for Cells {
 
     fn erase(&mut self, from: u32, to: u32) -> Result<(), NorFlashErrorKind> {
         self.log.push((from, 0));
-        self.bytes[from as usize..to as usize].fill(0xFF);
+        if !self.worn.iter().any(|sector| offset(*sector, 0) == from) {
+            self.bytes[from as usize..to as usize].fill(0xFF);
+        }
         Ok(())
     }
 
@@ -214,4 +225,149 @@ fn records_leave_a_sector_whose_head_cannot_be_made_to_last() {
     assert_eq!(store.report().generation, 2);
     assert_eq!(values(&mut store), [(1, 10), (2, 20)]);
     assert_eq!(values(&mut Store::open(&mut cells)), [(1, 10), (2, 20)]);
+}
+
+/// Saves until the `generation`-th sector is active, with the last value in it.
+fn fill<F: NorFlash>(store: &mut Store<F>, generation: u32) -> u32 {
+    let mut value = 0;
+    while store.report().generation < generation {
+        value += 1;
+        save(store, &record(1, value));
+        tidy(store);
+    }
+    value
+}
+
+/// Bits of the header stay 1 in these slots: none takes a record.
+fn wear_out(cells: &mut Cells, sector: u8, slots: core::ops::RangeInclusive<u8>) {
+    let stuck = slots.map(|slot| (offset(sector, slot) + 5, 0x80));
+    cells.stuck.extend(stuck);
+}
+
+/// Errors until the record is stored, as often as it takes.
+fn save_stubbornly<F: NorFlash>(store: &mut Store<F>, record: &Record) -> Vec<ParamError> {
+    let mut errors = Vec::new();
+    for _ in 0..1000 {
+        match store.work(Some(record)) {
+            Ok(Progress::Stored) => return errors,
+            Ok(Progress::Worked) => {}
+            Err(error) => errors.push(error),
+        }
+    }
+    panic!("never stored: {errors:?}");
+}
+
+/// Its records are gone for a boot. What is saved in that boot must not be hidden when they come back.
+#[test]
+fn a_head_that_can_be_read_again_hides_nothing_saved_meanwhile() {
+    let mut cells = Cells::blank();
+    fill(&mut Store::open(&mut cells), 2);
+    cells.unreadable = Some(1);
+    let mut store = Store::open(&mut cells);
+    assert_eq!(
+        (store.report().generation, store.report().lost_sectors),
+        (1, 1)
+    );
+    save(&mut store, &record(1, 9_999));
+    cells.unreadable = None;
+    let mut store = Store::open(&mut cells);
+    assert_eq!(values(&mut store), [(1, 9_999)]);
+    assert_eq!(store.report().lost_sectors, 0);
+}
+
+/// The same, but what is saved meanwhile is appended: the older sector is not full.
+#[test]
+fn nor_does_it_hide_what_was_appended_to_an_older_sector() {
+    let mut cells = Cells::blank();
+    save(&mut Store::open(&mut cells), &record(1, 10));
+    tidy(&mut Store::open(&mut cells));
+    wear_out(&mut cells, 0, 2..=4);
+    save_stubbornly(&mut Store::open(&mut cells), &record(1, 11));
+    cells.stuck.clear();
+    cells.unreadable = Some(1);
+    let mut store = Store::open(&mut cells);
+    assert_eq!(values(&mut store), [(1, 10)]);
+    save(&mut store, &record(2, 20));
+    assert_eq!(store.report().generation, 1);
+    cells.unreadable = None;
+    assert_eq!(values(&mut Store::open(&mut cells)), [(1, 10), (2, 20)]);
+}
+
+#[test]
+fn after_three_failures_a_record_goes_to_the_next_sector() {
+    let mut cells = Cells::blank();
+    save(&mut Store::open(&mut cells), &record(1, 10));
+    tidy(&mut Store::open(&mut cells));
+    wear_out(&mut cells, 0, 2..=127);
+    let mut store = Store::open(&mut cells);
+    let errors = save_stubbornly(&mut store, &record(1, 11));
+    assert_eq!(errors, [ParamError::NotProgrammed; 3]);
+    assert_eq!(store.report().generation, 2);
+    assert_eq!(values(&mut store), [(1, 11)]);
+    assert_eq!(save_stubbornly(&mut store, &record(1, 12)), []);
+}
+
+#[test]
+fn after_three_failures_a_change_of_sectors_takes_another_target() {
+    let mut cells = Cells::blank();
+    fill(&mut Store::open(&mut cells), 1);
+    wear_out(&mut cells, 1, 1..=127);
+    let mut store = Store::open(&mut cells);
+    for value in 100..226 {
+        assert_eq!(save_stubbornly(&mut store, &record(1, value)), []);
+        tidy(&mut store);
+    }
+    assert_eq!(store.report().free_slots, 0);
+    let errors = save_stubbornly(&mut store, &record(1, 1000));
+    assert_eq!(errors, [ParamError::NotProgrammed; 3]);
+    assert_eq!(values(&mut store), [(1, 1000)]);
+    assert!(matches!(
+        store.sectors[2].state,
+        SectorState::Headed { generation: 2 }
+    ));
+}
+
+/// There is no other sector: slots behind the worn ones are tried on.
+#[test]
+fn with_no_other_sector_the_worn_one_goes_on_being_tried() {
+    let mut cells = Cells::blank();
+    save(&mut Store::open(&mut cells), &record(1, 10));
+    wear_out(&mut cells, 0, 2..=9);
+    cells.bytes[offset(1, 0) as usize..].fill(0x5A);
+    cells.worn = vec![1, 2];
+    let mut store = Store::open(&mut cells);
+    let errors = save_stubbornly(&mut store, &record(1, 11));
+    let of = |wanted| errors.iter().filter(|error| **error == wanted).count();
+    assert_eq!(of(ParamError::NotProgrammed), 8);
+    assert_eq!(of(ParamError::NotErased), 2);
+    assert_eq!(values(&mut store), [(1, 11)]);
+}
+
+/// The active head breaks while it is proven, and the third sector cannot be erased: the backup is all there is.
+#[test]
+fn the_backup_of_a_broken_head_is_not_erased() {
+    let mut cells = Cells::blank();
+    let mut store = Store::open(&mut cells);
+    for value in 1..=127 {
+        save(&mut store, &record(1, value));
+        tidy(&mut store);
+    }
+    while store.report().generation < 2 {
+        assert_eq!(store.work(Some(&record(1, 128))), Ok(Progress::Worked));
+    }
+    // A power cut before the proof, and a third sector that is worn out.
+    cells.bytes[offset(1, 0) as usize + 40..][..4].fill(0xFF);
+    cells.bytes[offset(2, 0) as usize..].fill(0x5A);
+    cells.stuck = [10, 26].map(|at| (offset(1, 0) + at, 0xFF)).into();
+    cells.worn = vec![2];
+    let mut store = Store::open(&mut cells);
+    assert_eq!(store.work(None), Err(ParamError::NotProgrammed));
+    for _ in 0..10 {
+        let _ = store.work(Some(&record(2, 20)));
+    }
+    assert_eq!(values(&mut store), [(1, 127)]);
+    // At the next boot the head is gone, and what was moved there is found where it came from.
+    let mut store = Store::open(&mut cells);
+    assert_eq!(store.report().generation, 1);
+    assert_eq!(values(&mut store), [(1, 127)]);
 }

@@ -348,6 +348,39 @@ fn anyone_may_ask_whether_everything_is_saved() {
     assert_eq!(bench.reply(TuningGate::Shut, 0x7A1, &[0x31]), expected);
 }
 
+/// Groups 7 (bit 6 of the table) and 16 (bit 7) were refused: bits 7 and 16 of the reply.
+#[test]
+fn anyone_may_ask_what_boot_found_in_the_store() {
+    let mut bench = Bench::default();
+    assert_eq!(bench.read(&[0x32]), [0x32, 0, 0, 0, 0, 0, 0, 0]);
+    bench.params = ParamStatus {
+        lost_sectors: 1,
+        damaged: 300,
+        foreign: 4,
+        refused: 1 << 6 | 1 << 7,
+        ..ParamStatus::default()
+    };
+    let expected = [0x32, 1, 255, 4, 0x80, 0x00, 0x01, 0x00];
+    assert_eq!(bench.read(&[0x32]), expected);
+    assert_eq!(bench.reply(TuningGate::Shut, 0x7A1, &[0x32]), expected);
+}
+
+/// The store saves such a group even if it looks the same: flash may hold a record that was refused.
+#[test]
+fn defaults_that_change_nothing_are_told_to_the_store() {
+    let mut bench = Bench::default();
+    bench.write(&[0x30, 7, 0, 0, 0, 0, 0, 0]);
+    let status = *bench.channel.status();
+    assert_eq!((status.restored, status.revision), (1 << 6, 1));
+    bench.write(&[0x30, 0, 0, 0, 0, 0, 0, 0]);
+    let status = *bench.channel.status();
+    assert_eq!((status.restored, status.revision), (0x7FF, 2));
+    bench.write(&[0x20, 7, 0, 0, 0x00, 0x00, 0xF0, 0x41]);
+    bench.write(&[0x30, 9, 0, 0, 0, 0, 0, 0]);
+    let status = *bench.channel.status();
+    assert_eq!((status.restored, status.revision), (0x7FF, 3));
+}
+
 /// The store looks at the settings only now and then: a change it has not seen yet is not called saved.
 #[test]
 fn a_change_is_unsaved_from_the_moment_of_its_reply() {

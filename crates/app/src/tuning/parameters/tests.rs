@@ -158,3 +158,9 @@ fn the_soft_iron_matrix_stays_symmetric() {
         assert_eq!((matrix[row][column], matrix[column][row]), (0.25, 0.25));
     }
 }
+
+/// A reply has a bit for each (docs/tuning.md, `32`).
+#[test]
+fn numbers_of_groups_are_below_32() {
+    assert!(PARAMETERS.iter().all(|group| group.number < 32));
+}

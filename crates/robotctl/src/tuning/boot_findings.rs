@@ -1,0 +1,96 @@
+//! What the robot's boot found in its flash (docs/tuning.md, `32`).
+
+use std::fmt;
+
+use robot_app::tuning::PARAMETERS;
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct BootFindings {
+    /// Sectors ruined by something else than a power cut.
+    pub lost_sectors: u8,
+    /// Places of the sector in use that hold neither a record nor nothing; stays at 255.
+    pub damaged: u8,
+    /// Records kept for another firmware or other motors; stays at 255.
+    pub foreign: u8,
+    /// Names of the groups whose record is not used; `Err` is a number this tool does not know.
+    pub refused: Vec<Result<&'static str, u8>>,
+}
+
+impl BootFindings {
+    /// Of the bytes after the command.
+    pub(super) fn from_bytes([lost_sectors, damaged, foreign, a, b, c, d]: [u8; 7]) -> Self {
+        let refused = u32::from_le_bytes([a, b, c, d]);
+        let numbers = (0..32).filter(|number| refused & 1 << number != 0);
+        Self {
+            lost_sectors,
+            damaged,
+            foreign,
+            refused: numbers.map(name).collect(),
+        }
+    }
+
+    fn refused_in_words(&self) -> String {
+        let name = |group: &Result<&str, u8>| match group {
+            Ok(name) => (*name).to_owned(),
+            Err(number) => format!("group {number}"),
+        };
+        let names: Vec<_> = self.refused.iter().map(name).collect();
+        names.join(", ")
+    }
+}
+
+fn name(number: u8) -> Result<&'static str, u8> {
+    let group = PARAMETERS.iter().find(|group| group.number == number);
+    group.map(|group| group.name).ok_or(number)
+}
+
+impl fmt::Display for BootFindings {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "found at boot:")?;
+        if self.lost_sectors != 0 {
+            write!(
+                f,
+                "\nRUINED SECTORS   {}: newer values may be lost and older ones in use; check all with \
+                 `robotctl tune list`",
+                self.lost_sectors
+            )?;
+        }
+        if !self.refused.is_empty() {
+            write!(
+                f,
+                "\nREFUSED          {}: defaults are in use, and the robot does not arm; set the group's values, or \
+                 accept the defaults with `robotctl tune defaults GROUP --yes`",
+                self.refused_in_words()
+            )?;
+        }
+        writeln!(f, "\ndamaged places   {}", self.damaged)?;
+        write!(f, "foreign records  {}", self.foreign)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    // docs/tuning.md: a ruined sector, 2 damaged places, 3 foreign records, groups 7, 16 and 30 refused.
+    #[test]
+    fn the_documented_bytes_are_understood() {
+        let findings = BootFindings::from_bytes([1, 2, 3, 0x80, 0, 0x01, 0x40]);
+        let expected = BootFindings {
+            lost_sectors: 1,
+            damaged: 2,
+            foreign: 3,
+            refused: vec![Ok("heater"), Ok("joint-left-front"), Err(30)],
+        };
+        assert_eq!(findings, expected);
+        let text = findings.to_string();
+        assert!(text.contains("RUINED SECTORS   1: newer values may be lost"));
+        assert!(text.contains("heater, joint-left-front, group 30: defaults are in use"));
+    }
+
+    #[test]
+    fn nothing_found_raises_no_alarm() {
+        let text = BootFindings::from_bytes([0; 7]).to_string();
+        assert!(!text.contains("RUINED") && !text.contains("REFUSED"));
+    }
+}
