@@ -7,8 +7,8 @@ use robot_emulator::{
     sim::{job::Job, scenario::Scenario},
 };
 
-/// Long enough for the first boot of a new chip, which erases a sector.
-const QUIET: &str = "name = \"kept\"\nseconds = 0.5\nplant = \"stand\"\n";
+/// Long enough for a new chip, of which a sector is erased once the robot has rested.
+const QUIET: &str = "name = \"kept\"\nseconds = 1.5\nplant = \"stand\"\n";
 
 fn job(name: &str) -> Job {
     let file = std::env::temp_dir().join(format!("robot-{name}-{}.bin", std::process::id()));
