@@ -116,6 +116,31 @@ fn a_worn_out_place_costs_a_second() {
     assert_eq!(Robot::boot(&chip).config.heater.kp, 2.0);
 }
 
+/// No slot of the active sector takes a record any more: three attempts, the pauses between them, then the next sector.
+#[test]
+fn a_worn_out_sector_costs_a_minute_not_hours() {
+    let chip = Chip::blank();
+    let mut robot = Robot::boot(&chip);
+    robot.change(|config| config.heater.kp = 1.0);
+    robot.save();
+    for slot in 2..128 {
+        chip.cells.borrow_mut().stick(StuckBit {
+            address: 0x0800_4000 + slot * 128 + 5,
+            bit: 7,
+            value: true,
+        });
+    }
+    robot.change(|config| config.heater.kp = 2.0);
+    robot.run_ms(71_000);
+    assert_eq!((robot.status().save_ok, robot.status().save_failed), (1, 3));
+    robot.run_ms(1_000);
+    assert_eq!((robot.status().save_ok, robot.status().save_failed), (2, 3));
+    robot.change(|config| config.heater.kp = 3.0);
+    robot.run_ms(1_000);
+    assert_eq!((robot.status().save_ok, robot.status().save_failed), (3, 3));
+    assert_eq!(Robot::boot(&chip).config.heater.kp, 3.0);
+}
+
 /// The spare sector cannot be had, but there is room in the active one.
 #[test]
 fn sectors_that_cannot_be_erased_do_not_delay_a_save() {
