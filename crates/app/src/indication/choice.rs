@@ -116,7 +116,10 @@ fn disarmed(inputs: &IndicationInputs<'_>) -> Indication {
             CalibrationState::WaitingForStillness => Indication::HoldStill,
             CalibrationState::Measuring | CalibrationState::Done => Indication::Calibrating,
         }
-    } else if stops_in_part(inputs.safety) || blocked_by(ArmingBlockers::JOINTS_NOT_READY) {
+    } else if stops_in_part(inputs.safety)
+        || blocked_by(ArmingBlockers::JOINTS_NOT_READY)
+        || blocked_by(ArmingBlockers::SETTINGS_REFUSED)
+    {
         Indication::NotReady
     } else if !blocked_by(ArmingBlockers::ENABLE_OFF) {
         Indication::Refused

@@ -187,3 +187,9 @@ fn settings_that_cannot_be_saved_are_told_when_nothing_else_is_wrong() {
     let no_spare = disarmed(|s| s.params.state = ParamState::BackingOff);
     assert_eq!(no_spare, Indication::Ready);
 }
+
+#[test]
+fn refused_settings_are_shown_before_the_pilot_tries_to_arm() {
+    let refused = disarmed(|s| s.arming.blockers = ArmingBlockers::SETTINGS_REFUSED);
+    assert_eq!(refused, Indication::NotReady);
+}
