@@ -8,8 +8,7 @@ use robot_app::logic::LogicBus;
 use robot_app::params::FlashRequest;
 use robot_app::tick::robot_loop::{self, RobotLoop};
 use robot_app::tick::{ControlInputs, ControlOutputs, DIAGNOSTICS_PERIOD_TICKS};
-use robot_app::tuning::TuningStatus;
-use robot_snapshot::Follower;
+use robot_snapshot::{Follower, Writer};
 
 use crate::config::LAYOUT;
 use crate::drivers::can::CanPort;
@@ -80,16 +79,10 @@ impl Output {
             config_revision,
             granted,
         } = self;
-        let TuningStatus {
-            revision, restored, ..
-        } = outputs.diagnostics.tuning;
-        if revision != *config_revision {
-            *config_revision = revision;
-            writers.config.publish(&ConfigUpdate {
-                config: *outputs.config,
-                revision,
-                restored,
-            });
+        let tuning = &outputs.diagnostics.tuning;
+        if tuning.revision != *config_revision {
+            *config_revision = tuning.revision;
+            publish_config(&mut writers.config, outputs);
         }
         if outputs.flash.granted != *granted {
             *granted = outputs.flash.granted;
@@ -99,6 +92,18 @@ impl Output {
             writers.diagnostics.publish(outputs.diagnostics);
         }
     }
+}
+
+/// Rare, and out of the way of what runs in every tick.
+#[cold]
+#[inline(never)]
+fn publish_config(writer: &mut Writer<'static, ConfigUpdate>, outputs: &ControlOutputs<'_>) {
+    let tuning = &outputs.diagnostics.tuning;
+    writer.publish(&ConfigUpdate {
+        config: *outputs.config,
+        revision: tuning.revision,
+        restored: tuning.restored,
+    });
 }
 
 fn is_diagnostics_tick(diagnostics: &DiagnosticsSnapshot) -> bool {
@@ -218,13 +223,18 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
     }
 }
 
-/// A late task stops the robot in this tick. It is logged from here, because the status task may be the late one.
+/// A late task stops the robot in this tick.
 fn note_late_tasks(noted: &mut LateTasks, now_us: u64) {
-    let late = if deadlines::any_late(now_us) {
-        deadlines::late_tasks(now_us)
-    } else {
-        LateTasks::default()
-    };
+    if deadlines::any_late(now_us) || noted.any() {
+        renew_late_tasks(noted, now_us);
+    }
+}
+
+/// Logged from here, because the status task may be the late one.
+#[cold]
+#[inline(never)]
+fn renew_late_tasks(noted: &mut LateTasks, now_us: u64) {
+    let late = deadlines::late_tasks(now_us);
     if late == *noted {
         return;
     }

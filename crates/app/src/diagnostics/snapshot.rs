@@ -28,6 +28,10 @@ pub struct DiagnosticsSnapshot {
     pub command: ChassisCommand,
     pub arming: ArmingStatus,
     pub safety: SafetyStatus,
+    pub tick: TickStats,
+    pub bring_up: BringUpStatus,
+    pub late_tasks: LateTasks,
+    pub tuning: TuningStatus,
     /// Index = `BusId`.
     pub can: [BusHealth; 2],
     pub imu_health: SensorHealth,
@@ -35,14 +39,10 @@ pub struct DiagnosticsSnapshot {
     pub radio_line: RadioLineHealth,
     /// Heater, start-up calibration, rejected samples.
     pub imu_status: ImuStatus,
-    pub tuning: TuningStatus,
     pub params: ParamStatus,
-    pub tick: TickStats,
     pub battery_v: f32,
     /// Of the run before this one.
     pub last_words: LastWords,
-    pub bring_up: BringUpStatus,
     pub reset_cause: ResetCause,
     pub imu_calibrated: bool,
-    pub late_tasks: LateTasks,
 }

@@ -14,7 +14,7 @@ pub struct LateTasks {
 
 impl LateTasks {
     pub fn any(self) -> bool {
-        self != Self::default()
+        self.imu | self.mag | self.sbus | self.logic | self.status | self.params
     }
 
     /// What to tell the next boot. Of several late tasks the one of the highest priority, because it may starve the

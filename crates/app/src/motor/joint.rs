@@ -48,13 +48,6 @@ enum Said {
     Other,
 }
 
-/// A frame, if the motor has its slot in this tick, and the command it obeys as far as it is enabled.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct JointOutput {
-    pub frame: Option<CanFrame>,
-    pub sent: JointCommand,
-}
-
 #[derive(Clone, Debug)]
 pub struct Joint {
     slot: &'static JointSlot,
@@ -112,6 +105,11 @@ impl Joint {
             self.report_ts_us = self.report_ts_us.saturating_add(stall_us.into());
         }
         self.freeze_watch.restart(now_us);
+    }
+
+    /// The command it obeys, as far as it is enabled.
+    pub fn sent(&self) -> &JointCommand {
+        &self.sent
     }
 
     fn state(&self) -> JointState {
@@ -327,7 +325,8 @@ impl Motor for Joint {
     type Command = JointCommand;
     type Config = JointConfig;
     type Feedback = JointFeedback;
-    type Output = JointOutput;
+    /// A frame, if the motor has its slot in this tick.
+    type Output = Option<CanFrame>;
 
     fn receive(&mut self, frame: &CanFrame, ts_us: u64) -> bool {
         let Some(reply) = self.slot.motor.decode(frame, self.expected()) else {
@@ -384,17 +383,14 @@ impl Motor for Joint {
         config: &JointConfig,
         permitted: bool,
         now_us: u64,
-    ) -> JointOutput {
+    ) -> Option<CanFrame> {
         let due = self.slot.schedule.is_due(self.tick);
         self.tick = self.tick.wrapping_add(1);
         if !permitted {
             self.sent = JointCommand::default();
             self.obeyed = None;
         }
-        JointOutput {
-            frame: due.then(|| self.next_frame(permitted.then_some(command), config, now_us)),
-            sent: self.sent,
-        }
+        due.then(|| self.next_frame(permitted.then_some(command), config, now_us))
     }
 }
 

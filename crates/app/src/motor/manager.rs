@@ -2,13 +2,7 @@
 
 use heapless::Vec;
 
-use super::{
-    interface::Motor,
-    joint::{Joint, JointOutput},
-    layout::MotorLayout,
-    m3508,
-    wheel::Wheel,
-};
+use super::{interface::Motor, joint::Joint, layout::MotorLayout, m3508, wheel::Wheel};
 use crate::{
     domain::{
         BusId, CanFrame, ChassisCommand, JointCommand, MotorCurrent, MotorFeedback, RobotConfig,
@@ -155,9 +149,9 @@ impl MotorManager {
         let orders = command.joints.iter().zip(&config.joints);
         for (((slot, joint), (command, config)), sent) in slots.zip(orders).zip(sent) {
             let permitted = permit.is_some_and(|permit| permit.allows_joints(slot.bus));
-            let output: JointOutput = joint.drive(command, config, permitted, now_us);
-            *sent = output.sent;
-            if let Some(frame) = output.frame {
+            let frame = joint.drive(command, config, permitted, now_us);
+            *sent = *joint.sent();
+            if let Some(frame) = frame {
                 // The layout leaves room.
                 let _ = frames.push((slot.bus, frame));
             }

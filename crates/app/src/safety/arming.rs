@@ -4,8 +4,9 @@
 //! Being disarmed for any reason uses the request up: the switch must go off and on again.
 
 use super::{SafetyFlags, SafetyStatus, SafetyVerdict};
-use crate::domain::{
-    JointFeedback, JointState, MotorFeedback, OperatorState, RemoteState, SafetyConfig,
+use crate::{
+    domain::{JointFeedback, JointState, MotorFeedback, OperatorState, RemoteState, SafetyConfig},
+    params::ParamStatus,
 };
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -133,8 +134,7 @@ pub struct ArmingInputs<'a> {
     pub read_only: bool,
     /// See `FlashPermit`, which grants nothing to an armed robot.
     pub flash_busy: bool,
-    /// See `ParamStatus::refused`.
-    pub settings_refused: bool,
+    pub params: &'a ParamStatus,
     pub safety: &'a SafetyStatus,
 }
 
@@ -255,7 +255,7 @@ fn only_forbidding(inputs: &ArmingInputs<'_>) -> ArmingBlockers {
     let joints_ready = inputs.motor.joints.iter().all(is_ready);
     blockers.add_if(ArmingBlockers::JOINTS_NOT_READY, !joints_ready);
     blockers.add_if(ArmingBlockers::FLASH_BUSY, inputs.flash_busy);
-    blockers.add_if(ArmingBlockers::SETTINGS_REFUSED, inputs.settings_refused);
+    blockers.add_if(ArmingBlockers::SETTINGS_REFUSED, inputs.params.refused != 0);
     blockers.add_if(
         ArmingBlockers::BATTERY_LOW,
         inputs.safety.flags.intersects(SafetyFlags::BATTERY_LOW),

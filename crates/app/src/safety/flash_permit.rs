@@ -64,27 +64,43 @@ pub struct FlashPermit {
 }
 
 impl FlashPermit {
-    /// Once a tick, before `Arming`.
-    pub fn step(&mut self, inputs: &FlashPermitInputs<'_>, now_us: u64) -> FlashGrant {
-        if inputs.arming == ArmingState::Armed {
-            self.armed_us = now_us;
-        }
-        self.grant = if inputs.request == FlashRequest::None {
-            self.rest = None;
-            FlashGrant {
-                blocks_arming: inputs.watchdog != WatchdogPeriod::Short,
-                ..FlashGrant::default()
-            }
-        } else if self.grant.granted == inputs.request {
-            self.grant
-        } else {
-            self.consider(inputs, now_us)
+    /// In place of [`step`](Self::step) in a tick in which nothing is asked for, which nearly every one is.
+    pub fn idle(
+        &mut self,
+        arming: ArmingState,
+        watchdog: WatchdogPeriod,
+        now_us: u64,
+    ) {
+        self.note_arming(arming, now_us);
+        self.rest = None;
+        self.grant = FlashGrant {
+            blocks_arming: watchdog != WatchdogPeriod::Short,
+            ..FlashGrant::default()
         };
+    }
+
+    /// Once a tick, before `Arming`.
+    pub fn step(&mut self, inputs: &FlashPermitInputs<'_>, now_us: u64) {
+        if inputs.request == FlashRequest::None {
+            return self.idle(inputs.arming, inputs.watchdog, now_us);
+        }
+        self.note_arming(inputs.arming, now_us);
+        if self.grant.granted != inputs.request {
+            self.grant = self.consider(inputs, now_us);
+        }
+    }
+
+    /// As of the last of both.
+    pub fn grant(&self) -> FlashGrant {
         self.grant
     }
 
-    #[cold]
-    #[inline(never)]
+    fn note_arming(&mut self, arming: ArmingState, now_us: u64) {
+        if arming == ArmingState::Armed {
+            self.armed_us = now_us;
+        }
+    }
+
     fn consider(&mut self, inputs: &FlashPermitInputs<'_>, now_us: u64) -> FlashGrant {
         let allowed = self.is_allowed(inputs, now_us);
         let erases = inputs.request == FlashRequest::Erase;

@@ -173,8 +173,8 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
         self.diagnostics.borrow_mut().tick.tick(now_us);
         self.sense(inputs, now_us);
         let trial = self.try_out(inputs, now_us);
-        let flash = self.guard_flash(inputs, now_us);
-        let permit = self.judge(inputs, flash.blocks_arming, now_us);
+        self.guard_flash(inputs, now_us);
+        let permit = self.judge(inputs, now_us);
         self.act(inputs, permit.as_ref(), trial.as_ref(), now_us);
         self.reply();
         self.record(inputs, now_us);
@@ -184,7 +184,7 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
             estimate: &diagnostics.estimate,
             diagnostics,
             config: &self.config,
-            flash,
+            flash: self.flash.grant(),
         }
     }
 
@@ -235,7 +235,19 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
         command
     }
 
-    fn guard_flash(&mut self, inputs: &ControlInputs<'_>, now_us: u64) -> FlashGrant {
+    fn guard_flash(&mut self, inputs: &ControlInputs<'_>, now_us: u64) {
+        if inputs.flash_request != FlashRequest::None {
+            return self.consider_flash(inputs, now_us);
+        }
+        let diagnostics: &DiagnosticsSnapshot = self.diagnostics.borrow();
+        self.flash
+            .idle(diagnostics.arming.state, inputs.watchdog, now_us);
+    }
+
+    /// Rare.
+    #[cold]
+    #[inline(never)]
+    fn consider_flash(&mut self, inputs: &ControlInputs<'_>, now_us: u64) {
         let diagnostics: &DiagnosticsSnapshot = self.diagnostics.borrow();
         self.flash.step(
             &FlashPermitInputs {
@@ -249,13 +261,12 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
                 can: &inputs.health.can,
             },
             now_us,
-        )
+        );
     }
 
     fn judge(
         &mut self,
         inputs: &ControlInputs<'_>,
-        flash_busy: bool,
         now_us: u64,
     ) -> Option<TorquePermit> {
         let diagnostics = self.diagnostics.borrow_mut();
@@ -283,8 +294,8 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
                 calibrated: inputs.health.imu_calibrated,
                 motor: &diagnostics.sensors.motor,
                 read_only: self.bring_up.blocks_arming(),
-                flash_busy,
-                settings_refused: inputs.params.refused != 0,
+                flash_busy: self.flash.grant().blocks_arming,
+                params: inputs.params,
                 safety: &diagnostics.safety,
             },
             now_us,

@@ -35,7 +35,8 @@ fn torque_is_limited_for_where_a_joint_may_be_since_its_last_report() {
         let now_us = 1_000_000 + age_us;
         joint.watch(50_000, now_us);
         joint.tick = 0;
-        joint.drive(&hold, &slot.config, true, now_us).sent.kp
+        joint.drive(&hold, &slot.config, true, now_us);
+        joint.sent().kp
     };
     assert_eq!(kp_after(2_000), 20.0);
     let kp = kp_after(40_000);

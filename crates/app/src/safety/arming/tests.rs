@@ -9,7 +9,7 @@ struct Bench {
     calibrated: bool,
     read_only: bool,
     flash_busy: bool,
-    settings_refused: bool,
+    params: ParamStatus,
     vx: f32,
     motor: MotorFeedback,
     safety: SafetyStatus,
@@ -30,7 +30,7 @@ impl Bench {
             calibrated: true,
             read_only: false,
             flash_busy: false,
-            settings_refused: false,
+            params: ParamStatus::default(),
             vx: 0.0,
             motor,
             safety: SafetyStatus::of(SafetyFlags::NONE),
@@ -63,7 +63,7 @@ impl Bench {
                 motor: &self.motor,
                 read_only: self.read_only,
                 flash_busy: self.flash_busy,
-                settings_refused: self.settings_refused,
+                params: &self.params,
                 safety: &self.safety,
             };
             let (now, token) = self.arming.step(&inputs, self.now_us);
@@ -195,7 +195,7 @@ fn a_flip_while_flash_is_busy_arms_when_it_is_done() {
 
 #[test]
 fn refused_settings_forbid_arming() {
-    let result = with_wrong(|bench| bench.settings_refused = true);
+    let result = with_wrong(|bench| bench.params.refused = 1);
     let expected = (ArmingBlockers::SETTINGS_REFUSED, ArmingState::Armed);
     assert_eq!(result, expected);
 }
