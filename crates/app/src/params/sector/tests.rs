@@ -43,6 +43,26 @@ fn only_the_mark_makes_a_blank_sector_clean() {
     assert!(!opened.is_clean());
 }
 
+/// What a cut in a change of sectors, a cut while a head is cleared and worn-out cells leave is no damage.
+#[test]
+fn only_a_head_with_two_wrong_copies_is_ruined() {
+    let mut flipped = COPY;
+    flipped[5] ^= 1;
+    let with_second = |mut head: Head, copy: &[u8]| {
+        head.bytes[24..40].copy_from_slice(copy);
+        head
+    };
+    assert!(with_second(head_with(8, &flipped), &flipped).is_ruined());
+    assert!(head_with(0, &[0x5A; 128]).is_ruined());
+    assert!(!head_with(0, b"").is_ruined());
+    assert!(!head_with(8, &flipped).is_ruined());
+    assert!(!head_with(0, &[0; 44]).is_ruined());
+    assert!(!with_second(head_with(0, &[0; 44]), &flipped).is_ruined());
+    let mut stuck = [0; 44];
+    (stuck[9], stuck[27]) = (0x80, 0x01);
+    assert!(!head_with(0, &stuck).is_ruined());
+}
+
 #[test]
 fn slots_lie_128_bytes_apart_and_sectors_16_kib() {
     assert_eq!(offset(0, 1), 0x80);
