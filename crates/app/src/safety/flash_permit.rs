@@ -65,12 +65,7 @@ pub struct FlashPermit {
 
 impl FlashPermit {
     /// In place of [`step`](Self::step) in a tick in which nothing is asked for, which nearly every one is.
-    pub fn idle(
-        &mut self,
-        arming: ArmingState,
-        watchdog: WatchdogPeriod,
-        now_us: u64,
-    ) {
+    pub fn idle(&mut self, arming: ArmingState, watchdog: WatchdogPeriod, now_us: u64) {
         self.note_arming(arming, now_us);
         self.rest = None;
         self.grant = FlashGrant {

@@ -264,11 +264,7 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
         );
     }
 
-    fn judge(
-        &mut self,
-        inputs: &ControlInputs<'_>,
-        now_us: u64,
-    ) -> Option<TorquePermit> {
+    fn judge(&mut self, inputs: &ControlInputs<'_>, now_us: u64) -> Option<TorquePermit> {
         let diagnostics = self.diagnostics.borrow_mut();
         diagnostics.safety = self.policy.evaluate(
             &SafetyInputs {
