@@ -124,6 +124,7 @@ impl TuningChannel {
     }
 
     /// All of a change or, if any of it is refused, nothing.
+    #[inline(never)]
     fn change(
         &mut self,
         config: &mut RobotConfig,
@@ -134,6 +135,7 @@ impl TuningChannel {
         self.adopt(config, &candidate, 0)
     }
 
+    #[inline(never)]
     fn restore(&mut self, config: &mut RobotConfig, wanted: Restored) -> Result<(), Refusal> {
         let defaults = RobotConfig::for_layout(self.layout);
         let mut candidate = *config;

@@ -51,7 +51,8 @@ pub struct ParameterGroup {
 }
 
 impl ParameterGroup {
-    /// Makes this group in `to` what it is in `from`.
+    /// Makes this group in `to` what it is in `from`. Out of line, as more here: flash is scarce.
+    #[inline(never)]
     pub fn copy(&self, from: &RobotConfig, to: &mut RobotConfig) {
         for parameter in self.parameters {
             (parameter.set)(to, parameter.read(from));
@@ -59,6 +60,7 @@ impl ParameterGroup {
     }
 
     /// True if each value is the same, bit for bit.
+    #[inline(never)]
     pub fn is_same(&self, one: &RobotConfig, other: &RobotConfig) -> bool {
         self.parameters
             .iter()
