@@ -13,6 +13,7 @@ mod cells;
 mod damage;
 mod foreign_records;
 mod power_cuts;
+mod refusals;
 mod robot;
 mod settings;
 mod wear;
