@@ -3,7 +3,7 @@
 use robot_plant::time::Ps;
 use unicorn_engine::{HookType, MemType, Prot, RegisterARM, TlbEntry, TlbType, Unicorn, uc_error};
 
-use super::{Block, State, Stop, context, sabotage};
+use super::{Block, State, Stop, context, it_state, sabotage};
 use crate::{
     core::{
         faults::Fault,
@@ -55,6 +55,9 @@ fn page_rights(_: &mut Unicorn<'_, State>, page: u64, access: MemType) -> Option
 }
 
 fn block_begins(engine: &mut Unicorn<'_, State>, address: u64, size: u32) {
+    if std::mem::take(&mut engine.get_data_mut().reached_out) {
+        it_state::mend(engine);
+    }
     let state = engine.get_data_mut();
     state.settle();
     if state.stop.is_some() {
@@ -203,6 +206,7 @@ fn refuse(engine: &mut Unicorn<'_, State>, access: Unmodelled) {
 }
 
 fn read_peripheral(engine: &mut Unicorn<'_, State>, offset: u64, size: usize) -> u64 {
+    engine.get_data_mut().reached_out = true;
     let addr = (PERIPHERALS.0 + offset) as u32;
     let value = with_soc(engine, |soc, now, memory| {
         soc.read(addr, size as u8, now, memory)
@@ -216,6 +220,7 @@ fn read_peripheral(engine: &mut Unicorn<'_, State>, offset: u64, size: usize) ->
 }
 
 fn write_peripheral(engine: &mut Unicorn<'_, State>, offset: u64, size: usize, value: u64) {
+    engine.get_data_mut().reached_out = true;
     let addr = (PERIPHERALS.0 + offset) as u32;
     let done = with_soc(engine, |soc, now, memory| {
         soc.write(addr, size as u8, value as u32, now, memory)
@@ -227,6 +232,7 @@ fn write_peripheral(engine: &mut Unicorn<'_, State>, offset: u64, size: usize, v
 }
 
 fn load_parameters(engine: &mut Unicorn<'_, State>, offset: u64, size: usize) -> u64 {
+    engine.get_data_mut().reached_out = true;
     let addr = PARAMETER_FLASH.base + offset as u32;
     let value = with_soc(engine, |soc, now, memory| {
         soc.load_parameters(addr, size as u8, now, memory)
@@ -240,6 +246,7 @@ fn load_parameters(engine: &mut Unicorn<'_, State>, offset: u64, size: usize) ->
 }
 
 fn store_parameters(engine: &mut Unicorn<'_, State>, offset: u64, size: usize, value: u64) {
+    engine.get_data_mut().reached_out = true;
     let addr = PARAMETER_FLASH.base + offset as u32;
     let done = with_soc(engine, |soc, now, memory| {
         soc.store_parameters(addr, size as u8, value as u32, now, memory)
@@ -251,6 +258,7 @@ fn store_parameters(engine: &mut Unicorn<'_, State>, offset: u64, size: usize, v
 }
 
 fn read_private(engine: &mut Unicorn<'_, State>, offset: u64, size: usize) -> u64 {
+    engine.get_data_mut().reached_out = true;
     let addr = (PRIVATE_PERIPHERALS.0 + offset) as u32;
     let value = with_system(engine, |system, around| {
         system.read(addr, size as u8, around)
@@ -264,6 +272,7 @@ fn read_private(engine: &mut Unicorn<'_, State>, offset: u64, size: usize) -> u6
 }
 
 fn write_private(engine: &mut Unicorn<'_, State>, offset: u64, size: usize, value: u64) {
+    engine.get_data_mut().reached_out = true;
     let addr = (PRIVATE_PERIPHERALS.0 + offset) as u32;
     let done = with_system(engine, |system, around| {
         system.write(addr, size as u8, value as u32, around)
