@@ -20,5 +20,10 @@ fn every_rule_holds_for_two_minutes() {
     let tally = &outcome.tally;
     println!("{tally:?}");
     assert!(tally.armings >= 3 && tally.stops >= 10, "{tally:?}");
+    assert!(
+        tally.settings.changes >= 10 && tally.settings.found_again >= 6,
+        "{tally:?}"
+    );
+    assert!(tally.flash_erases >= 1, "{tally:?}");
     assert!(tally.most_current_ma > 0.0 && tally.most_torque_nm > 0.0);
 }

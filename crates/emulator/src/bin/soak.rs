@@ -82,6 +82,11 @@ fn summary(outcome: &Outcome, wall_s: f64) {
         ("armings", tally.armings.to_string()),
         ("stops checked", tally.stops.to_string()),
         ("resets", tally.resets.to_string()),
+        ("settings changed", tally.settings.changes.to_string()),
+        ("found after a boot", tally.settings.found_again.to_string()),
+        ("lost as told", tally.settings.lost_and_told.to_string()),
+        ("flash words", tally.flash_words.to_string()),
+        ("flash erases", tally.flash_erases.to_string()),
         ("most current", format!("{:.0} mA", tally.most_current_ma)),
         (
             "most joint torque",

@@ -2,8 +2,13 @@
 
 mod dice;
 mod duty;
+mod full_sectors;
+mod harmless;
+mod kept;
 mod plan;
 mod reproduction;
+mod settings;
+mod still_flash;
 mod watch;
 
 use std::path::PathBuf;
@@ -18,6 +23,7 @@ use crate::{
     sim::{board::Board, faults::DeedError, scenario::Action},
 };
 
+pub use kept::KeptTally;
 use plan::Plan;
 use watch::Watch;
 pub use watch::{Tally, Violation};
@@ -70,6 +76,8 @@ impl Soak {
             ..WorldConfig::default()
         })?;
         let mut machine = Machine::new(&self.elf, world)?;
+        machine.set_flash_seed(self.seed);
+        machine.set_parameter_flash(&full_sectors::contents());
         let mut watch = Watch::new(&mut machine).map_err(SoakError::Blind)?;
         let mut plan = Plan::new(self.seed, self.length);
         let mut done: Vec<Action> = Vec::new();
@@ -79,6 +87,8 @@ impl Soak {
                 match Board::act(&mut machine, &action.what) {
                     // The chip is just booting.
                     Err(DeedError::Machine(FaultError::NotThere { .. })) => continue,
+                    // The bus is down for long.
+                    Err(DeedError::AdapterFull) => continue,
                     other => other?,
                 }
                 watch.did(&action);

@@ -8,7 +8,10 @@ use robot_plant::{
     world::{CanBusId, RemoteInput, World},
 };
 
-use super::dice::Dice;
+use super::{
+    dice::Dice,
+    harmless::{self, READ, WRITE},
+};
 use crate::{
     machine::faults,
     sim::scenario::{Action, Deed},
@@ -17,9 +20,8 @@ use crate::{
 /// Calibration and set-up are over, as a rule.
 const BOOTED: Ps = 2_500 * MS;
 
-/// Identifiers of the tuning channel.
-const WRITE: u32 = 0x7A0;
-const READ: u32 = 0x7A1;
+/// Between two requests on one bus: the robot answers one in 4 ms.
+const NEXT_REQUEST: Ps = 7 * MS;
 
 /// Who acts next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -28,12 +30,13 @@ enum Actor {
     World,
     Chip,
     Pc,
+    Tuner,
 }
 
 /// Deeds in order of time, drawn as they are needed.
 pub struct Plan {
     dice: Dice,
-    /// The image itself fails only up to here: afterwards the uptime grows past every counter's end.
+    /// The image and its supply fail only up to here: afterwards the uptime grows past every counter's end.
     chip_fails_until: Ps,
     due: BinaryHeap<Reverse<(Ps, Actor)>>,
     /// Drawn, not yet handed out; by time and order of drawing.
@@ -49,6 +52,7 @@ impl Plan {
             (5 * SECOND, Actor::World),
             (20 * SECOND, Actor::Chip),
             (SECOND, Actor::Pc),
+            (SECOND, Actor::Tuner),
         ];
         Self {
             dice: Dice::new(seed),
@@ -71,6 +75,10 @@ impl Plan {
                 Actor::World => self.world(at),
                 Actor::Chip => self.chip(at),
                 Actor::Pc => self.pc(at),
+                Actor::Tuner => {
+                    self.tune(at);
+                    at + self.dice.time(500.0, 10_000.0)
+                }
             };
             self.due.push(Reverse((next, actor)));
         }
@@ -106,6 +114,9 @@ impl Plan {
             self.remote(at, switches(false, false));
             at += self.dice.time(50.0, 300.0);
         }
+        while self.dice.chance(0.5) {
+            at = self.rest(at);
+        }
         self.remote(at, switches(true, false));
         at += self.dice.time(100.0, 600.0);
         let end = at + self.dice.time(1_000.0, 12_000.0);
@@ -119,6 +130,62 @@ impl Plan {
             at += self.dice.time(20.0, 1_000.0);
         }
         at
+    }
+
+    /// Time to tune and to save, which ends at any moment of that. Returns when.
+    fn rest(&mut self, start: Ps) -> Ps {
+        let changes = start + self.dice.time(50.0, 800.0);
+        self.tune(changes);
+        let end = changes + self.dice.time(300.0, 5_000.0);
+        if changes < self.chip_fails_until && self.dice.chance(0.7) {
+            let cut = changes + self.dice.time(400.0, 1_500.0);
+            let back = cut + self.dice.time(10.0, 250.0);
+            self.fault("power-cut", cut, back);
+            self.ask(back + 300 * MS);
+            return end.max(back + 600 * MS);
+        }
+        end
+    }
+
+    /// A PC changes some settings, asks whether they are saved, and what they are. Flash may fail at that.
+    fn tune(&mut self, start: Ps) {
+        let bus = self.bus();
+        let mut at = start;
+        for _ in 0..1 + self.dice.bits() % 4 {
+            let change = harmless::change(&mut self.dice);
+            self.then(at, Deed::Can(bus, change));
+            at += NEXT_REQUEST + self.dice.time(1.0, 100.0);
+        }
+        if self.dice.chance(0.15) {
+            let faults = ["flash-stuck-bits", "flash-erase-fails"];
+            let name = self.dice.pick(&faults).copied().unwrap_or_default();
+            let begins = at + self.dice.time(1.0, 800.0);
+            let ends = begins + self.dice.time(50.0, 4_000.0);
+            self.fault(name, begins, ends);
+        }
+        at += self.dice.time(400.0, 1_500.0);
+        self.then(at, Deed::Can(bus, harmless::store_question()));
+        self.ask(at + NEXT_REQUEST);
+    }
+
+    fn ask(&mut self, start: Ps) {
+        let bus = self.bus();
+        for (question, n) in harmless::questions().zip(0..) {
+            self.then(start + n * NEXT_REQUEST, Deed::Can(bus, question));
+        }
+    }
+
+    fn fault(&mut self, name: &str, begins: Ps, ends: Ps) {
+        self.then(begins, Deed::StartFault(name.to_owned()));
+        self.then(ends, Deed::EndFault(name.to_owned()));
+    }
+
+    fn bus(&mut self) -> CanBusId {
+        if self.dice.chance(0.5) {
+            CanBusId::Can1
+        } else {
+            CanBusId::Can2
+        }
     }
 
     /// Off, mostly: else one of the three steps, with one motor to try out and how.
@@ -183,8 +250,7 @@ impl Plan {
         } else {
             self.dice.time(10.0, 4_000.0)
         };
-        self.then(at, Deed::StartFault(name.clone()));
-        self.then(at + lasts, Deed::EndFault(name));
+        self.fault(&name, at, at + lasts);
         // Often alone, at times together.
         at + self.dice.time(300.0, 20_000.0)
     }
@@ -207,11 +273,7 @@ impl Plan {
 
     /// Requests on the tuning channel: those that change nothing, and those that must be refused.
     fn pc(&mut self, at: Ps) -> Ps {
-        let bus = if self.dice.chance(0.5) {
-            CanBusId::Can1
-        } else {
-            CanBusId::Can2
-        };
+        let bus = self.bus();
         let frame = self.request();
         self.then(at, Deed::Can(bus, frame));
         at + self.dice.time(5.0, 2_000.0)

@@ -2,10 +2,16 @@
 
 use robot_plant::{
     time::{MS, Ps, SECOND},
-    world::WireEvent,
+    world::{CanBusId, WireEvent},
 };
 
-use super::duty::{self, Duty, Group};
+use super::{
+    STEP,
+    duty::{self, Duty, Group},
+    kept::KeptTally,
+    settings::Settings,
+    still_flash::{Rest, StillFlash},
+};
 use crate::{
     machine::Machine,
     sim::{
@@ -44,6 +50,9 @@ pub struct Tally {
     pub resets: u64,
     /// Times that something had to be without torque, and was.
     pub stops: u64,
+    pub settings: KeptTally,
+    pub flash_words: u64,
+    pub flash_erases: u64,
     pub most_current_ma: f64,
     pub most_torque_nm: f64,
 }
@@ -86,6 +95,8 @@ pub struct Watch {
     suspects: Vec<Ps>,
     missed: u64,
     complaints: usize,
+    settings: Settings,
+    flash: StillFlash,
     events: Vec<WireEvent>,
     world: Vec<f64>,
     diag: Vec<f64>,
@@ -129,6 +140,8 @@ impl Watch {
             suspects: Vec::new(),
             missed: 0,
             complaints: 0,
+            settings: Settings::new(|name| place(&diag, name.to_owned()))?,
+            flash: StillFlash::default(),
             events: Vec::new(),
             world: Vec::new(),
             diag: Vec::new(),
@@ -136,7 +149,10 @@ impl Watch {
     }
 
     pub fn tally(&self) -> Tally {
-        self.tally
+        Tally {
+            settings: self.settings.tally(),
+            ..self.tally
+        }
     }
 
     /// Takes note of what was done to the robot.
@@ -144,9 +160,13 @@ impl Watch {
         let at = action.at;
         match &action.what {
             Deed::Remote(input) => self.pilot(at, input.enable, input.e_stop),
-            Deed::Can(..) => self.tally.frames += 1,
+            Deed::Can(bus, frame) => {
+                self.tally.frames += 1;
+                self.settings.sent(*bus, frame);
+            }
             Deed::StartFault(name) => self.begin(at, name),
             Deed::EndFault(name) => {
+                self.settings.fault(name, false, at);
                 if is_of_the_machine(name) {
                     self.chip_fault = Some(at);
                 }
@@ -187,6 +207,7 @@ impl Watch {
 
     fn begin(&mut self, at: Ps, name: &str) {
         self.tally.faults += 1;
+        self.settings.fault(name, true, at);
         if is_of_the_machine(name) {
             self.chip_fault = Some(at);
             return;
@@ -209,8 +230,10 @@ impl Watch {
         machine.sample_world(&mut self.world);
         let known = machine.sample_diag(&mut self.diag);
         let armed = known && self.diag[self.places.arming] == 1.0;
-        let broken = self
-            .arming_rule(armed, now)
+        let settings = self.settings_rule(machine, known, now);
+        let broken = settings
+            .or_else(|| self.flash_rule(machine, armed))
+            .or_else(|| self.arming_rule(armed, now))
             .or_else(|| self.unarmed_rule(now))
             .or_else(|| self.limit_rule())
             .or_else(|| self.stop_rule(now))
@@ -232,6 +255,37 @@ impl Watch {
                 self.tally.most_current_ma = self.tally.most_current_ma.max(event.value.abs());
             }
         }
+    }
+
+    fn settings_rule(&mut self, machine: &mut Machine, known: bool, now: Ps) -> Option<String> {
+        let diag = known.then_some(self.diag.as_slice());
+        let troubled = |bus| {
+            let group = match bus {
+                CanBusId::Can1 => Group::Wheels,
+                CanBusId::Can2 => Group::Joints,
+            };
+            let mut troubles = self.troubles.iter();
+            troubles.any(|trouble| duty::disturbs(&trouble.name, group))
+        };
+        self.settings.look(machine, diag, troubled, now)
+    }
+
+    fn flash_rule(&mut self, machine: &Machine, armed: bool) -> Option<String> {
+        let progress = machine.progress();
+        self.tally.flash_words = progress.flash_programs;
+        self.tally.flash_erases = progress.flash_erases;
+        let radio = |trouble: &Trouble| trouble.name.starts_with("sbus");
+        let heard = self.enable && !self.troubles.iter().any(radio);
+        self.flash.look(
+            machine,
+            &Rest {
+                armed: armed && self.armed,
+                last_armed: self.last_armed,
+                // Looked at every millisecond, it is known so late.
+                booted: self.settings.booted().saturating_sub(STEP),
+                enabled: self.enabled_at.filter(|_| heard),
+            },
+        )
     }
 
     /// Armed only by a switch that went on after the robot was last armed.
