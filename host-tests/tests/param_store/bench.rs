@@ -171,7 +171,8 @@ impl Tally {
         let lost = store.report().lost_sectors;
         if lost != 0 {
             self.false_alarms += 1;
-            self.first.get_or_insert(format!("{case}: {lost} lost sectors"));
+            self.first
+                .get_or_insert(format!("{case}: {lost} lost sectors"));
         }
     }
 

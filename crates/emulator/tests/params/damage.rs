@@ -104,7 +104,7 @@ fn strange() -> Vec<Damaged> {
         named(
             "one bit in a hundred cleared",
             Image::of(&full.bytes().map(|byte| {
-                if sparse.word() % 12 == 0 {
+                if sparse.word().is_multiple_of(12) {
                     byte & !(1 << (sparse.byte() % 8))
                 } else {
                     byte
