@@ -7,7 +7,7 @@ const SLOT: usize = 128;
 /// In sector 0, of 127; the first of them hold [`FOREIGN`] records.
 const USED: usize = 125;
 /// Of groups that this firmware does not have. Each change of sectors takes them along, so the next one is near again.
-const FOREIGN: usize = 105;
+const FOREIGN: usize = 56;
 const FIRST_FOREIGN: u8 = 100;
 
 const CLEAN: u32 = 0xD05E_EAC1;
@@ -73,7 +73,7 @@ fn put(bytes: &mut [u8], word: usize, value: u32) {
 fn crc32(bytes: impl IntoIterator<Item = u8>) -> u32 {
     let crc = bytes.into_iter().fold(u32::MAX, |crc, byte| {
         (0..8).fold(crc ^ u32::from(byte), |crc, _| {
-            crc >> 1 ^ (crc & 1) * 0xEDB8_8320
+            (crc >> 1) ^ ((crc & 1) * 0xEDB8_8320)
         })
     });
     !crc
