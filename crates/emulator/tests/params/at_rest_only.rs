@@ -1,7 +1,7 @@
 //! While armed flash is left alone; what a save costs a robot at rest.
 
 use robot_emulator::machine::flash::{FlashStepKind, FlashTimes};
-use robot_plant::time::{MS, SECOND};
+use robot_plant::time::{MS, Ps, SECOND};
 
 use crate::{
     cells::run_all,
@@ -11,7 +11,7 @@ use crate::{
 };
 
 /// Calibration and set-up of the motors are over.
-const READY: u64 = 2_400 * MS;
+const READY: Ps = 2_400 * MS;
 const TRACK: (u8, u8) = (1, 1);
 const MAKES: [Make; 2] = [Make::Dm4310, Make::Rs00];
 
@@ -106,6 +106,50 @@ fn saved_once_at_rest(robot: &mut Robot, make: Make) {
     );
     let stored = newest(&robot.machine.parameter_flash());
     assert_eq!(stored[&(1, 0)].values[1], 0.44_f32.to_bits());
+}
+
+/// The switch goes on so long after the change: around the end of the 500 ms, in the middle of the records' move to
+/// another sector, right before the erase.
+fn arm_into_a_save(after: Ps) -> Vec<String> {
+    let mut robot = Robot::with_flash(Make::Dm4310, &before_a_rotation(Make::Dm4310));
+    robot.until(READY);
+    robot.set(TRACK, 0.44);
+    robot.until(READY + after);
+    robot.enable(true);
+    let mut wrong = Vec::new();
+    let mut demand = |holds: bool, what: &str| {
+        if !holds {
+            wrong.push(format!("{} ms after the change: {what}", after / MS));
+        }
+    };
+    demand(
+        robot.wait(2 * SECOND, Robot::armed).is_some(),
+        "it never arms",
+    );
+    let armed = robot.now();
+    robot.run_for(400 * MS);
+    demand(robot.armed(), "it does not stay armed");
+    let steps = robot.machine.flash_steps();
+    // Seen armed within a millisecond.
+    let begun = steps.iter().filter(|step| step.at > armed - MS).count();
+    demand(begun == 0, "a flash step began while it was armed");
+    robot.enable(false);
+    let saved = robot.wait(4 * SECOND, |robot| robot.is_saved(1) && robot.is_tidy());
+    demand(saved.is_some(), "the change is never saved");
+    demand(robot.machine.resets() == 0, "it was reset");
+    let stored = newest(&robot.machine.parameter_flash());
+    demand(
+        stored[&(1, 0)].values[1] == 0.44_f32.to_bits(),
+        "flash holds something else",
+    );
+    wrong
+}
+
+#[test]
+fn no_flash_step_begins_while_armed_whenever_the_pilot_arms() {
+    let moments: Vec<Ps> = (0..32).map(|n| 470 * MS + n * 4 * MS).collect();
+    let wrong = run_all(&moments, |after| arm_into_a_save(*after)).concat();
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
 }
 
 struct Cost {

@@ -29,8 +29,8 @@ const PATIENCE: Ps = 4 * SECOND;
 enum Work {
     /// The sector's last slot, the move to the next sector, two more records, and the erase of the oldest sector.
     Save,
-    /// The erase at boot of a robot whose last one was cut.
-    BootErase,
+    /// The erase after the boot of a robot whose last one was cut.
+    Erase,
 }
 
 #[derive(Clone, Copy)]
@@ -67,7 +67,7 @@ fn start(work: Work) -> Image {
     let old = Stored::of(1, &[0.3, 0.3, 30.0, 1.0, 1.0]);
     match work {
         Work::Save => full.erased(2).headed(2, 6).record(2, 1, (1, 0), &old),
-        Work::BootErase => {
+        Work::Erase => {
             let full = full.garbage(1, || 0x5A).erased(2).headed(2, 6);
             full.record(2, 1, (1, 0), &old)
         }
@@ -111,8 +111,8 @@ fn do_work(
         else {
             return false;
         };
-        if work == Work::BootErase {
-            return true;
+        if work == Work::Erase {
+            return robot.is_tidy();
         }
         if seen < CHANGES.len() as f64 {
             return false;
@@ -173,6 +173,8 @@ fn run(cell: &Cell) -> Seen {
             });
         }
         robot.run_for(OFF_TIME + 2 * MS);
+        // If there was no such step.
+        robot.machine.cut_power_at_flash_step(usize::MAX, phase, 0);
     }
     seen.cuts = robot.machine.resets();
     known.look(&mut robot, &mut seen, "after the cuts");
@@ -183,8 +185,10 @@ fn run(cell: &Cell) -> Seen {
 
 fn next_save(robot: &mut Robot, known: &mut Known, seen: &mut Seen) {
     let (setting, value) = ((5, 6), 0.625);
+    let changes = robot.diag("tuning.revision").unwrap_or(0.0) as usize;
     robot.set(setting, value);
-    if robot.wait(PATIENCE, |robot| robot.is_saved(1)).is_none() {
+    let saved = robot.wait(PATIENCE, |robot| robot.is_saved(changes + 1));
+    if saved.is_none() {
         seen.wrong.push("the next save was never done".into());
     }
     known.must_be(setting, value);
@@ -272,9 +276,7 @@ fn cells() -> Vec<Cell> {
         let steps = 0..steps(work);
         steps.flat_map(move |step| PHASES.map(|phase| first(work, step, phase)))
     };
-    let once: Vec<Cell> = of_work(Work::Save)
-        .chain(of_work(Work::BootErase))
-        .collect();
+    let once: Vec<Cell> = of_work(Work::Save).chain(of_work(Work::Erase)).collect();
     // Each first cut of every seventh cell, and then a cut ever later.
     let twice = once.iter().step_by(7).zip(0..).map(|(cell, n)| Cell {
         second: Some((n * 5 % 48, PHASES[n % 3])),
