@@ -28,8 +28,10 @@ const READ_STORE: u8 = 0x31;
 const REFUSED: u8 = 0xEE;
 
 const BUSES: [CanBusId; 2] = [CanBusId::Can1, CanBusId::Can2];
-/// The robot answers within six; it may stand still for an erase.
-const REPLY_WITHIN: Ps = 600 * MS;
+/// The robot answers within six milliseconds.
+const REPLY_WITHIN: Ps = 50 * MS;
+/// It may stand still for half a second.
+const TRIES: usize = 14;
 
 /// A request to a board without power is lost.
 const ASK_AGAIN: Ps = 25 * MS;
@@ -57,6 +59,11 @@ pub struct Robot {
 /// The image with motors of this make, if the tests were given one.
 pub fn has_image_for(make: Make) -> bool {
     make == Make::Dm4310 || std::env::var_os("ROBOT_ELF_DBUS_RS00").is_some()
+}
+
+fn to_set((group, index): Setting, value: f32) -> [u8; 8] {
+    let [a, b, c, d] = value.to_le_bytes();
+    [WRITE_SETTING, group, index, 0, a, b, c, d]
 }
 
 impl Robot {
@@ -219,16 +226,13 @@ impl Robot {
     }
 
     /// Asks for a change and does not wait for the answer.
-    pub fn ask_to_set(&mut self, (group, index): Setting, value: f32) {
-        let [a, b, c, d] = value.to_le_bytes();
-        self.send(0, WRITE_ID, [WRITE_SETTING, group, index, 0, a, b, c, d]);
+    pub fn ask_to_set(&mut self, setting: Setting, value: f32) {
+        self.send(0, WRITE_ID, to_set(setting, value));
     }
 
     /// Changes a setting of a robot that must take it.
     pub fn set(&mut self, setting: Setting, value: f32) {
-        self.replies[0].clear();
-        self.ask_to_set(setting, value);
-        let reply = self.reply(0);
+        let reply = self.exchange(WRITE_ID, to_set(setting, value));
         assert_eq!(
             reply[..3],
             [WRITE_SETTING, setting.0, setting.1],
@@ -238,9 +242,8 @@ impl Robot {
 
     /// The robot's answer to the question whether everything is saved: state, error, unsaved groups.
     pub fn store_state(&mut self) -> [u8; 3] {
-        self.replies[0].clear();
-        self.send(0, READ_ID, [READ_STORE, 0, 0, 0, 0, 0, 0, 0]);
-        let [_, state, error, unsaved, ..] = self.reply(0);
+        let question = [READ_STORE, 0, 0, 0, 0, 0, 0, 0];
+        let [_, state, error, unsaved, ..] = self.exchange(READ_ID, question);
         [state, error, unsaved]
     }
 
@@ -286,9 +289,16 @@ impl Robot {
         assert!(taken, "the adapter has room");
     }
 
-    fn reply(&mut self, bus: usize) -> [u8; 8] {
-        let came = self.wait(REPLY_WITHIN, |robot| !robot.replies[bus].is_empty());
-        assert!(came.is_some(), "no reply");
-        self.replies[bus].remove(0)
+    /// The answer on CAN1. What a robot hears while it stands still for an erase it forgets, so it is asked again.
+    fn exchange(&mut self, id: u32, data: [u8; 8]) -> [u8; 8] {
+        self.replies[0].clear();
+        for _ in 0..TRIES {
+            self.send(0, id, data);
+            let came = self.wait(REPLY_WITHIN, |robot| !robot.replies[0].is_empty());
+            if came.is_some() {
+                return self.replies[0].remove(0);
+            }
+        }
+        panic!("no reply");
     }
 }
