@@ -40,7 +40,7 @@ impl StoreReport {
             Ok(ParamState::Saved) => "saved: flash holds what is in use",
             Ok(ParamState::Settling) => "waits until nothing has changed for half a second",
             Ok(ParamState::WaitingForRest) => {
-                "waits until the robot is disarmed, its enable switch off, and wheels and joints rest"
+                "waits until the robot has been disarmed for half a second, its enable switch off; for an erase, also until wheels and joints rest"
             }
             Ok(ParamState::Saving) => "writes",
             Ok(ParamState::Erasing) => "erases a sector",
