@@ -63,7 +63,7 @@ fn advice(report: &StoreReport) -> String {
             report.error_in_words()
         ),
         Ok(ParamState::WaitingForRest) => format!(
-            "the robot saves half a second after it is disarmed with its enable switch off; before a sector change, when wheels and joints rest too; {WATCH}"
+            "the robot saves once it has been disarmed for half a second and its enable switch is off, and erases when wheels and joints rest too; {WATCH}"
         ),
         _ => format!("someone may be changing settings still; {WATCH}"),
     }
