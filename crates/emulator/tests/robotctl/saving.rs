@@ -38,7 +38,8 @@ impl Robot {
         &self,
         work: impl FnOnce(&mut TuningClient) -> anyhow::Result<T> + Send + 'static,
     ) -> T {
-        let text = "name = \"saving\"\nseconds = 4\nplant = \"stand\"\n";
+        // A quick computer emulates several seconds while the tool waits for an answer.
+        let text = "name = \"saving\"\nseconds = 8\nplant = \"stand\"\n";
         let mut job = support::job(Scenario::parse(text, "saving").expect("it parses"));
         job.can_on_pty = vec![CanBusId::Can1];
         job.flash_file = Some(self.flash.clone());
@@ -52,7 +53,7 @@ impl Robot {
 #[test]
 fn saved_means_that_the_robot_may_be_switched_off() {
     let flash = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("saving.bin");
-    let _ = std::fs::remove_file(&flash);
+    std::fs::write(&flash, crate::clean_flash()).expect("a file for its flash");
     let robot = Robot { flash };
 
     let default = robot.on(|client| {
