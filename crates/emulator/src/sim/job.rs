@@ -11,7 +11,7 @@ use robot_plant::world::{CanBusId, World, WorldConfig, WorldError};
 use super::{
     faults::DeedError,
     recording::{Recording, RecordingError},
-    report::{self, Report, ReportError},
+    report::{self, Report},
     runner::{self, Observer, RunResult},
     scenario::Scenario,
     summary::Summary,
@@ -49,7 +49,7 @@ pub enum JobError {
     #[error(transparent)]
     Recording(#[from] RecordingError),
     #[error(transparent)]
-    Report(#[from] ReportError),
+    Report(#[from] robot_chart::ChartError),
     #[error("cannot read {path}: {source}")]
     Read { path: PathBuf, source: io::Error },
     #[error("{path} has {bytes} bytes; the parameter sectors have {PARAMETER_FLASH_BYTES}")]

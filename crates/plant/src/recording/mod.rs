@@ -12,7 +12,7 @@ use crate::{
     time::{MS, Ps, US, to_seconds},
     world::{PHYSICS_STEP, WorldError},
 };
-use trial::{Row, Trial};
+pub use trial::{Row, Trial};
 
 /// Room for boot and sensor start-up before the record begins. Until then its first moments, which are all at rest,
 /// play backwards: real noise, and no jump where the record starts.
@@ -95,10 +95,10 @@ impl Playback {
     pub(crate) fn reference(&self, now: Ps) -> Option<Quaternion> {
         let since = now.checked_sub(self.reference_from)?;
         let (index, share) = self.trial.position_at(since)?;
-        let here = self.trial.row(index).reference;
+        let here = self.trial.row(index).reference_wxyz;
         if share < 1e-6 {
             return attitude::between(here, here, 0.0);
         }
-        attitude::between(here, self.trial.row(index + 1).reference, share)
+        attitude::between(here, self.trial.row(index + 1).reference_wxyz, share)
     }
 }

@@ -3,9 +3,9 @@
 use std::{io::Read, path::Path};
 
 use serde::Deserialize;
+use sha2::{Digest, Sha256};
 
 use crate::{
-    attitude::Quaternion,
     time::{Ps, SECOND},
     world::WorldError,
 };
@@ -16,6 +16,8 @@ struct Header {
     columns: Vec<String>,
     rate_num: u64,
     rate_den: u64,
+    #[serde(default)]
+    sha256_raw: Option<String>,
 }
 
 impl Header {
@@ -46,25 +48,47 @@ pub(super) fn duration(header_path: &Path) -> Result<Ps, WorldError> {
     Ok(header.rows as Ps * header.row_period())
 }
 
+/// The header's checksum, where it names one, against the data.
+fn check_sum(header: &Header, bytes: &[u8]) -> Result<(), String> {
+    let Some(expected) = &header.sha256_raw else {
+        return Ok(());
+    };
+    let found: String = Sha256::digest(bytes)
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect();
+    if found != expected.to_lowercase() {
+        return Err(format!(
+            "the data's SHA-256 is {found}, the header's sha256_raw {expected}: \
+             one of the two files is not the one that was published; copy both again"
+        ));
+    }
+    Ok(())
+}
+
+/// Means over the interval that ends with the row, in the sensors' axes. A sensor that failed reads NaN.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Row {
+pub struct Row {
     pub gyro_rps: [f64; 3],
-    /// Specific force.
+    /// Specific force: +9.8 up at rest.
     pub accel_mps2: [f64; 3],
     pub field_ut: [f64; 3],
-    /// Not numbers where the cameras lost the markers.
-    pub reference: Quaternion,
+    /// Sensor → ENU earth at the end of the interval, scalar first. NaN where the cameras lost the markers, and in a
+    /// record without reference.
+    pub reference_wxyz: [f64; 4],
+    /// In the movement phase, which is the part that is scored. Everywhere in a record that marks none.
     pub moving: bool,
 }
 
-pub(super) struct Trial {
+/// A record in memory. Row 0 ends at time 0.
+pub struct Trial {
     rows: Vec<Row>,
     row_period: Ps,
 }
 
 impl Trial {
-    /// Reads `<trial>.json` and the `<trial>.f32.gz` beside it.
-    pub(super) fn load(header_path: &Path) -> Result<Self, WorldError> {
+    /// Reads `<trial>.json` and the `<trial>.f32.gz` beside it, and compares them by length and checksum.
+    pub fn load(header_path: &Path) -> Result<Self, WorldError> {
         let header = Header::read(header_path)?;
         let fail = |why: String| wrong(header_path, why);
         let data_path = header_path.with_extension("f32.gz");
@@ -87,6 +111,7 @@ impl Trial {
                 bytes.len()
             ));
         }
+        check_sum(header, bytes)?;
         let column = |name: &str| -> Result<Vec<f64>, String> {
             let index = header
                 .columns
@@ -102,14 +127,20 @@ impl Trial {
         let gyro = [column("gx")?, column("gy")?, column("gz")?];
         let accel = [column("ax")?, column("ay")?, column("az")?];
         let field = [column("mx")?, column("my")?, column("mz")?];
-        let reference = [column("qw")?, column("qx")?, column("qy")?, column("qz")?];
-        let moving = column("mov")?;
+        let known = |name: &str| header.columns.iter().any(|column| column == name);
+        let column_or = |name: &str, otherwise: f64| match known(name) {
+            true => column(name),
+            false => Ok(vec![otherwise; header.rows]),
+        };
+        let [w, x, y, z] = ["qw", "qx", "qy", "qz"].map(|part| column_or(part, f64::NAN));
+        let reference = [w?, x?, y?, z?];
+        let moving = column_or("mov", 1.0)?;
         let rows = (0..header.rows)
             .map(|row| Row {
                 gyro_rps: std::array::from_fn(|axis| gyro[axis][row]),
                 accel_mps2: std::array::from_fn(|axis| accel[axis][row]),
                 field_ut: std::array::from_fn(|axis| field[axis][row]),
-                reference: std::array::from_fn(|part| reference[part][row]),
+                reference_wxyz: std::array::from_fn(|part| reference[part][row]),
                 moving: moving[row] > 0.5,
             })
             .collect();
@@ -133,5 +164,14 @@ impl Trial {
 
     pub(super) fn row(&self, index: usize) -> Row {
         self.rows[index]
+    }
+
+    pub fn rows(&self) -> &[Row] {
+        &self.rows
+    }
+
+    /// The interval of one row.
+    pub fn row_period(&self) -> Ps {
+        self.row_period
     }
 }

@@ -3,11 +3,7 @@
 use std::ops::Range;
 
 use plotters::prelude::*;
-
-use super::{
-    ReportError,
-    chart::{self, WIDTH},
-};
+use robot_chart::{ChartError, GREY, WIDTH, label_style};
 
 pub struct Lane {
     pub label: String,
@@ -43,7 +39,7 @@ impl Lane {
     }
 }
 
-pub fn draw(lanes: &[Lane], time: Range<f64>, marks: &[f64]) -> Result<String, ReportError> {
+pub fn draw(lanes: &[Lane], time: Range<f64>, marks: &[f64]) -> Result<String, ChartError> {
     let count = lanes.len() as i32;
     let height = 48 + 26 * lanes.len() as u32;
     let mut svg = String::new();
@@ -66,8 +62,8 @@ pub fn draw(lanes: &[Lane], time: Range<f64>, marks: &[f64]) -> Result<String, R
         chart
             .configure_mesh()
             .disable_mesh()
-            .axis_style(chart::GREY)
-            .label_style(chart::label_style())
+            .axis_style(GREY)
+            .label_style(label_style())
             .x_labels(12)
             .y_labels(lanes.len())
             .y_label_formatter(&name)
@@ -90,11 +86,11 @@ pub fn draw(lanes: &[Lane], time: Range<f64>, marks: &[f64]) -> Result<String, R
                 (*mark, SegmentValue::Exact(0)),
                 (*mark, SegmentValue::Exact(count)),
             ];
-            chart.draw_series(LineSeries::new(line, chart::GREY.mix(0.35)))?;
+            chart.draw_series(LineSeries::new(line, GREY.mix(0.35)))?;
         }
         Ok(())
     };
-    draw().map_err(|e: DrawingAreaErrorKind<_>| ReportError::new(e))?;
+    draw().map_err(|e: DrawingAreaErrorKind<_>| ChartError::new(e))?;
     drop(area);
     Ok(svg)
 }
@@ -110,7 +106,7 @@ mod tests {
             .enumerate()
             .map(|(i, v)| (i as f64, Some(*v)))
             .collect();
-        let lane = Lane::new("x", chart::BLUE, &points, |v| v != 0.0);
+        let lane = Lane::new("x", robot_chart::BLUE, &points, |v| v != 0.0);
         assert_eq!(lane.on, [(1.0, 3.0), (4.0, 4.0)]);
     }
 }

@@ -2,9 +2,10 @@
 
 use std::fmt::Write;
 
+use robot_chart::{Figure, escaped};
 use robot_plant::time;
 
-use super::{Figure, Legend, Report};
+use super::Report;
 use crate::{
     machine::LogLine,
     sim::{
@@ -16,31 +17,16 @@ use crate::{
 const LOG_LINES: usize = 200;
 
 pub fn page(report: &Report, figures: &[Figure]) -> String {
-    let name = escaped(&report.summary.scenario);
     let parts = [
         header(report),
         numbers(report),
         troubles(report),
-        figures.iter().map(figure).collect(),
+        figures.iter().map(Figure::html).collect(),
         expectations(&report.result.verdicts),
         executors(report),
         log_tail(report.traces.log()),
     ];
-    format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>{name}</title>\n<style>\n{style}</style>\n</head>\n<body>\n{body}</body>\n</html>\n",
-        style = include_str!("style.css"),
-        body = parts.concat(),
-    )
-}
-
-/// Text made safe inside HTML.
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
-        .replace('"', "&quot;")
+    robot_chart::document(&report.summary.scenario, &parts.concat())
 }
 
 fn header(report: &Report) -> String {
@@ -132,30 +118,6 @@ fn troubles(report: &Report) -> String {
         .chain(errors)
         .map(|text| format!("<div class=\"wrong\">{}</div>\n", escaped(&text)))
         .collect()
-}
-
-fn figure(figure: &Figure) -> String {
-    let class = if figure.svg.contains("width=\"520\"") {
-        " class=\"square\""
-    } else {
-        ""
-    };
-    format!(
-        "<h2>{}</h2>\n<figure{class}><figcaption>{}{}</figcaption>\n{}</figure>\n",
-        figure.title,
-        figure.caption,
-        figure.legend.iter().map(legend).collect::<String>(),
-        figure.svg
-    )
-}
-
-fn legend(entry: &Legend) -> String {
-    let plotters::style::RGBColor(r, g, b) = entry.colour;
-    let class = if entry.faint { "key faint" } else { "key" };
-    format!(
-        " <span class=\"{class}\" style=\"color: rgb({r} {g} {b})\">{}</span>",
-        escaped(&entry.label)
-    )
 }
 
 fn expectations(verdicts: &[Verdict]) -> String {

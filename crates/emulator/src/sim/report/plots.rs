@@ -1,13 +1,16 @@
 //! Which plots a report shows.
 
+use plotters::style::RGBColor;
+use robot_chart::{
+    BLUE, ChartError, Curve, Figure, GREEN, GREY, ORANGE, PURPLE, TimePlot, draw_histogram,
+    draw_path,
+};
 use robot_plant::time;
 
 use super::{
-    Figure, Report, ReportError, attitude,
-    chart::{self, BLUE, Curve, GREEN, GREY, ORANGE, PURPLE, TimePlot},
+    Report, attitude,
     lanes::{self, Lane},
 };
-use plotters::style::RGBColor;
 
 use crate::machine::diagnostics::meaning::Meaning;
 
@@ -21,7 +24,7 @@ const JOINTS: [(usize, &str, RGBColor); 4] = [
     (3, "right rear", PURPLE),
 ];
 
-pub fn all(report: &Report) -> Result<Vec<Figure>, ReportError> {
+pub fn all(report: &Report) -> Result<Vec<Figure>, ChartError> {
     let marks: Vec<f64> = report
         .scenario
         .actions
@@ -50,7 +53,7 @@ struct Plots<'a> {
     marks: Vec<f64>,
 }
 
-type MaybeFigure = Result<Option<Figure>, ReportError>;
+type MaybeFigure = Result<Option<Figure>, ChartError>;
 
 impl Plots<'_> {
     fn points(&self, values: Vec<Option<f64>>) -> Vec<(f64, Option<f64>)> {
@@ -83,11 +86,12 @@ impl Plots<'_> {
             height,
             time: 0.0..time::to_seconds(self.report.result.ran).max(1e-3),
             marks: &self.marks,
+            shaded: &[],
             curves,
         };
         Ok(plot.draw()?.map(|svg| Figure {
-            title,
-            caption,
+            title: title.into(),
+            caption: caption.into(),
             legend: plot.legend(),
             svg,
         }))
@@ -174,10 +178,10 @@ impl Plots<'_> {
             return Ok(None);
         }
         Ok(Some(Figure {
-            title: "Path on the ground",
-            caption: "Seen from above; green: start, orange: end.",
+            title: "Path on the ground".into(),
+            caption: "Seen from above; green: start, orange: end.".into(),
             legend: Vec::new(),
-            svg: chart::draw_path(&points, "m")?,
+            svg: draw_path(&points, "m")?,
         }))
     }
 
@@ -239,8 +243,8 @@ impl Plots<'_> {
         }
         let end = time::to_seconds(self.report.result.ran).max(1e-3);
         Ok(Some(Figure {
-            title: "Arming and safety",
-            caption: "A lane is filled while it is on. Blockers in purple, safety flags in orange; the flash to 0.1 s.",
+            title: "Arming and safety".into(),
+            caption: "A lane is filled while it is on. Blockers in purple, safety flags in orange; the flash to 0.1 s.".into(),
             legend: Vec::new(),
             svg: lanes::draw(&rows, 0.0..end, &self.marks)?,
         }))
@@ -307,10 +311,10 @@ impl Plots<'_> {
             return Ok(None);
         }
         Ok(Some(Figure {
-            title: "Release jitter of the control tick",
-            caption: "How late each 1 kHz tick starts; budget 10 µs.",
+            title: "Release jitter of the control tick".into(),
+            caption: "How late each 1 kHz tick starts; budget 10 µs.".into(),
             legend: Vec::new(),
-            svg: chart::draw_histogram(bins, JITTER_BIN_US, "µs late")?,
+            svg: draw_histogram(bins, JITTER_BIN_US, "µs late")?,
         }))
     }
 }

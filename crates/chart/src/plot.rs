@@ -8,7 +8,7 @@ use plotters::{
     style::text_anchor::{HPos, Pos, VPos},
 };
 
-use super::{Legend, ReportError};
+use crate::{ChartError, Legend};
 
 pub const WIDTH: u32 = 980;
 
@@ -18,10 +18,10 @@ pub const ORANGE: RGBColor = RGBColor(213, 94, 0);
 pub const GREEN: RGBColor = RGBColor(0, 158, 115);
 pub const PURPLE: RGBColor = RGBColor(170, 80, 150);
 pub const GREY: RGBColor = RGBColor(120, 120, 120);
-pub const INK: RGBColor = RGBColor(50, 55, 60);
+const INK: RGBColor = RGBColor(50, 55, 60);
 const GRID: RGBColor = RGBColor(225, 228, 232);
 
-pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 pub struct Curve {
     pub label: String,
@@ -55,8 +55,10 @@ pub struct TimePlot<'a> {
     pub unit: &'a str,
     pub height: u32,
     pub time: Range<f64>,
-    /// Instants at which the scenario does something.
+    /// Instants at which something is done from outside.
     pub marks: &'a [f64],
+    /// Spans on a tinted ground.
+    pub shaded: &'a [Range<f64>],
     pub curves: Vec<Curve>,
 }
 
@@ -73,13 +75,13 @@ impl TimePlot<'_> {
     }
 
     /// `None` if no curve has a value.
-    pub fn draw(&self) -> Result<Option<String>, ReportError> {
+    pub fn draw(&self) -> Result<Option<String>, ChartError> {
         if !self.curves.iter().any(Curve::has_points) {
             return Ok(None);
         }
         let mut svg = String::new();
         let area = SVGBackend::with_string(&mut svg, (WIDTH, self.height)).into_drawing_area();
-        self.draw_on(&area).map_err(ReportError::new)?;
+        self.draw_on(&area).map_err(ChartError::new)?;
         drop(area);
         Ok(Some(svg))
     }
@@ -106,6 +108,10 @@ impl TimePlot<'_> {
             .x_labels(12)
             .y_labels(6)
             .draw()?;
+        let tint = BLUE.mix(0.07).filled();
+        chart.draw_series(self.shaded.iter().map(|span| {
+            Rectangle::new([(span.start, range.start), (span.end, range.end)], tint)
+        }))?;
         for mark in self.marks {
             let line = [(*mark, range.start), (*mark, range.end)];
             chart.draw_series(DashedLineSeries::new(
@@ -154,7 +160,7 @@ fn padded(values: impl Iterator<Item = f64>) -> Range<f64> {
 }
 
 /// A path on the ground seen from above, both axes at one scale.
-pub fn draw_path(points: &[(f64, f64)], unit: &str) -> Result<String, ReportError> {
+pub fn draw_path(points: &[(f64, f64)], unit: &str) -> Result<String, ChartError> {
     const SIDE: u32 = 520;
     let (x, y) = (
         padded(points.iter().map(|p| p.0)),
@@ -193,13 +199,13 @@ pub fn draw_path(points: &[(f64, f64)], unit: &str) -> Result<String, ReportErro
         )?;
         Ok(())
     };
-    draw().map_err(|e: DrawingAreaErrorKind<_>| ReportError::new(e))?;
+    draw().map_err(|e: DrawingAreaErrorKind<_>| ChartError::new(e))?;
     drop(area);
     Ok(svg)
 }
 
 /// Counts in bins of equal width starting at 0, on a logarithmic scale.
-pub fn draw_histogram(bins: &[u64], bin_width: f64, unit: &str) -> Result<String, ReportError> {
+pub fn draw_histogram(bins: &[u64], bin_width: f64, unit: &str) -> Result<String, ChartError> {
     let used = bins.iter().rposition(|n| *n > 0).map_or(1, |last| last + 1);
     let highest = bins.iter().copied().max().unwrap_or(1).max(1) as f64;
     let width = bin_width * used.max(8) as f64;
@@ -235,7 +241,7 @@ pub fn draw_histogram(bins: &[u64], bin_width: f64, unit: &str) -> Result<String
         chart.draw_series(bars)?;
         Ok(())
     };
-    draw().map_err(|e: DrawingAreaErrorKind<_>| ReportError::new(e))?;
+    draw().map_err(|e: DrawingAreaErrorKind<_>| ChartError::new(e))?;
     drop(area);
     Ok(svg)
 }

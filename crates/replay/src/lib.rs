@@ -1,0 +1,1 @@
+//! Recorded motion through the firmware's estimator.
