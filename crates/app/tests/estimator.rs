@@ -95,6 +95,19 @@ impl Bench {
             wheel.age_us = 1_000;
         }
     }
+
+    /// For 0.3 s along the nose, from this speed of the left rotor.
+    fn accelerate(&mut self, accel_mps2: f32, from_rpm: i16) {
+        const RPM_PER_MPS: f32 = 1_834.0 / 0.6;
+        self.imu.accel_mps2 = [accel_mps2, 0.0, GRAVITY_MPS2];
+        for ms in 1..=300 {
+            let gained_mps = accel_mps2 * ms as f32 * 1e-3;
+            let rpm = from_rpm + (gained_mps * RPM_PER_MPS).round() as i16;
+            self.wheels_turn([rpm, -rpm]);
+            self.tick();
+        }
+        self.imu.accel_mps2 = LEVEL;
+    }
 }
 
 fn assert_close(got: [f32; 3], expected: [f32; 3], tolerance: f32) {
@@ -333,30 +346,33 @@ fn a_jump_in_time_ends_validity_for_half_a_second() {
     }
 }
 
-/// 1834 rpm at the rotor are 10 rad/s of a 0.06 m wheel; the right motor sits mirrored.
+/// 1834 rpm at the rotor are 10 rad/s of a 0.06 m wheel; the right motor sits mirrored. From rest to 0.6 m/s in 0.3 s
+/// and back again is 0.6 m/s times the time between the middles of both ramps.
 #[test]
-fn wheels_carry_the_robot_where_its_nose_points() {
+fn the_robot_drives_where_its_nose_points() {
     let mut bench = Bench::settled();
     bench.mag.mag_ut = FACING_NORTH_UT;
     bench.run(1.0);
-    bench.wheels_turn([1_834, -1_834]);
-    bench.run(2.0);
-    assert_close(bench.estimate.vel_mps, [0.0, 0.6, 0.0], 1e-3);
-    assert_close(bench.estimate.pos_m, [0.0, 1.2, 0.0], 5e-3);
-    bench.wheels_turn([-1_834, 1_834]);
-    bench.run(2.0);
-    assert_close(bench.estimate.pos_m, [0.0; 3], 5e-3);
-    bench.wheels_turn([1_834, 1_834]);
-    bench.run(1.0);
-    assert_close(bench.estimate.vel_mps, [0.0; 3], 1e-6);
+    for (accel_mps2, expected_m) in [(2.0, 1.2), (-2.0, 0.0)] {
+        let top_rpm = 917 * accel_mps2 as i16;
+        bench.accelerate(accel_mps2, 0);
+        bench.run(1.7);
+        assert_close(bench.estimate.vel_mps, [0.0, 0.3 * accel_mps2, 0.0], 2e-2);
+        bench.accelerate(-accel_mps2, top_rpm);
+        bench.run(1.7);
+        assert_close(bench.estimate.vel_mps, [0.0; 3], 2e-3);
+        assert_close(bench.estimate.pos_m, [0.0, expected_m, 0.0], 4e-2);
+    }
 }
 
+/// 0.306 m/s² more than gravity: one board's offset.
 #[test]
-fn a_silent_wheel_counts_as_standing() {
-    let mut bench = Bench::settled();
-    bench.wheels_turn([1_834, -1_834]);
-    bench.motor.wheels[1].age_us = 50_001;
-    bench.run(1.0);
-    assert_eq!(bench.estimate.vel_mps, [0.0; 3]);
-    assert_eq!(bench.estimate.pos_m, [0.0; 3]);
+fn standing_still_shows_the_offset_of_the_accelerometer() {
+    let mut bench = Bench::new();
+    bench.imu.accel_mps2 = [0.0, 0.0, GRAVITY_MPS2 + 0.306];
+    bench.wheels_turn([0, 0]);
+    bench.run(8.0);
+    assert_close(bench.estimate.accel_bias_mps2, [0.0, 0.0, 0.306], 3e-3);
+    assert_close(bench.estimate.vel_mps, [0.0; 3], 1e-3);
+    assert_close(bench.estimate.pos_m, [0.0; 3], 2e-2);
 }

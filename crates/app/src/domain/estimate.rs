@@ -8,13 +8,15 @@ pub struct StateEstimate {
     pub q_wxyz: [f32; 4],
     /// Roll, pitch, yaw from `q_wxyz`, for display only: wraps at ±π.
     pub rpy_rad: [f32; 3],
-    /// World frame, level: from wheel feedback alone, zero while a wheel is silent.
+    /// World frame, of the middle of the axle: the accelerometer's, corrected by the wheels that roll. With no wheel to
+    /// believe for 2 s it fades to zero.
     pub vel_mps: [f32; 3],
     /// World frame, from where the robot booted: `vel_mps` added up.
     pub pos_m: [f32; 3],
     /// Offset found beyond the one already taken out of the IMU samples, ±2 °/s at most.
     pub gyro_bias_rps: [f32; 3],
-    /// Not estimated: zero.
+    /// Body frame, ±0.6 at most: what the accelerometer shows beyond gravity and motion, part of it a horizon that is
+    /// slightly off.
     pub accel_bias_mps2: [f32; 3],
     /// Tick it is for; attitude is carried on to this time. 0 = none yet.
     pub ts_us: u64,

@@ -1,6 +1,9 @@
 //! The estimator of the main chain (ROBOT_CPP 0.4).
 
-use super::{attitude::AttitudeFilter, wheel_odometry::WheelOdometry};
+use super::{
+    attitude::AttitudeFilter,
+    motion::{AccelSample, BodyPose, MotionEstimator},
+};
 use crate::{
     domain::{ImuState, MagState, MotorFeedback, StateEstimate, WheelOdomConfig, age_us},
     math::{Vector3, vector},
@@ -24,13 +27,15 @@ const MAX_FIELD_UT: f32 = 5_000.0;
 #[derive(Clone, Debug)]
 pub struct InsEstimator {
     attitude: AttitudeFilter,
-    odometry: WheelOdometry,
+    motion: MotionEstimator,
     /// Last sample looked at.
     imu_seen_us: u64,
     /// Last sample used.
     imu_ts_us: u64,
     mag_ts_us: u64,
     applied_bias_dps: Vector3,
+    /// Without offset, of the last sample.
+    rate_rps: Vector3,
     settled_samples: u16,
     /// Last tick, 0 = none yet.
     ts_us: u64,
@@ -40,11 +45,12 @@ impl InsEstimator {
     pub fn new(odometry: WheelOdomConfig) -> Self {
         Self {
             attitude: AttitudeFilter::new(),
-            odometry: WheelOdometry::new(&odometry),
+            motion: MotionEstimator::new(&odometry),
             imu_seen_us: 0,
             imu_ts_us: 0,
             mag_ts_us: 0,
             applied_bias_dps: [0.0; 3],
+            rate_rps: [0.0; 3],
             settled_samples: 0,
             ts_us: 0,
         }
@@ -52,7 +58,7 @@ impl InsEstimator {
 
     /// Other wheels from now on; everything known so far stays.
     pub fn set_odometry(&mut self, odometry: &WheelOdomConfig) {
-        self.odometry.set_config(odometry);
+        self.motion.set_config(odometry);
     }
 
     /// Renews `estimate`. `motor`: with ages as of `now_us`. What makes the estimate invalid is listed at
@@ -70,10 +76,12 @@ impl InsEstimator {
         let in_time = first || (now_us > self.ts_us && tick_us <= MAX_TICK_US);
         if !in_time {
             self.settled_samples = 0;
+            self.motion.restart();
         }
+        let mut sample = None;
         if imu.ts_us != self.imu_seen_us && imu.ts_us != 0 {
             self.imu_seen_us = imu.ts_us;
-            self.take_imu(imu);
+            sample = self.take_imu(imu);
         }
         if mag.ts_us != self.mag_ts_us && mag.ts_us != 0 {
             self.mag_ts_us = mag.ts_us;
@@ -85,13 +93,13 @@ impl InsEstimator {
             seconds(tick_us)
         };
         self.ts_us = now_us;
-        self.publish(motor, dt_s, now_us, estimate);
+        self.publish(sample, motor, dt_s, now_us, estimate);
     }
 
-    fn take_imu(&mut self, imu: &ImuState) {
+    fn take_imu(&mut self, imu: &ImuState) -> Option<AccelSample> {
         if !is_measurement(imu) {
             self.settled_samples = 0;
-            return;
+            return None;
         }
         let gap_us = age_us(self.imu_ts_us, imu.ts_us);
         let continuous = imu.ts_us > self.imu_ts_us && gap_us <= MAX_SAMPLE_GAP_US;
@@ -103,6 +111,7 @@ impl InsEstimator {
         if !continuous {
             self.settled_samples = 0;
             self.attitude.restart_smoothing();
+            self.motion.restart();
         }
         let dt_s = if continuous { seconds(gap_us) } else { 0.0 };
         let gyro_rps = imu.gyro_dps.map(f32::to_radians);
@@ -110,6 +119,8 @@ impl InsEstimator {
         let accel_mps2 = (!imu.saturated).then_some(imu.accel_mps2);
         self.attitude.feed_imu(gyro_rps, accel_mps2, dt_s);
         self.settled_samples = self.settled_samples.saturating_add(1);
+        self.rate_rps = vector::sub(gyro_rps, self.attitude.bias_rps());
+        Some(AccelSample { accel_mps2, dt_s })
     }
 
     fn take_mag(&mut self, mag: &MagState) {
@@ -120,6 +131,7 @@ impl InsEstimator {
 
     fn publish(
         &mut self,
+        sample: Option<AccelSample>,
         motor: &MotorFeedback,
         dt_s: f32,
         now_us: u64,
@@ -128,12 +140,25 @@ impl InsEstimator {
         let imu_age_us = age_us(self.imu_ts_us, now_us);
         let ahead_us = imu_age_us.min(MAX_IMU_AGE_US);
         let orientation = self.attitude.orientation(seconds(ahead_us));
-        self.odometry.step(motor, orientation, dt_s);
+        let ahead_s = seconds(ahead_us);
+        if let Some(sample) = sample {
+            let pose = BodyPose {
+                orientation,
+                rate_rps: self.rate_rps,
+            };
+            self.motion.feed(&sample, ahead_s, &pose, motor);
+        }
+        if imu_age_us <= MAX_IMU_AGE_US {
+            self.motion.advance(ahead_s, dt_s);
+        } else {
+            self.motion.roll_on(orientation, motor, dt_s);
+        }
         estimate.q_wxyz = orientation.to_wxyz();
         estimate.rpy_rad = orientation.roll_pitch_yaw();
-        estimate.vel_mps = self.odometry.velocity_mps();
-        estimate.pos_m = self.odometry.position_m();
+        estimate.vel_mps = self.motion.velocity_mps();
+        estimate.pos_m = self.motion.position_m();
         estimate.gyro_bias_rps = self.attitude.bias_rps();
+        estimate.accel_bias_mps2 = self.motion.accel_bias_mps2();
         estimate.ts_us = now_us;
         estimate.valid = imu_age_us <= MAX_IMU_AGE_US && self.settled_samples >= SETTLING_SAMPLES;
     }

@@ -10,8 +10,8 @@ mod gyro_bias;
 mod heading;
 mod ins_estimator;
 mod low_pass;
+mod motion;
 mod rest;
-mod wheel_odometry;
 
 pub use ins_estimator::InsEstimator;
 

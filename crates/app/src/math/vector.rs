@@ -24,6 +24,10 @@ pub fn dot([ax, ay, az]: Vector3, [bx, by, bz]: Vector3) -> f32 {
     ax * bx + ay * by + az * bz
 }
 
+pub fn cross([ax, ay, az]: Vector3, [bx, by, bz]: Vector3) -> Vector3 {
+    [ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx]
+}
+
 pub fn norm(v: Vector3) -> f32 {
     scalar::sqrt(dot(v, v))
 }

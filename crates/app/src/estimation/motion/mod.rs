@@ -1,0 +1,174 @@
+//! How fast and where: the accelerometer carries the velocity on, the wheels correct it.
+//!
+//! World frame: ENU. The point meant is the middle of the axle. That the IMU sits elsewhere is not modelled: what it
+//! feels for that reason counts as an offset of the accelerometer.
+
+mod axes;
+mod position;
+mod slip;
+#[cfg(test)]
+mod tests;
+mod velocity_filter;
+mod wheel_speed;
+mod wheel_trust;
+mod zero_velocity;
+
+use self::{
+    axes::Axes,
+    position::Position,
+    velocity_filter::{Innovation, VelocityFilter},
+    wheel_speed::{ForwardSpeeds, WheelSpeeds},
+    wheel_trust::{WheelTrust, Word},
+    zero_velocity::ZeroVelocity,
+};
+use crate::{
+    domain::{MotorFeedback, WheelOdomConfig},
+    math::{Quaternion, Vector3, scalar, vector},
+};
+
+/// With nothing left to go by the robot is taken to come to rest with this time constant.
+const LEAK_S: f32 = 0.5;
+/// The velocity is carried past the last sample for at most this long.
+const MAX_AHEAD_S: f32 = 0.01;
+
+/// How the body lies and turns now.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BodyPose {
+    /// Body → world.
+    pub orientation: Quaternion,
+    /// In body axes, without offset.
+    pub rate_rps: Vector3,
+}
+
+/// One IMU sample.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct AccelSample {
+    /// Specific force in body axes, the mean over `dt_s`; none if it went beyond the sensor's range.
+    pub accel_mps2: Option<Vector3>,
+    /// Since the sample before, 0 if that is too long ago.
+    pub dt_s: f32,
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct MotionEstimator {
+    wheels: WheelSpeeds,
+    trust: WheelTrust,
+    zero_velocity: ZeroVelocity,
+    filter: VelocityFilter,
+    position: Position,
+    velocity_mps: Vector3,
+}
+
+impl MotionEstimator {
+    pub fn new(config: &WheelOdomConfig) -> Self {
+        Self {
+            wheels: WheelSpeeds::new(config),
+            trust: WheelTrust::new(),
+            zero_velocity: ZeroVelocity::new(),
+            filter: VelocityFilter::new(),
+            position: Position::new(),
+            velocity_mps: [0.0; 3],
+        }
+    }
+
+    /// Other wheels from now on; velocity and the way so far stay.
+    pub fn set_config(&mut self, config: &WheelOdomConfig) {
+        self.wheels = WheelSpeeds::new(config);
+    }
+
+    /// After a gap in time: the next wheel is believed at once. Velocity and the way so far stay.
+    pub fn restart(&mut self) {
+        self.trust = WheelTrust::new();
+        self.zero_velocity = ZeroVelocity::new();
+    }
+
+    /// Takes a new sample, which ended `age_s` ago; `pose` and `motor` are those of now.
+    pub fn feed(
+        &mut self,
+        sample: &AccelSample,
+        age_s: f32,
+        pose: &BodyPose,
+        motor: &MotorFeedback,
+    ) {
+        let axes = Axes::new(pose.orientation);
+        let felt = sample.accel_mps2.map(|accel_mps2| {
+            // The body has turned since the middle of the sample: the same force in the axes of now.
+            let middle_s = age_s + 0.5 * sample.dt_s;
+            let turn = vector::cross(pose.rate_rps, accel_mps2);
+            vector::sub(accel_mps2, vector::scale(turn, middle_s))
+        });
+        let free = felt.map(|felt| self.filter.free_accel(felt, &axes));
+        let speeds = self.wheels.forward_speeds(motor, &axes, pose.rate_rps);
+        let wheels = self.trust.evidence(speeds);
+        let still = self
+            .zero_velocity
+            .feed(felt.zip(free), pose.rate_rps, wheels, sample.dt_s);
+        let free = free.unwrap_or_default();
+        if still {
+            self.filter.hold_still(free, sample.dt_s);
+        } else {
+            let carrying = if self.trust.is_lost() { [0.0; 3] } else { free };
+            self.filter.predict(carrying, &axes, sample.dt_s);
+            self.correct(speeds, &axes, age_s, sample.dt_s);
+        }
+        self.filter.stay_plausible();
+    }
+
+    fn correct(&mut self, speeds: ForwardSpeeds, axes: &Axes, age_s: f32, dt_s: f32) {
+        let [forward_mps, left_mps, up_mps] = axes.flat(self.filter.velocity_after(age_s));
+        let surplus = speeds.map(|speed| speed.map(|speed_mps| speed_mps - forward_mps));
+        let forward = match self.trust.step(surplus, dt_s) {
+            Word::Believed(surplus_mps) => surplus_mps,
+            Word::Doubted => 0.0,
+            Word::Last(surplus_mps) => {
+                self.filter
+                    .shift(vector::scale(axes.forward(), surplus_mps));
+                0.0
+            }
+            Word::None => return self.filter.leak(dt_s / LEAK_S),
+        };
+        let innovation = Innovation {
+            forward,
+            left: -left_mps,
+            up: -up_mps,
+        };
+        self.filter.correct(&innovation, axes, dt_s);
+    }
+
+    /// Carries on to now. `ahead_s`: since the last sample; `dt_s`: since the last call.
+    pub fn advance(&mut self, ahead_s: f32, dt_s: f32) {
+        let ahead_s = scalar::min(ahead_s, MAX_AHEAD_S);
+        self.velocity_mps = self.filter.velocity_after(ahead_s);
+        self.position.add(vector::scale(self.velocity_mps, dt_s));
+    }
+
+    /// Instead of `advance` while the IMU is silent: only the wheels are left.
+    #[cold]
+    #[inline(never)]
+    pub fn roll_on(&mut self, orientation: Quaternion, motor: &MotorFeedback, dt_s: f32) {
+        self.restart();
+        let axes = Axes::new(orientation);
+        let speeds = self.wheels.forward_speeds(motor, &axes, [0.0; 3]);
+        match wheel_speed::mean(speeds) {
+            Some(speed_mps) => self.filter.roll(vector::scale(axes.forward(), speed_mps)),
+            None => self.filter.leak(dt_s / LEAK_S),
+        }
+        self.filter.stay_plausible();
+        self.advance(0.0, dt_s);
+    }
+
+    /// World frame.
+    pub const fn velocity_mps(&self) -> Vector3 {
+        self.velocity_mps
+    }
+
+    /// World frame, from where the robot booted.
+    pub const fn position_m(&self) -> Vector3 {
+        self.position.total_m()
+    }
+
+    /// Body axes.
+    pub const fn accel_bias_mps2(&self) -> Vector3 {
+        self.filter.accel_bias_mps2()
+    }
+}

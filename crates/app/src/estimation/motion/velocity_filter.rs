@@ -1,0 +1,159 @@
+//! Velocity and the accelerometer's offset, a Kalman filter with fixed gains.
+//!
+//! Along each of the level axes (forward, left, up), with a the acceleration without gravity, b its offset, v the speed
+//! and y what is observed of it:
+//!
+//! v̇ = a − b + w, ḃ = u, y = v + n
+//!
+//! with white noise w, u, n of densities q, p, r. Setting the derivative of the covariance in the Riccati equation to
+//! zero gives the gains on y − v (R. E. Kalman, R. S. Bucy, "New results in linear filtering and prediction theory",
+//! 1961; solved by hand for these two states):
+//!
+//! k = √(q/r + 2·√(p/r)) for v, −h = −√(p/r) for b
+//!
+//! q: an acceleration error of 0.3 m/s² that is another one in each sample, q = 0.3² · 0.005 s: vibration.
+//! p: the horizon wanders after each start and stop, which looks like an offset.
+//! r: an error of σ that lasts for τ has the density 2·σ²·τ.
+
+use super::axes::Axes;
+use crate::math::{Vector3, scalar, vector};
+
+const GRAVITY_MPS2: f32 = 9.806_65;
+/// No robot with these wheels moves faster.
+const MAX_SPEED_MPS: f32 = 20.0;
+/// Zero-g offset of the BMI088 over life (datasheet: ±20 mg, board mounting adds to it), and what the horizon may be off.
+const MAX_BIAS_MPS2: f32 = 0.6;
+/// Standing still brings the speed to zero with this time constant …
+const STILL_S: f32 = 0.05;
+/// … and the offset to what is felt with this one.
+const STILL_BIAS_S: f32 = 1.0;
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Gains {
+    /// k in 1/s.
+    pub speed: f32,
+    /// h in 1/s².
+    pub bias: f32,
+}
+
+/// Wheels: σ = 0.03 m/s for τ = 0.05 s (tyres creep by a few per cent, gears have play); p = (0.05 m/s²)²/s.
+pub(super) const FORWARD: Gains = Gains {
+    speed: 3.942,
+    bias: 5.270,
+};
+/// Wheels do not roll sideways, but skid: σ = 0.1 m/s for τ = 0.3 s; p as above.
+pub(super) const LEFT: Gains = Gains {
+    speed: 1.169,
+    bias: 0.6455,
+};
+/// The body rises and falls with the legs and comes back: σ = 0.2 m/s for τ = 0.3 s; p = (0.01 m/s²)²/s.
+pub(super) const UP: Gains = Gains {
+    speed: 0.3845,
+    bias: 0.064_55,
+};
+
+/// What is observed less what the filter believes, m/s.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Innovation {
+    pub forward: f32,
+    pub left: f32,
+    pub up: f32,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct VelocityFilter {
+    /// World frame, at the last sample.
+    velocity_mps: Vector3,
+    /// World frame, without gravity and offset, since the last sample.
+    accel_mps2: Vector3,
+    /// Body axes.
+    accel_bias_mps2: Vector3,
+}
+
+impl VelocityFilter {
+    pub const fn new() -> Self {
+        Self {
+            velocity_mps: [0.0; 3],
+            accel_mps2: [0.0; 3],
+            accel_bias_mps2: [0.0; 3],
+        }
+    }
+
+    /// Of a specific force: what accelerates the body, in its own axes.
+    pub fn free_accel(&self, felt_mps2: Vector3, axes: &Axes) -> Vector3 {
+        let gravity = vector::scale(axes.up_in_body(), GRAVITY_MPS2);
+        vector::sub(vector::sub(felt_mps2, self.accel_bias_mps2), gravity)
+    }
+
+    /// `free_mps2`: body axes, over the last `dt_s`.
+    pub fn predict(&mut self, free_mps2: Vector3, axes: &Axes, dt_s: f32) {
+        self.accel_mps2 = axes.to_world(free_mps2);
+        self.velocity_mps = self.velocity_after(dt_s);
+    }
+
+    pub fn correct(&mut self, innovation: &Innovation, axes: &Axes, dt_s: f32) {
+        let Innovation { forward, left, up } = *innovation;
+        let speed = [FORWARD.speed * forward, LEFT.speed * left, UP.speed * up];
+        let bias = [FORWARD.bias * forward, LEFT.bias * left, UP.bias * up];
+        self.shift(vector::scale(axes.flat_to_world(speed), dt_s));
+        let bias = axes.to_body(axes.flat_to_world(bias));
+        self.accel_bias_mps2 = vector::sub(self.accel_bias_mps2, vector::scale(bias, dt_s));
+    }
+
+    pub fn shift(&mut self, by_mps: Vector3) {
+        self.velocity_mps = vector::add(self.velocity_mps, by_mps);
+    }
+
+    /// Without acceleration until the next sample.
+    pub fn roll(&mut self, velocity_mps: Vector3) {
+        self.velocity_mps = velocity_mps;
+        self.accel_mps2 = [0.0; 3];
+    }
+
+    /// Gives up `share` of the velocity.
+    pub fn leak(&mut self, share: f32) {
+        let kept = scalar::max(1.0 - share, 0.0);
+        self.roll(vector::scale(self.velocity_mps, kept));
+    }
+
+    /// The body stands: what accelerates it is nothing but offset.
+    pub fn hold_still(&mut self, free_mps2: Vector3, dt_s: f32) {
+        self.leak(dt_s / STILL_S);
+        let share = scalar::min(dt_s / STILL_BIAS_S, 1.0);
+        self.accel_bias_mps2 = vector::add(self.accel_bias_mps2, vector::scale(free_mps2, share));
+    }
+
+    /// Whatever came in, the next step starts from numbers that a robot can have.
+    pub fn stay_plausible(&mut self) {
+        if !vector::is_within(self.velocity_mps, MAX_SPEED_MPS)
+            || !vector::is_within(self.accel_bias_mps2, MAX_BIAS_MPS2)
+        {
+            self.limit();
+        }
+    }
+
+    #[cold]
+    fn limit(&mut self) {
+        let into = |v: Vector3, limit: f32| {
+            v.map(|x| {
+                if x.is_nan() {
+                    0.0
+                } else {
+                    scalar::clamp(x, -limit, limit)
+                }
+            })
+        };
+        self.velocity_mps = into(self.velocity_mps, MAX_SPEED_MPS);
+        self.accel_bias_mps2 = into(self.accel_bias_mps2, MAX_BIAS_MPS2);
+    }
+
+    /// World frame, `ahead_s` after the last sample.
+    pub fn velocity_after(&self, ahead_s: f32) -> Vector3 {
+        vector::add(self.velocity_mps, vector::scale(self.accel_mps2, ahead_s))
+    }
+
+    /// Body axes.
+    pub const fn accel_bias_mps2(&self) -> Vector3 {
+        self.accel_bias_mps2
+    }
+}
