@@ -1,0 +1,53 @@
+//! How far an estimate is from the truth.
+
+use crate::rotation::Rotation;
+
+/// estimate · truth⁻¹, split into a turn about the vertical and one about a level axis.
+#[derive(Clone, Copy, Debug)]
+pub struct AttitudeError {
+    pub total_deg: f64,
+    /// To the left, ±180.
+    pub heading_deg: f64,
+    /// 0 … 180.
+    pub inclination_deg: f64,
+}
+
+impl AttitudeError {
+    pub fn between(estimate: Rotation, truth: Rotation) -> Self {
+        let error = estimate.then_in_body(truth.inverse());
+        let [x, y, z] = error.v;
+        Self {
+            total_deg: error.angle_deg(),
+            heading_deg: wrapped_deg(2.0 * z.atan2(error.w).to_degrees()),
+            inclination_deg: 2.0 * x.hypot(y).atan2(z.hypot(error.w)).to_degrees(),
+        }
+    }
+}
+
+/// Into ±180.
+pub fn wrapped_deg(angle_deg: f64) -> f64 {
+    angle_deg - 360.0 * (angle_deg / 360.0).round()
+}
+
+/// The largest errors of a stretch of time, without sign.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Worst {
+    pub total_deg: f64,
+    pub heading_deg: f64,
+    pub inclination_deg: f64,
+    /// Of the heading error against what it was at the beginning of the stretch: what counts without a magnetometer.
+    pub heading_drift_deg: f64,
+    /// Between two ticks, beyond the true turn.
+    pub jump_deg: f64,
+}
+
+impl Worst {
+    pub fn add(&mut self, error: AttitudeError, first: AttitudeError, jump_deg: f64) {
+        let drift_deg = wrapped_deg(error.heading_deg - first.heading_deg).abs();
+        self.total_deg = self.total_deg.max(error.total_deg);
+        self.heading_deg = self.heading_deg.max(error.heading_deg.abs());
+        self.inclination_deg = self.inclination_deg.max(error.inclination_deg);
+        self.heading_drift_deg = self.heading_drift_deg.max(drift_deg);
+        self.jump_deg = self.jump_deg.max(jump_deg);
+    }
+}

@@ -1,0 +1,22 @@
+//! The estimator against made-up motion whose truth is known exactly.
+//!
+//! `world` integrates body rates in double precision at 4 kHz and measures the result as the sensors do; each case
+//! states what physics lets a good filter reach. Run with `--nocapture` to see the figures.
+
+mod error;
+mod figures;
+mod garbage;
+mod gyro_offset;
+mod lasting_acceleration;
+mod magnets;
+mod motion;
+mod noise;
+mod random_states;
+mod rotation;
+mod run;
+mod sample_faults;
+mod sensors;
+mod time;
+mod turning;
+mod valid;
+mod world;

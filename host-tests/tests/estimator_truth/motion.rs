@@ -1,0 +1,85 @@
+//! What the body really does and what surrounds it.
+
+use crate::rotation::{Rotation, Vector};
+
+pub const GRAVITY_MPS2: f64 = 9.806_65;
+/// Middle Europe.
+pub const FIELD_UT: f64 = 49.0;
+pub const DIP_DEG: f64 = 67.0;
+
+pub type OverTime = Box<dyn Fn(f64) -> Vector>;
+
+/// Functions of the time in seconds. World: ENU, y to magnetic north.
+pub struct Motion {
+    pub start: Rotation,
+    /// Body frame.
+    pub rate_rps: OverTime,
+    /// World frame, gravity left out.
+    pub accel_mps2: OverTime,
+    /// World frame, added to the earth's field.
+    pub magnet_ut: OverTime,
+}
+
+/// The earth's field: north and down.
+pub fn earth_field_ut() -> Vector {
+    let dip = DIP_DEG.to_radians();
+    [0.0, FIELD_UT * dip.cos(), -FIELD_UT * dip.sin()]
+}
+
+impl Motion {
+    pub fn at_rest() -> Self {
+        Self {
+            start: Rotation::NONE,
+            rate_rps: Box::new(|_| [0.0; 3]),
+            accel_mps2: Box::new(|_| [0.0; 3]),
+            magnet_ut: Box::new(|_| [0.0; 3]),
+        }
+    }
+
+    pub fn starting(mut self, start: Rotation) -> Self {
+        self.start = start;
+        self
+    }
+
+    /// Rate in °/s, body frame.
+    pub fn turning(mut self, rate_dps: impl Fn(f64) -> Vector + 'static) -> Self {
+        self.rate_rps = Box::new(move |t| rate_dps(t).map(f64::to_radians));
+        self
+    }
+
+    pub fn accelerated(mut self, accel_mps2: impl Fn(f64) -> Vector + 'static) -> Self {
+        self.accel_mps2 = Box::new(accel_mps2);
+        self
+    }
+
+    pub fn with_magnet(mut self, magnet_ut: impl Fn(f64) -> Vector + 'static) -> Self {
+        self.magnet_ut = Box::new(magnet_ut);
+        self
+    }
+
+    /// As if carried about by hand: turns about all axes of up to some 100 °/s, pushes of up to 3 m/s², no rest.
+    pub fn carried_about() -> Self {
+        Self::at_rest().turning(carried_rate_dps).accelerated(|t| {
+            let wave = |hz: f64, phase: f64| (std::f64::consts::TAU * hz * t + phase).sin();
+            [
+                2.0 * wave(0.9, 0.3) + wave(2.3, 1.0),
+                1.5 * wave(1.1, 2.0) + wave(1.9, 0.0),
+                1.0 * wave(1.3, 0.7) + 0.5 * wave(2.9, 0.1),
+            ]
+        })
+    }
+}
+
+pub fn carried_rate_dps(t: f64) -> Vector {
+    let wave = |hz: f64, phase: f64| (std::f64::consts::TAU * hz * t + phase).sin();
+    [
+        60.0 * wave(0.31, 0.4) + 40.0 * wave(0.83, 1.1),
+        55.0 * wave(0.27, 1.9) + 35.0 * wave(0.71, 0.2),
+        70.0 * wave(0.19, 0.8) + 40.0 * wave(0.57, 2.6),
+    ]
+}
+
+/// 1 inside `from … to`, else 0, with ramps of `ramp_s` within.
+pub fn window(t: f64, from: f64, to: f64, ramp_s: f64) -> f64 {
+    ((t - from) / ramp_s).min((to - t) / ramp_s).clamp(0.0, 1.0)
+}

@@ -1,0 +1,158 @@
+//! The estimator on a made-up motion, tick by tick beside the truth.
+
+use robot_app::{
+    domain::{ImuState, MagState, MotorFeedback, StateEstimate, WheelOdomConfig},
+    estimation::InsEstimator,
+};
+
+use crate::{
+    error::{AttitudeError, Worst},
+    motion::Motion,
+    rotation::Rotation,
+    sensors::Sensors,
+    world::World,
+};
+
+const TICK_US: u64 = 1_000;
+
+pub struct Run {
+    world: World,
+    estimator: InsEstimator,
+    imu: ImuState,
+    mag: MagState,
+    pub motor: MotorFeedback,
+    pub estimate: StateEstimate,
+    tick: u64,
+}
+
+impl Run {
+    pub fn new(motion: Motion, sensors: Sensors) -> Self {
+        Self {
+            world: World::new(motion, sensors),
+            estimator: InsEstimator::new(WheelOdomConfig::default()),
+            imu: ImuState::default(),
+            mag: MagState::default(),
+            motor: MotorFeedback::default(),
+            estimate: StateEstimate::default(),
+            tick: 0,
+        }
+    }
+
+    /// One tick of 1 ms.
+    pub fn step(&mut self) {
+        self.tick += 1;
+        let elapsed_us = self.tick * TICK_US;
+        self.world.advance_to(elapsed_us);
+        while let Some(sample) = self.world.imu_due(elapsed_us) {
+            self.imu = sample;
+        }
+        while let Some(sample) = self.world.mag_due(elapsed_us) {
+            self.mag = sample;
+        }
+        let now_us = self.world.clock_us(elapsed_us);
+        self.motor.ts_us = now_us;
+        self.estimator.step(
+            &self.imu,
+            &self.mag,
+            &self.motor,
+            now_us,
+            &mut self.estimate,
+        );
+        assert_sound(&self.estimate, now_us);
+    }
+
+    /// As `step`; then the samples in hand change their values, but not their stamps.
+    pub fn step_then_repeat_other_values(&mut self) {
+        self.step();
+        self.imu.gyro_dps = [500.0, -300.0, 100.0];
+        self.imu.accel_mps2 = [5.0, 5.0, -5.0];
+        self.mag.mag_ut = [-40.0, 10.0, 5.0];
+    }
+
+    /// Worst errors from now until `until_s`.
+    pub fn worst(&mut self, until_s: f64) -> Worst {
+        let mut worst = Worst::default();
+        let first = self.error();
+        while self.time_s() < until_s - 1e-6 {
+            let before = (self.attitude(), self.world.attitude());
+            self.step();
+            let turn = |from: Rotation, to: Rotation| from.inverse().then_in_body(to);
+            let estimated = turn(before.0, self.attitude());
+            let real = turn(before.1, self.world.attitude());
+            let jump = real.inverse().then_in_body(estimated);
+            worst.add(self.error(), first, jump.angle_deg());
+        }
+        worst
+    }
+
+    /// On to `until_s`, whatever the errors.
+    pub fn skip(&mut self, until_s: f64) {
+        while self.time_s() < until_s - 1e-6 {
+            self.step();
+        }
+    }
+
+    pub fn time_s(&self) -> f64 {
+        (self.tick * TICK_US) as f64 * 1e-6
+    }
+
+    pub fn error(&self) -> AttitudeError {
+        AttitudeError::between(self.attitude(), self.world.attitude())
+    }
+
+    pub fn attitude(&self) -> Rotation {
+        Rotation::from_wxyz(self.estimate.q_wxyz.map(f64::from)).unit()
+    }
+
+    /// Length of the difference between the offset found and the true one.
+    pub fn bias_error_dps(&self) -> f64 {
+        let truth = self.world.gyro_offset_dps();
+        let found = self
+            .estimate
+            .gyro_bias_rps
+            .map(|rate| f64::from(rate).to_degrees());
+        let squares = truth
+            .iter()
+            .zip(found)
+            .map(|(truth, found)| (truth - found).powi(2));
+        squares.sum::<f64>().sqrt()
+    }
+}
+
+/// What holds in every tick whatever comes in: all finite, unit length, angles that belong to the quaternion.
+pub fn assert_sound(estimate: &StateEstimate, now_us: u64) {
+    let StateEstimate {
+        q_wxyz,
+        rpy_rad,
+        vel_mps,
+        pos_m,
+        gyro_bias_rps,
+        accel_bias_mps2,
+        ts_us,
+        valid: _,
+    } = estimate;
+    let finite = |values: &[f32]| values.iter().all(|value| value.is_finite());
+    assert!(
+        finite(q_wxyz)
+            && [rpy_rad, vel_mps, pos_m, gyro_bias_rps, accel_bias_mps2]
+                .iter()
+                .all(|values| finite(*values)),
+        "not finite: {estimate:?}"
+    );
+    let attitude = Rotation::from_wxyz(q_wxyz.map(f64::from));
+    assert!(
+        (attitude.length() - 1.0).abs() < 1e-5,
+        "length {}: {estimate:?}",
+        attitude.length()
+    );
+    assert_eq!(*ts_us, now_us);
+    let [roll, pitch, yaw] = rpy_rad.map(f64::from);
+    let from_angles = Rotation::by([0.0, 0.0, yaw])
+        .then_in_body(Rotation::by([0.0, pitch, 0.0]))
+        .then_in_body(Rotation::by([roll, 0.0, 0.0]));
+    let between = attitude.inverse().then_in_body(from_angles).angle_deg();
+    // At the vertical roll and yaw are one: there the sine's rounding, √(2 · 2⁻²³) rad, is all that is left of them.
+    if pitch.sin().abs() < 0.9999 {
+        assert!(between < 0.1, "angles {between}° off: {estimate:?}");
+    }
+}

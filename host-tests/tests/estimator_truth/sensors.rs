@@ -1,0 +1,99 @@
+//! How the truth is measured.
+
+use crate::motion::OverTime;
+
+/// Standard deviation of one sample.
+#[derive(Clone, Copy, Debug)]
+pub struct NoiseLevel {
+    pub gyro_dps: f64,
+    pub accel_mps2: f64,
+    pub mag_ut: f64,
+}
+
+/// When samples are taken and handed over.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Timing {
+    /// Every 5 ms to the microsecond, seen by the tick of the same instant.
+    Exact,
+    /// Taken up to 2 ms early or late and stamped truly.
+    Jitter,
+    /// Taken every 5 ms, stamped up to 2 ms wrong.
+    WrongStamps,
+    /// Taken every 5 ms, seen 1 … 9 ms later.
+    Late,
+}
+
+pub struct Sensors {
+    pub noise: NoiseLevel,
+    /// °/s over time.
+    pub gyro_offset_dps: OverTime,
+    /// A rate beyond is cut off and the sample marked.
+    pub gyro_range_dps: f64,
+    pub accel_range_mps2: f64,
+    /// Is there a magnetometer at this time?
+    pub has_mag: Box<dyn Fn(f64) -> bool>,
+    /// Is the IMU sample with this number lost?
+    pub loses: Box<dyn Fn(u64) -> bool>,
+    pub timing: Timing,
+    pub seed: u64,
+    /// Clock of the robot when the motion starts.
+    pub start_us: u64,
+}
+
+impl Sensors {
+    /// No noise, no offset, 9 axes.
+    pub fn ideal() -> Self {
+        Self {
+            noise: NoiseLevel {
+                gyro_dps: 0.0,
+                accel_mps2: 0.0,
+                mag_ut: 0.0,
+            },
+            gyro_offset_dps: Box::new(|_| [0.0; 3]),
+            gyro_range_dps: 2_000.0,
+            accel_range_mps2: 117.7,
+            has_mag: Box::new(|_| true),
+            loses: Box::new(|_| false),
+            timing: Timing::Exact,
+            seed: 1,
+            start_us: 1_000_000,
+        }
+    }
+
+    /// Noise by the data sheets: BMI088 0.014 °/s/√Hz and 175 µg/√Hz over 100 Hz, IST8310 0.3 µT.
+    pub fn real() -> Self {
+        Self {
+            noise: NoiseLevel {
+                gyro_dps: 0.14,
+                accel_mps2: 0.017,
+                mag_ut: 0.3,
+            },
+            ..Self::ideal()
+        }
+    }
+
+    pub fn without_mag(mut self) -> Self {
+        self.has_mag = Box::new(|_| false);
+        self
+    }
+
+    pub fn with_mag_while(mut self, has_mag: impl Fn(f64) -> bool + 'static) -> Self {
+        self.has_mag = Box::new(has_mag);
+        self
+    }
+
+    pub fn with_offset(mut self, offset_dps: [f64; 3]) -> Self {
+        self.gyro_offset_dps = Box::new(move |_| offset_dps);
+        self
+    }
+
+    pub fn losing(mut self, loses: impl Fn(u64) -> bool + 'static) -> Self {
+        self.loses = Box::new(loses);
+        self
+    }
+
+    pub fn timed(mut self, timing: Timing) -> Self {
+        self.timing = timing;
+        self
+    }
+}

@@ -1,0 +1,192 @@
+//! Moves the body in steps of 0.25 ms and measures it.
+
+use std::collections::VecDeque;
+
+use robot_app::domain::{ImuState, MagState};
+
+use crate::{
+    motion::{GRAVITY_MPS2, Motion, earth_field_ut},
+    noise::Noise,
+    rotation::{Rotation, Vector, add, scale},
+    sensors::{Sensors, Timing},
+};
+
+const STEP_US: u64 = 250;
+const IMU_US: u64 = 5_000;
+const MAG_US: u64 = 20_000;
+/// From the middle of the magnetometer's measurement until it is read.
+const MAG_READ_US: u64 = 4_000;
+/// In steps of the motion.
+const MAX_JITTER_STEPS: f64 = 8.0;
+
+struct Due<T> {
+    at_us: u64,
+    sample: T,
+}
+
+pub struct World {
+    motion: Motion,
+    sensors: Sensors,
+    noise: Noise,
+    elapsed_us: u64,
+    attitude: Rotation,
+    angle_rad: Vector,
+    velocity_mps: Vector,
+    interval_start_us: u64,
+    interval_end_us: u64,
+    imu_number: u64,
+    imu_due: VecDeque<Due<ImuState>>,
+    mag_due: VecDeque<Due<MagState>>,
+}
+
+impl World {
+    pub fn new(motion: Motion, sensors: Sensors) -> Self {
+        Self {
+            attitude: motion.start,
+            noise: Noise::new(sensors.seed),
+            motion,
+            sensors,
+            elapsed_us: 0,
+            angle_rad: [0.0; 3],
+            velocity_mps: [0.0; 3],
+            interval_start_us: 0,
+            interval_end_us: IMU_US,
+            imu_number: 0,
+            imu_due: VecDeque::new(),
+            mag_due: VecDeque::new(),
+        }
+    }
+
+    pub fn attitude(&self) -> Rotation {
+        self.attitude
+    }
+
+    pub fn gyro_offset_dps(&self) -> Vector {
+        (self.sensors.gyro_offset_dps)(self.time_s())
+    }
+
+    /// What the robot's clock shows `elapsed_us` after the start.
+    pub fn clock_us(&self, elapsed_us: u64) -> u64 {
+        self.sensors.start_us + elapsed_us
+    }
+
+    pub fn imu_due(&mut self, elapsed_us: u64) -> Option<ImuState> {
+        take_due(&mut self.imu_due, elapsed_us)
+    }
+
+    pub fn mag_due(&mut self, elapsed_us: u64) -> Option<MagState> {
+        take_due(&mut self.mag_due, elapsed_us)
+    }
+
+    pub fn advance_to(&mut self, elapsed_us: u64) {
+        while self.elapsed_us < elapsed_us {
+            self.move_on();
+            if self.elapsed_us == self.interval_end_us {
+                self.measure_imu();
+            }
+            if (self.elapsed_us + MAG_READ_US).is_multiple_of(MAG_US) {
+                self.measure_mag();
+            }
+        }
+    }
+
+    fn time_s(&self) -> f64 {
+        self.elapsed_us as f64 * 1e-6
+    }
+
+    /// Half the turn, push, half the turn: each quantity at the middle of the step.
+    fn move_on(&mut self) {
+        let dt_s = STEP_US as f64 * 1e-6;
+        let middle_s = self.time_s() + dt_s / 2.0;
+        let turn = scale((self.motion.rate_rps)(middle_s), dt_s);
+        let half = Rotation::by(scale(turn, 0.5));
+        let middle = self.attitude.then_in_body(half);
+        let felt = add((self.motion.accel_mps2)(middle_s), [0.0, 0.0, GRAVITY_MPS2]);
+        let felt = middle.inverse().turn(felt);
+        self.attitude = middle.then_in_body(half).unit();
+        self.angle_rad = add(self.angle_rad, turn);
+        self.velocity_mps = add(self.velocity_mps, scale(felt, dt_s));
+        self.elapsed_us += STEP_US;
+    }
+
+    fn measure_imu(&mut self) {
+        let interval_s = (self.interval_end_us - self.interval_start_us) as f64 * 1e-6;
+        let rate_dps = self
+            .angle_rad
+            .map(|angle| (angle / interval_s).to_degrees());
+        let accel_mps2 = scale(self.velocity_mps, 1.0 / interval_s);
+        self.angle_rad = [0.0; 3];
+        self.velocity_mps = [0.0; 3];
+        let sample = self.imu_sample(rate_dps, accel_mps2);
+        if !(self.sensors.loses)(self.imu_number) {
+            let at_us = match self.sensors.timing {
+                Timing::Late => self.elapsed_us + 1_000 * (1 + self.noise.below(9) as u64),
+                Timing::WrongStamps => {
+                    sample.ts_us.max(self.clock_us(self.elapsed_us)) - self.sensors.start_us
+                }
+                Timing::Exact | Timing::Jitter => self.elapsed_us,
+            };
+            self.imu_due.push_back(Due { at_us, sample });
+        }
+        self.imu_number += 1;
+        self.interval_start_us = self.interval_end_us;
+        let nominal_us = (self.imu_number + 1) * IMU_US;
+        self.interval_end_us = match self.sensors.timing {
+            Timing::Jitter => nominal_us.saturating_add_signed(self.jitter_us()),
+            _ => nominal_us,
+        };
+    }
+
+    fn imu_sample(&mut self, rate_dps: Vector, accel_mps2: Vector) -> ImuState {
+        let level = self.sensors.noise;
+        let gyro = add(rate_dps, self.gyro_offset_dps());
+        let gyro = add(gyro, self.noise_of(level.gyro_dps));
+        let accel = add(accel_mps2, self.noise_of(level.accel_mps2));
+        let (gyro_end, accel_end) = (self.sensors.gyro_range_dps, self.sensors.accel_range_mps2);
+        let stamp_error_us = match self.sensors.timing {
+            Timing::WrongStamps => self.jitter_us(),
+            _ => 0,
+        };
+        ImuState {
+            gyro_dps: gyro.map(|rate| rate.clamp(-gyro_end, gyro_end) as f32),
+            accel_mps2: accel.map(|part| part.clamp(-accel_end, accel_end) as f32),
+            saturated: gyro.iter().any(|rate| rate.abs() > gyro_end)
+                || accel.iter().any(|part| part.abs() > accel_end),
+            ts_us: self
+                .clock_us(self.elapsed_us)
+                .saturating_add_signed(stamp_error_us),
+            ..ImuState::default()
+        }
+    }
+
+    fn measure_mag(&mut self) {
+        if !(self.sensors.has_mag)(self.time_s()) {
+            return;
+        }
+        let field = add(earth_field_ut(), (self.motion.magnet_ut)(self.time_s()));
+        let seen = self.attitude.inverse().turn(field);
+        let seen = add(seen, self.noise_of(self.sensors.noise.mag_ut));
+        let sample = MagState {
+            mag_ut: seen.map(|part| part as f32),
+            ts_us: self.clock_us(self.elapsed_us),
+        };
+        let at_us = self.elapsed_us + MAG_READ_US;
+        self.mag_due.push_back(Due { at_us, sample });
+    }
+
+    fn noise_of(&mut self, std: f64) -> Vector {
+        std::array::from_fn(|_| std * self.noise.normal())
+    }
+
+    fn jitter_us(&mut self) -> i64 {
+        let steps = self.noise.between(-MAX_JITTER_STEPS, MAX_JITTER_STEPS);
+        steps.round() as i64 * STEP_US as i64
+    }
+}
+
+/// Samples are handed over in the order they were taken.
+fn take_due<T>(queue: &mut VecDeque<Due<T>>, elapsed_us: u64) -> Option<T> {
+    queue
+        .pop_front_if(|due| due.at_us <= elapsed_us)
+        .map(|due| due.sample)
+}
