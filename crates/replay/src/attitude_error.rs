@@ -1,0 +1,88 @@
+//! How far one attitude is from another (D. Laidig et al., "BROAD", Data 6 (7), 2021, section 4).
+
+use crate::track::Quaternion;
+
+/// e = estimate · conj(reference): the rotation in the earth frame that takes the reference to the estimate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AttitudeError {
+    w: f64,
+    x: f64,
+    y: f64,
+    z: f64,
+}
+
+impl AttitudeError {
+    /// Both unit quaternions.
+    pub fn between(estimate: Quaternion, reference: Quaternion) -> Self {
+        let [w, x, y, z] = estimate;
+        let [rw, rx, ry, rz] = reference;
+        Self {
+            w: w * rw + x * rx + y * ry + z * rz,
+            x: -w * rx + x * rw - y * rz + z * ry,
+            y: -w * ry + x * rz + y * rw - z * rx,
+            z: -w * rz - x * ry + y * rx + z * rw,
+        }
+    }
+
+    /// Angle of the whole rotation, 0 … 180°.
+    pub fn total_deg(self) -> f64 {
+        2.0 * self.w.abs().min(1.0).acos().to_degrees()
+    }
+
+    /// Part about the vertical, ±180°; positive where the estimate is too far to the left.
+    pub fn heading_deg(self) -> f64 {
+        2.0 * (self.z / self.w).atan().to_degrees()
+    }
+
+    /// Angle between the two verticals, 0 … 180°.
+    pub fn inclination_deg(self) -> f64 {
+        2.0 * self.w.hypot(self.z).min(1.0).acos().to_degrees()
+    }
+
+    /// What is left when the estimate is turned by this much to the right.
+    pub fn without_heading(self, heading_rad: f64) -> Self {
+        let (sin, cos) = (heading_rad / 2.0).sin_cos();
+        Self {
+            w: cos * self.w + sin * self.z,
+            x: cos * self.x + sin * self.y,
+            y: cos * self.y - sin * self.x,
+            z: cos * self.z - sin * self.w,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn close(a: f64, b: f64) -> bool {
+        (a - b).abs() < 1e-5
+    }
+
+    #[test]
+    fn a_turn_and_a_tilt_are_told_apart() {
+        let (sin, cos) = 10_f64.to_radians().sin_cos();
+        let level = [1.0, 0.0, 0.0, 0.0];
+        let turned = AttitudeError::between([cos, 0.0, 0.0, -sin], level);
+        assert!(close(turned.heading_deg(), -20.0) && close(turned.inclination_deg(), 0.0));
+        let tilted = AttitudeError::between([cos, 0.0, sin, 0.0], level);
+        assert!(close(tilted.heading_deg(), 0.0) && close(tilted.inclination_deg(), 20.0));
+        assert!(close(tilted.total_deg(), 20.0));
+    }
+
+    #[test]
+    fn a_known_heading_is_taken_out_of_a_tilted_estimate() {
+        let (sin, cos) = 15_f64.to_radians().sin_cos();
+        let (turn_sin, turn_cos) = 25_f64.to_radians().sin_cos();
+        // Tilted by 30° about x, then turned by 50° about the vertical.
+        let q = [
+            turn_cos * cos,
+            turn_cos * sin,
+            turn_sin * sin,
+            turn_sin * cos,
+        ];
+        let left =
+            AttitudeError::between(q, [1.0, 0.0, 0.0, 0.0]).without_heading(50_f64.to_radians());
+        assert!(close(left.heading_deg(), 0.0) && close(left.total_deg(), 30.0));
+    }
+}

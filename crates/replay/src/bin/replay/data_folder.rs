@@ -1,0 +1,24 @@
+//! Where the recordings are.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::bail;
+
+/// Beside the repository.
+const USUAL: &str = "../shared/data/broad";
+
+/// What was asked for, else what `ROBOT_DATA` names, else the usual place.
+pub fn find(asked: Option<&Path>) -> anyhow::Result<PathBuf> {
+    let (folder, said_by) = match (asked, std::env::var_os("ROBOT_DATA")) {
+        (Some(folder), _) => (folder.to_owned(), "--data"),
+        (None, Some(folder)) => (PathBuf::from(folder), "ROBOT_DATA"),
+        (None, None) => (PathBuf::from(USUAL), "without --data and ROBOT_DATA"),
+    };
+    if !folder.is_dir() {
+        bail!(
+            "there is no folder {} ({said_by}); name the folder of recordings with --data DIR",
+            folder.display()
+        );
+    }
+    Ok(folder)
+}

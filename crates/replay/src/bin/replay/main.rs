@@ -1,0 +1,140 @@
+//! Recorded trials through the firmware's estimator (`cargo xtask replay`): 1 kHz attitude, its errors, plots.
+
+mod batch;
+mod csv;
+mod data_folder;
+mod report;
+mod summary;
+mod table;
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use anyhow::{Context, bail};
+use clap::Parser;
+use robot_replay::{Mode, trial_files};
+
+use batch::Task;
+
+/// Run the firmware's estimator over recorded trials: one CSV of 1 kHz attitude a trial, a table of errors, a report
+/// with plots.
+///
+/// A trial is NAME.json with NAME.f32.gz beside it, at any rate: see the README.md of the recordings. The estimator gets
+/// what the firmware would: the IMU at 200 Hz, the magnetometer at 50 Hz, each sample once.
+#[derive(Parser)]
+#[command(name = "cargo xtask replay", after_help = EXAMPLES)]
+struct Args {
+    /// Folder of trials, or a folder with one such folder in it [default: $ROBOT_DATA, else ../shared/data/broad].
+    #[arg(long, value_name = "DIR")]
+    data: Option<PathBuf>,
+    /// Folder for NAME.csv (t,qw,qx,qy,qz), summary.json and report.html.
+    #[arg(long, value_name = "DIR", default_value = "target/replay")]
+    out: PathBuf,
+    /// With the magnetometer (9d) or without (6d).
+    #[arg(long, value_enum, default_value = "9d")]
+    mode: Mode,
+    /// Add an offset to every gyro sample, to see it found.
+    #[arg(long, value_name = "X,Y,Z", value_parser = offset, default_value = "0,0,0", allow_hyphen_values = true)]
+    gyro_offset_dps: [f32; 3],
+    /// Only trials with this in their name.
+    #[arg(long, value_name = "SUBSTRING")]
+    trial: Option<String>,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  cargo xtask replay
+  cargo xtask replay --data broad/hz200 --out /tmp/6d --mode 6d
+  cargo xtask replay --trial fast_rotation --gyro-offset-dps 2.5,-2.5,2.5
+  python3 broad/score.py broad/hz200 target/replay --at est    # the same figures from the data's own script";
+
+fn offset(text: &str) -> Result<[f32; 3], String> {
+    let numbers: Result<Vec<f32>, _> = text.split(',').map(|n| n.trim().parse()).collect();
+    let numbers = numbers.map_err(|error| error.to_string())?;
+    let offset: [f32; 3] = numbers
+        .try_into()
+        .map_err(|_| "expected three numbers with commas between".to_owned())?;
+    match offset.iter().all(|axis| axis.is_finite()) {
+        true => Ok(offset),
+        false => Err("not a finite number".to_owned()),
+    }
+}
+
+fn main() -> anyhow::Result<()> {
+    let args = Args::parse();
+    let data = data_folder::find(args.data.as_deref())?;
+    let files = chosen(trial_files(&data)?, args.trial.as_deref())?;
+    fs::create_dir_all(&args.out)
+        .with_context(|| format!("cannot create the folder {}", args.out.display()))?;
+    let task = Task {
+        mode: args.mode,
+        gyro_offset_dps: args.gyro_offset_dps,
+        out: args.out.clone(),
+    };
+    let outcomes = batch::run(&task, &files)?;
+    print!("{}", table::table(&task, &outcomes));
+    let summary = summary::json(&task, &data, &outcomes)?;
+    write(&args.out.join("summary.json"), &summary)?;
+    let report = args.out.join("report.html");
+    write(&report, &report::page(&task, &outcomes))?;
+    println!("plots: {}", report.display());
+    Ok(())
+}
+
+fn chosen(files: Vec<PathBuf>, part: Option<&str>) -> anyhow::Result<Vec<PathBuf>> {
+    let Some(part) = part else { return Ok(files) };
+    let name = |path: &PathBuf| {
+        path.file_stem()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned()
+    };
+    let names: Vec<String> = files.iter().map(name).collect();
+    let chosen: Vec<PathBuf> = files
+        .into_iter()
+        .filter(|file| name(file).contains(part))
+        .collect();
+    if chosen.is_empty() {
+        bail!(
+            "no trial has `{part}` in its name; there are:\n  {}",
+            names.join("\n  ")
+        );
+    }
+    Ok(chosen)
+}
+
+fn write(path: &Path, text: &str) -> anyhow::Result<()> {
+    fs::write(path, text).with_context(|| format!("cannot write {}", path.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_offset_is_three_finite_numbers() {
+        assert_eq!(offset("2.5, -1,0"), Ok([2.5, -1.0, 0.0]));
+        for wrong in ["1,2", "1,2,3,4", "1,x,3", "", "1,2,NaN"] {
+            assert!(offset(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_trial_nobody_has_is_answered_by_those_there_are() {
+        let files = vec![
+            PathBuf::from("a/02_slow.json"),
+            PathBuf::from("a/07_fast.json"),
+        ];
+        assert_eq!(
+            chosen(files.clone(), Some("fast")).unwrap(),
+            [files[1].clone()]
+        );
+        let error = chosen(files, Some("medium")).unwrap_err().to_string();
+        assert!(
+            error.contains("02_slow") && error.contains("07_fast"),
+            "{error}"
+        );
+    }
+}

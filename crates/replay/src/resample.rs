@@ -1,0 +1,97 @@
+//! A recording of any rate → samples as the firmware's sensors deliver them.
+
+use std::ops::Range;
+
+use robot_plant::{
+    recording::{self, Row},
+    time::{MS, Ps, US},
+};
+
+/// The BMI088 is read at 200 Hz.
+const IMU_PERIOD: Ps = 5 * MS;
+/// The IST8310 is read at 50 Hz.
+const IMU_SAMPLES_A_FIELD_SAMPLE: Ps = 4;
+/// The field belongs to the middle of the 5 ms that it is a mean over, so it is as old as this at their end.
+pub const FIELD_AGE_US: u64 = IMU_PERIOD / US / 2;
+
+/// What the sensors say about the 5 ms that end at `end_us`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Time in the recording.
+    pub end_us: u64,
+    /// `None` where the recording has no number: the firmware gets no sample then.
+    pub motion: Option<Motion>,
+    /// Body frame; in every fourth sample only, and `None` where the recording has no number.
+    pub field_ut: Option<[f32; 3]>,
+}
+
+/// Means over the 5 ms, body frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motion {
+    pub gyro_rps: [f32; 3],
+    /// Specific force: +9.8 up at rest.
+    pub accel_mps2: [f32; 3],
+}
+
+/// Every whole 5 ms of the recording. A row counts as constant over its interval, so at 200 Hz its rows come out as
+/// they are.
+pub fn samples(recording: &recording::Trial) -> Vec<Sample> {
+    let period = recording.row_period();
+    let rows = Rows {
+        rows: recording.rows(),
+        period,
+    };
+    // Row 0 ends at time 0; windows that begin before it began are left out.
+    let first = IMU_PERIOD.saturating_sub(period).div_ceil(IMU_PERIOD);
+    let last = rows.rows.len().saturating_sub(1) as Ps * period / IMU_PERIOD;
+    (first..=last)
+        .map(|index| {
+            rows.sample(
+                index,
+                (index - first).is_multiple_of(IMU_SAMPLES_A_FIELD_SAMPLE),
+            )
+        })
+        .collect()
+}
+
+struct Rows<'a> {
+    rows: &'a [Row],
+    period: Ps,
+}
+
+impl Rows<'_> {
+    fn sample(&self, index: Ps, with_field: bool) -> Sample {
+        let end = index * IMU_PERIOD;
+        // Counted from the start of row 0.
+        let window = end + self.period - IMU_PERIOD..end + self.period;
+        let gyro = self.mean(&window, |row| row.gyro_rps);
+        let accel = self.mean(&window, |row| row.accel_mps2);
+        let field = with_field.then(|| self.mean(&window, |row| row.field_ut));
+        Sample {
+            end_us: end / US,
+            motion: gyro.zip(accel).map(|(gyro_rps, accel_mps2)| Motion {
+                gyro_rps,
+                accel_mps2,
+            }),
+            field_ut: field.flatten(),
+        }
+    }
+
+    /// `None` if a row in the window has no number.
+    fn mean(&self, window: &Range<Ps>, value: impl Fn(&Row) -> [f64; 3]) -> Option<[f32; 3]> {
+        let first = window.start / self.period;
+        let last = (window.end - 1) / self.period;
+        let mut sum = [0.0; 3];
+        for index in first..=last {
+            let start = index * self.period;
+            let covered = window.end.min(start + self.period) - window.start.max(start);
+            let share = covered as f64 / (window.end - window.start) as f64;
+            let row = self.rows.get(usize::try_from(index).ok()?)?;
+            for (sum, axis) in sum.iter_mut().zip(value(row)) {
+                *sum += share * axis;
+            }
+        }
+        let mean = sum.map(|axis| axis as f32);
+        mean.iter().all(|axis| axis.is_finite()).then_some(mean)
+    }
+}

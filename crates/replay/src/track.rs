@@ -1,0 +1,52 @@
+//! An attitude at equal steps of time, and between them.
+
+/// Unit quaternion, scalar first.
+pub type Quaternion = [f64; 4];
+
+/// Times this close are the same.
+const SAME_S: f64 = 1e-4;
+/// Attitudes further apart in time are not bridged.
+const MAX_GAP_S: f64 = 0.05;
+
+pub struct Track {
+    pub start_s: f64,
+    pub period_s: f64,
+    /// NaN where it is not known.
+    pub attitudes: Vec<Quaternion>,
+}
+
+impl Track {
+    pub fn time_s(&self, index: usize) -> f64 {
+        self.start_s + index as f64 * self.period_s
+    }
+
+    /// On the straight line between the two neighbours, put back on the sphere; `None` outside the track and where a
+    /// neighbour is not known.
+    pub fn at(&self, t_s: f64) -> Option<Quaternion> {
+        let steps = (t_s - SAME_S - self.start_s) / self.period_s;
+        let last = self.attitudes.len().checked_sub(1)?;
+        let above = (steps.ceil().max(1.0) as usize).min(last);
+        let below = above.saturating_sub(1);
+        for index in [below, above] {
+            if (t_s - self.time_s(index)).abs() <= SAME_S {
+                return normalised(self.attitudes[index]);
+            }
+        }
+        let share = (t_s - self.time_s(below)) / self.period_s;
+        let bridged = (0.0..=1.0).contains(&share) && self.period_s <= MAX_GAP_S;
+        let line = between(self.attitudes[below], self.attitudes[above], share);
+        bridged.then(|| normalised(line)).flatten()
+    }
+}
+
+fn between(a: Quaternion, b: Quaternion, share: f64) -> Quaternion {
+    let dot: f64 = a.iter().zip(b).map(|(a, b)| a * b).sum();
+    let sign = if dot < 0.0 { -1.0 } else { 1.0 };
+    std::array::from_fn(|part| (1.0 - share) * a[part] + share * sign * b[part])
+}
+
+/// `None` for what is not a number and for zero.
+pub fn normalised(q: Quaternion) -> Option<Quaternion> {
+    let norm = q.iter().map(|part| part * part).sum::<f64>().sqrt();
+    (norm.is_finite() && norm > 0.0).then(|| q.map(|part| part / norm))
+}
