@@ -6,7 +6,7 @@ use robot_app::{
 };
 
 use crate::{
-    error::AttitudeError, figures::Figures, motion::earth_field_ut, noise::Noise,
+    error::AttitudeError, figures::Figures, motion::home_field_ut, noise::Noise,
     rotation::Rotation, run::assert_sound,
 };
 
@@ -71,7 +71,7 @@ impl Victim {
 
     /// Stands level with its nose 30° left of east.
     fn rest(&mut self, seconds: u64) {
-        let field = truth().inverse().turn(earth_field_ut());
+        let field = truth().inverse().turn(home_field_ut());
         for tick in 0..seconds * 1_000 {
             self.now_us += 1_000;
             let imu = ImuState {
@@ -197,7 +197,7 @@ fn impossible_values_leave_no_trace() {
                 let mut mag = MagState {
                     mag_ut: truth()
                         .inverse()
-                        .turn(earth_field_ut())
+                        .turn(home_field_ut())
                         .map(|part| part as f32),
                     ts_us: victim.now_us,
                 };

@@ -171,6 +171,31 @@ fn a_magnetometer_that_comes_late() {
     figures.done();
 }
 
+/// From the equator to the polar circles, north and south: strength and dip by the World Magnetic Model.
+#[test]
+fn north_is_found_all_over_the_earth() {
+    let mut figures = Figures::default();
+    for (place, strength_ut, dip_deg) in [
+        ("São Paulo", 22.5, -38.0),
+        ("Singapore", 42.0, -15.0),
+        ("Nairobi", 33.5, -25.0),
+        ("Hobart", 61.5, -72.0),
+        ("Reykjavik", 52.5, 75.5),
+    ] {
+        let motion = Motion::carried_about().where_field_is(strength_ut, dip_deg);
+        let mut run = Run::new(motion, Sensors::real());
+        run.skip(20.0);
+        let worst = run.worst(120.0);
+        figures.at_most(&format!("{place}, heading in °"), worst.heading_deg, 3.0);
+        figures.at_most(
+            &format!("{place}, inclination in °"),
+            worst.inclination_deg,
+            2.0,
+        );
+    }
+    figures.done();
+}
+
 /// The inclination does not know whether there is a magnetometer.
 #[test]
 fn without_magnetometer_only_the_heading_suffers() {

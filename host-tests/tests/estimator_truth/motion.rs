@@ -3,9 +3,6 @@
 use crate::rotation::{Rotation, Vector};
 
 pub const GRAVITY_MPS2: f64 = 9.806_65;
-/// Middle Europe.
-pub const FIELD_UT: f64 = 49.0;
-pub const DIP_DEG: f64 = 67.0;
 
 pub type OverTime = Box<dyn Fn(f64) -> Vector>;
 
@@ -16,14 +13,23 @@ pub struct Motion {
     pub rate_rps: OverTime,
     /// World frame, gravity left out.
     pub accel_mps2: OverTime,
+    /// World frame.
+    pub earth_field_ut: Vector,
     /// World frame, added to the earth's field.
     pub magnet_ut: OverTime,
+    /// Ground speed of the left and the right wheel in m/s; none: they are silent.
+    pub wheels_mps: Option<Box<dyn Fn(f64) -> [f64; 2]>>,
 }
 
-/// The earth's field: north and down.
-pub fn earth_field_ut() -> Vector {
-    let dip = DIP_DEG.to_radians();
-    [0.0, FIELD_UT * dip.cos(), -FIELD_UT * dip.sin()]
+/// North, and down by `dip_deg`.
+fn field_ut(strength_ut: f64, dip_deg: f64) -> Vector {
+    let dip = dip_deg.to_radians();
+    [0.0, strength_ut * dip.cos(), -strength_ut * dip.sin()]
+}
+
+/// Of Central Europe: 19.1 µT to the north.
+pub fn home_field_ut() -> Vector {
+    field_ut(49.0, 67.0)
 }
 
 impl Motion {
@@ -32,8 +38,20 @@ impl Motion {
             start: Rotation::NONE,
             rate_rps: Box::new(|_| [0.0; 3]),
             accel_mps2: Box::new(|_| [0.0; 3]),
+            earth_field_ut: home_field_ut(),
             magnet_ut: Box::new(|_| [0.0; 3]),
+            wheels_mps: None,
         }
+    }
+
+    pub fn where_field_is(mut self, strength_ut: f64, dip_deg: f64) -> Self {
+        self.earth_field_ut = field_ut(strength_ut, dip_deg);
+        self
+    }
+
+    pub fn rolling(mut self, wheels_mps: impl Fn(f64) -> [f64; 2] + 'static) -> Self {
+        self.wheels_mps = Some(Box::new(wheels_mps));
+        self
     }
 
     pub fn starting(mut self, start: Rotation) -> Self {

@@ -20,7 +20,8 @@ pub struct Run {
     estimator: InsEstimator,
     imu: ImuState,
     mag: MagState,
-    pub motor: MotorFeedback,
+    wheel_config: WheelOdomConfig,
+    motor: MotorFeedback,
     pub estimate: StateEstimate,
     tick: u64,
 }
@@ -32,6 +33,7 @@ impl Run {
             estimator: InsEstimator::new(WheelOdomConfig::default()),
             imu: ImuState::default(),
             mag: MagState::default(),
+            wheel_config: WheelOdomConfig::default(),
             motor: MotorFeedback::default(),
             estimate: StateEstimate::default(),
             tick: 0,
@@ -50,7 +52,7 @@ impl Run {
             self.mag = sample;
         }
         let now_us = self.world.clock_us(elapsed_us);
-        self.motor.ts_us = now_us;
+        self.turn_wheels(now_us);
         self.estimator.step(
             &self.imu,
             &self.mag,
@@ -59,6 +61,27 @@ impl Run {
             &mut self.estimate,
         );
         assert_sound(&self.estimate, now_us);
+    }
+
+    /// A rotor's revolutions a minute: metres a second over the wheel's circumference, times the gear.
+    fn turn_wheels(&mut self, now_us: u64) {
+        self.motor.ts_us = now_us;
+        let Some(wheels_mps) = self.world.wheels_mps() else {
+            return;
+        };
+        let config = self.wheel_config;
+        let turn_m = std::f64::consts::TAU * f64::from(config.wheel_radius_m);
+        let signs = [config.rpm_sign_left, config.rpm_sign_right].map(f64::from);
+        for (wheel, (mps, sign)) in self
+            .motor
+            .wheels
+            .iter_mut()
+            .zip(wheels_mps.into_iter().zip(signs))
+        {
+            wheel.rpm = (sign * mps / turn_m * f64::from(config.gear_ratio) * 60.0).round() as i16;
+            wheel.age_us = 0;
+            wheel.ts_us = now_us;
+        }
     }
 
     /// As `step`; then the samples in hand change their values, but not their stamps.

@@ -27,6 +27,8 @@ pub struct Sensors {
     pub noise: NoiseLevel,
     /// °/s over time.
     pub gyro_offset_dps: OverTime,
+    /// °/s over time: the share of the offset that a calibration has taken out of the samples.
+    pub taken_out_dps: OverTime,
     /// A rate beyond is cut off and the sample marked.
     pub gyro_range_dps: f64,
     pub accel_range_mps2: f64,
@@ -50,6 +52,7 @@ impl Sensors {
                 mag_ut: 0.0,
             },
             gyro_offset_dps: Box::new(|_| [0.0; 3]),
+            taken_out_dps: Box::new(|_| [0.0; 3]),
             gyro_range_dps: 2_000.0,
             accel_range_mps2: 117.7,
             has_mag: Box::new(|_| true),

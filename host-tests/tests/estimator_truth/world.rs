@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use robot_app::domain::{ImuState, MagState};
 
 use crate::{
-    motion::{GRAVITY_MPS2, Motion, earth_field_ut},
+    motion::{GRAVITY_MPS2, Motion},
     noise::Noise,
     rotation::{Rotation, Vector, add, scale},
     sensors::{Sensors, Timing},
@@ -61,8 +61,16 @@ impl World {
         self.attitude
     }
 
+    /// What is left of it in the samples.
     pub fn gyro_offset_dps(&self) -> Vector {
-        (self.sensors.gyro_offset_dps)(self.time_s())
+        let t = self.time_s();
+        let taken_out = (self.sensors.taken_out_dps)(t);
+        add((self.sensors.gyro_offset_dps)(t), scale(taken_out, -1.0))
+    }
+
+    pub fn wheels_mps(&self) -> Option<[f64; 2]> {
+        let wheels = self.motion.wheels_mps.as_ref()?;
+        Some(wheels(self.time_s()))
     }
 
     /// What the robot's clock shows `elapsed_us` after the start.
@@ -152,6 +160,7 @@ impl World {
             accel_mps2: accel.map(|part| part.clamp(-accel_end, accel_end) as f32),
             saturated: gyro.iter().any(|rate| rate.abs() > gyro_end)
                 || accel.iter().any(|part| part.abs() > accel_end),
+            gyro_bias_dps: (self.sensors.taken_out_dps)(self.time_s()).map(|part| part as f32),
             ts_us: self
                 .clock_us(self.elapsed_us)
                 .saturating_add_signed(stamp_error_us),
@@ -163,7 +172,10 @@ impl World {
         if !(self.sensors.has_mag)(self.time_s()) {
             return;
         }
-        let field = add(earth_field_ut(), (self.motion.magnet_ut)(self.time_s()));
+        let field = add(
+            self.motion.earth_field_ut,
+            (self.motion.magnet_ut)(self.time_s()),
+        );
         let seen = self.attitude.inverse().turn(field);
         let seen = add(seen, self.noise_of(self.sensors.noise.mag_ut));
         let sample = MagState {

@@ -1,0 +1,29 @@
+//! A calibration elsewhere takes the offset out of the samples and says so.
+
+use crate::{figures::Figures, motion::Motion, run::Run, sensors::Sensors};
+
+const OFFSET_DPS: [f64; 3] = [3.0, -2.0, 4.0];
+const CALIBRATED_S: f64 = 15.0;
+
+/// What was found before no longer counts; nothing turns when the samples change by 5.4 °/s.
+#[test]
+#[ignore = "further than the filter gets so far"]
+fn an_offset_taken_out_elsewhere_is_no_turn() {
+    let mut figures = Figures::default();
+    for sensors in [Sensors::real(), Sensors::real().without_mag()] {
+        let mut sensors = sensors.with_offset(OFFSET_DPS);
+        sensors.taken_out_dps =
+            Box::new(|t| OFFSET_DPS.map(|part| if t < CALIBRATED_S { 0.0 } else { part }));
+        let mut run = Run::new(Motion::at_rest(), sensors);
+        run.skip(CALIBRATED_S - 0.1);
+        let worst = run.worst(CALIBRATED_S + 30.0);
+        figures.at_most(
+            "calibrated, heading drift in °",
+            worst.heading_drift_deg,
+            0.5,
+        );
+        figures.at_most("calibrated, inclination in °", worst.inclination_deg, 0.5);
+        figures.at_most("calibrated, offset in °/s", run.bias_error_dps(), 0.05);
+    }
+    figures.done();
+}
