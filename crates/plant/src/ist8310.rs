@@ -77,6 +77,28 @@ enum Transfer {
     Read,
 }
 
+/// Mean of what was felt during one conversion, body axes.
+#[derive(Clone, Copy, Debug, Default)]
+struct FieldMean {
+    sum_ut: [f64; 3],
+    steps: u32,
+}
+
+impl FieldMean {
+    fn add(&mut self, field_ut: [f64; 3]) {
+        for (sum, axis) in self.sum_ut.iter_mut().zip(field_ut) {
+            *sum += axis;
+        }
+        self.steps += 1;
+    }
+
+    /// 0 where nothing was felt. Begins anew.
+    fn take_ut(&mut self) -> [f64; 3] {
+        let Self { sum_ut, steps } = std::mem::take(self);
+        sum_ut.map(|sum| sum / f64::from(steps.max(1)))
+    }
+}
+
 pub(crate) struct Ist8310 {
     random: Random,
     noise_ut: f64,
@@ -87,6 +109,7 @@ pub(crate) struct Ist8310 {
     transfer: Transfer,
     pointer: u8,
     conversion_done_at: Option<Ps>,
+    felt: FieldMean,
     data: [i16; 3],
     data_ready: bool,
     overrun: bool,
@@ -108,6 +131,7 @@ impl Ist8310 {
             transfer: Transfer::Idle,
             pointer: 0,
             conversion_done_at: None,
+            felt: FieldMean::default(),
             data: [0; 3],
             data_ready: false,
             overrun: false,
@@ -134,6 +158,7 @@ impl Ist8310 {
         self.transfer = Transfer::Idle;
         self.pointer = 0;
         self.conversion_done_at = None;
+        self.felt = FieldMean::default();
         self.data = [0; 3];
         self.data_ready = false;
         self.overrun = false;
@@ -163,11 +188,23 @@ impl Ist8310 {
         self.conversion_done_at.unwrap_or(Ps::MAX)
     }
 
-    /// Ends the conversion due, in a field given in body axes (µT).
-    pub(crate) fn convert(&mut self, field_ut: [f64; 3]) {
+    /// True while the field counts: a conversion averages over all of its time.
+    pub(crate) fn is_converting(&self, now: Ps) -> bool {
+        let done_at = self.conversion_done_at;
+        done_at.is_some_and(|done_at| now + self.conversion_time() > done_at)
+    }
+
+    /// The field of one step of the world, body axes (µT), while a conversion is under way.
+    pub(crate) fn feel(&mut self, field_ut: [f64; 3]) {
+        self.felt.add(field_ut);
+    }
+
+    /// Ends the conversion due.
+    pub(crate) fn convert(&mut self) {
         let Some(done_at) = self.conversion_done_at.take() else {
             return;
         };
+        let field_ut = self.felt.take_ut();
         // The chip's own axes are left-handed: y points the other way.
         let chip_ut = [field_ut[0], -field_ut[1], field_ut[2]];
         let average = |code: u8| f64::from(1 << code.min(4));
@@ -268,6 +305,7 @@ impl Ist8310 {
         match register {
             register::CNTL1 => {
                 self.registers.cntl1 = value & 0x0F;
+                self.felt = FieldMean::default();
                 self.conversion_done_at = match self.registers.cntl1 {
                     0 => None,
                     _ => Some(now + self.conversion_time()),
@@ -336,14 +374,18 @@ mod tests {
     }
 
     #[test]
-    fn single_shot_at_16_averages_is_ready_after_6_ms_in_left_handed_counts_of_0_3_ut() {
+    fn single_shot_at_16_averages_is_the_mean_of_6_ms_in_left_handed_counts_of_0_3_ut() {
         let mut chip = Ist8310::new(1, MotionSource::Physics);
         let start = 60 * MS;
         assert!(write(&mut chip, 0x41, 0x24, start));
         assert!(write(&mut chip, 0x0A, 0x01, start));
         assert_eq!(chip.next_event(), start + 6 * MS);
+        assert!(chip.is_converting(start + 250 * US) && chip.is_converting(start + 6 * MS));
         assert_eq!(read::<1>(&mut chip, 0x02, start + 5 * MS)[0] & 1, 0);
-        chip.convert([30.0, 60.0, -90.0]);
+        for field_ut in [[20.0, 60.0, -90.0], [40.0, 60.0, -90.0]] {
+            chip.feel(field_ut);
+        }
+        chip.convert();
         assert_eq!(read::<1>(&mut chip, 0x02, start + 6 * MS)[0] & 1, 1);
         let raw: [u8; 6] = read(&mut chip, 0x03, start + 6 * MS);
         let axis = |i: usize| f64::from(i16::from_le_bytes([raw[i], raw[i + 1]]));

@@ -134,10 +134,6 @@ impl AccelDie {
         self.lost_writes
     }
 
-    pub(super) fn align_sampling(&mut self, at: Ps) {
-        self.clock.align(at);
-    }
-
     fn measuring(&self) -> bool {
         self.registers.pwr_ctrl == ACC_ENABLED && self.registers.pwr_conf != SUSPEND
     }
@@ -174,25 +170,21 @@ impl AccelDie {
     }
 
     fn analogue_g(&mut self, accel_mps2: [f64; 3]) -> [f64; 3] {
-        let force_g = accel_mps2.map(|a| a / STANDARD_GRAVITY_MPS2);
-        match self.source {
-            MotionSource::Recording => force_g,
-            MotionSource::Physics => {
-                let polarity = match self.registers.self_test {
-                    0x0D => 1.0,
-                    0x09 => -1.0,
-                    _ => 0.0,
-                };
-                let white = (rate_of_steps_hz() / 2.0).sqrt();
-                let noisy: [f64; 3] = std::array::from_fn(|axis| {
-                    force_g[axis]
-                        + self.offset_g[axis]
-                        + polarity * SELF_TEST_G[axis]
-                        + self.random.normal() * NOISE_G_PER_SQRT_HZ[axis] * white
-                });
-                self.filter.step(noisy)
+        let mut force_g = accel_mps2.map(|a| a / STANDARD_GRAVITY_MPS2);
+        if self.source == MotionSource::Physics {
+            let polarity = match self.registers.self_test {
+                0x0D => 1.0,
+                0x09 => -1.0,
+                _ => 0.0,
+            };
+            let white = (rate_of_steps_hz() / 2.0).sqrt();
+            for (axis, force) in force_g.iter_mut().enumerate() {
+                *force += self.offset_g[axis]
+                    + polarity * SELF_TEST_G[axis]
+                    + self.random.normal() * NOISE_G_PER_SQRT_HZ[axis] * white;
             }
         }
+        self.filter.step(force_g)
     }
 
     fn configure_output(&mut self, now: Ps) {

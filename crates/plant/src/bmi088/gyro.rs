@@ -48,7 +48,6 @@ pub(super) struct GyroDie {
     filter: LowPass,
     data: [i16; 3],
     data_ready: bool,
-    data_read_at: Option<Ps>,
     self_test_done_at: Option<Ps>,
 }
 
@@ -90,7 +89,6 @@ impl GyroDie {
             filter: LowPass::new(bandwidth_hz, rate_of_steps_hz()),
             data: [0; 3],
             data_ready: false,
-            data_read_at: None,
             self_test_done_at: None,
         }
     }
@@ -108,14 +106,6 @@ impl GyroDie {
 
     pub(super) fn lost_writes(&self) -> u64 {
         self.lost_writes
-    }
-
-    pub(super) fn align_sampling(&mut self, at: Ps) {
-        self.clock.align(at);
-    }
-
-    pub(super) fn data_read_at(&self) -> Option<Ps> {
-        self.data_read_at
     }
 
     fn suspended(&self) -> bool {
@@ -142,19 +132,14 @@ impl GyroDie {
     }
 
     fn analogue_dps(&mut self, gyro_rps: [f64; 3]) -> [f64; 3] {
-        let rate_dps = gyro_rps.map(f64::to_degrees);
-        match self.source {
-            MotionSource::Recording => rate_dps,
-            MotionSource::Physics => {
-                let white = (rate_of_steps_hz() / 2.0).sqrt();
-                let noisy: [f64; 3] = std::array::from_fn(|axis| {
-                    rate_dps[axis]
-                        + self.offset_dps[axis]
-                        + self.random.normal() * NOISE_DPS_PER_SQRT_HZ * white
-                });
-                self.filter.step(noisy)
+        let mut rate_dps = gyro_rps.map(f64::to_degrees);
+        if self.source == MotionSource::Physics {
+            let white = (rate_of_steps_hz() / 2.0).sqrt();
+            for (rate, offset) in rate_dps.iter_mut().zip(self.offset_dps) {
+                *rate += offset + self.random.normal() * NOISE_DPS_PER_SQRT_HZ * white;
             }
         }
+        self.filter.step(rate_dps)
     }
 
     fn configure_output(&mut self, now: Ps) {
@@ -185,7 +170,6 @@ impl Die for GyroDie {
             register::CHIP_ID => CHIP_ID,
             register::X_LSB..=register::Z_MSB => {
                 self.data_ready = false;
-                self.data_read_at = Some(now);
                 let offset = usize::from(register - register::X_LSB);
                 self.data[offset / 2].to_le_bytes()[offset % 2]
             }

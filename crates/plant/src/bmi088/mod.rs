@@ -41,7 +41,7 @@ pub(crate) struct Motion {
 pub(crate) enum MotionSource {
     /// True motion: offset, noise and filter of the dies apply.
     Physics,
-    /// The output of another sensor, whose noise and filter are in it already: only range and quantisation apply.
+    /// The output of another sensor, whose offset and noise are in it already: only filter, range and quantisation apply.
     Recording,
 }
 
@@ -170,17 +170,6 @@ impl Bmi088 {
         if self.faults.extreme && gyro_sampled {
             self.gyro.replace_sample(extremes(&mut self.garbage));
         }
-    }
-
-    /// Puts both output clocks on a common grid that begins at `at`.
-    pub(crate) fn align_sampling(&mut self, at: Ps) {
-        self.accel.align_sampling(at);
-        self.gyro.align_sampling(at);
-    }
-
-    /// Instant of the last read of the gyro's data registers.
-    pub(crate) fn gyro_data_read_at(&self) -> Option<Ps> {
-        self.gyro.data_read_at()
     }
 
     pub(crate) fn select(&mut self, device: SpiSelect, selected: bool, now: Ps) {

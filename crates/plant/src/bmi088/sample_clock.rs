@@ -18,11 +18,6 @@ impl SampleClock {
         }
     }
 
-    /// Moves the grid so that it contains `at`, which becomes the next instant.
-    pub(super) fn align(&mut self, at: Ps) {
-        self.next = at;
-    }
-
     /// True when at least one instant has passed since the last call.
     pub(super) fn due(&mut self, now: Ps) -> bool {
         if now < self.next {

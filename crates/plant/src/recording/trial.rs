@@ -155,6 +155,32 @@ impl Trial {
         ((since / self.row_period) as usize).min(self.rows.len() - 1)
     }
 
+    /// Row whose interval contains the instant this long after row 0 ended, or ends with it; the last one after the end.
+    pub(super) fn index_ending_after(&self, since: Ps) -> usize {
+        (since.div_ceil(self.row_period) as usize).min(self.rows.len() - 1)
+    }
+
+    /// Where a sensor failed, its last values stay; before the first, those come early.
+    pub(super) fn bridge_failures(&mut self) {
+        let columns: [fn(&mut Row) -> &mut [f64; 3]; 3] = [
+            |row| &mut row.gyro_rps,
+            |row| &mut row.accel_mps2,
+            |row| &mut row.field_ut,
+        ];
+        for column in columns {
+            let is_number = |value: &[f64; 3]| value.iter().all(|axis| axis.is_finite());
+            let first = self.rows.iter_mut().map(column).find(|v| is_number(v));
+            let mut last = first.copied().unwrap_or_default();
+            for value in self.rows.iter_mut().map(column) {
+                if is_number(value) {
+                    last = *value;
+                } else {
+                    *value = last;
+                }
+            }
+        }
+    }
+
     /// Row and share of the way to the next; `None` past the end.
     pub(super) fn position_at(&self, since: Ps) -> Option<(usize, f64)> {
         let index = (since / self.row_period) as usize;

@@ -44,10 +44,7 @@ impl World {
                     self.escs[wheel].prepare_feedback(shaft_rps[wheel]);
                 }
                 Due::Frame => self.radio.start_frame(self.radio_faults()),
-                Due::Conversion => {
-                    let field_ut = self.field_ut(at);
-                    self.mag.convert(field_ut);
-                }
+                Due::Conversion => self.mag.convert(),
             }
         }
         self.now = self.now.max(now);
@@ -86,6 +83,9 @@ impl World {
         self.tilt
             .step(self.faults.has(Fault::Tilted), physics_step_s());
         self.imu.step(self.motion(at), at, physics_step_s());
+        if self.mag.is_converting(at) {
+            self.mag.feel(self.field_ut(at));
+        }
     }
 
     fn charge(&self) -> Charge {

@@ -23,11 +23,6 @@ impl World {
             self.complaints
                 .push("BMI088: register written too soon after another: lost".to_owned());
         }
-        if let (Some(playback), Some(read_at)) = (&mut self.playback, self.imu.gyro_data_read_at())
-            && let Some(rows_from) = playback.lock_to_read(read_at)
-        {
-            self.imu.align_sampling(rows_from);
-        }
         miso
     }
 }
