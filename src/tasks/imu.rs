@@ -71,13 +71,13 @@ impl ImuTask {
 
     /// Reads and publishes one sample; false if there was none. Without one the heater is off.
     async fn sample(&mut self, sensor: &mut Bmi088<'_>) -> bool {
-        let ts_us = Instant::now().as_micros();
+        let read_us = Instant::now().as_micros();
         let state = if let Ok(answers) = sensor.read_sample().await {
             self.pipeline
-                .process(&answers.accel, &answers.gyro, ts_us)
+                .process(&answers.accel, &answers.gyro, read_us)
                 .ok()
         } else {
-            self.pipeline.process_silence(ts_us);
+            self.pipeline.process_silence(read_us);
             None
         };
         self.heater.set_duty(self.pipeline.heater_duty());

@@ -69,9 +69,9 @@ impl MagTask {
 
     /// Measures and publishes one sample; false if there was none.
     async fn sample(&mut self, sensor: &mut Ist8310<'_>) -> bool {
-        let ts_us = Instant::now().as_micros();
+        let started_us = Instant::now().as_micros();
         let state = match sensor.measure().await {
-            Ok(answer) => self.pipeline.process(&answer, ts_us).ok(),
+            Ok(answer) => self.pipeline.process(&answer, started_us).ok(),
             Err(_) => None,
         };
         if let Some(state) = state {

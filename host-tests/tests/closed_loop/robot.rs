@@ -360,11 +360,10 @@ impl Robot {
             self.mag_started_at = Some(self.now);
         }
         let due = |started: Ps| self.now - started >= u64::from(ist8310::MEASUREMENT_US) * US;
-        if self.mag_started_at.is_some_and(due) {
-            self.mag_started_at = None;
+        if let Some(started) = self.mag_started_at.take_if(|started| due(*started)) {
             let mut answer = [0; ist8310::READ_LEN];
             let read = self.i2c_read(ist8310::READ_FROM, &mut answer);
-            match self.mag_pipeline.process(&answer, self.now_us()) {
+            match self.mag_pipeline.process(&answer, started / US) {
                 Ok(state) if read => self.mag = state,
                 _ => self.health.mag.errors += 1,
             }

@@ -14,7 +14,8 @@ pub struct ImuState {
     pub temperature_c: f32,
     /// An axis is at the end of its range, so the true value may lie beyond.
     pub saturated: bool,
-    /// When it was read, 0 = no sample yet.
+    /// End of the interval since the sample before, whose mean rate `gyro_dps` is; the delay of the sensor's filter is
+    /// taken off. 0 = no sample yet.
     pub ts_us: u64,
 }
 
@@ -24,7 +25,7 @@ pub struct ImuState {
 pub struct MagState {
     /// At most 1600 on x and y, 2500 on z before calibration; the earth's field is 25 to 65 long.
     pub mag_ut: [f32; 3],
-    /// When its measurement began, 0 = no sample yet.
+    /// Middle of the time over which it was measured, 0 = no sample yet.
     pub ts_us: u64,
 }
 

@@ -94,14 +94,14 @@ impl ImuPipeline {
         self.heater.step(None, ts_us);
     }
 
-    /// Takes the answers to `ACCEL_READ` and `GYRO_READ`, read at `ts_us`.
+    /// Takes the answers to `ACCEL_READ` and `GYRO_READ`, read at `read_us`.
     pub fn process(
         &mut self,
         accel_answer: &[u8; ACCEL_READ.len()],
         gyro_answer: &[u8; GYRO_READ.len()],
-        ts_us: u64,
+        read_us: u64,
     ) -> Result<ImuState, ImuSampleError> {
-        let checked = self.check(accel_answer, gyro_answer, ts_us);
+        let checked = self.check(accel_answer, gyro_answer, read_us);
         let temperature_c = match &checked {
             Ok(raw) => raw.temperature_c,
             Err(error) => {
@@ -109,8 +109,8 @@ impl ImuPipeline {
                 None
             }
         };
-        self.heater.step(temperature_c, ts_us);
-        checked.map(|raw| self.calibrate(&raw, ts_us))
+        self.heater.step(temperature_c, read_us);
+        checked.map(|raw| self.calibrate(&raw, read_us))
     }
 
     fn check(
@@ -134,7 +134,7 @@ impl ImuPipeline {
         })
     }
 
-    fn calibrate(&mut self, raw: &CheckedSample, ts_us: u64) -> ImuState {
+    fn calibrate(&mut self, raw: &CheckedSample, read_us: u64) -> ImuState {
         let calibration = &self.calibration;
         let accel_mps2 = correct(
             raw.accel_mps2,
@@ -145,7 +145,7 @@ impl ImuPipeline {
             gyro_dps: raw.gyro_dps,
             accel_mps2,
             temperature_c: raw.temperature_c,
-            ts_us,
+            ts_us: read_us,
         };
         self.startup.feed(&sample, &self.heater);
         let gyro_bias_dps = self
@@ -158,7 +158,7 @@ impl ImuPipeline {
             gyro_bias_dps,
             temperature_c: self.heater.status().temperature_c,
             saturated: raw.saturated,
-            ts_us,
+            ts_us: bmi088::measured_until_us(read_us),
         }
     }
 
@@ -232,7 +232,8 @@ mod tests {
         assert!((state.accel_mps2[2] - 9.806_65).abs() < 0.01);
         assert!((state.gyro_dps[2] - 10.01).abs() < 0.01);
         assert_eq!(state.temperature_c, 39.125);
-        assert_eq!(state.ts_us, 5_000);
+        // Read 4.79 ms of filter and 1.25 ms of waiting after the middle of its 5 ms.
+        assert_eq!(state.ts_us, 5_000 - 3_540);
     }
 
     /// By hand: (9.806 − 0.306) · 2 = 19 m/s²; until the offset is measured the stored one counts, (10.01 − 1.01) · 0.5.

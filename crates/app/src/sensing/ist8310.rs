@@ -1,4 +1,4 @@
-//! Isentek IST8310 magnetometer (hardware.md section 5): I2C address 0x0E, at most 400 kHz, reset on its own pin.
+//! Isentek IST8310 magnetometer: I2C address 0x0E, at most 400 kHz, reset on its own pin.
 
 /// Seven-bit address.
 pub const ADDRESS: u8 = 0x0E;
@@ -17,8 +17,12 @@ const PULSE_NORMAL: u8 = 0xC0;
 
 /// Bytes to write to start one measurement.
 pub const START_SINGLE_SHOT: [u8; 2] = [CONTROL_1, SINGLE_SHOT];
-/// Time of one measurement at 16 × averaging.
+/// Time to leave for one measurement.
 pub const MEASUREMENT_US: u32 = 7_000;
+/// Time over which 16 × averaging measures: the shortest wait that PX4 and ArduPilot get away with.
+const AVERAGING_US: u64 = 6_000;
+/// [`START_SINGLE_SHOT`] on the wire: start, three bytes with their acknowledges, stop, at 400 kHz.
+const ORDER_US: u64 = 73;
 /// First register of a sample; read [`READ_LEN`] bytes from it.
 pub const READ_FROM: u8 = STATUS_1;
 /// Status and three axes.
@@ -81,6 +85,11 @@ pub const INIT: &[InitStep] = &[
     },
 ];
 
+/// Middle of the measurement whose order was begun at `started_us`.
+pub(super) const fn measured_at_us(started_us: u64) -> u64 {
+    started_us.saturating_add(ORDER_US + AVERAGING_US / 2)
+}
+
 /// Counts as read, in the sensor's own left-handed frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct MagRaw {
@@ -127,7 +136,7 @@ impl MagRaw {
 mod tests {
     use super::*;
 
-    /// hardware.md section 5: 0.3 µT a count, raw y points right.
+    /// Datasheet: 0.3 µT a count; raw y points right.
     #[test]
     fn a_ready_sample_is_turned_into_the_body_frame() {
         let raw = decode(&[0x01, 0x64, 0x00, 0x38, 0xFF, 0xC8, 0x00]).unwrap();

@@ -32,11 +32,11 @@ impl MagPipeline {
         self.calibration = *calibration;
     }
 
-    /// Takes the bytes read from `ist8310::READ_FROM` at `ts_us`.
+    /// Takes the bytes read from `ist8310::READ_FROM`, whose measurement was started at `started_us`.
     pub fn process(
         &mut self,
         answer: &[u8; READ_LEN],
-        ts_us: u64,
+        started_us: u64,
     ) -> Result<MagState, MagSampleError> {
         let raw = ist8310::decode(answer).ok_or(MagSampleError::NotReady)?;
         let field_ut = raw.body_ut().ok_or(MagSampleError::OutOfRange)?;
@@ -46,7 +46,7 @@ impl MagPipeline {
                 self.calibration.bias_ut,
                 self.calibration.soft_iron,
             ),
-            ts_us,
+            ts_us: ist8310::measured_at_us(started_us),
         })
     }
 }
@@ -67,7 +67,8 @@ mod tests {
         for (got, expected) in state.mag_ut.iter().zip([20.0, 80.0, 50.0]) {
             assert!((got - expected).abs() < 1e-4, "{:?}", state.mag_ut);
         }
-        assert_eq!(state.ts_us, 7);
+        // Half of 6 ms, and the order to measure takes 73 µs.
+        assert_eq!(state.ts_us, 7 + 3_073);
     }
 
     #[test]

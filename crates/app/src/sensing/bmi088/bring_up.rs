@@ -1,4 +1,4 @@
-//! The bring-up sequence (hardware.md section 4.2, in the order of Bosch's own driver).
+//! The bring-up sequence, in the order of Bosch's own driver.
 
 use super::registers::{READ, SOFT_RESET_COMMAND, accel, gyro};
 

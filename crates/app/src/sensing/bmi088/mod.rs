@@ -1,10 +1,12 @@
-//! Bosch BMI088 (BST-BMI088-DS000 rev 1.8; hardware.md section 4): two dies on one SPI bus, each with its own
+//! Bosch BMI088 (BST-BMI088-DS000 rev 1.8): two dies on one SPI bus, each with its own
 //! chip select. Mode 0 or 3, at most 10 MHz.
 
 mod bring_up;
 mod decode;
 mod registers;
+mod timing;
 
 pub use bring_up::{INIT, InitCheck, InitStep, SpiTarget, read_command, write_command};
 pub use decode::{ACCEL_READ, GYRO_READ};
 pub(super) use decode::{AccelRaw, GyroRaw, decode_accel, decode_gyro};
+pub(super) use timing::measured_until_us;

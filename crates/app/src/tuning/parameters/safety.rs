@@ -6,7 +6,7 @@ use crate::tuning::parameter::{Parameter, ParameterKind, float, integer};
 pub static SAFETY: [Parameter; 15] = [
     integer!(0, "remote-timeout-us", "us", 30_000.0, 500_000.0, safety.remote_timeout_us),
     float!(1, "min-remote-quality", "", 0.1, 1.0, safety.min_remote_quality),
-    integer!(2, "imu-timeout-us", "us", 6_000.0, 100_000.0, safety.imu_timeout_us),
+    integer!(2, "imu-timeout-us", "us", 10_000.0, 100_000.0, safety.imu_timeout_us),
     integer!(3, "command-timeout-us", "us", 15_000.0, 200_000.0, safety.command_timeout_us),
     integer!(4, "max-sensor-errors", "", 1.0, 1_000.0, safety.max_sensor_errors),
     integer!(5, "max-tx-failures", "", 1.0, 1_000.0, safety.max_tx_failures),
