@@ -7,7 +7,8 @@ fn main() {
         Some(path) => PathBuf::from(path),
         None => Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/broad"),
     };
-    let folder = data.join("hz200");
+    let usual = data.join("hz200");
+    let folder = if usual.is_dir() { usual } else { data };
     println!("cargo::rustc-check-cfg=cfg(recorded_motion)");
     println!("cargo::rerun-if-env-changed=ROBOT_DATA");
     println!("cargo::rerun-if-changed={}", folder.display());

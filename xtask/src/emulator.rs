@@ -6,8 +6,6 @@ use std::{
     process::{Command, ExitCode},
 };
 
-use anyhow::Context;
-
 use crate::{
     firmware::{self, Parts},
     job::{self, Job},
@@ -21,7 +19,7 @@ pub const HOST_PROFILE: &str = "host";
 /// Builds what is out of date and runs `program` on the image, unless the arguments name one or ask for something that
 /// needs none; its exit code becomes ours.
 pub fn run(program: &'static str, passed_on: &[OsString]) -> anyhow::Result<ExitCode> {
-    let (build_emulator, path) = build(program)?;
+    let (build_emulator, path) = build("robot-emulator", program)?;
     let mut jobs = vec![build_emulator];
     let mut command = Command::new(path);
     command.args(passed_on);
@@ -31,9 +29,7 @@ pub fn run(program: &'static str, passed_on: &[OsString]) -> anyhow::Result<Exit
         command.arg("--elf").arg::<PathBuf>(elf);
     }
     job::run_all(jobs)?;
-    let status = command.status().context("cannot start the emulator")?;
-    let code = status.code().and_then(|code| u8::try_from(code).ok());
-    Ok(code.map_or(ExitCode::FAILURE, ExitCode::from))
+    tool::exit_code_of(command)
 }
 
 fn needs_an_image(passed_on: &[OsString]) -> bool {
@@ -44,19 +40,19 @@ fn needs_an_image(passed_on: &[OsString]) -> bool {
     })
 }
 
-/// The build, ready to start; installs what it needs.
-fn build(program: &'static str) -> anyhow::Result<(Job, PathBuf)> {
+/// The build of a program with the emulator in it, ready to start; installs what it needs.
+pub fn build(package: &str, program: &str) -> anyhow::Result<(Job, PathBuf)> {
     prerequisites::ensure(&EMULATOR)?;
     let host = tool::host_triple()?;
     let mut command = tool::cargo();
-    command.args(["build", "--package", "robot-emulator", "--bin", program]);
+    command.args(["build", "--package", package, "--bin", program]);
     command.args(["--profile", HOST_PROFILE, "--target", &host]);
     let path = workspace::host_target_dir()
         .join(&host)
         .join(HOST_PROFILE)
         .join(program);
     let job = Job {
-        name: "emulator".to_owned(),
+        name: package.to_owned(),
         command,
     };
     Ok((job, path))

@@ -1,6 +1,10 @@
 //! Child processes with a known environment.
 
-use std::{env, ffi::OsStr, process::Command};
+use std::{
+    env,
+    ffi::OsStr,
+    process::{Command, ExitCode},
+};
 
 use anyhow::{Context, bail};
 
@@ -46,6 +50,16 @@ pub fn cargo() -> Command {
 /// Whether `program` exists and exits with success; it prints nothing.
 pub fn succeeds(mut command: Command) -> bool {
     command.output().is_ok_and(|output| output.status.success())
+}
+
+/// Runs it to its end in front of the user; its exit code becomes ours.
+pub fn exit_code_of(mut command: Command) -> anyhow::Result<ExitCode> {
+    let name = command.get_program().to_string_lossy().into_owned();
+    let status = command
+        .status()
+        .with_context(|| format!("cannot start {name}"))?;
+    let code = status.code().and_then(|code| u8::try_from(code).ok());
+    Ok(code.map_or(ExitCode::FAILURE, ExitCode::from))
 }
 
 /// What `program` prints, without the line end.

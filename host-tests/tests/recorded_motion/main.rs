@@ -1,95 +1,78 @@
-//! The estimator on recorded human motion with optical ground truth (BROAD, see `data/broad/README.md`).
+//! The estimator on recorded human motion with optical ground truth (BROAD; `cargo xtask replay` shows the same).
 //!
 //! The recordings stay outside the repository: in `../shared/data/broad`, or where `ROBOT_DATA` points when this is
-//! built. Without them the test counts as ignored.
+//! built. Without them these tests count as ignored.
 
-mod score;
-mod trial;
+mod limits;
+mod twelve_trials;
 
-use robot_app::{
-    domain::{ImuState, MagState, MotorFeedback, StateEstimate, WheelOdomConfig},
-    estimation::InsEstimator,
-};
-use score::{AttitudeError, Rmse};
-use trial::Trial;
+use robot_replay::Mode;
+use twelve_trials::errors_of_all;
 
-const SAMPLE_US: u64 = 5_000;
-/// The magnetometer is read at 50 Hz.
-const ROWS_A_MAG_SAMPLE: usize = 4;
-const START_US: u64 = 1_000_000;
+const NO_OFFSET: [f32; 3] = [0.0; 3];
 
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Sensors {
-    WithMagnetometer,
-    WithoutMagnetometer,
-}
-
-/// Attitude error of every scored 1 kHz output.
-fn run(trial: &Trial, sensors: Sensors) -> Rmse {
-    let mut estimator = InsEstimator::new(WheelOdomConfig::default());
-    let motor = MotorFeedback::default();
-    let mut estimate = StateEstimate::default();
-    let mut mag = MagState::default();
-    let mut rmse = Rmse::default();
-    for (index, row) in trial.rows.iter().enumerate() {
-        let ts_us = START_US + index as u64 * SAMPLE_US;
-        let imu = ImuState {
-            accel_mps2: row.accel_mps2,
-            gyro_dps: row.gyro_rps.map(f32::to_degrees),
-            ts_us,
-            ..ImuState::default()
-        };
-        if sensors == Sensors::WithMagnetometer && index % ROWS_A_MAG_SAMPLE == 0 {
-            mag = MagState {
-                mag_ut: row.mag_ut,
-                ts_us,
-            };
-        }
-        for step in 0..5 {
-            estimator.step(&imu, &mag, &motor, ts_us + step * 1_000, &mut estimate);
-            let share = step as f64 / 5.0;
-            if let Some(reference) = trial.scored_reference(index, share) {
-                rmse.add(AttitudeError::between(
-                    estimate.q_wxyz.map(f64::from),
-                    reference,
-                ));
-            }
-        }
-    }
-    rmse
-}
-
-/// The mean of the published numbers of VQF with default settings on these trials, extrapolated to 1 kHz: 2.57° total
-/// and 0.84° inclination. A single bad trial may be three times as far off.
 #[test]
 #[cfg_attr(
     not(recorded_motion),
     ignore = "no recorded motion: set ROBOT_DATA to its folder"
 )]
 fn attitude_follows_the_optical_reference() -> anyhow::Result<()> {
-    let trials = trial::load_all()?;
-    let (mut total_sum, mut inclination_sum) = (0.0, 0.0);
-    println!("trial, RMSE in degrees: total, heading, inclination");
-    for trial in &trials {
-        let [total, heading, inclination] = run(trial, Sensors::WithMagnetometer).degrees();
-        let [_, _, alone] = run(trial, Sensors::WithoutMagnetometer).degrees();
-        println!(
-            "{:50} {total:8.2} {heading:8.2} {inclination:8.2}",
-            trial.name
+    let with = errors_of_all(Mode::NineAxis, NO_OFFSET)?;
+    let without = errors_of_all(Mode::SixAxis, NO_OFFSET)?;
+    println!("with magnetometer:\n{with}\nwithout:\n{without}");
+    limits::WITH_MAGNETOMETER.hold(&with);
+    limits::WITHOUT_MAGNETOMETER.hold(&without);
+    for (with, without) in with.trials.iter().zip(&without.trials) {
+        let name = &with.name;
+        let (inclination, alone) = (
+            with.every_tick.inclination_deg,
+            without.every_tick.inclination_deg,
         );
-        assert!(inclination < 3.0, "{}: {inclination}°", trial.name);
         assert!(
-            (inclination - alone).abs() < 0.5,
-            "{}: the magnetometer tilts the horizon",
-            trial.name
+            inclination <= limits::WORST_INCLINATION_DEG,
+            "{name}: {inclination}°"
         );
-        total_sum += total;
-        inclination_sum += inclination;
+        assert!(
+            (inclination - alone).abs() <= limits::TILT_BY_MAGNETOMETER_DEG,
+            "{name}: the magnetometer tilts the horizon from {alone}° to {inclination}°"
+        );
     }
-    let count = trials.len() as f64;
-    let (total, inclination) = (total_sum / count, inclination_sum / count);
-    println!("mean {total:.3}° total, {inclination:.3}° inclination");
-    assert!(total < 2.57, "mean error {total}°");
-    assert!(inclination < 0.90, "mean inclination error {inclination}°");
     Ok(())
+}
+
+fn a_start_up_offset_costs_next_to_nothing(mode: Mode) -> anyhow::Result<()> {
+    let without = errors_of_all(mode, NO_OFFSET)?;
+    for offset_dps in limits::START_UP_OFFSETS_DPS {
+        let with = errors_of_all(mode, offset_dps)?;
+        println!("{mode:?}, offset by {offset_dps:?} °/s:\n{with}");
+        for (mean, calm) in [
+            (with.mean_at_samples(), without.mean_at_samples()),
+            (with.mean_every_tick(), without.mean_every_tick()),
+        ] {
+            let worse = limits::worse_deg(&mean, &calm);
+            assert!(
+                worse <= limits::WORSE_BY_OFFSET_DEG,
+                "{mode:?}, offset by {offset_dps:?} °/s: {mean:?} instead of {calm:?}"
+            );
+        }
+    }
+    Ok(())
+}
+
+#[test]
+#[cfg_attr(
+    not(recorded_motion),
+    ignore = "no recorded motion: set ROBOT_DATA to its folder"
+)]
+fn a_start_up_offset_is_found_with_magnetometer() -> anyhow::Result<()> {
+    a_start_up_offset_costs_next_to_nothing(Mode::NineAxis)
+}
+
+#[test]
+#[cfg_attr(
+    not(recorded_motion),
+    ignore = "no recorded motion: set ROBOT_DATA to its folder"
+)]
+fn a_start_up_offset_is_found_without_magnetometer() -> anyhow::Result<()> {
+    a_start_up_offset_costs_next_to_nothing(Mode::SixAxis)
 }

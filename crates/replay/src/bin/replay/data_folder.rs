@@ -6,6 +6,8 @@ use anyhow::bail;
 
 /// Beside the repository.
 const USUAL: &str = "../shared/data/broad";
+/// What is taken of the recordings where nobody says which.
+const AT_200_HZ: &str = "hz200";
 
 /// What was asked for, else what `ROBOT_DATA` names, else the usual place.
 pub fn find(asked: Option<&Path>) -> anyhow::Result<PathBuf> {
@@ -20,5 +22,9 @@ pub fn find(asked: Option<&Path>) -> anyhow::Result<PathBuf> {
             folder.display()
         );
     }
-    Ok(folder)
+    let at_200_hz = folder.join(AT_200_HZ);
+    Ok(match asked.is_none() && at_200_hz.is_dir() {
+        true => at_200_hz,
+        false => folder,
+    })
 }

@@ -10,6 +10,7 @@ mod table;
 use std::{
     fs,
     path::{Path, PathBuf},
+    process::ExitCode,
 };
 
 use anyhow::{Context, bail};
@@ -24,7 +25,7 @@ use batch::Task;
 /// A trial is NAME.json with NAME.f32.gz beside it, at any rate: see the README.md of the recordings. The estimator gets
 /// what the firmware would: the IMU at 200 Hz, the magnetometer at 50 Hz, each sample once.
 #[derive(Parser)]
-#[command(name = "cargo xtask replay", after_help = EXAMPLES)]
+#[command(name = "replay", bin_name = "cargo xtask replay", after_help = EXAMPLES)]
 struct Args {
     /// Folder of trials, or a folder with one such folder in it [default: $ROBOT_DATA, else ../shared/data/broad].
     #[arg(long, value_name = "DIR")]
@@ -62,8 +63,17 @@ fn offset(text: &str) -> Result<[f32; 3], String> {
     }
 }
 
-fn main() -> anyhow::Result<()> {
-    let args = Args::parse();
+fn main() -> ExitCode {
+    match replay(&Args::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn replay(args: &Args) -> anyhow::Result<()> {
     let data = data_folder::find(args.data.as_deref())?;
     let files = chosen(trial_files(&data)?, args.trial.as_deref())?;
     fs::create_dir_all(&args.out)

@@ -33,23 +33,38 @@ pub fn plots(
     let errors = plot("error, °", 260, error_curves(&compared));
     let biases = plot("bias, °/s", 190, bias_curves(run, gyro_offset_dps));
     let seen = [
-        (errors, trial.name.clone(), "The tinted phase is scored."),
+        (
+            errors,
+            trial.name.clone(),
+            error_caption(run.score(trial, At::EveryTick)),
+        ),
         (
             biases,
             format!("{}: gyro bias", trial.name),
-            "What the estimator takes out of the gyro.",
+            "What the estimator takes out of the gyro.".to_owned(),
         ),
     ];
     let mut figures = Vec::new();
     for (plot, title, caption) in seen {
         figures.extend(plot.draw()?.map(|svg| Figure {
             title,
-            caption: caption.into(),
+            caption,
             legend: plot.legend(),
             svg,
         }));
     }
     Ok(figures)
+}
+
+fn error_caption(figures: Option<Figures>) -> String {
+    let scored = "From the first valid estimate on, time in s; the tinted phase is scored";
+    match figures {
+        Some(f) => format!(
+            "{scored}: {:.2}° total, {:.2}° heading, {:.2}° inclination.",
+            f.total_deg, f.heading_deg, f.inclination_deg
+        ),
+        None => format!("{scored}."),
+    }
 }
 
 fn time_s(tick: &Tick) -> f64 {
@@ -134,16 +149,19 @@ pub fn page(task: &Task, outcomes: &[Outcome]) -> String {
 
 fn errors_table(outcomes: &[Outcome]) -> String {
     let mut html = String::from(
-        "<table>\n<tr><th></th><th colspan=\"3\">at the samples</th><th colspan=\"3\">at 1 kHz</th><th></th></tr>\n\
-         <tr><th>trial</th><th>total</th><th>heading</th><th>inclination</th>\
-         <th>total</th><th>heading</th><th>inclination</th><th></th></tr>\n",
+        "<table>\n<tr><th></th><th class=\"n\" colspan=\"3\">at the samples</th>\
+         <th class=\"n\" colspan=\"3\">at 1 kHz</th><th></th></tr>\n<tr><th>trial</th>",
     );
+    for part in ["total", "heading", "inclination"].iter().cycle().take(6) {
+        let _ = write!(html, "<th class=\"n\">{part}</th>");
+    }
+    html += "<th></th></tr>\n";
     for outcome in outcomes {
         let troubles: Vec<String> = table::troubles(outcome).collect();
         let figures = (outcome.at_samples, outcome.at_1khz);
         row(&mut html, &outcome.name, figures, &troubles.join("; "));
     }
-    row(&mut html, "mean", table::means(outcomes), "");
+    row(&mut html, "Mean", table::means(outcomes), "");
     html + "</table>\n"
 }
 

@@ -1,0 +1,74 @@
+//! What the estimator must reach on the twelve trials. Every limit is here.
+
+use robot_replay::Figures;
+
+use crate::twelve_trials::Errors;
+
+/// Means over the trials.
+pub struct Limits {
+    /// At the reference's times.
+    total_at_samples_deg: f64,
+    /// At every output.
+    total_every_tick_deg: f64,
+    inclination_deg: f64,
+}
+
+/// VQF, default settings: 2.56°, extrapolated to 1 kHz 2.57°; inclination 0.84°.
+pub const WITH_MAGNETOMETER: Limits = Limits {
+    total_at_samples_deg: 2.46,
+    total_every_tick_deg: 2.46,
+    inclination_deg: 0.85,
+};
+
+/// VQF, default settings: 5.60°, inclination 0.84°.
+pub const WITHOUT_MAGNETOMETER: Limits = Limits {
+    total_at_samples_deg: 5.61,
+    total_every_tick_deg: 5.61,
+    inclination_deg: 0.85,
+};
+
+/// Of any one trial.
+pub const WORST_INCLINATION_DEG: f64 = 3.0;
+/// The magnetometer says nothing about the horizon.
+pub const TILT_BY_MAGNETOMETER_DEG: f64 = 0.5;
+
+/// Added to every gyro sample of every trial, on top of the sensors' own offsets.
+pub const START_UP_OFFSETS_DPS: [[f32; 3]; 3] =
+    [[1.0, -1.0, 1.0], [-1.5, 0.0, 0.0], [0.0, 1.0, -1.0]];
+/// How much worse than without offset any figure may be.
+pub const WORSE_BY_OFFSET_DEG: f64 = 0.3;
+
+impl Limits {
+    pub fn hold(&self, errors: &Errors) {
+        let (samples, ticks) = (errors.mean_at_samples(), errors.mean_every_tick());
+        for (what, figure, limit) in [
+            (
+                "total at the samples",
+                samples.total_deg,
+                self.total_at_samples_deg,
+            ),
+            (
+                "total at every tick",
+                ticks.total_deg,
+                self.total_every_tick_deg,
+            ),
+            (
+                "inclination at the samples",
+                samples.inclination_deg,
+                self.inclination_deg,
+            ),
+        ] {
+            assert!(figure <= limit, "{what}: {figure:.3}°, limit {limit}°");
+        }
+    }
+}
+
+/// The largest growth of a figure.
+pub fn worse_deg(figures: &Figures, before: &Figures) -> f64 {
+    let growth = [
+        figures.total_deg - before.total_deg,
+        figures.heading_deg - before.heading_deg,
+        figures.inclination_deg - before.inclination_deg,
+    ];
+    growth.into_iter().fold(f64::NEG_INFINITY, f64::max)
+}
