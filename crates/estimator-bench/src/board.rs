@@ -1,6 +1,6 @@
 //! The loop around a filter.
 
-use core::{hint::black_box, panic::PanicInfo};
+use core::{f32::consts::FRAC_1_SQRT_2, hint::black_box, panic::PanicInfo};
 
 use cortex_m::asm::{bkpt, udf};
 // Its linker script is asked for by the workspace's settings for the board.
@@ -74,6 +74,11 @@ impl Fresh {
             mag_ut: new_mag.then_some(input.mag_ut),
         }
     }
+}
+
+/// Attitude in a world whose x axis points north → in ENU.
+pub fn north_to_east([w, x, y, z]: [f32; 4]) -> [f32; 4] {
+    [w - z, x - y, x + y, w + z].map(|part| part * FRAC_1_SQRT_2)
 }
 
 #[panic_handler]

@@ -1,8 +1,15 @@
-//! The budgets a run can be held against (design, section 6), beside what the run measured.
+//! The budgets a run can be held against, beside what the run measured.
 
 use serde::Serialize;
 
 use super::runner::RunResult;
+
+pub const TICK_MEAN_INSTRUCTIONS: f64 = 6_000.0;
+pub const TICK_MAX_INSTRUCTIONS: f64 = 12_000.0;
+pub const RELEASE_JITTER_US: f64 = 10.0;
+/// Shares.
+pub const CPU_LOAD: f64 = 0.2;
+pub const CAN_LOAD: f64 = 0.8;
 
 #[derive(Clone, Debug, Serialize)]
 pub struct Budget {
@@ -34,23 +41,23 @@ pub fn image_budgets(result: &RunResult) -> Vec<Budget> {
         Budget::at_most(
             "control tick, mean",
             stats.tick_instructions.mean,
-            6_000.0,
+            TICK_MEAN_INSTRUCTIONS,
             " instr.",
         ),
         Budget::at_most(
             "control tick, max",
             stats.tick_instructions.max,
-            12_000.0,
+            TICK_MAX_INSTRUCTIONS,
             " instr.",
         ),
         Budget::at_most(
             "release jitter, max",
             stats.release_jitter_us.max,
-            10.0,
+            RELEASE_JITTER_US,
             " µs",
         ),
         Budget::at_most("missed ticks", stats.missed as f64, 0.0, ""),
-        Budget::at_most("CPU load", stats.cpu_load * 100.0, 20.0, " %"),
+        Budget::at_most("CPU load", stats.cpu_load * 100.0, CPU_LOAD * 100.0, " %"),
     ];
     if stats.ticks == 0 {
         budgets.retain(|b| b.name == "CPU load");
@@ -62,7 +69,12 @@ pub fn image_budgets(result: &RunResult) -> Vec<Budget> {
         });
     }
     for (name, bus) in ["CAN1 load", "CAN2 load"].into_iter().zip(&stats.can) {
-        budgets.push(Budget::at_most(name, bus.load * 100.0, 80.0, " %"));
+        budgets.push(Budget::at_most(
+            name,
+            bus.load * 100.0,
+            CAN_LOAD * 100.0,
+            " %",
+        ));
     }
     budgets
 }

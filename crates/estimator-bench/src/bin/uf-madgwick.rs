@@ -1,4 +1,5 @@
-//! Madgwick's filter of the crate `uf-ahrs`, with its own settings.
+//! Madgwick's filter of the crate `uf-ahrs`, with its own settings. Each step takes the latest field: it knows no other way to fuse
+//! a slower magnetometer.
 
 #![no_std]
 #![no_main]
@@ -14,6 +15,7 @@ use uf_ahrs::{Ahrs, Madgwick, MadgwickParams};
 
 struct UfMadgwick {
     filter: Madgwick,
+    mag_ut: Vector3<f32>,
     fresh: Fresh,
 }
 
@@ -26,16 +28,16 @@ impl Filter for UfMadgwick {
 
     fn step(&mut self, taken: &Samples) {
         let Some(imu) = taken.imu else { return };
-        let (gyro, accel) = (Vector3::from(imu.gyro_rps), Vector3::from(imu.accel_mps2));
-        match taken.mag_ut {
-            Some(mag) => self.filter.update(gyro, accel, Vector3::from(mag)),
-            None => self.filter.update_imu(gyro, accel),
-        };
+        if let Some(mag_ut) = taken.mag_ut {
+            self.mag_ut = mag_ut.into();
+        }
+        self.filter
+            .update(imu.gyro_rps.into(), imu.accel_mps2.into(), self.mag_ut);
     }
 
     fn q_wxyz(&self) -> [f32; 4] {
         let q = self.filter.orientation();
-        [q.w, q.i, q.j, q.k]
+        board::north_to_east([q.w, q.i, q.j, q.k])
     }
 }
 
@@ -43,6 +45,7 @@ impl Filter for UfMadgwick {
 fn main() -> ! {
     board::run(UfMadgwick {
         filter: Madgwick::new(Duration::from_millis(5), MadgwickParams::default()),
+        mag_ut: Vector3::zeros(),
         fresh: Fresh::default(),
     })
 }

@@ -37,7 +37,7 @@ impl Filter for UfVqf {
 
     fn q_wxyz(&self) -> [f32; 4] {
         let q = self.orientation;
-        [q.w, q.i, q.j, q.k]
+        board::north_to_east([q.w, q.i, q.j, q.k])
     }
 }
 

@@ -1,0 +1,50 @@
+//! The filters that can be compared.
+
+use std::path::{Path, PathBuf};
+
+/// A program of the package `estimator-bench`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Filter {
+    /// Of the program's file.
+    pub program: &'static str,
+    /// Head of its column.
+    pub title: &'static str,
+}
+
+/// The robot's own.
+pub const OURS: Filter = Filter {
+    program: "ours",
+    title: "robot",
+};
+
+/// From the registry, each with its own settings.
+pub const RIVALS: [Filter; 4] = [
+    Filter {
+        program: "vqf-rs",
+        title: "vqf-rs",
+    },
+    Filter {
+        program: "uf-vqf",
+        title: "uf-ahrs Vqf",
+    },
+    Filter {
+        program: "uf-madgwick",
+        title: "Madgwick",
+    },
+    Filter {
+        program: "uf-mahony",
+        title: "Mahony",
+    },
+];
+
+/// Start-up and mailbox alone: what each program has beside its filter.
+pub const EMPTY: Filter = Filter {
+    program: "empty",
+    title: "empty",
+};
+
+impl Filter {
+    pub fn elf(self, programs: &Path) -> PathBuf {
+        programs.join(self.program)
+    }
+}

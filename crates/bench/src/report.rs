@@ -1,0 +1,182 @@
+//! The figures against their limits.
+
+use serde::Serialize;
+
+use crate::{
+    image_size::ImageSize,
+    measure::{Costs, Measured, Spread},
+    motion::Wheels,
+    scenarios,
+    score::Rmse,
+    table::Group,
+    work::{FilterResult, Results},
+};
+use robot_emulator::sim::{budgets, summary::Summary};
+
+/// What the shipped image may take.
+const IMAGE_FLASH_BYTES: f64 = 128.0 * 1024.0;
+const IMAGE_RAM_BYTES: f64 = 48.0 * 1024.0;
+/// What the estimator may take.
+pub const UPDATE_MEAN: f64 = 2_000.0;
+pub const UPDATE_MAX: f64 = 3_000.0;
+pub const EXTRAPOLATION_MEAN: f64 = 400.0;
+pub const ESTIMATOR_FLASH_BYTES: f64 = 12.0 * 1024.0;
+
+#[derive(Debug, Serialize)]
+pub struct Report {
+    pub ok: bool,
+    /// What the filters were fed with.
+    pub motions: Vec<String>,
+    pub groups: Vec<Group>,
+}
+
+impl Report {
+    pub fn new(image: Option<ImageSize>, results: &Results, motions: Vec<String>) -> Self {
+        let mut groups = Vec::new();
+        groups.extend(image.map(image_group));
+        if !results.boards.is_empty() {
+            groups.push(board_group(&results.boards));
+        }
+        groups.push(filter_group(&results.filters));
+        let rows = groups.iter().flat_map(|group| &group.rows);
+        Self {
+            ok: rows.into_iter().all(|row| row.broken.is_empty()),
+            motions,
+            groups,
+        }
+    }
+
+    pub fn to_json(&self) -> String {
+        serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
+    }
+}
+
+fn image_group(size: ImageSize) -> Group {
+    let column = ["image".to_owned()];
+    let mut group = Group::new("shipped image", column.clone());
+    group
+        .add("flash", "bytes", vec![Some(size.flash_bytes as f64)])
+        .at_most(IMAGE_FLASH_BYTES, &column);
+    group
+        .add("static RAM", "bytes", vec![Some(size.ram_bytes as f64)])
+        .at_most(IMAGE_RAM_BYTES, &column);
+    group
+}
+
+fn board_group(boards: &[Summary]) -> Group {
+    let columns = scenarios::NAMES.map(str::to_owned);
+    let mut group = Group::new("emulated board", columns.clone());
+    let of = |value: fn(&Summary) -> f64| boards.iter().map(|board| Some(value(board))).collect();
+    group
+        .add(
+            "control tick, mean",
+            "instr.",
+            of(|b| b.control.instructions.mean),
+        )
+        .at_most(budgets::TICK_MEAN_INSTRUCTIONS, &columns);
+    group.add(
+        "control tick, p99",
+        "instr.",
+        of(|b| b.control.instructions.p99),
+    );
+    group
+        .add(
+            "control tick, max",
+            "instr.",
+            of(|b| b.control.instructions.max),
+        )
+        .at_most(budgets::TICK_MAX_INSTRUCTIONS, &columns);
+    group
+        .add(
+            "release jitter, p99",
+            "µs",
+            of(|b| b.control.release_jitter_us.p99),
+        )
+        .decimals(2);
+    group
+        .add(
+            "release jitter, max",
+            "µs",
+            of(|b| b.control.release_jitter_us.max),
+        )
+        .decimals(2)
+        .at_most(budgets::RELEASE_JITTER_US, &columns);
+    group
+        .add("missed ticks", "", of(|b| b.control.missed as f64))
+        .at_most(0.0, &columns);
+    group
+        .add("CPU load", "%", of(|b| b.cpu_load * 100.0))
+        .decimals(1)
+        .at_most(budgets::CPU_LOAD * 100.0, &columns);
+    for (name, bus) in [("CAN1 load", 0), ("CAN2 load", 1)] {
+        let load = |board: &Summary| board.can.get(bus).map(|can| can.load * 100.0);
+        group
+            .add(name, "%", boards.iter().map(load).collect())
+            .decimals(1)
+            .at_most(budgets::CAN_LOAD * 100.0, &columns);
+    }
+    group.add("stack peak", "bytes", of(|b| b.stack_peak_bytes as f64));
+    group
+}
+
+fn filter_group(filters: &[FilterResult]) -> Group {
+    let title = |result: &FilterResult| result.entry.title().to_owned();
+    let mut group = Group::new("filters on the Cortex-M4F", filters.iter().map(title));
+    let ours = filters.iter().filter(|result| result.entry.is_ours());
+    let ours: Vec<String> = ours.map(title).collect();
+    let spread = |of: fn(&Costs) -> &Vec<u32>| -> Vec<Option<Spread>> {
+        filters
+            .iter()
+            .map(|result| Spread::of(&ticks(result, of)))
+            .collect()
+    };
+    let mean = |list: &[Option<Spread>]| list.iter().map(|s| Some(s.as_ref()?.mean)).collect();
+    let max = |list: &[Option<Spread>]| list.iter().map(|s| Some(s.as_ref()?.max.into())).collect();
+    let with_mag = spread(|costs| &costs.update_with_mag);
+    group
+        .add("update with magnetometer, mean", "instr.", mean(&with_mag))
+        .at_most(UPDATE_MEAN, &ours);
+    group
+        .add("update with magnetometer, max", "instr.", max(&with_mag))
+        .at_most(UPDATE_MAX, &ours);
+    let update = spread(|costs| &costs.update);
+    group.add("update without, mean", "instr.", mean(&update));
+    group.add("update without, max", "instr.", max(&update));
+    let between = spread(|costs| &costs.extrapolation);
+    group
+        .add("1 kHz extrapolation, mean", "instr.", mean(&between))
+        .at_most(EXTRAPOLATION_MEAN, &ours);
+    group.add("1 kHz extrapolation, max", "instr.", max(&between));
+    let flash = filters.iter().map(|result| Some(result.flash_bytes as f64));
+    group
+        .add("flash", "bytes", flash.collect())
+        .at_most(ESTIMATOR_FLASH_BYTES, &ours);
+    // The motion with wheels is computed: what it says of errors cannot stand beside recordings.
+    let recorded = |result: &FilterResult| match result.entry.wheels {
+        Wheels::Silent => accuracy(&result.runs),
+        Wheels::Turning => None,
+    };
+    let rmse: Vec<Option<Rmse>> = filters.iter().map(recorded).collect();
+    let part = |of: fn(&Rmse) -> f64| rmse.iter().map(|rmse| Some(of(rmse.as_ref()?))).collect();
+    group
+        .add("error, total", "° RMS", part(|r| r.total_deg))
+        .decimals(2);
+    group
+        .add("error, heading", "° RMS", part(|r| r.heading_deg))
+        .decimals(2);
+    group
+        .add("error, inclination", "° RMS", part(|r| r.inclination_deg))
+        .decimals(2);
+    group
+}
+
+fn ticks(result: &FilterResult, of: fn(&Costs) -> &Vec<u32>) -> Vec<u32> {
+    let runs = result.runs.iter().flat_map(|run| of(&run.costs));
+    runs.copied().collect()
+}
+
+/// Mean over the motions with a reference.
+fn accuracy(runs: &[Measured]) -> Option<Rmse> {
+    let scores: Vec<Rmse> = runs.iter().filter_map(|run| run.score.rmse()).collect();
+    Rmse::mean(&scores)
+}

@@ -1,0 +1,65 @@
+//! The shipped image on the emulated board.
+
+use std::path::Path;
+
+use anyhow::{Context, ensure};
+use robot_emulator::{
+    machine::LogLine,
+    sim::{
+        job::Job,
+        runner::Observer,
+        scenario::Scenario,
+        signals::{SignalTable, Values},
+        summary::Summary,
+    },
+};
+use robot_plant::time::{MS, Ps};
+
+/// Scenarios that load the board: what a robot does all day, and everything on.
+pub const NAMES: [&str; 2] = ["drive", "full-traffic"];
+
+/// Simulated milliseconds.
+pub fn length_ms(scenario: &Scenario) -> u64 {
+    scenario.length / MS
+}
+
+pub fn read(repository: &Path, name: &str) -> anyhow::Result<Scenario> {
+    let path = repository.join(format!("scenarios/{name}.toml"));
+    Scenario::read(&path).with_context(|| format!("scenario {name}"))
+}
+
+/// `progress` is told of each simulated millisecond. Expectations that did not hold are an error.
+pub fn run(elf: &Path, scenario: Scenario, progress: impl FnMut()) -> anyhow::Result<Summary> {
+    let name = scenario.name.clone();
+    let job = Job {
+        elf: elf.to_owned(),
+        scenario,
+        imu_trial: None,
+        patches: Vec::new(),
+        can_on_pty: Vec::new(),
+        flash_file: None,
+    };
+    let mut watcher = Watcher { next: 0, progress };
+    let summary = job.run(&mut [&mut watcher])?.summary;
+    ensure!(
+        summary.ok,
+        "{name}: the scenario failed; `cargo xtask sim` with it says why"
+    );
+    Ok(summary)
+}
+
+struct Watcher<P> {
+    next: Ps,
+    progress: P,
+}
+
+impl<P: FnMut()> Observer for Watcher<P> {
+    fn sample(&mut self, at: Ps, _: &SignalTable, _: &Values) {
+        while self.next < at {
+            (self.progress)();
+            self.next += MS;
+        }
+    }
+
+    fn log(&mut self, _: &LogLine) {}
+}

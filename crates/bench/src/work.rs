@@ -1,0 +1,189 @@
+//! All runs, on every core, behind one progress bar.
+
+use std::{
+    path::PathBuf,
+    sync::{Mutex, PoisonError},
+    thread,
+};
+
+use anyhow::Context;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use robot_emulator::sim::{scenario::Scenario, summary::Summary};
+
+use crate::{
+    filters::{EMPTY, Filter, OURS, RIVALS},
+    measure::{self, Detail, Measured},
+    motion::{Motion, Wheels},
+    program::Program,
+    scenarios,
+};
+
+/// What is to be measured.
+pub struct Plan {
+    /// The shipped image; `None` leaves the board out.
+    pub image: Option<PathBuf>,
+    pub scenarios: Vec<Scenario>,
+    /// Folder of the filters' programs.
+    pub programs: PathBuf,
+    pub motions: Vec<Motion>,
+    pub detail: Detail,
+}
+
+/// A filter on one kind of motion: a column of the table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Entry {
+    pub filter: Filter,
+    pub wheels: Wheels,
+}
+
+/// An entry over all its motions, in their order.
+pub struct FilterResult {
+    pub entry: Entry,
+    /// Without start-up and mailbox.
+    pub flash_bytes: usize,
+    pub runs: Vec<Measured>,
+}
+
+pub struct Results {
+    /// In the order of the plan.
+    pub boards: Vec<Summary>,
+    pub filters: Vec<FilterResult>,
+}
+
+enum Task<'p> {
+    Board(&'p Scenario),
+    Filter(Entry, &'p Motion),
+}
+
+enum Done {
+    Board(Box<Summary>),
+    Filter(Entry, Measured),
+}
+
+impl Plan {
+    pub fn run(&self) -> anyhow::Result<Results> {
+        let empty = Program::boot(&EMPTY.elf(&self.programs))?.flash_bytes;
+        let tasks = self.tasks();
+        let bar = bar(tasks.iter().map(Task::milliseconds).sum());
+        let done = self.do_all(tasks, &bar);
+        bar.finish_and_clear();
+        let (mut boards, mut measured) = (Vec::new(), Vec::new());
+        for done in done? {
+            match done {
+                Done::Board(summary) => boards.push(*summary),
+                Done::Filter(entry, run) => measured.push((entry, run)),
+            }
+        }
+        let mut filters = Vec::new();
+        for entry in entries() {
+            let own = measured.extract_if(.., |(of, _)| *of == entry);
+            let runs: Vec<Measured> = own.map(|(_, run)| run).collect();
+            let flash_bytes = runs.first().context("no motion to run")?.flash_bytes;
+            filters.push(FilterResult {
+                entry,
+                flash_bytes: flash_bytes.saturating_sub(empty),
+                runs,
+            });
+        }
+        Ok(Results { boards, filters })
+    }
+
+    /// The longest first: no core shall be left alone with one at the end.
+    fn tasks(&self) -> Vec<Task<'_>> {
+        let boards = self.scenarios.iter().map(Task::Board);
+        let filters = entries().flat_map(|entry| {
+            let own = self
+                .motions
+                .iter()
+                .filter(move |motion| motion.wheels == entry.wheels);
+            own.map(move |motion| Task::Filter(entry, motion))
+        });
+        boards.chain(filters).collect()
+    }
+
+    /// What the tasks gave, in their order.
+    fn do_all(&self, tasks: Vec<Task<'_>>, bar: &ProgressBar) -> anyhow::Result<Vec<Done>> {
+        let count = tasks.len();
+        let queue = Mutex::new(tasks.into_iter().enumerate());
+        let done = Mutex::new(Vec::with_capacity(count));
+        let take = || queue.lock().unwrap_or_else(PoisonError::into_inner).next();
+        let put = |place, outcome: anyhow::Result<Done>| {
+            let failed = outcome.is_err();
+            let mut done = done.lock().unwrap_or_else(PoisonError::into_inner);
+            done.push((place, outcome));
+            failed
+        };
+        let cores = thread::available_parallelism().map_or(1, usize::from);
+        thread::scope(|scope| {
+            for _ in 0..cores.min(count) {
+                scope.spawn(|| {
+                    while let Some((place, task)) = take() {
+                        if put(place, self.do_one(&task, bar)) {
+                            while take().is_some() {}
+                        }
+                    }
+                });
+            }
+        });
+        let mut done = done.into_inner().unwrap_or_else(PoisonError::into_inner);
+        done.sort_by_key(|(place, _)| *place);
+        done.into_iter().map(|(_, outcome)| outcome).collect()
+    }
+
+    fn do_one(&self, task: &Task<'_>, bar: &ProgressBar) -> anyhow::Result<Done> {
+        match task {
+            Task::Board(scenario) => {
+                let image = self.image.as_ref().context("no image to run")?;
+                bar.set_message(scenario.name.clone());
+                let summary = scenarios::run(image, (*scenario).clone(), || bar.inc(1))?;
+                Ok(Done::Board(Box::new(summary)))
+            }
+            Task::Filter(entry, motion) => {
+                let Entry { filter, .. } = *entry;
+                bar.set_message(format!("{}: {}", filter.title, motion.name));
+                let row = u64::from(Motion::ticks_a_row());
+                measure::run(filter, &self.programs, motion, self.detail, || bar.inc(row))
+                    .with_context(|| format!("{} over {}", filter.title, motion.name))
+                    .map(|run| Done::Filter(*entry, run))
+            }
+        }
+    }
+}
+
+impl Task<'_> {
+    /// Simulated.
+    fn milliseconds(&self) -> u64 {
+        match self {
+            Self::Board(scenario) => scenarios::length_ms(scenario),
+            Self::Filter(_, motion) => motion.rows.len() as u64 * u64::from(Motion::ticks_a_row()),
+        }
+    }
+}
+
+/// Ours over recordings, then the others over the same; ours with wheels, which recordings lack.
+fn entries() -> impl Iterator<Item = Entry> {
+    let of = |wheels| move |filter| Entry { filter, wheels };
+    let silent = [OURS].into_iter().chain(RIVALS).map(of(Wheels::Silent));
+    silent.chain([OURS].map(of(Wheels::Turning)))
+}
+
+impl Entry {
+    pub fn title(self) -> &'static str {
+        match self.wheels {
+            Wheels::Silent => self.filter.title,
+            Wheels::Turning => "robot, wheels",
+        }
+    }
+
+    /// What the limits of the estimator hold for.
+    pub fn is_ours(self) -> bool {
+        self.filter == OURS
+    }
+}
+
+fn bar(length: u64) -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::stderr_with_hz(10));
+    let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {eta:>4} left  {msg}");
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar
+}
