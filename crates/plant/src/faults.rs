@@ -69,6 +69,7 @@ faults! {
     BatteryLow "battery-low" "battery at 20.5 V instead of 24 V",
     BatteryEmpty "battery-empty" "battery at 18.5 V instead of 24 V",
     Tilted "tilted" "body falls forward to 80°, and is put upright at the end (not while a recording plays)",
+    FloorSlippery "floor-slippery" "floor like wet ice: the wheels spin when they push, and slide when they brake (plant rolling)",
 }
 
 /// Which faults are there now.

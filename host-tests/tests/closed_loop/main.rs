@@ -1,6 +1,7 @@
 //! The app drives the simulated robot through its real wire formats.
 
 mod legs;
+mod motion;
 mod robot;
 
 use robot::Robot;

@@ -117,7 +117,10 @@ impl InsEstimator {
         let gyro_rps = imu.gyro_dps.map(f32::to_radians);
         // Cut off at the end of its range a blow no longer averages out, and would tilt the robot by degrees.
         let accel_mps2 = (!imu.saturated).then_some(imu.accel_mps2);
-        self.attitude.feed_imu(gyro_rps, accel_mps2, dt_s);
+        // Without what the known motion adds, the force points up.
+        let standing_mps2 =
+            accel_mps2.map(|accel| vector::sub(accel, self.motion.kinematic_mps2()));
+        self.attitude.feed_imu(gyro_rps, standing_mps2, dt_s);
         self.settled_samples = self.settled_samples.saturating_add(1);
         self.rate_rps = vector::sub(gyro_rps, self.attitude.bias_rps());
         Some(AccelSample { accel_mps2, dt_s })

@@ -388,6 +388,7 @@ fn power_and_pose() -> Vec<Row> {
         .latched(),
         // 0.9 rad at 2 rad/s, and 50 ms to be sure.
         global("tilted", 600.0, flags(&["tilt"], &["estimate-invalid"])).latched(),
+        harmless("floor-slippery", Flags::default()),
     ]
 }
 

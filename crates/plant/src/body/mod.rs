@@ -21,6 +21,23 @@ const WHEEL_INERTIA_KGM2: f64 = 0.0105;
 /// Torque of each motor on its wheel, right-hand about the body's y axis (positive drives forward).
 pub(crate) type WheelTorques = [f64; 2];
 
+/// What the wheels roll on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Floor {
+    Clean,
+    Slippery,
+}
+
+impl Floor {
+    /// Most the ground gives per newton of load. Assumed: rubber on a clean floor; on wet ice.
+    fn grip(self) -> f64 {
+        match self {
+            Self::Clean => 0.8,
+            Self::Slippery => 0.05,
+        }
+    }
+}
+
 /// Where the body is, in the ENU earth frame and in its own axes.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Pose {
@@ -48,10 +65,16 @@ impl Body {
         }
     }
 
-    pub(crate) fn step(&mut self, torques_nm: WheelTorques, friction: Friction, dt_s: f64) {
+    pub(crate) fn step(
+        &mut self,
+        torques_nm: WheelTorques,
+        friction: Friction,
+        floor: Floor,
+        dt_s: f64,
+    ) {
         match self {
             Self::Stand(stand) => stand.step(torques_nm, friction, dt_s),
-            Self::Rolling(rolling) => rolling.step(torques_nm, friction, dt_s),
+            Self::Rolling(rolling) => rolling.step(torques_nm, friction, floor, dt_s),
         }
     }
 

@@ -2,15 +2,13 @@
 //!
 //! Balance is taken for granted: pitch and roll stay zero.
 
-use super::{Pose, TRACK_M, WHEEL_INERTIA_KGM2, WHEEL_RADIUS_M, WheelTorques, turn_shaft};
+use super::{Floor, Pose, TRACK_M, WHEEL_INERTIA_KGM2, WHEEL_RADIUS_M, WheelTorques, turn_shaft};
 use crate::{bmi088::Motion, m3508::Friction, world::STANDARD_GRAVITY_MPS2};
 
 /// Robot with legs and wheels, kg (hardware.md 11).
 const MASS_KG: f64 = 9.0;
 /// About z: a 0.3 m square body of 7.5 kg and two wheels of 0.75 kg at half the track.
 const YAW_INERTIA_KGM2: f64 = 0.18;
-/// Assumed: rubber on a clean floor.
-const GRIP: f64 = 0.8;
 /// Assumed share of the grip used per unit of slip ratio: full grip at 10 % slip.
 const SLIP_STIFFNESS: f64 = 10.0;
 /// Speed below which slip is counted against this instead, so that the slip ratio stays finite at rest.
@@ -33,12 +31,18 @@ pub(crate) struct Rolling {
 }
 
 impl Rolling {
-    pub(crate) fn step(&mut self, torques_nm: WheelTorques, friction: Friction, dt_s: f64) {
+    pub(crate) fn step(
+        &mut self,
+        torques_nm: WheelTorques,
+        friction: Friction,
+        floor: Floor,
+        dt_s: f64,
+    ) {
         let rolling_friction = Friction {
             dry_nm: friction.dry_nm + ROLLING_RESISTANCE * LOAD_N * WHEEL_RADIUS_M,
             ..friction
         };
-        let forces: [[f64; 2]; 2] = std::array::from_fn(|wheel| self.ground_force_n(wheel));
+        let forces: [[f64; 2]; 2] = std::array::from_fn(|wheel| self.ground_force_n(wheel, floor));
         for wheel in 0..2 {
             self.wheel_rps[wheel] = turn_shaft(
                 self.wheel_rps[wheel],
@@ -57,7 +61,7 @@ impl Rolling {
     }
 
     /// Force of the ground on one wheel, forward and left, from its slip.
-    fn ground_force_n(&self, wheel: usize) -> [f64; 2] {
+    fn ground_force_n(&self, wheel: usize, floor: Floor) -> [f64; 2] {
         let side = if wheel == 0 { -1.0 } else { 1.0 };
         let over_ground_mps = self.pose.vx_mps + side * self.pose.wz_rps * TRACK_M / 2.0;
         let rim_mps = self.wheel_rps[wheel] * WHEEL_RADIUS_M;
@@ -73,7 +77,7 @@ impl Rolling {
         if magnitude == 0.0 {
             return [0.0; 2];
         }
-        let force_n = GRIP * LOAD_N * (SLIP_STIFFNESS * magnitude).min(1.0);
+        let force_n = floor.grip() * LOAD_N * (SLIP_STIFFNESS * magnitude).min(1.0);
         slip.map(|component| component / magnitude * force_n)
     }
 
@@ -127,7 +131,7 @@ mod tests {
     fn drive(rolling: &mut Rolling, seconds: f64, torques: impl Fn(&Rolling) -> WheelTorques) {
         for _ in 0..(seconds / DT_S).round() as usize {
             let torques_nm = torques(rolling);
-            rolling.step(torques_nm, FRICTIONLESS, DT_S);
+            rolling.step(torques_nm, FRICTIONLESS, Floor::Clean, DT_S);
         }
     }
 

@@ -4,6 +4,7 @@ use super::{PHYSICS_STEP, World, physics_step_s};
 use crate::{
     attitude,
     bmi088::Motion,
+    body::Floor,
     faults::{Fault, RADIO_LOSSES},
     joints::{JOINTS, Shaft},
     m3508::M3508,
@@ -78,8 +79,13 @@ impl World {
         power_w += self.step_joints(at, supply_v);
         self.battery.set_charge(self.charge());
         self.battery.load(power_w);
+        let floor = if self.faults.has(Fault::FloorSlippery) {
+            Floor::Slippery
+        } else {
+            Floor::Clean
+        };
         self.body
-            .step(torques_nm, M3508::friction(), physics_step_s());
+            .step(torques_nm, M3508::friction(), floor, physics_step_s());
         self.tilt
             .step(self.faults.has(Fault::Tilted), physics_step_s());
         self.imu.step(self.motion(at), at, physics_step_s());

@@ -1,33 +1,49 @@
 //! The directions in which a wheeled robot can and cannot move.
 
-use crate::math::{Quaternion, Vector3, scalar, vector};
+use super::BodyPose;
+use crate::math::{Vector3, scalar, vector};
 
 /// Cosine of the tilt up to which the wheels are taken to touch the ground.
 const MIN_UPRIGHT: f32 = 0.5;
 
-/// The body's axes, and level ones that share its heading: forward, left, up.
+/// The body's axes, level ones that share its heading (forward, left, up), and how they turn.
 #[derive(Debug)]
 pub(super) struct Axes {
     /// Body → world.
     rotation: [Vector3; 3],
     forward: Vector3,
+    yaw_rps: f32,
+    pitch_rps: f32,
 }
 
 impl Axes {
-    pub fn new(orientation: Quaternion) -> Self {
-        let rotation = orientation.rotation_matrix();
-        let [[x, ..], [y, ..], _] = rotation;
+    pub fn new(pose: &BodyPose) -> Self {
+        let rotation = pose.orientation.rotation_matrix();
+        let [[x, ..], [y, ..], up_in_body] = rotation;
+        let [_, pitch_rps, _] = pose.rate_rps;
         // Zero when the robot stands on its nose: then it has no forward.
         let inverse = scalar::inverse_sqrt(x * x + y * y);
         Self {
             rotation,
             forward: [x * inverse, y * inverse, 0.0],
+            yaw_rps: vector::dot(up_in_body, pose.rate_rps),
+            pitch_rps,
         }
     }
 
     /// The body's x axis laid flat, in the world frame.
     pub const fn forward(&self) -> Vector3 {
         self.forward
+    }
+
+    /// Rate about the vertical.
+    pub const fn yaw_rps(&self) -> f32 {
+        self.yaw_rps
+    }
+
+    /// Rate about the axle.
+    pub const fn pitch_rps(&self) -> f32 {
+        self.pitch_rps
     }
 
     /// Up in body axes.

@@ -16,7 +16,7 @@ mod zero_velocity;
 use self::{
     axes::Axes,
     position::Position,
-    velocity_filter::{Innovation, VelocityFilter},
+    velocity_filter::VelocityFilter,
     wheel_speed::{ForwardSpeeds, WheelSpeeds},
     wheel_trust::{WheelTrust, Word},
     zero_velocity::ZeroVelocity,
@@ -57,6 +57,7 @@ pub(super) struct MotionEstimator {
     filter: VelocityFilter,
     position: Position,
     velocity_mps: Vector3,
+    kinematic_mps2: Vector3,
 }
 
 impl MotionEstimator {
@@ -68,6 +69,7 @@ impl MotionEstimator {
             filter: VelocityFilter::new(),
             position: Position::new(),
             velocity_mps: [0.0; 3],
+            kinematic_mps2: [0.0; 3],
         }
     }
 
@@ -90,7 +92,7 @@ impl MotionEstimator {
         pose: &BodyPose,
         motor: &MotorFeedback,
     ) {
-        let axes = Axes::new(pose.orientation);
+        let axes = Axes::new(pose);
         let felt = sample.accel_mps2.map(|accel_mps2| {
             // The body has turned since the middle of the sample: the same force in the axes of now.
             let middle_s = age_s + 0.5 * sample.dt_s;
@@ -98,41 +100,50 @@ impl MotionEstimator {
             vector::sub(accel_mps2, vector::scale(turn, middle_s))
         });
         let free = felt.map(|felt| self.filter.free_accel(felt, &axes));
-        let speeds = self.wheels.forward_speeds(motor, &axes, pose.rate_rps);
+        let speeds = self.wheels.forward_speeds(motor, &axes);
         let wheels = self.trust.evidence(speeds);
         let still = self
             .zero_velocity
             .feed(felt.zip(free), pose.rate_rps, wheels, sample.dt_s);
         let free = free.unwrap_or_default();
-        if still {
+        self.kinematic_mps2 = if still {
             self.filter.hold_still(free, sample.dt_s);
+            [0.0; 3]
         } else {
             let carrying = if self.trust.is_lost() { [0.0; 3] } else { free };
             self.filter.predict(carrying, &axes, sample.dt_s);
-            self.correct(speeds, &axes, age_s, sample.dt_s);
-        }
+            let corrected = self.correct(speeds, &axes, age_s, sample.dt_s);
+            corrected.map_or([0.0; 3], |by| vector::add(free, by))
+        };
         self.filter.stay_plausible();
     }
 
-    fn correct(&mut self, speeds: ForwardSpeeds, axes: &Axes, age_s: f32, dt_s: f32) {
+    /// The acceleration that stands for what was corrected, in body axes; none if the velocity was set anew.
+    fn correct(
+        &mut self,
+        speeds: ForwardSpeeds,
+        axes: &Axes,
+        age_s: f32,
+        dt_s: f32,
+    ) -> Option<Vector3> {
         let [forward_mps, left_mps, up_mps] = axes.flat(self.filter.velocity_after(age_s));
         let surplus = speeds.map(|speed| speed.map(|speed_mps| speed_mps - forward_mps));
-        let forward = match self.trust.step(surplus, dt_s) {
-            Word::Believed(surplus_mps) => surplus_mps,
-            Word::Doubted => 0.0,
-            Word::Last(surplus_mps) => {
-                self.filter
-                    .shift(vector::scale(axes.forward(), surplus_mps));
-                0.0
+        let (forward, left) = match self.trust.step(surplus, dt_s) {
+            Word::Believed(surplus_mps) => (surplus_mps, -left_mps),
+            Word::Unheard => (0.0, -left_mps),
+            Word::Sliding => (0.0, 0.0),
+            Word::Anew(surplus_mps) => {
+                let jump_mps = axes.flat_to_world([surplus_mps, -left_mps, 0.0]);
+                self.filter.shift(jump_mps);
+                return None;
             }
-            Word::None => return self.filter.leak(dt_s / LEAK_S),
+            Word::None => {
+                self.filter.leak(dt_s / LEAK_S);
+                return None;
+            }
         };
-        let innovation = Innovation {
-            forward,
-            left: -left_mps,
-            up: -up_mps,
-        };
-        self.filter.correct(&innovation, axes, dt_s);
+        let innovation_mps = [forward, left, -up_mps];
+        Some(self.filter.correct(innovation_mps, axes, dt_s))
     }
 
     /// Carries on to now. `ahead_s`: since the last sample; `dt_s`: since the last call.
@@ -147,8 +158,11 @@ impl MotionEstimator {
     #[inline(never)]
     pub fn roll_on(&mut self, orientation: Quaternion, motor: &MotorFeedback, dt_s: f32) {
         self.restart();
-        let axes = Axes::new(orientation);
-        let speeds = self.wheels.forward_speeds(motor, &axes, [0.0; 3]);
+        let axes = Axes::new(&BodyPose {
+            orientation,
+            rate_rps: [0.0; 3],
+        });
+        let speeds = self.wheels.forward_speeds(motor, &axes);
         match wheel_speed::mean(speeds) {
             Some(speed_mps) => self.filter.roll(vector::scale(axes.forward(), speed_mps)),
             None => self.filter.leak(dt_s / LEAK_S),
@@ -165,6 +179,12 @@ impl MotionEstimator {
     /// World frame, from where the robot booted.
     pub const fn position_m(&self) -> Vector3 {
         self.position.total_m()
+    }
+
+    /// What accelerated the robot over the last sample, in body axes: the part of a specific force that is not gravity.
+    /// Zero while the velocity is not known.
+    pub const fn kinematic_mps2(&self) -> Vector3 {
+        self.kinematic_mps2
     }
 
     /// Body axes.

@@ -7,11 +7,11 @@
 /// A wheel further than this from the speed known otherwise slips.
 const SLIP_MPS: f32 = 0.3;
 /// It rolls again once it has stayed this close …
-const ROLL_MPS: f32 = 0.1;
-/// … or closer than the speed known otherwise may have drifted off meanwhile: half a degree of the horizon …
-const DRIFT_MPS2: f32 = 0.1;
+const ROLL_MPS: f32 = 0.05;
+/// … or closer than the speed known otherwise may have drifted off meanwhile: a quarter of a degree of the horizon …
+const DRIFT_MPS2: f32 = 0.05;
 /// … for this long.
-const AGREE_S: f32 = 0.05;
+const AGREE_S: f32 = 0.1;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Grip {

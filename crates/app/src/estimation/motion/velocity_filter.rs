@@ -20,9 +20,13 @@ use crate::math::{Vector3, scalar, vector};
 
 const GRAVITY_MPS2: f32 = 9.806_65;
 /// No robot with these wheels moves faster.
-const MAX_SPEED_MPS: f32 = 20.0;
+pub(super) const MAX_SPEED_MPS: f32 = 20.0;
 /// Zero-g offset of the BMI088 over life (datasheet: ±20 mg, board mounting adds to it), and what the horizon may be off.
 const MAX_BIAS_MPS2: f32 = 0.6;
+/// More than this at once is taken for this much: it is no noise the gains were made for.
+const MAX_INNOVATION_MPS: f32 = 0.5;
+/// A sample for longer than this corrects no more than one for this long.
+const MAX_CORRECTION_S: f32 = 0.01;
 /// Standing still brings the speed to zero with this time constant …
 const STILL_S: f32 = 0.05;
 /// … and the offset to what is felt with this one.
@@ -41,24 +45,25 @@ pub(super) const FORWARD: Gains = Gains {
     speed: 3.942,
     bias: 5.270,
 };
-/// Wheels do not roll sideways, but skid: σ = 0.1 m/s for τ = 0.3 s; p as above.
+/// Wheels do not roll sideways, but skid: σ = 0.05 m/s for τ = 0.2 s; p as above.
 pub(super) const LEFT: Gains = Gains {
-    speed: 1.169,
-    bias: 0.6455,
+    speed: 1.901,
+    bias: 1.581,
 };
-/// The body rises and falls with the legs and comes back: σ = 0.2 m/s for τ = 0.3 s; p = (0.01 m/s²)²/s.
+/// The body rises and falls with the legs and comes back: σ = 0.05 m/s for τ = 0.2 s; p = (0.01 m/s²)²/s.
 pub(super) const UP: Gains = Gains {
-    speed: 0.3845,
-    bias: 0.064_55,
+    speed: 1.040,
+    bias: 0.3162,
 };
 
-/// What is observed less what the filter believes, m/s.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Innovation {
-    pub forward: f32,
-    pub left: f32,
-    pub up: f32,
-}
+/// An IMU this far from the middle of the axle feels LEVER_M · yaw rate² for as long as the robot turns …
+const LEVER_M: f32 = 0.05;
+/// … which the gains of speed rise against, so that it makes no more than this …
+const LEVER_MPS: f32 = 0.05;
+/// … up to this gain (7 rad/s), …
+const MAX_LEVER_GAIN: f32 = 50.0;
+/// … and which counts as offset only as far as it is small against this, the zero-g offset of the BMI088 (20 mg).
+const BIAS_MPS2: f32 = 0.2;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct VelocityFilter {
@@ -91,13 +96,27 @@ impl VelocityFilter {
         self.velocity_mps = self.velocity_after(dt_s);
     }
 
-    pub fn correct(&mut self, innovation: &Innovation, axes: &Axes, dt_s: f32) {
-        let Innovation { forward, left, up } = *innovation;
-        let speed = [FORWARD.speed * forward, LEFT.speed * left, UP.speed * up];
+    /// `innovation_mps`: what is observed less what the filter believes, forward, left and up. The acceleration that the
+    /// change of velocity amounts to, in body axes.
+    pub fn correct(&mut self, innovation_mps: Vector3, axes: &Axes, dt_s: f32) -> Vector3 {
+        let [forward, left, up] =
+            innovation_mps.map(|mps| scalar::clamp(mps, -MAX_INNOVATION_MPS, MAX_INNOVATION_MPS));
+        let dt_s = scalar::min(dt_s, MAX_CORRECTION_S);
+        let lever_mps2 = LEVER_M * axes.yaw_rps() * axes.yaw_rps();
+        let lever = scalar::min(lever_mps2 / LEVER_MPS, MAX_LEVER_GAIN);
+        let odds = lever_mps2 / BIAS_MPS2;
+        let learning_s = dt_s / (1.0 + odds * odds);
+        let gained = [
+            (FORWARD.speed + lever) * forward,
+            (LEFT.speed + lever) * left,
+            UP.speed * up,
+        ];
         let bias = [FORWARD.bias * forward, LEFT.bias * left, UP.bias * up];
-        self.shift(vector::scale(axes.flat_to_world(speed), dt_s));
+        let gained_mps2 = axes.flat_to_world(gained);
+        self.shift(vector::scale(gained_mps2, dt_s));
         let bias = axes.to_body(axes.flat_to_world(bias));
-        self.accel_bias_mps2 = vector::sub(self.accel_bias_mps2, vector::scale(bias, dt_s));
+        self.accel_bias_mps2 = vector::sub(self.accel_bias_mps2, vector::scale(bias, learning_s));
+        axes.to_body(gained_mps2)
     }
 
     pub fn shift(&mut self, by_mps: Vector3) {
@@ -123,7 +142,7 @@ impl VelocityFilter {
         self.accel_bias_mps2 = vector::add(self.accel_bias_mps2, vector::scale(free_mps2, share));
     }
 
-    /// Whatever came in, the next step starts from numbers that a robot can have.
+    /// Only what a robot can have is carried on.
     pub fn stay_plausible(&mut self) {
         if !vector::is_within(self.velocity_mps, MAX_SPEED_MPS)
             || !vector::is_within(self.accel_bias_mps2, MAX_BIAS_MPS2)
@@ -134,15 +153,7 @@ impl VelocityFilter {
 
     #[cold]
     fn limit(&mut self) {
-        let into = |v: Vector3, limit: f32| {
-            v.map(|x| {
-                if x.is_nan() {
-                    0.0
-                } else {
-                    scalar::clamp(x, -limit, limit)
-                }
-            })
-        };
+        let into = |v: Vector3, limit: f32| v.map(|x| scalar::clamp(x, -limit, limit));
         self.velocity_mps = into(self.velocity_mps, MAX_SPEED_MPS);
         self.accel_bias_mps2 = into(self.accel_bias_mps2, MAX_BIAS_MPS2);
     }

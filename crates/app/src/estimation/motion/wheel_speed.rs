@@ -1,10 +1,7 @@
 //! What each wheel by itself says about the forward speed of the robot.
 
-use super::axes::Axes;
-use crate::{
-    domain::{MotorFeedback, WheelOdomConfig},
-    math::{Vector3, vector},
-};
+use super::{axes::Axes, velocity_filter::MAX_SPEED_MPS};
+use crate::domain::{MotorFeedback, WheelOdomConfig};
 
 /// Feedback older than this says nothing about the speed now.
 const MAX_AGE_US: u32 = 50_000;
@@ -35,17 +32,11 @@ impl WheelSpeeds {
 
     /// Rolling without slip: the wheel's own turn is that of its rotor against the motor plus that of the motor, which
     /// pitches with the body; a wheel at distance l to the left runs slower by yaw rate · l than the middle.
-    pub fn forward_speeds(
-        &self,
-        motor: &MotorFeedback,
-        axes: &Axes,
-        rate_rps: Vector3,
-    ) -> ForwardSpeeds {
+    pub fn forward_speeds(&self, motor: &MotorFeedback, axes: &Axes) -> ForwardSpeeds {
         if !axes.upright() {
             return [None; 2];
         }
-        let [_, pitch_rps, _] = rate_rps;
-        let yaw_rps = vector::dot(axes.up_in_body(), rate_rps);
+        let (yaw_rps, motor_mps) = (axes.yaw_rps(), axes.pitch_rps() * self.radius_m);
         let [left, right] = &motor.wheels;
         let [left_scale, right_scale] = self.mps_per_rpm;
         let [left_lever_m, right_lever_m] = self.lever_m;
@@ -54,10 +45,11 @@ impl WheelSpeeds {
             (right, right_scale, right_lever_m),
         ]
         .map(|(wheel, mps_per_rpm, lever_m)| {
-            let heard = wheel.age_us <= MAX_AGE_US && !wheel.frozen;
-            heard.then(|| {
-                f32::from(wheel.rpm) * mps_per_rpm + pitch_rps * self.radius_m + yaw_rps * lever_m
-            })
+            let speed_mps = f32::from(wheel.rpm) * mps_per_rpm + motor_mps + yaw_rps * lever_m;
+            // Settings that are no numbers end here.
+            let counts =
+                wheel.age_us <= MAX_AGE_US && !wheel.frozen && speed_mps.abs() <= MAX_SPEED_MPS;
+            counts.then_some(speed_mps)
         })
     }
 }

@@ -16,10 +16,13 @@ const STANDING_MPS: f32 = 0.02;
 pub(super) enum Word {
     /// At least one wheel rolls.
     Believed(f32),
-    /// Those that are heard slip, or none is heard; the accelerometer carries on.
-    Doubted,
-    /// They slipped for so long that the accelerometer is no better: from here on they roll.
-    Last(f32),
+    /// All that are heard slip, so they do not hold sideways either; the accelerometer carries on.
+    Sliding,
+    /// None is heard; the accelerometer carries on.
+    Unheard,
+    /// At least one wheel rolls again, or they slipped for so long that the accelerometer is no better: from here on the
+    /// robot rolls straight on at this speed.
+    Anew(f32),
     /// None is heard, and the accelerometer no longer counts either.
     None,
 }
@@ -58,11 +61,20 @@ impl WheelTrust {
             return self.start_over(surplus);
         }
         if let Some(surplus_mps) = wheel_speed::mean(rolling) {
+            let coasted = self.coasting_s > 0.0;
             self.coasting_s = 0.0;
-            return Word::Believed(surplus_mps);
+            return if coasted {
+                Word::Anew(surplus_mps)
+            } else {
+                Word::Believed(surplus_mps)
+            };
         }
         self.coasting_s += dt_s;
-        Word::Doubted
+        if surplus == [None; 2] {
+            Word::Unheard
+        } else {
+            Word::Sliding
+        }
     }
 
     fn start_over(&mut self, surplus: ForwardSpeeds) -> Word {
@@ -71,7 +83,7 @@ impl WheelTrust {
         };
         self.grip = [Grip::Rolling; 2];
         self.coasting_s = 0.0;
-        Word::Last(surplus_mps)
+        Word::Anew(surplus_mps)
     }
 
     /// What the wheels say about standing still.

@@ -4,8 +4,8 @@ use crate::math::{Vector3, scalar, vector};
 
 /// Quiet for this long while the wheels stand …
 const STANDING_S: f32 = 0.3;
-/// … or, while no wheel is heard, for this long.
-const UNHEARD_S: f32 = 1.5;
+/// … or, while no wheel is heard, for so long that the speed has faded already.
+const UNHEARD_S: f32 = 4.0;
 /// Quiet: turns slower than this (5.7 °/s), so that an offset of the gyro that is not known yet does not matter, …
 const MAX_RATE_RPS: f32 = 0.1;
 /// … feels the same force within this as in the last moments …
