@@ -6,12 +6,13 @@ use embassy_stm32::spi::Spi;
 use embassy_stm32::spi::mode::Master;
 use embassy_time::{Duration, with_timeout};
 use robot_app::sensing::bmi088::{
-    ACCEL_READ, GYRO_READ, INIT, InitCheck, InitStep, SpiTarget, read_command, write_command,
+    ACCEL_READ, BUFFER_CLEAR, BUFFER_READ, GYRO_READ, GyroBuffer, INIT, InitCheck, InitStep,
+    SpiTarget, gyro_buffer, read_command, write_command,
 };
 
 use crate::deadlines::{Watched, sleep_checking_in};
 
-/// The longest transfer takes 31 µs on the wire.
+/// The longest transfer takes 75 µs on the wire.
 const TRANSFER_TIMEOUT: Duration = Duration::from_millis(1);
 
 /// Why the sensor did not do what it was told.
@@ -35,6 +36,15 @@ pub struct Bmi088<'d> {
 pub struct Bmi088Answers {
     pub accel: [u8; ACCEL_READ.len()],
     pub gyro: [u8; GYRO_READ.len()],
+    buffer: [u8; BUFFER_READ.len()],
+    buffer_bytes: usize,
+}
+
+impl Bmi088Answers {
+    /// Of the gyro's buffer, without the echo of the address.
+    pub fn gyro_frames(&self) -> &[u8] {
+        self.buffer.get(1..self.buffer_bytes).unwrap_or_default()
+    }
 }
 
 impl<'d> Bmi088<'d> {
@@ -84,13 +94,27 @@ impl<'d> Bmi088<'d> {
         Ok(())
     }
 
-    /// Reads one sample of both dies.
+    /// Reads one sample of both dies, and all that the gyro has measured since the last.
     pub async fn read_sample(&mut self) -> Result<Bmi088Answers, Bmi088Error> {
         let mut answers = Bmi088Answers {
             accel: ACCEL_READ,
             gyro: GYRO_READ,
+            buffer: BUFFER_READ,
+            buffer_bytes: 0,
         };
         self.exchange(SpiTarget::Gyro, &mut answers.gyro).await?;
+        match gyro_buffer(&answers.gyro) {
+            GyroBuffer::Frames { bytes } => {
+                answers.buffer_bytes = bytes;
+                if let Some(buffer) = answers.buffer.get_mut(..bytes) {
+                    self.exchange(SpiTarget::Gyro, buffer).await?;
+                }
+            }
+            GyroBuffer::Stale => {
+                let mut clear = BUFFER_CLEAR;
+                self.exchange(SpiTarget::Gyro, &mut clear).await?;
+            }
+        }
         self.exchange(SpiTarget::Accel, &mut answers.accel).await?;
         Ok(answers)
     }

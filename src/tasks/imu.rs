@@ -74,7 +74,12 @@ impl ImuTask {
         let read_us = Instant::now().as_micros();
         let state = if let Ok(answers) = sensor.read_sample().await {
             self.pipeline
-                .process(&answers.accel, &answers.gyro, read_us)
+                .process(
+                    &answers.accel,
+                    &answers.gyro,
+                    answers.gyro_frames(),
+                    read_us,
+                )
                 .ok()
         } else {
             self.pipeline.process_silence(read_us);

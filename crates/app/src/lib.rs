@@ -24,8 +24,8 @@
 //! - sbus task: `input::RemoteReceiver::feed(bytes, ts_us, |update| publish)`, or `reject` if the UART flagged one of
 //!   the bytes.
 //! - sensor task: walk `sensing::bmi088::INIT` and `sensing::ist8310::INIT`; then every 5 ms transfer
-//!   `bmi088::ACCEL_READ`/`GYRO_READ` and hand both answers to `sensing::ImuPipeline::process`, or say `process_silence`,
-//!   and set the heater to `heater_duty`; every 20 ms write `ist8310::START_SINGLE_SHOT`, wait
+//!   `bmi088::GYRO_READ`, what `bmi088::gyro_buffer` asks for and `bmi088::ACCEL_READ`, hand the answers to
+//!   `sensing::ImuPipeline::process`, or say `process_silence`, and set the heater to `heater_duty`; every 20 ms write `ist8310::START_SINGLE_SHOT`, wait
 //!   `ist8310::MEASUREMENT_US`, read `ist8310::READ_LEN` bytes from `ist8310::READ_FROM` and hand them to
 //!   `sensing::MagPipeline::process`.
 //! - status task, 100 Hz: `indication::Indication::of` what diagnostics say, and `indication::IndicationPlayer::step`

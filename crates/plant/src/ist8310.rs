@@ -1,4 +1,4 @@
-//! IST8310 magnetometer on I2C (hardware.md section 5).
+//! IST8310 magnetometer on I2C.
 
 use crate::{
     bmi088::MotionSource,

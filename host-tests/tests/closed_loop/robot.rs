@@ -13,7 +13,7 @@ use robot_app::{
     safety::{ArmingState, WatchdogPeriod},
     sensing::{
         ImuPipeline, MagPipeline,
-        bmi088::{self, ACCEL_READ, GYRO_READ},
+        bmi088::{self, ACCEL_READ, BUFFER_READ, GYRO_READ, GyroBuffer},
         ist8310,
     },
     tick::{ControlInputs, ControlLoop},
@@ -300,10 +300,21 @@ impl Robot {
     }
 
     fn read_imu(&mut self) {
-        let (mut accel, mut gyro) = (ACCEL_READ, GYRO_READ);
-        self.spi(SpiSelect::Accel, &mut accel);
+        let (mut accel, mut gyro, mut buffer) = (ACCEL_READ, GYRO_READ, BUFFER_READ);
         self.spi(SpiSelect::Gyro, &mut gyro);
-        match self.imu_pipeline.process(&accel, &gyro, self.now_us()) {
+        let frames = match bmi088::gyro_buffer(&gyro) {
+            GyroBuffer::Frames { bytes } => {
+                self.spi(SpiSelect::Gyro, &mut buffer[..bytes]);
+                &buffer[1..bytes]
+            }
+            GyroBuffer::Stale => {
+                self.spi(SpiSelect::Gyro, &mut bmi088::BUFFER_CLEAR.clone());
+                &[]
+            }
+        };
+        self.spi(SpiSelect::Accel, &mut accel);
+        let now_us = self.now_us();
+        match self.imu_pipeline.process(&accel, &gyro, frames, now_us) {
             Ok(state) => self.imu = state,
             Err(_) => self.health.imu.errors += 1,
         }

@@ -19,7 +19,8 @@ pub enum ImuSampleError {
     AccelAbsent,
     /// The gyro's answer lacks its chip id.
     GyroAbsent,
-    /// The accelerometer's own clock stands still, or no count has changed for longer than noise allows.
+    /// The accelerometer's own clock stands still, the gyro has measured nothing, or no count has changed for longer than
+    /// noise allows.
     Frozen,
     /// No robot moves like that, or the sensor has not been sane for long enough since it did.
     Implausible,
@@ -94,14 +95,16 @@ impl ImuPipeline {
         self.heater.step(None, ts_us);
     }
 
-    /// Takes the answers to `ACCEL_READ` and `GYRO_READ`, read at `read_us`.
+    /// Takes the answers to `ACCEL_READ` and `GYRO_READ`, read at `read_us`, and what `BUFFER_READ` brought after the echo
+    /// of its address: nothing if the buffer was to be cleared.
     pub fn process(
         &mut self,
         accel_answer: &[u8; ACCEL_READ.len()],
         gyro_answer: &[u8; GYRO_READ.len()],
+        gyro_frames: &[u8],
         read_us: u64,
     ) -> Result<ImuState, ImuSampleError> {
-        let checked = self.check(accel_answer, gyro_answer, read_us);
+        let checked = self.check(accel_answer, gyro_answer, gyro_frames, read_us);
         let temperature_c = match &checked {
             Ok(raw) => raw.temperature_c,
             Err(error) => {
@@ -117,12 +120,14 @@ impl ImuPipeline {
         &mut self,
         accel_answer: &[u8; ACCEL_READ.len()],
         gyro_answer: &[u8; GYRO_READ.len()],
-        ts_us: u64,
+        gyro_frames: &[u8],
+        read_us: u64,
     ) -> Result<CheckedSample, ImuSampleError> {
         let accel = bmi088::decode_accel(accel_answer).ok_or(ImuSampleError::AccelAbsent)?;
-        let gyro = bmi088::decode_gyro(gyro_answer).ok_or(ImuSampleError::GyroAbsent)?;
+        let gyro =
+            bmi088::decode_gyro(gyro_answer, gyro_frames).ok_or(ImuSampleError::GyroAbsent)?;
         let frozen = self.frozen(&accel, &gyro);
-        let saturated = self.plausibility.judge(&accel, &gyro, ts_us)?;
+        let saturated = self.plausibility.judge(&accel, &gyro, read_us)?;
         if frozen {
             return Err(ImuSampleError::Frozen);
         }
@@ -180,7 +185,7 @@ impl ImuPipeline {
             sensor_time: accel.sensor_time,
         };
         let Some(last) = self.last.replace(sample) else {
-            return false;
+            return !gyro.fresh;
         };
         let alike =
             last.accel_counts == sample.accel_counts && last.gyro_counts == sample.gyro_counts;
@@ -189,7 +194,7 @@ impl ImuPipeline {
         } else {
             0
         };
-        last.sensor_time == sample.sensor_time || self.repeats > MAX_REPEATS
+        last.sensor_time == sample.sensor_time || !gyro.fresh || self.repeats > MAX_REPEATS
     }
 }
 
@@ -210,16 +215,17 @@ mod tests {
         ImuPipeline::new(ImuCalibration::default(), HeaterConfig::default())
     }
 
-    /// BMI088 answers at rest, level, by the datasheet: 1 g is 2730 counts at ±12 g, temperature 0x1020 shifted = 39.125 °C.
-    fn answers(index: u32) -> ([u8; 20], [u8; 9]) {
+    /// BMI088 answers at rest, level, the gyro's buffer overrun, by the datasheet: 1 g is 2730 counts at ±12 g, temperature 0x1020 shifted = 39.125 °C.
+    fn answers(index: u32) -> ([u8; 20], [u8; 16]) {
         let mut accel = [0; 20];
         let ripple = (index % 3) as u8;
         accel[2] = ripple;
         accel[6..8].copy_from_slice(&2_730i16.to_le_bytes());
         accel[8..11].copy_from_slice(&(index * 128).to_le_bytes()[..3]);
         accel[18..20].copy_from_slice(&[0x10, 0x20]);
-        let mut gyro = [0; 9];
+        let mut gyro = [0; 16];
         gyro[1] = 0x0F;
+        gyro[15] = 0x85;
         gyro[7..9].copy_from_slice(&164i16.to_le_bytes());
         (accel, gyro)
     }
@@ -228,12 +234,12 @@ mod tests {
     fn counts_become_physical_units() {
         let mut pipeline = new_pipeline();
         let (accel, gyro) = answers(3);
-        let state = pipeline.process(&accel, &gyro, 5_000).unwrap();
+        let state = pipeline.process(&accel, &gyro, &[], 5_000).unwrap();
         assert!((state.accel_mps2[2] - 9.806_65).abs() < 0.01);
         assert!((state.gyro_dps[2] - 10.01).abs() < 0.01);
         assert_eq!(state.temperature_c, 39.125);
-        // Read 4.79 ms of filter and 1.25 ms of waiting after the middle of its 5 ms.
-        assert_eq!(state.ts_us, 5_000 - 3_540);
+        // 1.94 ms of filter, 0.5 ms until it was read.
+        assert_eq!(state.ts_us, 5_000 - 2_440);
     }
 
     /// By hand: (9.806 − 0.306) · 2 = 19 m/s²; until the offset is measured the stored one counts, (10.01 − 1.01) · 0.5.
@@ -248,7 +254,7 @@ mod tests {
         };
         pipeline.set_config(&calibration, &HeaterConfig::default());
         let (accel, gyro) = answers(3);
-        let state = pipeline.process(&accel, &gyro, 5_000).unwrap();
+        let state = pipeline.process(&accel, &gyro, &[], 5_000).unwrap();
         assert!((state.accel_mps2[2] - 19.0).abs() < 0.01);
         assert!((state.gyro_dps[2] - 4.5).abs() < 0.01);
         assert_eq!(state.gyro_bias_dps[2], 1.01);
@@ -262,7 +268,7 @@ mod tests {
             let (accel, mut gyro) = answers(index);
             gyro[7..9].copy_from_slice(&(16 + (index % 2) as i16).to_le_bytes());
             last = pipeline
-                .process(&accel, &gyro, u64::from(index) * 5_000)
+                .process(&accel, &gyro, &[], u64::from(index) * 5_000)
                 .unwrap();
         }
         assert!(pipeline.calibrated());
@@ -274,7 +280,8 @@ mod tests {
     fn an_absent_sensor_is_named() {
         let mut pipeline = new_pipeline();
         let (accel, gyro) = answers(1);
-        let mut process = |accel: &[u8; 20], gyro: &[u8; 9]| pipeline.process(accel, gyro, 5_000);
+        let mut process =
+            |accel: &[u8; 20], gyro: &[u8; 16]| pipeline.process(accel, gyro, &[], 5_000);
         assert_eq!(
             process(&[0xFF; 20], &gyro),
             Err(ImuSampleError::AccelAbsent)
@@ -283,17 +290,29 @@ mod tests {
             process(&[0x00; 20], &gyro),
             Err(ImuSampleError::AccelAbsent)
         );
-        assert_eq!(process(&accel, &[0xFF; 9]), Err(ImuSampleError::GyroAbsent));
-        assert_eq!(process(&accel, &[0x00; 9]), Err(ImuSampleError::GyroAbsent));
+        assert_eq!(
+            process(&accel, &[0xFF; 16]),
+            Err(ImuSampleError::GyroAbsent)
+        );
+        assert_eq!(
+            process(&accel, &[0x00; 16]),
+            Err(ImuSampleError::GyroAbsent)
+        );
     }
 
     #[test]
     fn a_frozen_sensor_is_noticed() {
         let mut pipeline = new_pipeline();
         let (accel, gyro) = answers(1);
-        assert!(pipeline.process(&accel, &gyro, 5_000).is_ok());
-        let stopped_clock = pipeline.process(&accel, &gyro, 10_000);
+        assert!(pipeline.process(&accel, &gyro, &[], 5_000).is_ok());
+        let stopped_clock = pipeline.process(&accel, &gyro, &[], 10_000);
         assert_eq!(stopped_clock, Err(ImuSampleError::Frozen));
+
+        let mut pipeline = new_pipeline();
+        let (accel, mut gyro) = answers(1);
+        gyro[15] = 0;
+        let no_frames = pipeline.process(&accel, &gyro, &[], 5_000);
+        assert_eq!(no_frames, Err(ImuSampleError::Frozen));
 
         let mut pipeline = new_pipeline();
         let results: Vec<bool> = (1..=20u32)
@@ -301,7 +320,7 @@ mod tests {
                 let (mut accel, gyro) = answers(index);
                 accel[2] = 7;
                 let ts_us = u64::from(index) * 5_000;
-                pipeline.process(&accel, &gyro, ts_us).is_ok()
+                pipeline.process(&accel, &gyro, &[], ts_us).is_ok()
             })
             .collect();
         assert!(results[..8].iter().all(|good| *good));
@@ -318,7 +337,7 @@ mod tests {
             if !present {
                 accel = [0xFF; 20];
             }
-            let _ = pipeline.process(&accel, &gyro, u64::from(index) * 5_000);
+            let _ = pipeline.process(&accel, &gyro, &[], u64::from(index) * 5_000);
             pipeline.heater_duty()
         };
         assert_eq!(duty_after(1, [0, 0], true), 1.0);
@@ -339,7 +358,7 @@ mod tests {
             accel[18..20].copy_from_slice(&[0, 0]);
             gyro[7..9].copy_from_slice(&(16 + (index % 2) as i16).to_le_bytes());
             let ts_us = u64::from(index) * 5_000;
-            pipeline.process(&accel, &gyro, ts_us).unwrap();
+            pipeline.process(&accel, &gyro, &[], ts_us).unwrap();
         }
         assert!(!pipeline.calibrated());
         let calibration = pipeline.status().calibration;
@@ -350,16 +369,44 @@ mod tests {
     fn the_end_of_the_range_is_marked_and_nonsense_rejected() {
         let mut pipeline = new_pipeline();
         let (accel, gyro) = answers(1);
-        assert!(!pipeline.process(&accel, &gyro, 5_000).unwrap().saturated);
+        assert!(
+            !pipeline
+                .process(&accel, &gyro, &[], 5_000)
+                .unwrap()
+                .saturated
+        );
         let (mut accel, gyro) = answers(2);
         accel[6..8].copy_from_slice(&i16::MAX.to_le_bytes());
-        assert!(pipeline.process(&accel, &gyro, 10_000).unwrap().saturated);
+        assert!(
+            pipeline
+                .process(&accel, &gyro, &[], 10_000)
+                .unwrap()
+                .saturated
+        );
         let (accel, mut gyro) = answers(3);
         gyro[3..5].copy_from_slice(&i16::MIN.to_le_bytes());
         assert_eq!(
-            pipeline.process(&accel, &gyro, 15_000),
+            pipeline.process(&accel, &gyro, &[], 15_000),
             Err(ImuSampleError::Implausible)
         );
         assert_eq!(pipeline.status().rejects.implausible, 1);
+    }
+
+    /// Half of ±2000 °/s is 16,384 counts: more than a robot turns faster within 5 ms.
+    #[test]
+    fn frames_that_differ_too_much_or_end_the_range_are_noticed() {
+        let (accel, mut gyro) = answers(1);
+        gyro[15] = 1;
+        let frame = |x: i16| [x, 0, 164].map(i16::to_le_bytes).concat();
+        let process = |gyro: &[u8; 16], x: i16| {
+            let frame = frame(x);
+            new_pipeline().process(&accel, gyro, &frame, 5_000)
+        };
+        assert_eq!(process(&gyro, 16_384), Err(ImuSampleError::Implausible));
+        let good = process(&gyro, 1_638).unwrap();
+        assert!((good.gyro_dps[0] - 100.0).abs() < 0.1);
+        gyro[3..5].copy_from_slice(&20_000i16.to_le_bytes());
+        assert!(process(&gyro, i16::MAX).unwrap().saturated);
+        assert!(!process(&gyro, i16::MAX - 1).unwrap().saturated);
     }
 }

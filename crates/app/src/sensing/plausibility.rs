@@ -49,14 +49,15 @@ impl Plausibility {
             counts: gyro.counts,
             ts_us,
         };
-        let saturated = is_saturated(gyro.counts) || is_saturated(accel.counts);
+        let saturated =
+            is_saturated(gyro.lowest) || is_saturated(gyro.highest) || is_saturated(accel.counts);
         self.saturated_in_row = if saturated {
             self.saturated_in_row.saturating_add(1)
         } else {
             0
         };
         let before = self.last.replace(sample);
-        if !self.is_sane(&sample, before) {
+        if !is_steady(gyro) || !self.is_sane(&sample, before) {
             self.on_probation = PROBATION;
             return Err(ImuSampleError::Implausible);
         }
@@ -104,6 +105,14 @@ impl GyroSample {
     }
 }
 
+/// What was measured since the last read fits together.
+fn is_steady(gyro: &GyroRaw) -> bool {
+    gyro.highest
+        .iter()
+        .zip(gyro.lowest)
+        .all(|(highest, lowest)| highest.abs_diff(lowest) <= MAX_GYRO_STEP)
+}
+
 fn is_saturated(counts: [i16; 3]) -> bool {
     counts
         .iter()
@@ -147,6 +156,10 @@ mod tests {
             };
             let gyro = GyroRaw {
                 counts: gyro_counts,
+                lowest: gyro_counts,
+                highest: gyro_counts,
+                mean_counts: gyro_counts.map(f32::from),
+                fresh: true,
             };
             self.plausibility.judge(&accel, &gyro, self.ts_us)
         }

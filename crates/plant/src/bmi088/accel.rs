@@ -197,6 +197,7 @@ impl AccelDie {
 
 impl Die for AccelDie {
     const DUMMY_BYTES: usize = 1;
+    const FIFO_DATA: u8 = 0x26;
 
     fn read(&mut self, register: u8, now: Ps) -> u8 {
         let sensortime = (now / SENSORTIME_LSB) as u32;
@@ -278,7 +279,7 @@ impl Die for AccelDie {
     }
 }
 
-/// Output rate and 3 dB bandwidth in Hz of an ACC_CONF value (hardware.md 4.3); none for a reserved code, which the
+/// Output rate and 3 dB bandwidth in Hz of an ACC_CONF value (datasheet table 5.3); none for a reserved code, which the
 /// die ignores.
 fn output_filter(conf: u8) -> Option<(f64, f64)> {
     let rate_hz = match conf & 0x0F {

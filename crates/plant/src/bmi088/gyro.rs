@@ -1,7 +1,7 @@
 //! Gyroscope die of the BMI088 (datasheet chapters 4.6 and 5.5).
 
 use super::{
-    DATA_READY, Die, MotionSource, SOFTRESET, WRITE_GAP_NORMAL, WRITE_GAP_SUSPEND,
+    DATA_READY, Die, MotionSource, SOFTRESET, WRITE_GAP_NORMAL, WRITE_GAP_SUSPEND, fifo::Fifo,
     low_pass::LowPass, quantise, rate_of_steps_hz, sample_clock::SampleClock,
 };
 use crate::{
@@ -14,6 +14,7 @@ mod register {
     pub const X_LSB: u8 = 0x02;
     pub const Z_MSB: u8 = 0x07;
     pub const INT_STAT_1: u8 = 0x0A;
+    pub const FIFO_STATUS: u8 = 0x0E;
     pub const RANGE: u8 = 0x0F;
     pub const BANDWIDTH: u8 = 0x10;
     pub const LPM1: u8 = 0x11;
@@ -22,6 +23,9 @@ mod register {
     pub const INT_IO_CONF: u8 = 0x16;
     pub const INT_MAP: u8 = 0x18;
     pub const SELF_TEST: u8 = 0x3C;
+    pub const FIFO_CONFIG_0: u8 = 0x3D;
+    pub const FIFO_CONFIG_1: u8 = 0x3E;
+    pub const FIFO_DATA: u8 = 0x3F;
 }
 
 const CHIP_ID: u8 = 0x0F;
@@ -48,6 +52,7 @@ pub(super) struct GyroDie {
     filter: LowPass,
     data: [i16; 3],
     data_ready: bool,
+    fifo: Fifo,
     self_test_done_at: Option<Ps>,
 }
 
@@ -89,6 +94,7 @@ impl GyroDie {
             filter: LowPass::new(bandwidth_hz, rate_of_steps_hz()),
             data: [0; 3],
             data_ready: false,
+            fifo: Fifo::new(),
             self_test_done_at: None,
         }
     }
@@ -100,6 +106,7 @@ impl GyroDie {
         self.write_allowed_at = self.alive_at;
         self.data = [0; 3];
         self.data_ready = false;
+        self.fifo = Fifo::new();
         self.self_test_done_at = None;
         self.configure_output(self.alive_at);
     }
@@ -123,12 +130,14 @@ impl GyroDie {
             let full_scale_dps = 2_000.0 / f64::from(1 << self.registers.range);
             self.data = analogue_dps.map(|dps| quantise(dps * 32_768.0 / full_scale_dps));
             self.data_ready = true;
+            self.fifo.push(self.data);
         }
         sampled
     }
 
     pub(super) fn replace_sample(&mut self, data: [i16; 3]) {
         self.data = data;
+        self.fifo.replace_newest(data);
     }
 
     fn analogue_dps(&mut self, gyro_rps: [f64; 3]) -> [f64; 3] {
@@ -161,6 +170,7 @@ impl GyroDie {
 
 impl Die for GyroDie {
     const DUMMY_BYTES: usize = 0;
+    const FIFO_DATA: u8 = register::FIFO_DATA;
 
     fn read(&mut self, register: u8, now: Ps) -> u8 {
         if now < self.alive_at {
@@ -174,6 +184,9 @@ impl Die for GyroDie {
                 self.data[offset / 2].to_le_bytes()[offset % 2]
             }
             register::INT_STAT_1 => u8::from(self.data_ready) * DATA_READY,
+            register::FIFO_STATUS => self.fifo.status(),
+            register::FIFO_CONFIG_1 => self.fifo.config(),
+            register::FIFO_DATA => self.fifo.read(),
             register::RANGE => self.registers.range,
             register::BANDWIDTH => self.registers.bandwidth,
             register::LPM1 => self.registers.lpm1,
@@ -214,6 +227,8 @@ impl Die for GyroDie {
             register::SELF_TEST if value & 1 != 0 => {
                 self.self_test_done_at = Some(now + SELF_TEST_TIME);
             }
+            register::FIFO_CONFIG_0 => self.fifo.clear(),
+            register::FIFO_CONFIG_1 => self.fifo.configure(value),
             register::SOFTRESET if value == SOFTRESET => self.power_on(now),
             _ => {}
         }
@@ -226,7 +241,7 @@ impl Die for GyroDie {
     }
 }
 
-/// Output rate and 3 dB bandwidth in Hz of a GYRO_BANDWIDTH value (hardware.md 4.3).
+/// Output rate and 3 dB bandwidth in Hz of a GYRO_BANDWIDTH value (datasheet chapter 5.5).
 fn output_filter(bandwidth: u8) -> (f64, f64) {
     match bandwidth & 0x07 {
         0 => (2_000.0, 532.0),

@@ -1,7 +1,7 @@
-//! BMI088 inertial sensor: two dies in one package, each an SPI device of its own (Bosch BST-BMI088-DS000 rev 1.8,
-//! hardware.md section 4).
+//! BMI088 inertial sensor: two dies in one package, each an SPI device of its own (Bosch BST-BMI088-DS000 rev 1.8).
 
 mod accel;
+mod fifo;
 mod gyro;
 mod low_pass;
 mod sample_clock;
@@ -23,7 +23,7 @@ const MAX_SCK_HZ: u32 = 10_000_000;
 const SOFTRESET: u8 = 0xB6;
 /// Of either die's status register.
 const DATA_READY: u8 = 1 << 7;
-/// Shortest time from one register write to the next (hardware.md 4.1).
+/// Shortest time from one register write to the next.
 const WRITE_GAP_NORMAL: Ps = 2 * US;
 const WRITE_GAP_SUSPEND: Ps = 450 * US;
 
@@ -59,6 +59,8 @@ pub(crate) struct ImuFaults {
 trait Die {
     /// Bytes between the address and the first data byte of a read.
     const DUMMY_BYTES: usize;
+    /// Read over and over in a burst, while every other register is followed by the next.
+    const FIFO_DATA: u8;
     fn read(&mut self, register: u8, now: Ps) -> u8;
     fn write(&mut self, register: u8, value: u8, now: Ps);
     /// The chip select rises.
@@ -93,6 +95,7 @@ impl Transaction {
             return 0xFF;
         }
         match index.checked_sub(1 + D::DUMMY_BYTES) {
+            Some(_) if register == D::FIFO_DATA && die.drives_miso() => die.read(register, now),
             Some(offset) if die.drives_miso() => {
                 die.read(register.wrapping_add(offset as u8) & 0x7F, now)
             }

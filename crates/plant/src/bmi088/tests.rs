@@ -115,6 +115,25 @@ fn gyro_answers_without_dummy_byte_but_not_in_its_first_30_ms() {
     assert_eq!(bench.read::<1>(SpiSelect::Gyro, 0x10), [0x83]);
 }
 
+/// 1000 Hz for 5 ms; a burst of FIFO_DATA stays at its register.
+#[test]
+fn gyro_keeps_what_it_measured_until_it_is_read() {
+    let mut bench = Bench::configured(MotionSource::Recording);
+    bench.motion.gyro_rps = [1.0, -2.0, 0.5];
+    bench.write(SpiSelect::Gyro, 0x10, 0x82);
+    bench.wait(100 * MS);
+    assert_eq!(bench.read::<1>(SpiSelect::Gyro, 0x0E), [0]);
+    bench.write(SpiSelect::Gyro, 0x3E, 0x80);
+    bench.wait(5 * MS);
+    let registers = bench.read::<15>(SpiSelect::Gyro, 0x00);
+    assert_eq!(registers[14], 5);
+    let burst = bench.read::<30>(SpiSelect::Gyro, 0x3F);
+    for frame in burst.chunks_exact(6) {
+        assert_eq!(frame, &registers[2..8]);
+    }
+    assert_eq!(bench.read::<1>(SpiSelect::Gyro, 0x0E), [0]);
+}
+
 #[test]
 fn suspended_accelerometer_measures_nothing_and_loses_hurried_writes() {
     let mut bench = Bench::new(MotionSource::Physics);
@@ -268,7 +287,7 @@ fn lost_supply_reads_all_ones_and_forgets_the_settings() {
     assert_eq!(bench.read::<2>(SpiSelect::Accel, 0x7D)[1], 0);
 }
 
-/// hardware.md 4.4: 24 g, 1600 Hz, both polarities; they differ by at least 1000, 1000 and 500 mg.
+/// Datasheet: 24 g, 1600 Hz, both polarities; they differ by at least 1000, 1000 and 500 mg.
 #[test]
 fn accelerometer_self_test_moves_every_axis_as_far_as_the_datasheet_asks() {
     let mut bench = Bench::configured(MotionSource::Physics);

@@ -4,7 +4,7 @@
 const WARM_BOARD_C: f64 = 30.0;
 /// A package whose heater held it there until the power went off for a moment.
 const WARM_PACKAGE_C: f64 = 40.0;
-/// Heater of the C board: 43 Ω on 5 V (hardware.md 1.2).
+/// Heater of the C board: 43 Ω on 5 V.
 const HEATER_W: f64 = 0.58;
 /// No source gives it: chosen so that full heat ends 25 K above the board.
 const KELVIN_PER_WATT: f64 = 43.0;

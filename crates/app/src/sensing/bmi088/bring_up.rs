@@ -21,6 +21,7 @@ pub enum InitCheck {
     GyroMissing,
     GyroRangeNotKept,
     GyroBandwidthNotKept,
+    GyroBufferNotKept,
 }
 
 /// One step of the sequence, to be carried out in order.
@@ -140,7 +141,9 @@ pub const INIT: &[InitStep] = &[
     InitStep::Wait { us: 30_000 },
     gyro_write(gyro::RANGE, gyro::RANGE_2000_DPS),
     InitStep::Wait { us: 100 },
-    gyro_write(gyro::BANDWIDTH, gyro::BANDWIDTH_400HZ_47HZ),
+    gyro_write(gyro::BANDWIDTH, gyro::BANDWIDTH_1000HZ_116HZ),
+    InitStep::Wait { us: 100 },
+    gyro_write(gyro::FIFO_CONFIG_1, gyro::FIFO_STREAM),
     InitStep::Wait { us: 100 },
     gyro_check(
         gyro::RANGE,
@@ -149,8 +152,13 @@ pub const INIT: &[InitStep] = &[
     ),
     gyro_check(
         gyro::BANDWIDTH,
-        gyro::BANDWIDTH_400HZ_47HZ,
+        gyro::BANDWIDTH_1000HZ_116HZ,
         InitCheck::GyroBandwidthNotKept,
+    ),
+    gyro_check(
+        gyro::FIFO_CONFIG_1,
+        gyro::FIFO_STREAM,
+        InitCheck::GyroBufferNotKept,
     ),
     // First filtered samples.
     InitStep::Wait { us: 5_000 },

@@ -23,14 +23,22 @@ pub mod accel {
 pub mod gyro {
     pub const CHIP_ID: u8 = 0x00;
     pub const CHIP_ID_VALUE: u8 = 0x0F;
+    /// In FIFO_STATUS, 0x0E: frames were lost. The bits below count those in the buffer.
+    pub const FIFO_OVERRUN: u8 = 0x80;
     pub const RANGE: u8 = 0x0F;
     pub const RANGE_2000_DPS: u8 = 0x00;
     pub const BANDWIDTH: u8 = 0x10;
-    /// 400 Hz with 47 Hz bandwidth; bit 7 always reads 1.
-    pub const BANDWIDTH_400HZ_47HZ: u8 = 0x83;
+    /// 1000 Hz with 116 Hz bandwidth; bit 7 always reads 1.
+    pub const BANDWIDTH_1000HZ_116HZ: u8 = 0x82;
     pub const POWER: u8 = 0x11;
     pub const POWER_NORMAL: u8 = 0x00;
     pub const SOFT_RESET: u8 = 0x14;
+    /// Any write to it empties the buffer.
+    pub const FIFO_CONFIG_1: u8 = 0x3E;
+    /// New frames push out the oldest.
+    pub const FIFO_STREAM: u8 = 0x80;
+    /// Does not count up in a burst: each byte comes from the buffer.
+    pub const FIFO_DATA: u8 = 0x3F;
 }
 
 /// Written to either `SOFT_RESET`.

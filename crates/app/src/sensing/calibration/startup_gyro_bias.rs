@@ -11,7 +11,7 @@ const SETTLING_SAMPLES: u16 = 10;
 const MIN_SPAN_US: u32 = 1_000_000;
 /// A pause in the samples longer than this starts the second anew.
 const MAX_PAUSE_US: u32 = 50_000;
-/// Standing still: the BMI088 shows 0.1 °/s rms at 47 Hz bandwidth.
+/// Standing still: the BMI088 shows 0.014 °/s/√Hz, which is 0.14 °/s rms in means over 5 ms.
 const MAX_GYRO_STD_DPS: f32 = 0.4;
 const MAX_GYRO_EXCURSION_DPS: f32 = 3.0;
 /// Largest zero-rate offset that is taken for an offset (datasheet: ±1 °/s typical).

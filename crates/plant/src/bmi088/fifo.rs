@@ -1,0 +1,142 @@
+//! The gyro die's buffer of past samples (datasheet chapters 4.9.2 and 5.5): headerless frames of six bytes.
+
+use std::collections::VecDeque;
+
+const FRAMES: usize = 100;
+const FRAME_LEN: usize = 6;
+const OVERRUN: u8 = 1 << 7;
+
+/// FIFO_CONFIG_1, upper two bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Mode {
+    /// The data registers are all there is.
+    Bypass,
+    /// Full, it takes no more.
+    Fifo,
+    /// Full, it drops the oldest.
+    Stream,
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct Fifo {
+    config: u8,
+    frames: VecDeque<[i16; 3]>,
+    overrun: bool,
+    /// Bytes of the oldest frame that have been read.
+    read: usize,
+}
+
+impl Fifo {
+    pub(super) fn new() -> Self {
+        Self {
+            config: 0,
+            frames: VecDeque::new(),
+            overrun: false,
+            read: 0,
+        }
+    }
+
+    pub(super) fn config(&self) -> u8 {
+        self.config
+    }
+
+    /// A write to FIFO_CONFIG_1 also empties the buffer and ends the overrun.
+    pub(super) fn configure(&mut self, config: u8) {
+        *self = Self::new();
+        self.config = config;
+    }
+
+    /// A write to FIFO_CONFIG_0 empties the buffer.
+    pub(super) fn clear(&mut self) {
+        self.frames.clear();
+        self.read = 0;
+    }
+
+    fn mode(&self) -> Mode {
+        match self.config >> 6 {
+            0 => Mode::Bypass,
+            1 => Mode::Fifo,
+            _ => Mode::Stream,
+        }
+    }
+
+    pub(super) fn push(&mut self, frame: [i16; 3]) {
+        if self.mode() == Mode::Bypass {
+            return;
+        }
+        if self.frames.len() == FRAMES {
+            self.overrun = true;
+            if self.mode() == Mode::Fifo {
+                return;
+            }
+            self.frames.pop_front();
+            self.read = 0;
+        }
+        self.frames.push_back(frame);
+    }
+
+    pub(super) fn replace_newest(&mut self, frame: [i16; 3]) {
+        if let Some(newest) = self.frames.back_mut() {
+            *newest = frame;
+        }
+    }
+
+    /// FIFO_STATUS: frames in the buffer, and whether any were lost.
+    pub(super) fn status(&self) -> u8 {
+        self.frames.len() as u8 | if self.overrun { OVERRUN } else { 0 }
+    }
+
+    /// The next byte of FIFO_DATA; 0 from an empty buffer.
+    pub(super) fn read(&mut self) -> u8 {
+        let Some(frame) = self.frames.front() else {
+            return 0;
+        };
+        let byte = frame[self.read / 2].to_le_bytes()[self.read % 2];
+        self.read += 1;
+        if self.read == FRAME_LEN {
+            self.frames.pop_front();
+            self.read = 0;
+        }
+        byte
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn filled(config: u8, frames: i16) -> Fifo {
+        let mut fifo = Fifo::new();
+        fifo.configure(config);
+        for x in 0..frames {
+            fifo.push([x, 0, -1]);
+        }
+        fifo
+    }
+
+    #[test]
+    fn frames_come_out_oldest_first_low_bytes_first() {
+        let mut fifo = filled(0x80, 2);
+        assert_eq!(fifo.status(), 2);
+        let bytes: [u8; 14] = std::array::from_fn(|_| fifo.read());
+        assert_eq!(
+            bytes,
+            [0, 0, 0, 0, 0xFF, 0xFF, 1, 0, 0, 0, 0xFF, 0xFF, 0, 0]
+        );
+        assert_eq!(fifo.status(), 0);
+    }
+
+    #[test]
+    fn full_it_keeps_the_newest_or_the_oldest_and_says_so() {
+        for (config, first) in [(0x80, 1), (0x40, 0)] {
+            let mut fifo = filled(config, 101);
+            assert_eq!(fifo.status(), 0x80 | 100);
+            assert_eq!(fifo.read(), first);
+            fifo.clear();
+            assert_eq!(fifo.status(), 0x80);
+            fifo.configure(config);
+            assert_eq!(fifo.status(), 0);
+        }
+        assert_eq!(filled(0x00, 5).status(), 0);
+    }
+}
