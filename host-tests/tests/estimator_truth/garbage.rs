@@ -114,6 +114,8 @@ impl Victim {
         };
         for wheel in &mut self.motor.wheels {
             wheel.rpm = noise.bits() as i16;
+            wheel.current_ma = value(noise);
+            wheel.frozen = noise.below(2) == 0;
             wheel.age_us = if noise.below(2) == 0 {
                 0
             } else {

@@ -42,7 +42,12 @@ impl Run {
 
     /// One tick of 1 ms.
     pub fn step(&mut self) {
-        self.tick += 1;
+        self.step_after(1);
+    }
+
+    /// A tick that comes `ticks` ms after the last.
+    pub fn step_after(&mut self, ticks: u64) {
+        self.tick += ticks;
         let elapsed_us = self.tick * TICK_US;
         self.world.advance_to(elapsed_us);
         while let Some(sample) = self.world.imu_due(elapsed_us) {

@@ -1,6 +1,12 @@
-//! The robot's clock: hours of it, and where 32 bits of microseconds wrap.
+//! The robot's clock: late ticks, hours of it, and where 32 bits of microseconds wrap.
 
-use crate::{motion::Motion, run::Run, sensors::Sensors};
+use crate::{
+    figures::Figures,
+    motion::{Motion, window},
+    noise::Noise,
+    run::Run,
+    sensors::Sensors,
+};
 
 /// The same motion gives the same attitude to the bit whenever it happens.
 #[test]
@@ -25,4 +31,25 @@ fn it_does_not_matter_when() {
             assert_eq!(soon.estimate.valid, run.estimate.valid);
         }
     }
+}
+
+/// Ticks 1 … 4 ms apart at random: each output belongs to its own tick.
+#[test]
+#[ignore = "further than the filter gets so far"]
+fn late_ticks_cost_nothing() {
+    let mut figures = Figures::default();
+    let motion = Motion::at_rest()
+        .turning(|t| [50.0, -70.0, 300.0].map(|rate| rate * window(t, 3.0, 1e9, 1.0)));
+    let mut run = Run::new(motion, Sensors::ideal());
+    let mut noise = Noise::new(7);
+    let mut total_deg = 0.0_f64;
+    while run.time_s() < 60.0 {
+        run.step_after(1 + noise.below(4) as u64);
+        if run.time_s() > 5.0 {
+            total_deg = total_deg.max(run.error().total_deg);
+            assert!(run.estimate.valid);
+        }
+    }
+    figures.at_most("late ticks at 312 °/s, total in °", total_deg, 0.3);
+    figures.done();
 }

@@ -10,7 +10,7 @@ use crate::{
     sensors::Sensors,
 };
 
-/// Every pose the robot may wake up in: nine tilts by six headings.
+/// Every pose the robot may wake up in: nine tilts by six headings, west among them, where the angle wraps.
 fn poses() -> impl Iterator<Item = Rotation> {
     const TILTS_DEG: [Vector; 9] = [
         [0.0, 0.0, 0.0],
@@ -25,7 +25,7 @@ fn poses() -> impl Iterator<Item = Rotation> {
     ];
     TILTS_DEG.into_iter().flat_map(|tilt_deg| {
         (0..6).map(move |sixth| {
-            let heading = Rotation::by_deg([0.0, 0.0, 60.0 * f64::from(sixth) - 170.0]);
+            let heading = Rotation::by_deg([0.0, 0.0, 60.0 * f64::from(sixth) - 180.0]);
             heading.then_in_body(Rotation::by_deg(tilt_deg))
         })
     })
