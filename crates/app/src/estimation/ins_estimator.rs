@@ -1,12 +1,12 @@
 //! The estimator of the main chain (ROBOT_CPP 0.4).
 
 use super::{
-    attitude::AttitudeFilter,
+    attitude::{AttitudeFilter, Clipped},
     motion::{AccelSample, BodyPose, MotionEstimator},
 };
 use crate::{
     domain::{ImuState, MagState, MotorFeedback, StateEstimate, WheelOdomConfig, age_us},
-    math::{Vector3, vector},
+    math::{Vector3, scalar, vector},
 };
 
 /// An IMU sample older than this says nothing about the attitude now.
@@ -22,6 +22,10 @@ const MAX_TICK_US: u32 = 20_000;
 const MAX_RATE_DPS: f32 = 2_500.0;
 const MAX_ACCEL_MPS2: f32 = 300.0;
 const MAX_FIELD_UT: f32 = 5_000.0;
+/// A field sample older than this, or newer, is turned to the present as if it were only so old.
+const MAX_MAG_AGE_S: f32 = 0.03;
+/// A rate beyond this in a saturated sample was cut off (BMI088: ±2000 °/s).
+const CLIPPED_RATE_DPS: f32 = 1_950.0;
 
 /// Called at 1 kHz with the latest samples; uses each sample once and carries the attitude on between them.
 #[derive(Clone, Debug)]
@@ -34,8 +38,6 @@ pub struct InsEstimator {
     imu_ts_us: u64,
     mag_ts_us: u64,
     applied_bias_dps: Vector3,
-    /// Without offset, of the last sample.
-    rate_rps: Vector3,
     settled_samples: u16,
     /// Last tick, 0 = none yet.
     ts_us: u64,
@@ -50,7 +52,6 @@ impl InsEstimator {
             imu_ts_us: 0,
             mag_ts_us: 0,
             applied_bias_dps: [0.0; 3],
-            rate_rps: [0.0; 3],
             settled_samples: 0,
             ts_us: 0,
         }
@@ -110,25 +111,34 @@ impl InsEstimator {
         }
         if !continuous {
             self.settled_samples = 0;
-            self.attitude.restart_smoothing();
+            self.attitude.restart_after_gap();
             self.motion.restart();
         }
         let dt_s = if continuous { seconds(gap_us) } else { 0.0 };
         let gyro_rps = imu.gyro_dps.map(f32::to_radians);
-        // Cut off at the end of its range a blow no longer averages out, and would tilt the robot by degrees.
-        let accel_mps2 = (!imu.saturated).then_some(imu.accel_mps2);
+        let clipped = Clipped {
+            accel: imu.saturated,
+            gyro: imu.saturated && !vector::is_within(imu.gyro_dps, CLIPPED_RATE_DPS),
+        };
         // Without what the known motion adds, the force points up.
-        let standing_mps2 =
-            accel_mps2.map(|accel| vector::sub(accel, self.motion.kinematic_mps2()));
-        self.attitude.feed_imu(gyro_rps, standing_mps2, dt_s);
+        let standing_mps2 = vector::sub(imu.accel_mps2, self.motion.kinematic_mps2());
+        self.attitude
+            .feed_imu(gyro_rps, standing_mps2, clipped, dt_s);
         self.settled_samples = self.settled_samples.saturating_add(1);
-        self.rate_rps = vector::sub(gyro_rps, self.attitude.bias_rps());
+        // What was cut off no longer averages out: the speed would never come back.
+        let accel_mps2 = (!imu.saturated).then_some(imu.accel_mps2);
         Some(AccelSample { accel_mps2, dt_s })
     }
 
     fn take_mag(&mut self, mag: &MagState) {
         if self.settled_samples > 0 && vector::is_within(mag.mag_ut, MAX_FIELD_UT) {
-            self.attitude.feed_mag(mag.mag_ut);
+            let ahead_s = if mag.ts_us >= self.imu_ts_us {
+                seconds(age_us(self.imu_ts_us, mag.ts_us))
+            } else {
+                -seconds(age_us(mag.ts_us, self.imu_ts_us))
+            };
+            let ahead_s = scalar::clamp(ahead_s, -MAX_MAG_AGE_S, MAX_MAG_AGE_S);
+            self.attitude.feed_mag(mag.mag_ut, ahead_s);
         }
     }
 
@@ -147,7 +157,7 @@ impl InsEstimator {
         if let Some(sample) = sample {
             let pose = BodyPose {
                 orientation,
-                rate_rps: self.rate_rps,
+                rate_rps: self.attitude.rate_rps(),
             };
             self.motion.feed(&sample, ahead_s, &pose, motor);
         }

@@ -360,7 +360,12 @@ fn a_circle_is_no_tilt() {
     bench.wheels_run([0.58, 1.42]);
     for sample in 1..=1_000 {
         let half = 0.5 * 2.0 * DT_S * sample as f32;
-        bench.pose.orientation = Quaternion::about_z(half.cos(), half.sin());
+        bench.pose.orientation = Quaternion {
+            w: half.cos(),
+            x: 0.0,
+            y: 0.0,
+            z: half.sin(),
+        };
         bench.sample();
         assert_close(bench.motion.kinematic_mps2(), [0.0, 2.0, 0.0], 0.1);
     }

@@ -1,0 +1,244 @@
+//! Attitude, gyro bias and gyro misalignment from gyro, accelerometer and magnetometer.
+
+mod covariance;
+mod error_filter;
+mod forecast;
+mod rest;
+mod strapdown;
+mod window;
+
+use self::{
+    covariance::FIRST_ANGLE,
+    error_filter::{ErrorFilter, Findings},
+    rest::RestDetector,
+    window::Window,
+};
+pub(super) use self::{error_filter::Finding, strapdown::Strapdown};
+use super::magnetic::Magnetic;
+use crate::math::{Quaternion, Vector3, scalar, vector};
+
+const DEG: f32 = 1.0_f32.to_radians();
+const GRAVITY_MPS2: f32 = 9.806_65;
+/// Noise of the mean rate of a window at rest, (°/s)²·s.
+const REST_BIAS_NOISE: f32 = (0.03 * DEG) * (0.03 * DEG);
+/// A steady rate further from the known bias is a slow turn, whatever the accelerometer says: 0.4 °/s and four standard
+/// deviations.
+const REST_RATE_RPS: f32 = 0.4 * DEG;
+const REST_RATE_DEVIATIONS2: f32 = 16.0;
+/// Speed of something at rest, (m/s)².
+const REST_SPEED_NOISE: f32 = 0.05 * 0.05;
+/// What is known of the speed when nothing measures it: about zero in the mean over time, (m/s)²·s …
+const SPEED_NOISE: f32 = 0.3 * 0.3;
+/// … and less so where accelerations are large, per (m/s²)².
+const SPEED_NOISE_PER_ACCEL2: f32 = 0.25;
+/// Cosine of 30°.
+const LEAST_UPRIGHT: f32 = 0.866;
+/// A bias taken out elsewhere leaves this.
+const CALIBRATED_BIAS_VARIANCE: f32 = (0.1 * DEG) * (0.1 * DEG);
+/// Rate that the gyro may miss while it is at the end of its range.
+const CLIPPED_RATE_RPS: f32 = 300.0 * DEG;
+
+/// Which sensors were at the end of their range.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Clipped {
+    pub accel: bool,
+    pub gyro: bool,
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct AttitudeFilter {
+    strapdown: Strapdown,
+    window: Window,
+    filter: ErrorFilter,
+    rest: RestDetector,
+    magnetic: Magnetic,
+    clipped_s: f32,
+    aligned: bool,
+}
+
+impl AttitudeFilter {
+    pub fn new() -> Self {
+        Self {
+            strapdown: Strapdown::new(),
+            window: Window::new(),
+            filter: ErrorFilter::new(),
+            rest: RestDetector::default(),
+            magnetic: Magnetic::new(),
+            clipped_s: 0.0,
+            aligned: false,
+        }
+    }
+
+    /// One IMU sample of the `dt_s` before now. `accel_mps2`: without what the known motion adds.
+    pub fn feed_imu(
+        &mut self,
+        gyro_rps: Vector3,
+        accel_mps2: Vector3,
+        clipped: Clipped,
+        dt_s: f32,
+    ) {
+        if !self.aligned {
+            self.align(accel_mps2);
+        }
+        let carried = self.strapdown.turn(gyro_rps, dt_s);
+        self.window
+            .add_turn(&carried, gyro_rps, self.strapdown.rate_rps, dt_s);
+        let accel_enu = carried.middle.map(|row| vector::dot(row, accel_mps2));
+        self.strapdown.accelerate(accel_enu, dt_s);
+        self.window.add_accel(accel_enu);
+        self.rest.feed(gyro_rps, accel_mps2);
+        if clipped.gyro {
+            self.clipped_s += dt_s;
+        }
+        if clipped.accel {
+            self.window.blind_s += dt_s;
+        }
+        self.apply_correction();
+        if self.window.is_full() {
+            self.close_window();
+        }
+    }
+
+    /// The first sample: its acceleration points up.
+    fn align(&mut self, accel_mps2: Vector3) {
+        let inverse = scalar::inverse_sqrt(vector::dot(accel_mps2, accel_mps2));
+        if inverse == 0.0 {
+            return;
+        }
+        self.strapdown.attitude = Quaternion::lifting(vector::scale(accel_mps2, inverse));
+        self.aligned = true;
+    }
+
+    fn apply_correction(&mut self) {
+        let Some(correction) = self.filter.continue_work() else {
+            return;
+        };
+        let (angle_rad, [east, north]) = correction.carried_through(&self.window);
+        correction.add_to(&mut self.strapdown.gyro);
+        self.strapdown.tilt(angle_rad);
+        let [vx, vy] = self.strapdown.speed_mps;
+        self.strapdown.speed_mps = [vx + east, vy + north];
+        self.magnetic.tilt(angle_rad);
+    }
+
+    fn close_window(&mut self) {
+        if self.clipped_s > 0.0 {
+            let angle_rad = CLIPPED_RATE_RPS * self.clipped_s;
+            self.window.unseen_rad2 += angle_rad * angle_rad;
+            self.clipped_s = 0.0;
+        }
+        let t = self.window.duration_s;
+        let field = self.magnetic.close(t, self.filter.covariance.certainty());
+        self.filter.covariance.doubt_angles([0.0, 0.0, field.doubt]);
+        let rest_rate = self
+            .rest
+            .close(field.body_ut)
+            .filter(|rate| self.may_be_bias(*rate));
+        if rest_rate.is_some() && self.righted_itself() {
+            return;
+        }
+        if let Some(turn_rad) = field.first_heading_rad {
+            // In two steps: it may be half a turn.
+            self.strapdown.tilt([0.0, 0.0, 0.5 * turn_rad]);
+            self.strapdown.tilt([0.0, 0.0, 0.5 * turn_rad]);
+            self.magnetic.forget_world();
+        }
+        let findings = Findings {
+            speed: self.speed_findings(rest_rate.is_some()),
+            heading: field.heading,
+            bias: rest_rate.map(|rate| self.bias_findings(rate)),
+        };
+        self.filter.begin(&self.window, findings);
+        self.window = Window::new();
+    }
+
+    /// Corrections are made for small errors. Standing still, but far from upright as believed: up is where the force
+    /// points.
+    fn righted_itself(&mut self) -> bool {
+        let force = self.window.accel_mps2();
+        let up = vector::scale(force, scalar::inverse_sqrt(vector::dot(force, force)));
+        let [.., cos] = up;
+        if cos > LEAST_UPRIGHT || force == [0.0; 3] {
+            return false;
+        }
+        let righting = Quaternion::lifting(up);
+        self.strapdown.attitude = righting.after(self.strapdown.attitude).normalised();
+        self.strapdown.speed_mps = [0.0; 2];
+        self.window = Window::new();
+        self.filter.restart();
+        self.magnetic.restart();
+        true
+    }
+
+    fn may_be_bias(&self, rate_rps: Vector3) -> bool {
+        let beyond = self.strapdown.gyro.corrected(rate_rps);
+        beyond
+            .iter()
+            .zip(self.filter.covariance.bias_variances())
+            .all(|(rate, variance)| {
+                rate * rate < REST_RATE_RPS * REST_RATE_RPS + REST_RATE_DEVIATIONS2 * variance
+            })
+    }
+
+    fn bias_findings(&self, rest_rate_rps: Vector3) -> [Finding; 3] {
+        let noise = REST_BIAS_NOISE / self.window.duration_s;
+        self.strapdown
+            .gyro
+            .corrected(rest_rate_rps)
+            .map(|innovation| Finding { innovation, noise })
+    }
+
+    fn speed_findings(&self, resting: bool) -> [Finding; 2] {
+        let t = self.window.duration_s;
+        let [ax, ay, az] = self.window.accel_mps2();
+        let felt = [ax, ay, az - GRAVITY_MPS2];
+        let noise = if resting {
+            REST_SPEED_NOISE
+        } else {
+            SPEED_NOISE * (1.0 + SPEED_NOISE_PER_ACCEL2 * vector::dot(felt, felt)) / t
+        };
+        self.strapdown.speed_mps.map(|speed_mps| Finding {
+            innovation: -speed_mps,
+            noise,
+        })
+    }
+
+    /// `ahead_s`: when the field was measured, after the last IMU sample; negative: before.
+    pub fn feed_mag(&mut self, mag_ut: Vector3, ahead_s: f32) {
+        if self.aligned {
+            self.magnetic.feed(mag_ut, &self.strapdown, ahead_s);
+        }
+    }
+
+    /// Body → ENU, carried `ahead_s` past the last sample with its rate.
+    pub fn orientation(&self, ahead_s: f32) -> Quaternion {
+        self.strapdown.attitude_at(ahead_s)
+    }
+
+    /// Of the last sample, without the errors of the gyro.
+    pub const fn rate_rps(&self) -> Vector3 {
+        self.strapdown.rate_rps
+    }
+
+    pub const fn bias_rps(&self) -> Vector3 {
+        self.strapdown.gyro.bias_rps
+    }
+
+    /// The offset was taken out of the samples elsewhere.
+    pub fn restart_bias(&mut self) {
+        self.strapdown.gyro.bias_rps = [0.0; 3];
+        self.filter
+            .covariance
+            .replace_bias(CALIBRATED_BIAS_VARIANCE);
+        self.rest.restart();
+    }
+
+    /// After a gap in the samples: keeps attitude and gyro model, doubts the attitude, forgets all that was adding up.
+    pub fn restart_after_gap(&mut self) {
+        self.window = Window::new();
+        self.clipped_s = 0.0;
+        self.rest.restart();
+        self.magnetic.restart();
+        self.filter.covariance.doubt_angles([FIRST_ANGLE; 3]);
+    }
+}

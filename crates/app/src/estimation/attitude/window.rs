@@ -1,0 +1,81 @@
+//! What a fifth of a second of samples adds up to.
+
+use super::strapdown::Carried;
+use crate::math::{Vector3, vector};
+
+/// bias x, y, z, then misalignment row by row.
+pub(super) const PARAMETERS: usize = 12;
+pub(super) type Parameters = [f32; PARAMETERS];
+
+/// Samples in a window.
+const SAMPLES: u8 = 40;
+
+#[derive(Clone, Debug)]
+pub(super) struct Window {
+    /// How an error of each gyro parameter turns the attitude: −∫R dt and −∫R ⊗ ω dt, one row for each axis of ENU.
+    pub turn_by_parameter: [Parameters; 3],
+    accel_sum_mps2: Vector3,
+    accels: u8,
+    samples: u8,
+    pub duration_s: f32,
+    /// ∫ω² dt.
+    pub turned_rad2_per_s: f32,
+    /// Without an acceleration that can be used.
+    pub blind_s: f32,
+    /// Square of the angle by which the attitude may be off because the gyro did not see it.
+    pub unseen_rad2: f32,
+}
+
+impl Window {
+    pub const fn new() -> Self {
+        Self {
+            turn_by_parameter: [[0.0; PARAMETERS]; 3],
+            accel_sum_mps2: [0.0; 3],
+            accels: 0,
+            samples: 0,
+            duration_s: 0.0,
+            turned_rad2_per_s: 0.0,
+            blind_s: 0.0,
+            unseen_rad2: 0.0,
+        }
+    }
+
+    pub const fn is_full(&self) -> bool {
+        self.samples >= SAMPLES
+    }
+
+    pub fn add_turn(&mut self, carried: &Carried, gyro_rps: Vector3, rate_rps: Vector3, dt_s: f32) {
+        let [gx, gy, gz] = gyro_rps;
+        for (row, [rx, ry, rz]) in self.turn_by_parameter.iter_mut().zip(carried.middle) {
+            let [bx, by, bz, xx, xy, xz, yx, yy, yz, zx, zy, zz] = row;
+            let (rx, ry, rz) = (rx * dt_s, ry * dt_s, rz * dt_s);
+            *bx -= rx;
+            *by -= ry;
+            *bz -= rz;
+            *xx -= rx * gx;
+            *xy -= rx * gy;
+            *xz -= rx * gz;
+            *yx -= ry * gx;
+            *yy -= ry * gy;
+            *yz -= ry * gz;
+            *zx -= rz * gx;
+            *zy -= rz * gy;
+            *zz -= rz * gz;
+        }
+        self.samples = self.samples.saturating_add(1);
+        self.duration_s += dt_s;
+        self.turned_rad2_per_s += vector::dot(rate_rps, rate_rps) * dt_s;
+        self.unseen_rad2 += carried.unseen_rad2;
+    }
+
+    pub fn add_accel(&mut self, accel_enu_mps2: Vector3) {
+        self.accel_sum_mps2 = vector::add(self.accel_sum_mps2, accel_enu_mps2);
+        self.accels = self.accels.saturating_add(1);
+    }
+
+    /// Mean specific force, ENU.
+    pub fn accel_mps2(&self) -> Vector3 {
+        let count = if self.accels == 0 { 1 } else { self.accels };
+        vector::scale(self.accel_sum_mps2, 1.0 / f32::from(count))
+    }
+}
