@@ -41,7 +41,8 @@ pub fn plots(
         (
             biases,
             format!("{}: gyro bias", trial.name),
-            "What the estimator takes out of the gyro.".to_owned(),
+            "What the estimator takes out of the gyro, the sensor's own offset included."
+                .to_owned(),
         ),
     ];
     let mut figures = Vec::new();
@@ -57,13 +58,12 @@ pub fn plots(
 }
 
 fn error_caption(figures: Option<Figures>) -> String {
-    let scored = "From the first valid estimate on, time in s; the tinted phase is scored";
     match figures {
         Some(f) => format!(
-            "{scored}: {:.2}° total, {:.2}° heading, {:.2}° inclination.",
+            "Tinted: scored, {:.2}° total, {:.2}° heading, {:.2}° inclination.",
             f.total_deg, f.heading_deg, f.inclination_deg
         ),
-        None => format!("{scored}."),
+        None => "Nothing to score.".to_owned(),
     }
 }
 
@@ -133,8 +133,8 @@ pub fn page(task: &Task, outcomes: &[Outcome]) -> String {
     let title = format!("Replay {}", table::title(task));
     let parts = [
         format!(
-            "<header><div><h1>{}</h1><div class=\"soft\">Root mean square errors in degrees over the scored phase. At \
-             the samples: at the reference's times. At 1 kHz: at every output.</div></div></header>\n",
+            "<header><div><h1>{}</h1><div class=\"soft\">Root mean square errors in degrees over the scored phase, at \
+             the reference's times and at every output. Plots: time in s, from the first valid estimate on.</div></div></header>\n",
             escaped(&title)
         ),
         errors_table(outcomes),
@@ -161,8 +161,9 @@ fn errors_table(outcomes: &[Outcome]) -> String {
         let figures = (outcome.at_samples, outcome.at_1khz);
         row(&mut html, &outcome.name, figures, &troubles.join("; "));
     }
-    row(&mut html, "Mean", table::means(outcomes), "");
-    html + "</table>\n"
+    html += "<tfoot>\n";
+    row(&mut html, "mean", table::means(outcomes), "");
+    html + "</tfoot>\n</table>\n"
 }
 
 fn row(html: &mut String, name: &str, figures: (Option<Figures>, Option<Figures>), note: &str) {
