@@ -9,7 +9,7 @@ use std::path::Path;
 use crate::{
     attitude::{self, Quaternion},
     bmi088::Motion,
-    time::{MS, Ps, US, to_seconds},
+    time::{MS, Ps, to_seconds},
     world::WorldError,
 };
 pub use trial::{Row, Trial};
@@ -17,19 +17,12 @@ pub use trial::{Row, Trial};
 /// Room for boot and sensor start-up before the record begins. Until then its first moments, which are all at rest,
 /// play backwards: real noise, and no jump where the record starts.
 const LEAD_IN: Ps = 1_000 * MS;
-/// The recorder's IMU had a delay of its own: the interval a row is the mean of ended so long before the instant of the
-/// row's reference. Regression of the recorded rates on those of the reference, twelve BROAD trials: 2.31 … 2.67 ms.
-pub const MOTION_DELAY: Ps = 2_450 * US;
-/// The same of its magnetometer: 11 ms more. Regression of the field's change on the recorded rates: 9.9 … 11.7 ms.
-pub const FIELD_DELAY: Ps = MOTION_DELAY + 11 * MS;
-
 /// How long a run lasts that plays all of the trial `header` describes: lead-in and every row.
 pub fn run_length(header: &Path) -> Result<Ps, WorldError> {
     Ok(LEAD_IN + trial::duration(header)?)
 }
 
-/// What moved the recorder moves the board's sensors: the recorder's delays are taken out, those of the board's chips
-/// come in.
+/// What the recorder's sensors showed moves the board's: the delays of both add up.
 pub(crate) struct Playback {
     trial: Trial,
 }
@@ -46,19 +39,17 @@ impl Playback {
         to_seconds(now) - to_seconds(LEAD_IN)
     }
 
-    /// The row whose interval the recorder was in at `now`, having been `delay` late. Before the record it runs
-    /// backwards, after it the last row stays.
-    fn row(&self, now: Ps, delay: Ps) -> Row {
-        let seen = now + delay;
-        let index = match seen.checked_sub(LEAD_IN) {
+    /// The row whose interval contains `now`. Before the record it runs backwards, after it the last row stays.
+    fn row(&self, now: Ps) -> Row {
+        let index = match now.checked_sub(LEAD_IN) {
             Some(since) => self.trial.index_ending_after(since),
-            None => self.trial.index_at(LEAD_IN - seen),
+            None => self.trial.index_at(LEAD_IN - now),
         };
         self.trial.row(index)
     }
 
     pub(crate) fn motion(&self, now: Ps) -> Motion {
-        let row = self.row(now, MOTION_DELAY);
+        let row = self.row(now);
         Motion {
             accel_mps2: row.accel_mps2,
             gyro_rps: row.gyro_rps,
@@ -66,7 +57,7 @@ impl Playback {
     }
 
     pub(crate) fn field_ut(&self, now: Ps) -> [f64; 3] {
-        self.row(now, FIELD_DELAY).field_ut
+        self.row(now).field_ut
     }
 
     /// True in the movement phase, which is the part that is scored.
