@@ -10,7 +10,6 @@ use crate::{
 /// The gyro holds the horizon to 0.2° for 4 s; believed for three seconds' mean the acceleration alone would tilt it by
 /// 60 % of what it seems to be. A filter that tells pushes from gravity lets less than a third of it in.
 #[test]
-#[ignore = "further than the filter gets so far"]
 fn speeding_up_and_braking_tilt_nothing() {
     let mut figures = Figures::default();
     for (push_mps2, seconds) in [(1.0, 3.0), (3.0, 1.0), (3.0, 3.0), (5.0, 1.0)] {
@@ -103,7 +102,6 @@ const CIRCLES: [Circle; 3] = [
 /// Round a circle the push turns with the robot, so it has no mean. Entering it changes the velocity by at most twice
 /// the speed v: a mean over τ = 3 s tilts by 2 v/(g τ) at most, a filter that tells pushes from gravity by half of it.
 #[test]
-#[ignore = "further than the filter gets so far"]
 fn driving_in_a_circle_tilts_nothing() {
     let mut figures = Figures::default();
     for circle in CIRCLES {

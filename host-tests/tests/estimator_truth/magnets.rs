@@ -30,7 +30,6 @@ fn driven() -> Motion {
 /// The field's strength or dip shows at once that it is not the earth's; meanwhile the gyro holds: its offset, known to
 /// 0.05 °/s, makes 1.5° in half a minute.
 #[test]
-#[ignore = "further than the filter gets so far"]
 fn a_magnet_that_comes_and_goes_turns_nothing() {
     let mut figures = Figures::default();
     for (name, magnet_ut) in MAGNETS_UT {

@@ -35,7 +35,6 @@ fn it_does_not_matter_when() {
 
 /// Ticks 1 … 4 ms apart at random: each output belongs to its own tick.
 #[test]
-#[ignore = "further than the filter gets so far"]
 fn late_ticks_cost_nothing() {
     let mut figures = Figures::default();
     let motion = Motion::at_rest()

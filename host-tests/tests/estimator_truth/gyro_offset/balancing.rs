@@ -17,7 +17,6 @@ fn swaying() -> Motion {
 
 /// The field shows the offset about the vertical: 0.1 °/s makes 2° in 20 s, sample noise of 0.3 µT in 19 µT is 0.9°.
 #[test]
-#[ignore = "further than the filter gets so far"]
 fn a_balancing_robot_finds_its_offset() {
     let mut figures = Figures::default();
     for offset_dps in [[0.3, -0.2, 0.5], [2.0, -2.0, 3.0], [0.0, 0.0, -6.0]] {

@@ -23,7 +23,6 @@ fn turntable(speed_dps: f64) -> Motion {
 /// The field turns with the earth, so an offset it is not: the heading follows, and when the table stops nothing of the
 /// turn is left in the offset.
 #[test]
-#[ignore = "further than the filter gets so far"]
 fn a_slow_steady_turn_is_seen_in_the_field() {
     let mut figures = Figures::default();
     for speed_dps in [0.5, 1.0, 1.8, 3.0, -3.0, 6.0, 15.0] {
@@ -53,7 +52,6 @@ fn a_slow_steady_turn_is_seen_in_the_field() {
 /// Smooth ground and a wide bend: no magnetometer, and the IMU feels nothing but 1 °/s. The wheels turn, so it is no
 /// rest; the offset stays known to 0.05 °/s from the rest before.
 #[test]
-#[ignore = "further than the filter gets so far"]
 fn with_turning_wheels_it_is_no_rest() {
     const TRACK_M: f64 = 0.42;
     let mut figures = Figures::default();
