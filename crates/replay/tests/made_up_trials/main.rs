@@ -24,7 +24,7 @@ fn a_constant_turn_is_followed_at_any_rate_and_any_instant() {
         for mode in [Mode::NineAxis, Mode::SixAxis] {
             for at in [At::Samples, At::EveryTick] {
                 let error = figures(name, &turn, rate, mode, at);
-                assert!(error.total_deg < 0.15, "{name} {mode:?} {at:?}: {error:?}");
+                assert!(error.total_deg < 0.1, "{name} {mode:?} {at:?}: {error:?}");
             }
         }
     }
