@@ -24,7 +24,7 @@ const BIAS_DENSITY: f32 = (0.0045 * DEG) * (0.0045 * DEG);
 /// Largest uncertainty that wandering alone leads to.
 const MAX_BIAS_VARIANCE: f32 = (3.0 * DEG) * (3.0 * DEG);
 /// Acceleration that may go unseen while the accelerometer is beyond its range, m/s².
-const BLIND_ACCEL_MPS2: f32 = 100.0;
+const BLIND_ACCEL_MPS2: f32 = 200.0;
 /// Below this a variance has no meaning in single precision.
 const LEAST_VARIANCE: f32 = 1e-12;
 

@@ -28,9 +28,10 @@ const REST_RATE_DEVIATIONS2: f32 = 16.0;
 /// Speed of something at rest, (m/s)².
 const REST_SPEED_NOISE: f32 = 0.05 * 0.05;
 /// What is known of the speed when nothing measures it: about zero in the mean over time, (m/s)²·s …
-const SPEED_NOISE: f32 = 0.3 * 0.3;
-/// … and less so where accelerations are large, per (m/s²)².
+const SPEED_NOISE: f32 = 0.2 * 0.2;
+/// … and less so where acceleration or speed are large, per (m/s²)² and (m/s)².
 const SPEED_NOISE_PER_ACCEL2: f32 = 0.25;
+const SPEED_NOISE_PER_SPEED2: f32 = 10.0;
 /// Cosine of 30°.
 const LEAST_UPRIGHT: f32 = 0.866;
 /// A bias taken out elsewhere leaves this.
@@ -195,7 +196,10 @@ impl AttitudeFilter {
         let noise = if resting {
             REST_SPEED_NOISE
         } else {
-            SPEED_NOISE * (1.0 + SPEED_NOISE_PER_ACCEL2 * vector::dot(felt, felt)) / t
+            let [vx, vy] = self.strapdown.speed_mps;
+            let moved = SPEED_NOISE_PER_ACCEL2 * vector::dot(felt, felt)
+                + SPEED_NOISE_PER_SPEED2 * (vx * vx + vy * vy);
+            SPEED_NOISE * (1.0 + moved) / t
         };
         self.strapdown.speed_mps.map(|speed_mps| Finding {
             innovation: -speed_mps,
