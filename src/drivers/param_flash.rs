@@ -1,4 +1,4 @@
-//! Sectors 1 to 3 of the internal flash, where the parameter store lives (RM0090 section 3, `hardware.md` 3).
+//! Sectors 1 to 3 of the internal flash, where the parameter store lives (RM0090 section 3).
 
 use embassy_stm32::flash::{Bank1Region1, Blocking, Error, Flash};
 use embassy_stm32::pac::flash::vals::Psize;

@@ -43,7 +43,7 @@ fn torque_is_limited_for_where_a_joint_may_be_since_its_last_report() {
     assert!(kp > 0.0 && kp * 0.2 <= 3.0, "{kp}");
 }
 
-/// The upper half of byte 0 is the motor's state, 1 = enabled (hardware.md 8.3).
+/// The upper half of byte 0 is the motor's state, 1 = enabled (its manual, feedback frame).
 #[test]
 fn a_dm4310_that_goes_on_reporting_enabled_is_not_taken_for_off() {
     let [slot, ..] = ROBOT_LAYOUT.joints();
