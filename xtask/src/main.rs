@@ -1,9 +1,11 @@
-//! The developer commands: `cargo xtask sim`, `cargo xtask soak` and `cargo xtask test`.
+//! The developer commands: `cargo xtask sim`, `soak`, `replay`, `bench` and `test`.
 
+mod bench;
 mod emulator;
 mod firmware;
 mod job;
 mod prerequisites;
+mod replay;
 mod sim;
 mod soak;
 mod test;
@@ -28,6 +30,10 @@ enum Command {
     Sim(sim::Args),
     /// Let faults from a seed have their way with the image for simulated hours.
     Soak(soak::Args),
+    /// Run the estimator over recorded trials: attitude at 1 kHz, its errors, plots.
+    Replay(replay::Args),
+    /// What the release image costs, and its estimator beside others, against their limits.
+    Bench(bench::Args),
     /// Everything CI runs: format, clippy, host tests, loom, image checks, emulator tests.
     Test,
 }
@@ -36,6 +42,8 @@ fn main() -> ExitCode {
     let outcome = match Args::parse().command {
         Command::Sim(args) => sim::run(&args),
         Command::Soak(args) => soak::run(&args),
+        Command::Replay(args) => replay::run(&args),
+        Command::Bench(args) => bench::run(&args),
         Command::Test => test::run(),
     };
     outcome.unwrap_or_else(|error| {

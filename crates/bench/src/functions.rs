@@ -1,4 +1,4 @@
-//! Which functions the instructions belong to.
+//! Where instructions and flash go, by function.
 
 use std::{borrow::Cow, collections::HashMap, fs, path::Path};
 
@@ -6,37 +6,66 @@ use addr2line::{
     Context,
     gimli::{DwarfSections, EndianSlice, RunTimeEndian, SectionId},
 };
+use anyhow::Context as _;
 use object::{File, Object, ObjectSection};
 
-use crate::program::Blocks;
+use crate::{
+    measure::{Measured, WorstTick},
+    program::Blocks,
+};
 
-type Slice<'d> = EndianSlice<'d, RunTimeEndian>;
+type Names<'d> = Context<EndianSlice<'d, RunTimeEndian>>;
 
-/// Instructions by innermost function, inlined ones by their own name.
-pub fn instructions(elf: &Path, blocks: &Blocks) -> anyhow::Result<Vec<(String, u64)>> {
+/// One function's part, what is inlined into it left out.
+#[derive(Clone, Debug, Default)]
+pub struct Share {
+    /// `function < caller`.
+    pub name: String,
+    /// Instructions of a mean update with magnetometer.
+    pub mean: f64,
+    /// Instructions of the costliest tick.
+    pub worst: u64,
+    pub flash_bytes: u64,
+}
+
+/// The largest first.
+pub fn shares(elf: &Path, runs: &[Measured]) -> anyhow::Result<Vec<Share>> {
     let bytes = fs::read(elf)?;
     let file = File::parse(&*bytes)?;
     let sections = DwarfSections::load(|id: SectionId| -> Result<Cow<'_, [u8]>, object::Error> {
         let section = file.section_by_name(id.name());
-        Ok(section
-            .map(|s| s.uncompressed_data())
-            .transpose()?
-            .unwrap_or_default())
+        let data = section.map(|section| section.uncompressed_data());
+        Ok(data.transpose()?.unwrap_or_default())
     })?;
     let names =
         Context::from_dwarf(sections.borrow(|data| EndianSlice::new(data, RunTimeEndian::Little)))?;
-    let mut sums: HashMap<String, u64> = HashMap::new();
-    for (&(start, size), &runs) in blocks {
-        for address in addresses(&file, start, size) {
-            *sums.entry(function(&names, address)?).or_default() += runs;
+    let code = Code::of(&file)?;
+    let mut shares: HashMap<String, Share> = HashMap::new();
+    let updates: usize = runs.iter().map(|run| run.costs.update_with_mag.len()).sum();
+    for (address, count) in runs.iter().flat_map(|run| code.instructions(&run.blocks)) {
+        shares.entry(function(&names, address)?).or_default().mean += count as f64 / updates as f64;
+    }
+    let worst = runs.iter().map(|run| &run.worst);
+    if let Some(WorstTick { blocks, .. }) = worst.max_by_key(|tick| tick.instructions) {
+        for (address, count) in code.instructions(blocks) {
+            shares.entry(function(&names, address)?).or_default().worst += count;
         }
     }
-    let mut list: Vec<_> = sums.into_iter().collect();
-    list.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
+    for address in code.halfwords() {
+        shares
+            .entry(function(&names, address)?)
+            .or_default()
+            .flash_bytes += 2;
+    }
+    let named = shares
+        .into_iter()
+        .map(|(name, share)| Share { name, ..share });
+    let mut list: Vec<_> = named.collect();
+    list.sort_by(|a, b| b.mean.total_cmp(&a.mean).then_with(|| a.name.cmp(&b.name)));
     Ok(list)
 }
 
-fn function(names: &Context<Slice<'_>>, address: u64) -> anyhow::Result<String> {
+fn function(names: &Names<'_>, address: u64) -> anyhow::Result<String> {
     let mut frames = names.find_frames(address).skip_all_loads()?;
     let mut path: Vec<String> = Vec::new();
     while let Some(frame) = frames.next()? {
@@ -44,12 +73,9 @@ fn function(names: &Context<Slice<'_>>, address: u64) -> anyhow::Result<String> 
             path.push(short(&name.demangle()?));
         }
     }
-    let own: Vec<_> = path
-        .into_iter()
-        .filter(|name| !name.starts_with("core::"))
-        .take(2)
-        .collect();
-    Ok(own.join(" < "))
+    path.retain(|name| !name.starts_with("core::") && !name.starts_with('<'));
+    path.truncate(2);
+    Ok(path.join(" < "))
 }
 
 fn short(name: &str) -> String {
@@ -57,18 +83,46 @@ fn short(name: &str) -> String {
     name.replace("robot_app::", "").replace("estimation::", "")
 }
 
-/// Of the block's instructions (Thumb: two bytes, or four if the upper five bits say so).
-fn addresses(file: &File<'_>, start: u32, size: u32) -> Vec<u64> {
-    let code = file
-        .sections()
-        .find_map(|s| s.data_range(start.into(), size.into()).ok().flatten());
-    let code = code.unwrap_or_default();
-    let mut list = Vec::new();
-    let mut at = 0;
-    while at + 2 <= code.len() {
-        list.push(u64::from(start) + at as u64);
-        let wide = code[at + 1] >> 3 >= 0b11101;
-        at += if wide { 4 } else { 2 };
+/// The program's machine code.
+struct Code<'d> {
+    start: u64,
+    bytes: &'d [u8],
+}
+
+impl<'d> Code<'d> {
+    fn of(file: &File<'d>) -> anyhow::Result<Self> {
+        let text = file.section_by_name(".text").context("it has no .text")?;
+        Ok(Self {
+            start: text.address(),
+            bytes: text.data()?,
+        })
     }
-    list
+
+    fn halfwords(&self) -> impl Iterator<Item = u64> {
+        (self.start..self.start + self.bytes.len() as u64).step_by(2)
+    }
+
+    /// Address of each instruction in the blocks, and how often it ran.
+    fn instructions(&self, blocks: &Blocks) -> Vec<(u64, u64)> {
+        let mut list = Vec::new();
+        for (&(start, size), &runs) in blocks {
+            let mut at = u64::from(start);
+            let end = at + u64::from(size);
+            while at < end {
+                list.push((at, runs));
+                at += self.instruction_bytes(at);
+            }
+        }
+        list
+    }
+
+    /// Thumb: four bytes if the upper five bits say so.
+    fn instruction_bytes(&self, address: u64) -> u64 {
+        let high = self.bytes.get((address - self.start) as usize + 1);
+        if high.is_some_and(|byte| byte >> 3 >= 0b11101) {
+            4
+        } else {
+            2
+        }
+    }
 }

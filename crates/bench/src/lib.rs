@@ -12,6 +12,5 @@ pub mod motion;
 pub mod program;
 pub mod report;
 pub mod scenarios;
-pub mod score;
 pub mod table;
 pub mod work;

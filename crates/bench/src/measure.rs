@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
+use robot_replay::{At, Figures, Mode, Run};
 use serde::Serialize;
 
 use crate::{
     filters::{Filter, OURS},
     motion::{Fresh, Motion},
     program::{Blocks, Program},
-    score::Score,
 };
 
 /// Instructions of each tick, by what was new in it.
@@ -30,9 +30,19 @@ pub struct Spread {
 
 pub struct Measured {
     pub costs: Costs,
-    pub score: Score,
+    /// Against the recording's reference, if it has one.
+    pub at_samples: Option<Figures>,
+    pub at_1_khz: Option<Figures>,
     pub flash_bytes: usize,
     /// What the updates with magnetometer ran, if asked for.
+    pub blocks: Blocks,
+    /// The costliest tick, if asked for.
+    pub worst: WorstTick,
+}
+
+#[derive(Clone, Debug, Default)]
+pub struct WorstTick {
+    pub instructions: u32,
     pub blocks: Blocks,
 }
 
@@ -44,7 +54,8 @@ pub enum Detail {
     Blocks,
 }
 
-/// `progress` is told of each row. Filters that carry nothing on between samples are called at samples only.
+/// `progress` is told of each tick. Filters that carry nothing on between samples are called at samples only; between
+/// them their last attitude stands.
 pub fn run(
     filter: Filter,
     programs: &Path,
@@ -53,31 +64,64 @@ pub fn run(
     mut progress: impl FnMut(),
 ) -> anyhow::Result<Measured> {
     let mut program = Program::boot(&filter.elf(programs))?;
-    let mut measured = Measured {
-        costs: Costs::default(),
-        score: Score::default(),
-        flash_bytes: program.flash_bytes,
-        blocks: Blocks::new(),
-    };
-    let extrapolates = filter == OURS;
-    for (index, row) in motion.rows.iter().enumerate() {
-        for (fresh, input) in motion.ticks(index) {
-            if fresh == Fresh::Nothing && !extrapolates {
-                break;
-            }
-            program.note_blocks(detail == Detail::Blocks && fresh == Fresh::ImuAndMag);
+    program.note_blocks(detail == Detail::Blocks);
+    let mut costs = Costs::default();
+    let mut profile = Profile::default();
+    let mut ticks = Vec::new();
+    let mut q_wxyz = [1.0, 0.0, 0.0, 0.0];
+    for (t_us, fresh, input) in motion.ticks() {
+        if fresh != Fresh::Nothing || filter == OURS {
             let tick = program.tick(&input)?;
-            measured.costs.of(fresh).push(tick.instructions);
-            if fresh != Fresh::Nothing
-                && let Some(reference) = row.reference_wxyz
-            {
-                measured.score.add(tick.q_wxyz, reference);
+            costs.of(fresh).push(tick.instructions);
+            if detail == Detail::Blocks {
+                profile.add(fresh, tick.instructions, program.take_blocks());
             }
+            q_wxyz = tick.q_wxyz.map(f64::from);
         }
+        ticks.push(robot_replay::Tick {
+            t_us,
+            q_wxyz,
+            gyro_bias_rps: [0.0; 3],
+            valid: true,
+        });
         progress();
     }
-    measured.blocks = program.take_blocks();
-    Ok(measured)
+    let mode = Mode::NineAxis;
+    let run = Run { mode, ticks };
+    let score = |at| match motion {
+        Motion::Recorded(trial) => run.score(trial, at),
+        Motion::Computed { .. } => None,
+    };
+    Ok(Measured {
+        costs,
+        at_samples: score(At::Samples),
+        at_1_khz: score(At::EveryTick),
+        flash_bytes: program.flash_bytes,
+        blocks: profile.updates,
+        worst: profile.worst,
+    })
+}
+
+#[derive(Default)]
+struct Profile {
+    updates: Blocks,
+    worst: WorstTick,
+}
+
+impl Profile {
+    fn add(&mut self, fresh: Fresh, instructions: u32, blocks: Blocks) {
+        if fresh == Fresh::ImuAndMag {
+            for (block, runs) in &blocks {
+                *self.updates.entry(*block).or_default() += runs;
+            }
+        }
+        if instructions > self.worst.instructions {
+            self.worst = WorstTick {
+                instructions,
+                blocks,
+            };
+        }
+    }
 }
 
 impl Costs {

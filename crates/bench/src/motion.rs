@@ -1,39 +1,31 @@
 //! What the filters are fed with: a recorded trial, or a motion computed here.
 
 mod computed;
-mod recorded;
 
 use estimator_bench::mailbox::Input;
+use robot_replay::{FIELD_AGE_US, Sample, Trial};
 
-pub const ROW_US: u32 = 5_000;
-const TICK_US: u32 = 1_000;
-/// Rows a magnetometer sample: 50 Hz.
-const ROWS_A_MAG_SAMPLE: usize = 4;
-const START_US: u32 = 1_000_000;
+/// The board's clock at time 0 of the motion. Not 0, which stands for "no sample yet".
+const START_US: u64 = 1_000_000;
+const TICK_US: u64 = 1_000;
+pub const TICKS_A_SAMPLE: u64 = 5;
 /// The wheels' reports come every millisecond.
 const WHEEL_AGE_US: u32 = 1_000;
+const TOP_RPM: f64 = 2_000.0;
 
-/// Means of 5 ms, and the attitude (body → ENU, w first) at their end where it is known and scored.
-#[derive(Clone, Debug)]
-pub struct Row {
-    pub gyro_rps: [f32; 3],
-    pub accel_mps2: [f32; 3],
-    pub mag_ut: [f32; 3],
-    pub reference_wxyz: Option<[f64; 4]>,
+pub enum Motion {
+    /// Of a sensor alone: no wheel ever reports.
+    Recorded(Trial),
+    Computed {
+        samples: Vec<Sample>,
+        wheels: Wheels,
+    },
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wheels {
-    /// They never report, as in a recording of a sensor alone.
     Silent,
     Turning,
-}
-
-#[derive(Clone, Debug)]
-pub struct Motion {
-    pub name: String,
-    pub rows: Vec<Row>,
-    pub wheels: Wheels,
 }
 
 /// What is new in a tick of 1 ms.
@@ -45,48 +37,53 @@ pub enum Fresh {
 }
 
 impl Motion {
-    pub fn ticks_a_row() -> u32 {
-        ROW_US / TICK_US
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Recorded(trial) => &trial.name,
+            Self::Computed { .. } => "computed motion",
+        }
     }
 
-    /// The ticks of 1 ms that begin with row `index`: the first has new samples.
-    pub fn ticks(&self, index: usize) -> impl Iterator<Item = (Fresh, Input)> {
-        let mag_index = index - index % ROWS_A_MAG_SAMPLE;
-        let (row, mag_row) = (&self.rows[index], &self.rows[mag_index]);
-        let imu_ts_us = row_end_us(index);
-        let at_sample = Input {
-            now_us: imu_ts_us,
-            imu_ts_us,
-            // The middle of its own row.
-            mag_ts_us: row_end_us(mag_index) - ROW_US / 2,
-            gyro_rps: row.gyro_rps,
-            accel_mps2: row.accel_mps2,
-            mag_ut: mag_row.mag_ut,
-            wheel_rpm: [0; 2],
+    pub fn samples(&self) -> &[Sample] {
+        match self {
+            Self::Recorded(trial) => &trial.samples,
+            Self::Computed { samples, .. } => samples,
+        }
+    }
+
+    pub fn wheels(&self) -> Wheels {
+        match self {
+            Self::Recorded(_) => Wheels::Silent,
+            Self::Computed { wheels, .. } => *wheels,
+        }
+    }
+
+    /// The control loop's ticks as `robot_replay::run` makes them: an IMU sample in every fifth, with every fourth of
+    /// those a magnetometer sample. With each its time in the motion.
+    pub fn ticks(&self) -> impl Iterator<Item = (u64, Fresh, Input)> {
+        let mut latest = Input {
             wheel_age_us: u32::MAX,
+            ..Input::default()
         };
-        (0..Self::ticks_a_row()).map(move |tick| {
-            let fresh = match tick {
-                0 if mag_index == index => Fresh::ImuAndMag,
-                0 => Fresh::Imu,
-                _ => Fresh::Nothing,
-            };
-            let now_us = imu_ts_us + tick * TICK_US;
-            (
-                fresh,
-                self.with_wheels(Input {
-                    now_us,
-                    ..at_sample
-                }),
-            )
-        })
+        self.samples()
+            .iter()
+            .flat_map(move |sample| {
+                let fresh = deliver(sample, &mut latest);
+                (0..TICKS_A_SAMPLE).map(move |tick| {
+                    let t_us = sample.end_us + tick * TICK_US;
+                    let fresh = if tick == 0 { fresh } else { Fresh::Nothing };
+                    let now_us = clock_us(t_us);
+                    (t_us, fresh, Input { now_us, ..latest })
+                })
+            })
+            .map(|(t_us, fresh, input)| (t_us, fresh, self.with_wheels(input)))
     }
 
     fn with_wheels(&self, input: Input) -> Input {
-        if self.wheels == Wheels::Silent {
+        if self.wheels() == Wheels::Silent {
             return input;
         }
-        let rpm = 2_000.0 * (f64::from(input.now_us) * 1e-6).sin();
+        let rpm = TOP_RPM * (f64::from(input.now_us) * 1e-6).sin();
         Input {
             wheel_rpm: [rpm as i16, -rpm as i16],
             wheel_age_us: WHEEL_AGE_US,
@@ -95,6 +92,22 @@ impl Motion {
     }
 }
 
-fn row_end_us(index: usize) -> u32 {
-    START_US + index as u32 * ROW_US
+fn deliver(sample: &Sample, latest: &mut Input) -> Fresh {
+    let Some(motion) = &sample.motion else {
+        return Fresh::Nothing;
+    };
+    latest.imu_ts_us = clock_us(sample.end_us);
+    latest.gyro_rps = motion.gyro_rps;
+    latest.accel_mps2 = motion.accel_mps2;
+    let Some(mag_ut) = sample.field_ut else {
+        return Fresh::Imu;
+    };
+    latest.mag_ts_us = clock_us(sample.end_us) - FIELD_AGE_US as u32;
+    latest.mag_ut = mag_ut;
+    Fresh::ImuAndMag
+}
+
+/// A motion lasts minutes, and the mailbox counts to an hour.
+fn clock_us(t_us: u64) -> u32 {
+    (START_US + t_us) as u32
 }

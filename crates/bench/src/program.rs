@@ -1,4 +1,7 @@
 //! A filter's program on a bare Cortex-M4F: memories of the chip, no peripherals.
+//!
+//! Every instruction that the processor issues counts, as in the control ticks of the emulated board; so do those of an
+//! IT block whose condition fails, which take their cycle too.
 
 use std::{collections::HashMap, fs, path::Path};
 
@@ -175,3 +178,6 @@ fn block_begins(engine: &mut Unicorn<'_, Counter>, address: u64, size: u32) {
         *counter.blocks.entry(block).or_default() += 1;
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,13 +1,12 @@
 //! The figures against their limits.
 
+use robot_replay::Figures;
 use serde::Serialize;
 
 use crate::{
     image_size::ImageSize,
     measure::{Costs, Measured, Spread},
-    motion::Wheels,
     scenarios,
-    score::Rmse,
     table::Group,
     work::{FilterResult, Results},
 };
@@ -151,21 +150,26 @@ fn filter_group(filters: &[FilterResult]) -> Group {
     group
         .add("flash", "bytes", flash.collect())
         .at_most(ESTIMATOR_FLASH_BYTES, &ours);
-    // The motion with wheels is computed: what it says of errors cannot stand beside recordings.
-    let recorded = |result: &FilterResult| match result.entry.wheels {
-        Wheels::Silent => accuracy(&result.runs),
-        Wheels::Turning => None,
-    };
-    let rmse: Vec<Option<Rmse>> = filters.iter().map(recorded).collect();
-    let part = |of: fn(&Rmse) -> f64| rmse.iter().map(|rmse| Some(of(rmse.as_ref()?))).collect();
+    let samples = errors(filters, |run| run.at_samples);
+    let part =
+        |of: fn(&Figures) -> f64| samples.iter().map(|all| Some(of(all.as_ref()?))).collect();
     group
-        .add("error, total", "° RMS", part(|r| r.total_deg))
+        .add("error, total", "° RMS", part(|all| all.total_deg))
         .decimals(2);
     group
-        .add("error, heading", "° RMS", part(|r| r.heading_deg))
+        .add("error, heading", "° RMS", part(|all| all.heading_deg))
         .decimals(2);
     group
-        .add("error, inclination", "° RMS", part(|r| r.inclination_deg))
+        .add(
+            "error, inclination",
+            "° RMS",
+            part(|all| all.inclination_deg),
+        )
+        .decimals(2);
+    let ticks = errors(filters, |run| run.at_1_khz);
+    let total = ticks.iter().map(|all| Some(all.as_ref()?.total_deg));
+    group
+        .add("error at 1 kHz, total", "° RMS", total.collect())
         .decimals(2);
     group
 }
@@ -176,7 +180,10 @@ fn ticks(result: &FilterResult, of: fn(&Costs) -> &Vec<u32>) -> Vec<u32> {
 }
 
 /// Mean over the motions with a reference.
-fn accuracy(runs: &[Measured]) -> Option<Rmse> {
-    let scores: Vec<Rmse> = runs.iter().filter_map(|run| run.score.rmse()).collect();
-    Rmse::mean(&scores)
+fn errors(filters: &[FilterResult], of: fn(&Measured) -> Option<Figures>) -> Vec<Option<Figures>> {
+    let mean = |result: &FilterResult| {
+        let known: Vec<Figures> = result.runs.iter().filter_map(of).collect();
+        Figures::mean(&known)
+    };
+    filters.iter().map(mean).collect()
 }

@@ -13,7 +13,7 @@ use robot_emulator::sim::{scenario::Scenario, summary::Summary};
 use crate::{
     filters::{EMPTY, Filter, OURS, RIVALS},
     measure::{self, Detail, Measured},
-    motion::{Motion, Wheels},
+    motion::{Motion, TICKS_A_SAMPLE, Wheels},
     program::Program,
     scenarios,
 };
@@ -57,7 +57,7 @@ enum Task<'p> {
 
 enum Done {
     Board(Box<Summary>),
-    Filter(Entry, Measured),
+    Filter(Entry, Box<Measured>),
 }
 
 impl Plan {
@@ -71,7 +71,7 @@ impl Plan {
         for done in done? {
             match done {
                 Done::Board(summary) => boards.push(*summary),
-                Done::Filter(entry, run) => measured.push((entry, run)),
+                Done::Filter(entry, run) => measured.push((entry, *run)),
             }
         }
         let mut filters = Vec::new();
@@ -95,7 +95,7 @@ impl Plan {
             let own = self
                 .motions
                 .iter()
-                .filter(move |motion| motion.wheels == entry.wheels);
+                .filter(move |motion| motion.wheels() == entry.wheels);
             own.map(move |motion| Task::Filter(entry, motion))
         });
         boards.chain(filters).collect()
@@ -140,11 +140,10 @@ impl Plan {
             }
             Task::Filter(entry, motion) => {
                 let Entry { filter, .. } = *entry;
-                bar.set_message(format!("{}: {}", filter.title, motion.name));
-                let row = u64::from(Motion::ticks_a_row());
-                measure::run(filter, &self.programs, motion, self.detail, || bar.inc(row))
-                    .with_context(|| format!("{} over {}", filter.title, motion.name))
-                    .map(|run| Done::Filter(*entry, run))
+                bar.set_message(format!("{}: {}", filter.title, motion.name()));
+                measure::run(filter, &self.programs, motion, self.detail, || bar.inc(1))
+                    .with_context(|| format!("{} over {}", filter.title, motion.name()))
+                    .map(|run| Done::Filter(*entry, Box::new(run)))
             }
         }
     }
@@ -155,7 +154,7 @@ impl Task<'_> {
     fn milliseconds(&self) -> u64 {
         match self {
             Self::Board(scenario) => scenarios::length_ms(scenario),
-            Self::Filter(_, motion) => motion.rows.len() as u64 * u64::from(Motion::ticks_a_row()),
+            Self::Filter(_, motion) => motion.samples().len() as u64 * TICKS_A_SAMPLE,
         }
     }
 }

@@ -14,6 +14,7 @@ use crate::{
 };
 
 const PACKAGE: &str = "robot-firmware";
+const FILTERS: &str = "estimator-bench";
 
 /// Which compiler has a core library for the board.
 enum Compiler {
@@ -80,10 +81,7 @@ fn chosen(variable: &str, words: &[&'static str]) -> anyhow::Result<&'static str
 /// The build, ready to start, and the image it makes; installs what it needs.
 pub fn build(parts: &Parts) -> anyhow::Result<(Job, PathBuf)> {
     let target_dir = parts.target_dir();
-    let mut command = match compiler()? {
-        Compiler::Rustup => tool::cargo(),
-        Compiler::Distribution => distribution::cargo()?,
-    };
+    let mut command = cargo()?;
     command.args(["build", "--release", "--package", PACKAGE]);
     command.args(["--target", BOARD, "--target-dir"]);
     command.arg(&target_dir);
@@ -93,6 +91,28 @@ pub fn build(parts: &Parts) -> anyhow::Result<(Job, PathBuf)> {
     let name = name.to_string_lossy().into_owned();
     let elf = target_dir.join(BOARD).join("release").join(PACKAGE);
     Ok((Job { name, command }, elf))
+}
+
+/// As [`build`], but the programs of single filters, and the folder they are in.
+pub fn build_filters() -> anyhow::Result<(Job, PathBuf)> {
+    let target_dir = workspace::firmware_target_dir(FILTERS);
+    let mut command = cargo()?;
+    command.args(["build", "--release", "--package", FILTERS, "--bins"]);
+    command.args(["--features", "board", "--target", BOARD, "--target-dir"]);
+    command.arg(&target_dir);
+    let job = Job {
+        name: FILTERS.to_owned(),
+        command,
+    };
+    Ok((job, target_dir.join(BOARD).join("release")))
+}
+
+/// Cargo with a compiler that has a core library for the board.
+fn cargo() -> anyhow::Result<Command> {
+    match compiler()? {
+        Compiler::Rustup => Ok(tool::cargo()),
+        Compiler::Distribution => distribution::cargo(),
+    }
 }
 
 /// Clippy over the image; `None` if the toolchain of `rust-toolchain.toml` lacks the target.

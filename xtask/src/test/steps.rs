@@ -12,7 +12,8 @@ use crate::{
 };
 
 const FIRMWARE: &str = "robot-firmware";
-const EMULATOR_PACKAGE: &str = "robot-emulator";
+/// Packages whose tests need images: the emulator, and what counts in it.
+const EMULATED: [&str; 2] = ["robot-emulator", "robot-bench"];
 
 pub struct Step {
     pub name: &'static str,
@@ -25,12 +26,13 @@ pub fn all() -> anyhow::Result<Vec<Step>> {
     let host = tool::host_triple()?;
     let (build, elf) = firmware::build(&Parts::DEFAULT)?;
     let (build_other, elf_other) = firmware::build(&Parts::OTHER)?;
+    let (build_filters, filters) = firmware::build_filters()?;
     let (checked, booted) = (elf.clone(), elf);
     let mut steps = vec![
         of_command("format", cargo(&["fmt", "--all", "--check"])),
         of_command("clippy, host", clippy_host(&host)),
         step("build the images", move || {
-            job::run_all(vec![build, build_other]).map(|()| Totals::PASSED)
+            job::run_all(vec![build, build_other, build_filters]).map(|()| Totals::PASSED)
         }),
         step("clippy, firmware", || match firmware::clippy() {
             Some(command) => totals::of_command(command),
@@ -43,7 +45,7 @@ pub fn all() -> anyhow::Result<Vec<Step>> {
     ];
     let host_tests = test_host(&host);
     let loom = loom(&host);
-    let emulator_tests = test_emulator(&host, &booted, &elf_other);
+    let emulator_tests = test_emulator(&host, &booted, &elf_other, &filters);
     steps.push(of_runner("host tests", host_tests));
     steps.push(of_runner("loom", loom));
     steps.push(of_runner("emulator tests", emulator_tests));
@@ -95,7 +97,9 @@ fn test_host(host: &str) -> Command {
         "--exclude",
         FIRMWARE,
         "--exclude",
-        EMULATOR_PACKAGE,
+        EMULATED[0],
+        "--exclude",
+        EMULATED[1],
         "--profile",
         HOST_PROFILE,
         "--target",
@@ -106,11 +110,13 @@ fn test_host(host: &str) -> Command {
     ])
 }
 
-fn test_emulator(host: &str, elf: &Path, elf_other: &Path) -> Command {
+fn test_emulator(host: &str, elf: &Path, elf_other: &Path, filters: &Path) -> Command {
     let mut command = cargo(&[
         "test",
         "--package",
-        EMULATOR_PACKAGE,
+        EMULATED[0],
+        "--package",
+        EMULATED[1],
         "--profile",
         HOST_PROFILE,
         "--target",
@@ -121,6 +127,7 @@ fn test_emulator(host: &str, elf: &Path, elf_other: &Path) -> Command {
     ]);
     command.env("ROBOT_ELF", elf);
     command.env("ROBOT_ELF_DBUS_RS00", elf_other);
+    command.env("ROBOT_FILTERS", filters);
     command
 }
 

@@ -6,19 +6,22 @@ use std::{
     process::ExitCode,
 };
 
-use anyhow::Context;
+use anyhow::{Context, ensure};
 use clap::Parser;
 use robot_bench::{
     filters::OURS,
-    functions,
+    functions::{self, Share},
     image_size::ImageSize,
     measure::Detail,
     motion::{Motion, Wheels},
-    program::Blocks,
     report::Report,
     scenarios,
     work::{Plan, Results},
 };
+use robot_replay::Trial;
+
+/// From the repository's root.
+const RECORDINGS: &str = "../shared/data/broad/hz200";
 
 /// What the firmware costs: the shipped image on the emulated board, and its attitude filter beside others, counted on
 /// an emulated Cortex-M4F over recorded motion. Exit code 1 if a limit is broken.
@@ -37,8 +40,8 @@ struct Args {
     /// Folder of the filters' programs for the board.
     #[arg(long, value_name = "DIR")]
     programs: PathBuf,
-    /// Folder of recorded trials [default: $ROBOT_DATA, else ../shared/data/broad/hz200; without any a computed motion
-    /// stands in].
+    /// Folder of recorded trials [default: $ROBOT_DATA, else ../shared/data/broad/hz200; if that is not there, a
+    /// computed motion stands in].
     #[arg(long, value_name = "DIR")]
     data: Option<PathBuf>,
     /// Only the recordings with this in their name.
@@ -47,7 +50,7 @@ struct Args {
     /// The filters alone, over one recording.
     #[arg(long)]
     quick: bool,
-    /// Also list which functions an update with magnetometer spends its instructions in.
+    /// Also list where the estimator's instructions and its flash go, by function.
     #[arg(long)]
     functions: bool,
     /// Where `bench.json` goes.
@@ -60,14 +63,14 @@ fn main() -> anyhow::Result<ExitCode> {
     let plan = args.plan()?;
     let results = plan.run()?;
     let image = plan.image.as_deref().map(ImageSize::read).transpose()?;
-    let names = plan.motions.iter().map(|motion| motion.name.clone());
+    let names = plan.motions.iter().map(|motion| motion.name().to_owned());
     let report = Report::new(image, &results, names.collect());
     for group in &report.groups {
         println!("{group}");
     }
     println!("filters fed with: {}", report.motions.join(", "));
     if args.functions {
-        print_functions(&plan.programs, &results)?;
+        print_functions(&plan.programs, results)?;
     }
     fs::create_dir_all(&args.out)?;
     let json = args.out.join("bench.json");
@@ -109,10 +112,7 @@ impl Args {
     fn motions(&self) -> anyhow::Result<Vec<Motion>> {
         let mut motions = Vec::new();
         for header in self.headers()? {
-            if self.quick && !motions.is_empty() {
-                break;
-            }
-            motions.push(Motion::read(&header)?);
+            motions.push(Motion::Recorded(Trial::read(&header)?));
         }
         if motions.is_empty() {
             eprintln!("no recordings (see --data): a computed motion stands in");
@@ -123,21 +123,29 @@ impl Args {
     }
 
     fn headers(&self) -> anyhow::Result<Vec<PathBuf>> {
-        let given = self
-            .data
-            .clone()
-            .or_else(|| env::var_os("ROBOT_DATA").map(PathBuf::from));
-        let folder = given.unwrap_or_else(|| repository().join("../shared/data/broad/hz200"));
-        let part = self.trial.as_deref().unwrap_or_default();
-        let mut headers = Vec::new();
-        for entry in fs::read_dir(&folder).into_iter().flatten() {
-            let path = entry?.path();
-            let name = path.file_stem().unwrap_or_default().to_string_lossy();
-            if path.extension().is_some_and(|e| e == "json") && name.contains(part) {
-                headers.push(path);
-            }
+        let variable = env::var_os("ROBOT_DATA").map(PathBuf::from);
+        let folder = match self.data.clone().or(variable) {
+            Some(folder) => folder,
+            None => repository().join(RECORDINGS),
+        };
+        if self.data.is_none() && !folder.is_dir() {
+            return Ok(Vec::new());
         }
-        headers.sort();
+        let mut headers = robot_replay::trial_files(&folder)?;
+        let part = self.trial.as_deref().unwrap_or_default();
+        headers.retain(|header| {
+            header
+                .file_stem()
+                .is_some_and(|name| name.to_string_lossy().contains(part))
+        });
+        ensure!(
+            !headers.is_empty(),
+            "no recording in {} has {part:?} in its name",
+            folder.display()
+        );
+        if self.quick {
+            headers.truncate(1);
+        }
         Ok(headers)
     }
 }
@@ -146,24 +154,25 @@ fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-fn print_functions(programs: &Path, results: &Results) -> anyhow::Result<()> {
+/// Of our estimator, over all its motions.
+fn print_functions(programs: &Path, results: Results) -> anyhow::Result<()> {
     let ours = results
         .filters
-        .iter()
+        .into_iter()
         .filter(|result| result.entry.is_ours());
-    let mut sum = Blocks::new();
-    let mut updates = 0;
-    for run in ours.flat_map(|result| &result.runs) {
-        updates += run.costs.update_with_mag.len();
-        for (block, runs) in &run.blocks {
-            *sum.entry(*block).or_default() += runs;
-        }
-    }
-    println!("\ninstructions of an update with magnetometer, by function < caller");
-    for (name, count) in functions::instructions(&OURS.elf(programs), &sum)? {
-        let each = count as f64 / updates as f64;
-        if each >= 1.0 {
-            println!("{each:>10.1}  {name}");
+    let runs: Vec<_> = ours.flat_map(|result| result.runs).collect();
+    println!(
+        "instructions of a mean update with magnetometer, of the costliest tick; bytes of flash"
+    );
+    for share in functions::shares(&OURS.elf(programs), &runs)? {
+        let Share {
+            name,
+            mean,
+            worst,
+            flash_bytes,
+        } = share;
+        if mean >= 0.5 || worst > 0 || flash_bytes >= 32 {
+            println!("{mean:>8.1} {worst:>6} {flash_bytes:>6}  {name}");
         }
     }
     Ok(())

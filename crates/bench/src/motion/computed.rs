@@ -1,11 +1,16 @@
-//! A motion with known truth: for where there are no recordings, and for wheels, which recordings lack.
+//! For where there are no recordings, and for wheels, which recordings lack.
 
 use std::f64::consts::TAU;
 
-use super::{Motion, ROW_US, Row, Wheels};
+use robot_replay::Sample;
+
+use super::{Motion, TICK_US, TICKS_A_SAMPLE, Wheels};
 
 const SECONDS: f64 = 90.0;
-const ROW_S: f64 = ROW_US as f64 * 1e-6;
+const SAMPLE_US: u64 = TICKS_A_SAMPLE * TICK_US;
+const SAMPLE_S: f64 = SAMPLE_US as f64 * 1e-6;
+/// The magnetometer is read at 50 Hz.
+const SAMPLES_A_FIELD: u64 = 4;
 const GRAVITY_MPS2: f64 = 9.81;
 /// East, north, up: a field of 49 µT that dips by 67°, as in Berlin.
 const FIELD_UT: [f64; 3] = [0.0, 19.0, -45.0];
@@ -19,31 +24,35 @@ impl Motion {
     /// Rest, slow turning, fast turning with thrusts, a magnet nearby, rest.
     pub fn computed(wheels: Wheels) -> Self {
         let mut q = [1.0, 0.0, 0.0, 0.0];
-        let count = (SECONDS / ROW_S) as usize;
-        let rows = (0..count).map(|index| row(&mut q, (index as f64 + 0.5) * ROW_S));
-        Self {
-            name: "computed motion".to_owned(),
-            rows: rows.collect(),
+        let count = (SECONDS / SAMPLE_S) as u64;
+        let samples = (0..count).map(|index| sample(&mut q, index));
+        Self::Computed {
+            samples: samples.collect(),
             wheels,
         }
     }
 }
 
-/// `q`: at the row's beginning, then at its end. The rate is steady within the row.
-fn row(q: &mut Quaternion, middle_s: f64) -> Row {
+/// `q`: at the beginning of the sample's 5 ms, then at their end. The rate is steady in between.
+fn sample(q: &mut Quaternion, index: u64) -> Sample {
+    let middle_s = (index as f64 + 0.5) * SAMPLE_S;
     let rate_rps = rate(middle_s);
-    let half = rotation(rate_rps.map(|rate| rate * ROW_S / 2.0));
+    let half = rotation(rate_rps.map(|rate| rate * SAMPLE_S / 2.0));
     let middle = product(*q, half);
     *q = product(middle, half);
-    let push = thrust(middle_s);
-    let accel = [push[0], push[1], push[2] + GRAVITY_MPS2];
+    let [x, y, z] = thrust(middle_s);
+    let accel = into_body(middle, [x, y, z + GRAVITY_MPS2]);
     let magnet = magnet(middle_s);
-    let field = [0, 1, 2].map(|axis| FIELD_UT[axis] + magnet[axis]);
-    Row {
-        gyro_rps: rate_rps.map(|rate| (rate + OFFSET_RPS) as f32),
-        accel_mps2: into_body(middle, accel).map(|part| part as f32),
-        mag_ut: into_body(middle, field).map(|part| part as f32),
-        reference_wxyz: Some(*q),
+    let field = into_body(middle, [0, 1, 2].map(|axis| FIELD_UT[axis] + magnet[axis]));
+    Sample {
+        end_us: (index + 1) * SAMPLE_US,
+        motion: Some(robot_replay::Motion {
+            gyro_rps: rate_rps.map(|rate| (rate + OFFSET_RPS) as f32),
+            accel_mps2: accel.map(|part| part as f32),
+        }),
+        field_ut: index
+            .is_multiple_of(SAMPLES_A_FIELD)
+            .then(|| field.map(|part| part as f32)),
     }
 }
 

@@ -1,0 +1,84 @@
+//! The estimator keeps its limits, on a motion that needs no recording: rest, slow and fast turning, a magnet.
+
+use std::{
+    env,
+    path::{Path, PathBuf},
+};
+
+use object::{Object, ObjectSymbol};
+use robot_bench::{
+    filters::{EMPTY, OURS},
+    measure::{self, Costs, Detail, Spread},
+    motion::{Motion, Wheels},
+    program::Program,
+    report::{ESTIMATOR_FLASH_BYTES, EXTRAPOLATION_MEAN, UPDATE_MAX, UPDATE_MEAN},
+};
+
+/// `ROBOT_FILTERS`, or where `cargo xtask` builds them.
+fn programs() -> PathBuf {
+    let built = "../../target/estimator-bench/thumbv7em-none-eabihf/release";
+    let usual = || Path::new(env!("CARGO_MANIFEST_DIR")).join(built);
+    let folder = env::var_os("ROBOT_FILTERS").map_or_else(usual, PathBuf::from);
+    assert!(
+        folder.is_dir(),
+        "there are no filters at {}: run `cargo xtask test`, which builds them, or set ROBOT_FILTERS",
+        folder.display()
+    );
+    folder
+}
+
+fn costs(wheels: Wheels) -> Costs {
+    let motion = Motion::computed(wheels);
+    let run = measure::run(OURS, &programs(), &motion, Detail::Totals, || ());
+    run.expect("the estimator runs").costs
+}
+
+fn spread(ticks: &[u32]) -> Spread {
+    Spread::of(ticks).expect("there were ticks")
+}
+
+#[test]
+fn an_update_and_a_tick_between_take_few_instructions() {
+    for wheels in [Wheels::Silent, Wheels::Turning] {
+        let costs = costs(wheels);
+        let update = spread(&costs.update_with_mag);
+        let between = spread(&costs.extrapolation);
+        println!("{wheels:?}: update {update:?}, between {between:?}");
+        assert!(update.mean <= UPDATE_MEAN, "{wheels:?}: {update:?}");
+        assert!(
+            f64::from(update.max) <= UPDATE_MAX,
+            "{wheels:?}: {update:?}"
+        );
+        assert!(
+            between.mean <= EXTRAPOLATION_MEAN,
+            "{wheels:?}: {between:?}"
+        );
+    }
+}
+
+#[test]
+fn the_estimator_is_small() {
+    let flash = |filter: robot_bench::filters::Filter| {
+        let program = Program::boot(&filter.elf(&programs())).expect("the program boots");
+        program.flash_bytes as f64
+    };
+    let own = flash(OURS) - flash(EMPTY);
+    assert!(own <= ESTIMATOR_FLASH_BYTES, "{own} bytes");
+}
+
+/// Names of the ARM run-time ABI (`__aeabi_dadd` …) and of compiler-rt (`__adddf3`, `__extendsfdf2` …).
+#[test]
+fn the_estimator_computes_nothing_in_double_precision() {
+    let elf = std::fs::read(OURS.elf(&programs())).expect("the program is there");
+    let file = object::File::parse(&*elf).expect("it is an ELF file");
+    let names: Vec<_> = file
+        .symbols()
+        .filter_map(|symbol| symbol.name().ok())
+        .collect();
+    assert!(names.contains(&"main"), "the program has symbols");
+    let double = |name: &&str| {
+        name.starts_with("__aeabi_d") || name.ends_with("df3") || name.ends_with("df2")
+    };
+    let found: Vec<_> = names.into_iter().filter(double).collect();
+    assert!(found.is_empty(), "{found:?}");
+}
