@@ -52,7 +52,7 @@ pub fn run(task: &Task, files: &[PathBuf]) -> anyhow::Result<Vec<Outcome>> {
     };
     let cores = thread::available_parallelism().map_or(1, NonZero::get);
     let done: anyhow::Result<Vec<_>> = thread::scope(|scope| {
-        let workers: Vec<_> = (0..cores).map(|_| scope.spawn(&work)).collect();
+        let workers: Vec<_> = (0..cores).map(|_| scope.spawn(work)).collect();
         let joined = workers.into_iter().map(ScopedJoinHandle::join);
         joined
             .map(|done| done.unwrap_or_else(|panic| resume_unwind(panic)))
