@@ -1,6 +1,7 @@
 //! BMI088 answers → calibrated [`ImuState`], and the heat that keeps the package warm.
 
 use super::{
+    accel_delay::AccelDelay,
     bmi088::{self, ACCEL_READ, AccelRaw, GYRO_READ, GyroRaw},
     calibration::{Sample, StartupCalibration, correct},
     heater::Heater,
@@ -48,6 +49,7 @@ pub struct ImuPipeline {
     heater: Heater,
     startup: StartupCalibration,
     plausibility: Plausibility,
+    accel_delay: AccelDelay,
     rejects: ImuRejects,
     last: Option<RawSample>,
     repeats: u8,
@@ -60,6 +62,7 @@ impl ImuPipeline {
             heater: Heater::new(heater),
             startup: StartupCalibration::default(),
             plausibility: Plausibility::default(),
+            accel_delay: AccelDelay::default(),
             rejects: ImuRejects::default(),
             last: None,
             repeats: 0,
@@ -141,8 +144,11 @@ impl ImuPipeline {
 
     fn calibrate(&mut self, raw: &CheckedSample, read_us: u64) -> ImuState {
         let calibration = &self.calibration;
+        let (accel_mps2, saturated) =
+            self.accel_delay
+                .delay(raw.accel_mps2, raw.saturated, read_us);
         let accel_mps2 = correct(
-            raw.accel_mps2,
+            accel_mps2,
             calibration.accel_bias_mps2,
             calibration.accel_scale,
         );
@@ -162,7 +168,7 @@ impl ImuPipeline {
             gyro_dps: correct(raw.gyro_dps, gyro_bias_dps, calibration.gyro_scale),
             gyro_bias_dps,
             temperature_c: self.heater.status().temperature_c,
-            saturated: raw.saturated,
+            saturated,
             ts_us: bmi088::measured_until_us(read_us),
         }
     }

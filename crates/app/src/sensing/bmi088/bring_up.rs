@@ -118,7 +118,7 @@ pub const INIT: &[InitStep] = &[
     InitStep::Wait { us: 5_000 },
     accel_write(accel::PWR_CTRL, accel::PWR_CTRL_ON),
     InitStep::Wait { us: 5_000 },
-    accel_write(accel::CONF, accel::CONF_400HZ_OSR2),
+    accel_write(accel::CONF, accel::CONF_800HZ_OSR4),
     InitStep::Wait { us: 40_000 },
     accel_write(accel::RANGE, accel::RANGE_12G),
     InitStep::Wait { us: 100 },
@@ -129,7 +129,7 @@ pub const INIT: &[InitStep] = &[
     ),
     accel_check(
         accel::CONF,
-        accel::CONF_400HZ_OSR2,
+        accel::CONF_800HZ_OSR4,
         InitCheck::AccelFilterNotKept,
     ),
     accel_check(accel::RANGE, accel::RANGE_12G, InitCheck::AccelRangeNotKept),

@@ -9,4 +9,4 @@ mod timing;
 pub use bring_up::{INIT, InitCheck, InitStep, SpiTarget, read_command, write_command};
 pub use decode::{ACCEL_READ, BUFFER_CLEAR, BUFFER_READ, GYRO_READ, GyroBuffer, gyro_buffer};
 pub(super) use decode::{AccelRaw, GyroRaw, decode_accel, decode_gyro};
-pub(super) use timing::measured_until_us;
+pub(super) use timing::{SHARE_OF_LAST_ACCEL, measured_until_us};

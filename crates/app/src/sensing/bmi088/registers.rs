@@ -9,8 +9,8 @@ pub mod accel {
     /// First of X, Y, Z; sensor time follows at 0x18, temperature at 0x22.
     pub const DATA: u8 = 0x12;
     pub const CONF: u8 = 0x40;
-    /// 400 Hz, OSR2: 75 Hz bandwidth, below the 100 Hz that polling at 200 Hz can see.
-    pub const CONF_400HZ_OSR2: u8 = 0x9A;
+    /// 800 Hz, OSR4: 80 Hz bandwidth, below the 100 Hz that polling at 200 Hz can see.
+    pub const CONF_800HZ_OSR4: u8 = 0x8B;
     pub const RANGE: u8 = 0x41;
     pub const RANGE_12G: u8 = 0x02;
     pub const PWR_CONF: u8 = 0x7C;

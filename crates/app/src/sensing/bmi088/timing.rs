@@ -1,14 +1,28 @@
 //! Which instant a sample speaks of.
+//!
+//! The datasheet gives no delay of the low-passes, only their bandwidth f. A Butterworth filter of second order has
+//! √2 / 2πf; a moving average of the same bandwidth comes within 2 % of that.
 
-/// Delay of the gyro's low-pass with 116 Hz bandwidth. The datasheet gives no delay: a Butterworth filter of second order
-/// has √2 / (2π · 116 Hz), a moving average of that bandwidth 1.91 ms.
+/// Low-pass with 116 Hz.
 const GYRO_FILTER_US: u64 = 1_940;
 /// The gyro measures at 1000 Hz, at instants that the reader does not know: the newest frame is half of 1 ms old in the
 /// mean.
 const GYRO_AGE_US: u64 = 500;
+/// A sample is the mean over 5 ms.
+const INTERVAL_US: u64 = 5_000;
+/// Low-pass with 80 Hz.
+const ACCEL_FILTER_US: u64 = 2_810;
+/// Half of 1/800 s.
+const ACCEL_AGE_US: u64 = 625;
 
-/// End of the interval whose mean rate a sample read at `read_us` shows. The accelerometer's values are those of 1.8 ms
-/// before it (75 Hz, 400 Hz: 3 ms of filter and 1.25 ms of age), the middle of the interval being 2.5 ms before it.
+/// From the middle of what the gyro shows to the reading of it.
+const GYRO_MIDDLE_US: u64 = GYRO_FILTER_US + GYRO_AGE_US + INTERVAL_US / 2;
+
+/// Of the accelerometer's last sample in a mean that is as late as the gyro's.
+pub(in crate::sensing) const SHARE_OF_LAST_ACCEL: f32 =
+    (GYRO_MIDDLE_US - ACCEL_FILTER_US - ACCEL_AGE_US) as f32 / INTERVAL_US as f32;
+
+/// End of the interval whose mean rate a sample read at `read_us` shows.
 pub(in crate::sensing) const fn measured_until_us(read_us: u64) -> u64 {
     read_us.saturating_sub(GYRO_FILTER_US + GYRO_AGE_US)
 }
