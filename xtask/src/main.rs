@@ -6,7 +6,6 @@ mod firmware;
 mod job;
 mod prerequisites;
 mod replay;
-mod replay;
 mod sim;
 mod soak;
 mod test;
@@ -35,8 +34,6 @@ enum Command {
     Replay(replay::Args),
     /// What the release image costs, and its estimator beside others, against their limits.
     Bench(bench::Args),
-    /// Run the estimator over recorded trials: attitude at 1 kHz, its errors, plots.
-    Replay(replay::Args),
     /// Everything CI runs: format, clippy, host tests, loom, image checks, emulator tests.
     Test,
 }
@@ -47,7 +44,6 @@ fn main() -> ExitCode {
         Command::Soak(args) => soak::run(&args),
         Command::Replay(args) => replay::run(&args),
         Command::Bench(args) => bench::run(&args),
-        Command::Replay(args) => replay::run(&args),
         Command::Test => test::run(),
     };
     outcome.unwrap_or_else(|error| {
