@@ -7,6 +7,7 @@ mod error;
 mod figures;
 mod garbage;
 mod gyro_offset;
+mod hidden_errors;
 mod lasting_acceleration;
 mod magnets;
 mod motion;

@@ -10,8 +10,12 @@ pub fn scale(a: Vector, factor: f64) -> Vector {
     a.map(|part| part * factor)
 }
 
+pub fn dot(a: Vector, b: Vector) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
 pub fn norm(a: Vector) -> f64 {
-    a.iter().map(|part| part * part).sum::<f64>().sqrt()
+    dot(a, a).sqrt()
 }
 
 /// Unit quaternion; turns body vectors into the world.
@@ -57,9 +61,8 @@ impl Rotation {
             a[2] * b[0] - a[0] * b[2],
             a[0] * b[1] - a[1] * b[0],
         ];
-        let dot = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
         Self {
-            w: self.w * next.w - dot,
+            w: self.w * next.w - dot(a, b),
             v: add(cross, add(scale(b, self.w), scale(a, next.w))),
         }
     }

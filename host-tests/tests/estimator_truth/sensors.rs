@@ -1,6 +1,6 @@
 //! How the truth is measured.
 
-use crate::motion::OverTime;
+use crate::{motion::OverTime, rotation::Vector};
 
 /// Standard deviation of one sample.
 #[derive(Clone, Copy, Debug)]
@@ -29,9 +29,15 @@ pub struct Sensors {
     pub gyro_offset_dps: OverTime,
     /// °/s over time: the share of the offset that a calibration has taken out of the samples.
     pub taken_out_dps: OverTime,
+    /// Measured rate by true rate, rows x, y, z: scale and angles between the axes.
+    pub gyro_matrix: [Vector; 3],
     /// A rate beyond is cut off and the sample marked.
     pub gyro_range_dps: f64,
     pub accel_range_mps2: f64,
+    /// Body frame: of a magnet that the robot carries.
+    pub carried_magnet_ut: Vector,
+    /// How much earlier than its stamp says the field is measured.
+    pub unknown_mag_delay_us: u64,
     /// Is there a magnetometer at this time?
     pub has_mag: Box<dyn Fn(f64) -> bool>,
     /// Is the IMU sample with this number lost?
@@ -53,8 +59,11 @@ impl Sensors {
             },
             gyro_offset_dps: Box::new(|_| [0.0; 3]),
             taken_out_dps: Box::new(|_| [0.0; 3]),
+            gyro_matrix: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
             gyro_range_dps: 2_000.0,
             accel_range_mps2: 117.7,
+            carried_magnet_ut: [0.0; 3],
+            unknown_mag_delay_us: 0,
             has_mag: Box::new(|_| true),
             loses: Box::new(|_| false),
             timing: Timing::Exact,

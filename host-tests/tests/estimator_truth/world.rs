@@ -7,7 +7,7 @@ use robot_app::domain::{ImuState, MagState};
 use crate::{
     motion::{GRAVITY_MPS2, Motion},
     noise::Noise,
-    rotation::{Rotation, Vector, add, scale},
+    rotation::{Rotation, Vector, add, dot, scale},
     sensors::{Sensors, Timing},
 };
 
@@ -147,7 +147,8 @@ impl World {
 
     fn imu_sample(&mut self, rate_dps: Vector, accel_mps2: Vector) -> ImuState {
         let level = self.sensors.noise;
-        let gyro = add(rate_dps, self.gyro_offset_dps());
+        let gyro = self.sensors.gyro_matrix.map(|row| dot(row, rate_dps));
+        let gyro = add(gyro, self.gyro_offset_dps());
         let gyro = add(gyro, self.noise_of(level.gyro_dps));
         let accel = add(accel_mps2, self.noise_of(level.accel_mps2));
         let (gyro_end, accel_end) = (self.sensors.gyro_range_dps, self.sensors.accel_range_mps2);
@@ -177,12 +178,14 @@ impl World {
             (self.motion.magnet_ut)(self.time_s()),
         );
         let seen = self.attitude.inverse().turn(field);
+        let seen = add(seen, self.sensors.carried_magnet_ut);
         let seen = add(seen, self.noise_of(self.sensors.noise.mag_ut));
+        let believed_us = self.elapsed_us + self.sensors.unknown_mag_delay_us;
         let sample = MagState {
             mag_ut: seen.map(|part| part as f32),
-            ts_us: self.clock_us(self.elapsed_us),
+            ts_us: self.clock_us(believed_us),
         };
-        let at_us = self.elapsed_us + MAG_READ_US;
+        let at_us = believed_us + MAG_READ_US;
         self.mag_due.push_back(Due { at_us, sample });
     }
 
