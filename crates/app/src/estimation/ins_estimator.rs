@@ -161,15 +161,12 @@ impl InsEstimator {
             };
             self.motion.feed(&sample, ahead_s, &pose, motor);
         }
-        if imu_age_us <= MAX_IMU_AGE_US {
-            self.motion.advance(ahead_s, dt_s);
-        } else {
+        if imu_age_us > MAX_IMU_AGE_US {
             self.motion.roll_on(orientation, motor, dt_s);
         }
         estimate.q_wxyz = orientation.to_wxyz();
         estimate.rpy_rad = orientation.roll_pitch_yaw();
-        estimate.vel_mps = self.motion.velocity_mps();
-        estimate.pos_m = self.motion.position_m();
+        (estimate.vel_mps, estimate.pos_m) = self.motion.after(ahead_s);
         estimate.gyro_bias_rps = self.attitude.bias_rps();
         estimate.accel_bias_mps2 = self.motion.accel_bias_mps2();
         estimate.ts_us = now_us;

@@ -28,7 +28,7 @@ use crate::{
 
 /// With nothing left to go by the robot is taken to come to rest with this time constant.
 const LEAK_S: f32 = 0.5;
-/// The velocity is carried past the last sample for at most this long.
+/// Velocity and position are carried past the last sample for at most this long.
 const MAX_AHEAD_S: f32 = 0.01;
 
 /// How the body lies and turns now.
@@ -56,7 +56,6 @@ pub(super) struct MotionEstimator {
     zero_velocity: ZeroVelocity,
     filter: VelocityFilter,
     position: Position,
-    velocity_mps: Vector3,
     kinematic_mps2: Vector3,
 }
 
@@ -68,7 +67,6 @@ impl MotionEstimator {
             zero_velocity: ZeroVelocity::new(),
             filter: VelocityFilter::new(),
             position: Position::new(),
-            velocity_mps: [0.0; 3],
             kinematic_mps2: [0.0; 3],
         }
     }
@@ -85,6 +83,7 @@ impl MotionEstimator {
     }
 
     /// Takes a new sample, which ended `age_s` ago; `pose` and `motor` are those of now.
+    #[inline(never)]
     pub fn feed(
         &mut self,
         sample: &AccelSample,
@@ -93,39 +92,45 @@ impl MotionEstimator {
         motor: &MotorFeedback,
     ) {
         let axes = Axes::new(pose);
-        let felt = sample.accel_mps2.map(|accel_mps2| {
-            // The body has turned since the middle of the sample: the same force in the axes of now.
-            let middle_s = age_s + 0.5 * sample.dt_s;
-            let turn = vector::cross(pose.rate_rps, accel_mps2);
-            vector::sub(accel_mps2, vector::scale(turn, middle_s))
-        });
-        let free = felt.map(|felt| self.filter.free_accel(felt, &axes));
+        let felt_mps2 = match sample.accel_mps2 {
+            Some(accel_mps2) => {
+                // The body has turned since the middle of the sample: the same force in the axes of now.
+                let middle_s = age_s + 0.5 * sample.dt_s;
+                let turn = vector::cross(pose.rate_rps, accel_mps2);
+                vector::sub(accel_mps2, vector::scale(turn, middle_s))
+            }
+            None => self.filter.force_at_constant_speed(&axes),
+        };
+        let free_mps2 = self.filter.free_accel(felt_mps2, &axes);
         let speeds = self.wheels.forward_speeds(motor, &axes);
         let wheels = self.trust.evidence(speeds);
-        let still = self
+        let felt = (felt_mps2, free_mps2);
+        self.kinematic_mps2 = if self
             .zero_velocity
-            .feed(felt.zip(free), pose.rate_rps, wheels, sample.dt_s);
-        let free = free.unwrap_or_default();
-        self.kinematic_mps2 = if still {
-            self.filter.hold_still(free, sample.dt_s);
+            .feed(felt, pose.rate_rps, wheels, sample.dt_s)
+        {
+            self.filter.hold_still(free_mps2, sample.dt_s);
             [0.0; 3]
         } else {
-            let carrying = if self.trust.is_lost() { [0.0; 3] } else { free };
-            self.filter.predict(carrying, &axes, sample.dt_s);
-            let corrected = self.correct(speeds, &axes, age_s, sample.dt_s);
-            corrected.map_or([0.0; 3], |by| vector::add(free, by))
+            self.carry_on(free_mps2, speeds, &axes, age_s, sample.dt_s)
         };
         self.filter.stay_plausible();
+        let step_m = vector::scale(self.filter.velocity_after(-0.5 * sample.dt_s), sample.dt_s);
+        self.position.add(step_m);
     }
 
-    /// The acceleration that stands for what was corrected, in body axes; none if the velocity was set anew.
-    fn correct(
+    /// What accelerated the robot, in body axes; nothing if the velocity was set anew.
+    fn carry_on(
         &mut self,
+        free_mps2: Vector3,
         speeds: ForwardSpeeds,
         axes: &Axes,
         age_s: f32,
         dt_s: f32,
-    ) -> Option<Vector3> {
+    ) -> Vector3 {
+        let known = !self.trust.is_lost();
+        self.filter
+            .predict(if known { free_mps2 } else { [0.0; 3] }, axes, dt_s);
         let [forward_mps, left_mps, up_mps] = axes.flat(self.filter.velocity_after(age_s));
         let surplus = speeds.map(|speed| speed.map(|speed_mps| speed_mps - forward_mps));
         let (forward, left) = match self.trust.step(surplus, dt_s) {
@@ -135,25 +140,18 @@ impl MotionEstimator {
             Word::Anew(surplus_mps) => {
                 let jump_mps = axes.flat_to_world([surplus_mps, -left_mps, 0.0]);
                 self.filter.shift(jump_mps);
-                return None;
+                return [0.0; 3];
             }
             Word::None => {
                 self.filter.leak(dt_s / LEAK_S);
-                return None;
+                return [0.0; 3];
             }
         };
-        let innovation_mps = [forward, left, -up_mps];
-        Some(self.filter.correct(innovation_mps, axes, dt_s))
+        let gained_mps2 = self.filter.correct([forward, left, -up_mps], axes, dt_s);
+        vector::add(free_mps2, gained_mps2)
     }
 
-    /// Carries on to now. `ahead_s`: since the last sample; `dt_s`: since the last call.
-    pub fn advance(&mut self, ahead_s: f32, dt_s: f32) {
-        let ahead_s = scalar::min(ahead_s, MAX_AHEAD_S);
-        self.velocity_mps = self.filter.velocity_after(ahead_s);
-        self.position.add(vector::scale(self.velocity_mps, dt_s));
-    }
-
-    /// Instead of `advance` while the IMU is silent: only the wheels are left.
+    /// `dt_s` more without a sample, the IMU is silent: only the wheels are left.
     #[cold]
     #[inline(never)]
     pub fn roll_on(&mut self, orientation: Quaternion, motor: &MotorFeedback, dt_s: f32) {
@@ -168,17 +166,16 @@ impl MotionEstimator {
             None => self.filter.leak(dt_s / LEAK_S),
         }
         self.filter.stay_plausible();
-        self.advance(0.0, dt_s);
+        let step_m = vector::scale(self.filter.velocity_after(0.0), dt_s);
+        self.position.add(step_m);
     }
 
-    /// World frame.
-    pub const fn velocity_mps(&self) -> Vector3 {
-        self.velocity_mps
-    }
-
-    /// World frame, from where the robot booted.
-    pub const fn position_m(&self) -> Vector3 {
-        self.position.total_m()
+    /// Velocity and position in the world frame, `ahead_s` after the last sample.
+    pub fn after(&self, ahead_s: f32) -> (Vector3, Vector3) {
+        let ahead_s = scalar::min(ahead_s, MAX_AHEAD_S);
+        let velocity_mps = self.filter.velocity_after(ahead_s);
+        let way_m = vector::scale(velocity_mps, ahead_s);
+        (velocity_mps, vector::add(self.position.total_m(), way_m))
     }
 
     /// What accelerated the robot over the last sample, in body axes: the part of a specific force that is not gravity.

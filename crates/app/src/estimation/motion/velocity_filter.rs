@@ -86,8 +86,13 @@ impl VelocityFilter {
 
     /// Of a specific force: what accelerates the body, in its own axes.
     pub fn free_accel(&self, felt_mps2: Vector3, axes: &Axes) -> Vector3 {
+        vector::sub(felt_mps2, self.force_at_constant_speed(axes))
+    }
+
+    /// What an IMU feels that nothing accelerates, in body axes.
+    pub fn force_at_constant_speed(&self, axes: &Axes) -> Vector3 {
         let gravity = vector::scale(axes.up_in_body(), GRAVITY_MPS2);
-        vector::sub(vector::sub(felt_mps2, self.accel_bias_mps2), gravity)
+        vector::add(self.accel_bias_mps2, gravity)
     }
 
     /// `free_mps2`: body axes, over the last `dt_s`.

@@ -38,11 +38,11 @@ impl ZeroVelocity {
         }
     }
 
-    /// `accel`: specific force in body axes and what is left of it without gravity and offset. True while the robot
+    /// `accel_mps2`: specific force in body axes and what is left of it without gravity and offset. True while the robot
     /// stands still.
     pub fn feed(
         &mut self,
-        accel: Option<(Vector3, Vector3)>,
+        accel_mps2: (Vector3, Vector3),
         rate_rps: Vector3,
         wheels: WheelEvidence,
         dt_s: f32,
@@ -55,7 +55,7 @@ impl ZeroVelocity {
                 return false;
             }
         };
-        self.quiet_s = if accel.is_some_and(|accel| self.is_quiet(accel, rate_rps, dt_s)) {
+        self.quiet_s = if self.is_quiet(accel_mps2, rate_rps, dt_s) {
             self.quiet_s + dt_s
         } else {
             0.0
