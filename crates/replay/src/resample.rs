@@ -14,6 +14,10 @@ const IMU_SAMPLES_A_FIELD_SAMPLE: Ps = 4;
 /// The field belongs to the middle of the 5 ms that it is a mean over, so it is as old as this at their end.
 pub const FIELD_AGE_US: u64 = IMU_PERIOD / US / 2;
 
+/// Ranges that the firmware sets the BMI088 to (datasheet, registers 0x41 and 0x0F): ±12 g, ±2000 °/s.
+const ACCEL_RANGE_MPS2: f64 = 12.0 * 9.806_65;
+const GYRO_RANGE_RPS: f64 = 2_000.0 * std::f64::consts::PI / 180.0;
+
 /// What the sensors say about the 5 ms that end at `end_us`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
@@ -31,6 +35,8 @@ pub struct Motion {
     pub gyro_rps: [f32; 3],
     /// Specific force: +9.8 up at rest.
     pub accel_mps2: [f32; 3],
+    /// Somewhere in the 5 ms an axis was at the end of the BMI088's range. It is cut off there.
+    pub saturated: bool,
 }
 
 /// Every whole 5 ms of the recording. A row counts as constant over its interval, so at 200 Hz its rows come out as
@@ -64,29 +70,34 @@ impl Rows<'_> {
         let end = index * IMU_PERIOD;
         // Counted from the start of row 0.
         let window = end + self.period - IMU_PERIOD..end + self.period;
-        let gyro = self.mean(&window, |row| row.gyro_rps);
-        let accel = self.mean(&window, |row| row.accel_mps2);
+        let gyro = self.mean(&window, |row| cut_off(row.gyro_rps, GYRO_RANGE_RPS));
+        let accel = self.mean(&window, |row| cut_off(row.accel_mps2, ACCEL_RANGE_MPS2));
         let field = with_field.then(|| self.mean(&window, |row| row.field_ut));
         Sample {
             end_us: end / US,
             motion: gyro.zip(accel).map(|(gyro_rps, accel_mps2)| Motion {
                 gyro_rps,
                 accel_mps2,
+                saturated: self.covered(&window).any(is_saturated),
             }),
             field_ut: field.flatten(),
         }
     }
 
+    fn covered(&self, window: &Range<Ps>) -> impl Iterator<Item = &Row> {
+        let last = (window.end - 1) / self.period;
+        let indices = window.start / self.period..=last;
+        indices.filter_map(|index| self.rows.get(usize::try_from(index).ok()?))
+    }
+
     /// `None` if a row in the window has no number.
     fn mean(&self, window: &Range<Ps>, value: impl Fn(&Row) -> [f64; 3]) -> Option<[f32; 3]> {
         let first = window.start / self.period;
-        let last = (window.end - 1) / self.period;
         let mut sum = [0.0; 3];
-        for index in first..=last {
+        for (index, row) in (first..).zip(self.covered(window)) {
             let start = index * self.period;
             let covered = window.end.min(start + self.period) - window.start.max(start);
             let share = covered as f64 / (window.end - window.start) as f64;
-            let row = self.rows.get(usize::try_from(index).ok()?)?;
             for (sum, axis) in sum.iter_mut().zip(value(row)) {
                 *sum += share * axis;
             }
@@ -94,4 +105,17 @@ impl Rows<'_> {
         let mean = sum.map(|axis| axis as f32);
         mean.iter().all(|axis| axis.is_finite()).then_some(mean)
     }
+}
+
+/// What is not finite stays so.
+fn cut_off(value: [f64; 3], range: f64) -> [f64; 3] {
+    value.map(|axis| match axis.is_finite() {
+        true => axis.clamp(-range, range),
+        false => axis,
+    })
+}
+
+fn is_saturated(row: &Row) -> bool {
+    let at_end = |value: [f64; 3], range: f64| value.iter().any(|axis| axis.abs() >= range);
+    at_end(row.gyro_rps, GYRO_RANGE_RPS) || at_end(row.accel_mps2, ACCEL_RANGE_MPS2)
 }

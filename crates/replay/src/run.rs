@@ -111,6 +111,7 @@ impl Sensors {
             self.imu = ImuState {
                 accel_mps2: motion.accel_mps2,
                 gyro_dps: std::array::from_fn(|axis| gyro_dps[axis] + self.gyro_offset_dps[axis]),
+                saturated: motion.saturated,
                 ts_us: START_US + sample.end_us,
                 ..ImuState::default()
             };

@@ -49,6 +49,7 @@ fn sample(q: &mut Quaternion, index: u64) -> Sample {
         motion: Some(robot_replay::Motion {
             gyro_rps: rate_rps.map(|rate| (rate + OFFSET_RPS) as f32),
             accel_mps2: accel.map(|part| part as f32),
+            saturated: false,
         }),
         field_ut: index
             .is_multiple_of(SAMPLES_A_FIELD)

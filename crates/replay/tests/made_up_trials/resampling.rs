@@ -67,3 +67,19 @@ fn a_row_without_a_number_is_no_sample() {
         (2, 1)
     );
 }
+
+/// The BMI088 measures ±2000 °/s (34.907 rad/s) and ±12 g (117.680 m/s²); the recorder may have measured more.
+#[test]
+fn what_the_boards_imu_cannot_measure_is_cut_off_and_marked() {
+    let beyond = counting(HZ200, 8, |columns| {
+        columns[1][3] = -36.0;
+        columns[4][5] = 130.0;
+        columns[7][6] = 4_000.0;
+    });
+    let trial = read("beyond", beyond);
+    let motion = |index: usize| trial.samples[index].motion.unwrap();
+    let marked: Vec<usize> = (0..8).filter(|i| motion(*i).saturated).collect();
+    assert_eq!(marked, [3, 5]);
+    assert!((motion(3).gyro_rps[0] + 34.907).abs() < 1e-3);
+    assert!((motion(5).accel_mps2[0] - 117.680).abs() < 1e-3);
+}

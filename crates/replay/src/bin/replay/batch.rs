@@ -27,6 +27,8 @@ pub struct Outcome {
     pub seconds: f64,
     pub rows_without_motion: usize,
     pub rows_without_field: usize,
+    /// Samples cut off at the end of the BMI088's range.
+    pub saturated_samples: usize,
     /// Time without a valid estimate after the first valid one.
     pub invalid_s: f64,
     pub gyro_bias_at_end_dps: [f32; 3],
@@ -79,6 +81,7 @@ fn run_one(task: &Task, file: &Path) -> anyhow::Result<Outcome> {
         seconds: trial.seconds(),
         rows_without_motion: trial.rows_without_motion,
         rows_without_field: trial.rows_without_field,
+        saturated_samples: saturated_samples(&trial),
         invalid_s: invalid_s(&run),
         gyro_bias_at_end_dps: bias_rps.map(f32::to_degrees),
         at_samples: run.score(&trial, At::Samples),
@@ -86,6 +89,11 @@ fn run_one(task: &Task, file: &Path) -> anyhow::Result<Outcome> {
         plots: report::plots(&trial, &run, task.gyro_offset_dps)?,
         name: trial.name,
     })
+}
+
+fn saturated_samples(trial: &Trial) -> usize {
+    let motions = trial.samples.iter().filter_map(|sample| sample.motion);
+    motions.filter(|motion| motion.saturated).count()
 }
 
 fn invalid_s(run: &Run) -> f64 {

@@ -35,6 +35,7 @@ struct TrialSummary<'a> {
     gyro_bias_at_end_dps: [f32; 3],
     rows_without_motion: usize,
     rows_without_field: usize,
+    saturated_samples: usize,
     /// After the first valid estimate.
     invalid_s: f64,
 }
@@ -65,6 +66,7 @@ fn of_trial(outcome: &Outcome) -> TrialSummary<'_> {
         gyro_bias_at_end_dps: outcome.gyro_bias_at_end_dps,
         rows_without_motion: outcome.rows_without_motion,
         rows_without_field: outcome.rows_without_field,
+        saturated_samples: outcome.saturated_samples,
         invalid_s: outcome.invalid_s,
     }
 }

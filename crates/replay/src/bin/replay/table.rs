@@ -82,6 +82,10 @@ pub fn troubles(outcome: &Outcome) -> impl Iterator<Item = String> {
     [
         rows(outcome.rows_without_motion, "IMU"),
         rows(outcome.rows_without_field, "magnetometer"),
+        (outcome.saturated_samples > 0).then(|| {
+            let count = outcome.saturated_samples;
+            format!("{count} samples cut off at the end of the BMI088's range")
+        }),
         (invalid > 0.0).then(|| format!("the estimate was invalid for {invalid:.3} s")),
     ]
     .into_iter()
