@@ -23,7 +23,10 @@ pub fn table(task: &Task, outcomes: &[Outcome]) -> String {
         let _ = writeln!(text, "{:width$}   {samples}   {ticks}", outcome.name);
     }
     let (samples, ticks) = means(outcomes);
-    let label = format!("mean of {} trials", outcomes.len());
+    let label = match outcomes.len() {
+        1 => "mean of 1 trial".to_owned(),
+        count => format!("mean of {count} trials"),
+    };
     let _ = writeln!(
         text,
         "{label:width$}   {}   {}",
