@@ -3,7 +3,10 @@
 //! Five fast errors (three angles about ENU, two speeds) and twelve slow ones (gyro bias and misalignment), kept as the
 //! three blocks of the symmetric matrix. All blocks are stored in full, so that every operation runs along rows.
 
-use super::window::{PARAMETERS, Parameters};
+use super::{
+    rows,
+    window::{PARAMETERS, Parameters},
+};
 use crate::{estimation::magnetic::Certainty, math::scalar};
 
 /// Angles about east, north and up in rad, speed east and north in m/s.
@@ -42,6 +45,8 @@ const DEG: f32 = 1.0_f32.to_radians();
 pub(super) const FIRST_ANGLE: f32 = (10.0 * DEG) * (10.0 * DEG);
 const FIRST_SPEED: f32 = 1.0;
 const FIRST_BIAS: f32 = (3.0 * DEG) * (3.0 * DEG);
+/// Below this a variance has no meaning in single precision.
+pub(super) const LEAST_VARIANCE: f32 = 1e-12;
 const FIRST_MISALIGNMENT: f32 = 0.006 * 0.006;
 
 impl Covariance {
@@ -106,13 +111,16 @@ impl Covariance {
         [x, y, z]
     }
 
-    /// Rounding makes the fast block lopsided over the hours.
-    pub fn even_out(&mut self) {
-        let mirror = self.fast;
-        for (index, row) in self.fast.iter_mut().enumerate() {
-            for (value, other) in row.iter_mut().zip(&mirror) {
-                *value = 0.5 * (*value + other.get(index).copied().unwrap_or(*value));
+    /// The bias is another one after a while; rounding must not make a variance vanish.
+    pub fn wander(&mut self, bias_noise: f32) {
+        for (index, row) in self.slow.iter_mut().enumerate() {
+            let Some(variance) = row.get_mut(index) else {
+                continue;
+            };
+            if index < 3 && *variance < FIRST_BIAS {
+                *variance += bias_noise;
             }
+            *variance = scalar::max(*variance, LEAST_VARIANCE);
         }
     }
 
@@ -160,16 +168,18 @@ impl Covariance {
             let limit = MAX_INNOVATION * scalar::inverse_sqrt(spread);
             gain = if gain > 0.0 { limit } else { -limit };
         }
-        add_scaled(&mut correction.fast, gain, &column.fast);
-        add_scaled(&mut correction.parameters, gain, &column.slow);
-        for ((fast, cross), weight) in self.fast.iter_mut().zip(&mut self.cross).zip(column.fast) {
-            let weight = -weight * inverse;
-            add_scaled(fast, weight, &column.fast);
-            add_scaled(cross, weight, &column.slow);
+        rows::add_weighted(&mut correction.parameters, &[gain], &[column.slow]);
+        for (to, value) in correction.fast.iter_mut().zip(column.fast) {
+            *to += gain * value;
         }
-        for (row, weight) in self.slow.iter_mut().zip(column.slow) {
-            add_scaled(row, -weight * inverse, &column.slow);
+        for (row, weight) in self.fast.iter_mut().zip(column.fast) {
+            let weight = weight * inverse;
+            for (to, value) in row.iter_mut().zip(column.fast) {
+                *to -= weight * value;
+            }
         }
+        rows::subtract_product(&mut self.cross, &column.fast, inverse, &column.slow);
+        rows::subtract_product(&mut self.slow, &column.slow, inverse, &column.slow);
         true
     }
 }
@@ -178,22 +188,4 @@ fn set<const N: usize>(row: &mut [f32; N], index: usize, value: f32) {
     if let Some(place) = row.get_mut(index) {
         *place = value;
     }
-}
-
-/// `to += factor · row`.
-#[inline(always)]
-pub(super) fn add_scaled<const N: usize>(to: &mut [f32; N], factor: f32, row: &[f32; N]) {
-    for (to, value) in to.iter_mut().zip(row) {
-        *to += factor * value;
-    }
-}
-
-/// Scalar product.
-#[inline(always)]
-pub(super) fn dot<const N: usize>(a: &[f32; N], b: &[f32; N]) -> f32 {
-    let mut sum = 0.0;
-    for (a, b) in a.iter().zip(b) {
-        sum += a * b;
-    }
-    sum
 }

@@ -4,11 +4,13 @@
 //! moment at which it is applied.
 
 use super::{
-    covariance::{Column, Correction, Covariance, add_scaled, dot},
+    covariance::{Column, Correction, Covariance},
     forecast::Forecast,
+    rows,
+    strapdown::GyroModel,
     window::Window,
 };
-use crate::math::Vector3;
+use crate::math::{Vector3, vector};
 
 /// What was measured at the end of a window, less what was believed then.
 #[derive(Clone, Copy, Debug)]
@@ -79,18 +81,21 @@ impl ErrorFilter {
                 true
             }
             3 => {
-                work.forecast.fast_forward(covariance);
+                work.forecast.relate(covariance);
                 true
             }
             4 => {
-                work.forecast.cross_forward(covariance);
-                work.forecast.finish(covariance);
+                work.forecast.carry_fast(covariance);
                 true
             }
-            5 => work.take_speed(covariance, 0),
-            6 => work.take_speed(covariance, 1),
-            7 => work.take_heading(covariance),
-            8..11 => work.take_bias(covariance, usize::from(done).saturating_sub(8)),
+            5 => {
+                work.forecast.carry_cross(covariance);
+                true
+            }
+            6 => work.take_speed(covariance, 0),
+            7 => work.take_speed(covariance, 1),
+            8 => work.take_heading(covariance),
+            9..12 => work.take_bias(covariance, usize::from(done).saturating_sub(9)),
             _ => {
                 let correction = work.correction;
                 self.work = None;
@@ -142,25 +147,23 @@ impl Work {
 impl Correction {
     /// What it has grown to since its window ended: `window` is the one that fills now.
     pub fn carried_through(&self, window: &Window) -> (Vector3, [f32; 2]) {
-        let [mut x, mut y, mut z, mut east, mut north] = self.fast;
+        let [x, y, z, mut east, mut north] = self.fast;
         let [ax, ay, az] = window.accel_mps2();
         let t = window.duration_s;
         east += t * (y * az - z * ay);
         north += t * (z * ax - x * az);
-        let [by_x, by_y, by_z] = &window.turn_by_parameter;
-        x += dot(by_x, &self.parameters);
-        y += dot(by_y, &self.parameters);
-        z += dot(by_z, &self.parameters);
-        ([x, y, z], [east, north])
+        let mut turned = [0.0; 3];
+        rows::products(&self.parameters, &window.turn_by_parameter, &mut turned);
+        (vector::add([x, y, z], turned), [east, north])
     }
 
     /// Adds the slow part to the model of the gyro.
-    pub fn add_to(&self, model: &mut super::strapdown::GyroModel) {
+    pub fn add_to(&self, model: &mut GyroModel) {
         let [bx, by, bz, xx, xy, xz, yx, yy, yz, zx, zy, zz] = self.parameters;
-        add_scaled(&mut model.bias_rps, 1.0, &[bx, by, bz]);
+        model.bias_rps = vector::add(model.bias_rps, [bx, by, bz]);
         let rows = [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]];
-        for (row, by) in model.misalignment.iter_mut().zip(&rows) {
-            add_scaled(row, 1.0, by);
+        for (row, by) in model.misalignment.iter_mut().zip(rows) {
+            *row = vector::add(*row, by);
         }
     }
 }

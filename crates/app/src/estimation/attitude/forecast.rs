@@ -2,17 +2,18 @@
 //!
 //! Over a window of T seconds with mean specific force a the errors of angle θ, speed v and gyro parameters p go
 //!
-//! θ ← θ + Φ·p, v ← v + T·θ × a + T/2·(Φ·p) × a
+//! θ ← θ + u, v ← κ·v + C·(θ + u/2), u = Φ·p, C·θ = T·θ × a
 //!
-//! (only the level parts of v). Φ is [`Window::turn_by_parameter`]. With F the matrix of these lines the covariance goes
-//! P ← F·P·Fᵀ + Q; here block by block.
+//! (only the level parts of v). Φ is [`Window::turn_by_parameter`], κ what is left of a speed. From these lines the blocks
+//! of the covariance follow, of which the slow one stays; noise is added.
 
 use super::{
-    covariance::{Covariance, FAST, Fast, add_scaled, dot},
+    covariance::{Covariance, LEAST_VARIANCE},
+    rows,
     strapdown::SPEED_MEMORY_S,
     window::{PARAMETERS, Parameters, Window},
 };
-use crate::math::{Vector3, scalar};
+use crate::math::{Matrix3, Vector3, matrix, scalar, vector};
 
 const DEG: f32 = 1.0_f32.to_radians();
 /// What the model leaves out turns the attitude like white noise: 0.15 °/√s …
@@ -21,153 +22,144 @@ const TURN_DENSITY: f32 = (0.15 * DEG) * (0.15 * DEG);
 const TURN_SHARE: f32 = 0.0002 * 0.0002;
 /// The gyro bias wanders by 0.0045 °/s in a second, as a random walk.
 const BIAS_DENSITY: f32 = (0.0045 * DEG) * (0.0045 * DEG);
-/// Largest uncertainty that wandering alone leads to.
-const MAX_BIAS_VARIANCE: f32 = (3.0 * DEG) * (3.0 * DEG);
 /// Acceleration that may go unseen while the accelerometer is beyond its range, m/s².
 const BLIND_ACCEL_MPS2: f32 = 200.0;
-/// Below this a variance has no meaning in single precision.
-const LEAST_VARIANCE: f32 = 1e-12;
 
 /// What the forecast needs of a window that is over.
 #[derive(Clone, Debug)]
 pub(super) struct Forecast {
-    /// θ (rows 0–2), then v east and north, by parameter.
-    by_parameter: [Parameters; FAST],
-    /// v east and north by angle: T·(θ × a).
+    /// Φ.
+    turn_by_parameter: [Parameters; 3],
+    /// Rows of C.
     speed_by_angle: [Vector3; 2],
-    /// Share of the speed that is left after the window.
+    /// κ.
     kept: f32,
-    noise: Fast,
+    turn_noise: f32,
+    speed_noise: f32,
     bias_noise: f32,
-    /// Φ·P of the slow block, as far as it is done; then of speed too.
-    gain: [Parameters; FAST],
-    /// Covariance of the fast errors after with those before.
-    half_done: [Fast; FAST],
+    /// Covariance of u with the slow errors, Φ·P.
+    turn_slow: [Parameters; 3],
+    /// … with the fast ones,
+    turn_fast: [[f32; 5]; 3],
+    /// … and with itself.
+    turn_turn: Matrix3,
 }
 
 impl Forecast {
     pub fn new(window: &Window) -> Self {
         let t = window.duration_s;
         let [ax, ay, az] = window.accel_mps2();
-        let [east, north, up] = window.turn_by_parameter;
-        let speed_by_angle = [[0.0, az * t, -ay * t], [-az * t, 0.0, ax * t]];
-        let [mut east_mps, mut north_mps] = [[0.0; PARAMETERS]; 2];
-        for (row, weights) in [&mut east_mps, &mut north_mps]
-            .into_iter()
-            .zip(speed_by_angle)
-        {
-            for (angle, weight) in [&east, &north, &up].into_iter().zip(weights) {
-                add_scaled(row, 0.5 * weight, angle);
-            }
-        }
-        let turn = TURN_DENSITY * t + TURN_SHARE * window.turned_rad2_per_s + window.unseen_rad2;
         let blind_mps = BLIND_ACCEL_MPS2 * window.blind_s;
-        let speed = blind_mps * blind_mps;
+        let forgotten = t / SPEED_MEMORY_S;
         Self {
-            by_parameter: [east, north, up, east_mps, north_mps],
-            speed_by_angle,
-            kept: 1.0 - t / SPEED_MEMORY_S + 0.5 * (t / SPEED_MEMORY_S) * (t / SPEED_MEMORY_S),
-            noise: [turn, turn, turn, speed, speed],
+            turn_by_parameter: window.turn_by_parameter,
+            speed_by_angle: [[0.0, az * t, -ay * t], [-az * t, 0.0, ax * t]],
+            kept: 1.0 - forgotten + 0.5 * forgotten * forgotten,
+            turn_noise: TURN_DENSITY * t
+                + TURN_SHARE * window.turned_rad2_per_s
+                + window.unseen_rad2,
+            speed_noise: blind_mps * blind_mps,
             bias_noise: BIAS_DENSITY * t,
-            gain: [[0.0; PARAMETERS]; FAST],
-            half_done: [[0.0; FAST]; FAST],
+            turn_slow: [[0.0; PARAMETERS]; 3],
+            turn_fast: [[0.0; 5]; 3],
+            turn_turn: [[0.0; 3]; 3],
         }
     }
 
-    /// Φ·P for one axis of ENU. Work for one sample.
+    /// One row of Φ·P. Work for one sample.
     pub fn turn_axis(&mut self, axis: usize, covariance: &Covariance) {
-        let (Some(by_parameter), Some(gain)) =
-            (self.by_parameter.get(axis), self.gain.get_mut(axis))
-        else {
-            return;
+        let row = self.turn_by_parameter.get(axis);
+        if let (Some(weights), Some(to)) = (row, self.turn_slow.get_mut(axis)) {
+            rows::add_weighted(to, weights, &covariance.slow);
+        }
+    }
+
+    /// How u goes with the fast errors and with itself.
+    pub fn relate(&mut self, covariance: &Covariance) {
+        let turns = self.turn_by_parameter.iter().zip(&self.turn_slow);
+        let results = self.turn_fast.iter_mut().zip(&mut self.turn_turn);
+        for ((turn, turn_slow), (with_fast, with_itself)) in turns.zip(results) {
+            rows::products(turn, &covariance.cross, with_fast);
+            rows::products(turn_slow, &self.turn_by_parameter, with_itself);
+        }
+    }
+
+    pub fn carry_fast(&self, covariance: &mut Covariance) {
+        let [px, py, pz, [.., ee, en], [.., nn]] = covariance.fast;
+        let split = |[x, y, z, east, north]: [f32; 5]| ([x, y, z], [east, north]);
+        let ((px, lx), (py, ly), (pz, lz)) = (split(px), split(py), split(pz));
+        let angle = [px, py, pz];
+        let [ux, uy, uz] = self.turn_fast;
+        let ((ax, vx), (ay, vy), (az, vz)) = (split(ux), split(uy), split(uz));
+        let turn = [ax, ay, az];
+        let turned = matrix::transposed(turn);
+        // Of θ + u with θ + u/2, then of each with itself.
+        let mixed = matrix::add_scaled(matrix::add_scaled(angle, 1.0, turn), 0.5, turned);
+        let mixed = matrix::add_scaled(mixed, 0.5, self.turn_turn);
+        let middle = matrix::add_scaled(angle, 0.5, turn);
+        let middle = matrix::add_scaled(middle, 0.5, turned);
+        let middle = matrix::add_scaled(middle, 0.25, self.turn_turn);
+        let after = matrix::add_scaled(angle, 1.0, turn);
+        let after = matrix::add_scaled(after, 1.0, turned);
+        let after = matrix::add_scaled(after, 1.0, self.turn_turn);
+        let [by_east, by_north] = self.speed_by_angle;
+        let k = self.kept;
+        let speed = |row: Vector3, [le, ln]: [f32; 2], [ue, un]: [f32; 2]| {
+            [
+                k * (le + ue) + vector::dot(row, by_east),
+                k * (ln + un) + vector::dot(row, by_north),
+            ]
         };
-        for (weight, row) in by_parameter.iter().zip(&covariance.slow) {
-            add_scaled(gain, *weight, row);
-        }
+        let [mx, my, mz] = mixed;
+        let [sx, sy, sz] = [speed(mx, lx, vx), speed(my, ly, vy), speed(mz, lz, vz)];
+        let half = |[le, ln]: [f32; 2], [ue, un]: [f32; 2]| [le + 0.5 * ue, ln + 0.5 * un];
+        let [[xe, xn], [ye, yn], [ze, zn]] = [half(lx, vx), half(ly, vy), half(lz, vz)];
+        let (with_east, with_north) = ([xe, ye, ze], [xn, yn, zn]);
+        let [wx, wy, wz] = middle;
+        let times = |by: Vector3| {
+            [
+                vector::dot(wx, by),
+                vector::dot(wy, by),
+                vector::dot(wz, by),
+            ]
+        };
+        let (middle_east, middle_north) = (times(by_east), times(by_north));
+        let ee = k * k * ee
+            + 2.0 * k * vector::dot(by_east, with_east)
+            + vector::dot(by_east, middle_east)
+            + self.speed_noise;
+        let nn = k * k * nn
+            + 2.0 * k * vector::dot(by_north, with_north)
+            + vector::dot(by_north, middle_north)
+            + self.speed_noise;
+        let en = k * k * en
+            + k * (vector::dot(by_east, with_north) + vector::dot(by_north, with_east))
+            + vector::dot(by_east, middle_north);
+        let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = after;
+        let noise = |variance: f32| scalar::max(variance + self.turn_noise, LEAST_VARIANCE);
+        let ([xe, xn], [ye, yn], [ze, zn]) = (sx, sy, sz);
+        covariance.fast = [
+            [noise(xx), xy, xz, xe, xn],
+            [xy, noise(yy), yz, ye, yn],
+            [xz, yz, noise(zz), ze, zn],
+            [xe, ye, ze, scalar::max(ee, LEAST_VARIANCE), en],
+            [xn, yn, zn, en, scalar::max(nn, LEAST_VARIANCE)],
+        ];
     }
 
-    /// F·P, first half: fast errors after with fast ones before.
-    pub fn fast_forward(&mut self, covariance: &Covariance) {
-        for ((half, fast), by_parameter) in self
-            .half_done
-            .iter_mut()
-            .zip(&covariance.fast)
-            .zip(&self.by_parameter)
-        {
-            *half = *fast;
-            for (value, cross) in half.iter_mut().zip(&covariance.cross) {
-                *value += dot(by_parameter, cross);
-            }
-        }
-        let [_, _, _, speed @ ..] = &mut self.half_done;
-        let [before_x, before_y, before_z, ..] = &covariance.fast;
-        let [_, _, _, before_speed @ ..] = &covariance.fast;
-        for ((row, [wx, wy, wz]), before) in
-            speed.iter_mut().zip(self.speed_by_angle).zip(before_speed)
-        {
-            add_scaled(row, self.kept - 1.0, before);
-            add_scaled(row, wx, before_x);
-            add_scaled(row, wy, before_y);
-            add_scaled(row, wz, before_z);
-        }
-        let [gx, gy, gz, gain_speed @ ..] = &mut self.gain;
-        for (row, [wx, wy, wz]) in gain_speed.iter_mut().zip(self.speed_by_angle) {
-            add_scaled(row, 0.5 * wx, gx);
-            add_scaled(row, 0.5 * wy, gy);
-            add_scaled(row, 0.5 * wz, gz);
-        }
-    }
-
-    /// The cross block: F·P with the slow errors, which stay as they are.
-    pub fn cross_forward(&self, covariance: &mut Covariance) {
+    /// The cross block; then noise on the slow one.
+    pub fn carry_cross(&self, covariance: &mut Covariance) {
         let [x, y, z, speed @ ..] = &mut covariance.cross;
-        for (row, [wx, wy, wz]) in speed.iter_mut().zip(self.speed_by_angle) {
+        for (row, by_angle) in speed.iter_mut().zip(&self.speed_by_angle) {
             for value in &mut *row {
                 *value *= self.kept;
             }
-            add_scaled(row, wx, x);
-            add_scaled(row, wy, y);
-            add_scaled(row, wz, z);
+            rows::add_weighted(row, by_angle, &[*x, *y, *z]);
+            rows::add_weighted(row, &vector::scale(*by_angle, 0.5), &self.turn_slow);
         }
-        for (row, gain) in covariance.cross.iter_mut().zip(&self.gain) {
-            add_scaled(row, 1.0, gain);
+        for (row, turn_slow) in [x, y, z].into_iter().zip(&self.turn_slow) {
+            rows::add_weighted(row, &[1.0], core::slice::from_ref(turn_slow));
         }
-    }
-
-    /// … · Fᵀ + Q: the fast block, with the cross block already done; then noise on the slow block.
-    pub fn finish(&self, covariance: &mut Covariance) {
-        for ((row, half), cross) in covariance
-            .fast
-            .iter_mut()
-            .zip(&self.half_done)
-            .zip(&covariance.cross)
-        {
-            let [hx, hy, hz, ..] = half;
-            *row = *half;
-            let [.., east, north] = row;
-            let [[ex, ey, ez], [nx, ny, nz]] = self.speed_by_angle;
-            *east *= self.kept;
-            *north *= self.kept;
-            *east += ex * hx + ey * hy + ez * hz;
-            *north += nx * hx + ny * hy + nz * hz;
-            for (value, by_parameter) in row.iter_mut().zip(&self.by_parameter) {
-                *value += dot(cross, by_parameter);
-            }
-        }
-        covariance.even_out();
-        for (index, (row, noise)) in covariance.fast.iter_mut().zip(self.noise).enumerate() {
-            if let Some(variance) = row.get_mut(index) {
-                *variance = scalar::max(*variance + noise, LEAST_VARIANCE);
-            }
-        }
-        for (index, row) in covariance.slow.iter_mut().enumerate() {
-            let Some(variance) = row.get_mut(index) else {
-                continue;
-            };
-            if index < 3 && *variance < MAX_BIAS_VARIANCE {
-                *variance += self.bias_noise;
-            }
-            *variance = scalar::max(*variance, LEAST_VARIANCE);
-        }
+        covariance.wander(self.bias_noise);
     }
 }

@@ -4,6 +4,7 @@ mod covariance;
 mod error_filter;
 mod forecast;
 mod rest;
+mod rows;
 mod strapdown;
 mod window;
 
