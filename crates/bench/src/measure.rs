@@ -29,6 +29,7 @@ pub struct Spread {
 }
 
 pub struct Measured {
+    pub motion: String,
     pub costs: Costs,
     /// Against the recording's reference, if it has one.
     pub at_samples: Option<Figures>,
@@ -93,6 +94,7 @@ pub fn run(
         Motion::Computed { .. } => None,
     };
     Ok(Measured {
+        motion: motion.name().to_owned(),
         costs,
         at_samples: score(At::Samples),
         at_1_khz: score(At::EveryTick),

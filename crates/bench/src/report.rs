@@ -7,7 +7,7 @@ use crate::{
     image_size::ImageSize,
     measure::{Costs, Measured, Spread},
     scenarios,
-    table::Group,
+    table::{Group, Row},
     work::{FilterResult, Results},
 };
 use robot_emulator::sim::{budgets, summary::Summary};
@@ -27,6 +27,19 @@ pub struct Report {
     /// What the filters were fed with.
     pub motions: Vec<String>,
     pub groups: Vec<Group>,
+    pub runs: Vec<Run>,
+}
+
+/// One filter over one motion; instructions and degrees.
+#[derive(Debug, Serialize)]
+pub struct Run {
+    filter: &'static str,
+    motion: String,
+    update_with_mag: Option<Spread>,
+    update: Option<Spread>,
+    extrapolation: Option<Spread>,
+    error_at_samples: Option<Figures>,
+    error_at_1_khz: Option<Figures>,
 }
 
 impl Report {
@@ -37,17 +50,42 @@ impl Report {
             groups.push(board_group(&results.boards));
         }
         groups.push(filter_group(&results.filters));
-        let rows = groups.iter().flat_map(|group| &group.rows);
-        Self {
-            ok: rows.into_iter().all(|row| row.broken.is_empty()),
+        let mut report = Self {
+            ok: true,
             motions,
             groups,
-        }
+            runs: results.filters.iter().flat_map(runs).collect(),
+        };
+        let broken = report.broken().count();
+        report.ok = broken == 0;
+        report
+    }
+
+    /// Rows over their limits.
+    pub fn broken(&self) -> impl Iterator<Item = (&Group, &Row)> {
+        let rows = self
+            .groups
+            .iter()
+            .flat_map(|group| group.rows.iter().map(move |row| (group, row)));
+        rows.filter(|(_, row)| !row.broken.is_empty())
     }
 
     pub fn to_json(&self) -> String {
         serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
     }
+}
+
+fn runs(result: &FilterResult) -> impl Iterator<Item = Run> {
+    let filter = result.entry.title();
+    result.runs.iter().map(move |run| Run {
+        filter,
+        motion: run.motion.clone(),
+        update_with_mag: Spread::of(&run.costs.update_with_mag),
+        update: Spread::of(&run.costs.update),
+        extrapolation: Spread::of(&run.costs.extrapolation),
+        error_at_samples: run.at_samples,
+        error_at_1_khz: run.at_1_khz,
+    })
 }
 
 fn image_group(size: ImageSize) -> Group {

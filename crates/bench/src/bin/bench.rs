@@ -21,26 +21,29 @@ use robot_bench::{
 use robot_replay::Trial;
 
 /// From the repository's root.
-const RECORDINGS: &str = "../shared/data/broad/hz200";
+const RECORDINGS: &str = "../shared/data/broad";
+/// What is taken of the recordings where nobody says which.
+const AT_200_HZ: &str = "hz200";
 
 /// What the firmware costs: the shipped image on the emulated board, and its attitude filter beside others, counted on
 /// an emulated Cortex-M4F over recorded motion. Exit code 1 if a limit is broken.
 #[derive(Parser)]
 #[command(
-    name = "cargo xtask bench",
+    name = "bench",
+    bin_name = "cargo xtask bench",
     after_help = "Examples:
   cargo xtask bench                       everything, on all recordings
   cargo xtask bench --quick               the filters alone, on one recording
   cargo xtask bench --quick --functions   where the estimator's instructions go"
 )]
 struct Args {
-    /// The shipped image.
+    /// The shipped image; `cargo xtask` names the one it builds.
     #[arg(long, value_name = "ELF", required_unless_present = "quick")]
     elf: Option<PathBuf>,
-    /// Folder of the filters' programs for the board.
+    /// Folder of the filters' programs for the board; `cargo xtask` names it.
     #[arg(long, value_name = "DIR")]
     programs: PathBuf,
-    /// Folder of recorded trials [default: $ROBOT_DATA, else ../shared/data/broad/hz200; if that is not there, a
+    /// Folder of recorded trials [default: $ROBOT_DATA, else ../shared/data/broad; if that is not there, a
     /// computed motion stands in].
     #[arg(long, value_name = "DIR")]
     data: Option<PathBuf>,
@@ -58,8 +61,14 @@ struct Args {
     out: PathBuf,
 }
 
-fn main() -> anyhow::Result<ExitCode> {
-    let args = Args::parse();
+fn main() -> ExitCode {
+    run(&Args::parse()).unwrap_or_else(|error| {
+        eprintln!("error: {error:#}");
+        ExitCode::FAILURE
+    })
+}
+
+fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let plan = args.plan()?;
     let results = plan.run()?;
     let image = plan.image.as_deref().map(ImageSize::read).transpose()?;
@@ -77,6 +86,10 @@ fn main() -> anyhow::Result<ExitCode> {
     fs::write(&json, report.to_json())
         .with_context(|| format!("cannot write {}", json.display()))?;
     println!("wrote {}", json.display());
+    for (group, row) in report.broken() {
+        let columns = row.broken.join(", ");
+        println!("over its limit: {}, {} ({columns})", group.title, row.name);
+    }
     Ok(if report.ok {
         ExitCode::SUCCESS
     } else {
@@ -124,12 +137,16 @@ impl Args {
 
     fn headers(&self) -> anyhow::Result<Vec<PathBuf>> {
         let variable = env::var_os("ROBOT_DATA").map(PathBuf::from);
-        let folder = match self.data.clone().or(variable) {
-            Some(folder) => folder,
-            None => repository().join(RECORDINGS),
-        };
-        if self.data.is_none() && !folder.is_dir() {
-            return Ok(Vec::new());
+        let said = self.data.clone().or(variable);
+        let mut folder = said.unwrap_or_else(|| repository().join(RECORDINGS));
+        if self.data.is_none() {
+            if !folder.is_dir() {
+                return Ok(Vec::new());
+            }
+            let at_200_hz = folder.join(AT_200_HZ);
+            folder = Some(at_200_hz)
+                .filter(|inner| inner.is_dir())
+                .unwrap_or(folder);
         }
         let mut headers = robot_replay::trial_files(&folder)?;
         let part = self.trial.as_deref().unwrap_or_default();
