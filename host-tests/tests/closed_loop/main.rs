@@ -3,6 +3,7 @@
 mod legs;
 mod motion;
 mod robot;
+mod sensors;
 
 use robot::Robot;
 use robot_app::safety::{ArmingBlockers, SafetyFlags, SafetyVerdict};

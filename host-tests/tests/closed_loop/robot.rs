@@ -4,38 +4,28 @@ use robot_app::{
     control::UserController,
     diagnostics::DiagnosticsSnapshot,
     domain::{
-        BusId, CanFrame, ChassisCommand, HeaterConfig, ImuCalibration, ImuState, MagCalibration,
-        MagState, RemoteUpdate, RobotConfig, SafetyConfig, StandardId, SystemHealth,
+        BusId, CanFrame, ChassisCommand, ImuState, MagState, RemoteUpdate, RobotConfig,
+        SafetyConfig, StandardId, SystemHealth,
     },
     input::{RemoteFormat, RemoteMapping, RemoteReceiver},
     logic::{LogicBus, LogicInputs, LogicStage, UserLogic},
     params::{FlashRequest, ParamStatus},
     safety::{ArmingState, WatchdogPeriod},
-    sensing::{
-        ImuPipeline, MagPipeline,
-        bmi088::{self, ACCEL_READ, BUFFER_READ, GYRO_READ, GyroBuffer},
-        ist8310,
-    },
     tick::{ControlInputs, ControlLoop},
 };
 use robot_plant::{
     time::{MS, Ps, US},
     wire::CanFrame as WireFrame,
-    world::{
-        CanBusId, PlantKind, RadioKind, RemoteInput, SpiSelect, WireEvent, World, WorldConfig,
-    },
+    world::{CanBusId, PlantKind, RadioKind, RemoteInput, WireEvent, World, WorldConfig},
 };
 
-const SCK_HZ: u32 = 5_250_000;
-const SPI_MODE: u8 = 3;
-const SCL_HZ: u32 = 400_000;
+use crate::sensors::Sensors;
 
 pub struct Robot {
     world: World,
     now: Ps,
     receiver: RemoteReceiver,
-    imu_pipeline: ImuPipeline,
-    mag_pipeline: MagPipeline,
+    sensors: Sensors,
     logic_stage: LogicStage,
     control: ControlLoop<UserController>,
     remote: RemoteUpdate,
@@ -45,7 +35,6 @@ pub struct Robot {
     health: SystemHealth,
     diagnostics: DiagnosticsSnapshot,
     wheel_currents_ma: [f64; 2],
-    mag_started_at: Option<Ps>,
     /// What a user's logic would command past the controller, if any.
     pub direct: Option<ChassisCommand>,
     /// Every byte sent on CAN so far, folded into one number.
@@ -71,8 +60,7 @@ impl Robot {
             world,
             now: 0,
             receiver: RemoteReceiver::new(format, RemoteMapping::default()),
-            imu_pipeline: ImuPipeline::new(ImuCalibration::default(), HeaterConfig::default()),
-            mag_pipeline: MagPipeline::new(MagCalibration::default()),
+            sensors: Sensors::new(),
             logic_stage: LogicStage::new(UserLogic),
             control: ControlLoop::new(RobotConfig::default(), UserController::default()),
             remote: RemoteUpdate::default(),
@@ -82,13 +70,11 @@ impl Robot {
             health: SystemHealth::default(),
             diagnostics: DiagnosticsSnapshot::default(),
             wheel_currents_ma: [0.0; 2],
-            mag_started_at: None,
             direct: None,
             sent_digest: 0,
         };
-        robot.bring_up_imu();
-        robot.bring_up_mag();
-        robot.now = robot.now.next_multiple_of(20 * MS);
+        let up = robot.sensors.bring_up(&mut robot.world, robot.now);
+        robot.now = up.next_multiple_of(20 * MS);
         robot
     }
 
@@ -197,7 +183,7 @@ impl Robot {
     }
 
     fn control_tick(&mut self) {
-        self.health.imu_calibrated = self.imu_pipeline.calibrated();
+        self.health.imu_calibrated = self.sensors.imu_calibrated();
         let now_us = self.now_us();
         let outputs = self.control.tick(
             &ControlInputs {
@@ -252,132 +238,21 @@ impl Robot {
         }
     }
 
-    fn spi(&mut self, device: SpiSelect, bytes: &mut [u8]) {
-        self.world.spi_select(device, true, self.now);
-        for byte in bytes {
-            *byte = self.world.spi_transfer(*byte, SCK_HZ, SPI_MODE, self.now);
-        }
-        self.world.spi_select(device, false, self.now);
-    }
-
-    fn wait_us(&mut self, us: u32) {
-        self.now += u64::from(us) * US;
-        self.world.advance(self.now);
-    }
-
-    fn bring_up_imu(&mut self) {
-        let select = |target| match target {
-            bmi088::SpiTarget::Accel => SpiSelect::Accel,
-            bmi088::SpiTarget::Gyro => SpiSelect::Gyro,
-        };
-        for step in bmi088::INIT {
-            match *step {
-                bmi088::InitStep::DummyRead { target, register } => {
-                    let (mut bytes, len) = bmi088::read_command(target, register);
-                    self.spi(select(target), &mut bytes[..len]);
-                }
-                bmi088::InitStep::Write {
-                    target,
-                    register,
-                    value,
-                } => {
-                    let mut bytes = bmi088::write_command(register, value);
-                    self.spi(select(target), &mut bytes);
-                }
-                bmi088::InitStep::Check {
-                    target,
-                    register,
-                    expected,
-                    failure,
-                } => {
-                    let (mut bytes, len) = bmi088::read_command(target, register);
-                    self.spi(select(target), &mut bytes[..len]);
-                    assert_eq!(bytes[len - 1], expected, "{failure:?}");
-                }
-                bmi088::InitStep::Wait { us } => self.wait_us(us),
-            }
-        }
-    }
-
     fn read_imu(&mut self) {
-        let (mut accel, mut gyro, mut buffer) = (ACCEL_READ, GYRO_READ, BUFFER_READ);
-        self.spi(SpiSelect::Gyro, &mut gyro);
-        let frames = match bmi088::gyro_buffer(&gyro) {
-            GyroBuffer::Frames { bytes } => {
-                self.spi(SpiSelect::Gyro, &mut buffer[..bytes]);
-                &buffer[1..bytes]
-            }
-            GyroBuffer::Stale => {
-                self.spi(SpiSelect::Gyro, &mut bmi088::BUFFER_CLEAR.clone());
-                &[]
-            }
-        };
-        self.spi(SpiSelect::Accel, &mut accel);
-        let now_us = self.now_us();
-        match self.imu_pipeline.process(&accel, &gyro, frames, now_us) {
+        match self.sensors.read_imu(&mut self.world, self.now) {
             Ok(state) => self.imu = state,
             Err(_) => self.health.imu.errors += 1,
         }
     }
 
-    /// False where the device does not acknowledge.
-    fn i2c_write(&mut self, bytes: &[u8]) -> bool {
-        let now = self.now;
-        let mut acknowledged = self.world.i2c_address(ist8310::ADDRESS, false, SCL_HZ, now);
-        for byte in bytes {
-            acknowledged = acknowledged && self.world.i2c_write(*byte, now);
-        }
-        self.world.i2c_stop(now);
-        acknowledged
-    }
-
-    fn i2c_read(&mut self, register: u8, bytes: &mut [u8]) -> bool {
-        let now = self.now;
-        let acknowledged = self.i2c_write(&[register])
-            && self.world.i2c_address(ist8310::ADDRESS, true, SCL_HZ, now);
-        for byte in bytes {
-            *byte = self.world.i2c_read(true, now);
-        }
-        self.world.i2c_stop(now);
-        acknowledged
-    }
-
-    fn bring_up_mag(&mut self) {
-        for step in ist8310::INIT {
-            match *step {
-                ist8310::InitStep::ResetPin { high } => {
-                    self.world.set_mag_reset_pin(high, self.now);
-                }
-                ist8310::InitStep::Write { register, value } => {
-                    assert!(self.i2c_write(&[register, value]));
-                }
-                ist8310::InitStep::Check {
-                    register,
-                    expected,
-                    failure,
-                } => {
-                    let mut value = [0];
-                    assert!(self.i2c_read(register, &mut value));
-                    assert_eq!(value[0], expected, "{failure:?}");
-                }
-                ist8310::InitStep::Wait { us } => self.wait_us(us),
-            }
-        }
-    }
-
     fn serve_mag(&mut self) {
         if self.now.is_multiple_of(20 * MS) {
-            self.i2c_write(&ist8310::START_SINGLE_SHOT);
-            self.mag_started_at = Some(self.now);
+            self.sensors.start_mag(&mut self.world, self.now);
         }
-        let due = |started: Ps| self.now - started >= u64::from(ist8310::MEASUREMENT_US) * US;
-        if let Some(started) = self.mag_started_at.take_if(|started| due(*started)) {
-            let mut answer = [0; ist8310::READ_LEN];
-            let read = self.i2c_read(ist8310::READ_FROM, &mut answer);
-            match self.mag_pipeline.process(&answer, started / US) {
-                Ok(state) if read => self.mag = state,
-                _ => self.health.mag.errors += 1,
-            }
+        match self.sensors.fetch_mag(&mut self.world, self.now) {
+            Some(Ok(state)) => self.mag = state,
+            Some(Err(())) => self.health.mag.errors += 1,
+            None => {}
         }
     }
 }

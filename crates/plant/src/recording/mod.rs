@@ -16,7 +16,7 @@ pub use trial::{Row, Trial};
 
 /// Room for boot and sensor start-up before the record begins. Until then its first moments, which are all at rest,
 /// play backwards: real noise, and no jump where the record starts.
-const LEAD_IN: Ps = 1_000 * MS;
+pub const LEAD_IN: Ps = 1_000 * MS;
 /// How long a run lasts that plays all of the trial `header` describes: lead-in and every row.
 pub fn run_length(header: &Path) -> Result<Ps, WorldError> {
     Ok(LEAD_IN + trial::duration(header)?)

@@ -1,0 +1,131 @@
+//! The board's sensor tasks and the control tick's part of the estimator, while a recording plays.
+
+use std::path::Path;
+
+use robot_app::{
+    domain::{ImuState, MagState, MotorFeedback, StateEstimate, WheelOdomConfig},
+    estimation::InsEstimator,
+};
+use robot_plant::{
+    recording,
+    time::{MS, Ps, US},
+    world::{PlantKind, World, WorldConfig},
+};
+use robot_replay::{Mode, Run, Tick};
+
+use crate::sensors::Sensors;
+
+const IMU_PERIOD: Ps = 5 * MS;
+const MAG_PERIOD: Ps = 20 * MS;
+/// The tick runs half a millisecond after the sensors are read.
+const TICK_PHASE: Ps = 500 * US;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wheels {
+    /// No motor is heard.
+    Silent,
+    /// The motors report that they stand, as on a robot that is carried around.
+    Standing,
+}
+
+impl Wheels {
+    fn feedback(self, now_us: u64) -> MotorFeedback {
+        let mut feedback = MotorFeedback::default();
+        if self == Self::Standing {
+            for wheel in &mut feedback.wheels {
+                wheel.age_us = 300;
+                wheel.ts_us = now_us - 300;
+            }
+        }
+        feedback
+    }
+}
+
+/// Outputs from the begin of the record on. `phase`: of the IMU's readings against the chips' own clocks.
+pub fn play(header: &Path, phase: Ps, wheels: Wheels) -> anyhow::Result<Run> {
+    let mut world = World::new(WorldConfig {
+        plant: PlantKind::Stand,
+        seed: 1,
+        imu_trial: Some(header.to_owned()),
+        ..WorldConfig::default()
+    })?;
+    let end = recording::run_length(header)?;
+    let mut board = Board::bring_up(&mut world, phase, wheels);
+    let mut ticks = Vec::new();
+    while board.tick_at < end {
+        let now = board.tick_at;
+        board.step(&mut world);
+        if let Some(since) = now.checked_sub(recording::LEAD_IN) {
+            ticks.push(Tick {
+                t_us: since / US,
+                q_wxyz: unit(board.estimate.q_wxyz),
+                gyro_bias_rps: board.estimate.gyro_bias_rps,
+                valid: board.estimate.valid,
+            });
+        }
+    }
+    assert!(board.sensors.imu_calibrated(), "the record begins at rest");
+    Ok(Run {
+        mode: Mode::NineAxis,
+        ticks,
+    })
+}
+
+fn unit(q_wxyz: [f32; 4]) -> [f64; 4] {
+    let q = q_wxyz.map(f64::from);
+    let norm = q.iter().map(|part| part * part).sum::<f64>().sqrt();
+    q.map(|part| part / norm)
+}
+
+struct Board {
+    sensors: Sensors,
+    estimator: InsEstimator,
+    wheels: Wheels,
+    imu: ImuState,
+    mag: MagState,
+    estimate: StateEstimate,
+    imu_at: Ps,
+    mag_at: Ps,
+    tick_at: Ps,
+}
+
+impl Board {
+    fn bring_up(world: &mut World, phase: Ps, wheels: Wheels) -> Self {
+        let sensors = Sensors::new();
+        let up = sensors.bring_up(world, 0).next_multiple_of(MAG_PERIOD);
+        Self {
+            sensors,
+            estimator: InsEstimator::new(WheelOdomConfig::default()),
+            wheels,
+            imu: ImuState::default(),
+            mag: MagState::default(),
+            estimate: StateEstimate::default(),
+            imu_at: up + phase,
+            mag_at: up,
+            tick_at: up + TICK_PHASE,
+        }
+    }
+
+    /// Serves the sensors up to the next tick, then ticks.
+    fn step(&mut self, world: &mut World) {
+        while self.imu_at.min(self.mag_at) <= self.tick_at {
+            if self.imu_at <= self.mag_at {
+                if let Ok(state) = self.sensors.read_imu(world, self.imu_at) {
+                    self.imu = state;
+                }
+                self.imu_at += IMU_PERIOD;
+            } else {
+                self.sensors.start_mag(world, self.mag_at);
+                self.mag_at += MAG_PERIOD;
+            }
+        }
+        if let Some(Ok(state)) = self.sensors.fetch_mag(world, self.tick_at) {
+            self.mag = state;
+        }
+        let now_us = self.tick_at / US;
+        let motor = self.wheels.feedback(now_us);
+        self.estimator
+            .step(&self.imu, &self.mag, &motor, now_us, &mut self.estimate);
+        self.tick_at += MS;
+    }
+}
