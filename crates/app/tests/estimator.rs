@@ -352,6 +352,7 @@ fn a_jump_in_time_ends_validity_for_half_a_second() {
 fn the_robot_drives_where_its_nose_points() {
     let mut bench = Bench::settled();
     bench.mag.mag_ut = FACING_NORTH_UT;
+    bench.wheels_turn([0, 0]);
     bench.run(1.0);
     for (accel_mps2, expected_m) in [(2.0, 1.2), (-2.0, 0.0)] {
         let top_rpm = 917 * accel_mps2 as i16;
@@ -363,6 +364,29 @@ fn the_robot_drives_where_its_nose_points() {
         assert_close(bench.estimate.vel_mps, [0.0; 3], 2e-3);
         assert_close(bench.estimate.pos_m, [0.0, expected_m, 0.0], 4e-2);
     }
+}
+
+/// To and fro at 2 m/s² for a minute: what the wheels explain is no tilt.
+#[test]
+fn driving_does_not_tilt_the_horizon() {
+    let mut bench = Bench::settled();
+    bench.wheels_turn([0, 0]);
+    bench.run(1.0);
+    let mut worst_deg: f32 = 0.0;
+    for lap in 0..60 {
+        let backward = lap % 2 == 1;
+        let (accel_mps2, top_rpm) = if backward {
+            (-2.0, -1_834)
+        } else {
+            (2.0, 1_834)
+        };
+        bench.accelerate(accel_mps2, 0);
+        worst_deg = worst_deg.max(bench.tilt_rad().to_degrees());
+        bench.run(0.4);
+        bench.accelerate(-accel_mps2, top_rpm);
+        worst_deg = worst_deg.max(bench.tilt_rad().to_degrees());
+    }
+    assert!(worst_deg < 0.07, "{worst_deg}°");
 }
 
 /// 0.306 m/s² more than gravity: one board's offset.

@@ -128,6 +128,19 @@ fn spinning_wheels_are_not_believed() {
     assert!(worst.inclination_deg < 1.3, "{worst:?}");
 }
 
+/// Full speed to and fro for 20 s on ice: the wheels never roll, so nothing can know the speed; the horizon stays.
+#[test]
+fn wheels_that_never_roll_do_not_tilt_the_horizon() {
+    let mut robot = armed(PlantKind::Rolling);
+    robot.fault("floor-slippery", true);
+    for second in 0..20 {
+        let vx = if second % 2 == 0 { 1.0 } else { -1.0 };
+        robot.remote(sticks(vx, 0.0));
+        let worst = run_and_compare(&mut robot, f64::from(4 + second));
+        assert!(worst.inclination_deg < 1.3, "at {second} s: {worst:?}");
+    }
+}
+
 /// From a circle at full speed into reverse on ice: it slides on at up to 1.3 m/s sideways, wheels running backwards.
 #[test]
 fn sliding_sideways_is_seen() {

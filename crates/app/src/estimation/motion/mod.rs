@@ -110,6 +110,7 @@ impl MotionEstimator {
             .feed(felt, pose.rate_rps, wheels, sample.dt_s)
         {
             self.filter.hold_still(free_mps2, sample.dt_s);
+            self.trust.confirm(wheels);
             [0.0; 3]
         } else {
             self.carry_on(free_mps2, speeds, &axes, age_s, sample.dt_s)
@@ -133,8 +134,9 @@ impl MotionEstimator {
             .predict(if known { free_mps2 } else { [0.0; 3] }, axes, dt_s);
         let [forward_mps, left_mps, up_mps] = axes.flat(self.filter.velocity_after(age_s));
         let surplus = speeds.map(|speed| speed.map(|speed_mps| speed_mps - forward_mps));
-        let (forward, left) = match self.trust.step(surplus, dt_s) {
-            Word::Believed(surplus_mps) => (surplus_mps, -left_mps),
+        let word = self.trust.step(surplus, dt_s);
+        let (forward, left) = match word {
+            Word::Proven(surplus_mps) | Word::Believed(surplus_mps) => (surplus_mps, -left_mps),
             Word::Unheard => (0.0, -left_mps),
             Word::Sliding => (0.0, 0.0),
             Word::Anew(surplus_mps) => {
@@ -147,8 +149,15 @@ impl MotionEstimator {
                 return [0.0; 3];
             }
         };
-        let gained_mps2 = self.filter.correct([forward, left, -up_mps], axes, dt_s);
-        vector::add(free_mps2, gained_mps2)
+        let learning = matches!(word, Word::Proven(_));
+        let innovation_mps = [forward, left, -up_mps];
+        let gained_mps2 = self.filter.correct(innovation_mps, axes, dt_s, learning);
+        match word {
+            Word::Proven(_) => vector::add(free_mps2, gained_mps2),
+            // The accelerometer is busy with the motion: all of the force but gravity as it is believed.
+            Word::Sliding | Word::Unheard => vector::add(free_mps2, self.filter.accel_bias_mps2()),
+            Word::Believed(_) | Word::Anew(_) | Word::None => [0.0; 3],
+        }
     }
 
     /// `dt_s` more without a sample, the IMU is silent: only the wheels are left.

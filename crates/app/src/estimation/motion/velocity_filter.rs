@@ -103,24 +103,33 @@ impl VelocityFilter {
 
     /// `innovation_mps`: what is observed less what the filter believes, forward, left and up. The acceleration that the
     /// change of velocity amounts to, in body axes.
-    pub fn correct(&mut self, innovation_mps: Vector3, axes: &Axes, dt_s: f32) -> Vector3 {
+    pub fn correct(
+        &mut self,
+        innovation_mps: Vector3,
+        axes: &Axes,
+        dt_s: f32,
+        learning: bool,
+    ) -> Vector3 {
         let [forward, left, up] =
             innovation_mps.map(|mps| scalar::clamp(mps, -MAX_INNOVATION_MPS, MAX_INNOVATION_MPS));
         let dt_s = scalar::min(dt_s, MAX_CORRECTION_S);
         let lever_mps2 = LEVER_M * axes.yaw_rps() * axes.yaw_rps();
         let lever = scalar::min(lever_mps2 / LEVER_MPS, MAX_LEVER_GAIN);
-        let odds = lever_mps2 / BIAS_MPS2;
-        let learning_s = dt_s / (1.0 + odds * odds);
         let gained = [
             (FORWARD.speed + lever) * forward,
             (LEFT.speed + lever) * left,
             UP.speed * up,
         ];
-        let bias = [FORWARD.bias * forward, LEFT.bias * left, UP.bias * up];
         let gained_mps2 = axes.flat_to_world(gained);
         self.shift(vector::scale(gained_mps2, dt_s));
-        let bias = axes.to_body(axes.flat_to_world(bias));
-        self.accel_bias_mps2 = vector::sub(self.accel_bias_mps2, vector::scale(bias, learning_s));
+        if learning {
+            let odds = lever_mps2 / BIAS_MPS2;
+            let learning_s = dt_s / (1.0 + odds * odds);
+            let bias = [FORWARD.bias * forward, LEFT.bias * left, UP.bias * up];
+            let bias = axes.to_body(axes.flat_to_world(bias));
+            self.accel_bias_mps2 =
+                vector::sub(self.accel_bias_mps2, vector::scale(bias, learning_s));
+        }
         axes.to_body(gained_mps2)
     }
 
@@ -149,9 +158,9 @@ impl VelocityFilter {
 
     /// Only what a robot can have is carried on.
     pub fn stay_plausible(&mut self) {
-        if !vector::is_within(self.velocity_mps, MAX_SPEED_MPS)
-            || !vector::is_within(self.accel_bias_mps2, MAX_BIAS_MPS2)
-        {
+        let speed = vector::dot(self.velocity_mps, self.velocity_mps);
+        let bias = vector::dot(self.accel_bias_mps2, self.accel_bias_mps2);
+        if speed > MAX_SPEED_MPS * MAX_SPEED_MPS || bias > MAX_BIAS_MPS2 * MAX_BIAS_MPS2 {
             self.limit();
         }
     }

@@ -8,13 +8,17 @@ use super::{
 
 /// How long the accelerometer carries on alone: with the horizon 1° off the velocity is 0.34 m/s off by then.
 const MAX_COAST_S: f32 = 2.0;
+/// Wheels that rolled for so long without a break are proven.
+const PROOF_S: f32 = 1.0;
 /// A rim slower than this stands.
 const STANDING_MPS: f32 = 0.02;
 
 /// What the wheels say, as how much faster they run than the robot, m/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Word {
-    /// At least one wheel rolls.
+    /// At least one wheel rolls, and has for long enough to show what the accelerometer's offset is.
+    Proven(f32),
+    /// At least one wheel rolls, for now.
     Believed(f32),
     /// All that are heard slip, so they do not hold sideways either; the accelerometer carries on.
     Sliding,
@@ -32,6 +36,8 @@ pub(super) struct WheelTrust {
     grip: [Grip; 2],
     /// Since a wheel was last believed.
     coasting_s: f32,
+    /// Since then without a break.
+    rolling_s: f32,
 }
 
 impl WheelTrust {
@@ -40,6 +46,7 @@ impl WheelTrust {
         Self {
             grip: [Grip::Rolling; 2],
             coasting_s: MAX_COAST_S,
+            rolling_s: 0.0,
         }
     }
 
@@ -61,14 +68,9 @@ impl WheelTrust {
             return self.start_over(surplus);
         }
         if let Some(surplus_mps) = wheel_speed::mean(rolling) {
-            let coasted = self.coasting_s > 0.0;
-            self.coasting_s = 0.0;
-            return if coasted {
-                Word::Anew(surplus_mps)
-            } else {
-                Word::Believed(surplus_mps)
-            };
+            return self.roll(surplus_mps, dt_s);
         }
+        self.rolling_s = 0.0;
         self.coasting_s += dt_s;
         if surplus == [None; 2] {
             Word::Unheard
@@ -77,13 +79,34 @@ impl WheelTrust {
         }
     }
 
+    fn roll(&mut self, surplus_mps: f32, dt_s: f32) -> Word {
+        if self.coasting_s > 0.0 {
+            self.coasting_s = 0.0;
+            return Word::Anew(surplus_mps);
+        }
+        if self.rolling_s < PROOF_S {
+            self.rolling_s += dt_s;
+            return Word::Believed(surplus_mps);
+        }
+        Word::Proven(surplus_mps)
+    }
+
     fn start_over(&mut self, surplus: ForwardSpeeds) -> Word {
         let Some(surplus_mps) = wheel_speed::mean(surplus) else {
             return Word::None;
         };
         self.grip = [Grip::Rolling; 2];
         self.coasting_s = 0.0;
+        self.rolling_s = 0.0;
         Word::Anew(surplus_mps)
+    }
+
+    /// The robot stands still: wheels that stand say so rightly.
+    pub fn confirm(&mut self, wheels: WheelEvidence) {
+        if wheels == WheelEvidence::Standing {
+            self.coasting_s = 0.0;
+            self.rolling_s = PROOF_S;
+        }
     }
 
     /// What the wheels say about standing still.
