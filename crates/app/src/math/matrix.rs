@@ -9,7 +9,11 @@ pub const fn transposed([[a, b, c], [d, e, f], [g, h, i]]: Matrix3) -> Matrix3 {
 }
 
 /// `a` + `factor` · `b`.
-pub fn add_scaled([ax, ay, az]: Matrix3, factor: f32, [bx, by, bz]: Matrix3) -> Matrix3 {
-    let sum = |a, b| vector::add(a, vector::scale(b, factor));
-    [sum(ax, bx), sum(ay, by), sum(az, bz)]
+#[inline(never)]
+pub fn add_scaled(a: &Matrix3, factor: f32, b: &Matrix3) -> Matrix3 {
+    let mut sum = *a;
+    for (to, row) in sum.iter_mut().zip(b) {
+        *to = vector::add(*to, vector::scale(*row, factor));
+    }
+    sum
 }

@@ -43,6 +43,7 @@ impl Quaternion {
                 y: -0.5 * x / w,
                 z: 0.0,
             }
+            .normalised()
         } else {
             // Upside down: half a turn about any level axis.
             Self {
@@ -68,6 +69,7 @@ impl Quaternion {
 
     /// Back to unit length; the identity if nothing is left to scale.
     #[must_use]
+    #[inline(never)]
     pub fn normalised(self) -> Self {
         let squared = self.w * self.w + self.x * self.x + self.y * self.y + self.z * self.z;
         let inverse = scalar::inverse_sqrt(squared);
@@ -87,7 +89,7 @@ impl Quaternion {
     pub fn renormalised(self) -> Self {
         let squared = self.w * self.w + self.x * self.x + self.y * self.y + self.z * self.z;
         let inverse = 1.5 - 0.5 * squared;
-        if !(0.9..1.1).contains(&inverse) {
+        if !(0.999..1.001).contains(&inverse) {
             return self.normalised();
         }
         Self {

@@ -3,12 +3,17 @@
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 /// 1/√x for normal positive x; other inputs give 0.
+#[inline(never)]
 pub fn inverse_sqrt(x: f32) -> f32 {
-    if !x.is_normal() || x < 0.0 {
+    const LEAST_NORMAL: u32 = 0x0080_0000;
+    const INFINITY: u32 = 0x7F80_0000;
+    let bits = x.to_bits();
+    // One comparison for zero, subnormal, negative, infinite and NaN.
+    if bits.wrapping_sub(LEAST_NORMAL) >= INFINITY - LEAST_NORMAL {
         return 0.0;
     }
     // First guess within 3.5 % by halving the exponent; each Newton round squares the error.
-    let mut y = f32::from_bits(0x5F37_59DF_u32.wrapping_sub(x.to_bits() >> 1));
+    let mut y = f32::from_bits(0x5F37_59DF_u32.wrapping_sub(bits >> 1));
     let half = 0.5 * x;
     y *= 1.5 - half * y * y;
     y *= 1.5 - half * y * y;
@@ -52,13 +57,25 @@ pub fn sin_cos_small(x: f32) -> (f32, f32) {
 }
 
 /// Angle of the point (x, y), −π … π; 0 for the origin, NaN and two infinities. Error below 3e-7.
+///
+/// Polynomial of the Cephes library for 0 … tan(π/8), reached by turning the point by π/4 before the one division.
+#[inline(never)]
 pub fn atan2(y: f32, x: f32) -> f32 {
+    const TAN_PI_8: f32 = 0.414_213_57;
     let (ax, ay) = (x.abs(), y.abs());
-    let ratio = if ax < ay { ax / ay } else { ay / ax };
+    let (low, high) = if ax < ay { (ax, ay) } else { (ay, ax) };
+    let (ratio, offset) = if low > TAN_PI_8 * high {
+        ((low - high) / (low + high), FRAC_PI_4)
+    } else {
+        (low / high, 0.0)
+    };
     if ratio.is_nan() {
         return 0.0;
     }
-    let mut angle = atan_unit(ratio);
+    let r2 = ratio * ratio;
+    let polynomial =
+        ((8.053_744_6e-2 * r2 - 1.387_768_6e-1) * r2 + 1.997_771_1e-1) * r2 - 3.333_295e-1;
+    let mut angle = offset + ratio + ratio * r2 * polynomial;
     if ax < ay {
         angle = FRAC_PI_2 - angle;
     }
@@ -66,19 +83,6 @@ pub fn atan2(y: f32, x: f32) -> f32 {
         angle = PI - angle;
     }
     if y < 0.0 { -angle } else { angle }
-}
-
-/// atan of 0 … 1 (argument reduction at tan(π/8), polynomial of the Cephes library).
-fn atan_unit(x: f32) -> f32 {
-    let (x, offset) = if x > 0.414_213_57 {
-        ((x - 1.0) / (x + 1.0), FRAC_PI_4)
-    } else {
-        (x, 0.0)
-    };
-    let x2 = x * x;
-    let polynomial =
-        ((8.053_744_6e-2 * x2 - 1.387_768_6e-1) * x2 + 1.997_771_1e-1) * x2 - 3.333_295e-1;
-    offset + x + x * x2 * polynomial
 }
 
 /// Arc sine; the argument is clamped to −1 … 1, NaN gives 0. Error below 1e-6. Up to 30° it is a polynomial of the
@@ -91,7 +95,7 @@ pub fn asin(x: f32) -> f32 {
                 + 1.666_675_2e-1;
         return x + x * x2 * polynomial;
     }
-    let x = x.clamp(-1.0, 1.0);
+    let x = clamp(x, -1.0, 1.0);
     atan2(x, sqrt((1.0 - x) * (1.0 + x)))
 }
 

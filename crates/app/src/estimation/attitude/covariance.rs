@@ -50,6 +50,7 @@ pub(super) const LEAST_VARIANCE: f32 = 1e-12;
 const FIRST_MISALIGNMENT: f32 = 0.006 * 0.006;
 
 impl Covariance {
+    #[inline(never)]
     pub fn new() -> Self {
         let mut new = Self {
             fast: [[0.0; FAST]; FAST],
@@ -169,14 +170,9 @@ impl Covariance {
             gain = if gain > 0.0 { limit } else { -limit };
         }
         rows::add_weighted(&mut correction.parameters, &[gain], &[column.slow]);
-        for (to, value) in correction.fast.iter_mut().zip(column.fast) {
-            *to += gain * value;
-        }
+        rows::add_fast(&mut correction.fast, gain, &column.fast);
         for (row, weight) in self.fast.iter_mut().zip(column.fast) {
-            let weight = weight * inverse;
-            for (to, value) in row.iter_mut().zip(column.fast) {
-                *to -= weight * value;
-            }
+            rows::add_fast(row, -weight * inverse, &column.fast);
         }
         rows::subtract_product(&mut self.cross, &column.fast, inverse, &column.slow);
         rows::subtract_product(&mut self.slow, &column.slow, inverse, &column.slow);

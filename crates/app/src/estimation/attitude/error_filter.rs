@@ -56,8 +56,11 @@ impl ErrorFilter {
     }
 
     /// Nothing is known of the errors any more.
+    #[cold]
+    #[inline(never)]
     pub fn restart(&mut self) {
-        *self = Self::new();
+        self.work = None;
+        self.covariance = Covariance::new();
     }
 
     pub fn begin(&mut self, window: &Window, findings: Findings) {

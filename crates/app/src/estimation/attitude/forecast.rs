@@ -93,15 +93,14 @@ impl Forecast {
         let ((ax, vx), (ay, vy), (az, vz)) = (split(ux), split(uy), split(uz));
         let turn = [ax, ay, az];
         let turned = matrix::transposed(turn);
-        // Of θ + u with θ + u/2, then of each with itself.
-        let mixed = matrix::add_scaled(matrix::add_scaled(angle, 1.0, turn), 0.5, turned);
-        let mixed = matrix::add_scaled(mixed, 0.5, self.turn_turn);
-        let middle = matrix::add_scaled(angle, 0.5, turn);
-        let middle = matrix::add_scaled(middle, 0.5, turned);
-        let middle = matrix::add_scaled(middle, 0.25, self.turn_turn);
-        let after = matrix::add_scaled(angle, 1.0, turn);
-        let after = matrix::add_scaled(after, 1.0, turned);
-        let after = matrix::add_scaled(after, 1.0, self.turn_turn);
+        // Of θ + u/2 with itself, of θ + u with it, of θ + u with itself.
+        let middle = matrix::add_scaled(&angle, 0.5, &turn);
+        let middle = matrix::add_scaled(&middle, 0.5, &turned);
+        let middle = matrix::add_scaled(&middle, 0.25, &self.turn_turn);
+        let mixed = matrix::add_scaled(&middle, 0.5, &turn);
+        let mixed = matrix::add_scaled(&mixed, 0.25, &self.turn_turn);
+        let after = matrix::add_scaled(&mixed, 0.5, &turned);
+        let after = matrix::add_scaled(&after, 0.5, &self.turn_turn);
         let [by_east, by_north] = self.speed_by_angle;
         let k = self.kept;
         let speed = |row: Vector3, [le, ln]: [f32; 2], [ue, un]: [f32; 2]| {
@@ -151,9 +150,8 @@ impl Forecast {
     pub fn carry_cross(&self, covariance: &mut Covariance) {
         let [x, y, z, speed @ ..] = &mut covariance.cross;
         for (row, by_angle) in speed.iter_mut().zip(&self.speed_by_angle) {
-            for value in &mut *row {
-                *value *= self.kept;
-            }
+            let before = [*row];
+            rows::add_weighted(row, &[self.kept - 1.0], &before);
             rows::add_weighted(row, by_angle, &[*x, *y, *z]);
             rows::add_weighted(row, &vector::scale(*by_angle, 0.5), &self.turn_slow);
         }

@@ -33,8 +33,12 @@ const SPEED_NOISE: f32 = 0.2 * 0.2;
 /// … and less so where acceleration or speed are large, per (m/s²)² and (m/s)².
 const SPEED_NOISE_PER_ACCEL2: f32 = 0.25;
 const SPEED_NOISE_PER_SPEED2: f32 = 10.0;
-/// Cosine of 30°.
-const LEAST_UPRIGHT: f32 = 0.866;
+/// A wrong attitude must not explain itself by a speed that nothing has, (m/s)².
+const MAX_SPEED2: f32 = 4.0;
+/// Until the bias is known this well, (1 °/s)², nothing else is either.
+const UNKNOWN_BIAS: f32 = (1.0 * DEG) * (1.0 * DEG);
+/// Square of the cosine of 30°.
+const LEAST_UPRIGHT2: f32 = 0.75;
 /// A bias taken out elsewhere leaves this.
 const CALIBRATED_BIAS_VARIANCE: f32 = (0.1 * DEG) * (0.1 * DEG);
 /// Rate that the gyro may miss while it is at the end of its range.
@@ -136,7 +140,10 @@ impl AttitudeFilter {
             .rest
             .close(field.body_ut)
             .filter(|rate| self.may_be_bias(*rate));
-        if rest_rate.is_some() && self.righted_itself() {
+        if let Some(rate_rps) = rest_rate
+            && self.is_lost(rate_rps)
+        {
+            self.start_from_rest(rate_rps);
             return;
         }
         if let Some(turn_rad) = field.first_heading_rad {
@@ -154,22 +161,35 @@ impl AttitudeFilter {
         self.window = Window::new();
     }
 
-    /// Corrections are made for small errors. Standing still, but far from upright as believed: up is where the force
-    /// points.
-    fn righted_itself(&mut self) -> bool {
+    /// The filter corrects small errors. Too far off at rest, with an unknown bias or far from upright?
+    fn is_lost(&self, rest_rate_rps: Vector3) -> bool {
+        let beyond_rps = self.strapdown.gyro.corrected(rest_rate_rps);
+        let [x, y, z] = self.filter.covariance.bias_variances();
+        let force = self.window.accel_mps2();
+        let [.., up] = force;
+        x + y + z > UNKNOWN_BIAS
+            || vector::dot(beyond_rps, beyond_rps) > UNKNOWN_BIAS
+            || up * up.abs() < LEAST_UPRIGHT2 * vector::dot(force, force)
+    }
+
+    /// What went wrong so far is forgotten: rest tells bias and inclination, the field the heading.
+    #[cold]
+    #[inline(never)]
+    fn start_from_rest(&mut self, rate_rps: Vector3) {
+        let beyond_rps = self.strapdown.gyro.corrected(rate_rps);
+        let bias_rps = &mut self.strapdown.gyro.bias_rps;
+        *bias_rps = vector::add(*bias_rps, beyond_rps);
         let force = self.window.accel_mps2();
         let up = vector::scale(force, scalar::inverse_sqrt(vector::dot(force, force)));
-        let [.., cos] = up;
-        if cos > LEAST_UPRIGHT || force == [0.0; 3] {
-            return false;
-        }
         let righting = Quaternion::lifting(up);
         self.strapdown.attitude = righting.after(self.strapdown.attitude).normalised();
         self.strapdown.speed_mps = [0.0; 2];
         self.window = Window::new();
         self.filter.restart();
-        self.magnetic.restart();
-        true
+        self.filter
+            .covariance
+            .replace_bias(CALIBRATED_BIAS_VARIANCE);
+        self.magnetic = Magnetic::new();
     }
 
     fn may_be_bias(&self, rate_rps: Vector3) -> bool {
@@ -199,7 +219,7 @@ impl AttitudeFilter {
         } else {
             let [vx, vy] = self.strapdown.speed_mps;
             let moved = SPEED_NOISE_PER_ACCEL2 * vector::dot(felt, felt)
-                + SPEED_NOISE_PER_SPEED2 * (vx * vx + vy * vy);
+                + SPEED_NOISE_PER_SPEED2 * scalar::min(vx * vx + vy * vy, MAX_SPEED2);
             SPEED_NOISE * (1.0 + moved) / t
         };
         self.strapdown.speed_mps.map(|speed_mps| Finding {

@@ -45,6 +45,7 @@ struct Means {
 }
 
 impl RestDetector {
+    #[inline(never)]
     pub fn restart(&mut self) {
         *self = Self::default();
     }

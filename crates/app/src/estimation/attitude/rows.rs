@@ -1,6 +1,6 @@
-//! Sums over rows of twelve, compiled once and for any number of rows: unrolled at each use they would fill the flash.
+//! Sums over rows, compiled once and for any number of rows: unrolled at each use they would fill the flash.
 
-use super::window::Parameters;
+use super::{covariance::Fast, window::Parameters};
 
 /// `to += Σ weight · row`.
 #[inline(never)]
@@ -41,5 +41,13 @@ pub(super) fn products(row: &Parameters, rows: &[Parameters], results: &mut [f32
             sum += a * b;
         }
         *result = sum;
+    }
+}
+
+/// `to += factor · row`.
+#[inline(never)]
+pub(super) fn add_fast(to: &mut Fast, factor: f32, row: &Fast) {
+    for (to, value) in to.iter_mut().zip(row) {
+        *to += factor * value;
     }
 }

@@ -45,22 +45,8 @@ impl Window {
     }
 
     pub fn add_turn(&mut self, carried: &Carried, gyro_rps: Vector3, rate_rps: Vector3, dt_s: f32) {
-        let [gx, gy, gz] = gyro_rps;
         for (row, [rx, ry, rz]) in self.turn_by_parameter.iter_mut().zip(carried.middle) {
-            let [bx, by, bz, xx, xy, xz, yx, yy, yz, zx, zy, zz] = row;
-            let (rx, ry, rz) = (rx * dt_s, ry * dt_s, rz * dt_s);
-            *bx -= rx;
-            *by -= ry;
-            *bz -= rz;
-            *xx -= rx * gx;
-            *xy -= rx * gy;
-            *xz -= rx * gz;
-            *yx -= ry * gx;
-            *yy -= ry * gy;
-            *yz -= ry * gz;
-            *zx -= rz * gx;
-            *zy -= rz * gy;
-            *zz -= rz * gz;
+            add_row(row, [rx * dt_s, ry * dt_s, rz * dt_s], gyro_rps);
         }
         self.samples = self.samples.saturating_add(1);
         self.duration_s += dt_s;
@@ -78,4 +64,21 @@ impl Window {
         let count = if self.accels == 0 { 1 } else { self.accels };
         vector::scale(self.accel_sum_mps2, 1.0 / f32::from(count))
     }
+}
+
+#[inline(never)]
+fn add_row(row: &mut Parameters, [rx, ry, rz]: Vector3, [gx, gy, gz]: Vector3) {
+    let [bx, by, bz, xx, xy, xz, yx, yy, yz, zx, zy, zz] = row;
+    *bx -= rx;
+    *by -= ry;
+    *bz -= rz;
+    *xx -= rx * gx;
+    *xy -= rx * gy;
+    *xz -= rx * gz;
+    *yx -= ry * gx;
+    *yy -= ry * gy;
+    *yz -= ry * gz;
+    *zx -= rz * gx;
+    *zy -= rz * gy;
+    *zz -= rz * gz;
 }

@@ -4,7 +4,7 @@
 //! attitude is carried along. Five states: the carried field and those two; a Kalman filter learns them, heading and
 //! inclination are not touched by it.
 
-use crate::math::{Vector3, scalar, vector};
+use crate::math::{Vector3, vector};
 
 const STATES: usize = 5;
 type Row = [f32; STATES];
@@ -19,7 +19,7 @@ const WANDER_UT2_PER_S: f32 = 0.3 * 0.3;
 /// A calibrated magnetometer is this good; only what is more is a magnet.
 const MIN_CARRIED_UT: f32 = 4.0;
 const UNSURE: f32 = 4.0;
-const MAX_INNOVATION: f32 = 3.0;
+const MAX_INNOVATION2: f32 = 9.0;
 
 #[derive(Clone, Debug)]
 pub(super) struct CarriedMagnet {
@@ -87,24 +87,41 @@ impl CarriedMagnet {
         self.learn([x, y, z, 0.0, 1.0], residual, noise);
     }
 
+    #[inline(never)]
     fn learn(&mut self, direction: Row, residual: f32, noise: f32) {
-        let product = |row: &Row| row.iter().zip(direction).map(|(a, b)| a * b).sum::<f32>();
         let mut spread = [0.0; STATES];
         for (to, row) in spread.iter_mut().zip(&self.covariance) {
-            *to = product(row);
+            *to = product(row, &direction);
         }
-        let variance = product(&spread) + noise;
+        let variance = product(&spread, &direction) + noise;
+        // A magnet that is passed is not carried.
+        if residual * residual > MAX_INNOVATION2 * variance {
+            return;
+        }
         let inverse = 1.0 / variance;
-        let limit = MAX_INNOVATION * scalar::sqrt(variance);
-        let gain = scalar::clamp(residual, -limit, limit) * inverse;
+        let gain = residual * inverse;
         let [x, y, z, level, up] = spread;
         self.carried_ut = vector::add(self.carried_ut, vector::scale([x, y, z], gain));
         self.level_ut += level * gain;
         self.up_ut += up * gain;
         for (row, weight) in self.covariance.iter_mut().zip(spread) {
-            for (value, other) in row.iter_mut().zip(spread) {
-                *value -= weight * inverse * other;
-            }
+            add_product(row, -weight * inverse, &spread);
         }
+    }
+}
+
+#[inline(never)]
+fn product(a: &Row, b: &Row) -> f32 {
+    let mut sum = 0.0;
+    for (a, b) in a.iter().zip(b) {
+        sum += a * b;
+    }
+    sum
+}
+
+#[inline(never)]
+fn add_product(to: &mut Row, factor: f32, row: &Row) {
+    for (to, value) in to.iter_mut().zip(row) {
+        *to += factor * value;
     }
 }

@@ -8,7 +8,7 @@ const MAX_DIP_ERROR_RAD: f32 = 10.0_f32.to_radians();
 const REFERENCE_S: f32 = 20.0;
 const MIN_UNDISTURBED_S: f32 = 0.5;
 /// A new steady field is believed after this time in motion; the first one sooner.
-const ADOPT_S: f32 = 20.0;
+const ADOPT_S: f32 = 60.0;
 const ADOPT_FIRST_S: f32 = 5.0;
 const MIN_MOTION_RPS: f32 = 20.0_f32.to_radians();
 

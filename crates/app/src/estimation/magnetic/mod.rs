@@ -109,14 +109,17 @@ impl Magnetic {
         let field_enu = vector::scale(sums.field_enu_ut, share);
         let [x, y, up_ut] = field_enu;
         let level2 = x * x + y * y;
-        if level2 < MIN_LEVEL_UT * MIN_LEVEL_UT || known.tilt > MAX_TILT && self.aligned {
+        if level2 < MIN_LEVEL_UT * MIN_LEVEL_UT {
             return report;
         }
         // North is where the level part points: from +y by −atan2(x, y).
         let error_rad = scalar::atan2(x, y);
         if !self.aligned {
-            self.aligned = true;
+            self.aligned = known.tilt < MAX_TILT;
             report.first_heading_rad = Some(error_rad);
+            return report;
+        }
+        if known.tilt > MAX_TILT {
             return report;
         }
         let level_ut = scalar::sqrt(level2);
