@@ -30,7 +30,13 @@ impl Quaternion {
         let w = 1.0 - s / 2.0 * (1.0 - s / 12.0 * (1.0 - s / 30.0));
         let sinc = 1.0 - s / 6.0 * (1.0 - s / 20.0 * (1.0 - s / 42.0));
         let [x, y, z] = vector::scale(half, sinc);
-        Self { w, x, y, z }
+        let rotation = Self { w, x, y, z };
+        // Beyond 1 rad the series shows in the length.
+        if s > 0.25 {
+            rotation.normalised()
+        } else {
+            rotation
+        }
     }
 
     /// The shortest rotation that turns the unit vector `v` to +z.

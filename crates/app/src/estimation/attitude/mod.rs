@@ -34,7 +34,7 @@ const SPEED_NOISE: f32 = 0.2 * 0.2;
 const SPEED_NOISE_PER_ACCEL2: f32 = 0.25;
 const SPEED_NOISE_PER_SPEED2: f32 = 10.0;
 /// A wrong attitude must not explain itself by a speed that nothing has, (m/s)².
-const MAX_SPEED2: f32 = 4.0;
+const MAX_SPEED2: f32 = 1.0;
 /// Until the bias is known this well, (1 °/s)², nothing else is either.
 const UNKNOWN_BIAS: f32 = (1.0 * DEG) * (1.0 * DEG);
 /// Square of the cosine of 30°.
@@ -147,10 +147,7 @@ impl AttitudeFilter {
             return;
         }
         if let Some(turn_rad) = field.first_heading_rad {
-            // In two steps: it may be half a turn.
-            self.strapdown.tilt([0.0, 0.0, 0.5 * turn_rad]);
-            self.strapdown.tilt([0.0, 0.0, 0.5 * turn_rad]);
-            self.magnetic.forget_world();
+            self.turn_to_north(turn_rad);
         }
         let findings = Findings {
             speed: self.speed_findings(rest_rate.is_some()),
@@ -230,9 +227,20 @@ impl AttitudeFilter {
 
     /// `ahead_s`: when the field was measured, after the last IMU sample; negative: before.
     pub fn feed_mag(&mut self, mag_ut: Vector3, ahead_s: f32) {
-        if self.aligned {
-            self.magnetic.feed(mag_ut, &self.strapdown, ahead_s);
+        if self.aligned
+            && let Some(turn_rad) = self.magnetic.feed(mag_ut, &self.strapdown, ahead_s)
+        {
+            self.turn_to_north(turn_rad);
         }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn turn_to_north(&mut self, turn_rad: f32) {
+        // In two steps: it may be half a turn.
+        self.strapdown.tilt([0.0, 0.0, 0.5 * turn_rad]);
+        self.strapdown.tilt([0.0, 0.0, 0.5 * turn_rad]);
+        self.magnetic.forget_world();
     }
 
     /// Body → ENU, carried `ahead_s` past the last sample with its rate.

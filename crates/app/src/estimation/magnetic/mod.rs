@@ -32,6 +32,8 @@ pub(super) struct Magnetic {
     magnet: CarriedMagnet,
     monitor: FieldMonitor,
     sums: Sums,
+    /// North is known, roughly (from one sample) or well.
+    seen: bool,
     aligned: bool,
     believed_s: f32,
     rejected_s: f32,
@@ -73,18 +75,24 @@ impl Magnetic {
             magnet: CarriedMagnet::new(),
             monitor: FieldMonitor::new(),
             sums: Sums::default(),
+            seen: false,
             aligned: false,
             believed_s: 0.0,
             rejected_s: 0.0,
         }
     }
 
-    /// `ahead_s`: when it was measured, after the last IMU sample.
-    pub fn feed(&mut self, mag_ut: Vector3, strapdown: &Strapdown, ahead_s: f32) {
+    /// `ahead_s`: when it was measured, after the last IMU sample. The turn to north, of the very first sample.
+    pub fn feed(&mut self, mag_ut: Vector3, strapdown: &Strapdown, ahead_s: f32) -> Option<f32> {
         let field_ut = vector::sub(mag_ut, self.magnet.field_ut());
         let attitude = strapdown.attitude_at(ahead_s - self.delay.seconds());
         let rows = attitude.rotation_matrix();
         let field_enu = rows.map(|row| vector::dot(row, field_ut));
+        if !self.seen {
+            self.seen = true;
+            let [x, y, _] = field_enu;
+            return Some(scalar::atan2(x, y));
+        }
         let rate_enu = rows.map(|row| vector::dot(row, strapdown.rate_rps));
         self.delay.learn(field_enu, rate_enu);
         let sums = &mut self.sums;
@@ -95,6 +103,7 @@ impl Magnetic {
         }
         sums.rate_rps = vector::norm(strapdown.rate_rps);
         sums.count = sums.count.saturating_add(1);
+        None
     }
 
     /// Ends a window that lasted `window_s`.
