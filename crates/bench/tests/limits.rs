@@ -1,9 +1,6 @@
 //! The estimator keeps its limits, on a motion that needs no recording: rest, slow and fast turning, a magnet.
 
-use std::{
-    env,
-    path::{Path, PathBuf},
-};
+mod programs;
 
 use object::{Object, ObjectSymbol};
 use robot_bench::{
@@ -14,22 +11,9 @@ use robot_bench::{
     report::{ESTIMATOR_FLASH_BYTES, EXTRAPOLATION_MEAN, UPDATE_MAX, UPDATE_MEAN},
 };
 
-/// `ROBOT_FILTERS`, or where `cargo xtask` builds them.
-fn programs() -> PathBuf {
-    let built = "../../target/estimator-bench/thumbv7em-none-eabihf/release";
-    let usual = || Path::new(env!("CARGO_MANIFEST_DIR")).join(built);
-    let folder = env::var_os("ROBOT_FILTERS").map_or_else(usual, PathBuf::from);
-    assert!(
-        folder.is_dir(),
-        "there are no filters at {}: run `cargo xtask test`, which builds them, or set ROBOT_FILTERS",
-        folder.display()
-    );
-    folder
-}
-
 fn costs(wheels: Wheels) -> Costs {
     let motion = Motion::computed(wheels);
-    let run = measure::run(OURS, &programs(), &motion, Detail::Totals, || ());
+    let run = measure::run(OURS, &programs::folder(), &motion, Detail::Totals, || ());
     run.expect("the estimator runs").costs
 }
 
@@ -59,7 +43,7 @@ fn an_update_and_a_tick_between_take_few_instructions() {
 #[test]
 fn the_estimator_is_small() {
     let flash = |filter: robot_bench::filters::Filter| {
-        let program = Program::boot(&filter.elf(&programs())).expect("the program boots");
+        let program = Program::boot(&filter.elf(&programs::folder())).expect("the program boots");
         program.flash_bytes as f64
     };
     let own = flash(OURS) - flash(EMPTY);
@@ -69,7 +53,7 @@ fn the_estimator_is_small() {
 /// Names of the ARM run-time ABI (`__aeabi_dadd` …) and of compiler-rt (`__adddf3`, `__extendsfdf2` …).
 #[test]
 fn the_estimator_computes_nothing_in_double_precision() {
-    let elf = std::fs::read(OURS.elf(&programs())).expect("the program is there");
+    let elf = std::fs::read(OURS.elf(&programs::folder())).expect("the program is there");
     let file = object::File::parse(&*elf).expect("it is an ELF file");
     let names: Vec<_> = file
         .symbols()
