@@ -162,7 +162,7 @@ impl InsEstimator {
             self.motion.feed(&sample, ahead_s, &pose, motor);
         }
         if imu_age_us > MAX_IMU_AGE_US {
-            self.motion.roll_on(orientation, motor, dt_s);
+            self.motion.fade(dt_s);
         }
         estimate.q_wxyz = orientation.to_wxyz();
         estimate.rpy_rad = orientation.roll_pitch_yaw();

@@ -11,7 +11,8 @@ const MIN_UPRIGHT: f32 = 0.5;
 pub(super) struct Axes {
     /// Body → world.
     rotation: [Vector3; 3],
-    forward: Vector3,
+    /// The body's x axis laid flat, east and north.
+    forward: [f32; 2],
     yaw_rps: f32,
     pitch_rps: f32,
 }
@@ -25,15 +26,10 @@ impl Axes {
         let inverse = scalar::inverse_sqrt(x * x + y * y);
         Self {
             rotation,
-            forward: [x * inverse, y * inverse, 0.0],
+            forward: [x * inverse, y * inverse],
             yaw_rps: vector::dot(up_in_body, pose.rate_rps),
             pitch_rps,
         }
-    }
-
-    /// The body's x axis laid flat, in the world frame.
-    pub const fn forward(&self) -> Vector3 {
-        self.forward
     }
 
     /// Rate about the vertical.
@@ -63,13 +59,13 @@ impl Axes {
 
     /// World → forward, left, up.
     pub fn flat(&self, [x, y, z]: Vector3) -> Vector3 {
-        let [fx, fy, _] = self.forward;
+        let [fx, fy] = self.forward;
         [fx * x + fy * y, fx * y - fy * x, z]
     }
 
     /// Forward, left, up → world.
     pub fn flat_to_world(&self, [forward, left, up]: Vector3) -> Vector3 {
-        let [fx, fy, _] = self.forward;
+        let [fx, fy] = self.forward;
         [fx * forward - fy * left, fy * forward + fx * left, up]
     }
 

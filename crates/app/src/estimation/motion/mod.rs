@@ -160,21 +160,11 @@ impl MotionEstimator {
         }
     }
 
-    /// `dt_s` more without a sample, the IMU is silent: only the wheels are left.
+    /// `dt_s` more without a sample: the IMU is silent, and the velocity fades.
     #[cold]
-    #[inline(never)]
-    pub fn roll_on(&mut self, orientation: Quaternion, motor: &MotorFeedback, dt_s: f32) {
+    pub fn fade(&mut self, dt_s: f32) {
         self.restart();
-        let axes = Axes::new(&BodyPose {
-            orientation,
-            rate_rps: [0.0; 3],
-        });
-        let speeds = self.wheels.forward_speeds(motor, &axes);
-        match wheel_speed::mean(speeds) {
-            Some(speed_mps) => self.filter.roll(vector::scale(axes.forward(), speed_mps)),
-            None => self.filter.leak(dt_s / LEAK_S),
-        }
-        self.filter.stay_plausible();
+        self.filter.leak(dt_s / LEAK_S);
         let step_m = vector::scale(self.filter.velocity_after(0.0), dt_s);
         self.position.add(step_m);
     }

@@ -23,6 +23,8 @@ const GRAVITY_MPS2: f32 = 9.806_65;
 pub(super) const MAX_SPEED_MPS: f32 = 20.0;
 /// Zero-g offset of the BMI088 over life (datasheet: ±20 mg, board mounting adds to it), and what the horizon may be off.
 const MAX_BIAS_MPS2: f32 = 0.6;
+/// Offset kept of one that is larger.
+const BACK_TO_LIMIT: f32 = 0.99;
 /// More than this at once is taken for this much: it is no noise the gains were made for.
 const MAX_INNOVATION_MPS: f32 = 0.5;
 /// A sample for longer than this corrects no more than one for this long.
@@ -137,16 +139,11 @@ impl VelocityFilter {
         self.velocity_mps = vector::add(self.velocity_mps, by_mps);
     }
 
-    /// Without acceleration until the next sample.
-    pub fn roll(&mut self, velocity_mps: Vector3) {
-        self.velocity_mps = velocity_mps;
-        self.accel_mps2 = [0.0; 3];
-    }
-
-    /// Gives up `share` of the velocity.
+    /// Gives up `share` of the velocity, and the acceleration.
     pub fn leak(&mut self, share: f32) {
         let kept = scalar::max(1.0 - share, 0.0);
-        self.roll(vector::scale(self.velocity_mps, kept));
+        self.velocity_mps = vector::scale(self.velocity_mps, kept);
+        self.accel_mps2 = [0.0; 3];
     }
 
     /// The body stands: what accelerates it is nothing but offset.
@@ -156,20 +153,17 @@ impl VelocityFilter {
         self.accel_bias_mps2 = vector::add(self.accel_bias_mps2, vector::scale(free_mps2, share));
     }
 
-    /// Only what a robot can have is carried on.
+    /// Starts over with a speed that no robot has; keeps the offset within its limit.
     pub fn stay_plausible(&mut self) {
         let speed = vector::dot(self.velocity_mps, self.velocity_mps);
         let bias = vector::dot(self.accel_bias_mps2, self.accel_bias_mps2);
-        if speed > MAX_SPEED_MPS * MAX_SPEED_MPS || bias > MAX_BIAS_MPS2 * MAX_BIAS_MPS2 {
-            self.limit();
+        if bias > MAX_BIAS_MPS2 * MAX_BIAS_MPS2 {
+            self.accel_bias_mps2 = vector::scale(self.accel_bias_mps2, BACK_TO_LIMIT);
         }
-    }
-
-    #[cold]
-    fn limit(&mut self) {
-        let into = |v: Vector3, limit: f32| v.map(|x| scalar::clamp(x, -limit, limit));
-        self.velocity_mps = into(self.velocity_mps, MAX_SPEED_MPS);
-        self.accel_bias_mps2 = into(self.accel_bias_mps2, MAX_BIAS_MPS2);
+        let possible = speed <= MAX_SPEED_MPS * MAX_SPEED_MPS;
+        if !possible {
+            *self = Self::new();
+        }
     }
 
     /// World frame, `ahead_s` after the last sample.
