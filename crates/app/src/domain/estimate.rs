@@ -13,7 +13,7 @@ pub struct StateEstimate {
     pub vel_mps: [f32; 3],
     /// World frame, from where the robot booted: `vel_mps` added up.
     pub pos_m: [f32; 3],
-    /// Offset found beyond the one already taken out of the IMU samples, ±2 °/s at most.
+    /// Offset found beyond the one already taken out of the IMU samples.
     pub gyro_bias_rps: [f32; 3],
     /// Body frame, ±0.6 at most: what the accelerometer shows beyond gravity and motion, part of it a horizon that is
     /// slightly off.
@@ -22,8 +22,9 @@ pub struct StateEstimate {
     pub ts_us: u64,
     /// True if the attitude can be trusted: the last IMU sample is at most 25 ms old, and 100 samples in a row (0.5 s)
     /// were used since boot, since a gap of more than 100 ms between samples, since a sample that no sensor can measure
-    /// (NaN, infinite, out of range) and since the ticks' time last ran backwards, stood still or jumped by more than
-    /// 20 ms. While false the other fields hold what is left of the last good ones. Says nothing about heading (the
+    /// (NaN, infinite, out of range), since the ticks' time last ran backwards, stood still or jumped by more than 20 ms,
+    /// and since a rest showed the attitude to be wrong (offset by more than 1 °/s, up by more than 30°), upon which it
+    /// jumps. While false the other fields hold what is left of the last good ones. Says nothing about heading (the
     /// magnetometer may be missing) or wheels.
     pub valid: bool,
 }

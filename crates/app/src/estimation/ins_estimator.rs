@@ -122,9 +122,14 @@ impl InsEstimator {
         };
         // Without what the known motion adds, the force points up.
         let standing_mps2 = vector::sub(imu.accel_mps2, self.motion.kinematic_mps2());
-        self.attitude
+        let kept = self
+            .attitude
             .feed_imu(gyro_rps, standing_mps2, clipped, dt_s);
-        self.settled_samples = self.settled_samples.saturating_add(1);
+        self.settled_samples = if kept {
+            self.settled_samples.saturating_add(1)
+        } else {
+            0
+        };
         // What was cut off no longer averages out: the speed would never come back.
         let accel_mps2 = (!imu.saturated).then_some(imu.accel_mps2);
         Some(AccelSample { accel_mps2, dt_s })

@@ -75,14 +75,16 @@ impl AttitudeFilter {
         }
     }
 
-    /// One IMU sample of the `dt_s` before now. `accel_mps2`: without what the known motion adds.
+    /// One IMU sample of the `dt_s` before now. `accel_mps2`: without what the known motion adds. False if it showed that
+    /// the attitude so far was wrong: it has jumped.
+    #[must_use]
     pub fn feed_imu(
         &mut self,
         gyro_rps: Vector3,
         accel_mps2: Vector3,
         clipped: Clipped,
         dt_s: f32,
-    ) {
+    ) -> bool {
         if !self.aligned {
             self.align(accel_mps2);
         }
@@ -101,7 +103,9 @@ impl AttitudeFilter {
         }
         self.apply_correction();
         if self.window.is_full() {
-            self.close_window();
+            self.close_window()
+        } else {
+            true
         }
     }
 
@@ -127,7 +131,7 @@ impl AttitudeFilter {
         self.magnetic.tilt(angle_rad);
     }
 
-    fn close_window(&mut self) {
+    fn close_window(&mut self) -> bool {
         if self.clipped_s > 0.0 {
             let angle_rad = CLIPPED_RATE_RPS * self.clipped_s;
             self.window.unseen_rad2 += angle_rad * angle_rad;
@@ -140,11 +144,12 @@ impl AttitudeFilter {
             .rest
             .close(field.body_ut)
             .filter(|rate| self.may_be_bias(*rate));
-        if let Some(rate_rps) = rest_rate
-            && self.is_lost(rate_rps)
-        {
-            self.start_from_rest(rate_rps);
-            return;
+        if let Some(rate_rps) = rest_rate {
+            let lost = self.is_lost(rate_rps);
+            if lost || self.bias_is_unknown() {
+                self.start_from_rest(rate_rps);
+                return !lost;
+            }
         }
         if let Some(turn_rad) = field.first_heading_rad {
             self.turn_to_north(turn_rad);
@@ -156,16 +161,20 @@ impl AttitudeFilter {
         };
         self.filter.begin(&self.window, findings);
         self.window = Window::new();
+        true
     }
 
-    /// The filter corrects small errors. Too far off at rest, with an unknown bias or far from upright?
+    fn bias_is_unknown(&self) -> bool {
+        let [x, y, z] = self.filter.covariance.bias_variances();
+        x + y + z > UNKNOWN_BIAS
+    }
+
+    /// The filter corrects small errors. Is it far off at rest: in its bias, or from upright?
     fn is_lost(&self, rest_rate_rps: Vector3) -> bool {
         let beyond_rps = self.strapdown.gyro.corrected(rest_rate_rps);
-        let [x, y, z] = self.filter.covariance.bias_variances();
         let force = self.window.accel_mps2();
         let [.., up] = force;
-        x + y + z > UNKNOWN_BIAS
-            || vector::dot(beyond_rps, beyond_rps) > UNKNOWN_BIAS
+        vector::dot(beyond_rps, beyond_rps) > UNKNOWN_BIAS
             || up * up.abs() < LEAST_UPRIGHT2 * vector::dot(force, force)
     }
 
