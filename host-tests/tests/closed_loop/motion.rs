@@ -89,6 +89,27 @@ fn velocity_and_position_follow_a_wild_drive() {
     assert!(z_m.abs() < 0.1, "{z_m} m high");
 }
 
+/// Two minutes of weaving at 1 m/s, ±2.4 rad/s: what the position is off by is the heading's share, 2° of 120 m.
+#[test]
+fn two_minutes_of_weaving_drift_by_the_heading_alone() {
+    let mut robot = armed(PlantKind::Rolling);
+    for second in 0..120 {
+        let wz = if second % 2 == 0 { 0.6 } else { -0.6 };
+        robot.remote(sticks(0.7, wz));
+        let worst = run_and_compare(&mut robot, f64::from(4 + second));
+        assert!(
+            worst.forward_mps < 0.12 && worst.left_mps < 0.25 && worst.inclination_deg < 1.3,
+            "at {second} s: {worst:?}"
+        );
+    }
+    let off_m = position_error_m(&robot);
+    let way_m = robot.signal("truth.body.path_m");
+    assert!(
+        way_m > 100.0 && off_m < 0.04 * way_m,
+        "{off_m} m of {way_m} m"
+    );
+}
+
 #[test]
 fn a_robot_at_rest_goes_nowhere() {
     let mut robot = driving(PlantKind::Rolling, RadioKind::Sbus);

@@ -112,8 +112,7 @@ impl VelocityFilter {
         dt_s: f32,
         learning: bool,
     ) -> Vector3 {
-        let [forward, left, up] =
-            innovation_mps.map(|mps| scalar::clamp(mps, -MAX_INNOVATION_MPS, MAX_INNOVATION_MPS));
+        let [forward, left, up] = plausible(innovation_mps);
         let dt_s = scalar::min(dt_s, MAX_CORRECTION_S);
         let lever_mps2 = LEVER_M * axes.yaw_rps() * axes.yaw_rps();
         let lever = scalar::min(lever_mps2 / LEVER_MPS, MAX_LEVER_GAIN);
@@ -175,4 +174,14 @@ impl VelocityFilter {
     pub const fn accel_bias_mps2(&self) -> Vector3 {
         self.accel_bias_mps2
     }
+}
+
+/// No longer than an innovation may be.
+fn plausible(innovation_mps: Vector3) -> Vector3 {
+    let squared = vector::dot(innovation_mps, innovation_mps);
+    if squared <= MAX_INNOVATION_MPS * MAX_INNOVATION_MPS {
+        return innovation_mps;
+    }
+    let inverse = scalar::inverse_sqrt(squared);
+    vector::scale(innovation_mps, MAX_INNOVATION_MPS * inverse)
 }
