@@ -135,7 +135,6 @@ fn truth() -> Rotation {
 }
 
 #[test]
-#[ignore = "further than the filter gets so far"]
 fn any_garbage_leaves_a_sound_state() {
     for seed in 0..200 {
         let mut noise = Noise::new(seed);

@@ -30,7 +30,6 @@ fn driven() -> Motion {
 /// The field's strength or dip shows at once that it is not the earth's; meanwhile the gyro holds: its offset, known to
 /// 0.05 °/s, makes 1.5° in half a minute.
 #[test]
-#[ignore = "further than the filter gets so far"]
 fn a_magnet_that_comes_and_goes_turns_nothing() {
     let mut figures = Figures::default();
     for (name, magnet_ut) in MAGNETS_UT {
@@ -62,7 +61,6 @@ fn a_magnet_that_comes_and_goes_turns_nothing() {
 
 /// Five times in a row, each for 8 s with 8 s between: errors must not add up.
 #[test]
-#[ignore = "further than the filter gets so far"]
 fn a_magnet_passed_again_and_again_turns_nothing() {
     let mut figures = Figures::default();
     let motion = driven().with_magnet(|t| {
@@ -82,7 +80,6 @@ fn a_magnet_passed_again_and_again_turns_nothing() {
 
 /// Another building: the field stays different for good. North is then where it points, 20° from before.
 #[test]
-#[ignore = "further than the filter gets so far"]
 fn the_field_of_a_new_place_is_adopted_within_three_minutes() {
     let mut figures = Figures::default();
     let east_ut = 19.146 * 20.0_f64.to_radians().tan();

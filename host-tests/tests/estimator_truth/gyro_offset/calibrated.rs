@@ -7,7 +7,6 @@ const CALIBRATED_S: f64 = 15.0;
 
 /// What was found before no longer counts; nothing turns when the samples change by 5.4 °/s.
 #[test]
-#[ignore = "further than the filter gets so far"]
 fn an_offset_taken_out_elsewhere_is_no_turn() {
     let mut figures = Figures::default();
     for sensors in [Sensors::real(), Sensors::real().without_mag()] {
