@@ -8,7 +8,7 @@ use robot_app::{
 use crate::{
     error::{AttitudeError, Worst},
     motion::Motion,
-    rotation::Rotation,
+    rotation::{Rotation, Vector},
     sensors::Sensors,
     world::World,
 };
@@ -130,6 +130,11 @@ impl Run {
 
     pub fn attitude(&self) -> Rotation {
         Rotation::from_wxyz(self.estimate.q_wxyz.map(f64::from)).unit()
+    }
+
+    /// As believed, body frame.
+    pub fn up(&self) -> Vector {
+        self.attitude().inverse().turn([0.0, 0.0, 1.0])
     }
 
     /// Length of the difference between the offset found and the true one.

@@ -3,7 +3,7 @@
 use crate::{
     figures::Figures,
     motion::{Motion, carried_rate_dps, window},
-    rotation::Vector,
+    rotation::{Vector, dot},
     run::Run,
     sensors::{Sensors, Timing},
 };
@@ -172,4 +172,45 @@ fn a_repeated_stamp_is_no_new_sample() {
         assert_eq!(once.estimate.q_wxyz, again.estimate.q_wxyz);
         assert_eq!(once.estimate.gyro_bias_rps, again.estimate.gyro_bias_rps);
     }
+}
+
+/// Turned over within three seconds that the IMU slept through. Rest then shows where up is, the field where north is;
+/// while up jumps the attitude is not to be trusted.
+#[test]
+fn turned_over_while_silent() {
+    let mut figures = Figures::default();
+    for axis in 0..3 {
+        let motion = Motion::at_rest().turning(move |t| {
+            let mut rate: Vector = [0.0; 3];
+            // Area of the trapezium: 170°.
+            rate[axis] = 85.0 * window(t, 10.5, 12.75, 0.25);
+            rate
+        });
+        let sensors = Sensors::real().losing(|number| (2_060..2_580).contains(&number));
+        let mut run = Run::new(motion, sensors);
+        run.skip(13.0);
+        while run.time_s() < 30.0 {
+            let before = run.up();
+            run.step();
+            let jump_deg = dot(before, run.up()).min(1.0).acos().to_degrees();
+            assert!(
+                jump_deg < 5.0 || !run.estimate.valid,
+                "up jumps by {jump_deg}° and counts"
+            );
+        }
+        let name = format!("turned over about axis {axis} while silent");
+        let worst = run.worst(60.0);
+        figures.at_most(
+            &format!("{name}, inclination after 17 s in °"),
+            worst.inclination_deg,
+            0.5,
+        );
+        figures.at_most(
+            &format!("{name}, heading after 17 s in °"),
+            worst.heading_deg,
+            2.0,
+        );
+        assert!(run.estimate.valid);
+    }
+    figures.done();
 }

@@ -168,6 +168,25 @@ fn ticks_that_run_back_stand_or_jump_start_anew() {
     assert!(robot.sample_after(MAX_TICK_US), "20 ms are allowed");
 }
 
+/// An offset of more than 1 °/s, or up more than 30° from where it was believed: the attitude jumps.
+#[test]
+fn a_rest_that_proves_it_wrong_starts_anew() {
+    let proofs: [fn(&mut ImuState); 3] = [
+        |imu| imu.gyro_dps = [0.0, 1.2, 0.0],
+        |imu| imu.accel_mps2 = [0.0, 5.4, 8.2],
+        |imu| imu.accel_mps2 = [0.0, 0.0, -9.8],
+    ];
+    for proof in proofs {
+        let mut robot = Robot::settled();
+        proof(&mut robot.imu);
+        let fell = (0..1_000).any(|_| !robot.sample_after(SAMPLE_US));
+        assert!(fell, "{:?} taken for motion", robot.imu);
+        assert_anew(&mut robot);
+        // Once proved it stands.
+        assert!((0..2_000).all(|_| robot.sample_after(SAMPLE_US)));
+    }
+}
+
 /// What the others hold while it is false: the attitude of the last good samples.
 #[test]
 fn while_false_the_attitude_stays() {

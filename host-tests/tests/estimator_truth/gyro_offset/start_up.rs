@@ -148,6 +148,25 @@ fn in_motion_without_magnetometer_the_offset_is_found_within_a_minute() {
     figures.done();
 }
 
+/// Set down while it still turns: what lasts for little more than a second is no rest yet.
+#[test]
+fn a_short_slow_turn_at_the_start_is_a_turn() {
+    let mut figures = Figures::default();
+    for speed_dps in [4.0, -8.0] {
+        let motion =
+            Motion::at_rest().turning(move |t| [0.0, 0.0, speed_dps * window(t, -1.0, 1.2, 0.1)]);
+        let mut run = Run::new(motion, Sensors::real().without_mag());
+        run.skip(0.01);
+        let worst = run.worst(20.0);
+        figures.at_most(
+            &format!("6d turned at {speed_dps} °/s for 1.2 s, drift in °"),
+            worst.heading_drift_deg,
+            0.5,
+        );
+    }
+    figures.done();
+}
+
 /// No offset, and none made up: what is carried about for three minutes keeps an offset near zero, once the first ten
 /// seconds have shown that there is none.
 #[test]
