@@ -92,14 +92,13 @@ fn extras(report: &Report) -> Vec<(&'static str, String)> {
         extras.push(("flash", format!("{erases} erases, {words} words")));
     }
     if let Some(error) = &summary.attitude_error {
-        extras.push((
-            "inclination error, RMSE",
-            format!("{:.2}°", error.inclination_rmse_deg),
-        ));
-        extras.push((
-            "heading error, RMSE",
-            format!("{:.2}°", error.heading_rmse_deg),
-        ));
+        for (label, rmse_deg) in [
+            ("attitude error, RMSE", error.total_rmse_deg),
+            ("heading error, RMSE", error.heading_rmse_deg),
+            ("inclination error, RMSE", error.inclination_rmse_deg),
+        ] {
+            extras.push((label, format!("{rmse_deg:.2}°")));
+        }
     }
     extras
 }

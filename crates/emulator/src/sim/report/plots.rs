@@ -1,5 +1,7 @@
 //! Which plots a report shows.
 
+use std::ops::Range;
+
 use plotters::style::RGBColor;
 use robot_chart::{
     BLUE, ChartError, Curve, Figure, GREEN, GREY, ORANGE, PURPLE, TimePlot, draw_histogram,
@@ -10,12 +12,25 @@ use robot_plant::time;
 use super::{
     Report, attitude,
     lanes::{self, Lane},
+    shape::{distinct, rises, spans},
 };
 
 use crate::machine::diagnostics::meaning::Meaning;
 
+/// 1 in the movement phase of a recording; there only while one plays.
+const SCORED_PHASE: &str = "truth.trial.mov";
+
 /// Width of a bin of the release jitter histogram (`Stats::jitter_bins`).
 const JITTER_BIN_US: f64 = 0.5;
+
+/// Without these nothing moves.
+const DRIVING: [&str; 5] = [
+    "radio.vx",
+    "radio.wz",
+    "radio.enable",
+    "can.m3508.0.current_ma",
+    "can.m3508.1.current_ma",
+];
 
 const JOINTS: [(usize, &str, RGBColor); 4] = [
     (0, "left front", BLUE),
@@ -31,31 +46,65 @@ pub fn all(report: &Report) -> Result<Vec<Figure>, ChartError> {
         .iter()
         .map(|a| time::to_seconds(a.at))
         .collect();
-    let plots = Plots { report, marks };
-    let figures = [
-        plots.sticks()?,
-        plots.wheels()?,
-        plots.currents()?,
-        plots.joint_angles()?,
-        plots.joint_torques()?,
-        plots.path()?,
-        plots.timeline()?,
-        plots.attitude()?,
-        plots.attitude_error()?,
-        plots.can_load()?,
-        plots.jitter()?,
-    ];
+    let mut plots = Plots {
+        report,
+        marks,
+        scored: Vec::new(),
+    };
+    let figures = match report.traces.signal(SCORED_PHASE) {
+        Some(scored) => {
+            plots.scored = spans(&plots.points(scored));
+            plots.replayed()?
+        }
+        None => plots.driven()?,
+    };
     Ok(figures.into_iter().flatten().collect())
 }
 
 struct Plots<'a> {
     report: &'a Report<'a>,
     marks: Vec<f64>,
+    /// When a recording was in the phase that counts.
+    scored: Vec<Range<f64>>,
 }
 
 type MaybeFigure = Result<Option<Figure>, ChartError>;
 
 impl Plots<'_> {
+    fn driven(&self) -> Result<Vec<Option<Figure>>, ChartError> {
+        let mut figures = self.drive()?;
+        figures.extend([self.timeline()?, self.attitude()?, self.attitude_error()?]);
+        figures.extend([self.can_load()?, self.jitter()?]);
+        Ok(figures)
+    }
+
+    /// A recording is played for the attitude's sake, and most often nobody drives meanwhile.
+    fn replayed(&self) -> Result<Vec<Option<Figure>>, ChartError> {
+        let mut figures = vec![self.attitude_error()?, self.attitude()?];
+        if DRIVING.iter().any(|signal| self.happens(signal)) {
+            figures.extend(self.drive()?);
+        }
+        figures.extend([self.timeline()?, self.can_load()?, self.jitter()?]);
+        Ok(figures)
+    }
+
+    fn drive(&self) -> Result<Vec<Option<Figure>>, ChartError> {
+        Ok(vec![
+            self.sticks()?,
+            self.wheels()?,
+            self.currents()?,
+            self.joint_angles()?,
+            self.joint_torques()?,
+            self.path()?,
+        ])
+    }
+
+    /// True if a signal is ever other than 0.
+    fn happens(&self, signal: &str) -> bool {
+        let values = self.report.traces.signal(signal).unwrap_or_default();
+        values.into_iter().flatten().any(|value| value != 0.0)
+    }
+
     fn points(&self, values: Vec<Option<f64>>) -> Vec<(f64, Option<f64>)> {
         let times = self.report.traces.times_s();
         times.iter().copied().zip(values).collect()
@@ -86,7 +135,7 @@ impl Plots<'_> {
             height,
             time: 0.0..time::to_seconds(self.report.result.ran).max(1e-3),
             marks: &self.marks,
-            shaded: &[],
+            shaded: &self.scored,
             curves,
         };
         Ok(plot.draw()?.map(|svg| Figure {
@@ -279,11 +328,16 @@ impl Plots<'_> {
     }
 
     fn attitude_error(&self) -> MaybeFigure {
+        let caption = if self.scored.is_empty() {
+            "While the firmware calls its estimate valid."
+        } else {
+            "While the firmware calls its estimate valid. Tinted: the movement phase, which is scored."
+        };
         self.time_plot(
             "Attitude error",
-            "While the firmware calls its estimate valid.",
+            caption,
             "°",
-            220,
+            260,
             vec![
                 self.curve("total", "emu.att_error.total_deg", 1.0, GREY),
                 self.curve("heading", "emu.att_error.heading_deg", 1.0, ORANGE),
@@ -317,18 +371,4 @@ impl Plots<'_> {
             svg: draw_histogram(bins, JITTER_BIN_US, "µs late")?,
         }))
     }
-}
-
-/// By how much a count has risen since the point before.
-fn rises(counts: &[(f64, Option<f64>)]) -> Vec<(f64, Option<f64>)> {
-    let pairs = counts.windows(2);
-    let rise = |pair: &[(f64, Option<f64>)]| Some(pair[1].1? - pair[0].1?);
-    pairs.map(|pair| (pair[1].0, rise(pair))).collect()
-}
-
-/// The whole numbers a signal takes, in order.
-fn distinct(points: &[(f64, Option<f64>)]) -> Vec<u64> {
-    let values = points.iter().filter_map(|p| p.1);
-    let whole: std::collections::BTreeSet<u64> = values.map(|v| v as u64).collect();
-    whole.into_iter().collect()
 }
