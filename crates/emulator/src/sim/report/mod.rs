@@ -4,6 +4,7 @@ mod attitude;
 mod lanes;
 mod page;
 mod plots;
+mod shape;
 
 #[cfg(test)]
 mod tests;
