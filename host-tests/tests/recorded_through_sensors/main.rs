@@ -88,7 +88,10 @@ fn the_sensors_cost_no_accuracy() -> anyhow::Result<()> {
 
 /// Whoever carries a robot around whose wheels stand moves it as no wheels can; its attitude must not follow the wheels.
 #[test]
-#[ignore = "waits: standing wheels of a carried robot are believed"]
+#[cfg_attr(
+    not(recorded_motion),
+    ignore = "no recorded motion: set ROBOT_DATA to its folder"
+)]
 fn standing_wheels_do_not_tilt_a_carried_robot() -> anyhow::Result<()> {
     let all = compare_all(Wheels::Standing)?;
     print(&all);

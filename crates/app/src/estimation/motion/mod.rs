@@ -31,6 +31,9 @@ const LEAK_S: f32 = 0.5;
 /// Velocity and position are carried past the last sample for at most this long.
 const MAX_AHEAD_S: f32 = 0.01;
 
+/// Wheels that have stood for so long do not accelerate a robot: it stands too, or somebody carries it.
+const STANDING_S: f32 = 1.0;
+
 /// How the body lies and turns now.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BodyPose {
@@ -57,6 +60,8 @@ pub(super) struct MotionEstimator {
     filter: VelocityFilter,
     position: Position,
     kinematic_mps2: Vector3,
+    /// Since a wheel turned.
+    wheels_stood_s: f32,
 }
 
 impl MotionEstimator {
@@ -68,6 +73,7 @@ impl MotionEstimator {
             filter: VelocityFilter::new(),
             position: Position::new(),
             kinematic_mps2: [0.0; 3],
+            wheels_stood_s: 0.0,
         }
     }
 
@@ -115,6 +121,14 @@ impl MotionEstimator {
         } else {
             self.carry_on(free_mps2, speeds, &axes, age_s, sample.dt_s)
         };
+        self.wheels_stood_s = if wheel_speed::any_turns(motor) {
+            0.0
+        } else {
+            self.wheels_stood_s + sample.dt_s
+        };
+        if self.wheels_stood_s > STANDING_S {
+            self.kinematic_mps2 = [0.0; 3];
+        }
         self.filter.stay_plausible();
         let step_m = vector::scale(self.filter.velocity_after(-0.5 * sample.dt_s), sample.dt_s);
         self.position.add(step_m);
@@ -178,7 +192,7 @@ impl MotionEstimator {
     }
 
     /// What accelerated the robot over the last sample, in body axes: the part of a specific force that is not gravity.
-    /// Zero while the velocity is not known.
+    /// Zero while the velocity is not known or the wheels stand.
     pub const fn kinematic_mps2(&self) -> Vector3 {
         self.kinematic_mps2
     }

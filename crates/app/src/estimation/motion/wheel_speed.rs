@@ -1,10 +1,12 @@
 //! What each wheel by itself says about the forward speed of the robot.
 
 use super::{axes::Axes, velocity_filter::MAX_SPEED_MPS};
-use crate::domain::{MotorFeedback, WheelOdomConfig};
+use crate::domain::{MotorFeedback, WheelFeedback, WheelOdomConfig};
 
 /// Feedback older than this says nothing about the speed now.
 const MAX_AGE_US: u32 = 50_000;
+/// A rotor slower than this stands: noise and one unit of its report.
+const STANDING_RPM: u16 = 20;
 
 /// Of the middle of the axle in m/s, by the left and the right wheel; none from a wheel that is silent, repeats an old
 /// report or does not touch the ground.
@@ -52,6 +54,14 @@ impl WheelSpeeds {
             counts.then_some(speed_mps)
         })
     }
+}
+
+/// True if a rotor that is heard turns.
+pub(super) fn any_turns(motor: &MotorFeedback) -> bool {
+    let turns = |wheel: &WheelFeedback| {
+        wheel.age_us <= MAX_AGE_US && wheel.rpm.unsigned_abs() > STANDING_RPM
+    };
+    motor.wheels.iter().any(turns)
 }
 
 /// Of those that say something.
