@@ -6,8 +6,7 @@ use crate::{figures::Figures, motion::Motion, run::Run, sensors::Sensors};
 
 const MINUTES: f64 = 10.0;
 
-fn wandering(seed: u64) -> Sensors {
-    let mut sensors = Sensors::real().without_mag();
+fn wandering(mut sensors: Sensors, seed: u64) -> Sensors {
     sensors.seed = seed;
     sensors.gyro_offset_dps = Box::new(|t| {
         let wave = |period_s: f64| 0.1 * (TAU * t / period_s).sin();
@@ -22,7 +21,10 @@ fn wandering(seed: u64) -> Sensors {
 fn at_rest_a_wandering_offset_turns_nothing() {
     let mut figures = Figures::default();
     for seed in 1..4 {
-        let mut run = Run::new(Motion::at_rest(), wandering(seed));
+        let mut run = Run::new(
+            Motion::at_rest(),
+            wandering(Sensors::real().without_mag(), seed),
+        );
         run.skip(5.0);
         let worst = run.worst(60.0 * MINUTES);
         figures.at_most(
@@ -34,6 +36,39 @@ fn at_rest_a_wandering_offset_turns_nothing() {
             "ten minutes of rest, inclination in °",
             worst.inclination_deg,
             0.3,
+        );
+    }
+    figures.done();
+}
+
+/// Twenty minutes without rest: single precision keeps the filter as good as it was after the first. A look at gravity
+/// lasts 3 s and is 0.3 °/s good among such pushes; against a change of 0.002 °/s each second the best mean is one over
+/// 40 s, which lags by 0.08 °/s. In the ten seconds in which gravity and field are believed that is 0.8°.
+#[test]
+fn in_motion_a_wandering_offset_is_followed() {
+    let mut figures = Figures::default();
+    for (name, sensors, drift_deg) in [
+        ("9d", Sensors::real(), 4.0),
+        ("6d", Sensors::real().without_mag(), 10.0),
+    ] {
+        let mut run = Run::new(Motion::carried_about(), wandering(sensors, 9));
+        run.skip(60.0);
+        let worst = run.worst(1_200.0);
+        let name = format!("{name} carried for twenty minutes");
+        figures.at_most(
+            &format!("{name}, heading drift in °"),
+            worst.heading_drift_deg,
+            drift_deg,
+        );
+        figures.at_most(
+            &format!("{name}, inclination in °"),
+            worst.inclination_deg,
+            1.0,
+        );
+        figures.at_most(
+            &format!("{name}, offset in °/s"),
+            run.bias_error_dps(),
+            0.12,
         );
     }
     figures.done();
