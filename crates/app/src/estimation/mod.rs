@@ -6,5 +6,7 @@ mod attitude;
 mod ins_estimator;
 mod magnetic;
 mod motion;
+#[cfg(test)]
+pub(crate) mod testing;
 
 pub use ins_estimator::InsEstimator;

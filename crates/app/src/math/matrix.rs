@@ -17,3 +17,6 @@ pub fn add_scaled(a: &Matrix3, factor: f32, b: &Matrix3) -> Matrix3 {
     }
     sum
 }
+
+#[cfg(test)]
+mod tests;

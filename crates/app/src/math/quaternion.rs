@@ -135,46 +135,4 @@ impl Quaternion {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn rotate(q: Quaternion, v: Vector3) -> Vector3 {
-        q.rotation_matrix().map(|row| vector::dot(row, v))
-    }
-
-    /// Quarter turns whose result is known by hand.
-    #[test]
-    fn a_quarter_turn_to_the_left_moves_x_to_y() {
-        let half = core::f32::consts::FRAC_1_SQRT_2;
-        let left = Quaternion {
-            w: half,
-            z: half,
-            x: 0.0,
-            y: 0.0,
-        };
-        let [x, y, z] = rotate(left, [1.0, 0.0, 0.0]);
-        assert!(x.abs() < 1e-6 && (y - 1.0).abs() < 1e-6 && z.abs() < 1e-6);
-        let [_, _, yaw] = left.roll_pitch_yaw();
-        assert!((yaw - core::f32::consts::FRAC_PI_2).abs() < 1e-6);
-    }
-
-    #[test]
-    fn small_rotations_add_up_to_a_full_turn() {
-        let step = Quaternion::from_rotation([0.0, 0.0, core::f32::consts::TAU / 1000.0]);
-        let mut q = Quaternion::IDENTITY;
-        for _ in 0..1000 {
-            q = q.after(step).normalised();
-        }
-        assert!((q.w.abs() - 1.0).abs() < 1e-6 && q.z.abs() < 1e-4);
-    }
-
-    #[test]
-    fn nose_up_is_negative_pitch_about_left_axis() {
-        // Right-hand rule about y (left): positive pitch turns x (forward) towards −z (down).
-        let q = Quaternion::from_rotation([0.0, 0.2, 0.0]);
-        let [_, _, z] = rotate(q, [1.0, 0.0, 0.0]);
-        assert!((z + 0.2f32.sin()).abs() < 1e-6);
-        let [roll, pitch, yaw] = q.roll_pitch_yaw();
-        assert!(roll.abs() < 1e-6 && (pitch - 0.2).abs() < 1e-6 && yaw.abs() < 1e-6);
-    }
-}
+mod tests;

@@ -185,3 +185,6 @@ fn set<const N: usize>(row: &mut [f32; N], index: usize, value: f32) {
         *place = value;
     }
 }
+
+#[cfg(test)]
+mod tests;

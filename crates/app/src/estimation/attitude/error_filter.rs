@@ -170,3 +170,6 @@ impl Correction {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -7,6 +7,8 @@ mod rest;
 mod rows;
 mod strapdown;
 mod window;
+#[cfg(test)]
+mod tests;
 
 use self::{
     covariance::FIRST_ANGLE,

@@ -136,3 +136,6 @@ fn is_near(a: Vector3, b: Vector3, limit: f32) -> bool {
     let difference = vector::sub(a, b);
     vector::dot(difference, difference) < limit * limit
 }
+
+#[cfg(test)]
+mod tests;

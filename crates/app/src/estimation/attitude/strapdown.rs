@@ -107,3 +107,6 @@ impl Strapdown {
             .normalised();
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -82,3 +82,6 @@ fn add_row(row: &mut Parameters, [rx, ry, rz]: Vector3, [gx, gy, gz]: Vector3) {
     *zy -= rz * gy;
     *zz -= rz * gz;
 }
+
+#[cfg(test)]
+mod tests;

@@ -125,3 +125,6 @@ fn add_product(to: &mut Row, factor: f32, row: &Row) {
         *to += factor * value;
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -67,3 +67,6 @@ impl Delay {
         self.samples = 0;
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -103,3 +103,6 @@ impl FieldMonitor {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -3,6 +3,8 @@
 mod carried_magnet;
 mod delay;
 mod field_monitor;
+#[cfg(test)]
+mod tests;
 
 use self::{carried_magnet::CarriedMagnet, delay::Delay, field_monitor::FieldMonitor};
 use super::attitude::{Finding, Strapdown};

@@ -1,0 +1,279 @@
+//! Several hundred windows of random motion beside the textbook: x = F·x, P = F·P·Fᵀ + Q, then one measurement after the
+//! other with K = P·hᵀ / (h·P·hᵀ + r), P − K·h·P.
+
+use super::*;
+use crate::estimation::testing::rotation::cross;
+
+const DEG: f64 = std::f64::consts::PI / 180.0;
+const FIRST_BIAS: f64 = (3.0 * DEG) * (3.0 * DEG);
+
+type Matrix = Vec<Vec<f64>>;
+
+fn zeros() -> Matrix {
+    vec![vec![0.0; STATES]; STATES]
+}
+
+/// What is fed to both.
+struct Sample {
+    attitude: Rotation,
+    gyro_rps: [f64; 3],
+    accel_enu_mps2: [f64; 3],
+    unseen_rad2: f64,
+}
+
+struct Recording {
+    samples: Vec<Sample>,
+    blind_s: f64,
+}
+
+struct World {
+    random: Random,
+    attitude: Rotation,
+    rate_rps: [f64; 3],
+}
+
+impl World {
+    fn window(&mut self, resting: bool) -> Recording {
+        let random = &mut self.random;
+        let dt_s = f64::from(DT_S);
+        let jerky = random.share() < 0.1;
+        let samples = (0..40)
+            .map(|_| {
+                let push = random.normals(0.3);
+                self.rate_rps = if resting {
+                    [0.0; 3]
+                } else {
+                    std::array::from_fn(|axis| 0.99 * self.rate_rps[axis] + push[axis])
+                };
+                let half = Rotation::by(self.rate_rps.map(|rate| 0.5 * rate * dt_s));
+                let middle = self.attitude.then_in_body(half);
+                self.attitude = middle.then_in_body(half);
+                let [x, y, z] = random.normals(if resting { 0.02 } else { 3.0 });
+                Sample {
+                    attitude: middle,
+                    gyro_rps: self.rate_rps,
+                    accel_enu_mps2: [x, y, z + GRAVITY_MPS2],
+                    unseen_rad2: if jerky { 1e-6 * random.share() } else { 0.0 },
+                }
+            })
+            .collect();
+        let blind = random.share() < 0.05;
+        Recording {
+            samples,
+            blind_s: if blind { 0.01 } else { 0.0 },
+        }
+    }
+
+    /// Innovations as large as they should be, some far larger.
+    fn finding(&mut self, variance: f64, noise: f64) -> Finding {
+        let outlier = if self.random.share() < 0.05 {
+            20.0
+        } else {
+            1.0
+        };
+        let innovation = outlier * self.random.normal() * (variance + noise).sqrt();
+        Finding {
+            innovation: innovation as f32,
+            noise: noise as f32,
+        }
+    }
+}
+
+fn to_window(recording: &Recording) -> Window {
+    let mut window = Window::new();
+    for sample in &recording.samples {
+        let carried = Carried {
+            middle: sample.attitude.rows.map(to_f32),
+            unseen_rad2: sample.unseen_rad2 as f32,
+        };
+        let gyro_rps = to_f32(sample.gyro_rps);
+        window.add_turn(&carried, gyro_rps, gyro_rps, DT_S);
+        window.add_accel(to_f32(sample.accel_enu_mps2));
+    }
+    window.blind_s += recording.blind_s as f32;
+    assert!(window.is_full());
+    window
+}
+
+struct Dense {
+    covariance: Matrix,
+}
+
+impl Dense {
+    fn new() -> Self {
+        let mut covariance = zeros();
+        for (index, row) in covariance.iter_mut().enumerate() {
+            row[index] = match index {
+                0..3 => (10.0 * DEG) * (10.0 * DEG),
+                3..5 => 1.0,
+                5..8 => FIRST_BIAS,
+                _ => 0.006 * 0.006,
+            };
+        }
+        Self { covariance }
+    }
+
+    fn forecast(&mut self, recording: &Recording) {
+        let f = transition(recording);
+        let p = product(&product(&f, &self.covariance), &transposed(&f));
+        self.covariance = p;
+        let noise = noises(recording);
+        for (index, noise) in noise.into_iter().enumerate() {
+            let variance = &mut self.covariance[index][index];
+            let is_bias = (5..8).contains(&index);
+            if !is_bias || *variance < FIRST_BIAS {
+                *variance += noise;
+            }
+        }
+    }
+
+    fn observe(&mut self, index: usize, finding: Finding, state: &mut [f64; STATES]) {
+        let column: Vec<f64> = self.covariance.iter().map(|row| row[index]).collect();
+        let spread = column[index] + f64::from(finding.noise);
+        let limit = 5.0 * spread.sqrt();
+        let innovation = (f64::from(finding.innovation) - state[index]).clamp(-limit, limit);
+        for (i, row) in self.covariance.iter_mut().enumerate() {
+            let gain = column[i] / spread;
+            state[i] += gain * innovation;
+            for (entry, other) in row.iter_mut().zip(&column) {
+                *entry -= gain * other;
+            }
+        }
+    }
+}
+
+/// θ ← θ + u, v ← κ·v + C·(θ + u/2), u = Φ·p, C·θ = T·θ × a.
+fn transition(recording: &Recording) -> Matrix {
+    let dt_s = f64::from(DT_S);
+    let count = recording.samples.len() as f64;
+    let t = dt_s * count;
+    let mut f = zeros();
+    for (index, row) in f.iter_mut().enumerate() {
+        row[index] = if (3..5).contains(&index) {
+            (-t / 4.0).exp()
+        } else {
+            1.0
+        };
+    }
+    for sample in &recording.samples {
+        for axis in 0..3 {
+            for from in 0..3 {
+                let turned = sample.attitude.rows[axis][from] * dt_s;
+                f[axis][5 + from] -= turned;
+                for by in 0..3 {
+                    f[axis][8 + 3 * from + by] -= turned * sample.gyro_rps[by];
+                }
+            }
+        }
+    }
+    let mean = std::array::from_fn(|axis| {
+        let sum: f64 = recording
+            .samples
+            .iter()
+            .map(|s| s.accel_enu_mps2[axis])
+            .sum();
+        sum / count
+    });
+    for angle in 0..3 {
+        let mut unit = [0.0; 3];
+        unit[angle] = t;
+        let gained = cross(unit, mean);
+        for speed in 0..2 {
+            f[3 + speed][angle] = gained[speed];
+            for parameter in 5..STATES {
+                f[3 + speed][parameter] += 0.5 * gained[speed] * f[angle][parameter];
+            }
+        }
+    }
+    f
+}
+
+fn noises(recording: &Recording) -> [f64; STATES] {
+    let dt_s = f64::from(DT_S);
+    let t = dt_s * recording.samples.len() as f64;
+    let mut turn = (0.15 * DEG) * (0.15 * DEG) * t;
+    for sample in &recording.samples {
+        let rate2: f64 = sample.gyro_rps.iter().map(|rate| rate * rate).sum();
+        turn += 0.0002 * 0.0002 * rate2 * dt_s + sample.unseen_rad2;
+    }
+    let speed = (200.0 * recording.blind_s) * (200.0 * recording.blind_s);
+    std::array::from_fn(|index| match index {
+        0..3 => turn,
+        3..5 => speed,
+        5..8 => (0.0045 * DEG) * (0.0045 * DEG) * t,
+        _ => 0.0,
+    })
+}
+
+fn product(a: &Matrix, b: &Matrix) -> Matrix {
+    let mut c = zeros();
+    for (row, to) in a.iter().zip(&mut c) {
+        for (weight, other) in row.iter().zip(b) {
+            for (to, value) in to.iter_mut().zip(other) {
+                *to += weight * value;
+            }
+        }
+    }
+    c
+}
+
+fn transposed(a: &Matrix) -> Matrix {
+    (0..STATES)
+        .map(|column| a.iter().map(|row| row[column]).collect())
+        .collect()
+}
+
+#[test]
+fn hundreds_of_windows_agree_with_the_textbook() {
+    let mut world = World {
+        random: Random::new(17),
+        attitude: Rotation::by([0.3, -0.2, 1.0]),
+        rate_rps: [0.0; 3],
+    };
+    let mut filter = ErrorFilter::new();
+    let mut dense = Dense::new();
+    let (mut worst_state, mut worst_covariance) = (0.0_f64, 0.0_f64);
+    for number in 0..400 {
+        let resting = (number / 20) % 3 == 1;
+        let recording = world.window(resting);
+        dense.forecast(&recording);
+        let variance = |index: usize| dense.covariance[index][index];
+        let speed_noise = if resting {
+            0.0025
+        } else {
+            0.2 * world.random.between(1.0, 8.0)
+        };
+        let findings = Findings {
+            speed: [3, 4].map(|index| world.finding(variance(index), speed_noise)),
+            heading: (world.random.share() < 0.7)
+                .then(|| world.finding(variance(2), (20.0 * DEG) * (20.0 * DEG) / 0.2)),
+            bias: resting.then(|| {
+                [5, 6, 7].map(|index| world.finding(variance(index), (0.03 * DEG).powi(2) / 0.2))
+            }),
+        };
+        let before: Vec<f64> = (0..STATES).map(|index| variance(index).sqrt()).collect();
+        filter.begin(&to_window(&recording), findings);
+        let got = state(&finish(&mut filter));
+        let mut expected = [0.0; STATES];
+        let [east, north] = findings.speed;
+        dense.observe(3, east, &mut expected);
+        dense.observe(4, north, &mut expected);
+        if let Some(heading) = findings.heading {
+            dense.observe(2, heading, &mut expected);
+        }
+        for (axis, finding) in findings.bias.into_iter().flatten().enumerate() {
+            dense.observe(5 + axis, finding, &mut expected);
+        }
+        for i in 0..STATES {
+            worst_state = worst_state.max((got[i] - expected[i]).abs() / before[i]);
+            for j in 0..STATES {
+                let size = (dense.covariance[i][i] * dense.covariance[j][j]).sqrt();
+                let off = entry(&filter.covariance, i, j) - dense.covariance[i][j];
+                worst_covariance = worst_covariance.max(off.abs() / size);
+            }
+        }
+    }
+    println!("states {worst_state:.1e}, covariance {worst_covariance:.1e} standard deviations off");
+    assert!(worst_state < 3e-3, "{worst_state}");
+    assert!(worst_covariance < 3e-3, "{worst_covariance}");
+}

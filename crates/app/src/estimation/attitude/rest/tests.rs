@@ -1,0 +1,174 @@
+//! How long until rest is believed, and what is no rest.
+
+use super::*;
+use crate::estimation::testing::Random;
+use core::f32::consts::TAU;
+
+const GRAVITY: Vector3 = [0.0, 0.0, 9.806_65];
+const SAMPLES: u8 = 40;
+const DT_S: f32 = 0.005;
+/// Level strength 20 µT.
+const FIELD_UT: Vector3 = [0.0, 20.0, -45.0];
+
+/// First window (from 1) at whose end `gyro` and `accel` of the time, and the field, are rest; None within `windows`.
+fn first_rest(
+    windows: u16,
+    gyro: impl Fn(f32) -> Vector3,
+    accel: impl Fn(f32) -> Vector3,
+    field: impl Fn(f32) -> Option<Vector3>,
+) -> Option<u16> {
+    let mut detector = RestDetector::default();
+    let mut time_s = 0.0;
+    (1..=windows).find(|_| {
+        let middle_s = time_s + 0.5 * DT_S * f32::from(SAMPLES);
+        for _ in 0..SAMPLES {
+            time_s += DT_S;
+            detector.feed(gyro(time_s), accel(time_s));
+        }
+        detector.close(field(middle_s)).is_some()
+    })
+}
+
+fn still(_: f32) -> Vector3 {
+    [0.01, -0.02, 0.005]
+}
+
+fn upright(_: f32) -> Vector3 {
+    GRAVITY
+}
+
+/// As seen from a body that turns to the left.
+fn turning_field(rate_rps: f32) -> impl Fn(f32) -> Option<Vector3> {
+    let [_, level, up] = FIELD_UT;
+    move |time_s| {
+        let angle = rate_rps * time_s;
+        Some([level * angle.sin(), level * angle.cos(), up])
+    }
+}
+
+#[test]
+fn rest_takes_seven_windows_and_twenty_where_the_field_is_watched() {
+    assert_eq!(first_rest(30, still, upright, |_| None), Some(7));
+    assert_eq!(first_rest(30, still, upright, |_| Some(FIELD_UT)), Some(20));
+}
+
+#[test]
+fn the_rate_at_rest_is_the_mean_of_the_window() {
+    let mut detector = RestDetector::default();
+    let mut found = None;
+    for _ in 0..7 {
+        for sample in 0..SAMPLES {
+            let wobble = if sample % 2 == 0 { 0.01 } else { -0.01 };
+            detector.feed([0.03 + wobble, -0.02, 0.01 - wobble], GRAVITY);
+        }
+        found = detector.close(None);
+    }
+    let [x, y, z] = found.expect("rest");
+    assert!((x - 0.03).abs() < 1e-6 && (y + 0.02).abs() < 1e-6 && (z - 0.01).abs() < 1e-6);
+}
+
+/// Steady: only the field shows it.
+#[test]
+fn a_slow_turn_is_not_rest_where_there_is_a_field() {
+    for rate_dps in [-1.0_f32, -0.8, 0.8, 1.0, 3.0] {
+        let rate_rps = rate_dps.to_radians();
+        let gyro = |_: f32| [0.0, 0.0, rate_rps];
+        let field = turning_field(rate_rps);
+        assert_eq!(
+            first_rest(600, gyro, upright, field),
+            None,
+            "{rate_dps} °/s"
+        );
+        assert_eq!(first_rest(30, gyro, upright, |_| None), Some(7));
+    }
+}
+
+#[test]
+fn noise_of_the_field_is_not_a_turn() {
+    let noise = core::cell::RefCell::new(Random::new(5));
+    let field = |_: f32| {
+        // Mean of ten samples of 0.3 µT each.
+        let [x, y, z] = noise.borrow_mut().normals(0.1).map(|x| x as f32);
+        Some(vector::add(FIELD_UT, [x, y, z]))
+    };
+    assert_eq!(first_rest(30, still, upright, field), Some(20));
+}
+
+/// A motor's: seen as the mean of each 5 ms at 50 Hz.
+fn vibration(amplitude: f32) -> impl Fn(f32) -> f32 {
+    move |time_s| {
+        let phase = |t: f32| (TAU * 50.0 * t).cos() / (TAU * 50.0);
+        amplitude * (phase(time_s - DT_S) - phase(time_s)) / DT_S
+    }
+}
+
+#[test]
+fn a_motor_that_runs_may_shake_it_a_little() {
+    let shaken = |amplitude: f32| {
+        let wave = vibration(amplitude);
+        move |time_s: f32| {
+            let shake = wave(time_s);
+            [shake, 0.0, 9.806_65]
+        }
+    };
+    assert_eq!(first_rest(30, still, shaken(0.3), |_| None), Some(7));
+    // Beyond 0.35 m/s² in the root of the mean square it is no rest: the means of 5 ms show 0.90 of the amplitude.
+    assert_eq!(first_rest(30, still, shaken(0.6), |_| None), None);
+}
+
+#[test]
+fn a_shaking_gyro_is_not_rest() {
+    let shaken = |amplitude_dps: f32| {
+        let wave = vibration(amplitude_dps.to_radians());
+        move |time_s: f32| [0.0, wave(time_s), 0.0]
+    };
+    assert_eq!(first_rest(30, shaken(1.0), upright, |_| None), Some(7));
+    assert_eq!(first_rest(30, shaken(2.0), upright, |_| None), None);
+}
+
+#[test]
+fn a_rest_elsewhere_is_another_rest() {
+    // Quiet at all times, but from 1 s on another attitude, or another rate.
+    let tilted = |time_s: f32| {
+        if time_s < 1.01 {
+            GRAVITY
+        } else {
+            [0.5, 0.0, 9.79]
+        }
+    };
+    assert_eq!(first_rest(30, still, tilted, |_| None), Some(5 + 7));
+    let turning = |time_s: f32| {
+        if time_s < 1.01 {
+            [0.0; 3]
+        } else {
+            [0.0, 0.0, 0.6_f32.to_radians()]
+        }
+    };
+    assert_eq!(first_rest(30, turning, upright, |_| None), Some(5 + 7));
+}
+
+/// Slowly tilted: each window is like the last, but not like the first.
+#[test]
+fn a_slow_drift_of_the_force_ends_the_rest() {
+    let tilting = |time_s: f32| [9.806_65 * (0.02 * time_s).sin(), 0.0, 9.806_65];
+    let first = first_rest(30, still, tilting, |_| None);
+    assert_eq!(first, Some(7));
+    let mut detector = RestDetector::default();
+    let mut rests = 0;
+    for window in 0_u16..60 {
+        for _ in 0..SAMPLES {
+            detector.feed([0.0; 3], tilting(0.2 * f32::from(window)));
+        }
+        if detector.close(None).is_some() {
+            rests += 1;
+        }
+    }
+    // 0.3 m/s² are reached in 1.5 s: of every 8 windows one or two are rest.
+    assert!(rests < 20, "{rests} of 60");
+}
+
+#[test]
+fn without_samples_there_is_no_rest() {
+    let mut detector = RestDetector::default();
+    assert!((0..50).all(|_| detector.close(Some(FIELD_UT)).is_none()));
+}

@@ -1,0 +1,168 @@
+//! The whole attitude filter in single precision over hours of rest and motion.
+
+use super::{
+    covariance::{Covariance, FAST},
+    window::PARAMETERS,
+    *,
+};
+use crate::estimation::testing::{Random, Rotation, to_f32};
+
+const DT_S: f64 = 0.005;
+const HOURS: u32 = 2;
+const MINUTES: u32 = HOURS * 60;
+const STATES: usize = FAST + PARAMETERS;
+const EARTH_UT: [f64; 3] = [0.0, 20.0, -45.0];
+const NEVER: Clipped = Clipped {
+    accel: false,
+    gyro: false,
+};
+
+/// A robot that stands for a minute, then is carried about for one, and so on.
+struct World {
+    random: Random,
+    attitude: Rotation,
+    rate_rps: [f64; 3],
+    sample: u32,
+    /// How often the filter found that it had been lost.
+    jumps: u32,
+}
+
+impl World {
+    fn new() -> Self {
+        Self {
+            random: Random::new(29),
+            attitude: Rotation::by([0.1, -0.1, 0.5]),
+            rate_rps: [0.0; 3],
+            sample: 0,
+            jumps: 0,
+        }
+    }
+
+    fn minute(&mut self, filter: &mut AttitudeFilter, resting: bool) {
+        for _ in 0..12_000 {
+            self.sample += 1;
+            self.choose_rate(resting);
+            self.imu(filter, resting);
+            if self.sample.is_multiple_of(4) {
+                let noise = self.random.normals(0.3);
+                let seen = self.attitude.seen_from_body(EARTH_UT);
+                let seen = std::array::from_fn(|axis| seen[axis] + noise[axis]);
+                filter.feed_mag(to_f32(seen), 0.0);
+            }
+        }
+        self.attitude = unit(self.attitude);
+    }
+
+    /// About 1 rad/s, forgotten in half a second.
+    fn choose_rate(&mut self, resting: bool) {
+        let push = self.random.normals(if resting { 0.0 } else { 0.14 });
+        self.rate_rps = std::array::from_fn(|axis| 0.99 * self.rate_rps[axis] + push[axis]);
+    }
+
+    fn imu(&mut self, filter: &mut AttitudeFilter, resting: bool) {
+        let half = Rotation::by(self.rate_rps.map(|rate| 0.5 * DT_S * rate));
+        let middle = self.attitude.then_in_body(half);
+        self.attitude = middle.then_in_body(half);
+        let [noise, shake] = [
+            self.random.normals(0.05_f64.to_radians()),
+            self.random.normals(if resting { 0.02 } else { 1.0 }),
+        ];
+        let gyro_rps: [f64; 3] = std::array::from_fn(|axis| {
+            self.rate_rps[axis] * (1.0 + SCALE[axis]) + BIAS_DPS[axis].to_radians() + noise[axis]
+        });
+        let [x, y, z] = shake;
+        let accel_mps2 = middle.seen_from_body([x, y, z + f64::from(GRAVITY_MPS2)]);
+        if !filter.feed_imu(to_f32(gyro_rps), to_f32(accel_mps2), NEVER, DT_S as f32) {
+            self.jumps += 1;
+        }
+    }
+}
+
+/// true = measured − bias − scale · measured, nearly.
+const BIAS_DPS: [f64; 3] = [0.3, -0.5, 0.2];
+const SCALE: [f64; 3] = [0.003, -0.002, 0.001];
+
+/// Rounding of a million turns taken off (Gram and Schmidt).
+fn unit(attitude: Rotation) -> Rotation {
+    use crate::estimation::testing::rotation::{cross, dot};
+    let scaled = |row: [f64; 3]| row.map(|x| x / dot(row, row).sqrt());
+    let [x, y, _] = attitude.rows;
+    let x = scaled(x);
+    let along = dot(x, y);
+    let y = scaled(std::array::from_fn(|axis| y[axis] - along * x[axis]));
+    Rotation {
+        rows: [x, y, cross(x, y)],
+    }
+}
+
+fn bias_error_dps(filter: &AttitudeFilter) -> f64 {
+    let errors = filter.bias_rps().into_iter().zip(BIAS_DPS);
+    let squares = errors.map(|(found, real)| (f64::from(found).to_degrees() - real).powi(2));
+    squares.sum::<f64>().sqrt()
+}
+
+/// In units of the standard deviations: symmetric, and all of it positive (Cholesky's decomposition exists).
+fn assert_sound(covariance: &Covariance, minute: u32) {
+    let entry = |row: usize, column: usize| {
+        f64::from(match (row.checked_sub(FAST), column.checked_sub(FAST)) {
+            (None, None) => covariance.fast[row][column],
+            (None, Some(slow)) => covariance.cross[row][slow],
+            (Some(slow), None) => covariance.cross[column][slow],
+            (Some(row), Some(column)) => covariance.slow[row][column],
+        })
+    };
+    let share = |row: usize, column: usize| {
+        entry(row, column) / (entry(row, row) * entry(column, column)).sqrt()
+    };
+    let mut factor = [[0.0; STATES]; STATES];
+    for row in 0..STATES {
+        assert!(entry(row, row) > 0.0, "minute {minute}: variance {row}");
+        for column in 0..=row {
+            let skew = share(row, column) - share(column, row);
+            assert!(
+                skew.abs() < 1e-3,
+                "minute {minute}: {row} and {column}: {skew}"
+            );
+            let sum: f64 = (0..column)
+                .map(|k| factor[row][k] * factor[column][k])
+                .sum();
+            let left = share(row, column) - sum;
+            factor[row][column] = if row == column {
+                assert!(left > 1e-4, "minute {minute}: {row} is left with {left}");
+                left.sqrt()
+            } else {
+                left / factor[column][column]
+            };
+        }
+    }
+}
+
+#[test]
+fn hours_of_rest_and_motion_keep_the_filter_sound() {
+    let mut world = World::new();
+    let mut filter = AttitudeFilter::new();
+    let (mut worst_deg, mut worst_bias_dps) = (0.0_f64, 0.0_f64);
+    for minute in 0..MINUTES {
+        let resting = minute % 2 == 0;
+        world.minute(&mut filter, resting);
+        assert_sound(&filter.filter.covariance, minute);
+        let variances = filter.filter.covariance.bias_variances();
+        let sure = variances.iter().all(|variance| variance.sqrt() < 0.5 * DEG);
+        assert!(sure, "minute {minute}: started anew: {variances:?}");
+        if minute > 3 {
+            let attitude = Rotation::of(filter.orientation(0.0));
+            worst_deg = worst_deg.max(attitude.angle_deg(world.attitude));
+            worst_bias_dps = worst_bias_dps.max(bias_error_dps(&filter));
+        }
+    }
+    // The offset was not known at the start.
+    assert!(world.jumps <= 1, "{} jumps", world.jumps);
+    println!("worst {worst_deg:.2}°, bias {worst_bias_dps:.3}°/s");
+    assert!(worst_deg < 2.0, "{worst_deg}");
+    assert!(worst_bias_dps < 0.05, "{worst_bias_dps}");
+    let found = filter.strapdown.gyro.misalignment;
+    for axis in 0..3 {
+        let off = f64::from(found[axis][axis]) - SCALE[axis];
+        assert!(off.abs() < 0.001, "scale of axis {axis}: {off}");
+    }
+}
