@@ -1,5 +1,7 @@
 //! Which plots a report shows.
 
+mod motion;
+
 use std::ops::Range;
 
 use plotters::style::RGBColor;
@@ -96,6 +98,8 @@ impl Plots<'_> {
             self.joint_angles()?,
             self.joint_torques()?,
             self.path()?,
+            self.speed()?,
+            self.position()?,
         ])
     }
 

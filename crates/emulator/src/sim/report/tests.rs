@@ -190,6 +190,8 @@ fn shows_verdict_plots_failures_and_escaped_log() {
         "Wheel speed",
         "Commanded current",
         "Path on the ground",
+        "Speed over ground",
+        "Position",
         "Arming and safety",
         "Attitude",
         "Attitude error",
