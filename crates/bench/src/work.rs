@@ -1,7 +1,7 @@
 //! All runs, on every core, behind one progress bar.
 
 use std::{
-    path::PathBuf,
+    path::{Path, PathBuf},
     sync::{Mutex, PoisonError},
     thread,
 };
@@ -20,13 +20,18 @@ use crate::{
 
 /// What is to be measured.
 pub struct Plan {
-    /// The shipped image; `None` leaves the board out.
-    pub image: Option<PathBuf>,
-    pub scenarios: Vec<Scenario>,
+    /// `None` leaves the board out.
+    pub board: Option<Board>,
     /// Folder of the filters' programs.
     pub programs: PathBuf,
     pub motions: Vec<Motion>,
     pub detail: Detail,
+}
+
+pub struct Board {
+    /// The shipped one.
+    pub image: PathBuf,
+    pub scenarios: Vec<Scenario>,
 }
 
 /// A filter on one kind of motion: a column of the table.
@@ -51,7 +56,7 @@ pub struct Results {
 }
 
 enum Task<'p> {
-    Board(&'p Scenario),
+    Board(&'p Path, &'p Scenario),
     Filter(Entry, &'p Motion),
 }
 
@@ -90,7 +95,10 @@ impl Plan {
 
     /// The longest first: no core shall be left alone with one at the end.
     fn tasks(&self) -> Vec<Task<'_>> {
-        let boards = self.scenarios.iter().map(Task::Board);
+        let boards = self.board.iter().flat_map(|board| {
+            let scenarios = board.scenarios.iter();
+            scenarios.map(|scenario| Task::Board(&board.image, scenario))
+        });
         let filters = entries().flat_map(|entry| {
             let own = self
                 .motions
@@ -132,8 +140,7 @@ impl Plan {
 
     fn do_one(&self, task: &Task<'_>, bar: &ProgressBar) -> anyhow::Result<Done> {
         match task {
-            Task::Board(scenario) => {
-                let image = self.image.as_ref().context("no image to run")?;
+            Task::Board(image, scenario) => {
                 bar.set_message(scenario.name.clone());
                 let summary = scenarios::run(image, (*scenario).clone(), || bar.inc(1))?;
                 Ok(Done::Board(Box::new(summary)))
@@ -153,7 +160,7 @@ impl Task<'_> {
     /// Simulated.
     fn milliseconds(&self) -> u64 {
         match self {
-            Self::Board(scenario) => scenarios::length_ms(scenario),
+            Self::Board(_, scenario) => scenarios::length_ms(scenario),
             Self::Filter(_, motion) => motion.samples().len() as u64 * TICKS_A_SAMPLE,
         }
     }

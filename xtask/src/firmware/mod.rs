@@ -115,11 +115,13 @@ fn cargo() -> anyhow::Result<Command> {
     }
 }
 
-/// Clippy over the image; `None` if the toolchain of `rust-toolchain.toml` lacks the target.
+/// Clippy over the image and the filters' programs; `None` if the toolchain of `rust-toolchain.toml` lacks the target.
 pub fn clippy() -> Option<Command> {
     rustup_has_target().then(|| {
         let mut command = tool::cargo();
         command.args(["clippy", "--release", "--package", PACKAGE]);
+        command.args(["--package", FILTERS, "--features"]);
+        command.arg(format!("{FILTERS}/board"));
         command.args(["--target", BOARD, "--target-dir"]);
         command.arg(Parts::DEFAULT.target_dir());
         command.args(["--", "-D", "warnings"]);

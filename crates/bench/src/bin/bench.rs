@@ -16,7 +16,7 @@ use robot_bench::{
     motion::{Motion, Wheels},
     report::Report,
     scenarios,
-    work::{Plan, Results},
+    work::{Board, Plan, Results},
 };
 use robot_replay::Trial;
 
@@ -71,7 +71,10 @@ fn main() -> ExitCode {
 fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let plan = args.plan()?;
     let results = plan.run()?;
-    let image = plan.image.as_deref().map(ImageSize::read).transpose()?;
+    let board = plan.board.as_ref();
+    let image = board
+        .map(|board| ImageSize::read(&board.image))
+        .transpose()?;
     let names = plan.motions.iter().map(|motion| motion.name().to_owned());
     let report = Report::new(image, &results, names.collect());
     for group in &report.groups {
@@ -100,17 +103,8 @@ fn run(args: &Args) -> anyhow::Result<ExitCode> {
 impl Args {
     fn plan(&self) -> anyhow::Result<Plan> {
         let image = self.elf.clone().filter(|_| !self.quick);
-        let names: &[&str] = if image.is_some() {
-            &scenarios::NAMES
-        } else {
-            &[]
-        };
-        let scenarios = names
-            .iter()
-            .map(|name| scenarios::read(&repository(), name));
         Ok(Plan {
-            scenarios: scenarios.collect::<Result<_, _>>()?,
-            image,
+            board: image.map(board).transpose()?,
             programs: self.programs.clone(),
             motions: self.motions()?,
             detail: if self.functions {
@@ -165,6 +159,15 @@ impl Args {
         }
         Ok(headers)
     }
+}
+
+fn board(image: PathBuf) -> anyhow::Result<Board> {
+    let scenarios = scenarios::NAMES.iter();
+    let scenarios = scenarios.map(|name| scenarios::read(&repository(), name));
+    Ok(Board {
+        image,
+        scenarios: scenarios.collect::<Result<_, _>>()?,
+    })
 }
 
 fn repository() -> PathBuf {
