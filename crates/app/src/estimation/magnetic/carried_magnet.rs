@@ -19,7 +19,7 @@ const WANDER_UT2_PER_S: f32 = 0.3 * 0.3;
 /// A calibrated magnetometer is this good; only what is more is a magnet.
 const MIN_CARRIED_UT: f32 = 4.0;
 const UNSURE: f32 = 4.0;
-const MAX_INNOVATION2: f32 = 9.0;
+const MAX_INNOVATION2: f32 = 16.0;
 
 #[derive(Clone, Debug)]
 pub(super) struct CarriedMagnet {

@@ -27,6 +27,8 @@ const MAX_REJECTION_S: f32 = 60.0;
 const MAX_TILT: f32 = (3.0 * DEG) * (3.0 * DEG);
 /// A field this steep has no direction.
 const MIN_LEVEL_UT: f32 = 5.0;
+/// The earth's field has 22 to 67 µT; what is stronger than this is not the earth's, however long it lasts.
+const MAX_FIELD_UT: f32 = 120.0;
 
 #[derive(Clone, Debug)]
 pub(super) struct Magnetic {
@@ -120,7 +122,8 @@ impl Magnetic {
         let field_enu = vector::scale(sums.field_enu_ut, share);
         let [x, y, up_ut] = field_enu;
         let level2 = x * x + y * y;
-        if level2 < MIN_LEVEL_UT * MIN_LEVEL_UT {
+        let norm2 = level2 + up_ut * up_ut;
+        if level2 < MIN_LEVEL_UT * MIN_LEVEL_UT || norm2 > MAX_FIELD_UT * MAX_FIELD_UT {
             return report;
         }
         // North is where the level part points: from +y by −atan2(x, y).
@@ -136,7 +139,7 @@ impl Magnetic {
         let level_ut = scalar::sqrt(level2);
         let rows = sums.rows.map(|row| vector::scale(row, share));
         self.magnet.observe(field_enu, level_ut, rows, window_s);
-        let norm_ut = scalar::sqrt(level2 + up_ut * up_ut);
+        let norm_ut = scalar::sqrt(norm2);
         let disturbed = self
             .monitor
             .disturbed(norm_ut, up_ut, sums.rate_rps, window_s);

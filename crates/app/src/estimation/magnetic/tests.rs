@@ -197,6 +197,26 @@ fn a_steep_field_has_no_direction() {
     assert!(report.heading.is_none() && report.body_ut.is_some() && report.doubt == 0.0);
 }
 
+/// Beside a loudspeaker, for as long as anyone likes, from the start or later.
+#[test]
+fn a_field_that_the_earth_never_has_is_never_believed() {
+    let loudspeaker = [200.0, -100.0, 250.0];
+    let mut robot = Robot::new();
+    robot.strapdown.rate_rps = [1.0, 0.0, 0.0];
+    for _ in 0..2_000 {
+        let report = robot.window_of(loudspeaker, SURE);
+        assert!(report.first_heading_rad.is_none() && report.heading.is_none());
+    }
+    assert!(robot.window(0.0, SURE).first_heading_rad.is_some());
+    robot.believe(60.0);
+    for _ in 0..2_000 {
+        let report = robot.window_of(loudspeaker, SURE);
+        assert!(report.heading.is_none() && report.doubt == 0.0);
+    }
+    // Back home nothing has been forgotten.
+    assert!(robot.window(0.0, SURE).heading.is_some());
+}
+
 #[test]
 fn a_window_without_a_sample_says_nothing() {
     let mut robot = Robot::aligned(10.0);

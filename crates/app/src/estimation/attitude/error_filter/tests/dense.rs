@@ -144,48 +144,54 @@ impl Dense {
 
 /// θ ← θ + u, v ← κ·v + C·(θ + u/2), u = Φ·p, C·θ = T·θ × a.
 fn transition(recording: &Recording) -> Matrix {
-    let dt_s = f64::from(DT_S);
-    let count = recording.samples.len() as f64;
-    let t = dt_s * count;
+    let t = f64::from(DT_S) * recording.samples.len() as f64;
     let mut f = zeros();
     for (index, row) in f.iter_mut().enumerate() {
-        row[index] = if (3..5).contains(&index) {
-            (-t / 4.0).exp()
-        } else {
-            1.0
-        };
+        let is_speed = (3..5).contains(&index);
+        row[index] = if is_speed { (-t / 4.0).exp() } else { 1.0 };
     }
-    for sample in &recording.samples {
-        for axis in 0..3 {
-            for from in 0..3 {
-                let turned = sample.attitude.rows[axis][from] * dt_s;
-                f[axis][5 + from] -= turned;
-                for by in 0..3 {
-                    f[axis][8 + 3 * from + by] -= turned * sample.gyro_rps[by];
-                }
-            }
-        }
-    }
-    let mean = std::array::from_fn(|axis| {
-        let sum: f64 = recording
-            .samples
-            .iter()
-            .map(|s| s.accel_enu_mps2[axis])
-            .sum();
-        sum / count
-    });
-    for angle in 0..3 {
+    let force = mean_force(recording);
+    for (angle, by_parameter) in turn_by_parameter(recording).into_iter().enumerate() {
+        f[angle][5..].copy_from_slice(&by_parameter);
         let mut unit = [0.0; 3];
         unit[angle] = t;
-        let gained = cross(unit, mean);
-        for speed in 0..2 {
-            f[3 + speed][angle] = gained[speed];
-            for parameter in 5..STATES {
-                f[3 + speed][parameter] += 0.5 * gained[speed] * f[angle][parameter];
+        let [east, north, _] = cross(unit, force);
+        for (speed, gained) in [(3, east), (4, north)] {
+            f[speed][angle] = gained;
+            for (entry, turned) in f[speed][5..].iter_mut().zip(by_parameter) {
+                *entry += 0.5 * gained * turned;
             }
         }
     }
     f
+}
+
+/// Φ.
+fn turn_by_parameter(recording: &Recording) -> [[f64; PARAMETERS]; 3] {
+    let dt_s = f64::from(DT_S);
+    let mut phi = [[0.0; PARAMETERS]; 3];
+    for sample in &recording.samples {
+        for (row, turned) in phi.iter_mut().zip(sample.attitude.rows) {
+            for (axis, part) in turned.into_iter().enumerate() {
+                row[axis] -= part * dt_s;
+                for (by, rate_rps) in sample.gyro_rps.into_iter().enumerate() {
+                    row[3 + 3 * axis + by] -= part * dt_s * rate_rps;
+                }
+            }
+        }
+    }
+    phi
+}
+
+fn mean_force(recording: &Recording) -> [f64; 3] {
+    let samples = &recording.samples;
+    std::array::from_fn(|axis| {
+        let sum: f64 = samples
+            .iter()
+            .map(|sample| sample.accel_enu_mps2[axis])
+            .sum();
+        sum / samples.len() as f64
+    })
 }
 
 fn noises(recording: &Recording) -> [f64; STATES] {
