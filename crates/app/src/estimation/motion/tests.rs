@@ -357,6 +357,19 @@ fn extremes_leave_nothing_behind() {
     }
 }
 
+/// Somebody carries the robot off, its wheels stand: they explain no force.
+#[test]
+fn standing_wheels_accelerate_nothing() {
+    let mut bench = Bench::on_wheels();
+    bench.run(1.0);
+    for sample in 0..400 {
+        let push_mps2 = (0.02 * sample as f32).sin();
+        bench.accel_mps2 = [push_mps2, -push_mps2, GRAVITY_MPS2];
+        bench.sample();
+        assert_eq!(bench.motion.kinematic_mps2(), [0.0; 3], "{sample}");
+    }
+}
+
 /// Round a circle of 0.5 m at 2 rad/s, the IMU's samples turned with the body: all of the force is kinematic.
 #[test]
 fn a_circle_is_no_tilt() {
