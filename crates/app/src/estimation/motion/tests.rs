@@ -95,6 +95,17 @@ impl Bench {
     }
 }
 
+/// From facing east, computed in double precision.
+fn turned_left(yaw_rad: f64) -> Quaternion {
+    let (sin, cos) = (0.5 * yaw_rad).sin_cos();
+    Quaternion {
+        w: cos as f32,
+        x: 0.0,
+        y: 0.0,
+        z: sin as f32,
+    }
+}
+
 fn assert_close(got: Vector3, expected: Vector3, tolerance: f32) {
     for (got_part, part) in got.iter().zip(expected) {
         let close = (got_part - part).abs() < tolerance;
@@ -357,6 +368,24 @@ fn extremes_leave_nothing_behind() {
     }
 }
 
+/// Wheels spinning, so that nothing corrects; pushed east at 2 m/s² for a second while it turns at 20 rad/s. Each sample
+/// is the force's mean over its interval, in axes that turn meanwhile.
+#[test]
+fn a_force_is_taken_where_the_body_was_in_the_middle_of_its_sample() {
+    let mut bench = Bench::on_wheels();
+    bench.wheels_run([5.0, 5.0]);
+    bench.pose.rate_rps = [0.0, 0.0, 20.0];
+    for sample in 1..=200_u16 {
+        let end_rad = 20.0 * f64::from(sample) * 0.005;
+        let (sin, cos) = (end_rad - 0.05).sin_cos();
+        let mean = 2.0 * 0.05_f64.sin() / 0.05;
+        bench.accel_mps2 = [(mean * cos) as f32, (-mean * sin) as f32, GRAVITY_MPS2];
+        bench.pose.orientation = turned_left(end_rad);
+        bench.sample();
+    }
+    assert_close(bench.velocity_mps(), [2.0, 0.0, 0.0], 0.02);
+}
+
 /// Somebody carries the robot off, its wheels stand: they explain no force.
 #[test]
 fn standing_wheels_accelerate_nothing() {
@@ -378,14 +407,8 @@ fn a_circle_is_no_tilt() {
     bench.accel_mps2 = [0.0, 2.0, GRAVITY_MPS2];
     bench.pose.rate_rps = [0.0, 0.0, 2.0];
     bench.wheels_run([0.58, 1.42]);
-    for sample in 1..=1_000 {
-        let half = 0.5 * 2.0 * DT_S * sample as f32;
-        bench.pose.orientation = Quaternion {
-            w: half.cos(),
-            x: 0.0,
-            y: 0.0,
-            z: half.sin(),
-        };
+    for sample in 1..=1_000_u16 {
+        bench.pose.orientation = turned_left(2.0 * 0.005 * f64::from(sample));
         bench.sample();
         assert_close(bench.motion.kinematic_mps2(), [0.0, 2.0, 0.0], 0.1);
     }
