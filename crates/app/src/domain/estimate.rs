@@ -8,8 +8,8 @@ pub struct StateEstimate {
     pub q_wxyz: [f32; 4],
     /// Roll, pitch, yaw from `q_wxyz`, for display only: wraps at ±π.
     pub rpy_rad: [f32; 3],
-    /// World frame, of the middle of the axle: the accelerometer's, corrected by the wheels that roll. With no wheel to
-    /// believe for 2 s it fades to zero.
+    /// World frame, of the middle of the axle: the accelerometer's, corrected by the wheels that roll. With no wheel
+    /// heard for 2 s it fades to zero.
     pub vel_mps: [f32; 3],
     /// World frame, from where the robot booted: `vel_mps` added up.
     pub pos_m: [f32; 3],

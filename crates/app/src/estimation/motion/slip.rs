@@ -1,7 +1,7 @@
 //! Does one wheel roll, or does it spin or slide?
 //!
-//! The filter forgets what the wheels said with a time constant T (1/3.9 s), so a wheel that gains on the accelerometer by
-//! a m/s² for good is a·T ahead of it: comparing speeds against a limit compares accelerations against limit / T,
+//! The filter forgets what the wheels said with a time constant T (1/3.9 s), so a wheel that gains on the accelerometer
+//! by a m/s² for good is a·T ahead of it: comparing speeds against a limit compares accelerations against limit / T,
 //! 1.2 m/s², without taking the derivative of a speed.
 
 /// A wheel further than this from the speed known otherwise slips.
