@@ -281,6 +281,11 @@ impl Machine {
         }
     }
 
+    /// When the last control tick that is over was entered.
+    pub fn last_tick(&self) -> Option<Ps> {
+        self.cpu.stats().last_tick(self.cpu.now())
+    }
+
     pub fn resets(&self) -> usize {
         self.resets.len()
     }

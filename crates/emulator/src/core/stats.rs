@@ -9,6 +9,8 @@ use crate::{
     machine::Distribution,
 };
 
+/// The 12,000 instructions that a tick may take, in as many cycles.
+const TICK_LASTS: Ps = 72 * US;
 /// The control tick's period.
 const TICK: Ps = MS;
 const JITTER_BIN: Ps = US / 2;
@@ -125,6 +127,12 @@ impl Execution {
 
     pub fn tick_count(&self) -> u64 {
         self.ticks.len() as u64
+    }
+
+    /// When the last tick was entered that is over by `now`; one takes at most [`TICK_LASTS`].
+    pub fn last_tick(&self, now: Ps) -> Option<Ps> {
+        let over = |tick: &&TickEntry| tick.at + TICK_LASTS <= now;
+        self.ticks.iter().rev().find(over).map(|tick| tick.at)
     }
 
     /// Periods in which no tick came.
@@ -246,6 +254,18 @@ mod tests {
         run.rebooted();
         run.tick_entered(90_000 * US, control);
         assert_eq!(run.missed_ticks(), 1, "none is due while the chip boots");
+    }
+
+    #[test]
+    fn the_last_tick_is_the_last_that_is_over() {
+        let mut run = Execution::default();
+        assert_eq!(run.last_tick(MS), None);
+        let control = Exception::from_irq(53);
+        for tick in 1..=3 {
+            run.tick_entered(tick * MS, control);
+        }
+        assert_eq!(run.last_tick(3 * MS + 10 * US), Some(2 * MS));
+        assert_eq!(run.last_tick(3 * MS + 80 * US), Some(3 * MS));
     }
 
     #[test]

@@ -29,7 +29,7 @@ pub trait Board {
     fn diag_meanings(&mut self) -> Vec<Option<Meaning>>;
     /// False while the firmware's diagnostics cannot be read whole.
     fn sample_diag(&mut self, out: &mut Vec<f64>) -> bool;
-    /// Total, heading and inclination error in degrees; `None` in a gap of the reference.
+    /// Total, heading and inclination error of the last tick's estimate in degrees; `None` in a gap of the reference.
     fn attitude_error_deg(&mut self, q_wxyz: [f64; 4]) -> Option<[f64; 3]>;
     fn take_log(&mut self) -> Vec<LogLine>;
     /// All that was measured; takes its time in a long run.
@@ -98,7 +98,8 @@ impl Board for Machine {
     }
 
     fn attitude_error_deg(&mut self, q_wxyz: [f64; 4]) -> Option<[f64; 3]> {
-        self.with_world(|world| world.attitude_error_deg(q_wxyz))
+        let estimated_at = self.last_tick()?;
+        self.with_world(|world| world.past_attitude_error_deg(q_wxyz, estimated_at))
     }
 
     fn take_log(&mut self) -> Vec<LogLine> {

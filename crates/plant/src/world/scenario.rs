@@ -8,6 +8,7 @@ use crate::{
     ist8310::MagFaults,
     joints::DriveFaults,
     m3508::EscFaults,
+    time::Ps,
 };
 
 impl World {
@@ -92,6 +93,14 @@ impl World {
     /// `[total, heading, inclination]`; `None` in a gap of the reference and for a quaternion that is none.
     pub fn attitude_error_deg(&self, q_wxyz: [f64; 4]) -> Option<[f64; 3]> {
         attitude::error_deg(q_wxyz, self.true_attitude()?)
+    }
+
+    /// That of an estimate made at `at`, a little ago. What is not recorded is not remembered: it counts as it is now.
+    pub fn past_attitude_error_deg(&self, q_wxyz: [f64; 4], at: Ps) -> Option<[f64; 3]> {
+        match &self.playback {
+            Some(playback) => attitude::error_deg(q_wxyz, playback.reference(at)?),
+            None => self.attitude_error_deg(q_wxyz),
+        }
     }
 
     pub(super) fn true_attitude(&self) -> Option<Quaternion> {
