@@ -1,5 +1,7 @@
 //! Which headings are believed, how far, and when what was believed is doubted.
 
+mod moving;
+
 use super::*;
 use crate::{
     estimation::{
@@ -188,6 +190,19 @@ fn short_disturbances_do_not_add_up() {
         }
         robot.believe(4.0);
     }
+}
+
+/// Of the right direction, but a fifth too strong: no more than a hint that it is not the earth's.
+#[test]
+fn a_magnet_that_points_north_is_not_believed_either() {
+    let mut robot = Robot::aligned(1.0);
+    robot.strapdown.rate_rps = [0.0, 1.0, 0.0];
+    robot.believe(10.0);
+    let report = robot.window_of(EARTH_UT.map(|part| 1.2 * part), SURE);
+    assert!(report.heading.is_none() && report.doubt == 0.0);
+    assert!(robot.window(0.0, SURE).heading.is_none());
+    robot.window(0.0, SURE);
+    assert!(robot.window(0.0, SURE).heading.is_some());
 }
 
 #[test]

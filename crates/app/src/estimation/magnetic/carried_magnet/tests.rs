@@ -106,6 +106,22 @@ fn without_a_turn_nothing_is_found() {
     assert_eq!(robot.found_ut(), [0.0; 3]);
 }
 
+/// A robot that only balances, in a room whose field differs by a few µT from place to place.
+#[test]
+fn too_little_turning_shows_next_to_nothing() {
+    let mut robot = Robot::new([0.0; 3]);
+    let mut places = Random::new(7);
+    let mut worst_ut = 0.0_f64;
+    for _ in 0..60 {
+        robot.passing_ut = places.normals(1.5);
+        let [roll, pitch, _] = places.normals(0.04);
+        robot.run(10.0, |t| Rotation::by([roll, pitch + 0.04 * t.sin(), 0.0]));
+        worst_ut = worst_ut.max(robot.error_ut());
+    }
+    println!("{worst_ut:.2} µT");
+    assert!(worst_ut < 3.0, "{worst_ut}");
+}
+
 /// Turned about up alone, a vertical magnet is not to be told from the earth.
 #[test]
 fn nothing_is_found_about_an_axis_that_never_tilts() {
@@ -117,7 +133,7 @@ fn nothing_is_found_about_an_axis_that_never_tilts() {
     robot.run(300.0, driving);
     let [x, y, z] = robot.found_ut();
     assert!(
-        (4.0..12.0).contains(&x) && y.abs() < 0.5 && z.abs() < 0.5,
+        (4.0..8.0).contains(&x) && y.abs() < 0.5 && z.abs() < 0.5,
         "{x} {y} {z}"
     );
 }
@@ -126,9 +142,17 @@ fn nothing_is_found_about_an_axis_that_never_tilts() {
 fn a_magnet_that_is_passed_is_not_carried() {
     let mut robot = Robot::new([0.0; 3]);
     robot.run(60.0, tumbling);
-    for passing_ut in [[20.0, 0.0, 0.0], [0.0, 30.0, 0.0], [-10.0, -15.0, 25.0]] {
+    for passing_ut in [
+        [20.0, 0.0, 0.0],
+        [0.0, 80.0, 0.0],
+        [-60.0, -60.0, 25.0],
+        [0.0, 0.0, -90.0],
+    ] {
         robot.passing_ut = passing_ut;
         robot.run(10.0, tumbling);
+        // It stops beside it.
+        let standing = tumbling(robot.time_s);
+        robot.run(20.0, |_| standing);
         assert_eq!(robot.found_ut(), [0.0; 3], "{passing_ut:?}");
         robot.passing_ut = [0.0; 3];
         robot.run(20.0, tumbling);
@@ -140,7 +164,7 @@ fn a_magnet_that_is_passed_is_not_carried() {
 fn one_that_is_carried_is_still_found_after_one_that_was_passed() {
     let mut robot = Robot::new([10.0, 0.0, 0.0]);
     robot.run(120.0, tumbling);
-    robot.passing_ut = [25.0, 0.0, 10.0];
+    robot.passing_ut = [90.0, 0.0, 40.0];
     robot.run(10.0, tumbling);
     robot.passing_ut = [0.0; 3];
     robot.run(60.0, tumbling);
