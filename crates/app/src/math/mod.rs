@@ -1,11 +1,9 @@
 //! Single-precision arithmetic that `core` lacks: the `libm` crate computes in double precision, which this
 //! processor has no hardware for.
 
-pub mod matrix;
 pub mod quaternion;
 pub mod scalar;
 pub mod vector;
 
-pub use matrix::Matrix3;
 pub use quaternion::Quaternion;
 pub use vector::Vector3;

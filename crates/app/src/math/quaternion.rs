@@ -27,6 +27,19 @@ impl Quaternion {
     pub fn from_rotation(angle_rad: Vector3) -> Self {
         let half = vector::scale(angle_rad, 0.5);
         let s = vector::dot(half, half);
+        // A tenth of a radian needs two terms.
+        if s > 0.01 {
+            return Self::from_large_rotation(half, s);
+        }
+        let w = 1.0 - s * (1.0 / 2.0 - s * (1.0 / 24.0));
+        let sinc = 1.0 - s * (1.0 / 6.0 - s * (1.0 / 120.0));
+        let [x, y, z] = vector::scale(half, sinc);
+        Self { w, x, y, z }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn from_large_rotation(half: Vector3, s: f32) -> Self {
         let w = 1.0 - s / 2.0 * (1.0 - s / 12.0 * (1.0 - s / 30.0));
         let sinc = 1.0 - s / 6.0 * (1.0 - s / 20.0 * (1.0 - s / 42.0));
         let [x, y, z] = vector::scale(half, sinc);

@@ -1,42 +1,41 @@
 //! How sure the filter is, and of what: the covariance of its seventeen errors.
 //!
-//! Five fast errors (three angles about ENU, two speeds) and twelve slow ones (gyro bias and misalignment), kept as the
-//! three blocks of the symmetric matrix. All blocks are stored in full, so that every operation runs along rows.
+//! Three angles about ENU, two speeds, then the twelve of the gyro model. The symmetric matrix is stored in full, so that
+//! every operation runs along rows.
+
+use core::ops::Range;
 
 use super::{
+    error_filter::Finding,
     rows,
     window::{PARAMETERS, Parameters},
 };
 use crate::{estimation::magnetic::Certainty, math::scalar};
 
-/// Angles about east, north and up in rad, speed east and north in m/s.
-pub(super) const FAST: usize = 5;
-pub(super) type Fast = [f32; FAST];
-
-/// One correction of all that is estimated.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Correction {
-    pub fast: Fast,
-    pub parameters: Parameters,
-}
+/// Angles about east, north and up in rad, speed east and north in m/s, gyro bias and misalignment.
+pub(super) const ERRORS: usize = 17;
+pub(super) type Row = [f32; ERRORS];
+pub(super) const UP: usize = 2;
+pub(super) const SPEED: usize = 3;
+pub(super) const BIAS: usize = 5;
+const MISALIGNMENT: usize = 8;
 
 #[derive(Clone, Debug)]
 pub(super) struct Covariance {
-    pub fast: [Fast; FAST],
-    /// Fast error (row) with slow error (column).
-    pub cross: [Parameters; FAST],
-    pub slow: [Parameters; PARAMETERS],
+    pub rows: [Row; ERRORS],
 }
 
-/// A column of the covariance: what one error has to do with all others.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Column {
-    pub fast: Fast,
-    pub slow: Parameters,
-    /// Its own variance.
-    pub variance: f32,
+/// A measurement of one error that is being learnt from, in two pieces of work.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Lesson {
+    /// What the measured error has to do with all others.
+    column: Row,
+    /// Of the innovation's variance.
+    inverse: f32,
 }
 
+/// Rows that the first piece of work covers.
+const FIRST_PIECE: usize = 8;
 /// An innovation beyond so many standard deviations counts as that many.
 const MAX_INNOVATION: f32 = 5.0;
 
@@ -45,145 +44,162 @@ const DEG: f32 = 1.0_f32.to_radians();
 pub(super) const FIRST_ANGLE: f32 = (10.0 * DEG) * (10.0 * DEG);
 const FIRST_SPEED: f32 = 1.0;
 const FIRST_BIAS: f32 = (3.0 * DEG) * (3.0 * DEG);
-/// Below this a variance has no meaning in single precision.
-pub(super) const LEAST_VARIANCE: f32 = 1e-12;
 const FIRST_MISALIGNMENT: f32 = 0.006 * 0.006;
+/// Below this a variance has no meaning in single precision.
+const LEAST_VARIANCE: f32 = 1e-12;
 
 impl Covariance {
-    #[inline(never)]
-    pub fn new() -> Self {
-        let mut new = Self {
-            fast: [[0.0; FAST]; FAST],
-            cross: [[0.0; PARAMETERS]; FAST],
-            slow: [[0.0; PARAMETERS]; PARAMETERS],
-        };
-        for (index, row) in new.fast.iter_mut().enumerate() {
-            let first = if index < 3 { FIRST_ANGLE } else { FIRST_SPEED };
-            set(row, index, first);
+    pub const fn new() -> Self {
+        Self {
+            rows: [[0.0; ERRORS]; ERRORS],
         }
-        for (index, row) in new.slow.iter_mut().enumerate() {
-            let first = if index < 3 {
-                FIRST_BIAS
-            } else {
-                FIRST_MISALIGNMENT
-            };
-            set(row, index, first);
-        }
-        new
     }
 
-    /// The angles about ENU may be off by this much more than known so far, rad².
-    pub fn doubt_angles(&mut self, more: [f32; 3]) {
-        for (index, (row, more)) in self.fast.iter_mut().zip(more).enumerate() {
+    /// Nothing is known.
+    #[inline(never)]
+    pub fn restart(&mut self) {
+        for (index, row) in self.rows.iter_mut().enumerate() {
+            *row = [0.0; ERRORS];
             if let Some(variance) = row.get_mut(index) {
-                *variance += more;
+                *variance = match index {
+                    ..SPEED => FIRST_ANGLE,
+                    SPEED..BIAS => FIRST_SPEED,
+                    BIAS..MISALIGNMENT => FIRST_BIAS,
+                    MISALIGNMENT.. => FIRST_MISALIGNMENT,
+                };
             }
         }
+    }
+
+    /// The errors from `first` on are larger by these variances than known so far; rounding must not make one vanish.
+    #[inline(never)]
+    pub fn doubt(&mut self, first: usize, more: &[f32]) {
+        for (index, more) in (first..).zip(more) {
+            if let Some(variance) = self.variance_mut(index) {
+                *variance = scalar::max(*variance + more, LEAST_VARIANCE);
+            }
+        }
+    }
+
+    fn variance_mut(&mut self, index: usize) -> Option<&mut f32> {
+        self.rows.get_mut(index)?.get_mut(index)
     }
 
     /// The gyro bias is another one from now on, known as well as `variance` says.
+    #[inline(never)]
     pub fn replace_bias(&mut self, variance: f32) {
-        for row in &mut self.cross {
-            let [x, y, z, ..] = row;
+        for (index, row) in self.rows.iter_mut().enumerate() {
+            if (BIAS..MISALIGNMENT).contains(&index) {
+                row.fill(0.0);
+            }
+            let [_, _, _, _, _, x, y, z, ..] = row;
             (*x, *y, *z) = (0.0, 0.0, 0.0);
         }
-        for (index, row) in self.slow.iter_mut().enumerate() {
-            if index < 3 {
-                *row = [0.0; PARAMETERS];
-                set(row, index, variance);
-            } else {
-                let [x, y, z, ..] = row;
-                (*x, *y, *z) = (0.0, 0.0, 0.0);
-            }
-        }
+        self.doubt(BIAS, &[variance; 3]);
     }
 
     pub fn certainty(&self) -> Certainty {
-        let [[x, ..], [_, y, ..], [_, _, z, ..], ..] = self.fast;
+        let [x, y, heading] = self.variances(0);
         Certainty {
             tilt: scalar::max(x, y),
-            heading: z,
+            heading,
         }
     }
 
-    /// Of the gyro bias.
-    pub const fn bias_variances(&self) -> [f32; 3] {
-        let [[x, ..], [_, y, ..], [_, _, z, ..], ..] = self.slow;
-        [x, y, z]
+    /// Of three errors from `first` on.
+    pub fn variances(&self, first: usize) -> [f32; 3] {
+        let mut found = [0.0; 3];
+        for (index, to) in (first..).zip(&mut found) {
+            let variance = self.rows.get(index).and_then(|row| row.get(index));
+            *to = variance.copied().unwrap_or_default();
+        }
+        found
     }
 
-    /// The bias is another one after a while; rounding must not make a variance vanish.
+    /// The bias is another one after a while, unless nothing is known of it anyway.
     pub fn wander(&mut self, bias_noise: f32) {
-        for (index, row) in self.slow.iter_mut().enumerate() {
-            let Some(variance) = row.get_mut(index) else {
-                continue;
-            };
-            if index < 3 && *variance < FIRST_BIAS {
-                *variance += bias_noise;
+        let more = self.variances(BIAS).map(|variance| {
+            if variance < FIRST_BIAS {
+                bias_noise
+            } else {
+                0.0
             }
-            *variance = scalar::max(*variance, LEAST_VARIANCE);
+        });
+        self.doubt(BIAS, &more);
+        self.doubt(MISALIGNMENT, &[0.0; PARAMETERS - 3]);
+    }
+
+    /// The fast rows have changed: the rows of the gyro model have the same in their columns.
+    pub fn mirror(&mut self) {
+        for done in 1..=BIAS {
+            let Some((changed, others)) = self.rows.split_at_mut_checked(done) else {
+                return;
+            };
+            let Some(from) = changed.last() else {
+                return;
+            };
+            for (row, value) in others.iter_mut().zip(from.iter().skip(done)) {
+                if let Some(place) = row.get_mut(done.saturating_sub(1)) {
+                    *place = *value;
+                }
+            }
         }
     }
 
-    pub fn fast_column(&self, index: usize) -> Option<Column> {
-        let (fast, slow) = (*self.fast.get(index)?, *self.cross.get(index)?);
-        Some(Column {
-            fast,
-            slow,
-            variance: *fast.get(index)?,
-        })
-    }
-
-    pub fn slow_column(&self, index: usize) -> Option<Column> {
-        let slow = *self.slow.get(index)?;
-        let mut fast = [0.0; FAST];
-        for (to, row) in fast.iter_mut().zip(&self.cross) {
-            *to = *row.get(index)?;
-        }
-        Some(Column {
-            fast,
-            slow,
-            variance: *slow.get(index)?,
-        })
-    }
-
-    /// Learns from a measurement of one error, `innovation` off with variance `noise`. False if the covariance has
-    /// broken down.
+    /// The first piece of learning from a measurement of the error `index`; `correction` is what was learnt so far. False
+    /// if the covariance has broken down.
     #[must_use]
-    pub fn observe(
+    #[inline(never)]
+    pub fn begin_lesson(
         &mut self,
-        column: &Column,
-        innovation: f32,
-        noise: f32,
-        correction: &mut Correction,
+        index: usize,
+        finding: &Finding,
+        correction: &mut Row,
+        lesson: &mut Lesson,
     ) -> bool {
-        let spread = column.variance + noise;
+        let (Some(column), Some(so_far)) = (self.rows.get(index), correction.get(index)) else {
+            return false;
+        };
+        lesson.column = *column;
+        let variance = column.get(index).copied().unwrap_or_default();
+        let innovation = finding.innovation - so_far;
+        let spread = variance + finding.noise;
         // Also false for NaN.
-        let sound = column.variance >= 0.0 && spread.is_normal();
+        let sound = variance >= 0.0 && spread.is_normal();
         if !sound {
             return false;
         }
-        let inverse = 1.0 / spread;
-        let mut gain = innovation * inverse;
+        lesson.inverse = 1.0 / spread;
+        let mut gain = innovation * lesson.inverse;
         if innovation * gain > MAX_INNOVATION * MAX_INNOVATION {
             let limit = MAX_INNOVATION * scalar::inverse_sqrt(spread);
             gain = if gain > 0.0 { limit } else { -limit };
         }
-        rows::add_weighted(&mut correction.parameters, &[gain], &[column.slow]);
-        rows::add_fast(&mut correction.fast, gain, &column.fast);
-        for (row, weight) in self.fast.iter_mut().zip(column.fast) {
-            rows::add_fast(row, -weight * inverse, &column.fast);
-        }
-        rows::subtract_product(&mut self.cross, &column.fast, inverse, &column.slow);
-        rows::subtract_product(&mut self.slow, &column.slow, inverse, &column.slow);
+        rows::add(correction, gain, &lesson.column);
+        self.learn(lesson, 0..FIRST_PIECE);
         true
+    }
+
+    /// The second piece.
+    pub fn end_lesson(&mut self, lesson: &Lesson) {
+        self.learn(lesson, FIRST_PIECE..ERRORS);
+    }
+
+    #[inline(never)]
+    fn learn(&mut self, lesson: &Lesson, piece: Range<usize>) {
+        let weights = lesson.column.get(piece.clone());
+        if let (Some(rows), Some(weights)) = (self.rows.get_mut(piece), weights) {
+            for (row, weight) in rows.iter_mut().zip(weights) {
+                rows::add(row, -weight * lesson.inverse, &lesson.column);
+            }
+        }
     }
 }
 
-fn set<const N: usize>(row: &mut [f32; N], index: usize, value: f32) {
-    if let Some(place) = row.get_mut(index) {
-        *place = value;
-    }
+/// The part of a row that belongs to the gyro model.
+pub(super) const fn parameters(row: &Row) -> &Parameters {
+    let [_, _, _, _, _, parameters @ ..] = row;
+    parameters
 }
 
 #[cfg(test)]

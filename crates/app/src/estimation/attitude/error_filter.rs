@@ -4,7 +4,7 @@
 //! moment at which it is applied.
 
 use super::{
-    covariance::{Column, Correction, Covariance},
+    covariance::{BIAS, Covariance, Lesson, Row, SPEED, UP, parameters},
     forecast::Forecast,
     rows,
     strapdown::GyroModel,
@@ -13,160 +13,123 @@ use super::{
 use crate::math::{Vector3, vector};
 
 /// What was measured at the end of a window, less what was believed then.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Findings {
-    /// East and north.
-    pub speed: [Finding; 2],
-    /// About up.
-    pub heading: Option<Finding>,
-    /// Gyro bias by axis, at rest.
-    pub bias: Option<[Finding; 3]>,
-}
-
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(in crate::estimation) struct Finding {
     pub innovation: f32,
     /// Variance.
     pub noise: f32,
 }
 
+/// Of speed east and north, heading, gyro bias by axis.
+pub(super) type Findings = [Option<Finding>; 6];
+/// The errors that they are of.
+const MEASURED: [usize; 6] = [SPEED, SPEED + 1, UP, BIAS, BIAS + 1, BIAS + 2];
+
+/// One correction of all that is estimated.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Correction {
+    errors: Row,
+}
+
 #[derive(Clone, Debug)]
 pub(super) struct ErrorFilter {
     pub covariance: Covariance,
-    work: Option<Work>,
-}
-
-#[derive(Clone, Debug)]
-struct Work {
+    /// The window that is worked off: pieces of work done, none once all are.
+    done: Option<u8>,
     forecast: Forecast,
     findings: Findings,
+    lesson: Lesson,
     correction: Correction,
-    done: u8,
 }
-
-const UP: usize = 2;
-const SPEED: usize = 3;
 
 impl ErrorFilter {
     pub fn new() -> Self {
+        let mut covariance = Covariance::new();
+        covariance.restart();
         Self {
-            covariance: Covariance::new(),
-            work: None,
+            covariance,
+            done: None,
+            forecast: Forecast::default(),
+            findings: Findings::default(),
+            lesson: Lesson::default(),
+            correction: Correction::default(),
         }
     }
 
     /// Nothing is known of the errors any more.
     #[cold]
-    #[inline(never)]
     pub fn restart(&mut self) {
-        self.work = None;
-        self.covariance = Covariance::new();
+        self.done = None;
+        self.covariance.restart();
     }
 
     pub fn begin(&mut self, window: &Window, findings: Findings) {
-        self.work = Some(Work {
-            forecast: Forecast::new(window),
-            findings,
-            correction: Correction::default(),
-            done: 0,
-        });
+        self.forecast.begin(window);
+        self.findings = findings;
+        self.correction = Correction::default();
+        self.done = Some(0);
     }
 
     /// Does the next piece. The correction once all is done.
-    pub fn continue_work(&mut self) -> Option<Correction> {
-        let work = self.work.as_mut()?;
-        let done = work.done;
-        work.done = done.saturating_add(1);
-        let covariance = &mut self.covariance;
-        let sound = match done {
-            0..3 => {
-                work.forecast.turn_axis(usize::from(done), covariance);
-                true
-            }
-            3 => {
-                work.forecast.relate(covariance);
-                true
-            }
-            4 => {
-                work.forecast.carry_fast(covariance);
-                true
-            }
-            5 => {
-                work.forecast.carry_cross(covariance);
-                true
-            }
-            6 => work.take_speed(covariance, 0),
-            7 => work.take_speed(covariance, 1),
-            8 => work.take_heading(covariance),
-            9..12 => work.take_bias(covariance, usize::from(done).saturating_sub(9)),
+    pub fn continue_work(&mut self) -> Option<&Correction> {
+        let done = self.done?;
+        self.done = Some(done.saturating_add(1));
+        match done {
+            0..3 => self.forecast.turn_axis(done.into(), &self.covariance),
+            3 => self.forecast.carry_rows(&mut self.covariance),
+            4 => self.forecast.carry_columns(&mut self.covariance),
+            5 => self.forecast.add_noise(&mut self.covariance),
+            6..18 => self.learn(done.saturating_sub(6)),
             _ => {
-                let correction = work.correction;
-                self.work = None;
-                return Some(correction);
+                self.done = None;
+                return Some(&self.correction);
             }
-        };
-        if !sound {
-            self.restart();
         }
         None
     }
-}
 
-impl Work {
-    fn take_speed(&mut self, covariance: &mut Covariance, axis: usize) -> bool {
-        let index = SPEED.saturating_add(axis);
-        let finding = self.findings.speed.get(axis).copied();
-        let so_far = self.correction.fast.get(index).copied();
-        self.take(covariance, covariance.fast_column(index), finding, so_far)
-    }
-
-    fn take_heading(&mut self, covariance: &mut Covariance) -> bool {
-        let so_far = self.correction.fast.get(UP).copied();
-        let finding = self.findings.heading;
-        self.take(covariance, covariance.fast_column(UP), finding, so_far)
-    }
-
-    fn take_bias(&mut self, covariance: &mut Covariance, axis: usize) -> bool {
-        let finding = self.findings.bias.and_then(|bias| bias.get(axis).copied());
-        let so_far = self.correction.parameters.get(axis).copied();
-        self.take(covariance, covariance.slow_column(axis), finding, so_far)
-    }
-
-    fn take(
-        &mut self,
-        covariance: &mut Covariance,
-        column: Option<Column>,
-        finding: Option<Finding>,
-        so_far: Option<f32>,
-    ) -> bool {
-        let (Some(column), Some(finding), Some(so_far)) = (column, finding, so_far) else {
-            return true;
+    /// Each finding in two pieces.
+    fn learn(&mut self, piece: u8) {
+        let order = usize::from(piece / 2);
+        let (Some(Some(finding)), Some(error)) = (self.findings.get(order), MEASURED.get(order))
+        else {
+            return;
         };
-        let innovation = finding.innovation - so_far;
-        covariance.observe(&column, innovation, finding.noise, &mut self.correction)
+        if !piece.is_multiple_of(2) {
+            self.covariance.end_lesson(&self.lesson);
+            return;
+        }
+        let (correction, lesson) = (&mut self.correction.errors, &mut self.lesson);
+        if !self
+            .covariance
+            .begin_lesson(*error, finding, correction, lesson)
+        {
+            self.restart();
+        }
     }
 }
 
 impl Correction {
     /// What it has grown to since its window ended: `window` is the one that fills now.
     pub fn carried_through(&self, window: &Window) -> (Vector3, [f32; 2]) {
-        let [x, y, z, mut east, mut north] = self.fast;
-        let [ax, ay, az] = window.accel_mps2();
+        let [x, y, z, east, north, ..] = self.errors;
         let t = window.duration_s;
-        east += t * (y * az - z * ay);
-        north += t * (z * ax - x * az);
-        let mut turned = [0.0; 3];
-        rows::products(&self.parameters, &window.turn_by_parameter, &mut turned);
-        (vector::add([x, y, z], turned), [east, north])
+        let [ax, ay, az] = vector::scale(window.accel_mps2(), t);
+        let speed_mps = [east + y * az - z * ay, north + z * ax - x * az];
+        let turned = window
+            .turn_by_parameter
+            .each_ref()
+            .map(|turn| rows::product(parameters(&self.errors), turn));
+        (vector::add([x, y, z], turned), speed_mps)
     }
 
     /// Adds the slow part to the model of the gyro.
     pub fn add_to(&self, model: &mut GyroModel) {
-        let [bx, by, bz, xx, xy, xz, yx, yy, yz, zx, zy, zz] = self.parameters;
-        model.bias_rps = vector::add(model.bias_rps, [bx, by, bz]);
-        let rows = [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]];
-        for (row, by) in model.misalignment.iter_mut().zip(rows) {
-            *row = vector::add(*row, by);
+        let [_, _, _, _, _, bx, by, bz, misalignment @ ..] = &self.errors;
+        model.bias_rps = vector::add(model.bias_rps, [*bx, *by, *bz]);
+        let parts = model.misalignment.as_flattened_mut().iter_mut();
+        for (part, more) in parts.zip(misalignment) {
+            *part += more;
         }
     }
 }

@@ -6,12 +6,12 @@ mod forecast;
 mod rest;
 mod rows;
 mod strapdown;
-mod window;
 #[cfg(test)]
 mod tests;
+mod window;
 
 use self::{
-    covariance::FIRST_ANGLE,
+    covariance::{BIAS, FIRST_ANGLE, UP},
     error_filter::{ErrorFilter, Findings},
     rest::RestDetector,
     window::Window,
@@ -141,7 +141,7 @@ impl AttitudeFilter {
         }
         let t = self.window.duration_s;
         let field = self.magnetic.close(t, self.filter.covariance.certainty());
-        self.filter.covariance.doubt_angles([0.0, 0.0, field.doubt]);
+        self.filter.covariance.doubt(UP, &[field.doubt]);
         let rest_rate = self
             .rest
             .close(field.body_ut)
@@ -156,18 +156,17 @@ impl AttitudeFilter {
         if let Some(turn_rad) = field.first_heading_rad {
             self.turn_to_north(turn_rad);
         }
-        let findings = Findings {
-            speed: self.speed_findings(rest_rate.is_some()),
-            heading: field.heading,
-            bias: rest_rate.map(|rate| self.bias_findings(rate)),
-        };
+        let [east, north] = self.speed_findings(rest_rate.is_some());
+        let bias = rest_rate.map(|rate| self.bias_findings(rate).map(Some));
+        let [x, y, z] = bias.unwrap_or_default();
+        let findings: Findings = [Some(east), Some(north), field.heading, x, y, z];
         self.filter.begin(&self.window, findings);
         self.window = Window::new();
         true
     }
 
     fn bias_is_unknown(&self) -> bool {
-        let [x, y, z] = self.filter.covariance.bias_variances();
+        let [x, y, z] = self.filter.covariance.variances(BIAS);
         x + y + z > UNKNOWN_BIAS
     }
 
@@ -204,7 +203,7 @@ impl AttitudeFilter {
         let beyond = self.strapdown.gyro.corrected(rate_rps);
         beyond
             .iter()
-            .zip(self.filter.covariance.bias_variances())
+            .zip(self.filter.covariance.variances(BIAS))
             .all(|(rate, variance)| {
                 rate * rate < REST_RATE_RPS * REST_RATE_RPS + REST_RATE_DEVIATIONS2 * variance
             })
@@ -283,6 +282,6 @@ impl AttitudeFilter {
         self.clipped_s = 0.0;
         self.rest.restart();
         self.magnetic.restart();
-        self.filter.covariance.doubt_angles([FIRST_ANGLE; 3]);
+        self.filter.covariance.doubt(0, &[FIRST_ANGLE; 3]);
     }
 }

@@ -1,8 +1,7 @@
 //! The whole attitude filter in single precision over hours of rest and motion.
 
 use super::{
-    covariance::{Covariance, FAST},
-    window::PARAMETERS,
+    covariance::{Covariance, ERRORS},
     *,
 };
 use crate::estimation::testing::{Random, Rotation, to_f32};
@@ -10,7 +9,7 @@ use crate::estimation::testing::{Random, Rotation, to_f32};
 const DT_S: f64 = 0.005;
 const HOURS: u32 = 2;
 const MINUTES: u32 = HOURS * 60;
-const STATES: usize = FAST + PARAMETERS;
+const STATES: usize = ERRORS;
 const EARTH_UT: [f64; 3] = [0.0, 20.0, -45.0];
 const NEVER: Clipped = Clipped {
     accel: false,
@@ -103,14 +102,7 @@ fn bias_error_dps(filter: &AttitudeFilter) -> f64 {
 
 /// In units of the standard deviations: symmetric, and all of it positive (Cholesky's decomposition exists).
 fn assert_sound(covariance: &Covariance, minute: u32) {
-    let entry = |row: usize, column: usize| {
-        f64::from(match (row.checked_sub(FAST), column.checked_sub(FAST)) {
-            (None, None) => covariance.fast[row][column],
-            (None, Some(slow)) => covariance.cross[row][slow],
-            (Some(slow), None) => covariance.cross[column][slow],
-            (Some(row), Some(column)) => covariance.slow[row][column],
-        })
-    };
+    let entry = |row: usize, column: usize| f64::from(covariance.rows[row][column]);
     let share = |row: usize, column: usize| {
         entry(row, column) / (entry(row, row) * entry(column, column)).sqrt()
     };
@@ -146,7 +138,7 @@ fn hours_of_rest_and_motion_keep_the_filter_sound() {
         let resting = minute % 2 == 0;
         world.minute(&mut filter, resting);
         assert_sound(&filter.filter.covariance, minute);
-        let variances = filter.filter.covariance.bias_variances();
+        let variances = filter.filter.covariance.variances(BIAS);
         let sure = variances.iter().all(|variance| variance.sqrt() < 0.5 * DEG);
         assert!(sure, "minute {minute}: started anew: {variances:?}");
         if minute > 3 {

@@ -5,18 +5,9 @@ use super::*;
 /// Everything depends on everything.
 fn full() -> Covariance {
     let mut covariance = Covariance::new();
-    for (row, fast) in covariance.fast.iter_mut().enumerate() {
-        for (column, entry) in fast.iter_mut().enumerate() {
-            *entry += 1e-3 * (row + column) as f32;
-        }
-    }
-    for (row, cross) in covariance.cross.iter_mut().enumerate() {
-        for (column, entry) in cross.iter_mut().enumerate() {
-            *entry = 1e-4 * (1 + row + 7 * column) as f32;
-        }
-    }
-    for (row, slow) in covariance.slow.iter_mut().enumerate() {
-        for (column, entry) in slow.iter_mut().enumerate() {
+    covariance.restart();
+    for (row, entries) in covariance.rows.iter_mut().enumerate() {
+        for (column, entry) in entries.iter_mut().enumerate() {
             *entry += 1e-5 * (1 + row + column) as f32;
         }
     }
@@ -28,53 +19,80 @@ fn a_new_bias_has_nothing_to_do_with_what_was_known() {
     let before = full();
     let mut after = before.clone();
     after.replace_bias(0.25);
-    assert_eq!(after.bias_variances(), [0.25; 3]);
-    for row in 0..FAST {
-        assert_eq!(after.cross[row][..3], [0.0; 3]);
-        assert_eq!(after.cross[row][3..], before.cross[row][3..]);
-    }
-    assert_eq!(after.fast, before.fast);
-    for row in 0..PARAMETERS {
-        for column in 0..PARAMETERS {
-            let expected = match (row < 3, column < 3) {
-                (false, false) => before.slow[row][column],
-                _ if row == column => 0.25,
-                _ => 0.0,
+    assert_eq!(after.variances(BIAS), [0.25; 3]);
+    let is_bias = |index: usize| (5..8).contains(&index);
+    for row in 0..ERRORS {
+        for column in 0..ERRORS {
+            let expected = match is_bias(row) || is_bias(column) {
+                false => before.rows[row][column],
+                true if row == column => 0.25,
+                true => 0.0,
             };
-            assert_eq!(after.slow[row][column], expected, "{row}, {column}");
+            assert_eq!(after.rows[row][column], expected, "{row}, {column}");
         }
     }
 }
 
 #[test]
-fn doubt_adds_to_the_angles_alone() {
-    let before = full();
-    let mut after = before.clone();
-    after.doubt_angles([0.1, 0.2, 0.3]);
-    for row in 0..FAST {
-        for column in 0..FAST {
-            let more = match (row, column) {
-                (0, 0) => 0.1,
-                (1, 1) => 0.2,
-                (2, 2) => 0.3,
-                _ => 0.0,
-            };
-            let expected = before.fast[row][column] + more;
-            assert_eq!(after.fast[row][column], expected, "{row}, {column}");
+fn doubt_adds_to_its_errors_alone() {
+    for first in [0, 2, 14] {
+        let before = full();
+        let mut after = before.clone();
+        after.doubt(first, &[0.1, 0.2, 0.3]);
+        for row in 0..ERRORS {
+            for column in 0..ERRORS {
+                let more = match (row, column) {
+                    _ if row != column => 0.0,
+                    (row, _) if row == first => 0.1,
+                    (row, _) if row == first + 1 => 0.2,
+                    (row, _) if row == first + 2 => 0.3,
+                    _ => 0.0,
+                };
+                let expected = before.rows[row][column] + more;
+                assert_eq!(after.rows[row][column], expected, "{row}, {column}");
+            }
         }
     }
-    assert_eq!(after.slow, before.slow);
-    assert_eq!(after.cross, before.cross);
+}
+
+#[test]
+fn rounding_leaves_a_variance() {
+    let mut covariance = Covariance::new();
+    covariance.wander(0.0);
+    assert_eq!(covariance.variances(BIAS), [1e-12; 3]);
+}
+
+#[test]
+fn columns_follow_the_rows_of_angles_and_speeds() {
+    let mut covariance = full();
+    for row in 0..BIAS {
+        for column in row..ERRORS {
+            covariance.rows[row][column] = (100 * row + column) as f32;
+        }
+    }
+    let before = covariance.clone();
+    covariance.mirror();
+    for row in 0..ERRORS {
+        for column in 0..ERRORS {
+            let (least, other) = (row.min(column), row.max(column));
+            let expected = if least < BIAS {
+                (100 * least + other) as f32
+            } else {
+                before.rows[row][column]
+            };
+            assert_eq!(covariance.rows[row][column], expected, "{row}, {column}");
+        }
+    }
 }
 
 #[test]
 fn the_less_sure_of_both_level_axes_counts() {
     let mut covariance = Covariance::new();
-    covariance.fast[0][0] = 1e-4;
-    covariance.fast[1][1] = 3e-4;
-    covariance.fast[2][2] = 2e-2;
+    covariance.rows[0][0] = 1e-4;
+    covariance.rows[1][1] = 3e-4;
+    covariance.rows[2][2] = 2e-2;
     let Certainty { tilt, heading } = covariance.certainty();
     assert_eq!((tilt, heading), (3e-4, 2e-2));
-    covariance.fast[0][0] = 5e-4;
+    covariance.rows[0][0] = 5e-4;
     assert_eq!(covariance.certainty().tilt, 5e-4);
 }

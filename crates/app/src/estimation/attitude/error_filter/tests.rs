@@ -7,13 +7,13 @@ mod growth;
 use super::*;
 use crate::{
     estimation::{
-        attitude::{covariance::FAST, strapdown::Carried, window::PARAMETERS},
+        attitude::{covariance::ERRORS, strapdown::Carried, window::PARAMETERS},
         testing::{Random, Rotation, to_f32},
     },
     math::Quaternion,
 };
 
-const STATES: usize = FAST + PARAMETERS;
+const STATES: usize = ERRORS;
 const DT_S: f32 = 0.005;
 const GRAVITY_MPS2: f64 = 9.806_65;
 /// Nothing is learnt from a finding this unsure.
@@ -21,45 +21,22 @@ const IGNORED: Finding = Finding {
     innovation: 0.0,
     noise: 1e12,
 };
-const NO_FINDINGS: Findings = Findings {
-    speed: [IGNORED; 2],
-    heading: None,
-    bias: None,
-};
+const NO_FINDINGS: Findings = [Some(IGNORED), Some(IGNORED), None, None, None, None];
 
 /// Angles, speeds, bias, misalignment.
 fn state(correction: &Correction) -> [f64; STATES] {
-    let mut state = [0.0; STATES];
-    let parts = correction.fast.iter().chain(&correction.parameters);
-    for (to, part) in state.iter_mut().zip(parts) {
-        *to = f64::from(*part);
-    }
-    state
+    correction.errors.map(f64::from)
 }
 
 fn matrix(covariance: &Covariance) -> Vec<Vec<f64>> {
-    (0..STATES)
-        .map(|row| {
-            (0..STATES)
-                .map(|column| entry(covariance, row, column))
-                .collect()
-        })
-        .collect()
-}
-
-fn entry(covariance: &Covariance, row: usize, column: usize) -> f64 {
-    f64::from(match (row.checked_sub(FAST), column.checked_sub(FAST)) {
-        (None, None) => covariance.fast[row][column],
-        (None, Some(slow)) => covariance.cross[row][slow],
-        (Some(slow), None) => covariance.cross[column][slow],
-        (Some(row), Some(column)) => covariance.slow[row][column],
-    })
+    let to_vec = |row: &Row| row.map(f64::from).to_vec();
+    covariance.rows.iter().map(to_vec).collect()
 }
 
 /// All the work on one window. It must end before the next window is full.
 fn finish(filter: &mut ErrorFilter) -> Correction {
     (0..40)
-        .find_map(|_| filter.continue_work())
+        .find_map(|_| filter.continue_work().copied())
         .expect("a correction within 40 samples")
 }
 
@@ -67,10 +44,10 @@ fn finish(filter: &mut ErrorFilter) -> Correction {
 fn a_broken_covariance_starts_anew_without_a_correction() {
     for broken in [-1.0, f32::NAN, f32::INFINITY] {
         let mut filter = ErrorFilter::new();
-        filter.covariance.fast[3][3] = broken;
+        filter.covariance.rows[3][3] = broken;
         filter.begin(&Window::new(), NO_FINDINGS);
         // Not a number is kept by no maximum; a negative variance may be lifted to the least one.
-        let corrections = (0..40).filter_map(|_| filter.continue_work());
+        let corrections = (0..40).filter_map(|_| filter.continue_work().copied());
         for correction in corrections {
             assert!(state(&correction).iter().all(|x| x.is_finite()), "{broken}");
         }

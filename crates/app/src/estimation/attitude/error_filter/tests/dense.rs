@@ -249,37 +249,38 @@ fn hundreds_of_windows_agree_with_the_textbook() {
         } else {
             0.2 * world.random.between(1.0, 8.0)
         };
-        let findings = Findings {
-            speed: [3, 4].map(|index| world.finding(variance(index), speed_noise)),
-            heading: (world.random.share() < 0.7)
-                .then(|| world.finding(variance(2), (20.0 * DEG) * (20.0 * DEG) / 0.2)),
-            bias: resting.then(|| {
-                [5, 6, 7].map(|index| world.finding(variance(index), (0.03 * DEG).powi(2) / 0.2))
-            }),
-        };
+        let north_noise = (20.0 * DEG) * (20.0 * DEG) / 0.2;
+        let heading_known = world.random.share() < 0.7;
+        let measured = [
+            (3, speed_noise, true),
+            (4, speed_noise, true),
+            (2, north_noise, heading_known),
+            (5, (0.03 * DEG).powi(2) / 0.2, resting),
+            (6, (0.03 * DEG).powi(2) / 0.2, resting),
+            (7, (0.03 * DEG).powi(2) / 0.2, resting),
+        ];
+        let findings = measured
+            .map(|(index, noise, known)| known.then(|| world.finding(variance(index), noise)));
         let before: Vec<f64> = (0..STATES).map(|index| variance(index).sqrt()).collect();
         filter.begin(&to_window(&recording), findings);
         let got = state(&finish(&mut filter));
         let mut expected = [0.0; STATES];
-        let [east, north] = findings.speed;
-        dense.observe(3, east, &mut expected);
-        dense.observe(4, north, &mut expected);
-        if let Some(heading) = findings.heading {
-            dense.observe(2, heading, &mut expected);
-        }
-        for (axis, finding) in findings.bias.into_iter().flatten().enumerate() {
-            dense.observe(5 + axis, finding, &mut expected);
+        for ((index, ..), finding) in measured.into_iter().zip(findings) {
+            if let Some(finding) = finding {
+                dense.observe(index, finding, &mut expected);
+            }
         }
         for i in 0..STATES {
             worst_state = worst_state.max((got[i] - expected[i]).abs() / before[i]);
             for j in 0..STATES {
                 let size = (dense.covariance[i][i] * dense.covariance[j][j]).sqrt();
-                let off = entry(&filter.covariance, i, j) - dense.covariance[i][j];
+                let off = f64::from(filter.covariance.rows[i][j]) - dense.covariance[i][j];
                 worst_covariance = worst_covariance.max(off.abs() / size);
             }
         }
     }
     println!("states {worst_state:.1e}, covariance {worst_covariance:.1e} standard deviations off");
-    assert!(worst_state < 3e-3, "{worst_state}");
-    assert!(worst_covariance < 3e-3, "{worst_covariance}");
+    // The window takes two samples at a time, the textbook each by itself; without that 3e-3 are left.
+    assert!(worst_state < 2e-2, "{worst_state}");
+    assert!(worst_covariance < 2e-2, "{worst_covariance}");
 }

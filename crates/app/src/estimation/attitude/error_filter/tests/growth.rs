@@ -18,7 +18,7 @@ impl Twins {
         let mut believed = Strapdown::new();
         believed.attitude = Quaternion::from_rotation([0.4, -0.3, 0.5]);
         let mut real = believed.clone();
-        let [x, y, z, east, north] = correction.fast;
+        let [x, y, z, east, north, ..] = correction.errors;
         real.tilt([x, y, z]);
         real.speed_mps = [east, north];
         correction.add_to(&mut real.gyro);
@@ -74,28 +74,27 @@ fn compare(correction: &Correction, samples: usize, angle_limit: f64, speed_limi
 fn a_wrong_attitude_gains_speed_sideways() {
     for axis in 0..3 {
         let mut correction = Correction::default();
-        correction.fast[axis] = 0.01;
-        // 0.01 rad of 9.8 m/s² for 75 ms: 7 mm/s.
-        compare(&correction, 15, 2e-5, 3e-4);
+        correction.errors[axis] = 0.01;
+        // 0.01 rad of 9.8 m/s² for 80 ms: 8 mm/s.
+        compare(&correction, 16, 2e-5, 3e-4);
     }
 }
 
 #[test]
 fn a_speed_stays() {
-    let correction = Correction {
-        fast: [0.0, 0.0, 0.0, 0.5, -0.3],
-        ..Correction::default()
-    };
-    // Of a speed 1.9 % are forgotten in 75 ms.
-    compare(&correction, 15, 1e-6, 0.02 * 0.5);
+    let mut correction = Correction::default();
+    correction.errors[SPEED] = 0.5;
+    correction.errors[SPEED + 1] = -0.3;
+    // Of a speed 2 % are forgotten in 80 ms.
+    compare(&correction, 16, 1e-6, 0.02 * 0.5);
 }
 
 #[test]
 fn each_parameter_of_the_gyro_turns_the_attitude_its_own_way() {
     for parameter in 0..PARAMETERS {
         let mut correction = Correction::default();
-        correction.parameters[parameter] = 0.01;
-        // 0.01 rad/s for 75 ms: 7.5e-4 rad; the speed that this adds by then is left out, 3 mm/s.
-        compare(&correction, 15, 3e-6 + 3e-5, 0.003 * 3.0);
+        correction.errors[BIAS + parameter] = 0.01;
+        // 0.01 rad/s for 80 ms: 8e-4 rad; the speed that this adds by then is left out, 3 mm/s.
+        compare(&correction, 16, 3e-6 + 3e-5, 0.003 * 3.0);
     }
 }
