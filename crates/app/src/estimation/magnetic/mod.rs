@@ -177,6 +177,11 @@ impl Magnetic {
         self.delay.forget_mean();
     }
 
+    #[cfg(test)]
+    pub fn delay_s(&self) -> f32 {
+        self.delay.seconds()
+    }
+
     /// Samples were lost.
     pub fn restart(&mut self) {
         self.sums = Sums::default();
