@@ -88,13 +88,9 @@ impl InsEstimator {
             self.mag_ts_us = mag.ts_us;
             self.take_mag(mag);
         }
-        let dt_s = if first || !in_time {
-            0.0
-        } else {
-            seconds(tick_us)
-        };
         self.ts_us = now_us;
-        self.publish(sample, motor, dt_s, now_us, estimate);
+        let passed_us = if first || !in_time { 0 } else { tick_us };
+        self.publish(sample, motor, passed_us, now_us, estimate);
     }
 
     fn take_imu(&mut self, imu: &ImuState) -> Option<AccelSample> {
@@ -151,14 +147,14 @@ impl InsEstimator {
         &mut self,
         sample: Option<AccelSample>,
         motor: &MotorFeedback,
-        dt_s: f32,
+        passed_us: u32,
         now_us: u64,
         estimate: &mut StateEstimate,
     ) {
         let imu_age_us = age_us(self.imu_ts_us, now_us);
         let ahead_us = imu_age_us.min(MAX_IMU_AGE_US);
-        let orientation = self.attitude.orientation(seconds(ahead_us));
         let ahead_s = seconds(ahead_us);
+        let orientation = self.attitude.orientation(ahead_s);
         if let Some(sample) = sample {
             let pose = BodyPose {
                 orientation,
@@ -167,7 +163,7 @@ impl InsEstimator {
             self.motion.feed(&sample, ahead_s, &pose, motor);
         }
         if imu_age_us > MAX_IMU_AGE_US {
-            self.motion.fade(dt_s);
+            self.motion.fade(seconds(passed_us));
         }
         estimate.q_wxyz = orientation.to_wxyz();
         estimate.rpy_rad = orientation.roll_pitch_yaw();

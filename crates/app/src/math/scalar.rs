@@ -89,18 +89,28 @@ pub fn atan2(y: f32, x: f32) -> f32 {
     if y < 0.0 { -angle } else { angle }
 }
 
-/// Arc sine; the argument is clamped to −1 … 1, NaN gives 0. Error below 1e-6. Up to 30° it is a polynomial of the
-/// Cephes library, which needs neither division nor root.
+/// Arc sine; the argument is clamped to −1 … 1, NaN gives 0. Error below 1e-6.
+///
+/// Polynomial of the Cephes library up to 30°; beyond, asin x = π/2 − 2·asin √((1 − x)/2).
 pub fn asin(x: f32) -> f32 {
-    if x.abs() <= 0.5 {
-        let x2 = x * x;
-        let polynomial =
-            (((4.216_32e-2 * x2 + 2.418_131e-2) * x2 + 4.547_002_6e-2) * x2 + 7.495_300_3e-2) * x2
-                + 1.666_675_2e-1;
-        return x + x * x2 * polynomial;
+    let size = x.abs();
+    if size <= 0.5 {
+        return asin_small(x, x * x);
     }
-    let x = clamp(x, -1.0, 1.0);
-    atan2(x, sqrt((1.0 - x) * (1.0 + x)))
+    if size.is_nan() {
+        return 0.0;
+    }
+    let half = 0.5 - 0.5 * min(size, 1.0);
+    let angle = FRAC_PI_2 - 2.0 * asin_small(sqrt(half), half);
+    if x < 0.0 { -angle } else { angle }
+}
+
+/// `x2`: square of `x`.
+fn asin_small(x: f32, x2: f32) -> f32 {
+    let polynomial =
+        (((4.216_32e-2 * x2 + 2.418_131e-2) * x2 + 4.547_002_6e-2) * x2 + 7.495_300_3e-2) * x2
+            + 1.666_675_2e-1;
+    x + x * x2 * polynomial
 }
 
 #[cfg(test)]
