@@ -10,7 +10,7 @@ use anyhow::Context as _;
 use object::{File, Object, ObjectSection};
 
 use crate::{
-    measure::{Measured, WorstTick},
+    measure::{Costs, Measured, WorstTick},
     program::Blocks,
 };
 
@@ -22,7 +22,9 @@ pub struct Share {
     /// `function < caller`.
     pub name: String,
     /// Instructions of a mean update with magnetometer.
-    pub mean: f64,
+    pub update: f64,
+    /// Instructions of a mean tick with nothing new.
+    pub between: f64,
     /// Instructions of the costliest tick.
     pub worst: u64,
     pub flash_bytes: u64,
@@ -41,11 +43,22 @@ pub fn shares(elf: &Path, runs: &[Measured]) -> anyhow::Result<Vec<Share>> {
         Context::from_dwarf(sections.borrow(|data| EndianSlice::new(data, RunTimeEndian::Little)))?;
     let code = Code::of(&file)?;
     let mut shares: HashMap<String, Share> = HashMap::new();
-    let updates: usize = runs.iter().map(|run| run.costs.update_with_mag.len()).sum();
-    for (address, count) in runs.iter().flat_map(|run| code.instructions(&run.blocks)) {
-        shares.entry(function(&names, address)?).or_default().mean += count as f64 / updates as f64;
+    let count =
+        |of: fn(&Costs) -> &Vec<u32>| runs.iter().map(|run| of(&run.costs).len()).sum::<usize>();
+    let updates = count(|costs| &costs.update_with_mag) as f64;
+    let ticks = count(|costs| &costs.extrapolation) as f64;
+    for run in runs {
+        for (address, count) in code.instructions(&run.profile.updates) {
+            shares.entry(function(&names, address)?).or_default().update += count as f64 / updates;
+        }
+        for (address, count) in code.instructions(&run.profile.between) {
+            shares
+                .entry(function(&names, address)?)
+                .or_default()
+                .between += count as f64 / ticks;
+        }
     }
-    let worst = runs.iter().map(|run| &run.worst);
+    let worst = runs.iter().map(|run| &run.profile.worst);
     if let Some(WorstTick { blocks, .. }) = worst.max_by_key(|tick| tick.instructions) {
         for (address, count) in code.instructions(blocks) {
             shares.entry(function(&names, address)?).or_default().worst += count;
@@ -61,7 +74,11 @@ pub fn shares(elf: &Path, runs: &[Measured]) -> anyhow::Result<Vec<Share>> {
         .into_iter()
         .map(|(name, share)| Share { name, ..share });
     let mut list: Vec<_> = named.collect();
-    list.sort_by(|a, b| b.mean.total_cmp(&a.mean).then_with(|| a.name.cmp(&b.name)));
+    list.sort_by(|a, b| {
+        b.update
+            .total_cmp(&a.update)
+            .then_with(|| a.name.cmp(&b.name))
+    });
     Ok(list)
 }
 

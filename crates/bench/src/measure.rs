@@ -35,12 +35,21 @@ pub struct Measured {
     pub at_samples: Option<Figures>,
     pub at_1_khz: Option<Figures>,
     pub flash_bytes: usize,
-    /// What the updates with magnetometer ran, if asked for.
-    pub blocks: Blocks,
-    /// The costliest tick, if asked for.
+    /// Empty unless asked for.
+    pub profile: Profile,
+}
+
+/// What ran.
+#[derive(Clone, Debug, Default)]
+pub struct Profile {
+    /// In updates with magnetometer.
+    pub updates: Blocks,
+    /// In ticks with nothing new.
+    pub between: Blocks,
     pub worst: WorstTick,
 }
 
+/// The costliest tick of all.
 #[derive(Clone, Debug, Default)]
 pub struct WorstTick {
     pub instructions: u32,
@@ -99,22 +108,20 @@ pub fn run(
         at_samples: score(At::Samples),
         at_1_khz: score(At::EveryTick),
         flash_bytes: program.flash_bytes,
-        blocks: profile.updates,
-        worst: profile.worst,
+        profile,
     })
-}
-
-#[derive(Default)]
-struct Profile {
-    updates: Blocks,
-    worst: WorstTick,
 }
 
 impl Profile {
     fn add(&mut self, fresh: Fresh, instructions: u32, blocks: Blocks) {
-        if fresh == Fresh::ImuAndMag {
+        let sum = match fresh {
+            Fresh::ImuAndMag => Some(&mut self.updates),
+            Fresh::Imu => None,
+            Fresh::Nothing => Some(&mut self.between),
+        };
+        if let Some(sum) = sum {
             for (block, runs) in &blocks {
-                *self.updates.entry(*block).or_default() += runs;
+                *sum.entry(*block).or_default() += runs;
             }
         }
         if instructions > self.worst.instructions {
