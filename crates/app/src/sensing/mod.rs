@@ -1,7 +1,7 @@
 //! Sensor registers → calibrated samples; how to bring the sensors up, as data that a driver walks.
 
-pub mod bmi088;
 mod accel_delay;
+pub mod bmi088;
 mod calibration;
 mod heater;
 mod imu_pipeline;
