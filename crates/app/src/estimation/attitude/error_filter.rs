@@ -63,6 +63,16 @@ impl ErrorFilter {
         self.covariance.restart();
     }
 
+    /// The gyro bias is another one from now on; what was being found out of the old one is not added to it.
+    #[cold]
+    pub fn replace_bias(&mut self, variance: f32) {
+        self.covariance.replace_bias(variance);
+        let [_, _, _, bias @ ..] = &mut self.findings;
+        *bias = [None; 3];
+        let [_, _, _, _, _, x, y, z, ..] = &mut self.correction.errors;
+        (*x, *y, *z) = (0.0, 0.0, 0.0);
+    }
+
     pub fn begin(&mut self, window: &Window, findings: Findings) {
         self.forecast.begin(window);
         self.findings = findings;

@@ -193,9 +193,7 @@ impl AttitudeFilter {
         self.strapdown.speed_mps = [0.0; 2];
         self.window = Window::new();
         self.filter.restart();
-        self.filter
-            .covariance
-            .replace_bias(CALIBRATED_BIAS_VARIANCE);
+        self.filter.replace_bias(CALIBRATED_BIAS_VARIANCE);
         self.magnetic = Magnetic::new();
     }
 
@@ -270,9 +268,7 @@ impl AttitudeFilter {
     /// The offset was taken out of the samples elsewhere.
     pub fn restart_bias(&mut self) {
         self.strapdown.gyro.bias_rps = [0.0; 3];
-        self.filter
-            .covariance
-            .replace_bias(CALIBRATED_BIAS_VARIANCE);
+        self.filter.replace_bias(CALIBRATED_BIAS_VARIANCE);
         self.rest.restart();
     }
 
