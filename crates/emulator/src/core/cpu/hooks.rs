@@ -205,18 +205,31 @@ fn refuse(engine: &mut Unicorn<'_, State>, access: Unmodelled) {
     engine.get_data_mut().stop = Some(Stop::Unmodelled(access));
 }
 
-fn read_peripheral(engine: &mut Unicorn<'_, State>, offset: u64, size: usize) -> u64 {
-    engine.get_data_mut().reached_out = true;
-    let addr = (PERIPHERALS.0 + offset) as u32;
-    let value = with_soc(engine, |soc, now, memory| {
-        soc.read(addr, size as u8, now, memory)
-    });
+/// Ends a load; of what is not modelled the core gets 0 and stops.
+fn loaded(engine: &mut Unicorn<'_, State>, value: Result<u32, Unmodelled>) -> u64 {
     let value = value.unwrap_or_else(|access| {
         refuse(engine, access);
         0
     });
     leave_if_stopped(engine);
     value.into()
+}
+
+/// Ends a store.
+fn stored(engine: &mut Unicorn<'_, State>, done: Result<(), Unmodelled>) {
+    if let Err(access) = done {
+        refuse(engine, access);
+    }
+    leave_if_stopped(engine);
+}
+
+fn read_peripheral(engine: &mut Unicorn<'_, State>, offset: u64, size: usize) -> u64 {
+    engine.get_data_mut().reached_out = true;
+    let addr = (PERIPHERALS.0 + offset) as u32;
+    let value = with_soc(engine, |soc, now, memory| {
+        soc.read(addr, size as u8, now, memory)
+    });
+    loaded(engine, value)
 }
 
 fn write_peripheral(engine: &mut Unicorn<'_, State>, offset: u64, size: usize, value: u64) {
@@ -225,10 +238,7 @@ fn write_peripheral(engine: &mut Unicorn<'_, State>, offset: u64, size: usize, v
     let done = with_soc(engine, |soc, now, memory| {
         soc.write(addr, size as u8, value as u32, now, memory)
     });
-    if let Err(access) = done {
-        refuse(engine, access);
-    }
-    leave_if_stopped(engine);
+    stored(engine, done);
 }
 
 fn load_parameters(engine: &mut Unicorn<'_, State>, offset: u64, size: usize) -> u64 {
@@ -237,12 +247,7 @@ fn load_parameters(engine: &mut Unicorn<'_, State>, offset: u64, size: usize) ->
     let value = with_soc(engine, |soc, now, memory| {
         soc.load_parameters(addr, size as u8, now, memory)
     });
-    let value = value.unwrap_or_else(|access| {
-        refuse(engine, access);
-        0
-    });
-    leave_if_stopped(engine);
-    value.into()
+    loaded(engine, value)
 }
 
 fn store_parameters(engine: &mut Unicorn<'_, State>, offset: u64, size: usize, value: u64) {
@@ -251,10 +256,7 @@ fn store_parameters(engine: &mut Unicorn<'_, State>, offset: u64, size: usize, v
     let done = with_soc(engine, |soc, now, memory| {
         soc.store_parameters(addr, size as u8, value as u32, now, memory)
     });
-    if let Err(access) = done {
-        refuse(engine, access);
-    }
-    leave_if_stopped(engine);
+    stored(engine, done);
 }
 
 fn read_private(engine: &mut Unicorn<'_, State>, offset: u64, size: usize) -> u64 {
@@ -263,12 +265,7 @@ fn read_private(engine: &mut Unicorn<'_, State>, offset: u64, size: usize) -> u6
     let value = with_system(engine, |system, around| {
         system.read(addr, size as u8, around)
     });
-    let value = value.unwrap_or_else(|access| {
-        refuse(engine, access);
-        0
-    });
-    leave_if_stopped(engine);
-    value.into()
+    loaded(engine, value)
 }
 
 fn write_private(engine: &mut Unicorn<'_, State>, offset: u64, size: usize, value: u64) {
