@@ -36,5 +36,8 @@ pub fn age_us(then_us: u64, now_us: u64) -> u32 {
     if then_us == 0 {
         return u32::MAX;
     }
-    u32::try_from(now_us.saturating_sub(then_us)).unwrap_or(u32::MAX)
+    if now_us < then_us {
+        return 0;
+    }
+    u32::try_from(now_us.wrapping_sub(then_us)).unwrap_or(u32::MAX)
 }

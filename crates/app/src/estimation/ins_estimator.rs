@@ -72,13 +72,11 @@ impl InsEstimator {
         now_us: u64,
         estimate: &mut StateEstimate,
     ) {
-        let tick_us = age_us(self.ts_us, now_us);
-        let first = self.ts_us == 0;
-        let in_time = first || (now_us > self.ts_us && tick_us <= MAX_TICK_US);
-        if !in_time {
-            self.settled_samples = 0;
-            self.motion.restart();
-        }
+        let passed_us = if self.ts_us == 0 {
+            0
+        } else {
+            self.passed_us(now_us)
+        };
         let mut sample = None;
         if imu.ts_us != self.imu_seen_us && imu.ts_us != 0 {
             self.imu_seen_us = imu.ts_us;
@@ -89,8 +87,18 @@ impl InsEstimator {
             self.take_mag(mag);
         }
         self.ts_us = now_us;
-        let passed_us = if first || !in_time { 0 } else { tick_us };
         self.publish(sample, motor, passed_us, now_us, estimate);
+    }
+
+    /// Since the last tick; 0 if time ran backwards, stood still or jumped.
+    fn passed_us(&mut self, now_us: u64) -> u32 {
+        let passed_us = now_us.wrapping_sub(self.ts_us);
+        if passed_us.wrapping_sub(1) < u64::from(MAX_TICK_US) {
+            return passed_us as u32;
+        }
+        self.settled_samples = 0;
+        self.motion.restart();
+        0
     }
 
     fn take_imu(&mut self, imu: &ImuState) -> Option<AccelSample> {

@@ -136,9 +136,10 @@ impl Quaternion {
     /// the difference of roll and yaw means anything.
     pub fn roll_pitch_yaw(self) -> Vector3 {
         let Self { w, x, y, z } = self;
-        let roll = scalar::atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y));
+        let yy = y * y;
+        let roll = scalar::atan2(w * x + y * z, 0.5 - (x * x + yy));
         let pitch = scalar::asin(2.0 * (w * y - z * x));
-        let yaw = scalar::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z));
+        let yaw = scalar::atan2(w * z + x * y, 0.5 - (yy + z * z));
         [roll, pitch, yaw]
     }
 
