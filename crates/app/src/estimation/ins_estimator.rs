@@ -160,8 +160,7 @@ impl InsEstimator {
         estimate: &mut StateEstimate,
     ) {
         let imu_age_us = age_us(self.imu_ts_us, now_us);
-        let ahead_us = imu_age_us.min(MAX_IMU_AGE_US);
-        let ahead_s = seconds(ahead_us);
+        let ahead_s = seconds(imu_age_us.min(MAX_IMU_AGE_US));
         let orientation = self.attitude.orientation(ahead_s);
         if let Some(sample) = sample {
             let pose = BodyPose {

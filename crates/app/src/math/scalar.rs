@@ -89,7 +89,7 @@ pub fn atan2(y: f32, x: f32) -> f32 {
     if y < 0.0 { -angle } else { angle }
 }
 
-/// Arc sine; the argument is clamped to −1 … 1, NaN gives 0. Error below 1e-6.
+/// Arc sine; the argument is clamped to −1 … 1, NaN and infinity give 0. Error below 1e-6.
 ///
 /// Polynomial of the Cephes library up to 30°; beyond, asin x = π/2 − 2·asin √((1 − x)/2).
 pub fn asin(x: f32) -> f32 {
@@ -97,10 +97,11 @@ pub fn asin(x: f32) -> f32 {
     if size <= 0.5 {
         return asin_small(x, x * x);
     }
-    if size.is_nan() {
+    if !size.is_finite() {
         return 0.0;
     }
-    let half = 0.5 - 0.5 * min(size, 1.0);
+    // Beyond 1 it is negative, of which the root is 0.
+    let half = 0.5 - 0.5 * size;
     let angle = FRAC_PI_2 - 2.0 * asin_small(sqrt(half), half);
     if x < 0.0 { -angle } else { angle }
 }

@@ -23,7 +23,7 @@ use self::{
 };
 use crate::{
     domain::{MotorFeedback, WheelOdomConfig},
-    math::{Quaternion, Vector3, scalar, vector},
+    math::{Quaternion, Vector3, vector},
 };
 
 /// With nothing left to go by the robot is taken to come to rest with this time constant.
@@ -185,7 +185,11 @@ impl MotionEstimator {
 
     /// Velocity and position in the world frame, `ahead_s` after the last sample.
     pub fn after(&self, ahead_s: f32) -> (Vector3, Vector3) {
-        let ahead_s = scalar::min(ahead_s, MAX_AHEAD_S);
+        let ahead_s = if ahead_s < MAX_AHEAD_S {
+            ahead_s
+        } else {
+            MAX_AHEAD_S
+        };
         let velocity_mps = self.filter.velocity_after(ahead_s);
         let way_m = vector::scale(velocity_mps, ahead_s);
         (velocity_mps, vector::add(self.position.total_m(), way_m))
