@@ -36,7 +36,7 @@ pub const TILT_BY_MAGNETOMETER_DEG: f64 = 0.5;
 pub const START_UP_OFFSETS_DPS: [[f32; 3]; 3] =
     [[2.54, -2.54, 2.54], [4.4, 0.0, 0.0], [0.0, -4.4, 0.0]];
 /// How much worse than without offset any figure may be.
-pub const WORSE_BY_OFFSET_DEG: f64 = 0.4;
+pub const WORSE_BY_OFFSET_DEG: f64 = 0.3;
 
 impl Limits {
     pub fn hold(&self, errors: &Errors) {
