@@ -3,11 +3,11 @@
 mod bench;
 mod emulator;
 mod firmware;
+mod host_program;
 mod job;
+mod passed_on;
 mod prerequisites;
 mod replay;
-mod sim;
-mod soak;
 mod test;
 mod tool;
 mod workspace;
@@ -15,6 +15,7 @@ mod workspace;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+use passed_on::PassedOn;
 
 /// Developer commands of the robot firmware. Each installs or explains what it lacks.
 #[derive(Parser)]
@@ -27,21 +28,21 @@ struct Args {
 #[derive(Subcommand)]
 enum Command {
     /// Build the release image, boot it in the emulated C board and run a scenario.
-    Sim(sim::Args),
+    Sim(PassedOn),
     /// Let faults from a seed have their way with the image for simulated hours.
-    Soak(soak::Args),
+    Soak(PassedOn),
     /// Run the estimator over recorded trials: attitude at 1 kHz, its errors, plots.
-    Replay(replay::Args),
+    Replay(PassedOn),
     /// What the release image costs, and its estimator beside others, against their limits.
-    Bench(bench::Args),
+    Bench(PassedOn),
     /// Everything CI runs: format, clippy, host tests, loom, image checks, emulator tests.
     Test,
 }
 
 fn main() -> ExitCode {
     let outcome = match Args::parse().command {
-        Command::Sim(args) => sim::run(&args),
-        Command::Soak(args) => soak::run(&args),
+        Command::Sim(args) => emulator::run("sim", &args),
+        Command::Soak(args) => emulator::run("soak", &args),
         Command::Replay(args) => replay::run(&args),
         Command::Bench(args) => bench::run(&args),
         Command::Test => test::run(),

@@ -9,3 +9,5 @@
 #[cfg(feature = "board")]
 pub mod board;
 pub mod mailbox;
+#[cfg(feature = "board")]
+pub mod uf_ahrs;

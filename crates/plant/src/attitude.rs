@@ -1,6 +1,11 @@
-//! Quaternions (scalar first, body → ENU earth) and the error between two attitudes.
+//! Attitudes in double precision.
 
-pub(crate) type Quaternion = [f64; 4];
+mod error;
+
+pub use error::AttitudeError;
+
+/// Body → ENU earth, scalar first.
+pub type Quaternion = [f64; 4];
 
 /// Rotation about the earth's vertical.
 pub(crate) fn from_yaw(yaw_rad: f64) -> Quaternion {
@@ -14,8 +19,8 @@ pub(crate) fn from_yaw_pitch(yaw_rad: f64, pitch_rad: f64) -> Quaternion {
     multiply(from_yaw(yaw_rad), [cos, 0.0, sin, 0.0])
 }
 
-/// `a` then rotated by nothing else: the Hamilton product `a·b`.
-fn multiply(a: Quaternion, b: Quaternion) -> Quaternion {
+/// The Hamilton product `a·b`: `b` first, then `a`.
+pub fn multiply(a: Quaternion, b: Quaternion) -> Quaternion {
     let [w, x, y, z] = a;
     let [bw, bx, by, bz] = b;
     [
@@ -26,17 +31,18 @@ fn multiply(a: Quaternion, b: Quaternion) -> Quaternion {
     ]
 }
 
-fn conjugate([w, x, y, z]: Quaternion) -> Quaternion {
+pub(crate) fn conjugate([w, x, y, z]: Quaternion) -> Quaternion {
     [w, -x, -y, -z]
 }
 
-fn normalised(q: Quaternion) -> Option<Quaternion> {
+/// `None` for what is not a number and for zero.
+pub fn normalised(q: Quaternion) -> Option<Quaternion> {
     let norm = q.iter().map(|c| c * c).sum::<f64>().sqrt();
     (norm.is_finite() && norm > 0.0).then(|| q.map(|c| c / norm))
 }
 
 /// An earth vector in body axes.
-pub(crate) fn to_body(q: Quaternion, earth: [f64; 3]) -> [f64; 3] {
+pub fn to_body(q: Quaternion, earth: [f64; 3]) -> [f64; 3] {
     let [_, x, y, z] = multiply(
         conjugate(q),
         multiply([0.0, earth[0], earth[1], earth[2]], q),
@@ -45,22 +51,20 @@ pub(crate) fn to_body(q: Quaternion, earth: [f64; 3]) -> [f64; 3] {
 }
 
 /// Straight line between two attitudes, the short way round, put back on the sphere; `None` where one is not a number.
-pub(crate) fn between(a: Quaternion, b: Quaternion, share: f64) -> Option<Quaternion> {
+pub fn between(a: Quaternion, b: Quaternion, share: f64) -> Option<Quaternion> {
     let dot: f64 = a.iter().zip(b).map(|(a, b)| a * b).sum();
     let sign = if dot < 0.0 { -1.0 } else { 1.0 };
     normalised(std::array::from_fn(|i| a[i] + share * (sign * b[i] - a[i])))
 }
 
-/// Total, heading and inclination error in degrees, as the BROAD paper defines them: with
-/// e = estimate · conj(reference), total = 2 acos |e_w|, heading = 2 atan |e_z / e_w|,
-/// inclination = 2 acos √(e_w² + e_z²).
+/// Total, heading and inclination error in degrees, none negative; `None` where one is not a number.
 pub(crate) fn error_deg(estimate: Quaternion, reference: Quaternion) -> Option<[f64; 3]> {
-    let [w, x, y, z] = multiply(normalised(estimate)?, conjugate(normalised(reference)?));
-    // The arc tangents equal the arc cosines of the definition and keep their precision near zero.
-    let total = 2.0 * (x * x + y * y + z * z).sqrt().atan2(w.abs());
-    let heading = 2.0 * z.abs().atan2(w.abs());
-    let inclination = 2.0 * x.hypot(y).atan2(w.hypot(z));
-    Some([total, heading, inclination].map(f64::to_degrees))
+    let error = AttitudeError::between(normalised(estimate)?, normalised(reference)?);
+    Some([
+        error.total_deg(),
+        error.heading_deg().abs(),
+        error.inclination_deg(),
+    ])
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 //!
 //! Of the chip only the cells of its flash are here, which outlive it without power. Nothing here uses the firmware's codecs: a codec must not be tested against itself.
 
+pub mod attitude;
 pub mod can_adapter;
 pub mod flash_chip;
 pub mod recording;
@@ -9,7 +10,6 @@ pub mod time;
 pub mod wire;
 pub mod world;
 
-mod attitude;
 mod bmi088;
 mod body;
 mod faults;

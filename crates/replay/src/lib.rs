@@ -11,7 +11,6 @@
 //! # }
 //! ```
 
-mod attitude_error;
 mod reference;
 mod resample;
 mod run;
@@ -19,7 +18,6 @@ mod score;
 mod track;
 mod trial;
 
-pub use attitude_error::AttitudeError;
 pub use resample::{FIELD_AGE_US, Motion, Sample};
 pub use run::{Mode, Run, Tick, run};
 pub use score::{At, Figures, Instant};

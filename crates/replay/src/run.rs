@@ -4,10 +4,11 @@ use robot_app::{
     domain::{ImuState, MagState, MotorFeedback, StateEstimate, WheelOdomConfig},
     estimation::InsEstimator,
 };
+use robot_plant::attitude::{self, Quaternion};
 
 use crate::{
     resample::{FIELD_AGE_US, Sample},
-    track::{self, Quaternion, Track},
+    track::Track,
     trial::Trial,
 };
 
@@ -36,6 +37,20 @@ pub struct Tick {
     pub q_wxyz: Quaternion,
     pub gyro_bias_rps: [f32; 3],
     pub valid: bool,
+}
+
+impl Tick {
+    /// Single precision leaves the quaternion's length off by some 1e-7: here it is 1, or NaN if the estimator lost it
+    /// altogether.
+    pub fn new(t_us: u64, estimate: &StateEstimate) -> Self {
+        let unit = attitude::normalised(estimate.q_wxyz.map(f64::from));
+        Self {
+            t_us,
+            q_wxyz: unit.unwrap_or([f64::NAN; 4]),
+            gyro_bias_rps: estimate.gyro_bias_rps,
+            valid: estimate.valid,
+        }
+    }
 }
 
 /// All outputs of a run, one a millisecond.
@@ -72,19 +87,9 @@ pub fn run(trial: &Trial, mode: Mode, gyro_offset_dps: [f32; 3]) -> Run {
         }
         let now_us = START_US + t_us;
         estimator.step(&sensors.imu, &sensors.mag, &motor, now_us, &mut estimate);
-        ticks.push(Tick {
-            t_us,
-            q_wxyz: unit(estimate.q_wxyz),
-            gyro_bias_rps: estimate.gyro_bias_rps,
-            valid: estimate.valid,
-        });
+        ticks.push(Tick::new(t_us, &estimate));
     }
     Run { mode, ticks }
-}
-
-/// Single precision leaves the length off by some 1e-7. NaN if the estimator lost it altogether.
-fn unit(q_wxyz: [f32; 4]) -> Quaternion {
-    track::normalised(q_wxyz.map(f64::from)).unwrap_or([f64::NAN; 4])
 }
 
 /// The latest samples, as they lie in the exchange between sensor and control task.

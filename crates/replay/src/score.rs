@@ -1,9 +1,9 @@
 //! The metric of the BROAD trials, as their `score.py` computes it.
 
+use robot_plant::attitude::AttitudeError;
 use serde::Serialize;
 
 use crate::{
-    attitude_error::AttitudeError,
     reference::Reference,
     run::{Mode, Run},
     trial::Trial,

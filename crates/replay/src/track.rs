@@ -1,7 +1,6 @@
 //! An attitude at equal steps of time, and between them.
 
-/// Unit quaternion, scalar first.
-pub type Quaternion = [f64; 4];
+use robot_plant::attitude::{self, Quaternion};
 
 /// Times this close are the same.
 const SAME_S: f64 = 1e-4;
@@ -29,24 +28,12 @@ impl Track {
         let below = above.saturating_sub(1);
         for index in [below, above] {
             if (t_s - self.time_s(index)).abs() <= SAME_S {
-                return normalised(self.attitudes[index]);
+                return attitude::normalised(self.attitudes[index]);
             }
         }
         let share = (t_s - self.time_s(below)) / self.period_s;
         let bridged = (0.0..=1.0).contains(&share) && self.period_s <= MAX_GAP_S;
-        let line = between(self.attitudes[below], self.attitudes[above], share);
-        bridged.then(|| normalised(line)).flatten()
+        let line = attitude::between(self.attitudes[below], self.attitudes[above], share);
+        line.filter(|_| bridged)
     }
-}
-
-fn between(a: Quaternion, b: Quaternion, share: f64) -> Quaternion {
-    let dot: f64 = a.iter().zip(b).map(|(a, b)| a * b).sum();
-    let sign = if dot < 0.0 { -1.0 } else { 1.0 };
-    std::array::from_fn(|part| (1.0 - share) * a[part] + share * sign * b[part])
-}
-
-/// `None` for what is not a number and for zero.
-pub fn normalised(q: Quaternion) -> Option<Quaternion> {
-    let norm = q.iter().map(|part| part * part).sum::<f64>().sqrt();
-    (norm.is_finite() && norm > 0.0).then(|| q.map(|part| part / norm))
 }

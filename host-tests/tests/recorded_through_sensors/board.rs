@@ -56,12 +56,7 @@ pub fn play(header: &Path, phase: Ps, wheels: Wheels) -> anyhow::Result<Run> {
         let now = board.tick_at;
         board.step(&mut world);
         if let Some(since) = now.checked_sub(recording::LEAD_IN) {
-            ticks.push(Tick {
-                t_us: since / US,
-                q_wxyz: unit(board.estimate.q_wxyz),
-                gyro_bias_rps: board.estimate.gyro_bias_rps,
-                valid: board.estimate.valid,
-            });
+            ticks.push(Tick::new(since / US, &board.estimate));
         }
     }
     assert!(board.sensors.imu_calibrated(), "the record begins at rest");
@@ -69,12 +64,6 @@ pub fn play(header: &Path, phase: Ps, wheels: Wheels) -> anyhow::Result<Run> {
         mode: Mode::NineAxis,
         ticks,
     })
-}
-
-fn unit(q_wxyz: [f32; 4]) -> [f64; 4] {
-    let q = q_wxyz.map(f64::from);
-    let norm = q.iter().map(|part| part * part).sum::<f64>().sqrt();
-    q.map(|part| part / norm)
 }
 
 struct Board {

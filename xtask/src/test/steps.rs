@@ -4,8 +4,8 @@ use std::{env, path::Path, process::Command};
 
 use super::totals::{self, Totals};
 use crate::{
-    emulator::HOST_PROFILE,
     firmware::{self, Parts, image::Image},
+    host_program::HOST_PROFILE,
     job,
     prerequisites::{self, EMULATOR},
     tool, workspace,

@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use robot_plant::attitude::{self, Quaternion, multiply};
 use robot_replay::Sample;
 
 use super::{Motion, TICK_US, TICKS_A_SAMPLE, Wheels};
@@ -18,7 +19,6 @@ const FIELD_UT: [f64; 3] = [0.0, 19.0, -45.0];
 const OFFSET_RPS: f64 = 0.0175;
 
 type Vector = [f64; 3];
-type Quaternion = [f64; 4];
 
 impl Motion {
     /// Rest, slow turning, fast turning with thrusts, a magnet nearby, rest.
@@ -38,12 +38,12 @@ fn sample(q: &mut Quaternion, index: u64) -> Sample {
     let middle_s = (index as f64 + 0.5) * SAMPLE_S;
     let rate_rps = rate(middle_s);
     let half = rotation(rate_rps.map(|rate| rate * SAMPLE_S / 2.0));
-    let middle = product(*q, half);
-    *q = product(middle, half);
+    let middle = multiply(*q, half);
+    *q = multiply(middle, half);
     let [x, y, z] = thrust(middle_s);
-    let accel = into_body(middle, [x, y, z + GRAVITY_MPS2]);
+    let accel = attitude::to_body(middle, [x, y, z + GRAVITY_MPS2]);
     let magnet = magnet(middle_s);
-    let field = into_body(middle, [0, 1, 2].map(|axis| FIELD_UT[axis] + magnet[axis]));
+    let field = attitude::to_body(middle, [0, 1, 2].map(|axis| FIELD_UT[axis] + magnet[axis]));
     Sample {
         end_us: (index + 1) * SAMPLE_US,
         motion: Some(robot_replay::Motion {
@@ -94,21 +94,4 @@ fn rotation(angle_rad: Vector) -> Quaternion {
     };
     let [x, y, z] = angle_rad.map(|part| part * share);
     [(length / 2.0).cos(), x, y, z]
-}
-
-fn product(a: Quaternion, b: Quaternion) -> Quaternion {
-    let ([aw, ax, ay, az], [bw, bx, by, bz]) = (a, b);
-    [
-        aw * bw - ax * bx - ay * by - az * bz,
-        aw * bx + ax * bw + ay * bz - az * by,
-        aw * by - ax * bz + ay * bw + az * bx,
-        aw * bz + ax * by - ay * bx + az * bw,
-    ]
-}
-
-fn into_body(q: Quaternion, [x, y, z]: Vector) -> Vector {
-    let [w, a, b, c] = q;
-    let conjugate = [w, -a, -b, -c];
-    let [_, x, y, z] = product(product(conjugate, [0.0, x, y, z]), q);
-    [x, y, z]
 }

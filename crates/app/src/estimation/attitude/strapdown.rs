@@ -87,7 +87,7 @@ impl Strapdown {
         }
     }
 
-    /// `accel_enu_mps2`: specific force without gravity's vertical part, over the last `dt_s`.
+    /// Specific force in ENU, mean over the last `dt_s`. Its level parts count: gravity has none.
     pub fn accelerate(&mut self, [east, north, _]: Vector3, dt_s: f32) {
         let kept = 1.0 - dt_s / SPEED_MEMORY_S;
         let [vx, vy] = self.speed_mps;

@@ -18,12 +18,11 @@ pub(super) struct Window {
     turn_rad: Vector3,
     turn_s: f32,
     accel_sum_mps2: Vector3,
-    accels: u8,
     samples: u8,
     pub duration_s: f32,
     /// ∫ω² dt.
     pub turned_rad2_per_s: f32,
-    /// Without an acceleration that can be used.
+    /// With the accelerometer at the end of its range.
     pub blind_s: f32,
     /// Square of the angle by which the attitude may be off because the gyro did not see it.
     pub unseen_rad2: f32,
@@ -36,7 +35,6 @@ impl Window {
             turn_rad: [0.0; 3],
             turn_s: 0.0,
             accel_sum_mps2: [0.0; 3],
-            accels: 0,
             samples: 0,
             duration_s: 0.0,
             turned_rad2_per_s: 0.0,
@@ -49,6 +47,7 @@ impl Window {
         self.samples >= SAMPLES
     }
 
+    /// One sample; [`Self::add_accel`] is its other half.
     pub fn add_turn(&mut self, carried: &Carried, gyro_rps: Vector3, rate_rps: Vector3, dt_s: f32) {
         self.samples = self.samples.saturating_add(1);
         self.duration_s += dt_s;
@@ -68,12 +67,11 @@ impl Window {
 
     pub fn add_accel(&mut self, accel_enu_mps2: Vector3) {
         self.accel_sum_mps2 = vector::add(self.accel_sum_mps2, accel_enu_mps2);
-        self.accels = self.accels.saturating_add(1);
     }
 
     /// Mean specific force, ENU.
     pub fn accel_mps2(&self) -> Vector3 {
-        let count = if self.accels == 0 { 1 } else { self.accels };
+        let count = if self.samples == 0 { 1 } else { self.samples };
         vector::scale(self.accel_sum_mps2, 1.0 / f32::from(count))
     }
 }

@@ -18,7 +18,9 @@ const NOISE_UT2_S: f32 = 2.0;
 const WANDER_UT2_PER_S: f32 = 0.3 * 0.3;
 /// A calibrated magnetometer is this good; only what is more is a magnet.
 const MIN_CARRIED_UT: f32 = 4.0;
+/// … and more than so many variances of what is known of it.
 const UNSURE: f32 = 4.0;
+/// In variances: what is further off is passed, not carried.
 const MAX_INNOVATION2: f32 = 16.0;
 
 #[derive(Clone, Debug)]
@@ -94,7 +96,6 @@ impl CarriedMagnet {
             *to = product(row, &direction);
         }
         let variance = product(&spread, &direction) + noise;
-        // A magnet that is passed is not carried.
         if residual * residual > MAX_INNOVATION2 * variance {
             return;
         }

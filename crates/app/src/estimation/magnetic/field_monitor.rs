@@ -1,4 +1,4 @@
-//! Is this the earth's field? (VQF section 3.6, default thresholds)
+//! Is this the earth's field? (VQF section 3.6 and its thresholds; a new field is believed later than there)
 
 use crate::math::scalar;
 

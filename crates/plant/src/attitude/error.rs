@@ -1,6 +1,6 @@
 //! How far one attitude is from another (D. Laidig et al., "BROAD", Data 6 (7), 2021, section 4).
 
-use crate::track::Quaternion;
+use super::{Quaternion, conjugate, multiply};
 
 /// e = estimate · conj(reference): the rotation in the earth frame that takes the reference to the estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,29 +14,26 @@ pub struct AttitudeError {
 impl AttitudeError {
     /// Both unit quaternions.
     pub fn between(estimate: Quaternion, reference: Quaternion) -> Self {
-        let [w, x, y, z] = estimate;
-        let [rw, rx, ry, rz] = reference;
-        Self {
-            w: w * rw + x * rx + y * ry + z * rz,
-            x: -w * rx + x * rw - y * rz + z * ry,
-            y: -w * ry + x * rz + y * rw - z * rx,
-            z: -w * rz - x * ry + y * rx + z * rw,
-        }
+        let [w, x, y, z] = multiply(estimate, conjugate(reference));
+        Self { w, x, y, z }
     }
 
-    /// Angle of the whole rotation, 0 … 180°.
+    /// 2 acos |w|, the angle of the whole rotation, 0 … 180°. Here and below the arc tangent equals the arc cosine of the
+    /// definition and keeps its precision near zero.
     pub fn total_deg(self) -> f64 {
-        2.0 * self.w.abs().min(1.0).acos().to_degrees()
+        let Self { w, x, y, z } = self;
+        2.0 * (x * x + y * y + z * z).sqrt().atan2(w.abs()).to_degrees()
     }
 
-    /// Part about the vertical, ±180°; positive where the estimate is too far to the left.
+    /// 2 atan (z / w), the part about the vertical, ±180°; positive where the estimate is too far to the left.
     pub fn heading_deg(self) -> f64 {
-        2.0 * (self.z / self.w).atan().to_degrees()
+        2.0 * (self.z * self.w.signum()).atan2(self.w.abs()).to_degrees()
     }
 
-    /// Angle between the two verticals, 0 … 180°.
+    /// 2 acos √(w² + z²), the angle between the two verticals, 0 … 180°.
     pub fn inclination_deg(self) -> f64 {
-        2.0 * self.w.hypot(self.z).min(1.0).acos().to_degrees()
+        let Self { w, x, y, z } = self;
+        2.0 * x.hypot(y).atan2(w.hypot(z)).to_degrees()
     }
 
     /// What is left when the estimate is turned by this much to the right.

@@ -1,0 +1,48 @@
+//! The filters of the crate `uf-ahrs` that take all sensors in one step.
+
+use nalgebra::Vector3;
+use uf_ahrs::Ahrs;
+
+use crate::{
+    board::{self, Filter, Fresh, Samples},
+    mailbox::Input,
+};
+
+/// Each step takes the latest field: these filters know no other way to fuse a slower magnetometer.
+pub struct AllInOne<F> {
+    filter: F,
+    mag_ut: Vector3<f32>,
+    fresh: Fresh,
+}
+
+impl<F> AllInOne<F> {
+    pub fn new(filter: F) -> Self {
+        Self {
+            filter,
+            mag_ut: Vector3::zeros(),
+            fresh: Fresh::default(),
+        }
+    }
+}
+
+impl<F: Ahrs> Filter for AllInOne<F> {
+    type Taken = Samples;
+
+    fn take(&mut self, input: &Input) -> Samples {
+        self.fresh.samples(input)
+    }
+
+    fn step(&mut self, taken: &Samples) {
+        let Some(imu) = taken.imu else { return };
+        if let Some(mag_ut) = taken.mag_ut {
+            self.mag_ut = mag_ut.into();
+        }
+        self.filter
+            .update(imu.gyro_rps.into(), imu.accel_mps2.into(), self.mag_ut);
+    }
+
+    fn q_wxyz(&self) -> [f32; 4] {
+        let q = self.filter.orientation();
+        board::north_to_east([q.w, q.i, q.j, q.k])
+    }
+}

@@ -1,0 +1,25 @@
+//! Programs of the workspace that run on this machine.
+
+use std::path::PathBuf;
+
+use crate::{job::Job, tool, workspace};
+
+/// Cargo profile of everything that runs on this machine: quick to build, quick enough to run.
+pub const HOST_PROFILE: &str = "host";
+
+/// The build of a program, ready to start, and where it puts it.
+pub fn build(package: &str, program: &str) -> anyhow::Result<(Job, PathBuf)> {
+    let host = tool::host_triple()?;
+    let mut command = tool::cargo();
+    command.args(["build", "--package", package, "--bin", program]);
+    command.args(["--profile", HOST_PROFILE, "--target", &host]);
+    let path = workspace::host_target_dir()
+        .join(&host)
+        .join(HOST_PROFILE)
+        .join(program);
+    let job = Job {
+        name: package.to_owned(),
+        command,
+    };
+    Ok((job, path))
+}
