@@ -10,8 +10,8 @@ use object::{
 };
 
 /// design.md, section 6.
-const FLASH_BUDGET_BYTES: u64 = 128 * 1024;
-const RAM_BUDGET_BYTES: u64 = 48 * 1024;
+const FLASH_BUDGET_BYTES: u64 = 256 * 1024;
+const RAM_BUDGET_BYTES: u64 = 64 * 1024;
 
 /// Main SRAM (RM0090, section 2.3.1); statics live here, the stack in CCM.
 const SRAM: Range<u64> = 0x2000_0000..0x2002_0000;

@@ -6,7 +6,7 @@ use super::runner::RunResult;
 
 pub const TICK_MEAN_INSTRUCTIONS: f64 = 6_000.0;
 pub const TICK_MAX_INSTRUCTIONS: f64 = 12_000.0;
-pub const RELEASE_JITTER_US: f64 = 10.0;
+pub const RELEASE_JITTER_US: f64 = 5.0;
 /// Shares.
 pub const CPU_LOAD: f64 = 0.2;
 pub const CAN_LOAD: f64 = 0.8;

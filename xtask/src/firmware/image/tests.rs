@@ -42,12 +42,12 @@ fn an_image_as_laid_out_passes() {
 fn each_check_notices_its_fault() {
     let cases: [Spoiled; 9] = [
         ("flash budget", |image| {
-            image.programmed.push(0x0802_0000..0x0803_8001);
+            image.programmed.push(0x0802_0000..0x0805_8001);
         }),
         ("static RAM budget", |image| {
             image
                 .sections
-                .push(section(".uninit", 0x2000_4000..0x2000_C001));
+                .push(section(".uninit", 0x2000_4000..0x2001_0001));
         }),
         ("vector table in sector 0", |image| {
             image.reset_words = Some([0x2002_0000, 0x0801_0401]);

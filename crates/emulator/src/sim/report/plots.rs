@@ -370,7 +370,7 @@ impl Plots<'_> {
         }
         Ok(Some(Figure {
             title: "Release jitter of the control tick".into(),
-            caption: "How late each 1 kHz tick starts; budget 10 µs.".into(),
+            caption: "How late each 1 kHz tick starts; budget 5 µs.".into(),
             legend: Vec::new(),
             svg: draw_histogram(bins, JITTER_BIN_US, "µs late")?,
         }))
