@@ -1,6 +1,9 @@
 //! What real silicon would punish silently, said aloud: each entry names the wrong setting and what it breaks.
 
-use robot_plant::time::Ps;
+use robot_plant::{
+    complaint::{Complaint, Severity},
+    time::Ps,
+};
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BoardError {
@@ -10,26 +13,48 @@ pub struct BoardError {
     pub message: String,
 }
 
-/// Distinct messages in the order they were first seen.
+/// Distinct messages in the order they were first seen, by severity.
 #[derive(Debug, Default)]
 pub struct BoardErrors {
-    list: Vec<BoardError>,
+    failing: Vec<BoardError>,
+    suspicious: Vec<BoardError>,
 }
 
 impl BoardErrors {
+    /// Fails on silicon.
     pub fn report(&mut self, at: Ps, message: impl Into<String>) {
-        let message = message.into();
-        match self.list.iter_mut().find(|e| e.message == message) {
-            Some(e) => e.count += 1,
-            None => self.list.push(BoardError {
-                at,
-                count: 1,
-                message,
-            }),
+        note(&mut self.failing, at, message.into());
+    }
+
+    /// Suspicious only.
+    pub fn suspect(&mut self, at: Ps, message: impl Into<String>) {
+        note(&mut self.suspicious, at, message.into());
+    }
+
+    pub fn file(&mut self, at: Ps, complaint: Complaint) {
+        match complaint.severity {
+            Severity::Fails => self.report(at, complaint.text),
+            Severity::Suspicious => self.suspect(at, complaint.text),
         }
     }
 
+    /// What fails on silicon, and so fails the run.
     pub fn list(&self) -> &[BoardError] {
-        &self.list
+        &self.failing
+    }
+
+    pub fn suspicions(&self) -> &[BoardError] {
+        &self.suspicious
+    }
+}
+
+fn note(list: &mut Vec<BoardError>, at: Ps, message: String) {
+    match list.iter_mut().find(|e| e.message == message) {
+        Some(e) => e.count += 1,
+        None => list.push(BoardError {
+            at,
+            count: 1,
+            message,
+        }),
     }
 }

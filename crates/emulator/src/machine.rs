@@ -121,7 +121,7 @@ pub struct Progress {
     pub cpu_load: f64,
     /// How long each CAN bus was busy since power-on.
     pub can_busy: [Ps; 2],
-    /// Different ones.
+    /// Different ones that fail on silicon.
     pub board_errors: usize,
     pub flash_erases: u64,
     pub flash_programs: u64,
@@ -309,7 +309,12 @@ impl Machine {
         }
     }
 
+    /// What fails on silicon.
     pub fn board_errors(&self) -> Vec<BoardError> {
         self.cpu.soc().errors.list().to_vec()
+    }
+
+    pub fn suspicions(&self) -> Vec<BoardError> {
+        self.cpu.soc().errors.suspicions().to_vec()
     }
 }

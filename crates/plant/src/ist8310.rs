@@ -2,6 +2,7 @@
 
 use crate::{
     bmi088::MotionSource,
+    complaint::Complaint,
     random::{Random, Stream},
     time::{MS, Ps, US},
 };
@@ -227,9 +228,11 @@ impl Ist8310 {
     }
 
     /// Why the chip cannot understand the master, if so.
-    pub(crate) fn misuse(&self, addr7: u8, scl_hz: u32) -> Option<String> {
+    pub(crate) fn misuse(&self, addr7: u8, scl_hz: u32) -> Option<Complaint> {
         (addr7 == ADDRESS && scl_hz > MAX_SCL_HZ).then(|| {
-            format!("IST8310: SCL at {scl_hz} Hz, at most {MAX_SCL_HZ} Hz: no acknowledge")
+            Complaint::fails(format!(
+                "IST8310: SCL at {scl_hz} Hz, at most {MAX_SCL_HZ} Hz: no acknowledge"
+            ))
         })
     }
 

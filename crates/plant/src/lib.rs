@@ -4,6 +4,7 @@
 
 pub mod attitude;
 pub mod can_adapter;
+pub mod complaint;
 pub mod flash_chip;
 pub mod recording;
 pub mod time;

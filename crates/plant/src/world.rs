@@ -12,6 +12,7 @@ use crate::{
     bmi088::{Bmi088, MotionSource},
     body::{Body, Legs, Tilt},
     can_adapter::CanAdapter,
+    complaint::Complaint,
     faults::ActiveFaults,
     ist8310::Ist8310,
     joints::{self, JOINTS, Joint, WireState},
@@ -153,7 +154,7 @@ pub struct World {
     board_supply: bool,
     signal_names: Vec<String>,
     wire_events: Vec<WireEvent>,
-    complaints: Vec<String>,
+    complaints: Vec<Complaint>,
 }
 
 impl World {

@@ -340,5 +340,5 @@ fn a_frame_beyond_the_model_is_complained_of() {
     let mut bench = Bench::new(JointKind::Dm4310);
     bench.send(0x7FF, [1, 0, 0x33, 0x50, 0, 0, 0, 0]);
     let complaints = bench.world.take_complaints();
-    assert!(complaints[0].contains("0x50"), "{complaints:?}");
+    assert!(complaints[0].text.contains("0x50"), "{complaints:?}");
 }

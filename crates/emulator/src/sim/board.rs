@@ -37,7 +37,9 @@ pub trait Board {
     fn progress(&mut self) -> Progress;
     /// Resets since power-on.
     fn resets(&mut self) -> usize;
+    /// What fails on silicon.
     fn board_errors(&mut self) -> Vec<BoardError>;
+    fn suspicions(&mut self) -> Vec<BoardError>;
 }
 
 impl Board for Machine {
@@ -120,5 +122,9 @@ impl Board for Machine {
 
     fn board_errors(&mut self) -> Vec<BoardError> {
         Machine::board_errors(self)
+    }
+
+    fn suspicions(&mut self) -> Vec<BoardError> {
+        Machine::suspicions(self)
     }
 }

@@ -46,6 +46,8 @@ pub struct RunResult {
     /// Board errors that the scenario does not allow.
     pub board_errors: Vec<BoardError>,
     pub allowed_board_errors: Vec<BoardError>,
+    /// What the board found suspicious; it fails no run.
+    pub suspicions: Vec<BoardError>,
     pub stats: Stats,
     /// Simulated time really run.
     pub ran: Ps,
@@ -58,7 +60,8 @@ pub struct RunResult {
 }
 
 impl RunResult {
-    /// True only if the run went to its end, every expectation held and the board had nothing to complain of.
+    /// True only if the run went to its end, every expectation held and the board had nothing to complain of but
+    /// suspicions.
     pub fn ok(&self) -> bool {
         self.stopped.is_none()
             && self.board_errors.is_empty()
@@ -285,6 +288,7 @@ impl<'a, B: Board> Run<'a, B> {
             stopped,
             board_errors,
             allowed_board_errors,
+            suspicions: self.board.suspicions(),
             stats: self.board.stats(),
             ran: end,
             last_values: self.values,

@@ -29,8 +29,11 @@ pub struct Summary {
     pub expectations: usize,
     /// Why the machine stopped before the end.
     pub stopped: Option<String>,
+    /// What fails on silicon, and so failed the run.
     pub board_errors: Vec<BoardErrorEntry>,
     pub allowed_board_errors: Vec<BoardErrorEntry>,
+    /// Suspicious only.
+    pub suspicions: Vec<BoardErrorEntry>,
     /// A PC took part: the same image, scenario and seed need not give the same run again.
     pub external_input: bool,
     pub reproducible: bool,
@@ -132,6 +135,7 @@ impl Summary {
             stopped: result.stopped.clone(),
             board_errors: entries(&result.board_errors),
             allowed_board_errors: entries(&result.allowed_board_errors),
+            suspicions: entries(&result.suspicions),
             external_input: !result.ports.is_empty(),
             reproducible: result.ports.is_empty(),
             can_ports: can_ports(result),

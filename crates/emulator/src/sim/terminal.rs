@@ -133,6 +133,13 @@ impl Terminal {
         for error in &summary.allowed_board_errors {
             println!("allowed board error ({}×): {}", error.count, error.message);
         }
+        for doubt in &summary.suspicions {
+            let text = format!(
+                "suspicious at {:.4} s ({}×): {}",
+                doubt.at, doubt.count, doubt.message
+            );
+            println!("{}", painted(&text, Paint::Yellow, self.colours));
+        }
         if let Some(why) = &summary.stopped {
             let text = format!("stopped at {:.4} s: {why}", summary.sim_seconds);
             println!("{}", painted(&text, Paint::Red, self.colours));

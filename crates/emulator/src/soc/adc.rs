@@ -104,14 +104,14 @@ impl Adc {
             return Err(unmodelled("SQR3", &format!("input IN{}", self.channel())));
         }
         if ctx.now < self.stable_at {
-            ctx.errors.report(
+            ctx.errors.suspect(
                 ctx.now,
                 "ADC3: started less than 3 us after ADON: the result is not settled",
             );
         }
         let clock_hz = self.clock_hz(ctx);
         if clock_hz > MAX_ADC_HZ {
-            ctx.errors.report(
+            ctx.errors.suspect(
                 ctx.now,
                 format!("ADC3: clocked at {clock_hz} Hz, the limit is {MAX_ADC_HZ} Hz"),
             );

@@ -265,7 +265,7 @@ impl Soc {
 
     fn hear_complaints(&mut self, now: Ps) {
         for complaint in self.world.take_complaints() {
-            self.errors.report(now, complaint);
+            self.errors.file(now, complaint);
         }
     }
 

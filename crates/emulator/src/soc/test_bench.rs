@@ -13,7 +13,7 @@ use super::{
     pins::{Pin, PinBank, PinMode},
     scheduler::Scheduler,
 };
-use crate::board_errors::BoardErrors;
+use crate::board_errors::{BoardError, BoardErrors};
 
 pub struct Bench {
     pub now: Ps,
@@ -128,11 +128,16 @@ impl Bench {
         }
     }
 
+    /// What fails on silicon.
     pub fn error_texts(&self) -> Vec<&str> {
-        self.errors
-            .list()
-            .iter()
-            .map(|e| e.message.as_str())
-            .collect()
+        texts(self.errors.list())
     }
+
+    pub fn suspicion_texts(&self) -> Vec<&str> {
+        texts(self.errors.suspicions())
+    }
+}
+
+fn texts(errors: &[BoardError]) -> Vec<&str> {
+    errors.iter().map(|e| e.message.as_str()).collect()
 }

@@ -1,10 +1,11 @@
 //! Accelerometer die of the BMI088 (datasheet chapters 4.5 and 5.3).
 
 use super::{
-    DATA_READY, Die, MotionSource, SOFTRESET, WRITE_GAP_NORMAL, WRITE_GAP_SUSPEND,
-    low_pass::LowPass, quantise, rate_of_steps_hz, sample_clock::SampleClock,
+    DATA_READY, Die, MotionSource, SOFTRESET, low_pass::LowPass, quantise, rate_of_steps_hz,
+    sample_clock::SampleClock, write_gap::WriteGap,
 };
 use crate::{
+    complaint::Complaint,
     random::Random,
     time::{MS, Ps, SECOND},
     world::STANDARD_GRAVITY_MPS2,
@@ -54,8 +55,7 @@ pub(super) struct AccelDie {
     bus: Bus,
     registers: Registers,
     alive_at: Ps,
-    write_allowed_at: Ps,
-    lost_writes: u64,
+    write_gap: WriteGap,
     clock: SampleClock,
     filter: LowPass,
     data: [i16; 3],
@@ -108,8 +108,7 @@ impl AccelDie {
             bus: Bus::I2c,
             registers: RESET,
             alive_at: START_UP,
-            write_allowed_at: START_UP,
-            lost_writes: 0,
+            write_gap: WriteGap::default(),
             clock: SampleClock::new(rate_hz, 0),
             filter: LowPass::new(bandwidth_hz, rate_of_steps_hz()),
             data: [0; 3],
@@ -124,14 +123,13 @@ impl AccelDie {
         self.bus = Bus::I2c;
         self.registers = RESET;
         self.alive_at = now + START_UP;
-        self.write_allowed_at = self.alive_at;
         self.data = [0; 3];
         self.data_ready = false;
         self.temperature = None;
     }
 
-    pub(super) fn lost_writes(&self) -> u64 {
-        self.lost_writes
+    pub(super) fn take_write_complaint(&mut self) -> Option<Complaint> {
+        self.write_gap.take_complaint()
     }
 
     fn measuring(&self) -> bool {
@@ -228,24 +226,16 @@ impl Die for AccelDie {
         }
     }
 
-    fn write(&mut self, register: u8, value: u8, now: Ps) {
+    fn write(&mut self, register: u8, value: u8, selected_at: Ps, now: Ps) {
         if self.bus == Bus::I2c {
             return;
         }
-        // A die that starts hears nothing; one that runs takes its time over a write.
+        // A die that starts hears nothing.
         if now < self.alive_at {
             return;
         }
-        if now < self.write_allowed_at {
-            self.lost_writes += 1;
-            return;
-        }
-        self.write_allowed_at = now
-            + if self.registers.pwr_conf == SUSPEND {
-                WRITE_GAP_SUSPEND
-            } else {
-                WRITE_GAP_NORMAL
-            };
+        let suspended = self.registers.pwr_conf == SUSPEND;
+        self.write_gap.written(suspended, selected_at);
         let was_measuring = self.measuring();
         match register {
             register::CONF => {
@@ -269,6 +259,7 @@ impl Die for AccelDie {
 
     /// A die that is still starting misses the edge, so the one that ends its soft reset does not count.
     fn deselected(&mut self, now: Ps) {
+        self.write_gap.deselected(now);
         if now >= self.alive_at {
             self.bus = Bus::Spi;
         }

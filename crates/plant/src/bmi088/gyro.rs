@@ -1,10 +1,11 @@
 //! Gyroscope die of the BMI088 (datasheet chapters 4.6 and 5.5).
 
 use super::{
-    DATA_READY, Die, MotionSource, SOFTRESET, WRITE_GAP_NORMAL, WRITE_GAP_SUSPEND, fifo::Fifo,
-    low_pass::LowPass, quantise, rate_of_steps_hz, sample_clock::SampleClock,
+    DATA_READY, Die, MotionSource, SOFTRESET, fifo::Fifo, low_pass::LowPass, quantise,
+    rate_of_steps_hz, sample_clock::SampleClock, write_gap::WriteGap,
 };
 use crate::{
+    complaint::Complaint,
     random::Random,
     time::{MS, Ps},
 };
@@ -46,8 +47,7 @@ pub(super) struct GyroDie {
     offset_dps: [f64; 3],
     registers: Registers,
     alive_at: Ps,
-    write_allowed_at: Ps,
-    lost_writes: u64,
+    write_gap: WriteGap,
     clock: SampleClock,
     filter: LowPass,
     data: [i16; 3],
@@ -88,8 +88,7 @@ impl GyroDie {
             offset_dps,
             registers: RESET,
             alive_at: START_UP,
-            write_allowed_at: START_UP,
-            lost_writes: 0,
+            write_gap: WriteGap::default(),
             clock: SampleClock::new(rate_hz, START_UP),
             filter: LowPass::new(bandwidth_hz, rate_of_steps_hz()),
             data: [0; 3],
@@ -103,7 +102,6 @@ impl GyroDie {
     pub(super) fn power_on(&mut self, now: Ps) {
         self.registers = RESET;
         self.alive_at = now + START_UP;
-        self.write_allowed_at = self.alive_at;
         self.data = [0; 3];
         self.data_ready = false;
         self.fifo = Fifo::new();
@@ -111,8 +109,8 @@ impl GyroDie {
         self.configure_output(self.alive_at);
     }
 
-    pub(super) fn lost_writes(&self) -> u64 {
-        self.lost_writes
+    pub(super) fn take_write_complaint(&mut self) -> Option<Complaint> {
+        self.write_gap.take_complaint()
     }
 
     fn suspended(&self) -> bool {
@@ -198,21 +196,12 @@ impl Die for GyroDie {
         }
     }
 
-    fn write(&mut self, register: u8, value: u8, now: Ps) {
-        // A die that starts hears nothing; one that runs takes its time over a write.
+    fn write(&mut self, register: u8, value: u8, selected_at: Ps, now: Ps) {
+        // A die that starts hears nothing.
         if now < self.alive_at {
             return;
         }
-        if now < self.write_allowed_at {
-            self.lost_writes += 1;
-            return;
-        }
-        self.write_allowed_at = now
-            + if self.suspended() {
-                WRITE_GAP_SUSPEND
-            } else {
-                WRITE_GAP_NORMAL
-            };
+        self.write_gap.written(self.suspended(), selected_at);
         match register {
             register::RANGE if value <= 4 => self.registers.range = value,
             register::BANDWIDTH if value & 0x7F <= 7 => {
@@ -234,7 +223,9 @@ impl Die for GyroDie {
         }
     }
 
-    fn deselected(&mut self, _now: Ps) {}
+    fn deselected(&mut self, now: Ps) {
+        self.write_gap.deselected(now);
+    }
 
     fn drives_miso(&self) -> bool {
         true

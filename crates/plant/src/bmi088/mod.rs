@@ -6,10 +6,12 @@ mod gyro;
 mod low_pass;
 mod sample_clock;
 mod thermal;
+mod write_gap;
 
 use crate::{
+    complaint::Complaint,
     random::{Random, Stream},
-    time::{Ps, SECOND, US},
+    time::{Ps, SECOND},
     world::{PHYSICS_STEP, SpiSelect},
 };
 use accel::AccelDie;
@@ -18,14 +20,13 @@ use thermal::Thermal;
 
 /// Fastest serial clock of both dies.
 const MAX_SCK_HZ: u32 = 10_000_000;
+/// Beyond it, but DJI's own programs for this board run so, and work.
+const SCK_SEEN_TO_WORK_HZ: u32 = 10_500_000;
 
 /// Written to either die's SOFTRESET register it starts the die anew.
 const SOFTRESET: u8 = 0xB6;
 /// Of either die's status register.
 const DATA_READY: u8 = 1 << 7;
-/// Shortest time from one register write to the next.
-const WRITE_GAP_NORMAL: Ps = 2 * US;
-const WRITE_GAP_SUSPEND: Ps = 450 * US;
 
 /// What the package feels: specific force and angular rate in sensor axes.
 #[derive(Clone, Copy, Debug)]
@@ -62,7 +63,8 @@ trait Die {
     /// Read over and over in a burst, while every other register is followed by the next.
     const FIFO_DATA: u8;
     fn read(&mut self, register: u8, now: Ps) -> u8;
-    fn write(&mut self, register: u8, value: u8, now: Ps);
+    /// `selected_at`: since when the chip select is low.
+    fn write(&mut self, register: u8, value: u8, selected_at: Ps, now: Ps);
     /// The chip select rises.
     fn deselected(&mut self, now: Ps);
     /// False where the die leaves MISO to the pull-up.
@@ -73,6 +75,7 @@ trait Die {
 #[derive(Clone, Copy, Debug, Default)]
 struct Transaction {
     selected: bool,
+    since: Ps,
     bytes: usize,
     address: u8,
 }
@@ -90,7 +93,7 @@ impl Transaction {
         if self.address & READ == 0 {
             // The datasheet knows single-byte writes only.
             if index == 1 {
-                die.write(register, mosi, now);
+                die.write(register, mosi, self.since, now);
             }
             return 0xFF;
         }
@@ -147,9 +150,13 @@ impl Bmi088 {
         self.thermal.temperature_c()
     }
 
-    /// Writes that came too soon after another and were lost.
-    pub(crate) fn lost_writes(&self) -> u64 {
-        self.accel.lost_writes() + self.gyro.lost_writes()
+    /// Of writes that came too soon after another.
+    pub(crate) fn take_complaints(&mut self) -> impl Iterator<Item = Complaint> {
+        let dies = [
+            self.accel.take_write_complaint(),
+            self.gyro.take_write_complaint(),
+        ];
+        dies.into_iter().flatten()
     }
 
     /// One step of the analogue chain, ending at `now`.
@@ -185,6 +192,7 @@ impl Bmi088 {
         }
         *wire = Transaction {
             selected,
+            since: now,
             ..Transaction::default()
         };
         if !selected {
@@ -195,18 +203,22 @@ impl Bmi088 {
         }
     }
 
-    /// Why the selected dies cannot understand the master, if so.
-    pub(crate) fn misuse(&self, sck_hz: u32, mode: u8) -> Option<String> {
+    /// Why the selected dies may not understand the master, if so.
+    pub(crate) fn misuse(&self, sck_hz: u32, mode: u8) -> Option<Complaint> {
+        let too_fast = || format!("BMI088: SCK at {sck_hz} Hz, at most {MAX_SCK_HZ} Hz");
         if self.accel_wire.selected && self.gyro_wire.selected {
-            Some("BMI088: both chip selects are low: the dies fight over MISO".to_owned())
+            Some(Complaint::fails(
+                "BMI088: both chip selects are low: the dies fight over MISO",
+            ))
         } else if !(self.accel_wire.selected || self.gyro_wire.selected) {
             None
-        } else if sck_hz > MAX_SCK_HZ {
-            Some(format!(
-                "BMI088: SCK at {sck_hz} Hz, at most {MAX_SCK_HZ} Hz: garbage"
-            ))
         } else if !matches!(mode, 0 | 3) {
-            Some(format!("BMI088: SPI mode {mode}, needs 0 or 3: garbage"))
+            let text = format!("BMI088: SPI mode {mode}, needs 0 or 3: garbage");
+            Some(Complaint::fails(text))
+        } else if sck_hz > SCK_SEEN_TO_WORK_HZ {
+            Some(Complaint::fails(too_fast() + ": garbage"))
+        } else if sck_hz > MAX_SCK_HZ {
+            Some(Complaint::suspicious(too_fast()))
         } else {
             None
         }
@@ -216,7 +228,7 @@ impl Bmi088 {
         if self.faults.gone || !(self.accel_wire.selected || self.gyro_wire.selected) {
             return 0xFF;
         }
-        if sck_hz > MAX_SCK_HZ || !matches!(mode, 0 | 3) {
+        if sck_hz > SCK_SEEN_TO_WORK_HZ || !matches!(mode, 0 | 3) {
             return self.garbage.byte();
         }
         let mut miso = 0xFF;

@@ -1,7 +1,7 @@
 //! Every wire of the board but CAN.
 
 use super::{SpiSelect, World};
-use crate::{time::Ps, wire::UartChar};
+use crate::{complaint::Complaint, time::Ps, wire::UartChar};
 
 /// SPI1: BMI088.
 impl World {
@@ -17,12 +17,8 @@ impl World {
     pub fn spi_transfer(&mut self, mosi: u8, sck_hz: u32, mode: u8, now: Ps) -> u8 {
         self.advance(now);
         self.complaints.extend(self.imu.misuse(sck_hz, mode));
-        let lost_before = self.imu.lost_writes();
         let miso = self.imu.transfer(mosi, sck_hz, mode, now);
-        if self.imu.lost_writes() != lost_before {
-            self.complaints
-                .push("BMI088: register written too soon after another: lost".to_owned());
-        }
+        self.complaints.extend(self.imu.take_complaints());
         miso
     }
 }
@@ -61,7 +57,7 @@ impl World {
 
 impl World {
     /// What the board asked of a device beyond its limits since the last call. Silicon punishes that without a word.
-    pub fn take_complaints(&mut self) -> Vec<String> {
+    pub fn take_complaints(&mut self) -> Vec<Complaint> {
         std::mem::take(&mut self.complaints)
     }
 }

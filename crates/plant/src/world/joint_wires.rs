@@ -1,7 +1,7 @@
 //! The joints' motors on CAN2 and what their frames tell.
 
 use super::{WireEvent, World, signals};
-use crate::{joints::Heard, time::Ps, wire::CanFrame};
+use crate::{complaint::Complaint, joints::Heard, time::Ps, wire::CanFrame};
 
 impl World {
     pub(super) fn joint_heard(&mut self, joint: usize, frame: &CanFrame, now: Ps) {
@@ -9,7 +9,7 @@ impl World {
         match self.joints[joint].receive(frame, shaft, now) {
             Heard::Nothing => {}
             Heard::Frame => self.tell_joint(joint, now),
-            Heard::NotModelled(what) => self.complaints.push(what),
+            Heard::NotModelled(what) => self.complaints.push(Complaint::fails(what)),
         }
     }
 

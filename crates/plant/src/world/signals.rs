@@ -138,8 +138,7 @@ const WHEELS: &[Signal] = &[
     ("truth.wheel.1.current_ma", |w| coil_ma(w, 1)),
 ];
 
-/// What the IMU feels before its own errors, rad/s and m/s²; on-fraction of its heater, 0 … 1; register writes that
-/// came sooner after another than the BMI088 allows.
+/// What the IMU feels before its own errors, rad/s and m/s²; on-fraction of its heater, 0 … 1.
 const IMU: &[Signal] = &[
     ("truth.imu.gx", |w| w.motion(w.now).gyro_rps[0]),
     ("truth.imu.gy", |w| w.motion(w.now).gyro_rps[1]),
@@ -149,7 +148,6 @@ const IMU: &[Signal] = &[
     ("truth.imu.az", |w| w.motion(w.now).accel_mps2[2]),
     ("truth.imu.temperature_c", |w| w.imu.temperature_c()),
     ("truth.imu.heater_duty", |w| w.imu.heater_duty()),
-    ("truth.imu.lost_writes", |w| w.imu.lost_writes() as f64),
 ];
 
 /// Battery terminals in V, brightness 0 … 1, buzzer 0 while silent.

@@ -113,9 +113,15 @@ fn troubles(report: &Report) -> String {
         .board_errors
         .iter()
         .map(|e| format!("board error at {:.4} s ({}×): {}", e.at, e.count, e.message));
-    stopped
-        .chain(errors)
-        .map(|text| format!("<div class=\"wrong\">{}</div>\n", escaped(&text)))
+    let wrong = stopped.chain(errors).map(|text| ("wrong", text));
+    let doubts = summary
+        .suspicions
+        .iter()
+        .map(|e| format!("suspicious at {:.4} s ({}×): {}", e.at, e.count, e.message))
+        .map(|text| ("doubt", text));
+    wrong
+        .chain(doubts)
+        .map(|(class, text)| format!("<div class=\"{class}\">{}</div>\n", escaped(&text)))
         .collect()
 }
 

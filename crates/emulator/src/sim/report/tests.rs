@@ -146,6 +146,14 @@ impl Board for Waves {
     fn board_errors(&mut self) -> Vec<BoardError> {
         Vec::new()
     }
+
+    fn suspicions(&mut self) -> Vec<BoardError> {
+        vec![BoardError {
+            at: time::MS,
+            count: 2,
+            message: "SCK > 10 MHz".into(),
+        }]
+    }
 }
 
 const SCENARIO: &str = r#"
@@ -202,6 +210,7 @@ fn shows_verdict_plots_failures_and_escaped_log() {
     }
     assert!(html.contains("settings written") && !html.contains("flash erased"));
     assert!(html.contains("FAIL") && html.contains("1 of 2 expectations held"));
+    assert!(html.contains("suspicious at 0.0010 s (2×): SCK &gt; 10 MHz"));
     assert!(html.contains("a &lt; b &amp; c") && !html.contains("a < b"));
     assert_eq!(html.matches("<svg").count(), html.matches("</svg>").count());
 }

@@ -73,7 +73,7 @@ fn limits_of_the_converter_are_said_aloud() {
     bench.write(&mut adc, CR2, 0);
     bench.write(&mut adc, CR2, ADON);
     bench.write(&mut adc, CR2, ADON | SWSTART);
-    let texts = bench.error_texts();
+    let texts = bench.suspicion_texts();
     assert!(texts.iter().any(|e| e.contains("less than 3 us")));
     assert!(texts.iter().any(|e| e.contains("42000000 Hz")));
     // Two conversions in the sequence.

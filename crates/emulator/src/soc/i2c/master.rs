@@ -309,7 +309,7 @@ impl Master {
                 "I2C3: TRISE is {}, {mode} mode needs {rise_cycles} for {rise_ns} ns",
                 self.trise
             );
-            ctx.errors.report(ctx.now, message);
+            ctx.errors.suspect(ctx.now, message);
         }
     }
 }
