@@ -1,5 +1,7 @@
 //! Builds that run side by side, shown as one status line instead of interleaved output.
 
+mod cure;
+
 use std::{
     fs::{self, File},
     io::{IsTerminal, Write, stderr},
@@ -32,8 +34,8 @@ struct Running {
     started: Instant,
 }
 
-/// Runs all jobs to their end. If one fails, the others are ended too, and the end of its output is
-/// shown.
+/// Runs all jobs to their end. If one fails, the others are ended too, and what it lacks is said or, where that is not
+/// known, the end of its output is shown.
 pub fn run_all(jobs: Vec<Job>) -> anyhow::Result<()> {
     let mut running = Vec::new();
     for job in jobs {
@@ -72,12 +74,14 @@ fn end(running: &mut [Running]) {
 }
 
 fn failure(job: &Running) -> anyhow::Result<anyhow::Error> {
-    eprintln!("{}", log_tail(job)?);
-    Ok(anyhow!(
-        "building the {} failed (whole output: {})",
-        job.name,
-        job.log.display()
-    ))
+    let output = fs::read_to_string(&job.log)?;
+    let (name, log) = (&job.name, job.log.display());
+    Ok(if let Some(cure) = cure::of(&output) {
+        anyhow!("building {name} failed: {cure}\n(whole output: {log})")
+    } else {
+        eprintln!("{}", tail(&output));
+        anyhow!("building {name} failed (whole output: {log})")
+    })
 }
 
 fn start(mut job: Job) -> anyhow::Result<Running> {
@@ -99,11 +103,10 @@ fn start(mut job: Job) -> anyhow::Result<Running> {
     })
 }
 
-fn log_tail(job: &Running) -> anyhow::Result<String> {
-    let text = fs::read_to_string(&job.log)?;
-    let lines: Vec<_> = text.lines().collect();
-    let tail = lines.len().saturating_sub(LOG_TAIL_LINES);
-    Ok(lines.get(tail..).unwrap_or_default().join("\n"))
+fn tail(output: &str) -> String {
+    let lines: Vec<_> = output.lines().collect();
+    let from = lines.len().saturating_sub(LOG_TAIL_LINES);
+    lines.get(from..).unwrap_or_default().join("\n")
 }
 
 /// One redrawn line on a terminal, a line now and then elsewhere.

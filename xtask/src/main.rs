@@ -1,6 +1,7 @@
-//! The developer commands: `cargo xtask sim`, `soak`, `replay`, `bench` and `test`.
+//! The developer commands: `cargo xtask sim`, `soak`, `replay`, `bench`, `run` and `test`.
 
 mod bench;
+mod board;
 mod emulator;
 mod firmware;
 mod host_program;
@@ -35,6 +36,8 @@ enum Command {
     Replay(PassedOn),
     /// What the release image costs, and its estimator beside others, against their limits.
     Bench(PassedOn),
+    /// Flash an image with probe-rs, run it, show its log: what `cargo run --release` calls.
+    Run(PassedOn),
     /// Everything CI runs: format, clippy, host tests, loom, image checks, emulator tests.
     Test,
 }
@@ -45,6 +48,7 @@ fn main() -> ExitCode {
         Command::Soak(args) => emulator::run("soak", &args),
         Command::Replay(args) => replay::run(&args),
         Command::Bench(args) => bench::run(&args),
+        Command::Run(args) => board::run(&args),
         Command::Test => test::run(),
     };
     outcome.unwrap_or_else(|error| {

@@ -1,6 +1,8 @@
 //! Programs and libraries of this machine that a build needs, and how they get here.
 
-use std::{env, ffi::OsStr, fs, path::Path, process::Command};
+mod libclang;
+
+use std::process::Command;
 
 use anyhow::bail;
 
@@ -16,7 +18,7 @@ pub struct Prerequisite {
 }
 
 /// What building the emulator takes: its CPU core (unicorn-engine) is C.
-pub const EMULATOR: [Prerequisite; 3] = [
+pub const EMULATOR: [Prerequisite; 4] = [
     Prerequisite {
         what: "a C and C++ compiler and make",
         why: "the emulator's CPU core is C",
@@ -30,10 +32,16 @@ pub const EMULATOR: [Prerequisite; 3] = [
         present: || runs("cmake"),
     },
     Prerequisite {
-        what: "libclang",
+        what: "pkg-config",
+        why: "the configure script of the emulator's CPU core asks for it",
+        packages: &["pkg-config"],
+        present: || runs("pkg-config"),
+    },
+    Prerequisite {
+        what: "libclang with its headers",
         why: "it reads the C headers of the emulator's CPU core",
         packages: &["libclang-dev"],
-        present: has_libclang,
+        present: libclang::is_usable,
     },
 ];
 
@@ -127,38 +135,4 @@ pub fn runs(program: &str) -> bool {
     let mut command = tool::command(program);
     command.arg("--version");
     tool::succeeds(command)
-}
-
-/// The places bindgen's loader looks in.
-fn has_libclang() -> bool {
-    if env::var_os("LIBCLANG_PATH").is_some() || runs("llvm-config") {
-        return true;
-    }
-    let llvm = fs::read_dir("/usr/lib")
-        .into_iter()
-        .flatten()
-        .flatten()
-        .filter(|entry| starts_with(&entry.file_name(), "llvm-"))
-        .map(|entry| entry.path().join("lib"));
-    let fixed = [
-        "/usr/lib/x86_64-linux-gnu",
-        "/usr/lib/aarch64-linux-gnu",
-        "/usr/lib64",
-        "/usr/lib",
-        "/usr/local/lib",
-    ];
-    let fixed = fixed.into_iter().map(Into::into);
-    llvm.chain(fixed).any(|dir| holds_libclang(&dir))
-}
-
-fn holds_libclang(dir: &Path) -> bool {
-    fs::read_dir(dir)
-        .into_iter()
-        .flatten()
-        .flatten()
-        .any(|entry| starts_with(&entry.file_name(), "libclang.so"))
-}
-
-fn starts_with(name: &OsStr, prefix: &str) -> bool {
-    name.to_str().is_some_and(|name| name.starts_with(prefix))
 }
