@@ -9,7 +9,8 @@ const HEADER: &str = "#include <stddef.h>\n#include <stdint.h>\n";
 ///
 /// LLVM brings files of similar names without it, and distributions pack its own headers apart from it.
 pub fn is_usable() -> bool {
-    Clang::new().is_ok_and(|clang| reads(&clang, HEADER))
+    // After a failure `Clang::new` gives nothing for ever, even once libclang has been installed: clang-sys looks first.
+    clang_sys::load().is_ok() && Clang::new().is_ok_and(|clang| reads(&clang, HEADER))
 }
 
 fn reads(clang: &Clang, text: &str) -> bool {
