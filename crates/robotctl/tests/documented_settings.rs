@@ -1,6 +1,8 @@
-//! docs/tuning.md lists the settings that the firmware has, with their numbers, units and ranges.
+//! docs/tuning.md lists the settings and the live values that the firmware has, with their numbers, units and ranges.
 
-use robot_app::tuning::{PARAMETERS, Parameter, ParameterGroup, ParameterKind};
+use robot_app::tuning::{
+    LIVE_PAGES, LiveField, LiveKind, LivePage, PARAMETERS, Parameter, ParameterGroup, ParameterKind,
+};
 
 const FIRST_JOINT: u8 = 16;
 const JOINTS: std::ops::RangeInclusive<u8> = FIRST_JOINT..=19;
@@ -60,4 +62,37 @@ fn all_joints_have_the_same_settings() {
         .collect();
     assert_eq!(joints.len(), 4);
     assert!(joints.iter().all(|joint| joint == &joints[0]));
+}
+
+fn field(field: &LiveField) -> String {
+    let LiveField { name, bits, .. } = field;
+    match field.kind {
+        LiveKind::Count(_) => format!("`{name}` u{bits}"),
+        LiveKind::Measure { steps: 1, .. } => format!("`{name}` i{bits}"),
+        LiveKind::Measure { steps, .. } => format!("`{name}` i{bits}/{steps}"),
+        LiveKind::Choice { .. } => format!("`{name}` choice{bits}"),
+        LiveKind::Set { .. } => format!("`{name}` set{bits}"),
+    }
+}
+
+fn page_row(page: &LivePage) -> String {
+    let fields: Vec<String> = page.fields.iter().map(field).collect();
+    let last = page.number(page.parts.len() - 1).unwrap();
+    let numbers = match page.parts.len() {
+        1 => format!("`{last:02X}`"),
+        _ => format!("`{:02X}` … `{last:02X}`", page.first),
+    };
+    format!("| {numbers} | {} | {} |", page.name, fields.join(", "))
+}
+
+#[test]
+fn the_table_has_every_live_page_and_no_other() {
+    let expected: Vec<String> = LIVE_PAGES.iter().map(page_row).collect();
+    let documented: Vec<&str> = include_str!("../../../docs/tuning.md")
+        .lines()
+        .skip_while(|line| *line != "| page | about | fields |")
+        .take_while(|line| *line != "## Settings")
+        .filter(|line| line.starts_with("| `"))
+        .collect();
+    assert_eq!(documented, expected, "expected:\n{}", expected.join("\n"));
 }

@@ -67,6 +67,13 @@ impl ArmingBlockers {
             .map(|(_, name)| *name)
     }
 
+    /// `None` for a bit that stands for nothing.
+    pub fn name_of_bit(bit: u8) -> Option<&'static str> {
+        let mut names = BLOCKER_NAMES.iter();
+        let found = names.find(|(blocker, _)| blocker.0.trailing_zeros() == u32::from(bit));
+        found.map(|(_, name)| *name)
+    }
+
     const fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }

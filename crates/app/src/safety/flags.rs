@@ -127,6 +127,13 @@ impl SafetyFlags {
             .filter(move |(flag, _)| self.intersects(*flag))
             .map(|(_, name)| *name)
     }
+
+    /// `None` for a bit that stands for nothing.
+    pub fn name_of_bit(bit: u8) -> Option<&'static str> {
+        let mut names = FLAG_NAMES.iter();
+        let found = names.find(|(flag, _)| flag.0.trailing_zeros() == u32::from(bit));
+        found.map(|(_, name)| *name)
+    }
 }
 
 /// Not a constant: tools read the names of the bits out of the image.

@@ -150,7 +150,7 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
         let access = TuningAccess {
             config,
             bring_up,
-            params: &diagnostics.params,
+            diagnostics,
         };
         if let Some(reply) = tuning.on_frame(bus, frame, gate, access) {
             // The channel gives one a bus and tick.

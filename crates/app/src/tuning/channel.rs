@@ -1,15 +1,16 @@
 //! Requests in, at most one reply a slot and bus out.
 
 use super::{
-    PARAMETERS, ParameterGroup, Refusal, TuningStatus, bit, consistency, parameters,
+    LiveSource, PARAMETERS, ParameterGroup, Refusal, TuningStatus, bit, consistency, live,
+    parameters,
     protocol::{self, Request, Restored},
     wheel_geometry::WheelGeometry,
 };
 use crate::{
     bring_up::BringUp,
+    diagnostics::DiagnosticsSnapshot,
     domain::{BusId, CanFrame, OperatorState, RobotConfig},
     motor::layout::MotorLayout,
-    params::ParamStatus,
     safety::ArmingState,
 };
 
@@ -39,7 +40,7 @@ pub const REPLY_PERIOD_TICKS: u32 = 4;
 pub struct TuningAccess<'a> {
     pub config: &'a mut RobotConfig,
     pub bring_up: &'a mut BringUp,
-    pub params: &'a ParamStatus,
+    pub diagnostics: &'a DiagnosticsSnapshot,
 }
 
 #[derive(Clone, Debug)]
@@ -77,8 +78,9 @@ impl TuningChannel {
         let TuningAccess {
             config,
             bring_up,
-            params,
+            diagnostics,
         } = access;
+        let params = &diagnostics.params;
         let request = Request::decode(frame)?;
         if core::mem::replace(self.replied.get_mut(bus as usize)?, true) {
             self.status.dropped = self.status.dropped.wrapping_add(1);
@@ -95,6 +97,14 @@ impl TuningChannel {
             }
             Request::ReadStore => Ok(protocol::store_reply(params, self.status.revision)),
             Request::ReadFindings => Ok(protocol::findings_reply(params)),
+            Request::ReadLive(page) => {
+                let layout = self.layout;
+                let source = LiveSource {
+                    diagnostics,
+                    layout,
+                };
+                live::read(page, &source).map(|bytes| protocol::live_reply(page, bytes))
+            }
             _ if gate == TuningGate::Shut => Err(Refusal::Armed),
             Request::WriteGeometry(geometry) => self
                 .change(config, |candidate| geometry.apply(candidate))

@@ -5,6 +5,7 @@
 
 mod channel;
 pub(crate) mod consistency;
+mod live;
 mod parameter;
 mod parameters;
 mod protocol;
@@ -13,6 +14,7 @@ mod status;
 mod wheel_geometry;
 
 pub use channel::{REPLY_PERIOD_TICKS, TuningAccess, TuningChannel, TuningGate};
+pub use live::{JOINTS, LIVE_PAGES, LiveField, LiveKind, LivePage, LiveSource, LiveValue, WHEELS};
 pub use parameter::{Parameter, ParameterGroup, ParameterKind, Scope};
 pub use parameters::PARAMETERS;
 pub(crate) use parameters::bit;

@@ -1,6 +1,8 @@
 //! The bytes of requests and replies, all little-endian.
 
-use super::{PARAMETERS, ParameterGroup, Refusal, bit, wheel_geometry::WheelGeometry};
+use super::{
+    PARAMETERS, ParameterGroup, Refusal, bit, live::PAGE_BYTES, wheel_geometry::WheelGeometry,
+};
 use crate::{
     bring_up::BringUpRequest,
     domain::{CanFrame, StandardId},
@@ -27,6 +29,7 @@ const READ_PARAMETER: u8 = 0x21;
 const RESTORE_DEFAULTS: u8 = 0x30;
 const READ_STORE: u8 = 0x31;
 const READ_FINDINGS: u8 = 0x32;
+const READ_LIVE: u8 = 0x33;
 const BRING_UP: u8 = 0x40;
 /// No old client takes it for the answer to 0x10 or 0x11.
 const REFUSED: u8 = 0xEE;
@@ -35,11 +38,20 @@ const REFUSED: u8 = 0xEE;
 pub enum Request {
     WriteGeometry(WheelGeometry),
     ReadGeometry,
-    WriteParameter { group: u8, index: u8, value: f32 },
-    ReadParameter { group: u8, index: u8 },
+    WriteParameter {
+        group: u8,
+        index: u8,
+        value: f32,
+    },
+    ReadParameter {
+        group: u8,
+        index: u8,
+    },
     RestoreDefaults(Restored),
     ReadStore,
     ReadFindings,
+    /// The page with this number.
+    ReadLive(u8),
     BringUp(BringUpRequest),
 }
 
@@ -116,7 +128,8 @@ impl Request {
             [READ_PARAMETER, group, index, ..] => Ok(Self::ReadParameter { group, index }),
             [READ_STORE, ..] => Ok(Self::ReadStore),
             [READ_FINDINGS, ..] => Ok(Self::ReadFindings),
-            [] | [READ_PARAMETER, ..] => Err(Refusal::WrongLength),
+            [READ_LIVE, page, ..] => Ok(Self::ReadLive(page)),
+            [] | [READ_PARAMETER | READ_LIVE, ..] => Err(Refusal::WrongLength),
             _ => Err(Refusal::UnknownCommand),
         }
     }
@@ -184,6 +197,10 @@ pub fn findings_reply(params: &ParamStatus) -> CanFrame {
     )
 }
 
+pub fn live_reply(page: u8, [a, b, c, d, e, f]: [u8; PAGE_BYTES]) -> CanFrame {
+    CanFrame::new(REPLY_ID, [READ_LIVE, page, a, b, c, d, e, f])
+}
+
 fn saturated(count: u32) -> [u8; 2] {
     u16::try_from(count).unwrap_or(u16::MAX).to_le_bytes()
 }
@@ -197,15 +214,15 @@ pub fn echo(request: &CanFrame) -> CanFrame {
     CanFrame::new(REPLY_ID, data)
 }
 
-/// Says which request it was: its command, and group and index if it has them.
+/// Says which request it was: its command, and group and index, or page, if it has them.
 pub fn refusal_reply(request: &CanFrame, reason: Refusal) -> CanFrame {
-    let mut bytes = request.payload().iter().copied();
-    let command = bytes.next().unwrap_or(0);
-    let mut address = || match command {
-        WRITE_PARAMETER | READ_PARAMETER => bytes.next().unwrap_or(0),
-        _ => 0,
+    let byte = |place| request.payload().get(place).copied().unwrap_or(0);
+    let command = byte(0);
+    let (group, index) = match command {
+        WRITE_PARAMETER | READ_PARAMETER => (byte(1), byte(2)),
+        READ_LIVE => (byte(1), 0),
+        _ => (0, 0),
     };
-    let (group, index) = (address(), address());
     CanFrame::new(
         REPLY_ID,
         [REFUSED, command, reason.code(), group, index, 0, 0, 0],

@@ -36,14 +36,30 @@ fn settings_of_the_running_image_are_read_and_changed() {
             assert!(allowed.contains(&value), "{} = {value}", named.full_name());
         }
         client.write(tuning::find("wheel-geometry.track-m")?, 0.37)?;
-        Ok(client.read_geometry()?)
+        let arming = client.live(tuning::live_page("arming"), 0)?;
+        let joint = client.live(tuning::live_page("joint"), 3)?;
+        let accel = client.live(tuning::live_page("accel"), 0)?;
+        let live = [arming, joint, accel].map(|page| page.expect("this firmware has it"));
+        Ok((client.read_geometry()?, live))
     });
     let mut job = job();
     let flash = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("settings.bin");
     std::fs::write(&flash, clean_flash()).expect("a file for its flash");
     job.flash_file = Some(flash);
     let outcome = job.run(&mut [&mut tool]).expect("the machine starts");
-    let geometry = tool.result().expect("the robot answers");
+    let (geometry, [arming, joint, accel]) = tool.result().expect("the robot answers");
+    assert_eq!(arming.choice("state"), "disarmed");
+    assert!(
+        arming.has("blockers", "enable-off"),
+        "{:?}",
+        arming.set("blockers")
+    );
+    assert_eq!(joint.choice("state"), "disabled");
+    assert!(
+        accel
+            .number("z-mps2")
+            .is_some_and(|up| (9.5..10.1).contains(&up))
+    );
     assert_eq!(geometry.track_mm, 370);
     assert!(geometry.right_reversed && !geometry.left_reversed);
     assert!(outcome.summary.ok, "{:?}", outcome.summary.board_errors);

@@ -2,10 +2,10 @@
 
 use std::time::{Duration, Instant};
 
-use robot_app::tuning::{ParameterGroup, Refusal};
+use robot_app::tuning::{LIVE_PAGES, LivePage, ParameterGroup, Refusal};
 
 use super::{
-    BootFindings, BringUpStep, Named, StoreReport, WheelGeometry,
+    BootFindings, BringUpStep, LiveReading, Named, StoreReport, WheelGeometry,
     request::{self, Reply, Request},
 };
 use crate::can_link::{CanLink, CanLinkError};
@@ -131,16 +131,41 @@ impl TuningClient {
         self.ask_newer(Request::ReadFindings, BootFindings::from_bytes)
     }
 
+    /// What a page shows of one of its parts, 0 for a page about the whole robot. At any time, armed too. `None` if the
+    /// firmware is too old to have the page.
+    pub fn live(
+        &mut self,
+        page: &'static LivePage,
+        part: usize,
+    ) -> Result<Option<LiveReading>, TuningError> {
+        let Some(number) = page.number(part) else {
+            return Ok(None);
+        };
+        let read = |reply| LiveReading::new(page, part, reply);
+        self.ask_newer(Request::ReadLive(number), read)
+    }
+
+    /// Every page of every part that the firmware has, one after the other.
+    pub fn live_all(&mut self) -> Result<Vec<LiveReading>, TuningError> {
+        let mut readings = Vec::new();
+        for page in &LIVE_PAGES {
+            for part in 0..page.parts.len() {
+                readings.extend(self.live(page, part)?);
+            }
+        }
+        Ok(readings)
+    }
+
     /// A request that not every firmware knows.
     fn ask_newer<T>(
         &mut self,
         request: Request,
         read: impl FnOnce([u8; 7]) -> T,
     ) -> Result<Option<T>, TuningError> {
-        match self.exchange(request, || "store".to_owned()) {
+        match self.exchange(request, || "status".to_owned()) {
             Ok(reply) => Ok(Some(read(reply))),
             Err(TuningError::Refused {
-                reason: Ok(Refusal::UnknownCommand),
+                reason: Ok(Refusal::UnknownCommand | Refusal::UnknownParameter),
                 ..
             }) => Ok(None),
             Err(error) => Err(error),

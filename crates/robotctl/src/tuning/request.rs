@@ -12,6 +12,7 @@ const READ_PARAMETER: u8 = 0x21;
 const RESTORE_DEFAULTS: u8 = 0x30;
 const READ_STORE: u8 = 0x31;
 const READ_FINDINGS: u8 = 0x32;
+const READ_LIVE: u8 = 0x33;
 const BRING_UP: u8 = 0x40;
 const REFUSED: u8 = 0xEE;
 
@@ -34,6 +35,8 @@ pub(super) enum Request {
     RestoreDefaults(u8),
     ReadStore,
     ReadFindings,
+    /// The page's number.
+    ReadLive(u8),
     /// The bytes after the command.
     BringUp([u8; 7]),
 }
@@ -66,6 +69,7 @@ impl Request {
             Self::RestoreDefaults(group) => write(RESTORE_DEFAULTS, [group, 0, 0, 0, 0, 0, 0]),
             Self::ReadStore => CanFrame::new(READ_ID, [READ_STORE, 0, 0, 0, 0, 0, 0, 0]),
             Self::ReadFindings => CanFrame::new(READ_ID, [READ_FINDINGS, 0, 0, 0, 0, 0, 0, 0]),
+            Self::ReadLive(page) => CanFrame::new(READ_ID, [READ_LIVE, page, 0, 0, 0, 0, 0, 0]),
             Self::BringUp(bytes) => write(BRING_UP, bytes),
         }
     }
@@ -79,12 +83,15 @@ impl Request {
         let [command, rest @ ..] = frame.full_payload()?;
         if command == REFUSED {
             let [refused, reason, group, index, ..] = rest;
-            let ours = refused == asked[0] && self.address() == [group, index];
+            // A firmware that does not know the command does not know either what follows it.
+            let ours = self.address() == [group, index] || reason == Refusal::UnknownCommand.code();
+            let ours = refused == asked[0] && ours;
             let reason = Refusal::from_code(reason).ok_or(reason);
             return ours.then_some(Reply::Refused(reason));
         }
         let ours = match self {
             Self::Read { .. } => frame.payload().starts_with(&asked[..4]),
+            Self::ReadLive(_) => frame.payload().starts_with(&asked[..2]),
             Self::ReadGeometry | Self::ReadStore | Self::ReadFindings => command == asked[0],
             Self::Write { .. }
             | Self::WriteGeometry(_)
@@ -94,10 +101,11 @@ impl Request {
         ours.then_some(Reply::Done(rest))
     }
 
-    /// Group and index as a refusal repeats them.
+    /// Group and index, or page, as a refusal repeats them.
     fn address(&self) -> [u8; 2] {
         match *self {
             Self::Read { group, index } | Self::Write { group, index, .. } => [group, index],
+            Self::ReadLive(page) => [page, 0],
             Self::ReadGeometry
             | Self::WriteGeometry(_)
             | Self::RestoreDefaults(_)
@@ -164,6 +172,21 @@ mod tests {
         let bytes = [5, 2, 1, 0x2C, 0x01, 3, 0];
         assert_eq!(ask.reply(&reply), Some(Reply::Done(bytes)));
         assert_eq!(ask.reply(&frame(0x7A2, [0x30; 8])), None);
+    }
+
+    /// Page 7.
+    #[test]
+    fn a_live_page_is_the_documented_bytes() {
+        let ask = Request::ReadLive(7);
+        assert_eq!(ask.frame(), frame(0x7A1, [0x33, 7, 0, 0, 0, 0, 0, 0]));
+        let reply = frame(0x7A2, [0x33, 7, 0xDA, 0x2F, 0, 0, 0, 0]);
+        let bytes = [7, 0xDA, 0x2F, 0, 0, 0, 0];
+        assert_eq!(ask.reply(&reply), Some(Reply::Done(bytes)));
+        assert_eq!(Request::ReadLive(8).reply(&reply), None);
+        let refusal = frame(0x7A2, [0xEE, 0x33, 3, 7, 0, 0, 0, 0]);
+        let refused = Some(Reply::Refused(Ok(Refusal::UnknownParameter)));
+        assert_eq!(ask.reply(&refusal), refused);
+        assert_eq!(Request::ReadLive(8).reply(&refusal), None);
     }
 
     #[test]

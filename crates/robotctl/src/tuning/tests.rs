@@ -9,10 +9,12 @@ use std::{
 
 use robot_app::{
     bring_up::BringUp,
-    domain::{BusId, CanFrame, RobotConfig, StandardId},
+    diagnostics::DiagnosticsSnapshot,
+    domain::{BusId, CanFrame, JointState, RobotConfig, StandardId},
     motor::layout::ROBOT_LAYOUT,
     params::{ParamError, ParamState, ParamStatus},
-    tuning::{Refusal, TuningAccess, TuningChannel, TuningGate},
+    safety::SafetyFlags,
+    tuning::{LIVE_PAGES, Refusal, TuningAccess, TuningChannel, TuningGate},
 };
 
 use super::*;
@@ -25,7 +27,7 @@ struct Robot {
     channel: TuningChannel,
     config: RobotConfig,
     gate: TuningGate,
-    params: ParamStatus,
+    diagnostics: DiagnosticsSnapshot,
     /// Looks at the store after which everything is saved.
     looks_to_save: Option<usize>,
     /// From before there was a store.
@@ -43,7 +45,7 @@ impl Robot {
             return;
         }
         match &mut self.looks_to_save {
-            Some(0) => self.params.seen = self.channel.status().revision,
+            Some(0) => self.diagnostics.params.seen = self.channel.status().revision,
             Some(left) => *left -= 1,
             None => {}
         }
@@ -52,7 +54,7 @@ impl Robot {
     /// The firmware's own reply or, from an old one, that it does not know the command (docs/tuning.md).
     fn reply(&mut self, frame: &CanFrame) -> Option<CanFrame> {
         if self.is_old
-            && let Some(command @ (0x31 | 0x32)) = frame.payload().first()
+            && let Some(command @ (0x31..=0x33)) = frame.payload().first()
         {
             let reply = StandardId::new(0x7A2).unwrap();
             return Some(CanFrame::new(reply, [0xEE, *command, 2, 0, 0, 0, 0, 0]));
@@ -61,7 +63,7 @@ impl Robot {
         let access = TuningAccess {
             config: &mut self.config,
             bring_up: &mut BringUp::default(),
-            params: &self.params,
+            diagnostics: &self.diagnostics,
         };
         self.channel.on_frame(BusId::Can2, frame, self.gate, access)
     }
@@ -95,7 +97,7 @@ impl CanLink for Bus {
 fn robot() -> (Bus, TuningClient) {
     let bus = Bus(Rc::new(RefCell::new(Robot {
         channel: TuningChannel::new(&ROBOT_LAYOUT),
-        params: ParamStatus::default(),
+        diagnostics: DiagnosticsSnapshot::default(),
         looks_to_save: Some(0),
         is_old: false,
         config: RobotConfig::default(),
@@ -295,7 +297,7 @@ fn what_keeps_the_robot_from_saving_is_told_with_what_to_do() {
     let (bus, mut client) = changed();
     bus.0.borrow_mut().looks_to_save = None;
     let mut complaint = |state, last_error| {
-        bus.0.borrow_mut().params = ParamStatus {
+        bus.0.borrow_mut().diagnostics.params = ParamStatus {
             state,
             last_error,
             unsaved: 1,
@@ -328,7 +330,7 @@ fn an_old_firmware_is_known_to_save_nothing() {
 #[test]
 fn what_boot_found_is_told_by_name() {
     let (bus, mut client) = robot();
-    bus.0.borrow_mut().params = ParamStatus {
+    bus.0.borrow_mut().diagnostics.params = ParamStatus {
         lost_sectors: 1,
         refused: 1 << 3 | 1 << 10,
         ..ParamStatus::default()
@@ -362,4 +364,39 @@ fn a_group_or_all_get_their_defaults_back() {
     assert_eq!(config.wheel_odom.wheel_track_m, 0.3);
     client.restore_defaults(None).unwrap();
     assert_eq!(bus.0.borrow().config, RobotConfig::default());
+}
+
+#[test]
+fn live_values_have_the_firmware_s_names_and_units() {
+    let (bus, mut client) = robot();
+    let joint = live_page("joint");
+    {
+        let robot = &mut *bus.0.borrow_mut();
+        robot.gate = TuningGate::Shut;
+        let feedback = &mut robot.diagnostics.sensors.motor.joints[3];
+        (feedback.pos_rad, feedback.ts_us) = (0.25, 1);
+        feedback.state = JointState::Fault;
+        feedback.frozen = true;
+        robot.diagnostics.safety.flags = SafetyFlags::JOINT_FAULT;
+    }
+    let reading = client.live(joint, 3).unwrap().unwrap();
+    assert_eq!(reading.title(), "joint right-rear");
+    assert_eq!(reading.number("angle-rad"), Some(0.25));
+    assert_eq!(reading.choice("state"), "fault");
+    assert!(reading.has("marks", "frozen") && !reading.has("marks", "gives-torque"));
+    let safety = client.live(live_page("safety"), 0).unwrap().unwrap();
+    assert_eq!(safety.title(), "safety");
+    assert_eq!(safety.set("flags"), ["joint-fault"]);
+    assert!(client.live(joint, 4).unwrap().is_none());
+    let pages: usize = LIVE_PAGES.iter().map(|page| page.parts.len()).sum();
+    assert_eq!(client.live_all().unwrap().len(), pages);
+}
+
+/// It answers with page 0 in the place of the group, as it does to any command it does not know.
+#[test]
+fn an_old_firmware_has_no_live_values() {
+    let (bus, mut client) = robot();
+    bus.0.borrow_mut().is_old = true;
+    assert!(client.live(live_page("arming"), 0).unwrap().is_none());
+    assert!(client.live_all().unwrap().is_empty());
 }

@@ -5,7 +5,7 @@ use crate::{
     bring_up::BringUpStep,
     domain::{StandardId, WheelOdomConfig},
     motor::layout::ROBOT_LAYOUT,
-    params::{ParamError, ParamState},
+    params::{ParamError, ParamState, ParamStatus},
 };
 
 /// ROBOT_CPP 5.3: radius 75 mm, track 450 mm, ratio 36.00, left wheel reversed.
@@ -15,7 +15,7 @@ struct Bench {
     channel: TuningChannel,
     config: RobotConfig,
     bring_up: BringUp,
-    params: ParamStatus,
+    diagnostics: DiagnosticsSnapshot,
 }
 
 impl Default for Bench {
@@ -24,7 +24,7 @@ impl Default for Bench {
             channel: TuningChannel::new(&ROBOT_LAYOUT),
             config: RobotConfig::default(),
             bring_up: BringUp::default(),
-            params: ParamStatus::default(),
+            diagnostics: DiagnosticsSnapshot::default(),
         }
     }
 }
@@ -40,7 +40,7 @@ impl Bench {
         let access = TuningAccess {
             config: &mut self.config,
             bring_up: &mut self.bring_up,
-            params: &self.params,
+            diagnostics: &self.diagnostics,
         };
         self.channel.on_frame(bus, frame, gate, access)
     }
@@ -335,7 +335,7 @@ fn the_defaults_are_those_of_the_robot_s_motor_layout() {
 fn anyone_may_ask_whether_everything_is_saved() {
     let mut bench = Bench::default();
     assert_eq!(bench.read(&[0x31]), [0x31, 0, 0, 0, 0, 0, 0, 0]);
-    bench.params = ParamStatus {
+    bench.diagnostics.params = ParamStatus {
         state: ParamState::BackingOff,
         last_error: ParamError::NotProgrammed,
         unsaved: 0b1001,
@@ -353,7 +353,7 @@ fn anyone_may_ask_whether_everything_is_saved() {
 fn anyone_may_ask_what_boot_found_in_the_store() {
     let mut bench = Bench::default();
     assert_eq!(bench.read(&[0x32]), [0x32, 0, 0, 0, 0, 0, 0, 0]);
-    bench.params = ParamStatus {
+    bench.diagnostics.params = ParamStatus {
         lost_sectors: 1,
         damaged: 300,
         foreign: 4,
@@ -363,6 +363,23 @@ fn anyone_may_ask_what_boot_found_in_the_store() {
     let expected = [0x32, 1, 255, 4, 0x80, 0x00, 0x01, 0x00];
     assert_eq!(bench.read(&[0x32]), expected);
     assert_eq!(bench.reply(TuningGate::Shut, 0x7A1, &[0x32]), expected);
+}
+
+/// Page 7, battery: 24.5 V in steps of 2 mV are 12,250 = 0x2FDA. Page 0x31 is none.
+#[test]
+fn anyone_may_look_at_any_time() {
+    let mut bench = Bench::default();
+    bench.diagnostics.battery_v = 24.5;
+    let expected = [0x33, 7, 0xDA, 0x2F, 0, 0, 0, 0];
+    assert_eq!(bench.read(&[0x33, 7]), expected);
+    assert_eq!(bench.reply(TuningGate::Shut, 0x7A1, &[0x33, 7]), expected);
+    assert_eq!(bench.read(&[0x33, 0x31]), [0xEE, 0x33, 3, 0x31, 0, 0, 0, 0]);
+    assert_eq!(bench.read(&[0x33]), [0xEE, 0x33, 1, 0, 0, 0, 0, 0]);
+    assert_eq!(
+        bench.write(&[0x33, 7, 0, 0, 0, 0, 0, 0])[..3],
+        [0xEE, 0x33, 2]
+    );
+    assert!(bench.unchanged());
 }
 
 /// The store saves such a group even if it looks the same: flash may hold a record that was refused.
@@ -386,9 +403,9 @@ fn defaults_that_change_nothing_are_told_to_the_store() {
 fn a_change_is_unsaved_from_the_moment_of_its_reply() {
     let mut bench = tuned();
     assert_eq!(bench.read(&[0x31])[..4], [0x31, 1, 0, 1]);
-    bench.params.seen = 2;
-    bench.params.unsaved = 0b10;
-    bench.params.state = ParamState::Saving;
+    bench.diagnostics.params.seen = 2;
+    bench.diagnostics.params.unsaved = 0b10;
+    bench.diagnostics.params.state = ParamState::Saving;
     assert_eq!(bench.read(&[0x31])[..4], [0x31, 3, 0, 1]);
     bench.write(&[0x20, 7, 0, 0, 0x00, 0x00, 0x00, 0x42]);
     assert_eq!(bench.read(&[0x31])[..4], [0x31, 1, 0, 2]);

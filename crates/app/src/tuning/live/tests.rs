@@ -1,0 +1,214 @@
+//! Bytes by hand from the table in docs/tuning.md.
+
+use super::*;
+use crate::{
+    domain::{JointState, LastWords, ResetCause},
+    motor::layout::{ROBOT_LAYOUT, RS00_LAYOUT},
+    safety::{ArmingState, SafetyFlags},
+};
+
+fn read_of(number: u8, fill: impl FnOnce(&mut DiagnosticsSnapshot)) -> [u8; PAGE_BYTES] {
+    let mut diagnostics = DiagnosticsSnapshot::default();
+    fill(&mut diagnostics);
+    let source = LiveSource {
+        diagnostics: &diagnostics,
+        layout: &ROBOT_LAYOUT,
+    };
+    read(number, &source).unwrap()
+}
+
+fn page(name: &str) -> &'static LivePage {
+    LIVE_PAGES.iter().find(|page| page.name == name).unwrap()
+}
+
+fn value(page: &LivePage, bytes: [u8; PAGE_BYTES], field: &str) -> LiveValue {
+    let found = page.unpack(bytes).find(|(f, _)| f.name == field);
+    found.unwrap().1
+}
+
+#[test]
+fn numbers_and_names_are_unique_and_fields_fit() {
+    let mut numbers = Vec::new();
+    let mut names = Vec::new();
+    for page in &LIVE_PAGES {
+        numbers.extend((0..page.parts.len()).map(|part| page.number(part).unwrap()));
+        names.push(page.name);
+        let bits: u32 = page.fields.iter().map(|field| u32::from(field.bits)).sum();
+        assert!(bits <= 48, "{}: {bits} bits", page.name);
+        for field in page.fields {
+            assert!((1..=32).contains(&field.bits));
+            if let LiveKind::Choice { names, .. } = field.kind {
+                assert!(names.len() <= 1 << field.bits, "{}", field.name);
+            }
+            let same = |other: &&LiveField| other.name == field.name;
+            assert_eq!(page.fields.iter().filter(same).count(), 1);
+        }
+    }
+    let count = numbers.len();
+    assert!(numbers.is_sorted(), "by number");
+    numbers.dedup();
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!((numbers.len(), names.len()), (count, LIVE_PAGES.len()));
+}
+
+/// Blockers 0 and 11 = 0x801; state 1.
+#[test]
+fn a_set_and_a_choice_lie_side_by_side() {
+    let bytes = read_of(0x03, |diagnostics| {
+        diagnostics.arming.state = ArmingState::Armed;
+    });
+    assert_eq!(bytes, [0, 0, 0, 0, 1, 0]);
+    let arming = page("arming");
+    assert_eq!(
+        value(arming, bytes, "state"),
+        LiveValue::Choice(Ok("armed"))
+    );
+    let bytes = [0x01, 0x08, 0, 0, 3, 0];
+    assert_eq!(value(arming, bytes, "state"), LiveValue::Choice(Err(3)));
+    assert_eq!(value(arming, bytes, "blockers"), LiveValue::Set(0x801));
+    let LiveKind::Set { name_of, .. } = arming.fields[0].kind else {
+        panic!("blockers are a set");
+    };
+    let named = [0, 11].map(|bit| name_of(bit).unwrap());
+    assert_eq!(named, ["remote-not-fresh", "settings-refused"]);
+    assert_eq!(name_of(31), None);
+}
+
+/// −1.571 rad = −1571 = 0xF9DD, 2.5 rad/s = 250 = 0x00FA, state 2 in the low four bits of byte 4, mark 1 in bit 5.
+#[test]
+fn a_joint_is_shown_with_sign_and_state() {
+    let bytes = read_of(0x22, |diagnostics| {
+        let joint = &mut diagnostics.sensors.motor.joints[2];
+        joint.pos_rad = -1.5707;
+        joint.vel_rps = 2.5;
+        joint.state = JointState::Disabled;
+        joint.reports_enabled = true;
+        joint.ts_us = 1;
+    });
+    assert_eq!(bytes, [0xDD, 0xF9, 0xFA, 0x00, 0x22, 0]);
+    let joint = page("joint");
+    assert_eq!(
+        value(joint, bytes, "angle-rad"),
+        LiveValue::Measure(Some(-1.571))
+    );
+    assert_eq!(
+        value(joint, bytes, "state"),
+        LiveValue::Choice(Ok("disabled"))
+    );
+    assert_eq!(value(joint, bytes, "marks"), LiveValue::Set(0b10));
+}
+
+/// The lowest number, 0x8000, is kept for that.
+#[test]
+fn what_is_not_known_is_not_a_number() {
+    let bytes = read_of(0x22, |_| {});
+    assert_eq!(bytes, [0x00, 0x80, 0x00, 0x80, 0, 0]);
+    let joint = page("joint");
+    assert_eq!(value(joint, bytes, "angle-rad"), LiveValue::Measure(None));
+    let power = read_of(0x07, |_| {});
+    assert_eq!(
+        value(page("power"), power, "battery-v"),
+        LiveValue::Measure(None)
+    );
+}
+
+/// 40 rad is beyond 32.767; 300,000 ms beyond 255; 5,000 errors beyond 12 bits.
+#[test]
+fn what_is_too_large_stays_at_the_end() {
+    let bytes = read_of(0x20, |diagnostics| {
+        let joint = &mut diagnostics.sensors.motor.joints[0];
+        (joint.pos_rad, joint.vel_rps) = (40.0, -400.0);
+        (joint.state, joint.ts_us) = (JointState::Disabled, 1);
+    });
+    assert_eq!(bytes[..4], [0xFF, 0x7F, 0x01, 0x80]);
+    let bytes = read_of(0x24, |diagnostics| {
+        diagnostics.sensors.motor.joints[0].age_us = 300_000_000;
+    });
+    assert_eq!(bytes[5], 255);
+    let bytes = read_of(0x1A, |diagnostics| {
+        diagnostics.imu_status.rejects.frozen = 5_000;
+        diagnostics.imu_status.rejects.implausible = 1;
+    });
+    assert_eq!(bytes, [0x00, 0xF0, 0xFF, 0x01, 0x00, 0x00]);
+}
+
+/// Version 0.1.0 of the workspace; make 1 of DM4310, 2 of RS00 (docs/parameters.md); 3,661 s = 0x0E4D.
+#[test]
+fn the_firmware_says_what_it_is_and_how_long_it_runs() {
+    assert_eq!(read_of(0x00, |_| {}), [0, 1, 0, 1, 0, 0]);
+    let diagnostics = DiagnosticsSnapshot::default();
+    let rs00 = LiveSource {
+        diagnostics: &diagnostics,
+        layout: &RS00_LAYOUT,
+    };
+    assert_eq!(read(0, &rs00).unwrap()[3], 2);
+    let bytes = read_of(0x01, |diagnostics| {
+        diagnostics.ts_us = 3_661_900_000;
+        diagnostics.tick.missed = 258;
+    });
+    assert_eq!(bytes, [0x4D, 0x0E, 0, 0, 2, 1]);
+}
+
+#[test]
+fn names_of_choices_are_those_of_the_firmware() {
+    let boot = page("boot");
+    for code in 0..=255 {
+        let bytes = [code << 4, code >> 4, 0, 0, 0, 0];
+        let name = LastWords::from_code(code)
+            .map(LastWords::text)
+            .ok_or(code.into());
+        assert_eq!(value(boot, bytes, "last-words"), LiveValue::Choice(name));
+    }
+    let bytes = read_of(0x02, |diagnostics| {
+        diagnostics.reset_cause = ResetCause::IndependentWatchdog;
+    });
+    assert_eq!(
+        value(boot, bytes, "reset-cause"),
+        LiveValue::Choice(Ok("watchdog"))
+    );
+}
+
+/// Flags 1 and 25; wheels and CAN2 stopped.
+#[test]
+fn stops_are_shown() {
+    let bytes = read_of(0x04, |diagnostics| {
+        let safety = &mut diagnostics.safety;
+        safety.flags = SafetyFlags::REMOTE_FAILSAFE.union(SafetyFlags::JOINT_NOT_READY);
+        safety.joints_stop = false;
+        safety.bus_stop = [false, true];
+    });
+    assert_eq!(bytes, [0x02, 0, 0, 0x02, 0b0010_0110, 0]);
+}
+
+/// 1, −1, 0.5 and 0 in 12 bits each: 0x3E8, 0xC18, 0x1F4, 0.
+#[test]
+fn channels_are_four_a_page() {
+    let bytes = read_of(0x11, |diagnostics| {
+        diagnostics.remote.channels[4..8].copy_from_slice(&[1.0, -1.0, 0.5, 0.0]);
+        diagnostics.remote.ts_us = 1;
+    });
+    assert_eq!(bytes, [0xE8, 0x83, 0xC1, 0xF4, 0x01, 0x00]);
+}
+
+#[test]
+fn a_page_that_is_none_is_refused() {
+    let diagnostics = DiagnosticsSnapshot::default();
+    let source = LiveSource {
+        diagnostics: &diagnostics,
+        layout: &ROBOT_LAYOUT,
+    };
+    for number in [0x0E, 0x2A + 6, 0xFF] {
+        assert_eq!(read(number, &source), Err(Refusal::UnknownParameter));
+    }
+}
+
+proptest::proptest! {
+    /// Whatever a table's own numbers are, they come back from their bits.
+    #[test]
+    fn every_page_is_unpacked_whole(bytes in proptest::prelude::any::<[u8; 6]>()) {
+        for page in &LIVE_PAGES {
+            proptest::prop_assert_eq!(page.unpack(bytes).count(), page.fields.len());
+        }
+    }
+}

@@ -1,0 +1,112 @@
+//! Live values of the robot (docs/tuning.md, `33`).
+
+use robot_app::tuning::{LIVE_PAGES, LiveKind, LivePage, LiveValue};
+
+/// A page as the robot showed it at one moment.
+#[derive(Clone, Copy, Debug)]
+pub struct LiveReading {
+    pub page: &'static LivePage,
+    /// Which of `page.parts`.
+    pub part: usize,
+    bytes: [u8; 6],
+}
+
+/// The page with this name.
+///
+/// # Panics
+/// If there is none: names of pages and fields are constants of the caller.
+pub fn live_page(name: &str) -> &'static LivePage {
+    let found = LIVE_PAGES.iter().find(|page| page.name == name);
+    found.unwrap_or_else(|| panic!("there is no live page `{name}`"))
+}
+
+impl LiveReading {
+    /// Of the bytes after the command; the first is the page's number.
+    pub(super) fn new(
+        page: &'static LivePage,
+        part: usize,
+        [_, a, b, c, d, e, f]: [u8; 7],
+    ) -> Self {
+        let bytes = [a, b, c, d, e, f];
+        Self { page, part, bytes }
+    }
+
+    /// Name of the page and, if it has several, of the part.
+    pub fn title(&self) -> String {
+        match self.page.parts.get(self.part) {
+            None | Some(&"") => self.page.name.to_owned(),
+            Some(part) => format!("{} {part}", self.page.name),
+        }
+    }
+
+    /// # Panics
+    /// If the page has no such field.
+    pub fn value(&self, field: &str) -> LiveValue {
+        let mut fields = self.page.unpack(self.bytes);
+        match fields.find(|(known, _)| known.name == field) {
+            Some((_, value)) => value,
+            None => panic!("page `{}` has no field `{field}`", self.page.name),
+        }
+    }
+
+    /// A number in its unit; `None` if the robot does not know it.
+    ///
+    /// # Panics
+    /// If the page has no such field, or it is no number.
+    pub fn number(&self, field: &str) -> Option<f64> {
+        match self.value(field) {
+            LiveValue::Count(count) => Some(count.into()),
+            LiveValue::Measure(measured) => measured,
+            other => panic!("`{field}` is no number: {other:?}"),
+        }
+    }
+
+    /// A choice in the firmware's word.
+    ///
+    /// # Panics
+    /// If the page has no such field, or it is no choice.
+    pub fn choice(&self, field: &str) -> String {
+        match self.value(field) {
+            LiveValue::Choice(Ok(name)) => name.to_owned(),
+            LiveValue::Choice(Err(number)) => unknown("number", number),
+            other => panic!("`{field}` is no choice: {other:?}"),
+        }
+    }
+
+    /// Names of what is in a set, lowest bit first.
+    ///
+    /// # Panics
+    /// If the page has no such field, or it is no set.
+    pub fn set(&self, field: &str) -> Vec<String> {
+        let named = self.page.fields.iter().find(|known| known.name == field);
+        let (Some(LiveKind::Set { name_of, .. }), LiveValue::Set(bits)) =
+            (named.map(|field| &field.kind), self.value(field))
+        else {
+            panic!("`{field}` is no set");
+        };
+        let set = (0..32).filter(|bit| bits & 1 << bit != 0);
+        let name = |bit: u8| match name_of(bit) {
+            Some(name) => name.to_owned(),
+            None => unknown("bit", bit.into()),
+        };
+        set.map(name).collect()
+    }
+
+    /// Whether `member` is in a set.
+    ///
+    /// # Panics
+    /// As [`set`](Self::set).
+    pub fn has(&self, field: &str, member: &str) -> bool {
+        self.set(field).iter().any(|name| name == member)
+    }
+
+    /// The whole page.
+    pub fn values(&self) -> impl Iterator<Item = (&'static str, LiveValue)> {
+        let fields = self.page.unpack(self.bytes);
+        fields.map(|(field, value)| (field.name, value))
+    }
+}
+
+fn unknown(what: &str, number: u32) -> String {
+    format!("{what} {number} (newer than this robotctl)")
+}
