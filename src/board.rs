@@ -205,6 +205,7 @@ impl MagBus {
         );
         Ist8310::new(
             i2c,
+            pac::I2C3,
             Output::new(self.reset.reborrow(), Level::High, Speed::Low),
         )
     }

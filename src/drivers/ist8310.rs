@@ -3,7 +3,8 @@
 use embassy_stm32::gpio::Output;
 use embassy_stm32::i2c::{Error, I2c, Master};
 use embassy_stm32::mode::Async;
-use embassy_time::{Duration, with_timeout};
+use embassy_stm32::pac;
+use embassy_time::{Duration, Timer, with_timeout};
 use robot_app::sensing::ist8310::{
     ADDRESS, INIT, InitCheck, InitStep, MEASUREMENT_US, READ_FROM, READ_LEN, START_SINGLE_SHOT,
 };
@@ -12,6 +13,8 @@ use crate::deadlines::{Watched, sleep_checking_in};
 
 /// The longest transfer takes 0.25 ms on the wire.
 const TRANSFER_TIMEOUT: Duration = Duration::from_millis(2);
+/// A STOP takes one bit of 2.5 µs, after the byte under way of 23 µs.
+const STOP_TIME: Duration = Duration::from_micros(50);
 
 /// Why the sensor did not do what it was told.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, defmt::Format)]
@@ -26,12 +29,18 @@ pub enum Ist8310Error {
 /// The magnetometer, its bus and its reset pin.
 pub struct Ist8310<'d> {
     i2c: I2c<'d, Async, Master>,
+    registers: pac::i2c::I2c,
     reset: Output<'d>,
 }
 
 impl<'d> Ist8310<'d> {
-    pub fn new(i2c: I2c<'d, Async, Master>, reset: Output<'d>) -> Self {
-        Self { i2c, reset }
+    /// `registers` are those of `i2c`.
+    pub fn new(i2c: I2c<'d, Async, Master>, registers: pac::i2c::I2c, reset: Output<'d>) -> Self {
+        Self {
+            i2c,
+            registers,
+            reset,
+        }
     }
 
     /// Walks the bring-up sequence, which takes about 100 ms. It starts with a reset by pin, so that a sensor that
@@ -70,15 +79,33 @@ impl<'d> Ist8310<'d> {
     }
 
     async fn write(&mut self, bytes: [u8; 2]) -> Result<(), Ist8310Error> {
+        self.last_transfer_out().await?;
         within_time(self.i2c.write(ADDRESS, &bytes)).await
     }
 
     async fn read<const N: usize>(&mut self, register: u8) -> Result<[u8; N], Ist8310Error> {
+        self.last_transfer_out().await?;
         let mut answer = [0; N];
         // A variable, not a constant: DMA1 must not fetch the register number from flash.
         let register = [register];
         within_time(self.i2c.write_read(ADDRESS, &register, &mut answer)).await?;
         Ok(answer)
+    }
+
+    /// The HAL returns when it has asked for a STOP. A START asked for before that is out is cut off by it and hangs the
+    /// bus (RM0090 27.6.1 forbids it; stm32f4xx-hal, pull request 737, shows it).
+    async fn last_transfer_out(&self) -> Result<(), Ist8310Error> {
+        let pending = || {
+            let cr1 = self.registers.cr1().read();
+            cr1.start() || cr1.stop()
+        };
+        if pending() {
+            Timer::after(STOP_TIME).await;
+        }
+        if pending() {
+            return Err(Ist8310Error::Timeout);
+        }
+        Ok(())
     }
 }
 

@@ -52,6 +52,8 @@ pub struct Master {
     shift: u8,
     /// The bus action under way ends then.
     ends_at: Option<Ps>,
+    /// The next START is cut off by a STOP before SB: the peripheral waits for ever, until it is reset.
+    pub start_cut_off: bool,
 }
 
 impl Master {
@@ -177,6 +179,7 @@ impl Master {
         }
         self.ends_at = None;
         match self.phase {
+            Phase::Starting { .. } if self.start_cut_off => {}
             Phase::Starting { .. } => {
                 self.cr1 &= !cr1::START;
                 self.sr1 |= sr1::SB;
@@ -260,6 +263,7 @@ impl Master {
         self.sr1 = 0;
         self.ends_at = None;
         self.dr_waits = false;
+        self.start_cut_off = false;
     }
 
     fn wait_bits(&mut self, bits: u64, ctx: &mut Ctx<'_>) {

@@ -81,9 +81,27 @@ impl I2c {
         }
         if was & cr1::PE != 0 && value & cr1::PE == 0 {
             self.master.release_bus(ctx);
+        } else {
+            self.check_requests_done(was, value, ctx);
         }
         self.master.cr1 = value;
         self.master.requests_changed(ctx);
+    }
+
+    /// CR1 must not be written before the hardware has cleared START and STOP: "there is a risk of setting a second
+    /// request" (RM0090 27.6.1). What then became of a START was seen on a bus: stm32f4xx-hal, pull request 737.
+    fn check_requests_done(&mut self, was: u32, value: u32, ctx: &mut Ctx<'_>) {
+        let why = match (was & cr1::STOP != 0, value & cr1::START != 0) {
+            (true, true) => {
+                self.master.start_cut_off = true;
+                "STOP is pending: it cuts off the START, and the bus hangs"
+            }
+            (true, false) => "STOP is pending: it may be sent twice",
+            (false, _) if was & cr1::START != 0 => "START is pending: it may be sent twice",
+            (false, _) => return,
+        };
+        let message = format!("I2C3: CR1 written while {why}");
+        ctx.errors.report(ctx.now, message);
     }
 
     /// CCR and TRISE may be written only while PE is 0 (RM0090 27.6.8, 27.6.9).

@@ -226,6 +226,41 @@ fn wrong_timing_is_said_aloud() {
     assert_eq!(bench.suspicion_texts(), [rise_time]);
 }
 
+/// As embassy-stm32 0.6 does where a transfer follows another at once.
+#[test]
+fn a_start_written_while_stop_is_pending_hangs_the_bus_until_a_reset() {
+    let (mut bench, mut i2c) = ready();
+    point_at(&mut bench, &mut i2c, WAI);
+    bench.write(&mut i2c, CR1, PE | STOP);
+    let until = bench.now + 1_000_000;
+    bench.run(&mut i2c, until);
+    let cr1 = bench.read(&mut i2c, CR1);
+    assert_eq!(cr1, PE | STOP);
+    bench.write(&mut i2c, CR1, cr1 | START);
+    let until = bench.now + MS;
+    bench.run(&mut i2c, until);
+    assert_eq!(bench.read(&mut i2c, SR1), 0, "no SB");
+    let expected =
+        "I2C3: CR1 written while STOP is pending: it cuts off the START, and the bus hangs";
+    assert_eq!(bench.error_texts(), [expected]);
+    bench.write(&mut i2c, CR1, 0);
+    bench.write(&mut i2c, CR1, PE | START);
+    wait_for(&mut bench, &mut i2c, SB);
+}
+
+#[test]
+fn cr1_is_left_alone_until_start_and_stop_are_out() {
+    let (mut bench, mut i2c) = ready();
+    bench.write(&mut i2c, CR1, PE | START);
+    bench.write(&mut i2c, CR1, PE | START | ACK);
+    wait_for(&mut bench, &mut i2c, SB);
+    bench.write(&mut i2c, CR1, PE | STOP);
+    bench.write(&mut i2c, CR1, PE | STOP | ACK);
+    let texts = bench.error_texts();
+    assert!(texts[0].contains("START is pending: it may be sent twice"));
+    assert!(texts[1].contains("STOP is pending: it may be sent twice"));
+}
+
 #[test]
 fn a_software_reset_frees_the_bus() {
     let (mut bench, mut i2c) = ready();
