@@ -117,6 +117,8 @@ pub struct CanStats {
 pub struct Progress {
     /// Control ticks.
     pub missed: u64,
+    /// How many control ticks there were, and when the last one was entered.
+    pub ticks: Option<(u64, Ps)>,
     /// As in `Stats`.
     pub cpu_load: f64,
     /// How long each CAN bus was busy since power-on.
@@ -273,6 +275,7 @@ impl Machine {
         let flash = soc.flash().history().stats();
         Progress {
             missed: run.missed_ticks(),
+            ticks: run.ticks_so_far(),
             cpu_load: run.cpu_load(),
             can_busy: [0, 1].map(|bus| soc.can_stats(bus).busy),
             board_errors: soc.errors.list().len(),

@@ -3,6 +3,7 @@
 mod support;
 
 use robot_emulator::{machine::RegisterPatch, sim::scenario::Scenario};
+use robot_plant::time::SECOND;
 
 const QUIET: &str = "name = \"strictness\"\nseconds = 1.5\nplant = \"stand\"\n";
 
@@ -26,6 +27,22 @@ fn complaints(patches: &[RegisterPatch]) -> Complaints {
     };
     assert_eq!(summary.ok, all.failing.is_empty());
     all
+}
+
+/// What the first seconds of the default drive miss with these register bits overridden; the board itself sees nothing.
+fn drive_fails(patch: RegisterPatch) -> Vec<String> {
+    let path = support::repository().join("scenarios/drive.toml");
+    let mut drive = Scenario::read(&path).expect("the default drive");
+    drive.length = 2 * SECOND;
+    drive.expectations.retain(|e| e.window.start < 2 * SECOND);
+    for expectation in &mut drive.expectations {
+        expectation.window.end = expectation.window.end.min(2 * SECOND);
+    }
+    let mut job = support::job(drive);
+    job.patches = vec![patch];
+    let summary = job.run(&mut []).expect("the machine starts").summary;
+    let failed = summary.failed_expectations.into_iter();
+    failed.map(|f| format!("{}: {}", f.signal, f.why)).collect()
 }
 
 /// One message has all of `parts` in it.
@@ -195,4 +212,26 @@ fn push_pull_i2c_line() {
         value: 0,
     };
     must_complain(patch, &["I2C3_SDA: PC9 is push-pull, needs open-drain"]);
+}
+
+/// TIM2, the time base, at 84 MHz / 83: every tick is 1.2 % short. TIM2_PSC.
+#[test]
+fn a_time_base_a_little_off_fails_the_default_drive() {
+    let patch = RegisterPatch {
+        address: 0x4000_0028,
+        mask: 0xFFFF,
+        value: 82,
+    };
+    must_name(&drive_fails(patch), &["emu.tick_period_us", "988.095"]);
+}
+
+/// The magnetometer's transfers without DMA never end: I2C3_CR2 bit DMAEN (11).
+#[test]
+fn a_magnetometer_that_never_gets_ready_fails_the_default_drive() {
+    let patch = RegisterPatch {
+        address: 0x4000_5C04,
+        mask: 1 << 11,
+        value: 0,
+    };
+    must_name(&drive_fails(patch), &["diag.mag_health.ready"]);
 }

@@ -129,6 +129,12 @@ impl Execution {
         self.ticks.len() as u64
     }
 
+    /// How many ticks there were, and when the last one was entered.
+    pub fn ticks_so_far(&self) -> Option<(u64, Ps)> {
+        let last = self.ticks.last()?;
+        Some((self.tick_count(), last.at))
+    }
+
     /// When the last tick was entered that is over by `now`; one takes at most [`TICK_LASTS`].
     pub fn last_tick(&self, now: Ps) -> Option<Ps> {
         let over = |tick: &&TickEntry| tick.at + TICK_LASTS <= now;

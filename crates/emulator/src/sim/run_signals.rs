@@ -8,10 +8,11 @@ use super::{
 };
 use crate::machine::Progress;
 
-const NAMES: [&str; 11] = [
+const NAMES: [&str; 12] = [
     "emu.board_errors",
     "emu.cpu_load",
     "emu.missed_ticks",
+    "emu.tick_period_us",
     "emu.can1.load",
     "emu.can2.load",
     "emu.flash.erases",
@@ -28,9 +29,11 @@ const PERIOD: Ps = 100 * time::MS;
 /// Keeps the `emu.*` values up to date.
 pub struct RunSignals {
     due: Ps,
-    counters: [Option<f64>; 7],
+    counters: [Option<f64>; 8],
     /// When that was last, and how long each CAN bus had been busy by then.
     can_busy: (Ps, [Ps; 2]),
+    /// Control ticks by then, and when the last of them was entered.
+    ticks: Option<(u64, Ps)>,
     quaternion: Option<[usize; 4]>,
     valid: Option<usize>,
 }
@@ -44,8 +47,9 @@ impl RunSignals {
         let part = |i: usize| table.index(&format!("diag.estimate.q_wxyz.{i}"));
         Self {
             due: 0,
-            counters: [None; 7],
+            counters: [None; 8],
             can_busy: (0, [0; 2]),
+            ticks: None,
             quaternion: match [part(0), part(1), part(2), part(3)] {
                 [Some(w), Some(x), Some(y), Some(z)] => Some([w, x, y, z]),
                 _ => None,
@@ -60,10 +64,12 @@ impl RunSignals {
             self.due = now + PERIOD;
             let progress = board.progress();
             let [can1, can2] = self.can_load(&progress, now);
+            let tick_period_us = self.tick_period_us(&progress);
             self.counters = [
                 Some(progress.board_errors as f64),
                 Some(progress.cpu_load),
                 Some(progress.missed as f64),
+                tick_period_us,
                 can1,
                 can2,
                 Some(progress.flash_erases as f64),
@@ -84,6 +90,14 @@ impl RunSignals {
         self.can_busy = (now, progress.can_busy);
         let elapsed = (now > before).then(|| (now - before) as f64);
         [0, 1].map(|bus| Some((progress.can_busy[bus] - busy_before[bus]) as f64 / elapsed?))
+    }
+
+    /// Mean time from tick to tick since the last look, by the crystal's time.
+    fn tick_period_us(&mut self, progress: &Progress) -> Option<f64> {
+        let before = std::mem::replace(&mut self.ticks, progress.ticks);
+        let ((ticks_before, from), (ticks, to)) = (before?, progress.ticks?);
+        let new = ticks.checked_sub(ticks_before).filter(|new| *new > 0)?;
+        Some((to - from) as f64 / time::US as f64 / new as f64)
     }
 
     /// The firmware's attitude, while it calls it valid.
