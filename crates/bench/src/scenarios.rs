@@ -36,6 +36,7 @@ pub fn run(elf: &Path, scenario: Scenario, progress: impl FnMut()) -> anyhow::Re
         scenario,
         imu_trial: None,
         patches: Vec::new(),
+        probe: false,
         can_on_pty: Vec::new(),
         flash_file: None,
     };

@@ -21,6 +21,7 @@ pub mod faults;
 pub mod flash;
 mod log;
 mod power;
+mod probe;
 mod rtt;
 mod stack;
 

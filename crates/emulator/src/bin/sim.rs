@@ -45,6 +45,9 @@ struct Args {
     /// CAN2 likewise.
     #[arg(long, value_enum, value_name = "pty")]
     can2: Option<CanOutside>,
+    /// Start as `probe-rs run` does by default, with reset and hard fault caught; the robot must do all it does without.
+    #[arg(long)]
+    probe: bool,
     /// Not faster than real time.
     #[arg(long)]
     realtime: bool,
@@ -145,6 +148,7 @@ fn job(args: &Args) -> anyhow::Result<Job> {
         scenario,
         imu_trial: args.imu.clone(),
         patches: args.patch.clone(),
+        probe: args.probe,
         can_on_pty: args.can_on_pty(),
         flash_file: args.flash.clone(),
     })

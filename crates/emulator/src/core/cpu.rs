@@ -23,6 +23,7 @@ use crate::{
 
 mod block_costs;
 mod context;
+mod debug_halt;
 mod hooks;
 mod it_state;
 mod sabotage;
@@ -71,6 +72,8 @@ enum Stop {
     Unmodelled(Unmodelled),
     Engine(String),
     Sabotaged(Sabotage),
+    /// A BKPT instruction or a breakpoint, and a debugger that wants to hear of it.
+    Breakpoint,
     /// The function at this address may go on after all.
     Released(u32),
 }
@@ -181,8 +184,14 @@ impl Cpu {
         state.event = false;
         state.stop = None;
         state.saboteur = Saboteur::default();
+        // C_HALT does not outlive a reset.
+        state.standstill.halted_until(None);
+        let caught = state.system.debug.catches_reset();
         self.reset_registers();
         self.soc_changed();
+        if caught {
+            self.enter_debug_state("the reset vector (VC_CORERESET)");
+        }
     }
 
     pub fn now(&self) -> Ps {
@@ -281,6 +290,10 @@ impl Cpu {
             }
             (Some(Stop::Fault(fault)), _) => self.raise(fault).map(|()| None),
             (Some(Stop::Sabotaged(sabotage)), _) => self.suffer(sabotage).map(|()| None),
+            (Some(Stop::Breakpoint), _) => {
+                self.enter_debug_state("a breakpoint");
+                Ok(None)
+            }
             (Some(Stop::Released(entry)), _) => {
                 self.set_register(RegisterARM::PC, entry | 1);
                 Ok(None)

@@ -1,4 +1,4 @@
-//! The core's private peripherals at 0xE000_0000: NVIC, SCB, SysTick, DWT and the debug registers firmware touches.
+//! The core's private peripherals at 0xE000_0000: NVIC, SCB, SysTick and the debug hardware.
 
 use crate::{
     core::{
@@ -10,7 +10,8 @@ use crate::{
     soc::{access::Access, peripheral::Unmodelled},
 };
 
-mod debug_registers;
+mod breakpoints;
+pub mod debug_registers;
 mod nvic_registers;
 mod scb_registers;
 
@@ -22,7 +23,7 @@ pub struct System {
     pub nvic: Nvic,
     pub systick: SysTick,
     pub faults: FaultStatus,
-    debug: Debug,
+    pub debug: Debug,
     vtor: u32,
     scr: u32,
     ccr: u32,
@@ -171,6 +172,12 @@ impl System {
             self.nvic.pend(Exception::SYS_TICK);
         }
         due
+    }
+
+    /// The core was halted for debugging: its own counters stood.
+    pub fn halted_for(&mut self, cycles: u64) {
+        self.debug.halted_for(cycles);
+        self.systick.halted_for(cycles);
     }
 
     pub fn deliverable(&self, masks: Masks) -> Option<Exception> {

@@ -47,6 +47,11 @@ impl SysTick {
         self.interrupt
     }
 
+    /// The counter stands while the core is halted for debugging.
+    pub fn halted_for(&mut self, cycles: u64) {
+        self.zero_at += cycles;
+    }
+
     /// Reading CTRL clears COUNTFLAG.
     pub fn read_ctrl(&mut self) -> u32 {
         let counted = std::mem::take(&mut self.counted);

@@ -1,6 +1,7 @@
-//! What can go wrong on the board itself, by name: the program fails, which a reset ends; the flash; the supply.
+//! What can go wrong on the board itself, by name: the program fails, which a reset ends; the flash; the supply; a debug
+//! probe.
 
-use robot_plant::world::FaultInfo;
+use robot_plant::{time::MS, world::FaultInfo};
 
 use super::{CONTROL_TICK, Machine};
 use crate::core::{
@@ -40,6 +41,11 @@ enum Kind {
     PowerCut,
     FlashStuckBits,
     FlashEraseFails,
+    ProbeAttached,
+    ProbeInsists,
+    ProbeBreakpoints,
+    /// For so many ms.
+    ProbeHalts(u64),
 }
 
 struct Entry {
@@ -76,6 +82,12 @@ const ENTRIES: &[Entry] = &[
     board("power-cut", Kind::PowerCut, "the board and its sensors have no power; motors, radio and PC have; then it boots"),
     board("flash-stuck-bits", Kind::FlashStuckBits, "one bit in every word of the parameter sectors is stuck at 1"),
     board("flash-erase-fails", Kind::FlashEraseFails, "erasing a parameter sector takes its time and does nothing"),
+    board("probe-attached", Kind::ProbeAttached, "a debug probe catches reset and hard fault, as probe-rs does by default; what it sets stays until the power goes"),
+    board("probe-insists", Kind::ProbeInsists, "a debugger catches reset and hard fault, and again as soon as that is cleared"),
+    board("probe-breakpoints", Kind::ProbeBreakpoints, "a debugger leaves breakpoints where the program fails, and watchdogs that wait for it"),
+    board("probe-halts-5ms", Kind::ProbeHalts(5), "a debug probe halts the core for 5 ms"),
+    board("probe-halts-20ms", Kind::ProbeHalts(20), "a debug probe halts the core for 20 ms"),
+    board("probe-halts-100ms", Kind::ProbeHalts(100), "a debug probe halts the core for 100 ms"),
 ];
 
 /// Every fault of the machine.
@@ -91,7 +103,8 @@ pub fn of_the_program() -> impl Iterator<Item = &'static FaultInfo> {
 }
 
 impl Machine {
-    /// Starts or ends one of [`all`]. Ending what has already struck changes nothing, but a task that is stuck goes on.
+    /// Starts or ends one of [`all`]. Ending what has already struck changes nothing, but a task that is stuck goes on,
+    /// and a debugger no longer insists.
     pub fn set_fault(&mut self, name: &str, active: bool) -> Result<(), FaultError> {
         let entry = ENTRIES
             .iter()
@@ -109,6 +122,12 @@ impl Machine {
             Kind::PowerCut => self.switch_power(!active),
             Kind::FlashStuckBits => self.set_worn_words(active),
             Kind::FlashEraseFails => self.set_erases_fail(active),
+            Kind::ProbeInsists => self.insist_on_catches(active),
+            Kind::ProbeAttached if active => self.attach_probe(),
+            Kind::ProbeBreakpoints if active => self.leave_breakpoints(),
+            Kind::ProbeHalts(ms) if active => self.halt_core(ms * MS),
+            // Nothing of it goes with the probe.
+            Kind::ProbeAttached | Kind::ProbeBreakpoints | Kind::ProbeHalts(_) => {}
         }
         Ok(())
     }

@@ -29,6 +29,8 @@ pub struct Job {
     /// A recorded trial to play through the sensor models.
     pub imu_trial: Option<PathBuf>,
     pub patches: Vec<RegisterPatch>,
+    /// The board was flashed and started by a debug probe's tool with its default options.
+    pub probe: bool,
     /// Buses that a PC takes part in through a pseudo-terminal. What it sends is not reproducible.
     pub can_on_pty: Vec<CanBusId>,
     /// Keeps the parameter sectors from one run to the next: read if it exists, instead of the scenario's image, and
@@ -79,6 +81,9 @@ impl Job {
         let mut machine = Machine::new(&self.elf, world)?;
         for patch in &self.patches {
             machine.patch_register(*patch);
+        }
+        if self.probe {
+            machine.attach_probe();
         }
         self.set_up_flash(&mut machine)?;
         Ok(machine)

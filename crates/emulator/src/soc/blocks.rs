@@ -151,6 +151,11 @@ impl Blocks {
             .then_some(ResetCause::IndependentWatchdog)
     }
 
+    /// DBG_IWDG_STOP, while the core is halted.
+    pub fn freeze_watchdog(&mut self, frozen: bool, ctx: &mut Ctx<'_>) {
+        self.iwdg.freeze(frozen, ctx);
+    }
+
     /// Frames and load of CAN1 (0) or CAN2 (1).
     pub fn can_stats(&self, bus: usize) -> CanBusStats {
         self.can.stats(bus)

@@ -178,6 +178,12 @@ impl Soc {
         self.after_access(block, now, mem)
     }
 
+    /// DBG_IWDG_STOP: the watchdog stands while a debugger halts the core.
+    pub fn freeze_watchdog(&mut self, frozen: bool, now: Ps) {
+        let (blocks, mut ctx) = split!(self, now);
+        blocks.freeze_watchdog(frozen, &mut ctx);
+    }
+
     /// When something happens next without the CPU's doing, the world included.
     pub fn next_event(&self) -> Ps {
         self.scheduler.next().min(self.world.next_event())

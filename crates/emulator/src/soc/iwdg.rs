@@ -66,6 +66,8 @@ pub struct Iwdg {
     expires_at: Option<Ps>,
     /// When the next look at the counter comes; it moves itself on when the counter was reloaded meanwhile.
     watched_at: Option<Ps>,
+    /// Since when DBG_IWDG_STOP holds the counter, while the core is halted.
+    frozen_since: Option<Ps>,
     bitten: bool,
 }
 
@@ -83,7 +85,23 @@ impl Iwdg {
             unlocked: false,
             expires_at: None,
             watched_at: None,
+            frozen_since: None,
             bitten: false,
+        }
+    }
+
+    /// The counter stands, or goes on from where it stood.
+    pub fn freeze(&mut self, frozen: bool, ctx: &mut Ctx<'_>) {
+        match (self.frozen_since, frozen) {
+            (None, true) => self.frozen_since = Some(ctx.now),
+            (Some(since), false) => {
+                self.frozen_since = None;
+                if let Some(at) = self.expires_at.map(|at| at + (ctx.now - since)) {
+                    self.expires_at = Some(at);
+                    self.watch(at, ctx);
+                }
+            }
+            _ => {}
         }
     }
 
@@ -210,7 +228,9 @@ impl Peripheral for Iwdg {
     }
 
     fn event(&mut self, _tag: u32, ctx: &mut Ctx<'_>) {
-        let Some(at) = self.expires_at else { return };
+        let Some(at) = self.expires_at.filter(|_| self.frozen_since.is_none()) else {
+            return;
+        };
         if at <= ctx.now {
             self.expires_at = None;
             self.watched_at = None;

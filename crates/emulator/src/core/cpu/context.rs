@@ -176,6 +176,9 @@ impl Cpu {
         state.system.nvic.activate(exception);
         state.event = true;
         state.attention = true;
+        if self.state().system.debug.catches(exception) {
+            self.enter_debug_state(&format!("the first instruction of {}", exception.name()));
+        }
         if vector & 1 == 0 {
             return self.raise(Fault::InvalidState);
         }

@@ -75,6 +75,13 @@ fn block_begins(engine: &mut Unicorn<'_, State>, address: u64, size: u32) {
         leave(engine);
         return;
     }
+    let state = engine.get_data_mut();
+    if state.system.debug.breaks_in(start, start + size) {
+        // Before the block instead of before the instruction.
+        state.stop = Some(Stop::Breakpoint);
+        leave(engine);
+        return;
+    }
     let cost = match engine.get_data().costs.known(start, size) {
         Some(cost) => cost,
         None => {
@@ -346,6 +353,7 @@ fn engine_exception(engine: &mut Unicorn<'_, State>, number: u32) {
     let stop = match number {
         EXCEPTION_EXIT => Stop::ExceptionReturn(context::register(engine, RegisterARM::PC) | 1),
         SUPERVISOR_CALL => Stop::SupervisorCall,
+        BREAKPOINT if engine.get_data().system.debug.is_enabled() => Stop::Breakpoint,
         BREAKPOINT => Stop::Fault(Fault::Breakpoint),
         UNDEFINED => Stop::Fault(Fault::UndefinedInstruction),
         PREFETCH_ABORT => Stop::Fault(Fault::FetchForbidden),

@@ -1,4 +1,5 @@
-//! Time in which the core runs nothing: the flash works and serves no fetch, or the board has no power.
+//! Time in which the core runs nothing: the flash works and serves no fetch, a debug probe halts it, or the board has
+//! no power.
 
 use robot_plant::time::Ps;
 
@@ -12,6 +13,8 @@ use crate::core::{
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Standstill {
     flash_works_until: Option<Ps>,
+    /// Debug state; `Ps::MAX` until a reset, when nobody is there to let the core go on.
+    halted_until: Option<Ps>,
     /// `Ps::MAX` for as long as nobody gives the power back.
     no_power_until: Option<Ps>,
 }
@@ -25,10 +28,17 @@ impl Standstill {
         self.flash_works_until = until;
     }
 
+    pub(super) fn is_halted(self) -> bool {
+        self.halted_until.is_some()
+    }
+
+    pub(super) fn halted_until(&mut self, until: Option<Ps>) {
+        self.halted_until = until;
+    }
+
     fn end(self) -> Ps {
-        self.no_power_until
-            .or(self.flash_works_until)
-            .unwrap_or_default()
+        let either = self.flash_works_until.max(self.halted_until);
+        self.no_power_until.or(either).unwrap_or_default()
     }
 }
 
@@ -62,6 +72,7 @@ impl Cpu {
             if let Some(pause) = self.ended_by_chip()? {
                 return Ok(Some(pause));
             }
+            self.let_go();
             let state = self.state_mut();
             if state.standstill.is_over() {
                 return Ok(None);
@@ -76,6 +87,16 @@ impl Cpu {
             state.skip_standstill();
         }
     }
+
+    /// The probe lets the core go on when its time is over.
+    fn let_go(&mut self) {
+        let now = self.now();
+        let standstill = &mut self.state_mut().standstill;
+        if standstill.halted_until.is_some_and(|until| until <= now) {
+            standstill.halted_until = None;
+            self.watchdog_follows();
+        }
+    }
 }
 
 impl State {
@@ -83,6 +104,9 @@ impl State {
         let before = self.clock.now();
         let end = self.clock.cycle_at(self.standstill.end());
         let next = self.due_cycle.min(end).max(self.clock.cycles);
+        if self.standstill.is_halted() {
+            self.system.halted_for(next - self.clock.cycles);
+        }
         self.clock.cycles = next;
         self.stats.stood_still(self.clock.now() - before);
     }

@@ -1,29 +1,105 @@
-//! DWT cycle counter, DEMCR and DBGMCU: what firmware uses of the debug hardware. No debugger is attached.
+//! The debug hardware: what a probe sets over SWD, and what firmware can read and undo of it (ARMv7-M ARM C1; RM0090
+//! 38.16). All of it outlives every reset but power-on. The cycle counter of the DWT is here too.
 
+use super::breakpoints::Breakpoints;
+use crate::core::exception::Exception;
+
+const DHCSR_C_DEBUGEN: u32 = 1;
+const DHCSR_S_REGRDY: u32 = 1 << 16;
 const DEMCR_TRCENA: u32 = 1 << 24;
+pub const DEMCR_VC_CORERESET: u32 = 1;
+pub const DEMCR_VC_HARDERR: u32 = 1 << 10;
+/// All catch bits, VC_CORERESET to VC_HARDERR.
+const DEMCR_VC_ALL: u32 = 0x7F1;
+/// The catch bits of an exception. VC_INTERR, for faults of an exception's own entry, catches nothing here.
+const CATCHES: [(Exception, u32); 4] = [
+    (Exception::HARD_FAULT, DEMCR_VC_HARDERR),
+    (Exception::MEM_MANAGE, 1 << 4),
+    (Exception::BUS_FAULT, 1 << 8),
+    (Exception::USAGE_FAULT, 0b111 << 5),
+];
 const DWT_CYCCNTENA: u32 = 1;
 /// Four comparators (ARMv7-M ARM C1.8.7).
 const DWT_NUMCOMP: u32 = 4 << 28;
 /// STM32F405/407, revision 2 (RM0090 38.6.1).
 const DBGMCU_IDCODE: u32 = 0x1007_6413;
+/// DBG_IWDG_STOP of DBGMCU_APB1_FZ: the watchdog stands while the core is halted.
+const APB1_FZ_IWDG: u32 = 1 << 12;
 
 #[derive(Debug, Default)]
-pub(super) struct Debug {
+pub struct Debug {
+    /// C_DEBUGEN: halts are possible. Only a probe writes it.
+    enabled: bool,
     demcr: u32,
+    /// A probe sets these bits of DEMCR again at once when they are cleared.
+    insisted: u32,
+    pub breakpoints: Breakpoints,
     counting: bool,
     /// CYCCNT while it stands still, else its value when it started.
     cyccnt: u32,
     started_at: u64,
+    /// CR, APB1_FZ, APB2_FZ.
     dbgmcu: [u32; 3],
 }
 
 impl Debug {
+    /// A probe takes hold of the core and sets catch bits of DEMCR.
+    pub fn attach(&mut self, catches: u32) {
+        self.enabled = true;
+        self.demcr |= catches;
+    }
+
+    /// As long as a probe insists on catch bits, clearing them does nothing.
+    pub fn insist(&mut self, catches: u32) {
+        self.insisted = catches;
+        self.demcr |= catches;
+    }
+
+    /// What OpenOCD's target script for this chip does: the watchdogs stand while the core is halted.
+    pub fn freeze_watchdogs(&mut self) {
+        self.dbgmcu[1] |= APB1_FZ_IWDG | 1 << 11;
+    }
+
+    pub fn is_enabled(&self) -> bool {
+        self.enabled
+    }
+
+    /// The core halts at the reset vector.
+    pub fn catches_reset(&self) -> bool {
+        self.enabled && self.demcr & DEMCR_VC_CORERESET != 0
+    }
+
+    /// The core halts before the first instruction of the handler.
+    pub fn catches(&self, exception: Exception) -> bool {
+        let caught = |(of, bits): &(Exception, u32)| *of == exception && self.demcr & bits != 0;
+        self.enabled && CATCHES.iter().any(caught)
+    }
+
+    /// A hardware breakpoint lies in this code.
+    pub fn breaks_in(&self, start: u32, end: u32) -> bool {
+        self.enabled && self.breakpoints.any_in(start, end)
+    }
+
+    pub fn stops_watchdog(&self) -> bool {
+        self.dbgmcu[1] & APB1_FZ_IWDG != 0
+    }
+
+    /// CYCCNT does not count while the core is halted.
+    pub fn halted_for(&mut self, cycles: u64) {
+        self.started_at += cycles;
+    }
+
     pub(super) fn read(&self, register: u32, cycles: u64) -> Option<u32> {
         Some(match register {
             0xE000_1000 => DWT_NUMCOMP | u32::from(self.counting),
             0xE000_1004 => self.cyccnt(cycles),
+            // FUNCTION 0 to 3: no watchpoint.
+            0xE000_1028 | 0xE000_1038 | 0xE000_1048 | 0xE000_1058 => 0,
             0xE000_1FB4 => 0, // LSR: unlocked
-            0xE000_EDF0 => 0, // DHCSR: C_DEBUGEN clear
+            0xE000_2000..=0xE000_2FFF => return self.breakpoints.read(register),
+            // Who can read it runs.
+            0xE000_EDF0 if self.enabled => DHCSR_S_REGRDY | DHCSR_C_DEBUGEN,
+            0xE000_EDF0 => DHCSR_S_REGRDY,
             0xE000_EDFC => self.demcr,
             0xE004_2000 => DBGMCU_IDCODE,
             0xE004_2004..=0xE004_200C => self.dbgmcu[(register as usize - 0xE004_2004) / 4],
@@ -42,9 +118,10 @@ impl Debug {
                 self.cyccnt = value;
                 self.started_at = cycles;
             }
+            0xE000_1028 | 0xE000_1038 | 0xE000_1048 | 0xE000_1058 => return value == 0,
             0xE000_1FB0 => {} // LAR
-            0xE000_EDFC => self.demcr = value & (DEMCR_TRCENA | 0x7F1),
-            // Only what a debugger would see of a sleeping or stopped core.
+            0xE000_2000..=0xE000_2FFF => return self.breakpoints.write(register, value),
+            0xE000_EDFC => self.demcr = value & (DEMCR_TRCENA | DEMCR_VC_ALL) | self.insisted,
             0xE004_2004..=0xE004_200C => self.dbgmcu[(register as usize - 0xE004_2004) / 4] = value,
             _ => return false,
         }
