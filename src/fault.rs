@@ -14,6 +14,7 @@ use robot_app::domain::{BusId, CanFrame, LastWords};
 use crate::board;
 use crate::config::SAFE_FRAMES;
 use crate::drivers::can::transmit::{self, MailboxesFull};
+use crate::drivers::debug_probe;
 use crate::last_words;
 
 /// Register reads to wait for the mailboxes, about 0.5 ms: a frame takes at most 0.14 ms.
@@ -113,6 +114,8 @@ fn enter(words: LastWords) {
     cortex_m::interrupt::disable();
     send_zero_torque();
     board::force_heater_off();
+    // A debugger may have come since the last tick: the reset at the end must not halt the core.
+    debug_probe::undo();
     static SPOKEN: AtomicBool = AtomicBool::new(false);
     if !SPOKEN.swap(true, Ordering::Relaxed) {
         // SAFETY: a fault handler, and interrupts are disabled until the reset.

@@ -35,6 +35,7 @@ use static_cell::StaticCell;
 
 use board::Board;
 use drivers::can::CanPort;
+use drivers::debug_probe;
 use drivers::param_flash::ParamFlash;
 use drivers::reset_cause;
 use drivers::watchdog::Watchdog;
@@ -55,6 +56,7 @@ pub struct LastRun {
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
+    debug_probe::undo();
     let last_run = LastRun {
         reset_cause: reset_cause::take(),
         // SAFETY: nothing else runs yet.

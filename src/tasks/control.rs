@@ -12,6 +12,7 @@ use robot_snapshot::{Follower, Writer};
 
 use crate::config::LAYOUT;
 use crate::drivers::can::CanPort;
+use crate::drivers::debug_probe;
 use crate::drivers::watchdog::Watchdog;
 use crate::exchange::{
     ConfigUpdate, ControlWriters, Exchange, FlashPermission, ImuReport, MagReport, ParamsReport,
@@ -216,6 +217,7 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
     output.publish(&outputs);
     if is_diagnostics_tick(outputs.diagnostics) {
         health.radio_line = RADIO_LINE.health();
+        health.debug_probe = debug_probe::undo();
     }
     watchdog.set_long(outputs.flash.needs_long_watchdog);
     if !health.late_tasks.any() {

@@ -2,7 +2,7 @@
 
 use robot_app::diagnostics::{ChangeNotice, DiagnosticsSnapshot};
 use robot_app::domain::{
-    BusErrorState, BusId, CalibrationState, HeaterState, RadioLineHealth, Warmth,
+    BusErrorState, BusId, CalibrationState, DebugProbe, HeaterState, RadioLineHealth, Warmth,
 };
 use robot_app::safety::{ArmingBlockers, ArmingState, SafetyFlags};
 
@@ -23,6 +23,7 @@ pub struct ChangeLog {
     calibration: ChangeNotice<CalibrationState>,
     heater: ChangeNotice<HeaterState>,
     line_errors: ChangeNotice<u32>,
+    debug_probe: ChangeNotice<DebugProbe>,
     ticks_missed: ChangeNotice<u32>,
     tuning_revision: ChangeNotice<u32>,
 }
@@ -33,6 +34,7 @@ impl ChangeLog {
         self.report_joints(d);
         self.report_sensors(d);
         self.report_lines(d);
+        self.report_debug_probe(d);
         if let Some(missed) = self.ticks_missed.due(d.tick.missed, d.ts_us) {
             defmt::warn!("control ticks missed since boot: {=u32}", missed);
         }
@@ -54,6 +56,20 @@ impl ChangeLog {
         }
         if let Some(flags) = self.flags.due(d.safety.flags, d.ts_us) {
             defmt::warn!("safety: {} -> {}", flags, d.safety.verdict);
+        }
+    }
+
+    fn report_debug_probe(&mut self, d: &DiagnosticsSnapshot) {
+        match self.debug_probe.due(d.debug_probe, d.ts_us) {
+            Some(DebugProbe { catches: true, .. }) => {
+                defmt::error!(
+                    "a debugger halts the core at faults and does not let that be undone"
+                );
+            }
+            Some(DebugProbe { attached: true, .. }) => defmt::warn!(
+                "a debugger is attached, or was since power-on: never attach or detach it while armed"
+            ),
+            _ => {}
         }
     }
 

@@ -4,8 +4,9 @@ use super::TickStats;
 use crate::{
     bring_up::BringUpStatus,
     domain::{
-        BusHealth, ChassisCommand, ImuStatus, LastWords, LateTasks, OperatorState, RadioLineHealth,
-        RemoteDiagnostics, RemoteState, ResetCause, SensorHealth, SensorsSnapshot, StateEstimate,
+        BusHealth, ChassisCommand, DebugProbe, ImuStatus, LastWords, LateTasks, OperatorState,
+        RadioLineHealth, RemoteDiagnostics, RemoteState, ResetCause, SensorHealth, SensorsSnapshot,
+        StateEstimate,
     },
     logic::LogicBus,
     params::ParamStatus,
@@ -45,4 +46,5 @@ pub struct DiagnosticsSnapshot {
     pub last_words: LastWords,
     pub reset_cause: ResetCause,
     pub imu_calibrated: bool,
+    pub debug_probe: DebugProbe,
 }

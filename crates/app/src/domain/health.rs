@@ -84,6 +84,16 @@ impl RadioLineHealth {
     }
 }
 
+/// What a debug probe does to the core.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(C)]
+pub struct DebugProbe {
+    /// One is attached, or was since power-on: C_DEBUGEN of DHCSR (ARMv7-M ARM C1.6.2), which only the probe can clear.
+    pub attached: bool,
+    /// It halts the core at a fault, a reset or a breakpoint, or the watchdog with it, and clearing that does not help.
+    pub catches: bool,
+}
+
 /// Why the chip started (RM0090, RCC_CSR).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -118,4 +128,5 @@ pub struct SystemHealth {
     /// Start-up gyro calibration finished.
     pub imu_calibrated: bool,
     pub late_tasks: LateTasks,
+    pub debug_probe: DebugProbe,
 }

@@ -20,7 +20,7 @@ pub use config::{
 };
 pub use estimate::StateEstimate;
 pub use health::{
-    BusErrorState, BusHealth, RadioLineHealth, ResetCause, SensorHealth, SystemHealth,
+    BusErrorState, BusHealth, DebugProbe, RadioLineHealth, ResetCause, SensorHealth, SystemHealth,
 };
 pub use imu_status::{
     CalibrationState, CalibrationStatus, HeaterState, HeaterStatus, ImuRejects, ImuStatus, Warmth,

@@ -35,7 +35,7 @@ pub enum Indication {
     /// The start-up calibration needs a robot that stands still.
     HoldStill,
     Calibrating,
-    /// Wheels, joints or a bus are not fit to be armed.
+    /// Wheels, joints, a bus, the settings or a debugger forbid to arm.
     NotReady,
     /// The enable switch is on, but that does not arm: see the arming blockers.
     Refused,
@@ -119,6 +119,7 @@ fn disarmed(inputs: &IndicationInputs<'_>) -> Indication {
     } else if stops_in_part(inputs.safety)
         || blocked_by(ArmingBlockers::JOINTS_NOT_READY)
         || blocked_by(ArmingBlockers::SETTINGS_REFUSED)
+        || blocked_by(ArmingBlockers::DEBUGGER_CATCHES)
     {
         Indication::NotReady
     } else if !blocked_by(ArmingBlockers::ENABLE_OFF) {

@@ -46,6 +46,8 @@ impl ArmingBlockers {
     pub const FLASH_BUSY: Self = Self(1 << 10);
     /// A saved setting was refused at boot; its default need not fit this robot.
     pub const SETTINGS_REFUSED: Self = Self(1 << 11);
+    /// A debugger halts the core where it should send zero frames, and does not let that be undone.
+    pub const DEBUGGER_CATCHES: Self = Self(1 << 12);
 
     pub const fn bits(self) -> u32 {
         self.0
@@ -86,7 +88,7 @@ impl ArmingBlockers {
 }
 
 /// Not a constant: tools read the names of the bits out of the image.
-static BLOCKER_NAMES: [(ArmingBlockers, &str); 12] = [
+static BLOCKER_NAMES: [(ArmingBlockers, &str); 13] = [
     (ArmingBlockers::REMOTE_NOT_FRESH, "remote-not-fresh"),
     (ArmingBlockers::ENABLE_OFF, "enable-off"),
     (ArmingBlockers::ENABLE_NOT_CYCLED, "enable-not-cycled"),
@@ -99,6 +101,7 @@ static BLOCKER_NAMES: [(ArmingBlockers, &str); 12] = [
     (ArmingBlockers::BATTERY_LOW, "battery-low"),
     (ArmingBlockers::FLASH_BUSY, "flash-busy"),
     (ArmingBlockers::SETTINGS_REFUSED, "settings-refused"),
+    (ArmingBlockers::DEBUGGER_CATCHES, "debugger-catches"),
 ];
 
 #[cfg(feature = "defmt")]
@@ -142,6 +145,8 @@ pub struct ArmingInputs<'a> {
     /// See `FlashPermit`, which grants nothing to an armed robot.
     pub flash_busy: bool,
     pub params: &'a ParamStatus,
+    /// See `DebugProbe::catches`.
+    pub debugger_catches: bool,
     pub safety: &'a SafetyStatus,
 }
 
@@ -263,6 +268,7 @@ fn only_forbidding(inputs: &ArmingInputs<'_>) -> ArmingBlockers {
     blockers.add_if(ArmingBlockers::JOINTS_NOT_READY, !joints_ready);
     blockers.add_if(ArmingBlockers::FLASH_BUSY, inputs.flash_busy);
     blockers.add_if(ArmingBlockers::SETTINGS_REFUSED, inputs.params.refused != 0);
+    blockers.add_if(ArmingBlockers::DEBUGGER_CATCHES, inputs.debugger_catches);
     blockers.add_if(
         ArmingBlockers::BATTERY_LOW,
         inputs.safety.flags.intersects(SafetyFlags::BATTERY_LOW),

@@ -292,6 +292,7 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
                 read_only: self.bring_up.blocks_arming(),
                 flash_busy: self.flash.grant().blocks_arming,
                 params: inputs.params,
+                debugger_catches: inputs.health.debug_probe.catches,
                 safety: &diagnostics.safety,
             },
             now_us,
@@ -423,6 +424,7 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
         diagnostics.reset_cause = health.reset_cause;
         diagnostics.last_words = health.last_words;
         diagnostics.battery_v = health.battery_v;
+        diagnostics.debug_probe = health.debug_probe;
         diagnostics.params = *inputs.params;
     }
 }

@@ -193,3 +193,9 @@ fn refused_settings_are_shown_before_the_pilot_tries_to_arm() {
     let refused = disarmed(|s| s.arming.blockers = ArmingBlockers::SETTINGS_REFUSED);
     assert_eq!(refused, Indication::NotReady);
 }
+
+#[test]
+fn a_debugger_that_catches_is_shown_before_the_pilot_tries_to_arm() {
+    let caught = disarmed(|s| s.arming.blockers = ArmingBlockers::DEBUGGER_CATCHES);
+    assert_eq!(caught, Indication::NotReady);
+}

@@ -10,6 +10,7 @@ struct Bench {
     read_only: bool,
     flash_busy: bool,
     params: ParamStatus,
+    debugger_catches: bool,
     vx: f32,
     motor: MotorFeedback,
     safety: SafetyStatus,
@@ -31,6 +32,7 @@ impl Bench {
             read_only: false,
             flash_busy: false,
             params: ParamStatus::default(),
+            debugger_catches: false,
             vx: 0.0,
             motor,
             safety: SafetyStatus::of(SafetyFlags::NONE),
@@ -64,6 +66,7 @@ impl Bench {
                 read_only: self.read_only,
                 flash_busy: self.flash_busy,
                 params: &self.params,
+                debugger_catches: self.debugger_catches,
                 safety: &self.safety,
             };
             let (now, token) = self.arming.step(&inputs, self.now_us);
@@ -197,6 +200,13 @@ fn a_flip_while_flash_is_busy_arms_when_it_is_done() {
 fn refused_settings_forbid_arming() {
     let result = with_wrong(|bench| bench.params.refused = 1);
     let expected = (ArmingBlockers::SETTINGS_REFUSED, ArmingState::Armed);
+    assert_eq!(result, expected);
+}
+
+#[test]
+fn a_debugger_that_catches_forbids_arming_but_lets_no_robot_fall() {
+    let result = with_wrong(|bench| bench.debugger_catches = true);
+    let expected = (ArmingBlockers::DEBUGGER_CATCHES, ArmingState::Armed);
     assert_eq!(result, expected);
 }
 

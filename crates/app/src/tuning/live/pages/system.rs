@@ -51,7 +51,7 @@ pub const BOOT: [LiveField; 5] = [
         / 1_000),
 ];
 
-pub const ARMING: [LiveField; 2] = [
+pub const ARMING: [LiveField; 3] = [
     set!("blockers", 32, ArmingBlockers::name_of_bit, |live, _| live
         .diagnostics
         .arming
@@ -63,6 +63,10 @@ pub const ARMING: [LiveField; 2] = [
         &["disarmed", "armed"],
         |live, _| live.diagnostics.arming.state as u32
     ),
+    set!("debugger", 2, |bit| named(&DEBUGGER, bit), |live, _| {
+        let probe = &live.diagnostics.debug_probe;
+        marks([probe.attached, probe.catches])
+    }),
 ];
 
 pub const SAFETY: [LiveField; 3] = [
@@ -157,6 +161,7 @@ pub(super) const LAST_WORDS: [&str; 10] = [
     "task params was late",
 ];
 
+const DEBUGGER: [&str; 2] = ["attached", "catches"];
 const STOPPED: [&str; 4] = ["wheels", "joints", "can1", "can2"];
 
 fn health(live: &LiveSource<'_>, bus: usize) -> BusHealth {
