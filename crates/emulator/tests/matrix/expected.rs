@@ -172,6 +172,7 @@ pub fn rows() -> Vec<Row> {
         power_and_pose(),
         image(),
         supply_and_flash(),
+        debug_probe(),
     ]
     .concat()
 }
@@ -408,6 +409,23 @@ fn supply_and_flash() -> Vec<Row> {
         harmless("flash-stuck-bits", Flags::default()),
         harmless("flash-erase-fails", Flags::default()),
     ]
+}
+
+/// The image undoes what a probe leaves, or does not arm. A halt longer than the short watchdog period (18 ms at the
+/// nominal 32 kHz) ends in a reset, and then as after every other.
+fn debug_probe() -> Vec<Row> {
+    let insists = harmless("probe-insists", Flags::default());
+    let mut rows = vec![
+        harmless("probe-attached", Flags::default()),
+        insists.arms_during(Arms::No),
+        harmless("probe-breakpoints", Flags::default()),
+        harmless("probe-halts-5ms", Flags::default()),
+    ];
+    for fault in ["probe-halts-20ms", "probe-halts-100ms"] {
+        let halted = global(fault, 18.0 + 20.0, Flags::default());
+        rows.push(halted.resetting().arms_during(Arms::Yes));
+    }
+    rows
 }
 
 /// Design, section 6: panic 1 ms; hang: reset within 60 ms, zero within 20 ms of it.

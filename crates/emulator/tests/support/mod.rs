@@ -27,6 +27,7 @@ pub fn job(scenario: Scenario) -> Job {
         scenario,
         imu_trial: None,
         patches: Vec::new(),
+        probe: false,
         can_on_pty: Vec::new(),
         flash_file: None,
     }
