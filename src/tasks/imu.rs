@@ -60,6 +60,7 @@ impl ImuTask {
             ticker.next().await;
             Watched::Imu.check_in();
             let config = self.exchange.config.latest().config;
+            self.pipeline.set_mounting(config.mounting.board);
             self.pipeline.set_config(&config.imu, &config.heater);
             if self.sample(sensor).await {
                 bad_in_row = 0;

@@ -55,8 +55,9 @@ impl MagTask {
         while bad_in_row < LOST_AFTER {
             ticker.next().await;
             Watched::Mag.check_in();
-            self.pipeline
-                .set_calibration(&self.exchange.config.latest().config.mag);
+            let config = self.exchange.config.latest().config;
+            self.pipeline.set_mounting(&config.mounting);
+            self.pipeline.set_calibration(&config.mag);
             if self.sample(sensor).await {
                 bad_in_row = 0;
             } else {

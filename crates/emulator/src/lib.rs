@@ -7,6 +7,7 @@
 pub mod board_errors;
 pub mod core;
 pub mod machine;
+pub mod parameter_sectors;
 mod pty;
 pub mod sim;
 pub mod soak;

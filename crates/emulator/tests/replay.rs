@@ -49,7 +49,9 @@ fn compare(header: &Path) -> Compared {
 }
 
 fn replay(trial: &Path) -> Figures {
-    let text = "name = \"replay\"\nseconds = 1\nplant = \"stand\"\n";
+    // The magnetometer sits as the IMU does.
+    let text = "name = \"replay\"\nseconds = 1\nplant = \"stand\"\n\
+                [[flash.record]]\ngroup = 8\nvalues = [0, 0]\n";
     let mut job = support::job(Scenario::parse(text, "replay").expect("it parses"));
     job.scenario.length = recording::run_length(trial).expect("a trial");
     job.imu_trial = Some(trial.to_owned());

@@ -6,6 +6,7 @@ pub mod attitude;
 pub mod can_adapter;
 pub mod complaint;
 pub mod flash_chip;
+pub mod mounting;
 pub mod recording;
 pub mod time;
 pub mod wire;

@@ -17,6 +17,7 @@ use crate::{
     ist8310::Ist8310,
     joints::{self, JOINTS, Joint, WireState},
     m3508::C620,
+    mounting::Mounting,
     radio::Receiver,
     random::{Random, Stream},
     recording::Playback,
@@ -64,6 +65,10 @@ pub struct WorldConfig {
     pub imu_trial: Option<std::path::PathBuf>,
     /// Package of the IMU at power-on, °C; unset, the board has been on before and is at 40 °C.
     pub imu_temperature_c: Option<f64>,
+    /// The board in the robot.
+    pub mounting: Mounting,
+    /// The magnetometer on the board, as if the IMU's axes were the robot's: nobody has proven how it sits.
+    pub mag_mounting: Mounting,
 }
 
 #[derive(Debug, thiserror::Error)]
@@ -147,6 +152,8 @@ pub struct World {
     battery: Battery,
     imu: Bmi088,
     mag: Ist8310,
+    mounting: Mounting,
+    mag_mounting: Mounting,
     radio: Receiver,
     playback: Option<Playback>,
     indicators: Indicators,
@@ -186,6 +193,8 @@ impl World {
             battery: Battery::default(),
             imu: Bmi088::new(seed, source, config.imu_temperature_c),
             mag: Ist8310::new(seed, source),
+            mounting: config.mounting,
+            mag_mounting: config.mag_mounting,
             radio: Receiver::new(config.radio, seed),
             signal_names: signals::names(playback.is_some()),
             playback,

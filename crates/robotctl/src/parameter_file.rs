@@ -9,6 +9,8 @@ use std::{
 
 use toml::{Table, Value};
 
+use crate::tuning;
+
 const HEADING: &str =
     "# Parameters of the robot: `robotctl tune --can … apply FILE` writes them.\n";
 
@@ -91,6 +93,13 @@ impl ParameterFile {
                     self.set(&name, *number as f32);
                 }
                 Value::Integer(number) => self.set(&name, *number as f32),
+                Value::String(word) => {
+                    let named = tuning::find(&name).map_err(|error| error.to_string())?;
+                    let value = named
+                        .parse(word)
+                        .map_err(|error| format!("{name}: {error}"))?;
+                    self.set(&name, value);
+                }
                 _ => return Err(format!("`{name}` is no number")),
             }
         }
@@ -101,7 +110,12 @@ impl ParameterFile {
         let mut tables: BTreeMap<&str, String> = BTreeMap::new();
         for (name, value) in self.iter() {
             let (table, key) = name.rsplit_once('.').unwrap_or(("", name));
-            let line = format!("{key} = {value:?}\n");
+            let words = tuning::find(name).map(|named| named.in_words(value));
+            let word = words.ok().filter(|words| words.parse::<f32>().is_err());
+            let line = match word {
+                Some(word) => format!("{key} = {word:?}\n"),
+                None => format!("{key} = {value:?}\n"),
+            };
             tables.entry(table).or_default().push_str(&line);
         }
         let mut text = String::from(HEADING);
@@ -137,10 +151,32 @@ mod tests {
         assert_eq!(ParameterFile::parse(&file.text()).unwrap(), file);
     }
 
+    /// By number 13 and 24.
+    #[test]
+    fn choices_are_words() {
+        let text = "[mounting]\nboard = \"x-right-z-down\"\nmag = 24\n";
+        let file = ParameterFile::parse(text).unwrap();
+        assert_eq!(file.get("mounting.board"), Some(13.0));
+        assert_eq!(file.get("mounting.mag"), Some(24.0));
+        let text = file.text();
+        assert!(
+            text.contains("board = \"x-right-z-down\"\nmag = \"unset\"\n"),
+            "{text}"
+        );
+        assert_eq!(ParameterFile::parse(&text).unwrap(), file);
+    }
+
     #[test]
     fn what_is_no_number_is_named() {
-        let why = ParameterFile::parse("[imu]\nscale = \"1\"\n").unwrap_err();
-        assert_eq!(why, "`imu.scale` is no number");
+        let why = ParameterFile::parse("[heater]\nkp = \"one\"\n").unwrap_err();
+        assert_eq!(why, "heater.kp: `one` is no number");
+        let why = ParameterFile::parse("[heater]\nkp = true\n").unwrap_err();
+        assert_eq!(why, "`heater.kp` is no number");
+        let why = ParameterFile::parse("[mounting]\nboard = \"unset\"\n").unwrap_err();
+        assert!(
+            why.starts_with("mounting.board: `unset` is not a value"),
+            "{why}"
+        );
         assert!(ParameterFile::parse("[imu]\nscale = nan\n").is_err());
     }
 }

@@ -24,6 +24,7 @@ fn row(group: &ParameterGroup, parameter: &Parameter) -> String {
         ParameterKind::Float => format!("{min} … {max}"),
         ParameterKind::Integer => format!("integer, {min} … {max}"),
         ParameterKind::Sign => "sign".to_owned(),
+        ParameterKind::Choice(names) => format!("choice, 0 … {}", names.len() - 1),
     };
     let name = format!("{name}.{}", parameter.name);
     format!("| {numbers} | {index} | `{name}` | {unit} | {range} |")

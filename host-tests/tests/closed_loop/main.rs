@@ -2,6 +2,7 @@
 
 mod legs;
 mod motion;
+mod mounting;
 mod robot;
 mod sensors;
 

@@ -44,25 +44,32 @@ pub struct Robot {
 impl Robot {
     /// Powered on, sensors brought up, time somewhat above zero.
     pub fn new(plant: PlantKind, radio: RadioKind) -> Self {
-        let world = World::new(WorldConfig {
+        let world = WorldConfig {
             plant,
             radio,
-            seed: 7,
-            imu_trial: None,
             ..WorldConfig::default()
-        })
-        .expect("no recording to load");
-        let format = match radio {
+        };
+        Self::in_world(world, RobotConfig::default())
+    }
+
+    pub fn in_world(world: WorldConfig, config: RobotConfig) -> Self {
+        let format = match world.radio {
             RadioKind::Sbus => RemoteFormat::Sbus,
             RadioKind::Dbus => RemoteFormat::Dbus,
         };
+        let world = World::new(WorldConfig {
+            seed: 7,
+            imu_trial: None,
+            ..world
+        })
+        .expect("no recording to load");
         let mut robot = Self {
             world,
             now: 0,
             receiver: RemoteReceiver::new(format, RemoteMapping::default()),
             sensors: Sensors::new(),
             logic_stage: LogicStage::new(UserLogic),
-            control: ControlLoop::new(RobotConfig::default(), UserController::default()),
+            control: ControlLoop::new(config, UserController::default()),
             remote: RemoteUpdate::default(),
             imu: ImuState::default(),
             mag: MagState::default(),
@@ -73,6 +80,7 @@ impl Robot {
             direct: None,
             sent_digest: 0,
         };
+        robot.sensors.set_mounting(&config.mounting);
         let up = robot.sensors.bring_up(&mut robot.world, robot.now);
         robot.now = up.next_multiple_of(20 * MS);
         robot

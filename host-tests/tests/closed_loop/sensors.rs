@@ -1,7 +1,7 @@
 //! The sensor tasks without a chip: the wires of the simulated world run into the app's own drivers' tables and pipelines.
 
 use robot_app::{
-    domain::{HeaterConfig, ImuCalibration, ImuState, MagCalibration, MagState},
+    domain::{HeaterConfig, ImuCalibration, ImuState, MagCalibration, MagState, MountingConfig},
     sensing::{
         ImuPipeline, ImuSampleError, MagPipeline,
         bmi088::{self, ACCEL_READ, BUFFER_READ, GYRO_READ, GyroBuffer},
@@ -30,6 +30,11 @@ impl Sensors {
             mag: MagPipeline::new(MagCalibration::default()),
             mag_started_at: None,
         }
+    }
+
+    pub fn set_mounting(&mut self, mounting: &MountingConfig) {
+        self.imu.set_mounting(mounting.board);
+        self.mag.set_mounting(mounting);
     }
 
     pub fn imu_calibrated(&self) -> bool {

@@ -1,5 +1,6 @@
 //! Values that fit this code to one robot.
 
+use super::Orientation;
 use crate::motor::layout::{MotorLayout, ROBOT_LAYOUT};
 
 /// Wheel geometry (ROBOT_CPP 5.1).
@@ -160,7 +161,19 @@ impl Default for SafetyConfig {
     }
 }
 
-/// Sensor axes = body axes (x forward, y left, z up): calibrated = (raw − bias) · scale.
+/// How the sensors sit. Applied to what they measure before anything else, so that all other settings and all results
+/// are in the robot's axes (x forward, y left, z up).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct MountingConfig {
+    /// The IMU's axes in the robot's.
+    pub board: Orientation,
+    /// The magnetometer's axes in the IMU's, as if those were the robot's. `None`: nobody knows, and the heading goes
+    /// without it.
+    pub mag: Option<Orientation>,
+}
+
+/// In body axes (x forward, y left, z up): calibrated = (turned − bias) · scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct ImuCalibration {
@@ -182,7 +195,7 @@ impl Default for ImuCalibration {
     }
 }
 
-/// Hard and soft iron of the robot, applied in the body frame: calibrated = soft_iron · (raw − bias).
+/// Hard and soft iron of the robot, applied in the body frame: calibrated = soft_iron · (turned − bias).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct MagCalibration {
@@ -233,6 +246,7 @@ pub struct RobotConfig {
     pub joint_ctrl: JointControllerConfig,
     pub joints: [JointConfig; 4],
     pub safety: SafetyConfig,
+    pub mounting: MountingConfig,
     pub imu: ImuCalibration,
     pub mag: MagCalibration,
     pub heater: HeaterConfig,
@@ -253,6 +267,7 @@ impl RobotConfig {
             joint_ctrl: JointControllerConfig::default(),
             joints: layout.joint_configs(),
             safety: SafetyConfig::default(),
+            mounting: MountingConfig::default(),
             imu: ImuCalibration::default(),
             mag: MagCalibration::default(),
             heater: HeaterConfig::default(),

@@ -7,6 +7,7 @@ mod estimate;
 mod health;
 mod imu_status;
 mod last_words;
+mod mounting;
 mod remote;
 mod sensors;
 
@@ -15,8 +16,8 @@ pub use command::{
     ChassisCommand, HighLevelCommand, JointCommand, JointMode, MotorCurrent, WheelCommand,
 };
 pub use config::{
-    HeaterConfig, ImuCalibration, JointConfig, JointControllerConfig, MagCalibration, RobotConfig,
-    SafetyConfig, WheelControllerConfig, WheelOdomConfig,
+    HeaterConfig, ImuCalibration, JointConfig, JointControllerConfig, MagCalibration,
+    MountingConfig, RobotConfig, SafetyConfig, WheelControllerConfig, WheelOdomConfig,
 };
 pub use estimate::StateEstimate;
 pub use health::{
@@ -26,6 +27,7 @@ pub use imu_status::{
     CalibrationState, CalibrationStatus, HeaterState, HeaterStatus, ImuRejects, ImuStatus, Warmth,
 };
 pub use last_words::{LastWords, LateTasks};
+pub use mounting::Orientation;
 pub use remote::{DriveMode, OperatorState, RemoteDiagnostics, RemoteState, RemoteUpdate};
 pub use sensors::{
     ImuState, JointFeedback, JointState, MagState, MotorFeedback, SensorsSnapshot, WheelFeedback,

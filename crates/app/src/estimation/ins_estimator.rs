@@ -27,6 +27,19 @@ const MAX_MAG_AGE_S: f32 = 0.03;
 /// A rate beyond this in a saturated sample was cut off (BMI088: ±2000 °/s).
 const CLIPPED_RATE_DPS: f32 = 1_950.0;
 
+/// A sample that was measured so long after the settings changed was turned by the new ones: the sensors' tasks look at the
+/// settings before each.
+const OLD_AXES_US: u64 = 25_000;
+
+/// Whether the magnetometer's samples are used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Field {
+    ShowsNorth,
+    /// Nobody knows how the magnetometer sits: the heading is carried by the gyro alone and begins with 0 (east) where the
+    /// robot is switched on.
+    Unknown,
+}
+
 /// Called at 1 kHz with the latest samples; uses each sample once and carries the attitude on between them.
 #[derive(Clone, Debug)]
 pub struct InsEstimator {
@@ -39,6 +52,9 @@ pub struct InsEstimator {
     mag_ts_us: u64,
     applied_bias_dps: Vector3,
     settled_samples: u16,
+    /// What was measured until then is not looked at.
+    deaf_until_us: u64,
+    field: Field,
     /// Last tick, 0 = none yet.
     ts_us: u64,
 }
@@ -53,13 +69,32 @@ impl InsEstimator {
             mag_ts_us: 0,
             applied_bias_dps: [0.0; 3],
             settled_samples: 0,
+            deaf_until_us: 0,
+            field: Field::ShowsNorth,
             ts_us: 0,
         }
+    }
+
+    /// Counts from the next sample on.
+    pub fn set_field(&mut self, field: Field) {
+        self.field = field;
     }
 
     /// Other wheels from now on; everything known so far stays.
     pub fn set_odometry(&mut self, odometry: &WheelOdomConfig) {
         self.motion.set_config(odometry);
+    }
+
+    /// The sensors' axes are others from now on: begins anew.
+    #[cold]
+    #[inline(never)]
+    pub fn restart(&mut self, odometry: &WheelOdomConfig, field: Field, now_us: u64) {
+        *self = Self {
+            field,
+            deaf_until_us: now_us.saturating_add(OLD_AXES_US),
+            ts_us: now_us,
+            ..Self::new(*odometry)
+        };
     }
 
     /// Renews `estimate`. `motor`: with ages as of `now_us`. What makes the estimate invalid is listed at
@@ -80,7 +115,9 @@ impl InsEstimator {
         let mut sample = None;
         if imu.ts_us != self.imu_seen_us && imu.ts_us != 0 {
             self.imu_seen_us = imu.ts_us;
-            sample = self.take_imu(imu);
+            if imu.ts_us > self.deaf_until_us {
+                sample = self.take_imu(imu);
+            }
         }
         if mag.ts_us != self.mag_ts_us && mag.ts_us != 0 {
             self.mag_ts_us = mag.ts_us;
@@ -140,7 +177,8 @@ impl InsEstimator {
     }
 
     fn take_mag(&mut self, mag: &MagState) {
-        if self.settled_samples > 0 && vector::is_within(mag.mag_ut, MAX_FIELD_UT) {
+        let is_used = self.field == Field::ShowsNorth && mag.ts_us > self.deaf_until_us;
+        if is_used && self.settled_samples > 0 && vector::is_within(mag.mag_ut, MAX_FIELD_UT) {
             let ahead_s = if mag.ts_us >= self.imu_ts_us {
                 seconds(age_us(self.imu_ts_us, mag.ts_us))
             } else {

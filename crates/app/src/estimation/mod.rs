@@ -9,4 +9,4 @@ mod motion;
 #[cfg(test)]
 pub(crate) mod testing;
 
-pub use ins_estimator::InsEstimator;
+pub use ins_estimator::{Field, InsEstimator};

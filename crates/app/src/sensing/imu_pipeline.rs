@@ -8,7 +8,10 @@ use super::{
     plausibility::Plausibility,
 };
 use crate::{
-    domain::{CalibrationState, HeaterConfig, ImuCalibration, ImuRejects, ImuState, ImuStatus},
+    domain::{
+        CalibrationState, HeaterConfig, ImuCalibration, ImuRejects, ImuState, ImuStatus,
+        Orientation,
+    },
     math::Vector3,
 };
 
@@ -40,11 +43,10 @@ struct RawSample {
 /// Samples that may be alike in all six counts: at rest noise moves at least one of them nearly every time.
 const MAX_REPEATS: u8 = 10;
 
-/// Checks, scales and calibrates each sample; runs the heater; finds the gyro offset once after boot.
-///
-/// Sensor axes are body axes: the board is mounted with its X forward and Z up.
+/// Checks, scales, turns into the robot's axes and calibrates each sample; runs the heater; finds the gyro offset once after boot.
 #[derive(Clone, Debug)]
 pub struct ImuPipeline {
+    mounting: Orientation,
     calibration: ImuCalibration,
     heater: Heater,
     startup: StartupCalibration,
@@ -58,6 +60,7 @@ pub struct ImuPipeline {
 impl ImuPipeline {
     pub fn new(calibration: ImuCalibration, heater: HeaterConfig) -> Self {
         Self {
+            mounting: Orientation::default(),
             calibration,
             heater: Heater::new(heater),
             startup: StartupCalibration::default(),
@@ -73,6 +76,16 @@ impl ImuPipeline {
     pub fn set_config(&mut self, calibration: &ImuCalibration, heater: &HeaterConfig) {
         self.calibration = *calibration;
         self.heater.set_config(heater);
+    }
+
+    /// How the IMU's axes lie in the robot, from the next sample on. Another than before: what was found in the old axes
+    /// is forgotten, and the gyro's offset is found anew.
+    pub fn set_mounting(&mut self, mounting: Orientation) {
+        if mounting != self.mounting {
+            self.mounting = mounting;
+            self.startup = StartupCalibration::default();
+            self.accel_delay = AccelDelay::default();
+        }
     }
 
     /// True once the start-up gyro offset is known.
@@ -135,8 +148,8 @@ impl ImuPipeline {
             return Err(ImuSampleError::Frozen);
         }
         Ok(CheckedSample {
-            accel_mps2: accel.mps2(),
-            gyro_dps: gyro.dps(),
+            accel_mps2: self.mounting.turn(accel.mps2()),
+            gyro_dps: self.mounting.turn(gyro.dps()),
             temperature_c: accel.temperature.map(|temperature| temperature.celsius()),
             saturated,
         })
@@ -204,7 +217,7 @@ impl ImuPipeline {
     }
 }
 
-/// Physical units, not yet calibrated.
+/// Physical units in the robot's axes, not yet calibrated.
 #[derive(Clone, Copy, Debug)]
 struct CheckedSample {
     accel_mps2: Vector3,
@@ -264,6 +277,46 @@ mod tests {
         assert!((state.accel_mps2[2] - 19.0).abs() < 0.01);
         assert!((state.gyro_dps[2] - 4.5).abs() < 0.01);
         assert_eq!(state.gyro_bias_dps[2], 1.01);
+    }
+
+    /// z points forward: the 10.01 °/s and 1 g that it measures are about and along the robot's x.
+    #[test]
+    fn samples_are_turned_before_they_are_calibrated() {
+        let mut pipeline = new_pipeline();
+        pipeline.set_mounting(Orientation::XRightZForward);
+        let calibration = ImuCalibration {
+            accel_bias_mps2: [0.5, 0.0, 0.0],
+            gyro_scale: [0.5, 1.0, 1.0],
+            ..ImuCalibration::default()
+        };
+        pipeline.set_config(&calibration, &HeaterConfig::default());
+        let (accel, gyro) = answers(3);
+        let state = pipeline.process(&accel, &gyro, &[], 5_000).unwrap();
+        let [forward, left, up] = state.accel_mps2;
+        assert!((forward - 9.306_65).abs() < 0.01 && left.abs() + up.abs() < 0.01);
+        let [forward, left, up] = state.gyro_dps;
+        assert!((forward - 5.005).abs() < 0.01 && left.abs() + up.abs() < 0.01);
+    }
+
+    #[test]
+    fn another_mounting_finds_the_offset_anew() {
+        let mut pipeline = new_pipeline();
+        let still = |pipeline: &mut ImuPipeline, samples: std::ops::Range<u32>| {
+            for index in samples {
+                let (accel, mut gyro) = answers(index);
+                gyro[7..9].copy_from_slice(&(16 + (index % 2) as i16).to_le_bytes());
+                let read_us = u64::from(index) * 5_000;
+                pipeline.process(&accel, &gyro, &[], read_us).unwrap();
+            }
+        };
+        still(&mut pipeline, 1..211);
+        pipeline.set_mounting(Orientation::default());
+        assert!(pipeline.calibrated());
+        pipeline.set_mounting(Orientation::XUpZLeft);
+        still(&mut pipeline, 211..212);
+        assert!(!pipeline.calibrated());
+        still(&mut pipeline, 212..422);
+        assert!(pipeline.calibrated());
     }
 
     #[test]

@@ -117,9 +117,10 @@ impl MagRaw {
     /// Datasheet range: ±1600 µT on x and y, ±2500 µT on z.
     const RANGE_UT: [f32; 3] = [1_600.0, 1_600.0, 2_500.0];
 
-    /// The field in the body frame (x forward, y left, z up), µT: the sensor's y points right, z up. `None` beyond the
-    /// range of the sensor.
-    pub fn body_ut(&self) -> Option<[f32; 3]> {
+    /// The field, µT, in right-handed axes: those of the sensor with y turned round (PX4 and ArduPilot agree that they are
+    /// left-handed; which one is turned round makes no difference to the 24 ways it may sit). `None` beyond the range of
+    /// the sensor.
+    pub fn right_handed_ut(&self) -> Option<[f32; 3]> {
         let field_ut = self
             .counts
             .map(|count| f32::from(count) * Self::UT_PER_COUNT);
@@ -136,12 +137,12 @@ impl MagRaw {
 mod tests {
     use super::*;
 
-    /// Datasheet: 0.3 µT a count; raw y points right.
+    /// Datasheet: 0.3 µT a count; y is turned round.
     #[test]
-    fn a_ready_sample_is_turned_into_the_body_frame() {
+    fn a_ready_sample_is_made_right_handed() {
         let raw = decode(&[0x01, 0x64, 0x00, 0x38, 0xFF, 0xC8, 0x00]).unwrap();
         assert_eq!(raw.counts, [100, -200, 200]);
-        let field = raw.body_ut().unwrap();
+        let field = raw.right_handed_ut().unwrap();
         for (got, expected) in field.iter().zip([30.0, 60.0, 60.0]) {
             assert!((got - expected).abs() < 1e-4);
         }
@@ -158,6 +159,6 @@ mod tests {
         let raw = MagRaw {
             counts: [5_400, 0, 0],
         };
-        assert_eq!(raw.body_ut(), None);
+        assert_eq!(raw.right_handed_ut(), None);
     }
 }

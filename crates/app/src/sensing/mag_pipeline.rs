@@ -4,7 +4,7 @@ use super::{
     calibration::correct_by_matrix,
     ist8310::{self, READ_LEN},
 };
-use crate::domain::{MagCalibration, MagState};
+use crate::domain::{MagCalibration, MagState, MountingConfig, Orientation};
 
 /// Why a sample was rejected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,20 +16,33 @@ pub enum MagSampleError {
     OutOfRange,
 }
 
-/// Checks, turns into the body frame and calibrates each sample.
+/// Checks, turns into the robot's axes and calibrates each sample.
 #[derive(Clone, Debug)]
 pub struct MagPipeline {
+    mounting: MountingConfig,
     calibration: MagCalibration,
 }
 
 impl MagPipeline {
     pub const fn new(calibration: MagCalibration) -> Self {
-        Self { calibration }
+        Self {
+            mounting: MountingConfig {
+                board: Orientation::XForwardZUp,
+                mag: None,
+            },
+            calibration,
+        }
     }
 
     /// Counts from the next sample on.
     pub fn set_calibration(&mut self, calibration: &MagCalibration) {
         self.calibration = *calibration;
+    }
+
+    /// Counts from the next sample on. Where nobody knows how the magnetometer sits beside the IMU, its axes are taken to be
+    /// the IMU's.
+    pub fn set_mounting(&mut self, mounting: &MountingConfig) {
+        self.mounting = *mounting;
     }
 
     /// Takes the bytes read from `ist8310::READ_FROM`, whose measurement was started at `started_us`.
@@ -39,7 +52,9 @@ impl MagPipeline {
         started_us: u64,
     ) -> Result<MagState, MagSampleError> {
         let raw = ist8310::decode(answer).ok_or(MagSampleError::NotReady)?;
-        let field_ut = raw.body_ut().ok_or(MagSampleError::OutOfRange)?;
+        let sensor_ut = raw.right_handed_ut().ok_or(MagSampleError::OutOfRange)?;
+        let MountingConfig { board, mag } = self.mounting;
+        let field_ut = board.turn(mag.unwrap_or_default().turn(sensor_ut));
         Ok(MagState {
             mag_ut: correct_by_matrix(
                 field_ut,
@@ -55,7 +70,7 @@ impl MagPipeline {
 mod tests {
     use super::*;
 
-    /// By hand: 100, −200, 200 counts of 0.3 µT, raw y pointing right, are 30, 60, 60 µT in the body frame.
+    /// By hand: 100, −200, 200 counts of 0.3 µT, y turned round, are 30, 60, 60 µT.
     #[test]
     fn the_field_is_calibrated_in_the_body_frame() {
         let mut pipeline = MagPipeline::new(MagCalibration {
@@ -69,6 +84,22 @@ mod tests {
         }
         // Half of 6 ms, and the order to measure takes 73 µs.
         assert_eq!(state.ts_us, 7 + 3_073);
+    }
+
+    /// 30, 60, 60 µT. Up is where the magnetometer's x points and forward where its z does, so its y points right: 60, −60,
+    /// 30 on the IMU, whose x points left, y up and z forward.
+    #[test]
+    fn the_field_is_turned_by_both_mountings() {
+        let mut pipeline = MagPipeline::new(MagCalibration::default());
+        pipeline.set_mounting(&MountingConfig {
+            board: Orientation::XLeftZForward,
+            mag: Some(Orientation::XUpZForward),
+        });
+        let answer = [0x01, 0x64, 0x00, 0x38, 0xFF, 0xC8, 0x00];
+        let [forward, left, up] = pipeline.process(&answer, 7).unwrap().mag_ut;
+        assert!((forward - 30.0).abs() < 1e-4);
+        assert!((left - 60.0).abs() < 1e-4);
+        assert!((up + 60.0).abs() < 1e-4);
     }
 
     #[test]

@@ -9,10 +9,10 @@ use crate::{
     control::{ChassisController, ChassisControllerInput, ChassisControllerOutput, UserController},
     diagnostics::DiagnosticsSnapshot,
     domain::{
-        BusId, CanFrame, ChassisCommand, HighLevelCommand, ImuState, MagState, RemoteUpdate,
-        RobotConfig, StateEstimate, SystemHealth, age_us,
+        BusId, CanFrame, ChassisCommand, HighLevelCommand, ImuState, MagState, MountingConfig,
+        RemoteUpdate, RobotConfig, StateEstimate, SystemHealth, age_us,
     },
-    estimation::InsEstimator,
+    estimation::{Field, InsEstimator},
     logic::LogicBus,
     motor::{
         MotorManager, TickFrames,
@@ -65,6 +65,14 @@ enum Demand<'a> {
     Control(HighLevelCommand),
 }
 
+/// A magnetometer that sits nobody knows how shows nothing.
+fn field(mounting: &MountingConfig) -> Field {
+    match mounting.mag {
+        Some(_) => Field::ShowsNorth,
+        None => Field::Unknown,
+    }
+}
+
 /// What no command reaches in this tick.
 struct Stopped {
     wheels: bool,
@@ -112,11 +120,13 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
         controller: C,
         diagnostics: D,
     ) -> Self {
+        let mut estimator = InsEstimator::new(config.wheel_odom);
+        estimator.set_field(field(&config.mounting));
         Self {
             config,
             controller,
             motors: MotorManager::new(layout),
-            estimator: InsEstimator::new(config.wheel_odom),
+            estimator,
             policy: SafetyPolicy::default(),
             arming: Arming::default(),
             flash: FlashPermit::default(),
@@ -131,14 +141,14 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
     /// Every frame received since the last tick, in order of arrival.
     pub fn on_can_frame(&mut self, bus: BusId, frame: &CanFrame, now_us: u64) {
         if !self.motors.route_frame(bus, frame, now_us) {
-            self.on_other_frame(bus, frame);
+            self.on_other_frame(bus, frame, now_us);
         }
     }
 
     /// Rare, and never mixed into the code that runs for the frames of motors.
     #[cold]
     #[inline(never)]
-    fn on_other_frame(&mut self, bus: BusId, frame: &CanFrame) {
+    fn on_other_frame(&mut self, bus: BusId, frame: &CanFrame, now_us: u64) {
         let diagnostics: &DiagnosticsSnapshot = self.diagnostics.borrow();
         let gate = TuningGate::of(diagnostics.arming.state, &diagnostics.operator);
         let Self {
@@ -152,9 +162,18 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
             bring_up,
             diagnostics,
         };
+        let mounting = access.config.mounting;
         if let Some(reply) = tuning.on_frame(bus, frame, gate, access) {
             // The channel gives one a bus and tick.
             let _ = self.replies.push((bus, reply));
+        }
+        let RobotConfig {
+            mounting: wanted,
+            wheel_odom,
+            ..
+        } = &self.config;
+        if *wanted != mounting {
+            self.estimator.restart(wheel_odom, field(wanted), now_us);
         }
         self.take_config();
     }

@@ -169,6 +169,7 @@ impl TuningChannel {
         restored: u32,
     ) -> Result<(), Refusal> {
         consistency::check(candidate)?;
+        consistency::check_turn(config, candidate)?;
         let is_same = |group: &ParameterGroup| group.is_same(config, candidate);
         let restored = self.status.restored | restored;
         if restored != self.status.restored || !PARAMETERS.iter().all(is_same) {

@@ -1,7 +1,10 @@
 //! Settings that must fit each other.
 
 use super::Refusal;
-use crate::domain::{JointConfig, MagCalibration, RobotConfig, SafetyConfig};
+use crate::domain::{
+    ImuCalibration, JointConfig, MagCalibration, MountingConfig, Orientation, RobotConfig,
+    SafetyConfig,
+};
 
 /// Least distance of a joint's two soft limits.
 const LEAST_TRAVEL_RAD: f32 = 0.01;
@@ -16,6 +19,26 @@ pub fn check(config: &RobotConfig) -> Result<(), Refusal> {
     } else {
         Err(Refusal::Inconsistent)
     }
+}
+
+/// Calibrations are in the robot's axes. One that was found with other axes would shift and stretch the wrong ones, so it
+/// must be gone before its sensor is turned.
+pub fn check_turn(now: &RobotConfig, wanted: &RobotConfig) -> Result<(), Refusal> {
+    let (old, new) = (&now.mounting, &wanted.mounting);
+    let turns_imu = old.board != new.board;
+    let turns_mag = turns_imu || mag_axes(old) != mag_axes(new);
+    let spoils_imu = turns_imu && wanted.imu != ImuCalibration::default();
+    let spoils_mag = turns_mag && wanted.mag != MagCalibration::default();
+    if spoils_imu || spoils_mag {
+        Err(Refusal::Calibrated)
+    } else {
+        Ok(())
+    }
+}
+
+/// As long as nobody knows, the magnetometer is shown in these.
+fn mag_axes(mounting: &MountingConfig) -> Orientation {
+    mounting.mag.unwrap_or_default()
 }
 
 fn joint_can_move(joint: &JointConfig) -> bool {
@@ -64,6 +87,43 @@ mod tests {
         assert!(refused(|config| config.safety.battery_empty_v = 21.5));
         assert!(refused(|config| config.safety.battery_low_v = 18.9));
         assert!(!refused(|config| config.safety.battery_low_v = 0.0));
+    }
+
+    /// `change` from a robot that was calibrated by `calibrate`.
+    fn turned(
+        calibrate: impl Fn(&mut RobotConfig),
+        change: impl FnOnce(&mut RobotConfig),
+    ) -> Result<(), Refusal> {
+        let mut now = RobotConfig::default();
+        calibrate(&mut now);
+        let mut wanted = now;
+        change(&mut wanted);
+        check_turn(&now, &wanted)
+    }
+
+    #[test]
+    fn no_sensor_is_turned_under_its_calibration() {
+        let nothing = |_: &mut RobotConfig| ();
+        let imu = |config: &mut RobotConfig| config.imu.accel_bias_mps2[1] = 0.1;
+        let mag = |config: &mut RobotConfig| config.mag.bias_ut[2] = 30.0;
+        let board = |config: &mut RobotConfig| config.mounting.board = Orientation::XLeftZUp;
+        let mag_turned =
+            |config: &mut RobotConfig| config.mounting.mag = Some(Orientation::XLeftZUp);
+        let refused = Err(Refusal::Calibrated);
+        assert_eq!(turned(nothing, board), Ok(()));
+        assert_eq!(turned(nothing, mag_turned), Ok(()));
+        assert_eq!(turned(imu, board), refused);
+        assert_eq!(turned(imu, mag_turned), Ok(()));
+        assert_eq!(turned(mag, board), refused);
+        assert_eq!(turned(mag, mag_turned), refused);
+        // What was shown as if it sat so, sits so.
+        let as_shown =
+            |config: &mut RobotConfig| config.mounting.mag = Some(Orientation::XForwardZUp);
+        assert_eq!(turned(mag, as_shown), Ok(()));
+        // A new calibration may come, and an old one may go with the turn.
+        assert_eq!(turned(imu, mag), Ok(()));
+        let all = |config: &mut RobotConfig| *config = RobotConfig::default();
+        assert_eq!(turned(|config| (imu(config), board(config)).1, all), Ok(()));
     }
 
     #[test]

@@ -10,6 +10,8 @@ pub enum ParameterKind {
     Integer,
     /// Only +1 and −1.
     Sign,
+    /// The place of one of these names.
+    Choice(&'static [&'static str]),
 }
 
 /// A setting of `RobotConfig`. All travel as `f32`, which is exact for the integers here.
@@ -80,7 +82,7 @@ impl Parameter {
         }
         let allowed = match self.kind {
             ParameterKind::Float => true,
-            ParameterKind::Integer => (value as u32) as f32 == value,
+            ParameterKind::Integer | ParameterKind::Choice(_) => (value as u32) as f32 == value,
             ParameterKind::Sign => value == 1.0 || value == -1.0,
         };
         if !allowed || !(self.min..=self.max).contains(&value) {

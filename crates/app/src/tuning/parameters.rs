@@ -3,12 +3,13 @@
 use super::{Parameter, ParameterGroup, Refusal, Scope};
 
 mod joints;
+mod mounting;
 mod safety;
 mod sensors;
 mod wheels;
 
 /// By group.
-pub static PARAMETERS: [ParameterGroup; 11] = [
+pub static PARAMETERS: [ParameterGroup; 12] = [
     ParameterGroup {
         number: WHEEL_GEOMETRY,
         name: "wheel-geometry",
@@ -57,6 +58,13 @@ pub static PARAMETERS: [ParameterGroup; 11] = [
         version: 1,
         scope: Scope::Robot,
         parameters: &sensors::HEATER,
+    },
+    ParameterGroup {
+        number: 8,
+        name: "mounting",
+        version: 1,
+        scope: Scope::Robot,
+        parameters: &mounting::MOUNTING,
     },
     ParameterGroup {
         number: 16,

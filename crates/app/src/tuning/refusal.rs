@@ -17,10 +17,12 @@ pub enum Refusal {
     NotFinite = 6,
     /// Fits alone but not together with another setting.
     Inconsistent = 7,
+    /// A sensor would be turned whose calibration is for how it was.
+    Calibrated = 8,
 }
 
 impl Refusal {
-    const ALL: [Self; 7] = [
+    const ALL: [Self; 8] = [
         Self::WrongLength,
         Self::UnknownCommand,
         Self::UnknownParameter,
@@ -28,6 +30,7 @@ impl Refusal {
         Self::Armed,
         Self::NotFinite,
         Self::Inconsistent,
+        Self::Calibrated,
     ];
 
     pub const fn code(self) -> u8 {

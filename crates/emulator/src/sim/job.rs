@@ -13,12 +13,13 @@ use super::{
     recording::{Recording, RecordingError},
     report::{self, Report},
     runner::{self, Observer, RunResult},
-    scenario::Scenario,
+    scenario::{FlashContents, Scenario},
     summary::Summary,
     trace::Traces,
 };
 use crate::{
     machine::{Machine, MachineError, RegisterPatch, flash::PARAMETER_FLASH_BYTES},
+    parameter_sectors,
     pty::CanPort,
 };
 
@@ -75,6 +76,8 @@ impl Job {
             radio: self.scenario.radio,
             joints: self.scenario.joints,
             imu_temperature_c: self.scenario.imu_temperature_c,
+            mounting: self.scenario.mounting,
+            mag_mounting: self.scenario.mag_mounting,
             seed: self.scenario.seed,
             imu_trial: self.imu_trial.clone(),
         })?;
@@ -94,8 +97,13 @@ impl Job {
         machine.set_flash_times(setup.times);
         machine.set_flash_seed(setup.seed.unwrap_or(self.scenario.seed));
         let kept = self.flash_file.as_ref().filter(|file| file.exists());
-        let Some(path) = kept.or(setup.image.as_ref()) else {
-            return Ok(());
+        let path = match (kept, &setup.contents) {
+            (Some(path), _) | (None, FlashContents::Image(path)) => path,
+            (None, FlashContents::Erased) => return Ok(()),
+            (None, FlashContents::Records(records)) => {
+                machine.set_parameter_flash(&parameter_sectors::holding(records));
+                return Ok(());
+            }
         };
         let bytes = std::fs::read(path).map_err(|source| JobError::Read {
             path: path.clone(),

@@ -7,7 +7,7 @@ use crate::{
     cells::run_all,
     flash_image::Image,
     robot::Robot,
-    settings::{Make, image},
+    settings::{GROUPS, Make, image},
 };
 
 /// design.md section 6: "zero torque ≤ 20 ms after reset".
@@ -40,7 +40,7 @@ fn stores() -> Vec<Store> {
     vec![
         store("empty, clean", Image::blank().clean(0).clean(1).clean(2)),
         store("a new chip", Image::blank()),
-        store("11 records", image(Make::Dm4310, 11)),
+        store("a record a group", image(Make::Dm4310, GROUPS)),
         store("full", full),
         store("full, its clean sector damaged", full_and_damaged),
         store("garbage in all three sectors", damaged),

@@ -7,7 +7,7 @@ use crate::{
     cells::run_all,
     flash_image::{Image, SECTOR_BYTES, SLOT_BYTES, SectorState, newest, sectors},
     robot::Robot,
-    settings::{Make, Settings, image, in_flash},
+    settings::{GROUPS, Make, Settings, image, in_flash},
 };
 
 /// xorshift32.
@@ -34,7 +34,7 @@ struct Damaged {
 /// One bit in each word of the newest copy of a record, and in each word of the head.
 fn flips() -> Vec<Damaged> {
     let start = image(Make::Dm4310, 60);
-    let slot_of_group_4 = 60 - 11 + 4;
+    let slot_of_group_4 = 60 - GROUPS + 4;
     let places = |slot: usize| {
         (0..SLOT_BYTES)
             .step_by(4)

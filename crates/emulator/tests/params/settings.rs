@@ -11,7 +11,10 @@ pub type Setting = (u8, u8);
 pub type Settings = BTreeMap<Setting, u32>;
 
 /// Settings of all groups together.
-pub const COUNT: usize = 85;
+pub const COUNT: usize = 87;
+
+/// A record each.
+pub const GROUPS: usize = CALIBRATED.len();
 
 /// Groups from here on are joints and belong to a make of motor.
 const FIRST_JOINT: u8 = 16;
@@ -27,7 +30,7 @@ const JOINT: [f32; 8] = [1.0, 0.25, -1.25, 1.25, 3.0, 8.0, 90.0, 2.0];
 
 /// Allowed values that differ from the defaults, directions aside. The robot drives with them.
 #[rustfmt::skip] // One line a group.
-const CALIBRATED: [(u8, &[f32]); 11] = [
+const CALIBRATED: [(u8, &[f32]); 12] = [
     (1, &[0.07, 0.45, 17.5, 1.0, -1.0]),
     (2, &[1.25, 3.5, 50_000.0, 7_000.0, 900.0, 40_000.0]),
     (3, &[18.0, 0.75]),
@@ -35,6 +38,7 @@ const CALIBRATED: [(u8, &[f32]); 11] = [
     (5, &[0.1, -0.2, 0.15, 1.01, 0.99, 1.02, 0.5, -0.25, 0.75, 1.005, 0.995, 1.015]),
     (6, &[12.0, -20.0, 7.0, 1.1, 0.9, 1.05, 0.05, -0.02, 0.03]),
     (7, &[42.0, 0.25, 0.02, 0.9]),
+    (8, &[4.0, 9.0]),
     (16, &JOINT),
     (17, &JOINT),
     (18, &JOINT),

@@ -6,7 +6,7 @@ use robot_plant::time::{MS, SECOND};
 use crate::{
     flash_image::newest,
     robot::Robot,
-    settings::{Make, calibrated, image},
+    settings::{GROUPS, Make, calibrated, image},
 };
 
 fn erases(robot: &Robot) -> usize {
@@ -16,10 +16,10 @@ fn erases(robot: &Robot) -> usize {
         .count()
 }
 
-/// Eleven records move to each new sector and leave 116 places: 1,000 saves fill nine sectors.
+/// Twelve records move to each new sector and leave 115 places: 1,000 saves fill nine sectors.
 #[test]
 fn a_thousand_changes_saved_one_by_one_cost_nine_erases() {
-    let mut robot = Robot::with_flash(Make::Dm4310, &image(Make::Dm4310, 11));
+    let mut robot = Robot::with_flash(Make::Dm4310, &image(Make::Dm4310, GROUPS));
     robot.run_for(SECOND);
     for change in 1..=1_000 {
         let value = 0.3 + change as f32 * 1e-4;
@@ -47,7 +47,7 @@ fn a_thousand_changes_saved_one_by_one_cost_nine_erases() {
 /// A whole file of settings at full speed, as `robotctl tune apply` sends it.
 #[test]
 fn a_file_of_settings_costs_a_record_a_group() {
-    let mut robot = Robot::with_flash(Make::Dm4310, &image(Make::Dm4310, 11));
+    let mut robot = Robot::with_flash(Make::Dm4310, &image(Make::Dm4310, GROUPS));
     robot.run_for(SECOND);
     let mut changes = 0;
     for round in 0..10 {

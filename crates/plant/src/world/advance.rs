@@ -88,9 +88,18 @@ impl World {
             .step(torques_nm, M3508::friction(), floor, physics_step_s());
         self.tilt
             .step(self.faults.has(Fault::Tilted), physics_step_s());
-        self.imu.step(self.motion(at), at, physics_step_s());
+        let Motion {
+            accel_mps2,
+            gyro_rps,
+        } = self.motion(at);
+        let felt = Motion {
+            accel_mps2: self.mounting.felt(accel_mps2),
+            gyro_rps: self.mounting.felt(gyro_rps),
+        };
+        self.imu.step(felt, at, physics_step_s());
         if self.mag.is_converting(at) {
-            self.mag.feel(self.field_ut(at));
+            let on_the_board_ut = self.mounting.felt(self.field_ut(at));
+            self.mag.feel(self.mag_mounting.felt(on_the_board_ut));
         }
     }
 
@@ -133,7 +142,7 @@ impl World {
         [SHAFT_SIGN[0] * wheel_rps[0], SHAFT_SIGN[1] * wheel_rps[1]]
     }
 
-    /// What the IMU feels.
+    /// What a sensor in the body feels, in the body's axes.
     pub(super) fn motion(&self, at: Ps) -> Motion {
         match &self.playback {
             Some(playback) => playback.motion(at),

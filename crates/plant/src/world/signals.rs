@@ -138,7 +138,7 @@ const WHEELS: &[Signal] = &[
     ("truth.wheel.1.current_ma", |w| coil_ma(w, 1)),
 ];
 
-/// What the IMU feels before its own errors, rad/s and m/s²; on-fraction of its heater, 0 … 1.
+/// What the IMU feels before its own errors, in the body's axes, rad/s and m/s²; on-fraction of its heater, 0 … 1.
 const IMU: &[Signal] = &[
     ("truth.imu.gx", |w| w.motion(w.now).gyro_rps[0]),
     ("truth.imu.gy", |w| w.motion(w.now).gyro_rps[1]),

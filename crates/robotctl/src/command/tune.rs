@@ -38,8 +38,9 @@ enum Action {
     /// Change one setting; the robot must be disarmed
     Set {
         name: String,
+        /// A number, or one of a setting's names
         #[arg(allow_negative_numbers = true)]
-        value: f32,
+        value: String,
     },
     /// Change all settings of a file that differ; the robot must be disarmed
     Apply { file: PathBuf },
@@ -122,7 +123,7 @@ impl Tune {
         match &self.action {
             Action::List { filter } => self.list(filter.as_deref().unwrap_or_default()),
             Action::Get { name } => self.get(name),
-            Action::Set { name, value } => self.set(name, *value),
+            Action::Set { name, value } => self.set(name, value),
             Action::Apply { file } => self.apply(file),
             Action::Save { file } => self.save(file),
             Action::Defaults { group, yes } => self.defaults(group.as_deref(), *yes),
@@ -147,7 +148,7 @@ impl Tune {
         println!("{:<40} {:>12} {:<10} range", "setting", "value", "unit");
         for named in tuning::all().filter(|n| n.full_name().contains(filter)) {
             let value = match &mut client {
-                Some(client) => client.read(named)?.to_string(),
+                Some(client) => named.in_words(client.read(named)?),
                 None => String::new(),
             };
             let parameter = named.parameter;
@@ -169,12 +170,13 @@ impl Tune {
         Ok(())
     }
 
-    fn set(&self, name: &str, value: f32) -> Result<()> {
+    fn set(&self, name: &str, value: &str) -> Result<()> {
         let named = tuning::find(name)?;
+        let value = named.parse(value)?;
         let mut client = self.client()?;
         let before = client.read(named)?;
         client.write(named, value)?;
-        println!("{} (was {before})", shown(named, value));
+        println!("{} (was {})", shown(named, value), named.in_words(before));
         confirm_saved(&mut client)
     }
 
@@ -185,7 +187,7 @@ impl Tune {
             let was = if applied.before == applied.after {
                 "unchanged".to_owned()
             } else {
-                format!("was {}", applied.before)
+                format!("was {}", applied.named.in_words(applied.before))
             };
             println!("{} ({was})", shown(applied.named, applied.after));
         }
@@ -289,6 +291,7 @@ fn confirm_saved(client: &mut TuningClient) -> Result<()> {
 }
 
 fn shown(named: Named, value: f32) -> String {
-    let text = format!("{} = {value} {}", named.full_name(), named.parameter.unit);
+    let (name, unit) = (named.full_name(), named.parameter.unit);
+    let text = format!("{name} = {} {unit}", named.in_words(value));
     text.trim_end().to_owned()
 }

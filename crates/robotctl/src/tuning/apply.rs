@@ -5,6 +5,8 @@ use robot_app::tuning::{Parameter, ParameterKind};
 use super::{Named, TuningClient, TuningError, UnknownName, find};
 use crate::parameter_file::ParameterFile;
 
+const MOUNTING: &str = "mounting";
+
 /// One setting of the file.
 #[derive(Clone, Copy, Debug)]
 pub struct Applied {
@@ -20,7 +22,7 @@ pub enum ApplyError {
     #[error("{name} = {value} is not allowed: {allowed}; nothing was written")]
     Range {
         name: String,
-        value: f32,
+        value: String,
         allowed: String,
     },
     #[error("nothing was written")]
@@ -78,10 +80,11 @@ fn checked(named: Named, value: f32) -> Result<Named, ApplyError> {
         ParameterKind::Float => format!("{min} … {max} {unit}"),
         ParameterKind::Integer => format!("a whole number, {min} … {max} {unit}"),
         ParameterKind::Sign => "1 or -1".to_owned(),
+        ParameterKind::Choice(names) => names.join(", "),
     };
     Err(ApplyError::Range {
         name: named.full_name(),
-        value,
+        value: named.in_words(value),
         allowed: allowed.trim_end().to_owned(),
     })
 }
@@ -89,19 +92,21 @@ fn checked(named: Named, value: f32) -> Result<Named, ApplyError> {
 fn may_be(parameter: &Parameter, value: f32) -> bool {
     let of_kind = match parameter.kind {
         ParameterKind::Float => true,
-        ParameterKind::Integer => value.fract() == 0.0,
+        ParameterKind::Integer | ParameterKind::Choice(_) => value.fract() == 0.0,
         ParameterKind::Sign => value.abs() == 1.0,
     };
     of_kind && (parameter.min..=parameter.max).contains(&value)
 }
 
-/// A value that does not fit the others yet is written after them.
+/// How the sensors sit is written before their calibrations, which are for how they sit. A value that does not fit the
+/// others yet is written after them.
 fn write_all(
     client: &mut TuningClient,
     settings: &[Applied],
     written: &mut usize,
 ) -> Result<(), TuningError> {
     let mut waiting: Vec<&Applied> = settings.iter().filter(|s| s.before != s.after).collect();
+    waiting.sort_by_key(|setting| setting.named.group.name != MOUNTING);
     while !waiting.is_empty() {
         let mut refused = Vec::new();
         let mut last_error = None;

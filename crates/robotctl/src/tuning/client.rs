@@ -58,6 +58,10 @@ fn explain(reason: Result<Refusal, u8>) -> String {
             "refused, it does not fit another setting (limits in the wrong order, or a soft-iron matrix that turns the \
              field round): change that one first"
         }
+        Ok(Refusal::Calibrated) => {
+            "refused, the sensors' calibrations are for how they sit now: `robotctl tune defaults imu-calibration --yes` \
+             and `robotctl tune defaults mag-calibration --yes` first, and calibrate again afterwards"
+        }
         Ok(Refusal::NotFinite) => "refused, it is no number",
         Ok(Refusal::UnknownParameter | Refusal::UnknownCommand | Refusal::WrongLength) => {
             "the robot does not know this request: firmware and robotctl are of different versions"
@@ -96,7 +100,8 @@ impl TuningClient {
             value,
         };
         let (min, max) = (named.parameter.min, named.parameter.max);
-        let what = || format!("{} = {value} ({min} … {max})", named.full_name());
+        let words = named.in_words(value);
+        let what = || format!("{} = {words} ({min} … {max})", named.full_name());
         self.exchange(request, what).map(drop)
     }
 

@@ -9,6 +9,7 @@ mod name;
 mod request;
 mod saving;
 mod store_report;
+mod value;
 mod wheel_geometry;
 
 #[cfg(test)]
@@ -22,4 +23,5 @@ pub use live::{LiveReading, live_page};
 pub use name::{Named, UnknownName, all, find, find_group};
 pub use saving::{SaveError, SavePatience, wait_until_saved};
 pub use store_report::StoreReport;
+pub use value::ValueError;
 pub use wheel_geometry::{GeometryError, WheelGeometry};

@@ -14,7 +14,7 @@ use robot_app::{
     motor::layout::ROBOT_LAYOUT,
     params::{ParamError, ParamState, ParamStatus},
     safety::SafetyFlags,
-    tuning::{LIVE_PAGES, Refusal, TuningAccess, TuningChannel, TuningGate},
+    tuning::{LIVE_PAGES, PARAMETERS, Refusal, TuningAccess, TuningChannel, TuningGate},
 };
 
 use super::*;
@@ -332,7 +332,7 @@ fn what_boot_found_is_told_by_name() {
     let (bus, mut client) = robot();
     bus.0.borrow_mut().diagnostics.params = ParamStatus {
         lost_sectors: 1,
-        refused: 1 << 3 | 1 << 10,
+        refused: 1 << 3 | 1 << (PARAMETERS.len() - 1),
         ..ParamStatus::default()
     };
     let findings = client.boot_findings().unwrap().unwrap();

@@ -27,7 +27,7 @@ fn loaded(record: &Record, groups: &[ParameterGroup]) -> (Verdict, RobotConfig) 
 
 /// `PARAMETERS` of a later firmware: the heater's group has grown to what it is now.
 fn later_firmware(version: u8) -> [ParameterGroup; 1] {
-    let [.., heater, _, _, _, _] = &PARAMETERS;
+    let heater = &PARAMETERS[HEATER_POSITION];
     assert_eq!(heater.name, "heater");
     [ParameterGroup { version, ..*heater }]
 }
@@ -125,7 +125,8 @@ fn one_bad_value_keeps_the_whole_group_out() {
         assert_eq!(config, RobotConfig::default(), "{record:?}");
     }
     let (verdict, config) = loaded(&joint([0x3F80_0000, half, two]), &PARAMETERS);
-    assert_eq!(verdict, Verdict::Loaded(7));
+    let position = PARAMETERS.iter().position(|group| group.number == 16);
+    assert_eq!(verdict, Verdict::Loaded(position.unwrap()));
     assert_eq!(
         (config.joints[0].min_rad, config.joints[0].max_rad),
         (0.5, 2.0)
@@ -151,15 +152,17 @@ fn a_joint_s_record_belongs_to_one_make_of_motor() {
         let values = [0x3F80_0000, half, 0, half, half, half, half, half];
         record(18, variant, 1, &values)
     };
+    let group = PARAMETERS.iter().position(|group| group.number == 18);
+    let position = group.unwrap();
     for (layout, own, other) in [(&ROBOT_LAYOUT, 1, 2), (&RS00_LAYOUT, 2, 1)] {
         let mut config = RobotConfig::for_layout(layout);
         let verdict = load(&joint(other), &PARAMETERS, layout, &mut config);
         assert_eq!(verdict, Verdict::Foreign);
         assert_eq!(config, RobotConfig::for_layout(layout));
         let verdict = load(&joint(own), &PARAMETERS, layout, &mut config);
-        assert_eq!(verdict, Verdict::Loaded(9));
+        assert_eq!(verdict, Verdict::Loaded(position));
         assert_eq!(config.joints[2].zero_rad, 0.5);
-        let encoded = encode(&PARAMETERS[9], &config, layout);
+        let encoded = encode(&PARAMETERS[position], &config, layout);
         assert_eq!(encoded, joint(own));
     }
 }

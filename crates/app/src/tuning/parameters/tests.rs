@@ -28,7 +28,7 @@ fn numbers_and_names_are_unique() {
         assert!(std::ptr::eq(found, parameter));
     }
     assert_eq!(find(1, 5).err(), Some(Refusal::UnknownParameter));
-    assert_eq!(find(8, 0).err(), Some(Refusal::UnknownParameter));
+    assert_eq!(find(15, 0).err(), Some(Refusal::UnknownParameter));
 }
 
 #[test]
@@ -85,7 +85,7 @@ fn indices_begin_at_zero_and_leave_none_out() {
 /// version and a new line; the old lines stay.
 #[test]
 fn a_group_that_grows_gets_a_new_version() {
-    let stored: [(u8, u8, usize); 11] = [
+    let stored: [(u8, u8, usize); 12] = [
         (1, 1, 5),
         (2, 1, 6),
         (3, 1, 2),
@@ -93,6 +93,7 @@ fn a_group_that_grows_gets_a_new_version() {
         (5, 1, 12),
         (6, 1, 9),
         (7, 1, 4),
+        (8, 1, 2),
         (16, 1, 8),
         (17, 1, 8),
         (18, 1, 8),
@@ -144,6 +145,8 @@ fn wire_numbers_stay() {
     assert_eq!(read(4, 9), 0.9);
     assert_eq!(read(4, 12), 21.0);
     assert_eq!(read(7, 0), 40.0);
+    assert_eq!(read(8, 0), 0.0);
+    assert_eq!(read(8, 1), 24.0);
     assert_eq!(read(16, 0), 1.0);
     assert_eq!(read(18, 0), -1.0);
     assert_eq!(read(19, 3), 1.5);
@@ -163,4 +166,37 @@ fn the_soft_iron_matrix_stays_symmetric() {
 #[test]
 fn numbers_of_groups_are_below_32() {
     assert!(PARAMETERS.iter().all(|group| group.number < 32));
+}
+
+/// Each name stands at the number that the firmware takes for it.
+#[test]
+fn a_choice_has_a_name_for_every_number() {
+    for (_, parameter) in all() {
+        if let ParameterKind::Choice(names) = parameter.kind {
+            assert_eq!(
+                (parameter.min, parameter.max),
+                (0.0, (names.len() - 1) as f32)
+            );
+            let mut config = RobotConfig::default();
+            let between = parameter.write(&mut config, 0.5);
+            assert_eq!(between, Err(Refusal::OutOfRange));
+        }
+    }
+    let [board, mag] = [0, 1].map(|index| find(8, index).unwrap());
+    let (ParameterKind::Choice(boards), ParameterKind::Choice(mags)) = (board.kind, mag.kind)
+    else {
+        panic!("both are choices");
+    };
+    assert_eq!(boards[13], "x-right-z-down");
+    assert_eq!(mags, [boards, &["unset"]].concat());
+    let mut config = RobotConfig::default();
+    assert_eq!(config.mounting.mag, None);
+    for (number, name) in boards.iter().enumerate() {
+        board.write(&mut config, number as f32).unwrap();
+        mag.write(&mut config, number as f32).unwrap();
+        assert_eq!(config.mounting.board.name(), *name);
+        assert_eq!(config.mounting.mag.map(|mag| mag.name()), Some(*name));
+    }
+    mag.write(&mut config, 24.0).unwrap();
+    assert_eq!(config.mounting.mag, None);
 }

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use robot_plant::{
+    mounting::Mounting,
     time::{self, Ps},
     wire::CanFrame,
     world::{CanBusId, JointKind, PlantKind, RadioKind, RemoteInput},
@@ -10,8 +11,9 @@ use robot_plant::{
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::{Action, Deed, FlashSetup, Scenario, ScenarioError};
+use super::{Action, Deed, FlashContents, FlashSetup, Scenario, ScenarioError};
 use crate::machine::flash::FlashTimes;
+use crate::parameter_sectors::{MAX_VALUES, Record, SLOTS};
 use crate::sim::{
     expectation::{Bound, Expectation, NamedFlag, Window},
     faults,
@@ -29,10 +31,11 @@ struct File {
     #[serde(default)]
     joints: Joints,
     imu_temperature_c: Option<f64>,
+    mounting: Option<Spanned<String>>,
+    mag_mounting: Option<Spanned<String>>,
     #[serde(default)]
     seed: u64,
-    #[serde(default)]
-    flash: Flash,
+    flash: Option<Spanned<Flash>>,
     #[serde(default)]
     allow_board_errors: Vec<String>,
     #[serde(default)]
@@ -70,9 +73,28 @@ enum Joints {
 struct Flash {
     /// Relative to the scenario's folder.
     image: Option<PathBuf>,
+    /// Groups of settings that the robot has saved before.
+    #[serde(default)]
+    record: Vec<Stored>,
     #[serde(default)]
     times: Times,
     seed: Option<u64>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Stored {
+    group: u8,
+    #[serde(default = "one")]
+    version: u8,
+    /// Of a joint, the make of its motor.
+    #[serde(default)]
+    variant: u8,
+    values: Vec<f32>,
+}
+
+fn one() -> u8 {
+    1
 }
 
 #[derive(Default, Deserialize)]
@@ -172,6 +194,16 @@ pub(super) fn parse(text: &str, file: &str) -> Result<Scenario, ScenarioError> {
         let what = "`imu_temperature_c` is outside what the BMI088 works at; write -40 to 85";
         return Err(source.wrong(0, what));
     }
+    let flash = match raw.flash {
+        Some(flash) => {
+            let offset = flash.span().start;
+            let read = read_flash(flash.into_inner(), Path::new(file));
+            read.map_err(|what| source.wrong(offset, what))?
+        }
+        None => FlashSetup::default(),
+    };
+    let mounting = read_mounting(raw.mounting, &source)?;
+    let mag_mounting = read_mounting(raw.mag_mounting, &source)?;
     let mut actions = Vec::new();
     for at in &raw.at {
         read_at(at.get_ref(), seconds, &mut actions)
@@ -202,24 +234,65 @@ pub(super) fn parse(text: &str, file: &str) -> Result<Scenario, ScenarioError> {
             Joints::Rs00 => JointKind::Rs00,
         },
         imu_temperature_c: raw.imu_temperature_c,
+        mounting,
+        mag_mounting,
         seed: raw.seed,
-        flash: read_flash(raw.flash, Path::new(file)),
+        flash,
         actions,
         expectations,
         allow_board_errors: raw.allow_board_errors,
     })
 }
 
-fn read_flash(raw: Flash, scenario: &Path) -> FlashSetup {
+fn read_mounting(
+    raw: Option<Spanned<String>>,
+    source: &Source<'_>,
+) -> Result<Mounting, ScenarioError> {
+    let Some(name) = raw else {
+        return Ok(Mounting::default());
+    };
+    let offset = name.span().start;
+    let mounting = name.into_inner().parse::<Mounting>();
+    mounting.map_err(|error| source.wrong(offset, error.to_string()))
+}
+
+fn read_flash(raw: Flash, scenario: &Path) -> Result<FlashSetup, String> {
     let folder = scenario.parent().unwrap_or(Path::new(""));
-    FlashSetup {
-        image: raw.image.map(|image| folder.join(image)),
+    let contents = match (raw.image, raw.record.is_empty()) {
+        (Some(image), true) => FlashContents::Image(folder.join(image)),
+        (None, true) => FlashContents::Erased,
+        (None, false) => FlashContents::Records(read_records(raw.record)?),
+        (Some(_), false) => {
+            return Err("flash has either an `image` or records; leave one of them out".into());
+        }
+    };
+    Ok(FlashSetup {
+        contents,
         times: match raw.times {
             Times::Typical => FlashTimes::Typical,
             Times::Max => FlashTimes::Max,
         },
         seed: raw.seed,
+    })
+}
+
+fn read_records(raw: Vec<Stored>) -> Result<Vec<Record>, String> {
+    let long = raw.iter().find(|stored| stored.values.len() > MAX_VALUES);
+    if let Some(Stored { group, .. }) = long {
+        return Err(format!(
+            "the record of group {group} has more than {MAX_VALUES} values"
+        ));
     }
+    if raw.len() > SLOTS {
+        return Err(format!("a sector holds {SLOTS} records"));
+    }
+    let record = |stored: Stored| Record {
+        group: stored.group,
+        version: stored.version,
+        variant: stored.variant,
+        values: stored.values,
+    };
+    Ok(raw.into_iter().map(record).collect())
 }
 
 fn instant(name: &str, t: f64, seconds: f64) -> Result<Ps, String> {

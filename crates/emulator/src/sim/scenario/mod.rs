@@ -5,13 +5,14 @@ mod file;
 use std::path::{Path, PathBuf};
 
 use robot_plant::{
+    mounting::Mounting,
     time::Ps,
     wire::CanFrame,
     world::{CanBusId, JointKind, PlantKind, RadioKind, RemoteInput},
 };
 
 use super::expectation::Expectation;
-use crate::machine::flash::FlashTimes;
+use crate::{machine::flash::FlashTimes, parameter_sectors::Record};
 
 /// A checked scenario: every time lies inside the run, every fault exists, every expectation has a window and a bound.
 #[derive(Clone, Debug)]
@@ -24,6 +25,9 @@ pub struct Scenario {
     pub joints: JointKind,
     /// Of the IMU's package at power-on; unset, the board has been on before.
     pub imu_temperature_c: Option<f64>,
+    /// Of the board in the robot, and of the magnetometer beside the IMU.
+    pub mounting: Mounting,
+    pub mag_mounting: Mounting,
     pub seed: u64,
     pub flash: FlashSetup,
     /// In order of time; what was written first comes first at equal times.
@@ -34,13 +38,22 @@ pub struct Scenario {
 }
 
 /// The parameter sectors at power-on.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct FlashSetup {
-    /// 48 KiB; unset, the sectors are erased.
-    pub image: Option<PathBuf>,
+    pub contents: FlashContents,
     pub times: FlashTimes,
     /// Of what torn words and sectors look like; unset, the scenario's.
     pub seed: Option<u64>,
+}
+
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum FlashContents {
+    #[default]
+    Erased,
+    /// 48 KiB.
+    Image(PathBuf),
+    /// Saved by an earlier run, and nothing else.
+    Records(Vec<Record>),
 }
 
 #[derive(Clone, Debug, PartialEq)]

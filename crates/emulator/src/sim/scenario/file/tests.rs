@@ -50,7 +50,7 @@ fn the_flash_starts_as_the_scenario_says() {
     let text = format!("{HEAD}[flash]\nimage = \"worn.bin\"\ntimes = \"max\"\nseed = 3\n");
     let read = Scenario::parse(&text, "scenarios/s.toml").unwrap();
     let wanted = FlashSetup {
-        image: Some("scenarios/worn.bin".into()),
+        contents: FlashContents::Image("scenarios/worn.bin".into()),
         times: FlashTimes::Max,
         seed: Some(3),
     };
@@ -58,6 +58,32 @@ fn the_flash_starts_as_the_scenario_says() {
     let plain = Scenario::parse(HEAD, "s.toml").unwrap();
     assert_eq!(plain.flash, FlashSetup::default());
     assert_eq!(plain.flash.times, FlashTimes::Typical);
+}
+
+#[test]
+fn the_robot_may_have_saved_settings_before() {
+    let record = "[[flash.record]]\ngroup = 8\nvalues = [13, 24]\n";
+    let read = Scenario::parse(&format!("{HEAD}{record}"), "s.toml").unwrap();
+    let records = vec![Record::first(8, &[13.0, 24.0])];
+    assert_eq!(read.flash.contents, FlashContents::Records(records));
+    let both = error_of(&format!("[flash]\nimage = \"a.bin\"\n{record}"));
+    assert!(both.contains("either an `image` or records"), "{both}");
+    let many = [0; 29].map(|_| "0").join(", ");
+    let long = error_of(&format!("[[flash.record]]\ngroup = 8\nvalues = [{many}]\n"));
+    assert!(long.contains("group 8 has more than 28 values"), "{long}");
+}
+
+#[test]
+fn the_board_may_sit_otherwise() {
+    let text = format!("{HEAD}mounting = \"x-left-z-up\"\nmag_mounting = \"x-up-z-left\"\n");
+    let read = Scenario::parse(&text, "s.toml").unwrap();
+    assert_eq!(Ok(read.mounting), "x-left-z-up".parse());
+    assert_eq!(Ok(read.mag_mounting), "x-up-z-left".parse());
+    let wrong = error_of("mounting = \"upside-down\"\n");
+    assert!(
+        wrong.starts_with("s.toml:4: `upside-down` is no mounting"),
+        "{wrong}"
+    );
 }
 
 #[test]

@@ -1,0 +1,101 @@
+//! How a sensor was screwed on.
+
+use std::str::FromStr;
+
+/// Where the sensor's x, y and z axes point, as unit vectors in the axes of what carries it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mounting {
+    axes: [[f64; 3]; 3],
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "`{0}` is no mounting; write where the axes x and z point, at right angles, such as `x-forward-z-up` (forward, \
+     backward, left, right, up, down)"
+)]
+pub struct UnknownMounting(String);
+
+impl Default for Mounting {
+    /// x forward, z up.
+    fn default() -> Self {
+        Self {
+            axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        }
+    }
+}
+
+impl FromStr for Mounting {
+    type Err = UnknownMounting;
+
+    fn from_str(text: &str) -> Result<Self, UnknownMounting> {
+        let axes = || {
+            let (x, z) = text.strip_prefix("x-")?.split_once("-z-")?;
+            let (x, z) = (direction(x)?, direction(z)?);
+            let y = cross(z, x);
+            (y != [0.0; 3]).then_some([x, y, z])
+        };
+        let axes = axes().ok_or_else(|| UnknownMounting(text.to_owned()))?;
+        Ok(Self { axes })
+    }
+}
+
+impl Mounting {
+    /// What a vector of the carrier is along the sensor's own axes.
+    pub(crate) fn felt(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+        self.axes
+            .map(|axis| axis[0] * x + axis[1] * y + axis[2] * z)
+    }
+}
+
+fn direction(word: &str) -> Option<[f64; 3]> {
+    Some(match word {
+        "forward" => [1.0, 0.0, 0.0],
+        "backward" => [-1.0, 0.0, 0.0],
+        "left" => [0.0, 1.0, 0.0],
+        "right" => [0.0, -1.0, 0.0],
+        "up" => [0.0, 0.0, 1.0],
+        "down" => [0.0, 0.0, -1.0],
+        _ => return None,
+    })
+}
+
+fn cross([ax, ay, az]: [f64; 3], [bx, by, bz]: [f64; 3]) -> [f64; 3] {
+    [ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn felt(name: &str, carrier: [f64; 3]) -> [f64; 3] {
+        let mounting: Mounting = name.parse().expect("a mounting");
+        // Without the sign of a zero.
+        mounting.felt(carrier).map(|axis| axis + 0.0)
+    }
+
+    #[test]
+    fn a_sensor_feels_along_its_own_axes() {
+        let nose_left_top = [1.0, 2.0, 3.0];
+        assert_eq!(felt("x-forward-z-up", nose_left_top), nose_left_top);
+        assert_eq!(felt("x-forward-z-down", nose_left_top), [1.0, -2.0, -3.0]);
+        assert_eq!(felt("x-left-z-up", nose_left_top), [2.0, -1.0, 3.0]);
+        assert_eq!(felt("x-down-z-forward", nose_left_top), [-3.0, 2.0, 1.0]);
+        assert_eq!(felt("x-up-z-left", nose_left_top), [3.0, 1.0, 2.0]);
+        let default = Mounting::default();
+        assert_eq!("x-forward-z-up".parse(), Ok(default));
+    }
+
+    #[test]
+    fn what_is_no_mounting_is_named() {
+        for name in [
+            "x-forward-z-backward",
+            "x-up-z-up",
+            "z-up",
+            "x-front-z-up",
+            "",
+        ] {
+            let error = name.parse::<Mounting>().expect_err("none");
+            assert!(error.to_string().starts_with(&format!("`{name}` is no")));
+        }
+    }
+}

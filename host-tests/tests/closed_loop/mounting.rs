@@ -1,0 +1,74 @@
+//! The board sits in every way there is, and the magnetometer on it in every way there is.
+
+use robot_app::domain::{MountingConfig, Orientation, RobotConfig};
+use robot_plant::world::{PlantKind, WorldConfig};
+
+use crate::{ENABLE, FORWARD, assert_still, blockers, robot::Robot, sticks};
+
+/// Names as the world understands them.
+fn robot(board: &str, mag: &str, mounting: MountingConfig) -> Robot {
+    let world = WorldConfig {
+        plant: PlantKind::Rolling,
+        mounting: board.parse().expect("a mounting"),
+        mag_mounting: mag.parse().expect("a mounting"),
+        ..WorldConfig::default()
+    };
+    let config = RobotConfig {
+        mounting,
+        ..RobotConfig::default()
+    };
+    Robot::in_world(world, config)
+}
+
+#[test]
+fn a_robot_that_knows_how_its_sensors_sit_drives_as_ever() {
+    for (index, board) in Orientation::ALL.into_iter().enumerate() {
+        let mag = Orientation::ALL[(7 * index + 5) % 24];
+        let name = (board.name(), mag.name());
+        let mounting = MountingConfig {
+            board,
+            mag: Some(mag),
+        };
+        let mut robot = robot(board.name(), mag.name(), mounting);
+        robot.run_until(2.5, assert_still);
+        robot.remote(ENABLE);
+        robot.run_until(2.7, |_| ());
+        assert!(robot.armed(), "{name:?}: {:?}", blockers(&robot));
+        robot.remote(FORWARD);
+        robot.run_until(3.5, |_| ());
+        robot.remote(sticks(0.0, 0.3));
+        robot.run_until(4.2, |_| ());
+        assert!(robot.signal("truth.body.x") > 0.25, "{name:?}");
+        assert!(robot.signal("truth.body.yaw") > 0.4, "{name:?}");
+        robot.fault("tilted", true);
+        robot.run_until(5.0, |robot| {
+            // What the accelerometer's offset (20 mg) and the magnetometer's noise leave.
+            let [total_deg, ..] = robot.attitude_error_deg();
+            assert!(total_deg < 6.0, "{name:?}: {total_deg}°");
+        });
+        let [_, pitch_rad, _] = robot.diagnostics().estimate.rpy_rad;
+        assert!(
+            pitch_rad > 1.0,
+            "{name:?}: nose down is positive, {pitch_rad}"
+        );
+    }
+}
+
+/// The field is not used, however wrong it may be: the gyro carries the heading.
+#[test]
+fn a_magnetometer_that_sits_nobody_knows_how_turns_no_heading() {
+    let mounting = MountingConfig {
+        board: Orientation::XLeftZUp,
+        mag: None,
+    };
+    let mut robot = robot("x-left-z-up", "x-backward-z-down", mounting);
+    robot.run_until(2.5, assert_still);
+    robot.remote(ENABLE);
+    robot.run_until(2.7, |_| ());
+    robot.remote(sticks(0.0, 0.3));
+    robot.run_until(5.0, |robot| {
+        let [total_deg, ..] = robot.attitude_error_deg();
+        assert!(total_deg < 6.0, "{total_deg}°");
+    });
+    assert!(robot.signal("truth.body.yaw") > 1.0);
+}
