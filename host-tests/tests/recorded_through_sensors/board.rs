@@ -3,7 +3,10 @@
 use std::path::Path;
 
 use robot_app::{
-    domain::{ImuState, MagState, MotorFeedback, StateEstimate, WheelOdomConfig},
+    domain::{
+        ImuState, MagState, MotorFeedback, MountingConfig, Orientation, StateEstimate,
+        WheelOdomConfig,
+    },
     estimation::InsEstimator,
 };
 use robot_plant::{
@@ -80,7 +83,12 @@ struct Board {
 
 impl Board {
     fn bring_up(world: &mut World, phase: Ps, wheels: Wheels) -> Self {
-        let sensors = Sensors::new();
+        let mut sensors = Sensors::new();
+        // The recorder's axes are the robot's.
+        sensors.set_mounting(&MountingConfig {
+            board: Orientation::XForwardZUp,
+            mag: Some(Orientation::XForwardZUp),
+        });
         let up = sensors.bring_up(world, 0).next_multiple_of(MAG_PERIOD);
         Self {
             sensors,
