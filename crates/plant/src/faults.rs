@@ -64,6 +64,7 @@ faults! {
     Motor5Hot "motor-5-hot" "right rear joint has a winding at 120 °C, and says so",
     Motor5WrongId "motor-5-wrong-id" "right rear joint restarts with identifiers 8 too high: hears no command",
     Motor5Tripped "motor-5-fault" "right rear joint finds a fault in its driver and goes limp (DM4310: over-current) until it is cleared after the end",
+    JointWritesSlow "joint-writes-slow" "DM4310 joints are deaf and mute for 150 ms after a register write, as one was measured through a USB adapter",
     RogueNodeCan1 "rogue-node-can1" "a node on CAN1 sends id 0x000 whenever the bus is free",
     RogueNodeCan2 "rogue-node-can2" "a node on CAN2 sends id 0x000 whenever the bus is free",
     BatteryLow "battery-low" "battery at 20.5 V instead of 24 V",

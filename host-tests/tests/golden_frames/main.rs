@@ -67,12 +67,25 @@ fn dbus_outside_its_ranges_is_refused() {
     let mut far_stick = DBUS_CENTRED;
     far_stick[0] = 0xFF;
     far_stick[1] = 0x07;
-    let mut far_wheel = DBUS_CENTRED;
-    far_wheel[17] = 0x40;
     let mut third_button = DBUS_CENTRED;
     third_button[12] = 2;
-    for frame in [no_switch, far_stick, far_wheel, third_button] {
+    for frame in [no_switch, far_stick, third_button] {
         assert_eq!(DbusFrame::parse(&frame), None);
+    }
+}
+
+/// A transmitter without a wheel leaves zeros or its own bits in bytes 16 and 17.
+#[test]
+fn no_value_of_the_dbus_wheel_spoils_a_frame() {
+    let centred = DbusFrame::parse(&DBUS_CENTRED).unwrap();
+    for sent in 0..=u16::MAX {
+        let mut bytes = DBUS_CENTRED;
+        bytes[16..].copy_from_slice(&sent.to_le_bytes());
+        let expected = DbusFrame {
+            wheel: sent % 2_048,
+            ..centred
+        };
+        assert_eq!(DbusFrame::parse(&bytes), Some(expected), "{sent:#06x}");
     }
 }
 

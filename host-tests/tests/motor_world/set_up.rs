@@ -9,8 +9,10 @@ const BOTH: [JointKind; 2] = [JointKind::Dm4310, JointKind::Rs00];
 
 #[test]
 fn motors_are_verified_before_they_count_as_ready() {
-    for kind in BOTH {
+    let [dm4310, rs00] = BOTH;
+    for (kind, slow) in [(dm4310, false), (dm4310, true), (rs00, false)] {
         let mut robot = Robot::new(kind);
+        robot.fault("joint-writes-slow", slow);
         let mut seen = Vec::new();
         robot.run_watching(1.0, |robot| {
             let state = robot.joint(0).state;

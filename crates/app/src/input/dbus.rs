@@ -1,7 +1,7 @@
 //! DJI DBUS (DT7/DR16): 18 bytes at 100 kbaud 8E1 every 14 ms, no header and no checksum (hardware.md section 6.2).
 //!
-//! A frame is exactly 18 bytes after silence, with every field inside its range; anything else up to the next silence
-//! is dropped.
+//! A frame is exactly 18 bytes after silence, with sticks, switches and mouse buttons inside their range; anything else
+//! up to the next silence is dropped.
 
 use super::channels;
 
@@ -13,6 +13,8 @@ const GAP_US: u64 = 2_000;
 const CENTRE: u16 = 1024;
 /// DJI rejects anything further from the centre (the sticks end at ±660).
 const MAX_OFFSET: u16 = 700;
+/// The bits above are not the wheel's.
+const WHEEL_BITS: u16 = 0x7FF;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -40,7 +42,7 @@ pub struct DbusFrame {
     pub sticks: [u16; 4],
     pub right_switch: DbusSwitch,
     pub left_switch: DbusSwitch,
-    /// 364 / 1024 / 1684.
+    /// 364 / 1024 / 1684 from a transmitter with a thumb wheel. Others send anything: it proves nothing about a frame.
     pub wheel: u16,
 }
 
@@ -71,16 +73,15 @@ impl DbusFrame {
         for (index, stick) in (0u8..).zip(sticks.iter_mut()) {
             *stick = channels::channel(packed, index);
         }
-        let wheel = u16::from_le_bytes([*wheel_low, *wheel_high]);
         let in_range = |value: &u16| value.abs_diff(CENTRE) <= MAX_OFFSET;
-        if !sticks.iter().all(in_range) || !in_range(&wheel) {
+        if !sticks.iter().all(in_range) {
             return None;
         }
         Some(Self {
             sticks,
             right_switch: DbusSwitch::parse(switches >> 4)?,
             left_switch: DbusSwitch::parse(switches >> 6)?,
-            wheel,
+            wheel: u16::from_le_bytes([*wheel_low, *wheel_high]) & WHEEL_BITS,
         })
     }
 }

@@ -121,6 +121,20 @@ pub struct JointSlot {
 /// };
 /// const LAYOUT: MotorLayout = MotorLayout::new(*ROBOT_LAYOUT.wheels(), JOINTS);
 /// ```
+///
+/// Nor may a frame that is not for a DM4310 have that motor's number in the low byte of its identifier: the motor
+/// compares no more of it. Here joint 2 would answer each report of joint 1:
+///
+/// ```compile_fail,E0080
+/// # use robot_app::motor::{dm4310::Dm4310, layout::*};
+/// const JOINTS: [JointSlot; 4] = {
+///     let mut joints = *ROBOT_LAYOUT.joints();
+///     let JointMotor::Dm4310(motor) = joints[0].motor else { panic!() };
+///     joints[0].motor = JointMotor::Dm4310(Dm4310::new(1, 0x302, *motor.ranges()).unwrap());
+///     joints
+/// };
+/// const LAYOUT: MotorLayout = MotorLayout::new(*ROBOT_LAYOUT.wheels(), JOINTS);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct MotorLayout {
     wheels: WheelGroup,
@@ -131,7 +145,7 @@ impl MotorLayout {
     /// For constants: what is wrong with the table is a compile error there.
     ///
     /// # Panics
-    /// If a bus is overloaded or two motors use the same identifier.
+    /// If a bus is overloaded, two motors use the same identifier, or a DM4310 would hear what is not for it.
     pub const fn new(wheels: WheelGroup, joints: [JointSlot; 4]) -> Self {
         checks::no_identifier_clashes(&wheels, &joints);
         checks::load_fits_bus(&wheels, &joints);

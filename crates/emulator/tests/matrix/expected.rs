@@ -374,6 +374,8 @@ fn joints() -> Vec<Row> {
         ));
         rows.push(joints(fault, 10.0, flags(&["joint-fault"], &[]), After::WheelsOnly).latched());
     }
+    // An armed robot writes no register.
+    rows.push(harmless("joint-writes-slow", Flags::default()));
     rows
 }
 

@@ -47,6 +47,8 @@ pub(crate) struct DriveFaults {
     pub wrong_id: bool,
     /// The driver finds a fault and lets go.
     pub tripped: bool,
+    /// A register write takes as long as storing does (DM4310).
+    pub slow_writes: bool,
 }
 
 /// What became of a frame at a motor.

@@ -4,7 +4,7 @@ use super::{FaultInfo, RemoteInput, World, WorldError};
 use crate::{
     attitude::{self, Quaternion},
     bmi088::ImuFaults,
-    faults::{self, Fault, MOTORS},
+    faults::{self, Fault, MOTORS, MotorFaults},
     ist8310::MagFaults,
     joints::DriveFaults,
     m3508::EscFaults,
@@ -31,8 +31,12 @@ impl World {
             | Fault::I2cHeld => self.set_sensor_faults(),
             _ => {}
         }
-        if let Some(motor) = MOTORS.iter().position(|faults| faults.includes(fault)) {
-            self.set_motor_faults(motor);
+        let concerned =
+            |faults: &MotorFaults| faults.includes(fault) || fault == Fault::JointWritesSlow;
+        for motor in 0..MOTORS.len() {
+            if concerned(&MOTORS[motor]) {
+                self.set_motor_faults(motor);
+            }
         }
         Ok(())
     }
@@ -78,6 +82,7 @@ impl World {
                     hot,
                     wrong_id,
                     tripped: faults.fault.is_some_and(has),
+                    slow_writes: self.faults.has(Fault::JointWritesSlow),
                 };
                 self.joints[joint].set_faults(drive_faults, self.now);
                 self.tell_joint(joint, self.now);

@@ -28,6 +28,8 @@ const TUNING_IDS: [u16; 3] = [0x7A0, 0x7A1, 0x7A2];
 const FIRST_DJI_ID: u16 = m3508::COMMAND_ID.raw() - 1;
 const LAST_DJI_ID: u16 = m3508::COMMAND_ID.raw() + 8;
 
+const LOW_BYTE: u16 = 0xFF;
+
 type Joints = [JointSlot; 4];
 
 const fn same(one: BusId, other: BusId) -> bool {
@@ -106,6 +108,47 @@ pub const fn no_identifier_clashes(wheels: &WheelGroup, joints: &Joints) {
         }
         one += 1;
     }
+    let mut joint = 0;
+    while joint < joints.len() {
+        if let JointMotor::Dm4310(_) = joints[joint].motor {
+            assert_low_byte_is_its_own(wheels, joints, joint);
+        }
+        joint += 1;
+    }
+}
+
+/// A DM4310 compares only the low byte of an identifier with its own number: it answers whatever it matches, and obeys
+/// that if it looks like a service frame (umeow0716/damiao_firmware, `can_protocol.c`). Register frames name the motor
+/// in their data.
+const fn assert_low_byte_is_its_own(wheels: &WheelGroup, joints: &Joints, joint: usize) {
+    let number = joints[joint].motor.identifiers()[0].raw() & LOW_BYTE;
+    let mut index = 0;
+    while index < TUNING_IDS.len() {
+        assert_spares(number, TUNING_IDS[index]);
+        index += 1;
+    }
+    let mut id = FIRST_DJI_ID;
+    while same(wheels.bus, joints[joint].bus) && id <= LAST_DJI_ID {
+        assert_spares(number, id);
+        id += 1;
+    }
+    let mut other = 0;
+    while other < joints.len() {
+        let ids = joints[other].motor.identifiers();
+        let mut index = 0;
+        while other != joint && same(joints[other].bus, joints[joint].bus) && index < ids.len() {
+            assert_spares(number, ids[index].raw());
+            index += 1;
+        }
+        other += 1;
+    }
+}
+
+const fn assert_spares(number: u16, foreign_id: u16) {
+    assert!(
+        foreign_id & LOW_BYTE != number,
+        "a frame that is not for a DM4310 has its number in the low byte of the identifier"
+    );
 }
 
 const fn assert_reserved_ids_are_free(wheels: &WheelGroup, joint: &JointSlot) {

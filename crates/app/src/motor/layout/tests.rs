@@ -83,6 +83,22 @@ fn a_reply_on_the_tuning_channel() {
     joints(|joints| joints[0].motor = dm4310(1, 0x7A0));
 }
 
+/// MST_ID 0x302: joint 2 would answer each report of joint 1.
+#[test]
+#[should_panic(expected = "has its number in the low byte of the identifier")]
+fn a_reply_with_another_dm4310s_number_in_its_low_byte() {
+    joints(|joints| joints[0].motor = dm4310(1, 0x302));
+}
+
+/// An RS00 compares the whole identifier of what is no command of its own.
+#[test]
+fn a_reply_with_an_rs00s_number_in_its_low_byte() {
+    joints(|joints| {
+        joints[0].motor = dm4310(1, 0x302);
+        joints[1].motor = rs00(2, 0xF2);
+    });
+}
+
 #[test]
 #[should_panic(expected = "both wheels have the same number")]
 fn two_wheels_with_one_number() {

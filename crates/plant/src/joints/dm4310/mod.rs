@@ -39,8 +39,8 @@ enum Trip {
     CommunicationLost = 0xD,
 }
 
-/// A trip stays until it is cleared with FB. That FB clears every one is an assumption: of 0xD it is only known that
-/// enabling and command frames do not.
+/// A trip stays until it is cleared with FB, 0xD too (umeow0716/damiao_firmware, `app_commands.c`; nobody has tried it on
+/// a motor). Enabling and command frames do not clear it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
     Disabled,
@@ -69,7 +69,7 @@ pub(crate) struct Dm4310 {
     zero_rad: f64,
     faults: DriveFaults,
     heard_at: Ps,
-    /// Deaf and mute while it works on a register.
+    /// Deaf and mute while it stores its registers.
     deaf_until: Ps,
     replies: ReplyBox,
     stop_frames: u64,

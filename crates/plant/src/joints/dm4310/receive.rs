@@ -13,9 +13,14 @@ const READ: u8 = 0x33;
 const WRITE: u8 = 0x55;
 const STORE: u8 = 0xAA;
 const REFRESH: u8 = 0xCC;
-/// A register write takes the motor this long (measured through a USB adapter; the time on CAN is unknown).
-const WRITE_TIME: Ps = 150 * MS;
+/// The motor is deaf and mute for so long while it stores its registers. Measured through a USB adapter, and there of a
+/// write; that a write alone is answered at once is how the reconstruction and python-damiao-driver have it.
+const STORE_TIME: Ps = 150 * MS;
 
+/// Of an identifier only this is compared with ESC_ID; the bits above tell the mode (umeow0716/damiao_firmware,
+/// `can_protocol.c`, a reconstruction of the maker's program).
+const ADDRESS: u32 = 0xFF;
+const MIT: u32 = 0x000;
 const POSITION_SPEED: u32 = 0x100;
 const SPEED: u32 = 0x200;
 
@@ -32,35 +37,24 @@ impl Dm4310 {
         if frame.id == REGISTERS {
             return self.register_request(frame, shaft, now);
         }
-        if let Some(tail) = self.service(frame) {
-            self.heard_at = now;
-            self.serve(tail, shaft);
-        } else if let Some(target) = self.target_of(frame) {
-            self.heard_at = now;
-            if self.enabled() {
-                self.target = target;
-            }
-        } else {
+        if frame.id & ADDRESS != self.esc_id() {
             return Heard::Nothing;
+        }
+        self.heard_at = now;
+        if let Some(tail) = service(frame) {
+            self.serve(tail, shaft);
+        } else if let Some(target) = self.target_of(frame)
+            && self.enabled()
+        {
+            self.target = target;
         }
         self.reply(shaft, now);
         Heard::Frame
     }
 
-    /// Service frames are taken under ESC_ID and under the identifier of the present mode: which one the other modes
-    /// need is not known.
-    fn service(&self, frame: &CanFrame) -> Option<u8> {
-        let addressed = frame.id == self.esc_id() || frame.id == self.esc_id() + self.mode_offset();
-        let tail = frame.data[7];
-        let is_service = frame.dlc == 8
-            && frame.data[..7] == [0xFF; 7]
-            && matches!(tail, ENABLE | DISABLE | SET_ZERO | CLEAR);
-        (addressed && is_service).then_some(tail)
-    }
-
     fn mode_offset(&self) -> u32 {
         match self.registers.control_mode {
-            ControlMode::Mit => 0,
+            ControlMode::Mit => MIT,
             ControlMode::PositionSpeed => POSITION_SPEED,
             ControlMode::Speed => SPEED,
         }
@@ -82,9 +76,9 @@ impl Dm4310 {
         }
     }
 
-    /// A command of the present mode; one of another mode is for nobody.
+    /// A command of the present mode; one of another mode changes nothing, but is answered.
     fn target_of(&self, frame: &CanFrame) -> Option<Target> {
-        if frame.id != self.esc_id() + self.mode_offset() {
+        if frame.id & !ADDRESS != self.mode_offset() {
             return None;
         }
         let [a, b, c, d, rest @ ..] = frame.data;
@@ -117,14 +111,16 @@ impl Dm4310 {
             (READ, _) => self.answer(frame, now),
             (WRITE, 8) => {
                 let done = self.registers.write(register, value);
-                self.deaf_until = now + WRITE_TIME;
-                done.and_then(|()| self.answer(frame, now + WRITE_TIME))
+                if self.faults.slow_writes {
+                    self.deaf_until = now + STORE_TIME;
+                }
+                done.and_then(|()| self.answer(frame, now.max(self.deaf_until)))
             }
             (STORE, _) => {
                 self.stored = self.registers;
-                self.deaf_until = now + WRITE_TIME;
+                self.deaf_until = now + STORE_TIME;
                 self.replies
-                    .other(self.mst_id(), frame.data, now + WRITE_TIME);
+                    .other(self.mst_id(), frame.data, self.deaf_until);
                 Ok(())
             }
             (REFRESH, _) => {
@@ -168,4 +164,13 @@ impl Dm4310 {
         self.replies
             .feedback(id, data, fed_back, self.faults.frozen, now);
     }
+}
+
+/// The last byte of a service frame, which counts under any identifier that reaches the motor.
+fn service(frame: &CanFrame) -> Option<u8> {
+    let [pattern @ .., tail] = frame.data;
+    let is_service = frame.dlc == 8
+        && pattern == [0xFF; 7]
+        && matches!(tail, ENABLE | DISABLE | SET_ZERO | CLEAR);
+    is_service.then_some(tail)
 }

@@ -99,8 +99,21 @@ fn it_replies_once_and_150_us_after_the_frame() {
     bench.now += 150 * US;
     assert!(bench.reply().is_some());
     assert!(bench.reply().is_none());
-    for foreign in [2, 0x101, 0x201, 0x200, 0x301] {
+    for foreign in [0, 2, 0x102, 0x200, 0x211, 0x7A0] {
         assert_eq!(bench.send(foreign, DISABLE), Heard::Nothing);
+    }
+}
+
+/// Only the low byte of an identifier names the motor: a frame meant for somebody else is answered, and a service frame
+/// obeyed.
+#[test]
+fn every_identifier_with_its_low_byte_reaches_it() {
+    let mut bench = bench();
+    for id in [0x101, 0x201, 0x301, 0x501, 0x701] {
+        assert_eq!(bench.ask(id, ENABLE).expect("a reply")[0], 0x11, "{id:#x}");
+        assert_eq!(bench.ask(id, ONE).expect("a reply")[0], 0x11, "{id:#x}");
+        assert_eq!(bench.motor.asked_nm(bench.shaft), 0.0, "{id:#x}");
+        assert_eq!(bench.ask(id, DISABLE).expect("a reply")[0], 0x01, "{id:#x}");
     }
 }
 
@@ -120,7 +133,7 @@ fn torque_ends_at_the_peak_and_the_no_load_speed() {
 }
 
 #[test]
-fn parameters_are_read_and_a_write_takes_150_ms_of_silence() {
+fn parameters_are_read_and_written_at_once_and_storing_takes_150_ms_of_silence() {
     let mut bench = bench();
     let read = |register| [0x01, 0x00, 0x33, register, 0, 0, 0, 0];
     // 12.5, 30 and 10 as IEEE 754.
@@ -139,13 +152,15 @@ fn parameters_are_read_and_a_write_takes_150_ms_of_silence() {
     }
     // 2000 · 50 µs = 100 ms.
     let write = [0x01, 0x00, 0x55, 9, 0xD0, 0x07, 0, 0];
-    assert_eq!(bench.ask(0x7FF, write), None);
+    assert_eq!(bench.ask(0x7FF, write), Some(write));
+    let store = [0x01, 0x00, 0xAA, 1, 0, 0, 0, 0];
+    assert_eq!(bench.ask(0x7FF, store), None);
     assert_eq!(bench.ask(1, DISABLE), None);
     bench.wait(147);
     assert_eq!(bench.ask(1, DISABLE), None);
     bench.wait(1);
-    let reply = bench.reply().expect("the write is done");
-    assert_eq!(reply.data, write);
+    let reply = bench.reply().expect("it is stored");
+    assert_eq!(reply.data, store);
     let back = bench.ask(0x7FF, read(9)).expect("a reply");
     assert_eq!(back[4..], [0xD0, 0x07, 0, 0]);
     // Another motor's register, and one this model lacks.
@@ -157,6 +172,22 @@ fn parameters_are_read_and_a_write_takes_150_ms_of_silence() {
         bench.send(0x7FF, read(0x40)),
         Heard::NotModelled(_)
     ));
+}
+
+#[test]
+fn a_motor_that_is_slow_to_write_is_deaf_for_150_ms() {
+    let mut bench = bench();
+    let slow = DriveFaults {
+        slow_writes: true,
+        ..DriveFaults::default()
+    };
+    bench.motor.set_faults(slow, bench.now);
+    let write = [0x01, 0x00, 0x55, 9, 0xD0, 0x07, 0, 0];
+    assert_eq!(bench.ask(0x7FF, write), None);
+    bench.wait(147);
+    assert_eq!(bench.ask(1, DISABLE), None);
+    bench.wait(2);
+    assert_eq!(bench.reply().expect("it is written").data, write);
 }
 
 #[test]
@@ -176,13 +207,11 @@ fn only_what_was_stored_survives_a_power_cycle() {
         assert_eq!(bench.send(1, ENABLE), Heard::Nothing);
         bench.motor.set_faults(DriveFaults::default(), bench.now);
     };
-    bench.send(0x7FF, [1, 0, 0x55, 9, 40, 0, 0, 0]);
-    bench.wait(151);
+    bench.ask(0x7FF, [1, 0, 0x55, 9, 40, 0, 0, 0]);
     assert_eq!(timeout(&mut bench), 40);
     power_cycle(&mut bench);
     assert_eq!(timeout(&mut bench), 0);
-    bench.send(0x7FF, [1, 0, 0x55, 9, 40, 0, 0, 0]);
-    bench.wait(151);
+    bench.ask(0x7FF, [1, 0, 0x55, 9, 40, 0, 0, 0]);
     bench.send(0x7FF, [1, 0, 0xAA, 1, 0, 0, 0, 0]);
     bench.wait(151);
     power_cycle(&mut bench);
@@ -195,14 +224,12 @@ fn silence_trips_it_after_its_timeout_and_any_frame_counts() {
     bench.ask(1, ENABLE);
     bench.wait(2_000);
     assert!(bench.motor.enabled(), "as shipped it waits for ever");
-    bench.send(0x7FF, [1, 0, 0x55, 9, 0xD0, 0x07, 0, 0]);
-    // The write itself is a frame; the motor is deaf for 150 ms, longer than its timeout.
-    bench.wait(99);
+    // The write itself is a frame.
+    bench.ask(0x7FF, [1, 0, 0x55, 9, 0xD0, 0x07, 0, 0]);
+    bench.wait(98);
     assert!(bench.motor.enabled());
     bench.wait(2);
     assert!(!bench.motor.enabled());
-    bench.wait(50);
-    bench.reply();
     assert_eq!(bench.ask(1, ENABLE).expect("a reply")[0], 0xD1);
     assert_eq!(bench.ask(1, ONE).expect("a reply")[0], 0xD1);
     assert_eq!(bench.ask(1, DISABLE).expect("a reply")[0], 0xD1);
@@ -242,20 +269,18 @@ fn only_frames_of_the_present_mode_count() {
         [a, b, c, d, e, f, g, h]
     };
     // CTRL_MODE 2, position and speed.
-    bench.send(0x7FF, [1, 0, 0x55, 10, 2, 0, 0, 0]);
-    bench.wait(151);
-    bench.reply();
+    bench.ask(0x7FF, [1, 0, 0x55, 10, 2, 0, 0, 0]);
     assert_eq!(bench.ask(1, ENABLE).expect("a reply")[0], 0x11);
-    assert_eq!(bench.ask(1, ONE), None);
-    assert_eq!(bench.ask(0x201, towards(1.0, 0.0)), None);
+    for (id, foreign) in [(1, ONE), (0x201, towards(1.0, 0.0))] {
+        assert_eq!(bench.ask(id, foreign).expect("a reply")[0], 0x11);
+        assert_eq!(bench.motor.asked_nm(bench.shaft), 0.0);
+    }
     assert!(bench.ask(0x101, towards(-0.5, 2.0)).is_some());
     bench.wait(2);
     assert!(bench.motor.actuator().torque_nm() < -1.0);
     // Speed mode.
     bench.ask(1, DISABLE);
-    bench.send(0x7FF, [1, 0, 0x55, 10, 3, 0, 0, 0]);
-    bench.wait(151);
-    bench.reply();
+    bench.ask(0x7FF, [1, 0, 0x55, 10, 3, 0, 0, 0]);
     bench.ask(1, ENABLE);
     assert!(bench.ask(0x201, towards(3.0, 0.0)).is_some());
     bench.wait(2);
