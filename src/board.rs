@@ -158,7 +158,12 @@ impl Board {
                 blue: Output::new(p.PH10, Level::Low, Speed::Low),
             },
             buzzer: start_buzzer(p.TIM4, p.PD14),
-            battery: Battery::new(p.ADC3, p.PF10.degrade_adc()),
+            battery: Battery::new(
+                (p.ADC3, pac::ADC3),
+                p.PF10.degrade_adc(),
+                (p.ADC1, pac::ADC1),
+                reference_calibration(),
+            ),
             iwdg: p.IWDG,
             flash: p.FLASH,
         }
@@ -253,6 +258,14 @@ fn watch_supply() {
         w.set_pls(7);
         w.set_pvde(true);
     });
+}
+
+/// VREFIN_CAL: the internal reference in counts, measured by the maker at 3.3 V and 30 °C.
+fn reference_calibration() -> u16 {
+    const VREFIN_CAL: *const u16 = 0x1FFF_7A2A as *const u16;
+    // SAFETY: a half-word of the chip's own read-only memory (STM32F405/407 datasheet, internal reference voltage
+    // calibration values), aligned and always there.
+    unsafe { VREFIN_CAL.read_volatile() }
 }
 
 /// 1 kHz, which the copper cannot follow.

@@ -6,7 +6,7 @@
 //! | [`Exchange::mag`] | mag task | control | 50 Hz |
 //! | [`Exchange::remote`] | sbus task | logic, control | each radio frame, 70 to 143 Hz |
 //! | [`Exchange::logic_bus`] | logic task | control | 100 Hz |
-//! | [`Exchange::battery_v`] | status task | control | 4 Hz |
+//! | [`Exchange::battery_v`] | status task | control | 100 Hz |
 //! | [`Exchange::config`] | control task | imu, mag, logic, params | when tuning changed it |
 //! | [`Exchange::params`] | params task | control | when it changes |
 //! | [`Exchange::flash_grant`] | control task | params | when it changes |

@@ -1,4 +1,5 @@
-//! LED, buzzer, battery voltage and the log. Checks for changes of state at 100 Hz, sums up at 4 Hz.
+//! LED, buzzer, battery voltage and the log. Measures the battery at 200 Hz, checks for changes of state at 100 Hz, sums
+//! up at 4 Hz.
 
 use embassy_time::{Duration, Instant};
 use robot_app::diagnostics::DiagnosticsSnapshot;
@@ -18,9 +19,11 @@ mod bring_up_log;
 mod change_log;
 mod summary;
 
-const PERIOD: Duration = Duration::from_hz(100);
+const PERIOD: Duration = Duration::from_hz(200);
+/// Periods between two looks at the diagnostics, 10 ms.
+const CHANGES_DIVIDER: u32 = 2;
 /// Periods between two summaries, 0.25 s.
-const SUMMARY_DIVIDER: u32 = 25;
+const SUMMARY_DIVIDER: u32 = 50;
 
 #[embassy_executor::task]
 pub async fn run(
@@ -38,15 +41,19 @@ pub async fn run(
     loop {
         ticker.next().await;
         Watched::Status.check_in();
+        battery.sample();
+        round = round.wrapping_add(1);
+        if !round.is_multiple_of(CHANGES_DIVIDER) {
+            continue;
+        }
+        battery_v.publish(&battery.volts());
         let diagnostics = exchange.diagnostics.latest();
         let signal = player.step(indication(&diagnostics), Instant::now().as_micros());
         led.show(signal.led);
         buzzer.sound(signal.buzzer);
         changes.report(&diagnostics);
         bring_up.report_changes(&diagnostics);
-        round = round.wrapping_add(1);
         if round.is_multiple_of(SUMMARY_DIVIDER) {
-            battery_v.publish(&battery.read_v());
             summary::log(&diagnostics);
             bring_up.report_joints(&diagnostics);
         }

@@ -69,6 +69,8 @@ faults! {
     RogueNodeCan2 "rogue-node-can2" "a node on CAN2 sends id 0x000 whenever the bus is free",
     BatteryLow "battery-low" "battery at 20.5 V instead of 24 V",
     BatteryEmpty "battery-empty" "battery at 18.5 V instead of 24 V",
+    VddaHigh "vdda-high" "the board's 3.3 V supply, to which the converters compare, is at 3.4 V",
+    VddaLow "vdda-low" "the board's 3.3 V supply, to which the converters compare, is at 3.2 V",
     Tilted "tilted" "body falls forward to 80°, and is put upright at the end (not while a recording plays)",
     FloorSlippery "floor-slippery" "floor like wet ice: the wheels spin when they push, and slide when they brake (plant rolling)",
 }

@@ -1,6 +1,7 @@
 //! Sensor registers → calibrated samples; how to bring the sensors up, as data that a driver walks.
 
 mod accel_delay;
+mod battery;
 pub mod bmi088;
 mod calibration;
 mod heater;
@@ -9,5 +10,6 @@ pub mod ist8310;
 mod mag_pipeline;
 mod plausibility;
 
+pub use battery::BatteryMonitor;
 pub use imu_pipeline::{ImuPipeline, ImuSampleError};
 pub use mag_pipeline::{MagPipeline, MagSampleError};

@@ -2,7 +2,7 @@
 
 use unicorn_engine::{Prot, Unicorn, uc_error};
 
-use crate::soc::guest_memory::GuestMemory;
+use crate::soc::{adc::vrefint_counts, guest_memory::GuestMemory};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Region {
@@ -61,6 +61,8 @@ pub const HANG: Region = Region {
 };
 const UNIQUE_ID: u32 = 0x1FFF_7A10;
 const FLASH_SIZE_KIB: u32 = 0x1FFF_7A22;
+/// VREFINT as the maker measured it at 3.3 V and 30 °C, in counts (DS8626 table 76).
+const VREFIN_CAL: u32 = 0x1FFF_7A2A;
 
 /// Maps the memories and fills them as they are at power-on: flash and OTP erased, RAM full of noise. Sectors 1–3 are
 /// left out.
@@ -90,7 +92,8 @@ pub fn map<D>(engine: &mut Unicorn<'_, D>) -> Result<(), uc_error> {
     }
     engine.mem_write(HANG.base.into(), &endless_loop())?;
     engine.mem_write(UNIQUE_ID.into(), b"EMULATEDBRD1")?;
-    engine.mem_write(FLASH_SIZE_KIB.into(), &1024_u16.to_le_bytes())
+    engine.mem_write(FLASH_SIZE_KIB.into(), &1024_u16.to_le_bytes())?;
+    engine.mem_write(VREFIN_CAL.into(), &vrefint_counts(3.3).to_le_bytes())
 }
 
 /// What lies below and above `hole`.

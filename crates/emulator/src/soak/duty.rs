@@ -28,7 +28,7 @@ pub fn of(fault: &str) -> Vec<Duty> {
         "sbus-failsafe" => return all(20),
         "imu-gone" => return all(35),
         "imu-frozen" | "imu-extreme" => return all(100),
-        "battery-empty" => return all(1_300),
+        "battery-empty" => return all(1_100),
         "tilted" => return all(600),
         // The drives' own time limit.
         "can2-broken" | "can2-empty" | "rogue-node-can2" => return vec![duty(Group::Joints, 105)],

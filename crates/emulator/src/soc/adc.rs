@@ -1,195 +1,110 @@
-//! ADC3 with the registers common to the three converters (RM0090 chapter 13): single conversions of the battery.
+//! ADC1 and ADC3 with the registers common to the three converters (RM0090 chapter 13): single conversions of the
+//! battery and of the internal reference voltage.
+
+mod converter;
 
 use robot_plant::time::{Ps, US};
 
-use crate::{
-    soc::{
-        access::Access,
-        clocks::cycles_to_ps,
-        dma_request::DmaRequest,
-        peripheral::{Ctx, Peripheral, Unmodelled},
-        scheduler::Target,
-    },
-    wiring::{self, Signal},
+use crate::soc::{
+    access::Access,
+    dma_request::DmaRequest,
+    peripheral::{Ctx, Peripheral, Unmodelled},
 };
+use converter::Converter;
 
 const IRQ: u8 = 18;
-/// PF10 on the C board.
-const BATTERY_CHANNEL: u32 = 8;
-/// VREF+ is tied to the 3.3 V supply.
-const REFERENCE_V: f64 = 3.3;
-/// tSTAB after ADON (DS8626 table 67).
-const STABLE_AFTER: Ps = 3 * US;
 const MAX_ADC_HZ: u32 = 36_000_000;
+/// This chip's. The datasheet allows 1.18 to 1.24 V.
+const VREFINT_V: f64 = 1.217;
+/// The reference after TSVREFE (DS8626, embedded reference voltage).
+const VREFINT_START: Ps = 10 * US;
 
-mod sr {
-    pub const EOC: u32 = 1 << 1;
-    pub const STRT: u32 = 1 << 4;
-    pub const OVR: u32 = 1 << 5;
-    pub const ALL: u32 = 0x3F;
+/// What a 12-bit converter makes of the reference where the supply is `vdda_v`.
+pub fn vrefint_counts(vdda_v: f64) -> u16 {
+    (VREFINT_V / vdda_v * 4095.0).round() as u16
 }
 
-mod cr1 {
-    pub const EOCIE: u32 = 1 << 5;
-    pub const OVRIE: u32 = 1 << 26;
-    /// SCAN changes nothing in a sequence of one.
-    pub const SCAN: u32 = 1 << 8;
-    pub const RES: u32 = 3 << 24;
+mod ccr {
+    pub const ADCPRE: u32 = 3 << 16;
+    pub const TSVREFE: u32 = 1 << 23;
 }
 
-mod cr2 {
-    pub const ADON: u32 = 1;
-    pub const DMA: u32 = 1 << 8;
-    pub const DDS: u32 = 1 << 9;
-    pub const EOCS: u32 = 1 << 10;
-    pub const ALIGN: u32 = 1 << 11;
-    pub const SWSTART: u32 = 1 << 30;
-    pub const MODELLED: u32 = ADON | DMA | DDS | EOCS | ALIGN | SWSTART;
-}
-
-/// ADC3 at 0x200 and the common registers at 0x300 of the ADC block.
+/// What the converters share.
 #[derive(Debug, Default)]
-pub struct Adc {
-    sr: u32,
-    cr1: u32,
-    cr2: u32,
-    smpr1: u32,
-    smpr2: u32,
-    sqr: [u32; 3],
-    dr: u32,
+struct Common {
     ccr: u32,
-    stable_at: Ps,
-    ends_at: Option<Ps>,
+    reference_on_at: Ps,
 }
 
-impl Adc {
-    pub fn new() -> Self {
-        Self::default()
-    }
-
+impl Common {
     fn clock_hz(&self, ctx: &Ctx<'_>) -> u32 {
         ctx.clocks.pclk2_hz / (2 * ((self.ccr >> 16 & 3) + 1))
     }
 
-    fn channel(&self) -> u32 {
-        self.sqr[2] & 0x1F
-    }
-
-    /// 12, 10, 8 or 6.
-    fn resolution_bits(&self) -> u32 {
-        12 - 2 * (self.cr1 >> 24 & 3)
-    }
-
-    fn sample_cycles(&self) -> u64 {
-        const CYCLES: [u64; 8] = [3, 15, 28, 56, 84, 112, 144, 480];
-        let channel = self.channel();
-        let field = if channel < 10 {
-            self.smpr2 >> (3 * channel)
-        } else {
-            self.smpr1 >> (3 * (channel - 10))
-        };
-        CYCLES[(field & 7) as usize]
-    }
-
-    fn start(&mut self, ctx: &mut Ctx<'_>) -> Result<(), Unmodelled> {
-        if self.cr2 & cr2::ADON == 0 {
-            ctx.errors
-                .report(ctx.now, "ADC3: SWSTART while ADON is 0: no conversion");
-            return Ok(());
+    /// False where no converter can see the reference; files a board error then.
+    fn reference_is_on(&self, ctx: &mut Ctx<'_>) -> bool {
+        if self.ccr & ccr::TSVREFE == 0 {
+            ctx.errors.report(
+                ctx.now,
+                "ADC: VREFINT converted while TSVREFE is 0: it is not connected",
+            );
+            return false;
         }
-        if self.sqr[0] >> 20 & 0xF != 0 {
-            return Err(unmodelled("SQR1", "a sequence of more than one conversion"));
-        }
-        if self.channel() != BATTERY_CHANNEL {
-            return Err(unmodelled("SQR3", &format!("input IN{}", self.channel())));
-        }
-        if ctx.now < self.stable_at {
+        if ctx.now < self.reference_on_at {
             ctx.errors.suspect(
                 ctx.now,
-                "ADC3: started less than 3 us after ADON: the result is not settled",
+                "ADC: VREFINT converted less than 10 us after TSVREFE: it is not settled",
             );
         }
-        let clock_hz = self.clock_hz(ctx);
-        if clock_hz > MAX_ADC_HZ {
-            ctx.errors.suspect(
-                ctx.now,
-                format!("ADC3: clocked at {clock_hz} Hz, the limit is {MAX_ADC_HZ} Hz"),
-            );
+        true
+    }
+
+    fn write(&mut self, value: u32, ctx: &Ctx<'_>) -> Result<(), Unmodelled> {
+        if value & !(ccr::ADCPRE | ccr::TSVREFE) != 0 {
+            return Err(unmodelled("ADC.CCR", &format!("write of {value:#010x}")));
         }
-        let cycles = self.sample_cycles() + u64::from(self.resolution_bits());
-        let at = ctx.now + cycles_to_ps(cycles, clock_hz);
-        self.sr |= sr::STRT;
-        self.ends_at = Some(at);
-        ctx.scheduler.at(at, Target::Adc3, 0);
+        if value & !self.ccr & ccr::TSVREFE != 0 {
+            self.reference_on_at = ctx.now + VREFINT_START;
+        }
+        self.ccr = value;
         Ok(())
     }
+}
 
-    fn convert(&self, ctx: &mut Ctx<'_>) -> u32 {
-        let bits = self.resolution_bits();
-        let volts = if wiring::check(Signal::Adc3In8, ctx) {
-            ctx.world.battery_adc_volts()
-        } else {
-            0.0
-        };
-        let top = f64::from((1u32 << bits) - 1);
-        let code = (volts / REFERENCE_V * f64::from(1u32 << bits))
-            .floor()
-            .clamp(0.0, top) as u32;
-        match (self.cr2 & cr2::ALIGN != 0, bits) {
-            (false, _) => code,
-            // 6-bit results are left-aligned within a byte (RM0090 13.4).
-            (true, 6) => code << 2,
-            (true, _) => code << (16 - bits),
-        }
-    }
+/// The ADC block: ADC1 at 0, ADC3 at 0x200, the common registers at 0x300.
+#[derive(Debug)]
+pub struct Adc {
+    adc1: Converter,
+    adc3: Converter,
+    common: Common,
+}
 
-    fn write_cr2(&mut self, value: u32, ctx: &mut Ctx<'_>) -> Result<(), Unmodelled> {
-        if value & !cr2::MODELLED != 0 {
-            return Err(unmodelled("CR2", &format!("write of {value:#010x}")));
-        }
-        let was_on = self.cr2 & cr2::ADON != 0;
-        self.cr2 = value & !cr2::SWSTART;
-        match (was_on, value & cr2::ADON != 0) {
-            (false, true) => self.stable_at = ctx.now + STABLE_AFTER,
-            (_, false) => self.ends_at = None,
-            _ => {}
-        }
-        if value & cr2::SWSTART != 0 {
-            self.start(ctx)
-        } else {
-            Ok(())
+impl Adc {
+    pub fn new() -> Self {
+        Self {
+            adc1: Converter::new(0),
+            adc3: Converter::new(2),
+            common: Common::default(),
         }
     }
 
     fn update_lines(&self, ctx: &mut Ctx<'_>) {
-        let irq = self.cr1 & cr1::EOCIE != 0 && self.sr & sr::EOC != 0
-            || self.cr1 & cr1::OVRIE != 0 && self.sr & sr::OVR != 0;
-        ctx.irq.set(IRQ, irq);
-        ctx.dma.set(
-            DmaRequest::Adc3,
-            self.cr2 & cr2::DMA != 0 && self.sr & sr::EOC != 0,
-        );
+        let interrupt = self.adc1.wants_interrupt() || self.adc3.wants_interrupt();
+        ctx.irq.set(IRQ, interrupt);
+        ctx.dma.set(DmaRequest::Adc3, self.adc3.wants_dma());
     }
 }
 
 impl Peripheral for Adc {
     fn read(&mut self, offset: u32, size: u8, ctx: &mut Ctx<'_>) -> Result<u32, Unmodelled> {
-        let access = Access::new(offset, size);
+        let (access, own) = (Access::new(offset, size), Access::new(offset & 0xFF, size));
         let value = match access.register {
-            0x200 => self.sr,
-            0x204 => self.cr1,
-            0x208 => self.cr2,
-            0x20C => self.smpr1,
-            0x210 => self.smpr2,
-            0x22C..=0x234 => self.sqr[((access.register - 0x22C) / 4) as usize],
-            0x24C => {
-                self.sr &= !sr::EOC;
-                self.dr
-            }
+            0x000..0x100 => self.adc1.read(own)?,
+            0x200..0x300 => self.adc3.read(own)?,
             // CSR shows the three status registers side by side.
-            0x300 => (self.sr & sr::ALL) << 16,
-            0x304 => self.ccr,
-            other => return Err(unmodelled(&format!("+{other:#x}"), "read")),
+            0x300 => self.adc1.status() | self.adc3.status() << 16,
+            0x304 => self.common.ccr,
+            other => return Err(unmodelled(&format!("ADC.+{other:#x}"), "read")),
         };
         self.update_lines(ctx);
         Ok(access.read_of(value))
@@ -202,47 +117,28 @@ impl Peripheral for Adc {
         value: u32,
         ctx: &mut Ctx<'_>,
     ) -> Result<(), Unmodelled> {
-        let access = Access::new(offset, size);
-        let over = |old| access.written_over(old, value);
+        let (access, own) = (Access::new(offset, size), Access::new(offset & 0xFF, size));
         match access.register {
-            // Every flag is cleared by writing 0.
-            0x200 => self.sr &= over(u32::MAX),
-            0x204 => {
-                let value = over(self.cr1);
-                if value & !(cr1::EOCIE | cr1::OVRIE | cr1::SCAN | cr1::RES) != 0 {
-                    return Err(unmodelled("CR1", &format!("write of {value:#010x}")));
-                }
-                self.cr1 = value;
+            0x000..0x100 => self.adc1.write(own, value, &self.common, ctx)?,
+            0x200..0x300 => self.adc3.write(own, value, &self.common, ctx)?,
+            0x304 => {
+                let value = access.written_over(self.common.ccr, value);
+                self.common.write(value, ctx)?;
             }
-            0x208 => self.write_cr2(over(self.cr2), ctx)?,
-            0x20C => self.smpr1 = over(self.smpr1),
-            0x210 => self.smpr2 = over(self.smpr2),
-            0x22C..=0x234 => {
-                let sqr = &mut self.sqr[((access.register - 0x22C) / 4) as usize];
-                *sqr = over(*sqr);
-            }
-            0x304 if over(self.ccr) & !(3 << 16) == 0 => self.ccr = over(self.ccr),
             other => {
-                return Err(unmodelled(
-                    &format!("+{other:#x}"),
-                    &format!("write of {value:#010x}"),
-                ));
+                let what = format!("write of {value:#010x}");
+                return Err(unmodelled(&format!("ADC.+{other:#x}"), &what));
             }
         }
         self.update_lines(ctx);
         Ok(())
     }
 
-    fn event(&mut self, _tag: u32, ctx: &mut Ctx<'_>) {
-        if self.ends_at.is_none_or(|at| at > ctx.now) {
-            return;
-        }
-        self.ends_at = None;
-        if self.cr2 & (cr2::DMA | cr2::EOCS) != 0 && self.sr & sr::EOC != 0 {
-            self.sr |= sr::OVR;
+    fn event(&mut self, tag: u32, ctx: &mut Ctx<'_>) {
+        if tag == 0 {
+            self.adc1.event(&self.common, ctx);
         } else {
-            self.dr = self.convert(ctx);
-            self.sr |= sr::EOC;
+            self.adc3.event(&self.common, ctx);
         }
         self.update_lines(ctx);
     }
@@ -255,7 +151,7 @@ impl Peripheral for Adc {
 
 fn unmodelled(register: &str, what: &str) -> Unmodelled {
     Unmodelled {
-        register: format!("ADC.{register}"),
+        register: register.to_owned(),
         what: what.to_owned(),
     }
 }

@@ -227,7 +227,7 @@ impl Soc {
             Target::Spi1 => Block::Spi1,
             Target::I2c3 => Block::I2c3,
             Target::CanBus(_) => Block::Can,
-            Target::Adc3 => Block::Adc,
+            Target::Adc => Block::Adc,
             Target::Iwdg => Block::Iwdg,
             Target::Flash => Block::Flash,
         };

@@ -14,7 +14,8 @@ pub enum Target {
     Spi1,
     I2c3,
     CanBus(u8),
-    Adc3,
+    /// Tag: which converter, from 0.
+    Adc,
     Iwdg,
     Flash,
 }

@@ -382,13 +382,16 @@ fn joints() -> Vec<Row> {
 fn power_and_pose() -> Vec<Row> {
     vec![
         harmless("battery-low", flags(&["battery-low"], &[])).arms_during(Arms::No),
-        // Empty for 1 s, by a reading every 250 ms.
+        // Empty for 1 s, by the median of the last 100 ms.
         global(
             "battery-empty",
-            1_300.0,
+            1_100.0,
             flags(&["battery-low", "battery-empty"], &[]),
         )
         .latched(),
+        // The chip's own reference shows it.
+        harmless("vdda-high", Flags::default()),
+        harmless("vdda-low", Flags::default()),
         // 0.9 rad at 2 rad/s, and 50 ms to be sure.
         global("tilted", 600.0, flags(&["tilt"], &["estimate-invalid"])).latched(),
         harmless("floor-slippery", Flags::default()),

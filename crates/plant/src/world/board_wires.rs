@@ -1,7 +1,7 @@
 //! Every wire of the board but CAN.
 
 use super::{SpiSelect, World};
-use crate::{complaint::Complaint, time::Ps, wire::UartChar};
+use crate::{complaint::Complaint, faults::Fault, time::Ps, wire::UartChar};
 
 /// SPI1: BMI088.
 impl World {
@@ -96,6 +96,17 @@ impl World {
     /// Volts at PF10 (battery behind the 200 k / 22 k divider).
     pub fn battery_adc_volts(&self) -> f64 {
         self.battery.adc_volts()
+    }
+
+    /// Supply and reference of the chip's converters, V: what the board's regulator gives.
+    pub fn vdda_v(&self) -> f64 {
+        if self.faults.has(Fault::VddaHigh) {
+            3.4
+        } else if self.faults.has(Fault::VddaLow) {
+            3.2
+        } else {
+            3.3
+        }
     }
 
     /// PA0, active low: nobody presses it.

@@ -4,7 +4,7 @@ use super::{FaultInfo, RemoteInput, World, WorldError};
 use crate::{
     attitude::{self, Quaternion},
     bmi088::ImuFaults,
-    faults::{self, Fault, MOTORS, MotorFaults},
+    faults::{self, Fault, MOTORS},
     ist8310::MagFaults,
     joints::DriveFaults,
     m3508::EscFaults,
@@ -31,10 +31,8 @@ impl World {
             | Fault::I2cHeld => self.set_sensor_faults(),
             _ => {}
         }
-        let concerned =
-            |faults: &MotorFaults| faults.includes(fault) || fault == Fault::JointWritesSlow;
-        for motor in 0..MOTORS.len() {
-            if concerned(&MOTORS[motor]) {
+        for (motor, faults) in MOTORS.iter().enumerate() {
+            if faults.includes(fault) || fault == Fault::JointWritesSlow {
                 self.set_motor_faults(motor);
             }
         }

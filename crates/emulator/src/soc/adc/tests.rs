@@ -1,8 +1,8 @@
-//! Single conversions of the battery voltage.
+//! Single conversions of the battery voltage and of the internal reference.
 
 use robot_plant::time::US;
 
-use super::Adc;
+use super::{Adc, vrefint_counts};
 use crate::soc::{
     clocks::cycles_to_ps,
     peripheral::Peripheral,
@@ -54,6 +54,58 @@ fn a_conversion_takes_sampling_and_twelve_cycles_and_reads_the_divider() {
         0,
         "reading DR clears EOC"
     );
+}
+
+/// IN17 of ADC1 with 480 cycles, TSVREFE.
+fn reference_ready() -> (Bench, Adc) {
+    let (mut bench, mut adc) = (Bench::new(), Adc::new());
+    bench.write(&mut adc, CCR, 1 << 16 | 1 << 23);
+    bench.write(&mut adc, 0x08, ADON);
+    bench.write(&mut adc, 0x0C, 7 << 21);
+    bench.write(&mut adc, 0x34, 17);
+    bench.now = 20 * US;
+    (bench, adc)
+}
+
+/// DS8626: 1.18 to 1.24 V; 480 and 12 cycles of 21 MHz take 23.4 us.
+#[test]
+fn the_internal_reference_tells_the_supply() {
+    for (fault, supply_v) in [
+        (None, 3.3),
+        (Some("vdda-high"), 3.4),
+        (Some("vdda-low"), 3.2),
+    ] {
+        let (mut bench, mut adc) = reference_ready();
+        if let Some(fault) = fault {
+            bench.world.set_fault(fault, true).expect("listed");
+        }
+        bench.write(&mut adc, 0x08, ADON | SWSTART);
+        bench.run(&mut adc, bench.now + 24 * US);
+        let counts = f64::from(bench.read(&mut adc, 0x4C));
+        let calibration = f64::from(vrefint_counts(3.3));
+        assert!((1.18..1.24).contains(&(calibration / 4095.0 * 3.3)));
+        let seen_v = 3.3 * calibration / counts;
+        assert!((seen_v - supply_v).abs() < 0.005, "{seen_v}");
+        assert!(bench.error_texts().is_empty());
+    }
+}
+
+#[test]
+fn the_internal_reference_wants_its_bit_and_time() {
+    let (mut bench, mut adc) = reference_ready();
+    bench.write(&mut adc, CCR, 1 << 16);
+    bench.write(&mut adc, 0x08, ADON | SWSTART);
+    bench.run(&mut adc, bench.now + 24 * US);
+    assert_eq!(bench.read(&mut adc, 0x4C), 0);
+    bench.write(&mut adc, CCR, 1 << 16 | 1 << 23);
+    bench.write(&mut adc, 0x0C, 1 << 21);
+    bench.write(&mut adc, 0x08, ADON | SWSTART);
+    bench.run(&mut adc, bench.now + 2 * US);
+    assert!(bench.error_texts()[0].contains("TSVREFE is 0"));
+    let texts = bench.suspicion_texts();
+    for part in ["less than 10 us:", "less than 10 us after"] {
+        assert!(texts.iter().any(|text| text.contains(part)), "{texts:?}");
+    }
 }
 
 #[test]

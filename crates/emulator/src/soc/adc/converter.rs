@@ -1,0 +1,272 @@
+//! One converter: single conversions of one input, started by software.
+
+use robot_plant::time::{Ps, US};
+
+use super::{Common, MAX_ADC_HZ, VREFINT_V, unmodelled};
+use crate::{
+    soc::{
+        access::Access,
+        clocks::cycles_to_ps,
+        peripheral::{Ctx, Unmodelled},
+        scheduler::Target,
+    },
+    wiring::{self, Signal},
+};
+
+/// tSTAB after ADON (DS8626, ADC characteristics).
+const STABLE_AFTER: Ps = 3 * US;
+/// Least sampling time of the internal reference (DS8626, embedded reference voltage).
+const VREFINT_SAMPLING: Ps = 10 * US;
+
+mod sr {
+    pub const EOC: u32 = 1 << 1;
+    pub const STRT: u32 = 1 << 4;
+    pub const OVR: u32 = 1 << 5;
+    pub const ALL: u32 = 0x3F;
+}
+
+mod cr1 {
+    pub const EOCIE: u32 = 1 << 5;
+    pub const OVRIE: u32 = 1 << 26;
+    /// SCAN changes nothing in a sequence of one.
+    pub const SCAN: u32 = 1 << 8;
+    pub const RES: u32 = 3 << 24;
+}
+
+mod cr2 {
+    pub const ADON: u32 = 1;
+    pub const DMA: u32 = 1 << 8;
+    pub const DDS: u32 = 1 << 9;
+    pub const EOCS: u32 = 1 << 10;
+    pub const ALIGN: u32 = 1 << 11;
+    pub const SWSTART: u32 = 1 << 30;
+    pub const MODELLED: u32 = ADON | DMA | DDS | EOCS | ALIGN | SWSTART;
+}
+
+/// What a channel leads to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Input {
+    /// ADC3_IN8, PF10 on the C board.
+    Battery,
+    /// ADC1_IN17.
+    Vrefint,
+}
+
+/// Its registers lie at 0x100 times `index`.
+#[derive(Debug, Default)]
+pub struct Converter {
+    index: u32,
+    sr: u32,
+    cr1: u32,
+    cr2: u32,
+    smpr1: u32,
+    smpr2: u32,
+    sqr: [u32; 3],
+    dr: u32,
+    stable_at: Ps,
+    ends_at: Option<Ps>,
+}
+
+impl Converter {
+    pub fn new(index: u32) -> Self {
+        Self {
+            index,
+            ..Self::default()
+        }
+    }
+
+    fn name(&self) -> String {
+        format!("ADC{}", self.index + 1)
+    }
+
+    fn unmodelled(&self, register: &str, what: &str) -> Unmodelled {
+        unmodelled(&format!("{}.{register}", self.name()), what)
+    }
+
+    fn channel(&self) -> u32 {
+        self.sqr[2] & 0x1F
+    }
+
+    fn input(&self) -> Option<Input> {
+        match (self.index, self.channel()) {
+            (2, 8) => Some(Input::Battery),
+            (0, 17) => Some(Input::Vrefint),
+            _ => None,
+        }
+    }
+
+    /// 12, 10, 8 or 6.
+    fn resolution_bits(&self) -> u32 {
+        12 - 2 * (self.cr1 >> 24 & 3)
+    }
+
+    fn sample_cycles(&self) -> u64 {
+        const CYCLES: [u64; 8] = [3, 15, 28, 56, 84, 112, 144, 480];
+        let channel = self.channel();
+        let field = if channel < 10 {
+            self.smpr2 >> (3 * channel)
+        } else {
+            self.smpr1 >> (3 * (channel - 10))
+        };
+        CYCLES[(field & 7) as usize]
+    }
+
+    fn start(&mut self, common: &Common, ctx: &mut Ctx<'_>) -> Result<(), Unmodelled> {
+        let name = self.name();
+        if self.cr2 & cr2::ADON == 0 {
+            let what = format!("{name}: SWSTART while ADON is 0: no conversion");
+            ctx.errors.report(ctx.now, what);
+            return Ok(());
+        }
+        if self.sqr[0] >> 20 & 0xF != 0 {
+            return Err(self.unmodelled("SQR1", "a sequence of more than one conversion"));
+        }
+        let Some(input) = self.input() else {
+            return Err(self.unmodelled("SQR3", &format!("input IN{}", self.channel())));
+        };
+        if ctx.now < self.stable_at {
+            let what =
+                format!("{name}: started less than 3 us after ADON: the result is not settled");
+            ctx.errors.suspect(ctx.now, what);
+        }
+        let clock_hz = common.clock_hz(ctx);
+        if clock_hz > MAX_ADC_HZ {
+            let what = format!("{name}: clocked at {clock_hz} Hz, the limit is {MAX_ADC_HZ} Hz");
+            ctx.errors.suspect(ctx.now, what);
+        }
+        let sampling = cycles_to_ps(self.sample_cycles(), clock_hz);
+        if input == Input::Vrefint && sampling < VREFINT_SAMPLING {
+            let what =
+                format!("{name}: VREFINT is sampled for less than 10 us: the result is too low");
+            ctx.errors.suspect(ctx.now, what);
+        }
+        let at = ctx.now + sampling + cycles_to_ps(self.resolution_bits().into(), clock_hz);
+        self.sr |= sr::STRT;
+        self.ends_at = Some(at);
+        ctx.scheduler.at(at, Target::Adc, self.index);
+        Ok(())
+    }
+
+    fn convert(&self, common: &Common, ctx: &mut Ctx<'_>) -> u32 {
+        let bits = self.resolution_bits();
+        let volts = match self.input() {
+            Some(Input::Battery) if wiring::check(Signal::Adc3In8, ctx) => {
+                ctx.world.battery_adc_volts()
+            }
+            Some(Input::Vrefint) if common.reference_is_on(ctx) => VREFINT_V,
+            _ => 0.0,
+        };
+        let top = f64::from((1u32 << bits) - 1);
+        let code = (volts / ctx.world.vdda_v() * f64::from(1u32 << bits))
+            .floor()
+            .clamp(0.0, top) as u32;
+        match (self.cr2 & cr2::ALIGN != 0, bits) {
+            (false, _) => code,
+            // 6-bit results are left-aligned within a byte (RM0090 13.4).
+            (true, 6) => code << 2,
+            (true, _) => code << (16 - bits),
+        }
+    }
+
+    fn write_cr2(
+        &mut self,
+        value: u32,
+        common: &Common,
+        ctx: &mut Ctx<'_>,
+    ) -> Result<(), Unmodelled> {
+        let dma = value & cr2::DMA != 0 && self.index != 2;
+        if value & !cr2::MODELLED != 0 || dma {
+            return Err(self.unmodelled("CR2", &format!("write of {value:#010x}")));
+        }
+        let was_on = self.cr2 & cr2::ADON != 0;
+        self.cr2 = value & !cr2::SWSTART;
+        match (was_on, value & cr2::ADON != 0) {
+            (false, true) => self.stable_at = ctx.now + STABLE_AFTER,
+            (_, false) => self.ends_at = None,
+            _ => {}
+        }
+        if value & cr2::SWSTART != 0 {
+            self.start(common, ctx)
+        } else {
+            Ok(())
+        }
+    }
+
+    pub fn wants_interrupt(&self) -> bool {
+        self.cr1 & cr1::EOCIE != 0 && self.sr & sr::EOC != 0
+            || self.cr1 & cr1::OVRIE != 0 && self.sr & sr::OVR != 0
+    }
+
+    pub fn wants_dma(&self) -> bool {
+        self.cr2 & cr2::DMA != 0 && self.sr & sr::EOC != 0
+    }
+
+    /// As CSR shows it.
+    pub fn status(&self) -> u32 {
+        self.sr & sr::ALL
+    }
+
+    /// `access` counts from the converter's own registers.
+    pub fn read(&mut self, access: Access) -> Result<u32, Unmodelled> {
+        Ok(match access.register {
+            0x00 => self.sr,
+            0x04 => self.cr1,
+            0x08 => self.cr2,
+            0x0C => self.smpr1,
+            0x10 => self.smpr2,
+            0x2C..=0x34 => self.sqr[((access.register - 0x2C) / 4) as usize],
+            0x4C => {
+                self.sr &= !sr::EOC;
+                self.dr
+            }
+            other => return Err(self.unmodelled(&format!("+{other:#x}"), "read")),
+        })
+    }
+
+    pub fn write(
+        &mut self,
+        access: Access,
+        value: u32,
+        common: &Common,
+        ctx: &mut Ctx<'_>,
+    ) -> Result<(), Unmodelled> {
+        let over = |old| access.written_over(old, value);
+        match access.register {
+            // Every flag is cleared by writing 0.
+            0x00 => self.sr &= over(u32::MAX),
+            0x04 => {
+                let value = over(self.cr1);
+                if value & !(cr1::EOCIE | cr1::OVRIE | cr1::SCAN | cr1::RES) != 0 {
+                    return Err(self.unmodelled("CR1", &format!("write of {value:#010x}")));
+                }
+                self.cr1 = value;
+            }
+            0x08 => self.write_cr2(over(self.cr2), common, ctx)?,
+            0x0C => self.smpr1 = over(self.smpr1),
+            0x10 => self.smpr2 = over(self.smpr2),
+            0x2C..=0x34 => {
+                let sqr = &mut self.sqr[((access.register - 0x2C) / 4) as usize];
+                *sqr = over(*sqr);
+            }
+            other => {
+                let what = format!("write of {value:#010x}");
+                return Err(self.unmodelled(&format!("+{other:#x}"), &what));
+            }
+        }
+        Ok(())
+    }
+
+    /// The conversion may be over.
+    pub fn event(&mut self, common: &Common, ctx: &mut Ctx<'_>) {
+        if self.ends_at.is_none_or(|at| at > ctx.now) {
+            return;
+        }
+        self.ends_at = None;
+        if self.cr2 & (cr2::DMA | cr2::EOCS) != 0 && self.sr & sr::EOC != 0 {
+            self.sr |= sr::OVR;
+        } else {
+            self.dr = self.convert(common, ctx);
+            self.sr |= sr::EOC;
+        }
+    }
+}
