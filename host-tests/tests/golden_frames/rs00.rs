@@ -134,7 +134,7 @@ fn the_fault_word_has_the_documented_bits() {
         let [a, b, c, d] = (1_u32 << bit).to_le_bytes();
         let faults = word(a, b, c, d).unwrap();
         assert_eq!(faults.bits(), 1 << bit);
-        assert!(faults.contains(fault));
+        assert_eq!(faults, fault);
     }
     assert_eq!(word(0, 0, 0, 0), Some(Faults::default()));
 }

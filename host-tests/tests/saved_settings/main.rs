@@ -5,3 +5,4 @@ mod boot;
 mod dump;
 mod robot;
 mod saving;
+mod tuned;

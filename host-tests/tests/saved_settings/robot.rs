@@ -12,7 +12,7 @@ use robot_app::{
     domain::RobotConfig,
     motor::layout::{MotorLayout, ROBOT_LAYOUT},
     params::{FlashRequest, ParamService, ParamState, ParamStatus},
-    tuning::PARAMETERS,
+    tuning::{PARAMETERS, TuningStatus},
 };
 use robot_plant::flash_chip::{FlashChip, PARAMETER_SECTORS};
 
@@ -153,13 +153,22 @@ impl Robot {
         self.revision = self.revision.wrapping_add(1);
     }
 
-    /// One millisecond. Programs a slot or erases a sector, not more.
+    /// As the control tick publishes its settings.
+    pub fn take(&mut self, config: &RobotConfig, tuning: &TuningStatus) {
+        self.config = *config;
+        (self.revision, self.restored) = (tuning.revision, tuning.restored);
+    }
+
     pub fn step(&mut self) {
-        let granted = if self.rests {
+        self.step_with(if self.rests {
             self.asked
         } else {
             FlashRequest::None
-        };
+        });
+    }
+
+    /// One millisecond. Programs a slot or erases a sector, not more.
+    pub fn step_with(&mut self, granted: FlashRequest) {
         let before = (self.chip.cells.borrow().programs(), self.chip.erases());
         self.now_us += 1_000;
         self.asked = self.service.step(
@@ -197,12 +206,21 @@ impl Robot {
         panic!("not saved: {:?}", self.service.status());
     }
 
+    /// The chip stood still in the last step.
+    pub fn note_stall_ms(&mut self, stall_ms: u32) {
+        self.service.note_stall(stall_ms * 1_000);
+    }
+
     pub fn status(&self) -> ParamStatus {
         *self.service.status()
     }
 
     pub fn asked(&self) -> FlashRequest {
         self.asked
+    }
+
+    pub fn now_us(&self) -> u64 {
+        self.now_us
     }
 
     pub fn seconds(&self) -> f64 {

@@ -141,9 +141,8 @@ fn a_worn_out_sector_costs_a_minute_not_hours() {
     assert_eq!(Robot::boot(&chip).config.heater.kp, 3.0);
 }
 
-/// The spare sector cannot be had, but there is room in the active one.
-#[test]
-fn sectors_that_cannot_be_erased_do_not_delay_a_save() {
+/// Its spare sectors cannot be had, but there is room in the active one.
+fn chip_that_cannot_be_erased() -> Chip {
     let chip = dump::chip(1, &[]);
     for sector in [2, 3] {
         let mut cells = chip.cells.borrow_mut();
@@ -153,6 +152,33 @@ fn sectors_that_cannot_be_erased_do_not_delay_a_save() {
             .unwrap();
         cells.set_erase_fault(sector, Some(EraseFault::DoesNothing));
     }
+    chip
+}
+
+/// The clock does not run while the chip stands still; the pause of a second begins when it goes on.
+#[test]
+fn an_erase_that_failed_is_repeated_a_pause_after_its_stall() {
+    for stall_ms in [0, 400] {
+        let mut robot = Robot::boot(&chip_that_cannot_be_erased());
+        while robot.status().erases == 0 {
+            robot.step();
+        }
+        let told = robot.status();
+        robot.note_stall_ms(stall_ms);
+        assert_eq!(robot.status().longest_stall_us, stall_ms * 1_000);
+        assert_ne!(robot.status().revision, told.revision);
+        robot.run_ms(999 + stall_ms);
+        assert_eq!(robot.status().erases, 1, "after a stall of {stall_ms} ms");
+        robot.run_ms(3);
+        assert_eq!(robot.status().erases, 2, "after a stall of {stall_ms} ms");
+        robot.note_stall_ms(1);
+        assert_eq!(robot.status().longest_stall_us, stall_ms.max(1) * 1_000);
+    }
+}
+
+#[test]
+fn sectors_that_cannot_be_erased_do_not_delay_a_save() {
+    let chip = chip_that_cannot_be_erased();
     let mut robot = Robot::boot(&chip);
     robot.run_ms(5);
     assert_eq!(robot.status().last_error, ParamError::NotErased);

@@ -68,10 +68,6 @@ impl Faults {
     pub const fn bits(self) -> u32 {
         self.0
     }
-
-    pub const fn contains(self, other: Self) -> bool {
-        self.0 & other.0 == other.0
-    }
 }
 
 /// The reply to a command, motor coordinates.

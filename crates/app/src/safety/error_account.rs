@@ -34,24 +34,33 @@ impl ErrorAccount {
 mod tests {
     use super::*;
 
+    /// Ten a second are forgiven.
     #[test]
-    fn rare_errors_are_forgiven_and_a_storm_is_not() {
+    fn errors_count_by_their_rate_in_ticks_of_a_millisecond() {
         let config = SafetyConfig::default();
-        let mut account = ErrorAccount::default();
-        for second in 0..600u32 {
-            assert!(!account.exceeded(second, &config, u64::from(second) * 1_000_000));
+        for (errors_per_s, trips) in [(5, false), (9, false), (11, true), (15, true)] {
+            let mut account = ErrorAccount::default();
+            let mut ticks = 1..60_000_u32;
+            let tripped = ticks.any(|ms| {
+                account.exceeded(ms * errors_per_s / 1_000, &config, u64::from(ms) * 1_000)
+            });
+            assert_eq!(tripped, trips, "{errors_per_s} a second");
         }
-        let storm_us = 600_000_000;
-        assert!(account.exceeded(599 + 30, &config, storm_us));
-        let mut cleared_us = 0;
-        for step in 0..100 {
-            let now_us = storm_us + step * 100_000;
-            if !account.exceeded(599 + 30, &config, now_us) {
-                cleared_us = now_us;
-                break;
-            }
+    }
+
+    /// The limit is 20; one more is open for a tenth of a second, and however many more there are, for two.
+    #[test]
+    fn a_storm_counts_until_it_is_forgiven() {
+        let config = SafetyConfig::default();
+        for (errors, open_ms) in [(20, 0), (21, 100), (30, 1_000), (40, 2_000), (9_000, 2_000)] {
+            let mut account = ErrorAccount::default();
+            let storm_us = 600_000_000;
+            assert!(!account.exceeded(0, &config, storm_us - 1));
+            let mut times_ms = 0..10_000_u64;
+            let closed_ms = times_ms
+                .find(|ms| !account.exceeded(errors, &config, storm_us + ms * 1_000))
+                .unwrap();
+            assert!(closed_ms.abs_diff(open_ms) <= 1, "{errors}: {closed_ms} ms");
         }
-        // 30 errors, limit 20: at least nine rounds of forgiving.
-        assert!((900_000..2_000_000).contains(&(cleared_us - storm_us)));
     }
 }

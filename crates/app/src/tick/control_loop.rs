@@ -447,3 +447,6 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
         diagnostics.params = *inputs.params;
     }
 }
+
+#[cfg(test)]
+mod tests;

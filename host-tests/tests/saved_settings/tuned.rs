@@ -1,0 +1,58 @@
+//! From a frame on CAN through the control tick into flash.
+
+use robot_app::{
+    control::UserController,
+    domain::{
+        BusId, CanFrame, ImuState, MagState, RemoteUpdate, RobotConfig, StandardId, SystemHealth,
+    },
+    logic::LogicBus,
+    safety::WatchdogPeriod,
+    tick::{ControlInputs, ControlLoop},
+};
+
+use crate::robot::{Chip, Robot};
+
+/// One millisecond of both tasks: what the one publishes is what the other gets.
+fn step(robot: &mut Robot, control: &mut ControlLoop) {
+    let outputs = control.tick(
+        &ControlInputs {
+            remote: &RemoteUpdate::default(),
+            imu: &ImuState::default(),
+            mag: &MagState::default(),
+            logic: &LogicBus::default(),
+            health: &SystemHealth::default(),
+            params: &robot.status(),
+            flash_request: robot.asked(),
+            watchdog: WatchdogPeriod::Short,
+        },
+        robot.now_us(),
+    );
+    let granted = outputs.flash.granted;
+    robot.take(outputs.config, &outputs.diagnostics.tuning);
+    robot.step_with(granted);
+}
+
+/// The heater's target, group 7 index 0, to 30 °C = 0x41F00000; then all groups back to their defaults.
+#[test]
+fn what_is_set_over_can_is_saved_and_there_after_a_reboot() {
+    let chip = Chip::blank();
+    let mut robot = Robot::ready(&chip);
+    let mut control = ControlLoop::new(robot.config, UserController::default());
+    for (payload, target_c) in [
+        ([0x20, 7, 0, 0, 0, 0, 0xF0, 0x41], 30.0),
+        (
+            [0x30, 0, 0, 0, 0, 0, 0, 0],
+            RobotConfig::default().heater.target_c,
+        ),
+    ] {
+        let frame = CanFrame::new(StandardId::new(0x7A0).unwrap(), payload);
+        control.on_can_frame(BusId::Can1, &frame, robot.now_us());
+        let saved = robot.status().save_ok;
+        for _ in 0..600 {
+            step(&mut robot, &mut control);
+        }
+        assert_eq!(robot.status().save_ok, saved + 1);
+        assert_eq!(robot.status().unsaved, 0);
+        assert_eq!(Robot::boot(&chip).config.heater.target_c, target_c);
+    }
+}
