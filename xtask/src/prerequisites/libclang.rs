@@ -9,8 +9,14 @@ const HEADER: &str = "#include <stddef.h>\n#include <stdint.h>\n";
 ///
 /// LLVM brings files of similar names without it, and distributions pack its own headers apart from it.
 pub fn is_usable() -> bool {
-    // After a failure `Clang::new` gives nothing for ever, even once libclang has been installed: clang-sys looks first.
-    clang_sys::load().is_ok() && Clang::new().is_ok_and(|clang| reads(&clang, HEADER))
+    loads() && Clang::new().is_ok_and(|clang| reads(&clang, HEADER))
+}
+
+/// Without this look first, `Clang::new` fails for ever once it has failed, though libclang is installed meanwhile, and
+/// panics where the search finds a library that only bears a similar name (`libclang-cpp14.so`): that has no version.
+fn loads() -> bool {
+    clang_sys::load().is_ok()
+        && clang_sys::get_library().is_some_and(|library| library.version().is_some())
 }
 
 fn reads(clang: &Clang, text: &str) -> bool {
