@@ -4,7 +4,6 @@ use embassy_stm32::Peri;
 use embassy_stm32::pac;
 use embassy_stm32::pac::iwdg::vals::{Key, Pr};
 use embassy_stm32::peripherals::IWDG;
-use embassy_time::{Duration, Instant};
 use robot_app::safety::WatchdogPeriod;
 
 /// Prescaler and reload value of a period. Its clock, the LSI, runs at 17 to 47 kHz (STM32F407 datasheet table 35;
@@ -25,8 +24,6 @@ const LONG: Period = Period {
     prescaler: Pr::DIVIDE_BY32,
     reload: 998,
 };
-/// Five cycles of the slowest LSI take 0.3 ms.
-const ARRIVAL_TIMEOUT: Duration = Duration::from_millis(1);
 
 pub struct Watchdog {
     _token: Peri<'static, IWDG>,
@@ -36,20 +33,16 @@ pub struct Watchdog {
 }
 
 impl Watchdog {
-    /// Starts the watchdog with its long period, for what is slow at boot; nothing but a reset can stop it.
+    /// Starts the watchdog with its long period, for what is slow at boot; nothing but a reset can stop it. It counts
+    /// down from its largest value, 0.35 to 0.96 s, until a feed finds the long period in force.
     pub fn start_long(token: Peri<'static, IWDG>) -> Self {
-        let mut watchdog = Self {
+        set(&LONG);
+        pac::IWDG.kr().write(|w| w.set_key(Key::START));
+        Self {
             _token: token,
             period: WatchdogPeriod::Changing,
             becomes: WatchdogPeriod::Long,
-        };
-        set(&LONG);
-        pac::IWDG.kr().write(|w| w.set_key(Key::START));
-        let start = Instant::now();
-        while is_updating() && start.elapsed() < ARRIVAL_TIMEOUT {}
-        // Until then it counts down from its largest value.
-        watchdog.feed();
-        watchdog
+        }
     }
 
     /// What is in force.
@@ -73,7 +66,8 @@ impl Watchdog {
     }
 
     pub fn feed(&mut self) {
-        // The registers arrive in the watchdog's clock domain within five of its cycles, and count from the next feed.
+        // The registers arrive in the watchdog's clock domain within six cycles of the slower of both divided clocks
+        // (ST's stm32f4xx_hal_iwdg.c): 4 to 12 ms. They count from the next feed on.
         let arrived = self.period == WatchdogPeriod::Changing && !is_updating();
         pac::IWDG.kr().write(|w| w.set_key(Key::RESET));
         if arrived {

@@ -7,6 +7,15 @@ use robot_plant::time::SECOND;
 
 const QUIET: &str = "name = \"strictness\"\nseconds = 1.5\nplant = \"stand\"\n";
 
+const BEEPING: &str = "
+name = \"strictness\"
+seconds = 1.0
+plant = \"stand\"
+[[at]]
+t = 0.4
+remote = { e_stop = true }
+";
+
 /// What a run complains of.
 #[derive(Debug, Default, PartialEq)]
 struct Complaints {
@@ -64,6 +73,21 @@ fn must_doubt(patch: RegisterPatch, parts: &[&str]) {
     let all = complaints(&[patch]);
     assert_eq!(all.failing, Vec::<String>::new());
     must_name(&all.suspicious, parts);
+}
+
+/// The same for several at once: each has its bits set to the value, and is named by all of its parts.
+fn must_complain_of_all(wrong: &[(u32, u32, u32, &[&str])]) {
+    let patches: Vec<_> = wrong.iter().map(|w| patch(w.0, w.1, w.2)).collect();
+    let failing = complaints(&patches).failing;
+    wrong.iter().for_each(|w| must_name(&failing, w.3));
+}
+
+fn patch(address: u32, mask: u32, value: u32) -> RegisterPatch {
+    RegisterPatch {
+        address,
+        mask,
+        value,
+    }
 }
 
 #[test]
@@ -234,4 +258,133 @@ fn a_magnetometer_that_never_gets_ready_fails_the_default_drive() {
         value: 0,
     };
     must_name(&drive_fails(patch), &["diag.mag_health.ready"]);
+}
+
+/// GPIOx_OTYPER, a bit a pin; 1 is open-drain.
+const OTYPER: [(char, u32); 6] = [
+    ('A', 0x4002_0004),
+    ('B', 0x4002_0404),
+    ('D', 0x4002_0C04),
+    ('F', 0x4002_1404),
+    ('G', 0x4002_1804),
+    ('H', 0x4002_1C04),
+];
+
+fn open_drain(port: char, pin: u32) -> (u32, u32, u32) {
+    let (_, address) = OTYPER.into_iter().find(|o| o.0 == port).expect("a port");
+    (address, 1 << pin, 1 << pin)
+}
+
+fn must_complain_of_open_drains(pins: &[(char, u32, &[&str])]) {
+    let wrong: Vec<_> = pins
+        .iter()
+        .map(|&(port, pin, parts)| {
+            let (address, mask, value) = open_drain(port, pin);
+            (address, mask, value, parts)
+        })
+        .collect();
+    must_complain_of_all(&wrong);
+}
+
+/// The clock idles high in mode 3, for which the HAL switches its pull-up on.
+#[test]
+fn open_drain_outputs_without_a_pull_up_never_rise() {
+    let never = "open-drain without a pull-up and never rises";
+    must_complain_of_open_drains(&[
+        ('B', 3, &["SPI1_SCK: PB3", "rises too slowly by a resistor"]),
+        ('D', 1, &["CAN1_TX: PD1", never]),
+        ('B', 6, &["CAN2_TX: PB6", never]),
+    ]);
+    must_complain_of_open_drains(&[
+        ('A', 7, &["SPI1_MOSI: PA7", never]),
+        (
+            'A',
+            4,
+            &[
+                "PA4 is open-drain",
+                "accelerometer's chip select never rises",
+            ],
+        ),
+        (
+            'B',
+            0,
+            &["PB0 is open-drain", "gyro's chip select never rises"],
+        ),
+    ]);
+}
+
+#[test]
+fn open_drain_outputs_open_no_mosfet() {
+    must_complain_of_open_drains(&[
+        ('F', 6, &["PF6 is open-drain", "heater stays off"]),
+        ('H', 11, &["PH11 is open-drain", "green LED stays off"]),
+        ('H', 12, &["PH12 is open-drain", "red LED stays off"]),
+    ]);
+}
+
+/// PD14, which beeps when the e-stop is thrown.
+#[test]
+fn an_open_drain_buzzer_is_mute() {
+    let (address, mask, value) = open_drain('D', 14);
+    let mut job = support::job(Scenario::parse(BEEPING, "strictness").expect("it parses"));
+    job.patches = vec![patch(address, mask, value)];
+    let summary = job.run(&mut []).expect("the machine starts").summary;
+    let errors: Vec<_> = summary
+        .board_errors
+        .into_iter()
+        .map(|e| e.message)
+        .collect();
+    must_name(&errors, &["PD14 is open-drain", "buzzer stays off"]);
+}
+
+/// The reset of the magnetometer, PG6: nobody says whether it has a pull-up of its own.
+#[test]
+fn an_open_drain_reset_of_the_magnetometer_is_suspicious() {
+    let (address, mask, value) = open_drain('G', 6);
+    must_doubt(patch(address, mask, value), &["PG6 is open-drain"]);
+}
+
+/// GPIOF_AFRL bits 27:24: TIM10 is AF3 on PF6.
+#[test]
+fn wrong_alternate_function_of_the_heater() {
+    let patch = patch(0x4002_1420, 0xF << 24, 2 << 24);
+    must_complain(patch, &["TIM10_CH1: PF6 is AF2, needs AF3: the heater"]);
+}
+
+/// GPIOC_MODER bits 23:22: PC11 drives against the radio's inverter.
+#[test]
+fn an_output_where_the_radio_comes_in() {
+    let patch = patch(0x4002_0800, 3 << 22, 1 << 22);
+    must_complain(patch, &["PC11 is an output, and so is"]);
+}
+
+/// GPIOB_OSPEEDR bits 7:6: the slowest stage is made for 4 MHz, the clock has 5.25 MHz.
+#[test]
+fn a_slow_output_stage_on_the_imu_clock() {
+    must_doubt(
+        patch(0x4002_0408, 3 << 6, 0),
+        &["SPI1_SCK: PB3 switches 5250000 Hz"],
+    );
+}
+
+/// CANx_BTR, TS2 in bits 22:20, TS1 in 19:16, SJW in 25:24; 14 quanta a bit.
+#[test]
+fn can_bits_sampled_where_no_other_device_does() {
+    let early = 5 << 20 | 6 << 16;
+    let late = 11 << 16;
+    must_complain_of_all(&[
+        (0x4000_641C, 0x7F << 16, early, &["CAN1: samples at 57.1 %"]),
+        (0x4000_681C, 0x7F << 16, late, &["CAN2: samples at 92.8 %"]),
+    ]);
+    // 9 + 4.
+    must_doubt(
+        patch(0x4000_641C, 0x7F << 16, 3 << 20 | 8 << 16),
+        &["CAN1: samples at 71.4 %"],
+    );
+}
+
+#[test]
+fn a_can_jump_width_past_the_end_of_the_bit() {
+    let patch = patch(0x4000_641C, 3 << 24, 3 << 24);
+    must_complain(patch, &["CAN1: SJW of 4 quanta, with 3 after the sample"]);
 }

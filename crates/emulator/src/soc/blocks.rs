@@ -174,7 +174,8 @@ impl Blocks {
             tim5: &self.tim5,
             tim10: &self.tim10,
         };
-        self.outputs.update(ctx.pins, &timers, ctx.world, ctx.now);
+        self.outputs
+            .update(ctx.pins, &timers, ctx.world, ctx.errors, ctx.now);
         self.exti.pins_changed(&self.syscfg, ctx);
     }
 

@@ -19,6 +19,7 @@ use crate::{
         reset::ResetCause,
         scheduler::{Scheduler, Target},
     },
+    wiring,
 };
 
 /// Everything of the board but the CPU, its private peripherals and the memories.
@@ -69,6 +70,7 @@ impl Soc {
             blocks: Blocks::default(),
             patches: Vec::new(),
         };
+        wiring::connect(&mut soc.pins);
         soc.reset(ResetCause::PowerOn, 0);
         soc
     }

@@ -85,7 +85,7 @@ const IRQS: [(Irq, u32); 7] = [
 
 fn line_levels(syscfg: &Syscfg, ctx: &Ctx<'_>) -> u32 {
     (0..16)
-        .filter(|line| ctx.pins.level(syscfg.exti_source(*line)))
+        .filter(|line| ctx.pins.level(syscfg.exti_source(*line)) == Some(true))
         .fold(0, |bits, line| bits | 1 << line)
 }
 

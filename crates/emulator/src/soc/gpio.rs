@@ -3,7 +3,7 @@
 use crate::soc::{
     access::Access,
     peripheral::{Ctx, Peripheral, Unmodelled},
-    pins::{Pin, PinMode},
+    pins::{Pin, PinMode, PinSettings, Pull},
 };
 
 #[derive(Debug)]
@@ -57,17 +57,35 @@ impl Gpio {
     fn publish(&self, ctx: &mut Ctx<'_>) {
         for number in 0..16 {
             let pin = self.pin(number);
-            ctx.pins.set_mode(pin, self.mode(number));
-            ctx.pins.set_open_drain(pin, self.otyper >> number & 1 == 1);
-            ctx.pins.set_driven(pin, self.odr >> number & 1 == 1);
+            ctx.pins.set(pin, self.settings(number));
+            if ctx.pins.contested(pin) {
+                let message = format!("{pin} is an output, and so is what the board has there");
+                ctx.errors.report(ctx.now, message);
+            }
+        }
+    }
+
+    fn settings(&self, number: u8) -> PinSettings {
+        PinSettings {
+            mode: self.mode(number),
+            open_drain: self.otyper >> number & 1 == 1,
+            pull: match self.pupdr >> (2 * number) & 3 {
+                1 => Pull::Up,
+                2 => Pull::Down,
+                _ => Pull::None,
+            },
+            speed: (self.ospeedr >> (2 * number) & 3) as u8,
+            high: self.odr >> number & 1 == 1,
         }
     }
 
     fn idr(&self, ctx: &Ctx<'_>) -> u32 {
+        let noise = noise(ctx.now, self.port);
         (0..16)
             .filter(|n| {
                 // An analog pin's Schmitt trigger is off and reads 0.
-                self.mode(*n) != PinMode::Analog && ctx.pins.level(self.pin(*n))
+                self.mode(*n) != PinMode::Analog
+                    && ctx.pins.level(self.pin(*n)).unwrap_or(noise >> n & 1 == 1)
             })
             .fold(0, |bits, n| bits | 1 << n)
     }
@@ -139,4 +157,12 @@ impl Peripheral for Gpio {
         *self = Self::new(self.port);
         self.publish(ctx);
     }
+}
+
+/// What floating inputs read at that time: a hash (splitmix64), so that a run can be repeated.
+fn noise(now: u64, port: u8) -> u64 {
+    let mut bits = (now ^ u64::from(port)).wrapping_add(0x9E37_79B9_7F4A_7C15);
+    bits = (bits ^ bits >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    bits = (bits ^ bits >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
+    bits ^ bits >> 31
 }

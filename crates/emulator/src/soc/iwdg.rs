@@ -10,7 +10,9 @@ use crate::soc::{
 };
 
 const LSI_HZ: u32 = 32_000;
-/// A write to PR or RLR takes up to five LSI cycles to cross into the watchdog's clock domain.
+/// A write to PR or RLR takes up to five cycles of the divided clock to cross into the watchdog's clock domain: "up to
+/// 5 LSI clock periods divided by the clock prescaler" (ST's stm32f4xx_hal_iwdg.c, which waits six of them). Of the
+/// dividers before and after the write the model takes the larger.
 const UPDATE_CYCLES: u64 = 5;
 const RELOAD_AFTER_RESET: u32 = 0xFFF;
 
@@ -48,10 +50,10 @@ impl Crossing {
         };
     }
 
-    /// The LSI runs: what waited for it begins to cross.
-    fn clocked(&mut self, now: Ps) {
+    /// The LSI runs: what waited for it begins to cross, in steps of `period`.
+    fn clocked(&mut self, now: Ps, period: Ps) {
         if let Some((until @ Ps::MAX, _)) = &mut self.pending {
-            *until = now + cycles_to_ps(UPDATE_CYCLES, LSI_HZ);
+            *until = now + UPDATE_CYCLES * period;
         }
     }
 }
@@ -150,8 +152,9 @@ impl Iwdg {
     /// Registers cross on LSI cycles only; a running watchdog keeps the LSI on (RM0090 21.3).
     fn cross(&mut self, ctx: &Ctx<'_>) {
         if ctx.clocks.lsi_on || self.expires_at.is_some() {
-            self.prescaler.clocked(ctx.now);
-            self.reload.clocked(ctx.now);
+            let slowest = self.prescaler.effective(ctx.now).max(self.prescaler.value);
+            self.prescaler.clocked(ctx.now, period(slowest));
+            self.reload.clocked(ctx.now, period(slowest));
         }
     }
 

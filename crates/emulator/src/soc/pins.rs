@@ -31,69 +31,112 @@ pub enum PinMode {
     Analog,
 }
 
-/// Mode and levels of the 9 × 16 pins.
+/// The chip's own resistor of some 40 kΩ.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pull {
+    None,
+    Up,
+    Down,
+}
+
+/// What the port's registers make of a pin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PinSettings {
+    pub mode: PinMode,
+    /// The output stage pulls down only.
+    pub open_drain: bool,
+    pub pull: Pull,
+    /// OSPEEDR, 0 … 3.
+    pub speed: u8,
+    /// What the output register asks for (seen outside only in output mode).
+    pub high: bool,
+}
+
+impl PinSettings {
+    /// After reset, but for the debug port's pins.
+    pub const RESET: Self = Self {
+        mode: PinMode::Input,
+        open_drain: false,
+        pull: Pull::None,
+        speed: 0,
+        high: false,
+    };
+}
+
+/// What the board has on a pin.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Outside {
+    /// Nothing that gives it a level.
+    #[default]
+    Nothing,
+    /// A resistor of some kΩ to 3.3 V, which wins over the chip's own.
+    PullUp,
+    /// A device drives it.
+    Drives(bool),
+}
+
+/// Settings and levels of the 9 × 16 pins.
 #[derive(Debug)]
 pub struct PinBank {
-    mode: [[PinMode; 16]; 9],
-    open_drain: [[bool; 16]; 9],
-    driven: [[bool; 16]; 9],
-    external: [[bool; 16]; 9],
+    settings: [[PinSettings; 16]; 9],
+    outside: [[Outside; 16]; 9],
 }
 
 impl Default for PinBank {
-    /// After reset: inputs, but PA13–15 and PB3–4 on AF0 (debug port); outside levels high (pulled up).
+    /// After reset: inputs, but PA13–15 and PB3–4 on AF0 (debug port). Nothing outside.
     fn default() -> Self {
-        let mut mode = [[PinMode::Input; 16]; 9];
+        let mut settings = [[PinSettings::RESET; 16]; 9];
         for (port, number) in [(0, 13), (0, 14), (0, 15), (1, 3), (1, 4)] {
-            mode[port][number] = PinMode::Alternate(0);
+            settings[port][number].mode = PinMode::Alternate(0);
         }
         Self {
-            mode,
-            open_drain: [[false; 16]; 9],
-            driven: [[false; 16]; 9],
-            external: [[true; 16]; 9],
+            settings,
+            outside: [[Outside::Nothing; 16]; 9],
         }
     }
 }
 
 impl PinBank {
+    pub fn settings(&self, pin: Pin) -> PinSettings {
+        self.settings[usize::from(pin.port)][usize::from(pin.number)]
+    }
+
+    pub fn set(&mut self, pin: Pin, settings: PinSettings) {
+        self.settings[usize::from(pin.port)][usize::from(pin.number)] = settings;
+    }
+
     pub fn mode(&self, pin: Pin) -> PinMode {
-        self.mode[usize::from(pin.port)][usize::from(pin.number)]
+        self.settings(pin).mode
     }
 
-    pub fn set_mode(&mut self, pin: Pin, mode: PinMode) {
-        self.mode[usize::from(pin.port)][usize::from(pin.number)] = mode;
+    pub fn outside(&self, pin: Pin) -> Outside {
+        self.outside[usize::from(pin.port)][usize::from(pin.number)]
     }
 
-    /// True where the output stage pulls down only.
-    pub fn open_drain(&self, pin: Pin) -> bool {
-        self.open_drain[usize::from(pin.port)][usize::from(pin.number)]
+    pub fn set_outside(&mut self, pin: Pin, outside: Outside) {
+        self.outside[usize::from(pin.port)][usize::from(pin.number)] = outside;
     }
 
-    pub fn set_open_drain(&mut self, pin: Pin, open_drain: bool) {
-        self.open_drain[usize::from(pin.port)][usize::from(pin.number)] = open_drain;
-    }
-
-    /// What the output register asks for (seen outside only in output mode).
-    pub fn set_driven(&mut self, pin: Pin, high: bool) {
-        self.driven[usize::from(pin.port)][usize::from(pin.number)] = high;
-    }
-
-    /// What a device outside drives onto the pin.
-    pub fn set_external(&mut self, pin: Pin, high: bool) {
-        self.external[usize::from(pin.port)][usize::from(pin.number)] = high;
-    }
-
-    /// Level on the wire.
-    pub fn level(&self, pin: Pin) -> bool {
-        let (port, number) = (usize::from(pin.port), usize::from(pin.number));
-        match self.mode[port][number] {
-            // An open drain lets go where it does not pull down.
-            PinMode::Output if self.open_drain[port][number] => {
-                self.driven[port][number] && self.external[port][number]
-            }
-            PinMode::Output => self.driven[port][number],
-            _ => self.external[port][number],
+    /// Level on the wire; `None` where nobody and no resistor gives it one. What a peripheral drives onto a pin of an
+    /// alternate function is not in it.
+    pub fn level(&self, pin: Pin) -> Option<bool> {
+        let settings = self.settings(pin);
+        if settings.mode == PinMode::Output && !(settings.open_drain && settings.high) {
+            return Some(settings.high);
         }
+        match (self.outside(pin), settings.pull) {
+            (Outside::Drives(high), _) => Some(high),
+            (Outside::PullUp, _) | (Outside::Nothing, Pull::Up) => Some(true),
+            (Outside::Nothing, Pull::Down) => Some(false),
+            (Outside::Nothing, Pull::None) => None,
+        }
+    }
+
+    /// True where two outputs fight: the pin's own drives the other level than a device outside.
+    pub fn contested(&self, pin: Pin) -> bool {
+        let settings = self.settings(pin);
+        settings.mode == PinMode::Output
+            && self.outside(pin) == Outside::Drives(!settings.high)
+            && !(settings.open_drain && settings.high)
     }
 }

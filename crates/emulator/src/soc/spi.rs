@@ -163,6 +163,7 @@ impl Spi {
         if !clocked {
             return 0;
         }
+        wiring::check_speed(Signal::Spi1Sck, self.sck_hz(ctx), ctx);
         let mosi = if sends { in_order(byte) } else { 0 };
         let mode = ((self.cr1 >> 1 & 1) << 1 | self.cr1 & 1) as u8;
         let miso = ctx

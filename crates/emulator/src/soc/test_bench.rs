@@ -10,10 +10,13 @@ use super::{
     dma_request::DmaRequests,
     irq::IrqLines,
     peripheral::{Ctx, Peripheral},
-    pins::{Pin, PinBank, PinMode},
+    pins::{Pin, PinBank, PinMode, PinSettings},
     scheduler::Scheduler,
 };
-use crate::board_errors::{BoardError, BoardErrors};
+use crate::{
+    board_errors::{BoardError, BoardErrors},
+    wiring,
+};
 
 pub struct Bench {
     pub now: Ps,
@@ -51,7 +54,6 @@ impl Bench {
             world: World::new(config).expect("no recording is asked for"),
             errors: BoardErrors::default(),
         };
-        // hardware.md 1.2 and 1.3.
         for (port, number, af) in [
             ('B', 3, 5),
             ('B', 4, 5),
@@ -64,15 +66,23 @@ impl Bench {
             ('B', 5, 9),
             ('B', 6, 9),
         ] {
-            bench
-                .pins
-                .set_mode(Pin::new(port, number), PinMode::Alternate(af));
+            bench.change_pin(Pin::new(port, number), |pin| {
+                pin.mode = PinMode::Alternate(af);
+                pin.speed = 3;
+            });
         }
         for (port, number) in [('A', 8), ('C', 9)] {
-            bench.pins.set_open_drain(Pin::new(port, number), true);
+            bench.change_pin(Pin::new(port, number), |pin| pin.open_drain = true);
         }
-        bench.pins.set_mode(Pin::new('F', 10), PinMode::Analog);
+        bench.change_pin(Pin::new('F', 10), |pin| pin.mode = PinMode::Analog);
+        wiring::connect(&mut bench.pins);
         bench
+    }
+
+    pub fn change_pin(&mut self, pin: Pin, change: impl FnOnce(&mut PinSettings)) {
+        let mut settings = self.pins.settings(pin);
+        change(&mut settings);
+        self.pins.set(pin, settings);
     }
 
     pub fn ctx(&mut self) -> Ctx<'_> {

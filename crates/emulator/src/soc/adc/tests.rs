@@ -111,7 +111,7 @@ fn the_internal_reference_wants_its_bit_and_time() {
 #[test]
 fn a_pin_left_digital_reads_nothing() {
     let (mut bench, mut adc) = ready();
-    bench.pins.set_mode(Pin::new('F', 10), PinMode::Input);
+    bench.change_pin(Pin::new('F', 10), |pin| pin.mode = PinMode::Input);
     bench.write(&mut adc, CR2, ADON | SWSTART);
     bench.run(&mut adc, 20 * US);
     assert_eq!(bench.read(&mut adc, DR), 0);

@@ -116,6 +116,14 @@ impl CanBus {
         }
         let (sender, frame) = self.arbitrate(board, ctx)?;
         let timing_misfit = board.timing.misfit(ctx.clocks.pclk1_hz);
+        if let Some(why) = board
+            .timing
+            .doubt()
+            .filter(|_| timing_misfit.is_none() && board.on_bus())
+        {
+            ctx.errors
+                .suspect(ctx.now, format!("{}: {why}", board.name()));
+        }
         let outcome = self.outcome(sender, timing_misfit.is_some(), board, ctx);
         if let Some(why) = timing_misfit.filter(|_| outcome == Outcome::Misread) {
             ctx.errors

@@ -214,14 +214,14 @@ fn a_node_with_a_lower_identifier_keeps_the_bus() {
 #[test]
 fn without_its_pins_a_controller_neither_joins_nor_is_heard() {
     let (mut bench, mut can) = (Bench::new(), Can::new());
-    bench.pins.set_mode(Pin::new('D', 0), PinMode::Input);
+    bench.change_pin(Pin::new('D', 0), |pin| pin.mode = PinMode::Input);
     enable(&mut bench, &mut can, CAN1, ONE_MEGABIT);
     run_for(&mut bench, &mut can, 10 * MS);
     assert_eq!(bench.read(&mut can, MSR) & 3, INAK);
     assert!(bench.error_texts().iter().any(|e| e.starts_with("CAN1_RX")));
 
     let (mut bench, mut can) = ready(CAN2);
-    bench.pins.set_mode(Pin::new('B', 6), PinMode::Alternate(0));
+    bench.change_pin(Pin::new('B', 6), |pin| pin.mode = PinMode::Alternate(0));
     request_wheel_command(&mut bench, &mut can, CAN2);
     run_for(&mut bench, &mut can, 5 * MS);
     assert!(bench.error_texts().iter().any(|e| e.starts_with("CAN2_TX")));

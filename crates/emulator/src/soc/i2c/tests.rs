@@ -191,7 +191,7 @@ fn the_event_interrupt_follows_its_flags() {
 fn wrong_wiring_and_a_wrong_clock_are_said_aloud() {
     let (mut bench, mut i2c) = ready();
     bench.write(&mut i2c, CR2, 16);
-    bench.pins.set_mode(Pin::new('C', 9), PinMode::Input);
+    bench.change_pin(Pin::new('C', 9), |pin| pin.mode = PinMode::Input);
     address(&mut bench, &mut i2c, MAG << 1, 0);
     assert_eq!(bench.read(&mut i2c, SR1) & (ADDR | AF), AF);
     let texts = bench.error_texts();
@@ -202,7 +202,7 @@ fn wrong_wiring_and_a_wrong_clock_are_said_aloud() {
 #[test]
 fn a_push_pull_stage_on_the_bus_is_said_aloud() {
     let (mut bench, mut i2c) = ready();
-    bench.pins.set_open_drain(Pin::new('A', 8), false);
+    bench.change_pin(Pin::new('A', 8), |pin| pin.open_drain = false);
     address(&mut bench, &mut i2c, MAG << 1, 0);
     assert_eq!(bench.read(&mut i2c, SR1) & (ADDR | AF), AF);
     let expected = "I2C3_SCL: PA8 is push-pull, needs open-drain: the IST8310 gets no clock";

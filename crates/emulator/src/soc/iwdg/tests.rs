@@ -29,7 +29,8 @@ fn the_shortest_and_longest_times_of_the_table() {
         bench.write(&mut iwdg, PR, pr);
         bench.write(&mut iwdg, RLR, rlr);
         assert_eq!(bench.read(&mut iwdg, SR), 3);
-        bench.run(&mut iwdg, 200 * US);
+        // Five cycles of the divided clock: 0.625 ms at /4, 40 ms at /256.
+        bench.run(&mut iwdg, if pr == 0 { 626 * US } else { 40 * MS + US });
         assert_eq!(bench.read(&mut iwdg, SR), 0);
         bench.write(&mut iwdg, KR, 0xCCCC);
         bench.write(&mut iwdg, KR, 0xAAAA);
@@ -85,8 +86,10 @@ fn without_the_lsi_an_update_waits_for_the_start() {
     // RVU.
     assert_eq!(bench.read(&mut iwdg, SR), 2);
     bench.write(&mut iwdg, KR, 0xCCCC);
-    // Five cycles of 31.25 µs.
-    bench.run(&mut iwdg, 100 * MS + 157 * US);
+    // Five cycles of 125 µs.
+    bench.run(&mut iwdg, 100 * MS + 624 * US);
+    assert_eq!(bench.read(&mut iwdg, SR), 2);
+    bench.run(&mut iwdg, 100 * MS + 626 * US);
     assert_eq!(bench.read(&mut iwdg, SR), 0);
 }
 
@@ -116,13 +119,16 @@ fn a_running_watchdog_is_lengthened_by_pr_rlr_and_a_reload() {
     bench.write(&mut iwdg, PR, 4);
     bench.write(&mut iwdg, RLR, 999);
     assert_eq!(bench.read(&mut iwdg, SR), 3, "PVU and RVU");
-    bench.run(&mut iwdg, MS + 200 * US);
+    // At /64 a cycle is 2 ms.
+    bench.run(&mut iwdg, MS + 9_999 * US);
+    assert_eq!(bench.read(&mut iwdg, SR), 3);
+    bench.run(&mut iwdg, 12 * MS);
     assert_eq!(bench.read(&mut iwdg, SR), 0);
     bench.write(&mut iwdg, KR, 0xAAAA);
     // 1,000 periods of 64 LSI cycles: 2 s.
-    bench.run(&mut iwdg, MS + 200 * US + 1_999 * MS);
+    bench.run(&mut iwdg, 12 * MS + 1_999 * MS);
     assert!(!iwdg.take_reset_request());
-    bench.run(&mut iwdg, MS + 200 * US + 2_000 * MS);
+    bench.run(&mut iwdg, 12 * MS + 2_000 * MS);
     assert!(iwdg.take_reset_request());
 }
 
@@ -140,8 +146,8 @@ fn a_new_divider_counts_from_its_crossing_on() {
     let (mut bench, mut iwdg) = running();
     bench.write(&mut iwdg, KR, 0x5555);
     bench.write(&mut iwdg, PR, 1);
-    // One of 144 periods is over when PR has crossed after 156 µs; the others take 250 µs each.
-    let end = MS + 125 * US + 143 * 250 * US;
+    // Ten of 144 periods are over when PR has crossed after five cycles of 250 µs; the others take 250 µs each.
+    let end = MS + 10 * 125 * US + 134 * 250 * US;
     bench.run(&mut iwdg, end - US);
     assert!(!iwdg.take_reset_request());
     bench.run(&mut iwdg, end + US);

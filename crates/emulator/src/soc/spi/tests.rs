@@ -105,7 +105,7 @@ fn a_new_rate_in_the_middle_of_a_frame_is_said_aloud() {
 #[test]
 fn an_unmuxed_clock_pin_leaves_the_sensor_silent() {
     let (mut bench, mut spi) = ready();
-    bench.pins.set_mode(Pin::new('B', 3), PinMode::Alternate(0));
+    bench.change_pin(Pin::new('B', 3), |pin| pin.mode = PinMode::Alternate(0));
     let now = bench.now;
     bench.world.spi_select(SpiSelect::Gyro, true, now);
     exchange(&mut bench, &mut spi, 0x80);

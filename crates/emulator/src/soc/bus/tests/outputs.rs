@@ -2,6 +2,7 @@ use robot_plant::time::US;
 
 use super::*;
 
+const GPIOA: u32 = 0x4002_0000;
 const GPIOD: u32 = 0x4002_0C00;
 const GPIOH: u32 = 0x4002_1C00;
 const TIM4: u32 = 0x4000_0800;
@@ -50,9 +51,35 @@ fn an_led_is_dimmed_by_its_timer() {
     bench.write(TIM5 + 0x14, 1);
     bench.write(TIM5, 1);
     assert_eq!(truth(&bench, "truth.led.b"), 0.25);
+    assert_eq!(bench.errors(), Vec::<&str>::new());
     // On another alternate function the timer does not reach the pin.
     bench.write(GPIOH + 0x24, 3 << 8);
     assert_eq!(truth(&bench, "truth.led.b"), 0.0);
+    let expected = "TIM5_CH1: PH10 is AF3, needs AF2: the blue LED stays off";
+    assert_eq!(bench.errors(), [expected]);
+}
+
+#[test]
+fn an_open_drain_stage_opens_no_mosfet_and_releases_no_chip_select() {
+    let mut bench = board();
+    bench.write(GPIOH + 0x04, 1 << 12);
+    bench.write(GPIOH + 0x18, 1 << 12);
+    bench.write(GPIOH, 0b01 << 24);
+    assert_eq!(truth(&bench, "truth.led.r"), 0.0);
+    // PA4, the accelerometer's chip select; then with the chip's pull-up.
+    bench.write(GPIOA + 0x04, 1 << 4);
+    bench.write(GPIOA + 0x18, 1 << 4);
+    bench.write(GPIOA, 0b01 << 8 | 0xA800_0000);
+    let expected = [
+        "PH12 is open-drain, needs push-pull: the red LED stays off",
+        "PA4 is open-drain, needs push-pull: the accelerometer's chip select never rises",
+    ];
+    assert_eq!(bench.errors(), expected);
+    bench.write(GPIOA + 0x0C, 0b01 << 8 | 0x6400_0000);
+    let doubts = bench.soc.errors.suspicions().iter();
+    let expected =
+        "PA4 is open-drain: the accelerometer's chip select rises by the chip's 40 kOhm only";
+    assert_eq!(doubts.map(|e| &e.message).collect::<Vec<_>>(), [expected]);
 }
 
 /// RM0090 18.3.9: with OCxPE the new value is taken at the next update event.
