@@ -246,7 +246,7 @@ fn a_time_base_a_little_off_fails_the_default_drive() {
         mask: 0xFFFF,
         value: 82,
     };
-    must_name(&drive_fails(patch), &["emu.tick_period_us", "988.095"]);
+    must_name(&drive_fails(patch), &["emu.tick_period_us", "988.0"]);
 }
 
 /// The magnetometer's transfers without DMA never end: I2C3_CR2 bit DMAEN (11).
