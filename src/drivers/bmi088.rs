@@ -6,7 +6,7 @@ use embassy_stm32::spi::Spi;
 use embassy_stm32::spi::mode::Master;
 use embassy_time::{Duration, with_timeout};
 use robot_app::sensing::bmi088::{
-    ACCEL_READ, BUFFER_CLEAR, BUFFER_READ, GYRO_READ, GyroBuffer, INIT, InitCheck, InitStep,
+    ACCEL_READ, BUFFER_READ, BUFFER_RESET, GYRO_READ, GyroBuffer, INIT, InitCheck, InitStep,
     SpiTarget, gyro_buffer, read_command, write_command,
 };
 
@@ -14,6 +14,9 @@ use crate::deadlines::{Watched, sleep_checking_in};
 
 /// The longest transfer takes 75 µs on the wire.
 const TRANSFER_TIMEOUT: Duration = Duration::from_millis(1);
+
+/// A die wants 2 µs after a register write. At 168 MHz; too short for a timer to be worth its while.
+const WRITE_PAUSE_CYCLES: u32 = 2 * 168;
 
 /// Why the sensor did not do what it was told.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, defmt::Format)]
@@ -110,13 +113,19 @@ impl<'d> Bmi088<'d> {
                     self.exchange(SpiTarget::Gyro, buffer).await?;
                 }
             }
-            GyroBuffer::Stale => {
-                let mut clear = BUFFER_CLEAR;
-                self.exchange(SpiTarget::Gyro, &mut clear).await?;
-            }
+            GyroBuffer::Stale => self.reset_gyro_buffer().await?,
         }
         self.exchange(SpiTarget::Accel, &mut answers.accel).await?;
         Ok(answers)
+    }
+
+    /// The gyro measures on, and fills its buffer from now.
+    pub async fn reset_gyro_buffer(&mut self) -> Result<(), Bmi088Error> {
+        for mut bytes in BUFFER_RESET {
+            self.exchange(SpiTarget::Gyro, &mut bytes).await?;
+            cortex_m::asm::delay(WRITE_PAUSE_CYCLES);
+        }
+        Ok(())
     }
 
     async fn read_register(

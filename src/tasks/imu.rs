@@ -94,6 +94,9 @@ impl ImuTask {
             self.report.health.count_error();
         }
         self.publish();
+        if self.pipeline.take_buffer_reset() && sensor.reset_gyro_buffer().await.is_err() {
+            self.report.health.count_error();
+        }
         state.is_some()
     }
 

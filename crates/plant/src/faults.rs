@@ -30,6 +30,8 @@ faults! {
     ImuGone "imu-gone" "BMI088 without supply: MISO reads 0xFF; at the end it powers up anew",
     ImuFrozen "imu-frozen" "BMI088 answers, but its data registers never change",
     ImuExtreme "imu-extreme" "BMI088's data registers jump between the ends of their range",
+    GyroFifoShift "gyro-fifo-shift" "the gyro's FIFO slips by one axis, so that X shows Z, Y shows X, Z shows Y, until it is switched off and on; in STREAM mode it slips again about once a second",
+    GyroSpike "gyro-spike" "one gyro sample in fifty has -32768 on all axes, in the FIFO and in the data registers",
     MagGone "mag-gone" "IST8310 without supply: no acknowledge; at the end it powers up anew",
     I2cHeld "i2c-held" "a device holds SDA of I2C3 low",
     Can1Broken "can1-broken" "CAN1 shorted: every frame ends in a bit error",

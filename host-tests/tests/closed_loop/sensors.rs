@@ -56,17 +56,16 @@ impl Sensors {
                 &buffer[1..bytes]
             }
             GyroBuffer::Stale => {
-                spi(
-                    world,
-                    SpiSelect::Gyro,
-                    &mut bmi088::BUFFER_CLEAR.clone(),
-                    now,
-                );
+                reset_buffer(world, now);
                 &[]
             }
         };
         spi(world, SpiSelect::Accel, &mut accel, now);
-        self.imu.process(&accel, &gyro, frames, now / US)
+        let state = self.imu.process(&accel, &gyro, frames, now / US);
+        if self.imu.take_buffer_reset() {
+            reset_buffer(world, now);
+        }
+        state
     }
 
     pub fn start_mag(&mut self, world: &mut World, now: Ps) {
@@ -99,6 +98,12 @@ fn after_us(world: &mut World, now: Ps, us: u32) -> Ps {
     let then = now + u64::from(us) * US;
     world.advance(then);
     then
+}
+
+fn reset_buffer(world: &mut World, now: Ps) {
+    for mut bytes in bmi088::BUFFER_RESET {
+        spi(world, SpiSelect::Gyro, &mut bytes, now);
+    }
 }
 
 fn bring_up_imu(world: &mut World, start: Ps) -> Ps {

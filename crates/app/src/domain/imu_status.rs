@@ -74,11 +74,26 @@ pub struct ImuRejects {
     pub saturated: u32,
 }
 
+/// What was wrong with the gyro's buffer since boot.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(C)]
+pub struct GyroBufferStatus {
+    /// Frames left out because no rate makes them: −32768 on all axes.
+    pub spikes: u32,
+    /// Samples whose newest frame was not what the data registers show; the registers were used.
+    pub differences: u32,
+    /// Resets because differences lasted.
+    pub resets: u32,
+    /// Resets because it had run over, or nobody had read it for long: after the bring-up, and an erase of flash.
+    pub overruns: u32,
+}
+
 /// Of the IMU task.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct ImuStatus {
     pub rejects: ImuRejects,
+    pub gyro_buffer: GyroBufferStatus,
     pub heater: HeaterStatus,
     pub calibration: CalibrationStatus,
 }

@@ -24,7 +24,8 @@ pub use health::{
     BusErrorState, BusHealth, DebugProbe, RadioLineHealth, ResetCause, SensorHealth, SystemHealth,
 };
 pub use imu_status::{
-    CalibrationState, CalibrationStatus, HeaterState, HeaterStatus, ImuRejects, ImuStatus, Warmth,
+    CalibrationState, CalibrationStatus, GyroBufferStatus, HeaterState, HeaterStatus, ImuRejects,
+    ImuStatus, Warmth,
 };
 pub use last_words::{LastWords, LateTasks};
 pub use mounting::Orientation;

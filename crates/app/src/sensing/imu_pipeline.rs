@@ -2,7 +2,7 @@
 
 use super::{
     accel_delay::AccelDelay,
-    bmi088::{self, ACCEL_READ, AccelRaw, GYRO_READ, GyroRaw},
+    bmi088::{self, ACCEL_READ, AccelRaw, BufferWatch, GYRO_READ, GyroRaw},
     calibration::{Sample, StartupCalibration, correct},
     heater::Heater,
     plausibility::Plausibility,
@@ -52,6 +52,7 @@ pub struct ImuPipeline {
     startup: StartupCalibration,
     plausibility: Plausibility,
     accel_delay: AccelDelay,
+    gyro_buffer: BufferWatch,
     rejects: ImuRejects,
     last: Option<RawSample>,
     repeats: u8,
@@ -66,6 +67,7 @@ impl ImuPipeline {
             startup: StartupCalibration::default(),
             plausibility: Plausibility::default(),
             accel_delay: AccelDelay::default(),
+            gyro_buffer: BufferWatch::default(),
             rejects: ImuRejects::default(),
             last: None,
             repeats: 0,
@@ -98,6 +100,7 @@ impl ImuPipeline {
             heater: *self.heater.status(),
             calibration: *self.startup.status(),
             rejects: self.rejects,
+            gyro_buffer: self.gyro_buffer.status(),
         }
     }
 
@@ -106,13 +109,18 @@ impl ImuPipeline {
         self.heater.status().duty
     }
 
+    /// True once after the sample that showed that the gyro's buffer is out of step: send `BUFFER_RESET`.
+    pub fn take_buffer_reset(&mut self) -> bool {
+        self.gyro_buffer.take_reset()
+    }
+
     /// To be called in place of `process` when no answer came.
     pub fn process_silence(&mut self, ts_us: u64) {
         self.heater.step(None, ts_us);
     }
 
     /// Takes the answers to `ACCEL_READ` and `GYRO_READ`, read at `read_us`, and what `BUFFER_READ` brought after the echo
-    /// of its address: nothing if the buffer was to be cleared.
+    /// of its address: nothing if the buffer was reset instead.
     pub fn process(
         &mut self,
         accel_answer: &[u8; ACCEL_READ.len()],
@@ -142,6 +150,7 @@ impl ImuPipeline {
         let accel = bmi088::decode_accel(accel_answer).ok_or(ImuSampleError::AccelAbsent)?;
         let gyro =
             bmi088::decode_gyro(gyro_answer, gyro_frames).ok_or(ImuSampleError::GyroAbsent)?;
+        self.gyro_buffer.judge(&gyro);
         let frozen = self.frozen(&accel, &gyro);
         let saturated = self.plausibility.judge(&accel, &gyro, read_us)?;
         if frozen {
@@ -455,14 +464,15 @@ mod tests {
     #[test]
     fn frames_that_differ_too_much_or_end_the_range_are_noticed() {
         let (accel, mut gyro) = answers(1);
-        gyro[15] = 1;
-        let frame = |x: i16| [x, 0, 164].map(i16::to_le_bytes).concat();
+        gyro[15] = 2;
+        // An earlier frame and the newest, which is what the registers show.
         let process = |gyro: &[u8; 16], x: i16| {
-            let frame = frame(x);
-            new_pipeline().process(&accel, gyro, &frame, 5_000)
+            let earlier = [x, 0, 164].map(i16::to_le_bytes).concat();
+            let frames = [&earlier[..], &gyro[3..9]].concat();
+            new_pipeline().process(&accel, gyro, &frames, 5_000)
         };
         assert_eq!(process(&gyro, 16_384), Err(ImuSampleError::Implausible));
-        let good = process(&gyro, 1_638).unwrap();
+        let good = process(&gyro, 3_276).unwrap();
         assert!((good.gyro_dps[0] - 100.0).abs() < 0.1);
         gyro[3..5].copy_from_slice(&20_000i16.to_le_bytes());
         assert!(process(&gyro, i16::MAX).unwrap().saturated);

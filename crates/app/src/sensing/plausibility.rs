@@ -154,13 +154,7 @@ mod tests {
                 sensor_time: 0,
                 temperature: None,
             };
-            let gyro = GyroRaw {
-                counts: gyro_counts,
-                lowest: gyro_counts,
-                highest: gyro_counts,
-                mean_counts: gyro_counts.map(f32::from),
-                fresh: true,
-            };
+            let gyro = GyroRaw::of(gyro_counts);
             self.plausibility.judge(&accel, &gyro, self.ts_us)
         }
     }

@@ -232,6 +232,9 @@ fn sensors() -> Vec<Row> {
         global("imu-gone", 35.0, dead),
         global("imu-frozen", 100.0, wrong()).latched(),
         global("imu-extreme", 100.0, wrong()).latched(),
+        // Wrong frames are known by themselves, or by the data registers.
+        harmless("gyro-fifo-shift", Flags::default()),
+        harmless("gyro-spike", Flags::default()),
         harmless("mag-gone", flags(&[], &[])),
         harmless("i2c-held", flags(&[], &[])),
     ]

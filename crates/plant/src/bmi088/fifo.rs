@@ -11,7 +11,7 @@ const OVERRUN: u8 = 1 << 7;
 enum Mode {
     /// The data registers are all there is.
     Bypass,
-    /// Full, it takes no more.
+    /// Full, it takes no more until it is configured anew.
     Fifo,
     /// Full, it drops the oldest.
     Stream,
@@ -24,6 +24,9 @@ pub(super) struct Fifo {
     overrun: bool,
     /// Bytes of the oldest frame that have been read.
     read: usize,
+    /// What is read begins one axis too early: with Z of the frame before.
+    slipped: bool,
+    last_z: i16,
 }
 
 impl Fifo {
@@ -33,6 +36,8 @@ impl Fifo {
             frames: VecDeque::new(),
             overrun: false,
             read: 0,
+            slipped: false,
+            last_z: 0,
         }
     }
 
@@ -40,10 +45,21 @@ impl Fifo {
         self.config
     }
 
-    /// A write to FIFO_CONFIG_1 also empties the buffer and ends the overrun.
+    /// A write to FIFO_CONFIG_1 also empties the buffer and ends the overrun. Only bypass mode ends a slip (assumed:
+    /// PX4 goes through it).
     pub(super) fn configure(&mut self, config: u8) {
+        let slipped = self.slipped;
         *self = Self::new();
         self.config = config;
+        self.slipped = slipped && self.mode() != Mode::Bypass;
+    }
+
+    pub(super) fn slip(&mut self) {
+        self.slipped = self.mode() != Mode::Bypass;
+    }
+
+    pub(super) fn streams(&self) -> bool {
+        self.mode() == Mode::Stream
     }
 
     /// A write to FIFO_CONFIG_0 empties the buffer.
@@ -61,16 +77,19 @@ impl Fifo {
     }
 
     pub(super) fn push(&mut self, frame: [i16; 3]) {
-        if self.mode() == Mode::Bypass {
-            return;
-        }
-        if self.frames.len() == FRAMES {
-            self.overrun = true;
-            if self.mode() == Mode::Fifo {
+        let full = self.frames.len() == FRAMES;
+        match self.mode() {
+            Mode::Bypass => return,
+            Mode::Fifo if full || self.overrun => {
+                self.overrun = true;
                 return;
             }
-            self.frames.pop_front();
-            self.read = 0;
+            Mode::Stream if full => {
+                self.overrun = true;
+                self.frames.pop_front();
+                self.read = 0;
+            }
+            Mode::Fifo | Mode::Stream => {}
         }
         self.frames.push_back(frame);
     }
@@ -88,13 +107,19 @@ impl Fifo {
 
     /// The next byte of FIFO_DATA; 0 from an empty buffer.
     pub(super) fn read(&mut self) -> u8 {
-        let Some(frame) = self.frames.front() else {
+        let Some(&[x, y, z]) = self.frames.front() else {
             return 0;
+        };
+        let frame = if self.slipped {
+            [self.last_z, x, y]
+        } else {
+            [x, y, z]
         };
         let byte = frame[self.read / 2].to_le_bytes()[self.read % 2];
         self.read += 1;
         if self.read == FRAME_LEN {
             self.frames.pop_front();
+            self.last_z = z;
             self.read = 0;
         }
         byte
@@ -138,5 +163,38 @@ mod tests {
             assert_eq!(fifo.status(), 0);
         }
         assert_eq!(filled(0x00, 5).status(), 0);
+    }
+
+    /// Datasheet: in FIFO mode no frame is stored after the overrun until FIFO_CONFIG_1 is written.
+    #[test]
+    fn in_fifo_mode_it_stands_after_an_overrun() {
+        let mut fifo = filled(0x40, 101);
+        for _ in 0..FRAMES * FRAME_LEN {
+            fifo.read();
+        }
+        fifo.push([7; 3]);
+        assert_eq!(fifo.status(), 0x80);
+        fifo.configure(0x40);
+        fifo.push([7; 3]);
+        assert_eq!(fifo.status(), 1);
+    }
+
+    #[test]
+    fn slipped_by_an_axis_it_stays_so_until_it_was_switched_off() {
+        let mut fifo = filled(0x80, 0);
+        let read = |fifo: &mut Fifo| {
+            fifo.push([1, 2, 3]);
+            let bytes: [u8; 6] = std::array::from_fn(|_| fifo.read());
+            [bytes[0], bytes[2], bytes[4]]
+        };
+        assert_eq!(read(&mut fifo), [1, 2, 3]);
+        fifo.slip();
+        assert_eq!(read(&mut fifo), [3, 1, 2]);
+        fifo.configure(0x80);
+        read(&mut fifo);
+        assert_eq!(read(&mut fifo), [3, 1, 2]);
+        fifo.configure(0);
+        fifo.configure(0x40);
+        assert_eq!(read(&mut fifo), [1, 2, 3]);
     }
 }

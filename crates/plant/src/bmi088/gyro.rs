@@ -138,6 +138,16 @@ impl GyroDie {
         self.fifo.replace_newest(data);
     }
 
+    /// The FIFO shows its axes one place late.
+    pub(super) fn slip_fifo(&mut self) {
+        self.fifo.slip();
+    }
+
+    /// The FIFO is in the mode in which it is reported to slip.
+    pub(super) fn streams(&self) -> bool {
+        self.fifo.streams()
+    }
+
     fn analogue_dps(&mut self, gyro_rps: [f64; 3]) -> [f64; 3] {
         let mut rate_dps = gyro_rps.map(f64::to_degrees);
         if self.source == MotionSource::Physics {

@@ -54,6 +54,10 @@ pub(crate) struct ImuFaults {
     pub frozen: bool,
     /// Every new sample is an end of the range.
     pub extreme: bool,
+    /// The gyro's FIFO slips by one axis (ArduPilot pull request 20434).
+    pub fifo_shift: bool,
+    /// Now and then a gyro sample is −32768 on all axes (ArduPilot issues 22710 and 25178).
+    pub gyro_spikes: bool,
 }
 
 /// Register file seen over SPI by one die.
@@ -135,6 +139,9 @@ impl Bmi088 {
             self.accel.power_on(now);
             self.gyro.power_on(now);
         }
+        if faults.fifo_shift && !self.faults.fifo_shift {
+            self.gyro.slip_fifo();
+        }
         self.faults = faults;
     }
 
@@ -177,8 +184,23 @@ impl Bmi088 {
         if self.faults.extreme && accel_sampled {
             self.accel.replace_sample(extremes(&mut self.garbage));
         }
-        if self.faults.extreme && gyro_sampled {
+        if gyro_sampled {
+            self.spoil_gyro_sample();
+        }
+    }
+
+    fn spoil_gyro_sample(&mut self) {
+        const SAMPLES_TO_SPIKE: u32 = 50;
+        const SAMPLES_TO_SLIP: u32 = 1_000;
+        if self.faults.extreme {
             self.gyro.replace_sample(extremes(&mut self.garbage));
+        }
+        if self.faults.gyro_spikes && self.garbage.below(SAMPLES_TO_SPIKE) == 0 {
+            self.gyro.replace_sample([i16::MIN; 3]);
+        }
+        let may_slip = self.faults.fifo_shift && self.gyro.streams();
+        if may_slip && self.garbage.below(SAMPLES_TO_SLIP) == 0 {
+            self.gyro.slip_fifo();
         }
     }
 

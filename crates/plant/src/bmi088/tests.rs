@@ -138,6 +138,66 @@ fn gyro_keeps_what_it_measured_until_it_is_read() {
     assert_eq!(bench.read::<1>(SpiSelect::Gyro, 0x0E), [0]);
 }
 
+/// 1 rad/s is 939 counts. STREAM mode slips again, FIFO mode does not.
+#[test]
+fn a_slipped_fifo_differs_from_the_registers_until_it_is_reset() {
+    let slipped = ImuFaults {
+        fifo_shift: true,
+        ..ImuFaults::default()
+    };
+    let reset = |bench: &mut Bench, mode| {
+        for (register, value) in [(0x3D, 0), (0x3E, 0), (0x3E, mode)] {
+            bench.write(SpiSelect::Gyro, register, value);
+            bench.wait(10 * US);
+        }
+    };
+    let newest = |bench: &mut Bench| {
+        bench.wait(5 * MS);
+        let frames = bench.read::<1>(SpiSelect::Gyro, 0x0E)[0] & 0x7F;
+        let mut newest = [0; 3];
+        for _ in 0..frames {
+            newest = counts(bench.read::<6>(SpiSelect::Gyro, 0x3F));
+        }
+        newest.map(|count| (f64::from(count) / 939.0).round())
+    };
+    for (mode, slips_again) in [(0x40, false), (0x80, true)] {
+        let mut bench = Bench::configured(MotionSource::Recording);
+        bench.motion.gyro_rps = [1.0, -2.0, 3.0];
+        reset(&mut bench, mode);
+        bench.wait(100 * MS);
+        reset(&mut bench, mode);
+        assert_eq!(newest(&mut bench), [1.0, -2.0, 3.0]);
+        bench.imu.set_faults(slipped, bench.now);
+        assert_eq!(newest(&mut bench), [3.0, 1.0, -2.0]);
+        reset(&mut bench, mode);
+        let later = (0..1_000).map(|_| newest(&mut bench));
+        let wrong = later.filter(|rates| *rates != [1.0, -2.0, 3.0]).count();
+        assert_eq!(wrong > 0, slips_again, "{mode:#x}: {wrong}");
+    }
+}
+
+#[test]
+fn a_spike_is_on_all_axes_of_registers_and_fifo() {
+    let mut bench = Bench::configured(MotionSource::Physics);
+    bench.write(SpiSelect::Gyro, 0x3E, 0x40);
+    let spiky = ImuFaults {
+        gyro_spikes: true,
+        ..ImuFaults::default()
+    };
+    bench.imu.set_faults(spiky, bench.now);
+    let mut spikes = [0; 2];
+    for _ in 0..4_000 {
+        bench.wait(2_500 * US);
+        let registers = bench.gyro_counts();
+        let newest = counts(bench.read::<6>(SpiSelect::Gyro, 0x3F));
+        assert_eq!(registers, newest);
+        let spike = registers.contains(&i16::MIN);
+        assert!(!spike || registers == [i16::MIN; 3]);
+        spikes[usize::from(spike)] += 1;
+    }
+    assert!((40..120).contains(&spikes[1]), "one in fifty: {spikes:?}");
+}
+
 #[test]
 fn suspended_accelerometer_measures_nothing() {
     let mut bench = Bench::new(MotionSource::Physics);

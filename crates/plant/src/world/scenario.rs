@@ -27,6 +27,8 @@ impl World {
             Fault::ImuGone
             | Fault::ImuFrozen
             | Fault::ImuExtreme
+            | Fault::GyroFifoShift
+            | Fault::GyroSpike
             | Fault::MagGone
             | Fault::I2cHeld => self.set_sensor_faults(),
             _ => {}
@@ -51,6 +53,8 @@ impl World {
             gone: has(Fault::ImuGone) || !self.board_supply,
             frozen: has(Fault::ImuFrozen),
             extreme: has(Fault::ImuExtreme),
+            fifo_shift: has(Fault::GyroFifoShift),
+            gyro_spikes: has(Fault::GyroSpike),
         };
         let mag = MagFaults {
             gone: has(Fault::MagGone) || !self.board_supply,

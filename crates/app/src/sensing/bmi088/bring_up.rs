@@ -143,7 +143,11 @@ pub const INIT: &[InitStep] = &[
     InitStep::Wait { us: 100 },
     gyro_write(gyro::BANDWIDTH, gyro::BANDWIDTH_1000HZ_116HZ),
     InitStep::Wait { us: 100 },
-    gyro_write(gyro::FIFO_CONFIG_1, gyro::FIFO_STREAM),
+    gyro_write(gyro::FIFO_CONFIG_0, 0),
+    InitStep::Wait { us: 100 },
+    gyro_write(gyro::FIFO_CONFIG_1, gyro::FIFO_BYPASS),
+    InitStep::Wait { us: 100 },
+    gyro_write(gyro::FIFO_CONFIG_1, gyro::FIFO_MODE),
     InitStep::Wait { us: 100 },
     gyro_check(
         gyro::RANGE,
@@ -157,7 +161,7 @@ pub const INIT: &[InitStep] = &[
     ),
     gyro_check(
         gyro::FIFO_CONFIG_1,
-        gyro::FIFO_STREAM,
+        gyro::FIFO_MODE,
         InitCheck::GyroBufferNotKept,
     ),
     // First filtered samples.

@@ -4,7 +4,7 @@ use super::{
     bring_up::write_command,
     registers::{READ, accel, gyro},
 };
-use crate::math::vector;
+use crate::math::{Vector3, vector};
 
 /// Bytes to exchange for one accelerometer sample: acceleration, sensor time and temperature in one burst.
 /// Answer: address echo, dummy byte, then registers 0x12 to 0x23.
@@ -34,15 +34,26 @@ pub const BUFFER_READ: [u8; 1 + MAX_FRAMES * FRAME_LEN] = {
     bytes
 };
 
-/// Bytes to send to empty the gyro's buffer.
-pub const BUFFER_CLEAR: [u8; 2] = write_command(gyro::FIFO_CONFIG_1, gyro::FIFO_STREAM);
+/// What to send, one after the other and 2 µs apart at least, to empty the gyro's buffer after it ran over or got out of
+/// step, as PX4 does.
+pub const BUFFER_RESET: [[u8; 2]; 3] = [
+    write_command(gyro::FIFO_CONFIG_0, 0),
+    write_command(gyro::FIFO_CONFIG_1, gyro::FIFO_BYPASS),
+    write_command(gyro::FIFO_CONFIG_1, gyro::FIFO_MODE),
+];
+
+/// A frame that no rate makes: some BMI088 send one now and then (ArduPilot issues 22710 and 25178).
+const SPIKE: [i16; 3] = [i16::MIN; 3];
+/// 1 °/s: how far the newest frame may be from the data registers. They show the same sample, or, where one came in
+/// between, that before it.
+const MAX_DIFFERENCE: u16 = 16;
 
 /// What to do about the gyro's buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GyroBuffer {
     /// Exchange so many bytes of [`BUFFER_READ`].
     Frames { bytes: usize },
-    /// Too old to be of use: send [`BUFFER_CLEAR`].
+    /// Too old to be of use: send [`BUFFER_RESET`].
     Stale,
 }
 
@@ -85,6 +96,21 @@ pub struct GyroRaw {
     pub mean_counts: [f32; 3],
     /// Something was measured since the last read.
     pub fresh: bool,
+    /// Frames that were left out because no rate makes them.
+    pub spikes: u8,
+    pub buffer: BufferVerdict,
+}
+
+/// What the data registers say of the buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BufferVerdict {
+    /// Nothing to compare.
+    Unknown,
+    Agrees,
+    /// Its frames are not used.
+    Differs,
+    /// It had run over, or nobody had read it for long.
+    Stale,
 }
 
 /// `None` for an answer that only an absent or unpowered sensor gives: all bits alike.
@@ -143,17 +169,14 @@ pub fn decode_gyro(answer: &[u8; GYRO_READ.len()], frames: &[u8]) -> Option<Gyro
     if chip_id != gyro::CHIP_ID_VALUE {
         return None;
     }
-    let counts = frame([x0, x1, y0, y1, z0, z1]);
-    let mut raw = GyroRaw {
-        counts,
-        lowest: counts,
-        highest: counts,
-        mean_counts: counts.map(f32::from),
-        fresh: status != 0,
-    };
+    let registers = frame([x0, x1, y0, y1, z0, z1]);
     let (frames, _) = frames.as_chunks::<FRAME_LEN>();
-    if !frames.is_empty() {
-        raw.average(frames);
+    let mut raw = GyroRaw::of(registers);
+    raw.fresh = status != 0;
+    if gyro_buffer(answer) == GyroBuffer::Stale {
+        raw.buffer = BufferVerdict::Stale;
+    } else {
+        raw.take_frames(registers, frames);
     }
     Some(raw)
 }
@@ -180,26 +203,101 @@ impl GyroRaw {
     /// °/s a count at ±2000 °/s.
     const DPS_PER_COUNT: f32 = 1.0 / 16.384;
 
-    /// At most 8 frames: their sum fits single precision without rounding.
-    fn average(&mut self, frames: &[[u8; FRAME_LEN]]) {
-        let mut sum = [0.0; 3];
+    /// Nothing but what the data registers show.
+    pub fn of(counts: [i16; 3]) -> Self {
+        Self {
+            counts,
+            lowest: counts,
+            highest: counts,
+            mean_counts: counts.map(f32::from),
+            fresh: false,
+            spikes: 0,
+            buffer: BufferVerdict::Unknown,
+        }
+    }
+
+    /// The mean of the buffer's frames counts if the newest of them is what the registers show, or cannot be compared
+    /// because the registers show a spike.
+    fn take_frames(&mut self, registers: [i16; 3], frames: &[[u8; FRAME_LEN]]) {
+        let mut mean = Mean::default();
+        let mut newest = [None; 2];
         for bytes in frames {
             let counts = frame(*bytes);
-            sum = vector::add(sum, counts.map(f32::from));
-            for (lowest, count) in self.lowest.iter_mut().zip(counts) {
-                *lowest = count.min(*lowest);
-            }
-            for (highest, count) in self.highest.iter_mut().zip(counts) {
-                *highest = count.max(*highest);
+            if counts == SPIKE {
+                self.spikes = self.spikes.saturating_add(1);
+            } else {
+                mean.add(counts);
+                newest = [newest[1], Some(counts)];
             }
         }
-        self.mean_counts = vector::scale(sum, 1.0 / frames.len() as f32);
+        let [before, Some(last)] = newest else {
+            return;
+        };
+        let is_shown = |counts: [i16; 3]| is_near(counts, registers);
+        if registers == SPIKE {
+            self.counts = last;
+            (self.lowest, self.highest) = (last, last);
+        } else if is_shown(last) || before.is_some_and(is_shown) {
+            self.buffer = BufferVerdict::Agrees;
+        } else {
+            self.buffer = BufferVerdict::Differs;
+            return;
+        }
+        self.lowest = least(self.lowest, mean.lowest);
+        self.highest = most(self.highest, mean.highest);
+        self.mean_counts = mean.counts();
     }
 
     /// Mean rate since the last read.
     pub fn dps(&self) -> [f32; 3] {
         vector::scale(self.mean_counts, Self::DPS_PER_COUNT)
     }
+}
+
+/// Of at most 8 frames: their sum fits single precision without rounding.
+struct Mean {
+    sum: Vector3,
+    frames: f32,
+    lowest: [i16; 3],
+    highest: [i16; 3],
+}
+
+impl Default for Mean {
+    fn default() -> Self {
+        Self {
+            sum: [0.0; 3],
+            frames: 0.0,
+            lowest: [i16::MAX; 3],
+            highest: [i16::MIN; 3],
+        }
+    }
+}
+
+impl Mean {
+    fn add(&mut self, counts: [i16; 3]) {
+        self.sum = vector::add(self.sum, counts.map(f32::from));
+        self.frames += 1.0;
+        self.lowest = least(self.lowest, counts);
+        self.highest = most(self.highest, counts);
+    }
+
+    fn counts(&self) -> Vector3 {
+        vector::scale(self.sum, 1.0 / self.frames)
+    }
+}
+
+fn is_near(one: [i16; 3], other: [i16; 3]) -> bool {
+    one.iter()
+        .zip(other)
+        .all(|(a, b)| a.abs_diff(b) <= MAX_DIFFERENCE)
+}
+
+fn least([a, b, c]: [i16; 3], [x, y, z]: [i16; 3]) -> [i16; 3] {
+    [a.min(x), b.min(y), c.min(z)]
+}
+
+fn most([a, b, c]: [i16; 3], [x, y, z]: [i16; 3]) -> [i16; 3] {
+    [a.max(x), b.max(y), c.max(z)]
 }
 
 impl TemperatureRaw {
@@ -239,25 +337,78 @@ mod tests {
         assert_eq!(BUFFER_READ.len(), 49);
     }
 
-    /// By hand: (90 + 110) / 2, (−300 − 200) / 2, (0 − 2) / 2.
+    fn bytes<const N: usize>(frames: [[i16; 3]; N]) -> Vec<u8> {
+        let counts = frames.as_flattened().iter();
+        counts.flat_map(|count| count.to_le_bytes()).collect()
+    }
+
+    /// By hand: (90 + 100) / 2, (−300 − 200) / 2, (296 + 300) / 2.
     #[test]
     fn frames_are_averaged_and_their_ends_known() {
-        let frames = [90i16, -300, 0, 110, -200, -2].map(i16::to_le_bytes);
-        let raw = decode_gyro(&answer(2), frames.as_flattened()).unwrap();
+        let frames = bytes([[90, -300, 296], [100, -200, 300]]);
+        let raw = decode_gyro(&answer(2), &frames).unwrap();
         assert_eq!(raw.counts, [100, -200, 300]);
-        assert_eq!(raw.mean_counts, [100.0, -250.0, -1.0]);
-        assert_eq!(raw.lowest, [90, -300, -2]);
-        assert_eq!(raw.highest, [110, -200, 300]);
+        assert_eq!(raw.mean_counts, [95.0, -250.0, 298.0]);
+        assert_eq!(raw.lowest, [90, -300, 296]);
+        assert_eq!(raw.highest, [100, -200, 300]);
         assert!(raw.fresh);
-        for (got, expected) in raw.dps().iter().zip([6.1035, -15.2588, -0.0610]) {
+        assert_eq!((raw.buffer, raw.spikes), (BufferVerdict::Agrees, 0));
+        for (got, expected) in raw.dps().iter().zip([5.7983, -15.2588, 18.1885]) {
             assert!((got - expected).abs() < 1e-3, "{:?}", raw.dps());
         }
+    }
+
+    /// A sample that came between the registers and the buffer makes the last frame but one the registers' own.
+    #[test]
+    fn a_sample_in_between_is_no_difference() {
+        let frames = bytes([[0; 3], [100, -200, 300], [900, -900, 900]]);
+        let raw = decode_gyro(&answer(3), &frames).unwrap();
+        assert_eq!(raw.buffer, BufferVerdict::Agrees);
+        assert_eq!(raw.mean_counts[0], 1_000.0 / 3.0);
+        assert_eq!((raw.lowest[1], raw.highest[2]), (-900, 900));
+    }
+
+    /// X shows Z, Y shows X, Z shows Y; or an axis is a little more than 1 °/s off.
+    #[test]
+    fn frames_that_the_registers_do_not_show_are_not_used() {
+        for off in [[300, 100, -200], [117, -200, 300], [100, -200, 283]] {
+            let raw = decode_gyro(&answer(2), &bytes([off, off])).unwrap();
+            assert_eq!(raw.buffer, BufferVerdict::Differs, "{off:?}");
+            assert_eq!(raw.mean_counts, [100.0, -200.0, 300.0]);
+            assert_eq!((raw.lowest, raw.highest), (raw.counts, raw.counts));
+        }
+        let within = decode_gyro(&answer(1), &bytes([[116, -216, 284]])).unwrap();
+        assert_eq!(within.buffer, BufferVerdict::Agrees);
+    }
+
+    #[test]
+    fn spikes_are_left_out_wherever_they_are() {
+        let spike = [i16::MIN; 3];
+        let good = [100, -200, 300];
+        let raw = decode_gyro(&answer(4), &bytes([spike, good, spike, good])).unwrap();
+        assert_eq!(raw.mean_counts, [100.0, -200.0, 300.0]);
+        assert_eq!((raw.buffer, raw.spikes), (BufferVerdict::Agrees, 2));
+        assert_eq!((raw.lowest, raw.highest), (good, good));
+        // In the registers too.
+        let mut registers = answer(2);
+        registers[3..9].copy_from_slice(&bytes([spike]));
+        let raw = decode_gyro(&registers, &bytes([[90, -190, 310], spike])).unwrap();
+        assert_eq!(raw.counts, [90, -190, 310]);
+        assert_eq!((raw.lowest, raw.highest), (raw.counts, raw.counts));
+        assert_eq!(raw.mean_counts, [90.0, -190.0, 310.0]);
+        assert_eq!((raw.buffer, raw.spikes), (BufferVerdict::Unknown, 1));
+        // One axis at the end of the range is a rate, and nothing but spikes is nothing.
+        let one = [i16::MIN, -200, 300];
+        assert_eq!(decode_gyro(&answer(1), &bytes([one])).unwrap().spikes, 0);
+        let all = decode_gyro(&registers, &bytes([spike, spike])).unwrap();
+        assert_eq!((all.counts, all.spikes), (spike, 2));
     }
 
     #[test]
     fn without_frames_the_newest_values_count() {
         let stale = decode_gyro(&answer(0xE4), &[]).unwrap();
         assert_eq!(stale.mean_counts, [100.0, -200.0, 300.0]);
+        assert_eq!(stale.buffer, BufferVerdict::Stale);
         assert!(stale.fresh);
         assert!(!decode_gyro(&answer(0), &[]).unwrap().fresh);
     }

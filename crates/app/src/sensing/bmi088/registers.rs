@@ -33,10 +33,12 @@ pub mod gyro {
     pub const POWER: u8 = 0x11;
     pub const POWER_NORMAL: u8 = 0x00;
     pub const SOFT_RESET: u8 = 0x14;
-    /// Any write to it empties the buffer.
+    /// Water mark and tag; a write empties the buffer.
+    pub const FIFO_CONFIG_0: u8 = 0x3D;
     pub const FIFO_CONFIG_1: u8 = 0x3E;
-    /// New frames push out the oldest.
-    pub const FIFO_STREAM: u8 = 0x80;
+    pub const FIFO_BYPASS: u8 = 0x00;
+    /// When it is full it takes no more. In the other mode, STREAM, it is reported to show its axes one place late.
+    pub const FIFO_MODE: u8 = 0x40;
     /// Does not count up in a burst: each byte comes from the buffer.
     pub const FIFO_DATA: u8 = 0x3F;
 }

@@ -24,7 +24,7 @@ const ROBOT: [&str; 1] = [""];
 const CHANNELS: [&str; 4] = ["0-3", "4-7", "8-11", "12-15"];
 
 /// By number.
-pub static LIVE_PAGES: [LivePage; 29] = [
+pub static LIVE_PAGES: [LivePage; 30] = [
     page(0x00, "version", &ROBOT, &system::VERSION),
     page(0x01, "run", &ROBOT, &system::RUN),
     page(0x02, "boot", &ROBOT, &system::BOOT),
@@ -48,6 +48,7 @@ pub static LIVE_PAGES: [LivePage; 29] = [
     page(0x19, "sensors", &ROBOT, &sensors::HEALTH),
     page(0x1A, "rejects", &ROBOT, &sensors::REJECTS),
     page(0x1B, "gyro-bias", &ROBOT, &sensors::GYRO_BIAS),
+    page(0x1C, "gyro-buffer", &ROBOT, &sensors::GYRO_BUFFER),
     page(0x20, "joint", &JOINTS, &motors::JOINT),
     page(0x24, "joint-health", &JOINTS, &motors::JOINT_HEALTH),
     page(0x28, "wheel", &WHEELS, &motors::WHEEL),

@@ -122,6 +122,30 @@ pub const REJECTS: [LiveField; 4] = [
         .saturated),
 ];
 
+/// What was wrong with the gyro's buffer.
+pub const GYRO_BUFFER: [LiveField; 4] = [
+    count!("spikes", "", 12, |live, _| live
+        .diagnostics
+        .imu_status
+        .gyro_buffer
+        .spikes),
+    count!("differences", "", 12, |live, _| live
+        .diagnostics
+        .imu_status
+        .gyro_buffer
+        .differences),
+    count!("resets", "", 12, |live, _| live
+        .diagnostics
+        .imu_status
+        .gyro_buffer
+        .resets),
+    count!("overruns", "", 12, |live, _| live
+        .diagnostics
+        .imu_status
+        .gyro_buffer
+        .overruns),
+];
+
 /// The offset that is taken out.
 pub const GYRO_BIAS: [LiveField; 3] = [
     measure!("x-dps", "deg/s", 16, 1_000, |live, _| bias(live, 0)),
