@@ -53,14 +53,29 @@ impl JointWatch {
 mod tests {
     use super::*;
 
+    /// The second joint stands there.
+    fn at(pos_rad: f32) -> [JointFeedback; 4] {
+        let mut joints = [JointFeedback::default(); 4];
+        joints[1].pos_rad = pos_rad;
+        joints
+    }
+
+    #[test]
+    fn a_fiftieth_of_a_radian_is_noise() {
+        for (moved_rad, turn) in [
+            (0.02, Turn::Still),
+            (-0.02, Turn::Still),
+            (0.021, Turn::Forward),
+            (-0.021, Turn::Back),
+        ] {
+            let reading = JointWatch::default().look(&at(moved_rad))[1];
+            assert_eq!(reading.turn, turn, "{moved_rad}");
+        }
+    }
+
     #[test]
     fn a_turned_joint_shows_which_way() {
         let mut watch = JointWatch::default();
-        let at = |pos_rad| {
-            let mut joints = [JointFeedback::default(); 4];
-            joints[1].pos_rad = pos_rad;
-            joints
-        };
         let turns: Vec<_> = [0.0, 0.3, 0.31, 0.1]
             .map(|pos_rad| watch.look(&at(pos_rad))[1])
             .map(|reading| (reading.pos_mrad, reading.turn))

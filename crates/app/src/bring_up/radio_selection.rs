@@ -41,6 +41,8 @@ mod tests {
         let mut detector = FlickDetector::default();
         let flicks: Vec<_> = [
             -1.0,
+            0.5,
+            0.8,
             0.0,
             0.6,
             0.8,
@@ -55,9 +57,9 @@ mod tests {
         .into_iter()
         .map(|stick| detector.step(stick))
         .collect();
-        let mut expected = [None; 11];
-        expected[3] = Some(Flick::Up);
-        expected[8] = Some(Flick::Down);
+        let mut expected = [None; 13];
+        expected[5] = Some(Flick::Up);
+        expected[10] = Some(Flick::Down);
         assert_eq!(flicks, expected);
     }
 }

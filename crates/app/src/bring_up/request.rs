@@ -145,6 +145,20 @@ mod tests {
     }
 
     #[test]
+    fn no_torque_leaves_it_to_the_stick_and_one_motor_may_be_held() {
+        for (action, expected) in [(0, TrialAction::StickTorque), (1, TrialAction::Hold)] {
+            for motor in 0..6 {
+                let trial = Trial {
+                    motor: TestMotor::from_number(motor).unwrap(),
+                    action: expected,
+                };
+                let request = BringUpRequest::from_fields(3, motor, action, 0);
+                assert_eq!(request, Some(BringUpRequest::OneMotor(trial)));
+            }
+        }
+    }
+
+    #[test]
     fn what_is_no_request_is_none() {
         let nonsense = [
             (4, 0, 0, 0),

@@ -182,3 +182,74 @@ impl DbusParser {
         self.filled = 0;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CENTRED: [u16; 4] = [CENTRE; 4];
+    /// Both switches in the middle.
+    const MIDDLE: u8 = 0b1111;
+
+    /// Four sticks of 11 bits, lowest first, then the right switch and the left one.
+    fn bytes(sticks: [u16; 4], switches: u8, buttons: [u8; 2]) -> [u8; FRAME_LEN] {
+        let mut bits = u64::from(switches) << 44;
+        for (place, stick) in (0..).zip(sticks) {
+            bits |= u64::from(stick) << (11 * place);
+        }
+        let mut bytes = [0; FRAME_LEN];
+        bytes[..6].copy_from_slice(&bits.to_le_bytes()[..6]);
+        bytes[12..14].copy_from_slice(&buttons);
+        bytes
+    }
+
+    #[test]
+    fn a_stick_beyond_its_ends_makes_the_frame_none() {
+        for stick in 0..4 {
+            for (count, is_frame) in [(323, false), (324, true), (1_724, true), (1_725, false)] {
+                let mut sticks = CENTRED;
+                sticks[stick] = count;
+                let parsed = DbusFrame::parse(&bytes(sticks, MIDDLE, [0, 0]));
+                let expected = is_frame.then_some(sticks);
+                assert_eq!(parsed.map(|frame| frame.sticks), expected, "{stick}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_switch_is_up_down_or_in_the_middle_and_a_button_pressed_or_not() {
+        use DbusSwitch::{Down, Middle, Up};
+        let parse = |switches, buttons| DbusFrame::parse(&bytes(CENTRED, switches, buttons));
+        for (code, expected) in [(0, None), (1, Some(Up)), (2, Some(Down)), (3, Some(Middle))] {
+            let right = parse(0b1100 | code, [0, 0]);
+            assert_eq!(right.map(|frame| frame.right_switch), expected);
+            let left = parse(code << 2 | 0b11, [0, 0]);
+            assert_eq!(left.map(|frame| frame.left_switch), expected);
+        }
+        for (buttons, is_frame) in [([1, 1], true), ([2, 0], false), ([0, 2], false)] {
+            assert_eq!(parse(MIDDLE, buttons).is_some(), is_frame, "{buttons:?}");
+        }
+    }
+
+    /// Frames that the parser finds in these bytes, and what it has discarded since boot.
+    fn fed(parser: &mut DbusParser, bytes: &[u8], ts_us: u64) -> (usize, u32) {
+        let mut frames = 0;
+        parser.feed(bytes, ts_us, |_| frames += 1);
+        (frames, parser.discarded_bytes())
+    }
+
+    #[test]
+    fn nothing_counts_between_damage_or_too_many_bytes_and_the_next_silence() {
+        let frame = bytes(CENTRED, MIDDLE, [0, 0]);
+        let mut damaged = DbusParser::new();
+        damaged.reject(18, 1_000_000);
+        assert_eq!(damaged.discarded_bytes(), 18);
+        assert_eq!(fed(&mut damaged, &frame, 1_002_000), (0, 36));
+        assert_eq!(fed(&mut damaged, &frame, 1_014_000), (1, 36));
+        let mut flooded = DbusParser::new();
+        let more = [frame.as_slice(), &frame[..5]].concat();
+        assert_eq!(fed(&mut flooded, &more, 1_000_000), (0, 23));
+        assert_eq!(fed(&mut flooded, &frame, 1_002_000), (0, 41));
+        assert_eq!(fed(&mut flooded, &frame, 1_014_000), (1, 41));
+    }
+}

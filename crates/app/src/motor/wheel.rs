@@ -153,4 +153,99 @@ mod tests {
             assert_eq!(wheel.drive(&command, &config, false, 0).ma(), 0.0);
         }
     }
+
+    /// Angle, rpm, current in counts and temperature, as a report of the first wheel carries them.
+    type Fields = [i16; 4];
+
+    fn report(wheel: &mut Wheel, [angle, rpm, current, temperature]: Fields, ms: u64) -> bool {
+        let ([a, b], [c, d]) = (angle.to_be_bytes(), rpm.to_be_bytes());
+        let [e, f] = current.to_be_bytes();
+        let frame = CanFrame::new(
+            wheel.esc.feedback_id(),
+            [a, b, c, d, e, f, temperature as u8, 0],
+        );
+        assert!(wheel.receive(&frame, 1_000_000 + ms * 1_000));
+        wheel.feedback.frozen
+    }
+
+    fn wheel_told(current_ma: f32) -> Wheel {
+        let mut wheel = Wheel::new(EscId::new(1).unwrap(), 20_000.0);
+        tell(&mut wheel, current_ma);
+        wheel
+    }
+
+    fn tell(wheel: &mut Wheel, current_ma: f32) {
+        let command = WheelCommand { current_ma };
+        wheel.drive(&command, &WheelControllerConfig::default(), true, 0);
+    }
+
+    /// Reports each millisecond; when the first of them is taken for frozen, if any is within a second.
+    fn frozen_ms(told_ma: f32, fields: impl Fn(u64) -> Fields) -> Option<u64> {
+        let mut wheel = wheel_told(told_ma);
+        (0..1_000).find(|ms| report(&mut wheel, fields(*ms), *ms))
+    }
+
+    #[test]
+    fn a_rotor_that_turns_must_show_it_within_50_ms() {
+        for (rpm, expected) in [(59, None), (60, Some(50)), (-60, Some(50)), (-59, None)] {
+            assert_eq!(frozen_ms(0.0, |_| [7, rpm, 0, 30]), expected, "{rpm} rpm");
+        }
+        assert_eq!(frozen_ms(0.0, |ms| [(ms / 49) as i16, 60, 0, 30]), None);
+        assert_eq!(frozen_ms(0.0, |ms| [(ms / 51) as i16, 60, 0, 30]), Some(50));
+    }
+
+    /// 2441 counts are 2980 mA.
+    #[test]
+    fn a_report_that_never_changes_must_agree_with_the_current_sent() {
+        for (told_ma, counts, expected) in [
+            (1_000.0, 0, None),
+            (1_001.0, 0, Some(100)),
+            (-1_001.0, 0, Some(100)),
+            (2_980.0, 2_441, None),
+            (-2_980.0, 2_441, Some(100)),
+        ] {
+            let found = frozen_ms(told_ma, |_| [7, 0, counts, 30]);
+            assert_eq!(found, expected, "{told_ma} mA");
+        }
+        // Any field that changes in time shows that the report is of now.
+        for field in 0..4 {
+            let changing = |every: u64| {
+                frozen_ms(5_000.0, |ms| {
+                    let mut fields = [7, 0, 0, 30];
+                    fields[field] += (ms / every) as i16;
+                    fields
+                })
+            };
+            assert_eq!(changing(99), None, "field {field}");
+            assert_eq!(changing(101), Some(100), "field {field}");
+        }
+    }
+
+    #[test]
+    fn only_another_report_thaws_a_frozen_wheel() {
+        let mut wheel = wheel_told(5_000.0);
+        for ms in 0..=100 {
+            assert_eq!(report(&mut wheel, [7, 0, 0, 30], ms), ms == 100);
+        }
+        tell(&mut wheel, 0.0);
+        assert!(report(&mut wheel, [7, 0, 0, 30], 101));
+        assert!(!report(&mut wheel, [7, 0, 0, 31], 102));
+    }
+
+    #[test]
+    fn a_stall_makes_no_report_older_and_no_wheel_frozen() {
+        for stall_us in [0, 250_000] {
+            let mut wheel = wheel_told(0.0);
+            wheel.after_stall(stall_us);
+            wheel.watch(0, 1_000_000);
+            assert_eq!(wheel.feedback.age_us, u32::MAX, "never heard");
+            for ms in 0..=10 {
+                report(&mut wheel, [7, 60, 0, 30], ms);
+            }
+            wheel.after_stall(stall_us);
+            wheel.watch(0, 1_261_000);
+            assert_eq!(wheel.feedback.age_us, 251_000 - stall_us);
+            assert_eq!(report(&mut wheel, [7, 60, 0, 30], 261), stall_us == 0);
+        }
+    }
 }

@@ -1,5 +1,7 @@
 //! A group of settings as a record of the store, and back (docs/parameters.md).
 
+use core::cmp::Ordering;
+
 use super::{Record, RecordId, saver::Position};
 use crate::{
     domain::RobotConfig,
@@ -58,10 +60,10 @@ fn migrate(
     mut config: RobotConfig,
 ) -> Result<RobotConfig, Refusal> {
     let (held, known) = (record.values.len(), group.parameters.len());
-    let fits = if record.version == group.version {
-        held == known
-    } else {
-        record.version < group.version && held < known
+    let fits = match record.version.cmp(&group.version) {
+        Ordering::Less => held < known,
+        Ordering::Equal => held == known,
+        Ordering::Greater => false,
     };
     if !fits {
         return Err(Refusal::WrongLength);

@@ -118,3 +118,18 @@ pub enum FlashRequest {
     /// Everything on the chip waits for 0.25 to 0.5 s.
     Erase = 2,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_are_those_of_the_wire_and_no_others() {
+        let states: Vec<_> = (0..=u8::MAX).filter_map(ParamState::from_code).collect();
+        assert_eq!(states, ParamState::ALL);
+        let errors: Vec<_> = (0..=u8::MAX).filter_map(ParamError::from_code).collect();
+        assert_eq!(errors, ParamError::ALL);
+        assert_eq!(ParamState::from_code(5), Some(ParamState::BackingOff));
+        assert_eq!(ParamError::from_code(4), Some(ParamError::Full));
+    }
+}

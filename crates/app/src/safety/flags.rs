@@ -177,3 +177,68 @@ impl defmt::Format for SafetyFlags {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_flag_has_the_bit_of_its_place_in_the_table() {
+        for (place, (flag, name)) in FLAG_NAMES.iter().enumerate() {
+            assert_eq!(flag.bits(), 1 << place, "{name}");
+        }
+    }
+
+    /// As docs/safety.md has them.
+    #[test]
+    fn the_sets_hold_what_is_documented() {
+        let [can1, can2] = SafetyFlags::BUS_STOP;
+        let sets: [(SafetyFlags, &[&str]); 6] = [
+            (
+                SafetyFlags::GLOBAL_STOP,
+                &[
+                    "remote-lost",
+                    "remote-failsafe",
+                    "remote-quality",
+                    "e-stop",
+                    "estimate-invalid",
+                    "imu-stale",
+                    "imu-errors",
+                    "mag-errors",
+                    "task-late",
+                    "tilt",
+                    "battery-empty",
+                ],
+            ),
+            (SafetyFlags::WHEELS_STOP, &["wheel-hot", "wheel-frozen"]),
+            (
+                SafetyFlags::JOINTS_STOP,
+                &[
+                    "joint-hot",
+                    "joint-fault",
+                    "joint-silent",
+                    "joint-frozen",
+                    "joint-not-ready",
+                ],
+            ),
+            (can1, &["can1-fault", "can1-congested"]),
+            (can2, &["can2-fault", "can2-congested"]),
+            (
+                SafetyFlags::LATCHING,
+                &[
+                    "imu-errors",
+                    "mag-errors",
+                    "tilt",
+                    "battery-empty",
+                    "joint-fault",
+                    "wheel-frozen",
+                    "joint-frozen",
+                    "joint-not-ready",
+                ],
+            ),
+        ];
+        for (set, names) in sets {
+            assert!(set.names().eq(names.iter().copied()), "{names:?}");
+        }
+    }
+}

@@ -42,3 +42,15 @@ impl Refusal {
         Self::ALL.into_iter().find(|reason| reason.code() == code)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_are_those_of_the_wire_and_no_others() {
+        let reasons: Vec<_> = (0..=u8::MAX).filter_map(Refusal::from_code).collect();
+        assert_eq!(reasons, Refusal::ALL);
+        assert_eq!(Refusal::from_code(7), Some(Refusal::Inconsistent));
+    }
+}

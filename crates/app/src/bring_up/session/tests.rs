@@ -101,6 +101,26 @@ fn off_until_somebody_asks() {
     assert!(!bench.bring_up.blocks_arming());
 }
 
+/// The first step blocks arming, the others try motors, which flash must not interrupt.
+#[test]
+fn each_step_either_blocks_arming_or_tries_motors() {
+    let trial = Trial {
+        motor: TestMotor::Wheel(0),
+        action: TrialAction::StickTorque,
+    };
+    for (request, blocks_arming, tries_motors) in [
+        (BringUpRequest::Off, false, false),
+        (BringUpRequest::ReadOnly, true, false),
+        (BringUpRequest::ZeroTorque, false, true),
+        (BringUpRequest::OneMotor(trial), false, true),
+    ] {
+        let mut bring_up = BringUp::default();
+        bring_up.request(request);
+        assert_eq!(bring_up.blocks_arming(), blocks_arming, "{request:?}");
+        assert_eq!(bring_up.tries_motors(), tries_motors, "{request:?}");
+    }
+}
+
 #[test]
 fn the_gesture_starts_reading_only() {
     let mut bench = Bench::new();
@@ -115,7 +135,7 @@ fn without_every_control_in_its_place_the_gesture_is_none() {
         |bench| bench.operator.e_stop = false,
         |bench| bench.operator.disabled = false,
         |bench| bench.remote.wz = -1.0,
-        |bench| bench.remote.wz = 0.8,
+        |bench| bench.remote.wz = 0.9,
         |bench| bench.remote_age_us = 50_001,
         |bench| bench.arming = ArmingState::Armed,
     ];

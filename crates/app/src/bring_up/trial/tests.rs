@@ -183,6 +183,8 @@ fn a_wheel_faster_than_ten_radians_a_second_is_let_go() {
 #[test]
 fn a_silent_motor_gets_nothing() {
     let mut bench = Bench::held(4, TrialAction::StickTorque);
+    bench.motor.joints[2].age_us = 50_000;
+    assert_ne!(bench.tick(), ChassisCommand::default());
     bench.motor.joints[2].age_us = 50_001;
     assert_eq!(bench.tick(), ChassisCommand::default());
     assert_eq!(bench.run.state(), TrialState::Silent);
@@ -210,6 +212,12 @@ fn a_held_joint_pulls_back_softly() {
     bench.motor.joints[0].pos_rad = 0.75;
     let torque_nm = motor_torque_nm(&bench.tick().joints[0], 0.75, 0.0);
     assert!((torque_nm + 0.25).abs() < 1e-3, "{torque_nm}");
+    // However far, it pulls with what it may, either way.
+    for (pos_rad, expected_nm) in [(12.0, -0.45), (-12.0, 0.45)] {
+        bench.motor.joints[0].pos_rad = pos_rad;
+        let torque_nm = motor_torque_nm(&bench.tick().joints[0], pos_rad, 0.0);
+        assert!((torque_nm - expected_nm).abs() < 1e-3, "{torque_nm}");
+    }
 }
 
 #[test]

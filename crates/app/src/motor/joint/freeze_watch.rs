@@ -63,3 +63,108 @@ fn is_torque_odd(report: &Report, targets: &MitTargets) -> bool {
         + targets.torque_nm;
     (asked_nm - motion.torque_nm).abs() > ODD_TORQUE_NM
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{
+        super::{super::mit::MitReport, dialect::Status},
+        *,
+    };
+
+    fn report(position_code: u16, vel_rps: f32, temperature_c: f32) -> Report {
+        Report {
+            motion: MitReport {
+                position_code,
+                pos_rad: 0.1,
+                vel_rps,
+                torque_nm: 0.0,
+            },
+            temperature_c,
+            status: Status::Enabled,
+        }
+    }
+
+    fn asks(torque_nm: f32) -> Option<MitTargets> {
+        Some(MitTargets {
+            torque_nm,
+            ..MitTargets::default()
+        })
+    }
+
+    /// A report each millisecond; when the first of them is taken for frozen, if any is within a second.
+    fn frozen_ms(obeyed: Option<MitTargets>, report: impl Fn(u64) -> Report) -> Option<u64> {
+        let mut watch = FreezeWatch::default();
+        watch.restart(0);
+        (1..1_000).find(|ms| {
+            let (last, now) = (report(ms - 1), report(*ms));
+            watch.is_frozen(&last, &now, obeyed.as_ref(), ms * 1_000)
+        })
+    }
+
+    #[test]
+    fn a_joint_that_turns_must_show_it_within_50_ms() {
+        for (vel_rps, expected) in [
+            (0.5, None),
+            (0.51, Some(50)),
+            (-0.51, Some(50)),
+            (-0.5, None),
+        ] {
+            let found = frozen_ms(None, |_| report(7, vel_rps, 30.0));
+            assert_eq!(found, expected, "{vel_rps} rad/s");
+        }
+        assert_eq!(
+            frozen_ms(None, |ms| report((ms / 49) as u16, 2.0, 30.0)),
+            None
+        );
+    }
+
+    #[test]
+    fn a_report_that_never_changes_must_agree_with_the_command() {
+        for (obeyed, expected) in [
+            (None, None),
+            (asks(1.0), None),
+            (asks(1.01), Some(100)),
+            (asks(-1.01), Some(100)),
+        ] {
+            let found = frozen_ms(obeyed, |_| report(7, 0.0, 30.0));
+            assert_eq!(found, expected, "{obeyed:?}");
+        }
+        let warms = |ms: u64| report(7, 0.0, (ms / 99) as f32);
+        assert_eq!(frozen_ms(asks(5.0), warms), None);
+        let creeps = |ms: u64| report((ms / 99) as u16, 0.0, 30.0);
+        assert_eq!(frozen_ms(asks(5.0), creeps), None);
+    }
+
+    #[test]
+    fn only_another_report_or_silence_thaws_a_frozen_joint() {
+        let (old, new) = (report(7, 0.0, 30.0), report(7, 0.0, 31.0));
+        let mut watch = FreezeWatch::default();
+        let targets = asks(5.0);
+        assert!(watch.is_frozen(&old, &old, targets.as_ref(), 100_000));
+        assert!(watch.is_frozen(&old, &old, None, 101_000));
+        assert!(!watch.is_frozen(&old, &new, None, 102_000));
+        assert!(!watch.is_frozen(&new, &new, targets.as_ref(), 201_000));
+        watch.restart(201_000);
+        assert!(!watch.is_frozen(&new, &new, targets.as_ref(), 300_000));
+        assert!(watch.is_frozen(&new, &new, targets.as_ref(), 301_000));
+        watch.restart(302_000);
+        assert!(!watch.is_frozen(&new, &new, None, 303_000));
+    }
+
+    /// 10 · (0.3 − 0.1) + 2 · (0.5 − 1.0) + 0.25 = 1.25 N·m; 1 more or less is not odd.
+    #[test]
+    fn the_torque_asked_for_is_the_motor_s_own_formula() {
+        let targets = MitTargets {
+            pos_rad: 0.3,
+            vel_rps: 0.5,
+            kp: 10.0,
+            kd: 2.0,
+            torque_nm: 0.25,
+        };
+        for (torque_nm, odd) in [(0.2, true), (0.3, false), (2.2, false), (2.3, true)] {
+            let mut report = report(7, 1.0, 30.0);
+            report.motion.torque_nm = torque_nm;
+            assert_eq!(is_torque_odd(&report, &targets), odd, "{torque_nm}");
+        }
+    }
+}

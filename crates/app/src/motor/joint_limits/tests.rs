@@ -52,6 +52,45 @@ fn a_modest_command_passes_as_it_is() {
     assert_eq!(limited(&command, AT_REST, &CONFIG, MOTOR), command);
 }
 
+/// Infinity ends at the limits, beside zeros and other infinities too; only what is no number is refused.
+#[test]
+fn infinite_fields_and_limits_are_clamped_not_refused() {
+    const INF: f32 = f32::INFINITY;
+    // All of them infinite, and each of them zero among the others.
+    for zero in 0..=5 {
+        let field = |index| if index == zero { 0.0 } else { INF };
+        let command = mit(field(0), field(1), field(2), field(3), field(4));
+        let got = limited(&command, AT_REST, &CONFIG, MOTOR);
+        assert_eq!(got.mode, JointMode::Mit, "{command:?}");
+        let config = JointConfig {
+            max_torque_nm: field(0),
+            max_speed_rps: field(1),
+            max_kp: field(2),
+            max_kd: field(3),
+            ..CONFIG
+        };
+        let got = limited(&mit(0.1, 0.0, 1.0, 0.0, 0.0), AT_REST, &config, MOTOR);
+        assert_eq!(got.mode, JointMode::Mit, "{config:?}");
+        let slide = JointCommand {
+            mode: JointMode::PositionSpeed,
+            ..command
+        };
+        let got = limited(&slide, AT_REST, &CONFIG, MOTOR);
+        assert_eq!(got.mode, JointMode::PositionSpeed, "{slide:?}");
+    }
+}
+
+/// No torque is asked for and none allowed: nothing to scale.
+#[test]
+fn a_joint_without_torque_keeps_its_gains_where_they_give_none() {
+    let config = JointConfig {
+        max_torque_nm: 0.0,
+        ..CONFIG
+    };
+    let command = mit(0.0, 0.0, 20.0, 0.5, 0.0);
+    assert_eq!(limited(&command, AT_REST, &config, MOTOR), command);
+}
+
 /// 100 · 0.5 + 1 · 10 − 0 = 60 N·m is twenty times the limit.
 #[test]
 fn too_much_torque_is_scaled_down_as_a_whole() {

@@ -160,6 +160,14 @@ fn schedules_are_short_powers_of_two() {
 }
 
 #[test]
+fn a_schedule_s_period_is_that_many_ticks_of_a_millisecond() {
+    for (every, period_s) in [(1, 0.001), (2, 0.002), (8, 0.008)] {
+        let schedule = Schedule::new(every, 0).unwrap();
+        assert!((schedule.period_s() - period_s).abs() < 1e-9);
+    }
+}
+
+#[test]
 fn both_layouts_stop_alike() {
     assert_eq!(RS00_LAYOUT.safe_frames(), ROBOT_LAYOUT.safe_frames());
 }

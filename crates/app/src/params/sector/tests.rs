@@ -63,6 +63,21 @@ fn only_a_head_with_two_wrong_copies_is_ruined() {
     assert!(!head_with(0, &stuck).is_ruined());
 }
 
+/// Two stuck bits a word are nothing, in a cleared word as in a blank one; three are something.
+#[test]
+fn a_head_holds_something_beyond_two_stuck_bits_a_word() {
+    for (word, holds) in [
+        (0x0000_0003_u32, false),
+        (0x0000_0007, true),
+        (0xFFFF_FFFC, false),
+        (0xFFFF_FFF8, true),
+    ] {
+        let mut copies = [0; 8];
+        copies[..4].copy_from_slice(&word.to_le_bytes());
+        assert_eq!(holds_something(&copies), holds, "{word:x}");
+    }
+}
+
 #[test]
 fn slots_lie_128_bytes_apart_and_sectors_16_kib() {
     assert_eq!(offset(0, 1), 0x80);

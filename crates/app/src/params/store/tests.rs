@@ -1,7 +1,10 @@
 use embedded_storage::nor_flash::{ErrorType, NorFlashErrorKind, ReadNorFlash};
 
 use super::*;
-use crate::params::{RecordId, sector::offset};
+use crate::params::{
+    RecordId,
+    sector::{CLEAN, offset},
+};
 
 const SIZE: usize = 3 * 0x4000;
 
@@ -370,4 +373,32 @@ fn the_backup_of_a_broken_head_is_not_erased() {
     let mut store = Store::open(&mut cells);
     assert_eq!(store.report().generation, 1);
     assert_eq!(values(&mut store), [(1, 127)]);
+}
+
+#[test]
+fn a_sector_is_clean_only_if_all_of_it_is_blank() {
+    let mut cells = Cells::blank();
+    cells.bytes[..CLEAN.len()].copy_from_slice(&CLEAN);
+    assert_eq!(Store::open(&mut cells).next(false), FlashRequest::None);
+    cells.bytes[0x3FFF] = 0x7F;
+    assert_eq!(Store::open(&mut cells).next(false), FlashRequest::Erase);
+    // Only the head, which was cleared before, is not blank after the erase.
+    let mut cells = Cells::blank();
+    cells.worn = vec![0, 1, 2];
+    let mut store = Store::open(&mut cells);
+    assert_eq!(store.work(None), Err(ParamError::NotErased));
+}
+
+/// Word 3 of the last slot was torn, and nothing after it was programmed.
+#[test]
+fn what_a_cut_left_of_a_record_is_cleared_for_good() {
+    let mut cells = Cells::blank();
+    save(&mut Store::open(&mut cells), &record(1, 0x55));
+    let sector = Store::open(&mut cells).active_sector().unwrap().0;
+    let slot = offset(sector, 1) as usize;
+    cells.bytes[slot + 12..slot + 128].fill(0xFF);
+    cells.bytes[slot + 12] = 0xFE;
+    tidy(&mut Store::open(&mut cells));
+    assert_eq!(cells.bytes[slot + 4..slot + 120], [0; 116]);
+    assert_eq!(values(&mut Store::open(&mut cells)), []);
 }

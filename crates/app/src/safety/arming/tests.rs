@@ -234,3 +234,13 @@ fn a_moment_of_doubt_disarms_and_is_no_flip_of_the_switch() {
     bench.flip_on();
     assert_eq!(bench.run(1).state, ArmingState::Armed);
 }
+
+#[test]
+fn each_blocker_has_a_bit_of_its_own_and_the_table_is_in_their_order() {
+    let bits = BLOCKER_NAMES.map(|(blocker, _)| blocker.bits());
+    assert!(bits.iter().all(|bits| bits.count_ones() == 1), "{bits:x?}");
+    assert!(
+        bits.is_sorted_by(|lower, higher| lower < higher),
+        "{bits:x?}"
+    );
+}

@@ -10,6 +10,8 @@ struct Bench {
     estimate: StateEstimate,
     motor: MotorFeedback,
     health: SystemHealth,
+    imu_age_us: u64,
+    command_age_us: u64,
     now_us: u64,
 }
 
@@ -46,6 +48,8 @@ impl Bench {
                 battery_v: 24.0,
                 ..SystemHealth::default()
             },
+            imu_age_us: 5_000,
+            command_age_us: 10_000,
             now_us: 10_000_000,
         };
         bench.tick();
@@ -59,11 +63,11 @@ impl Bench {
                 config: &self.config,
                 remote: &self.remote,
                 operator: &self.operator,
-                imu_ts_us: self.now_us - 5_000,
+                imu_ts_us: self.now_us - self.imu_age_us,
                 estimate: &self.estimate,
                 motor: &self.motor,
                 motor_timeout_us: 50_000,
-                command_ts_us: self.now_us - 10_000,
+                command_ts_us: self.now_us - self.command_age_us,
                 health: &self.health,
             },
             self.now_us,
@@ -159,6 +163,52 @@ fn accumulated_sensor_errors_stop_everything_until_cleared() {
         bench.gesture(false);
         assert_eq!(bench.tick().flags, SafetyFlags::NONE);
     }
+}
+
+/// As shipped: what is exactly at its limit is allowed, one more is not.
+#[test]
+fn limits_are_the_last_that_is_allowed() {
+    type Set = fn(&mut Bench, u32);
+    let cases: [(Set, SafetyFlags); 7] = [
+        (
+            |bench, more| bench.remote.age_us = 100_000 + more,
+            SafetyFlags::REMOTE_LOST,
+        ),
+        (
+            |bench, more| bench.imu_age_us = u64::from(25_000 + more),
+            SafetyFlags::IMU_STALE,
+        ),
+        (
+            |bench, more| bench.command_age_us = u64::from(50_000 + more),
+            SafetyFlags::COMMAND_STALE,
+        ),
+        (
+            |bench, more| bench.motor.wheels[0].age_us = 50_000 + more,
+            SafetyFlags::WHEEL_LEFT_SILENT,
+        ),
+        (
+            |bench, more| bench.motor.wheels[1].age_us = 50_000 + more,
+            SafetyFlags::WHEEL_RIGHT_SILENT,
+        ),
+        (
+            |bench, more| bench.motor.joints[3].age_us = 50_000 + more,
+            SafetyFlags::JOINT_SILENT,
+        ),
+        (
+            |bench, more| bench.health.can[0].tx_failures_in_row = 20 + more,
+            SafetyFlags::CAN1_CONGESTED,
+        ),
+    ];
+    for (set, flag) in cases {
+        assert_eq!(judge(|bench| set(bench, 0)).flags, SafetyFlags::NONE);
+        assert_eq!(judge(|bench| set(bench, 1)).flags, flag);
+    }
+}
+
+#[test]
+fn before_the_first_frame_a_link_has_no_quality() {
+    let silent = judge(|bench| (bench.remote.frames, bench.remote.quality) = (0, 0.0));
+    assert_eq!(silent.flags, SafetyFlags::NONE);
 }
 
 #[test]

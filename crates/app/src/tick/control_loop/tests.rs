@@ -1,11 +1,17 @@
 use super::*;
-use crate::domain::StandardId;
+use crate::{
+    domain::StandardId,
+    tick::robot_loop::{self, RobotLoop},
+};
 
-/// A control loop on a level, still robot that hears its two wheels; in time for everything.
+/// The firmware's loop on a level, still robot that hears its two wheels.
 struct Bench {
-    control: ControlLoop,
+    control: RobotLoop,
     remote: RemoteUpdate,
+    mag: MagState,
+    logic: LogicBus,
     health: SystemHealth,
+    params: ParamStatus,
     /// Of the wheels, forward positive.
     rpm: i16,
     now_us: u64,
@@ -14,9 +20,17 @@ struct Bench {
 impl Bench {
     fn new() -> Self {
         Self {
-            control: ControlLoop::new(RobotConfig::default(), UserController::default()),
+            control: RobotLoop::with_diagnostics(
+                &ROBOT_LAYOUT,
+                RobotConfig::default(),
+                UserController::default(),
+                Box::leak(Box::default()),
+            ),
             remote: RemoteUpdate::default(),
+            mag: MagState::default(),
+            logic: LogicBus::default(),
             health: SystemHealth::default(),
+            params: ParamStatus::default(),
             rpm: 0,
             now_us: 1_000_000,
         }
@@ -24,7 +38,7 @@ impl Bench {
 
     fn hear(&mut self, bus: BusId, id: u16, payload: [u8; 8]) {
         let frame = CanFrame::new(StandardId::new(id).unwrap(), payload);
-        self.control.on_can_frame(bus, &frame, self.now_us);
+        robot_loop::on_can_frame(&mut self.control, bus, &frame, self.now_us);
     }
 
     fn tick(&mut self) -> ControlOutputs<'_> {
@@ -43,14 +57,14 @@ impl Bench {
         let inputs = ControlInputs {
             remote: &self.remote,
             imu: &imu,
-            mag: &MagState::default(),
-            logic: &LogicBus::default(),
+            mag: &self.mag,
+            logic: &self.logic,
             health: &self.health,
-            params: &ParamStatus::default(),
+            params: &self.params,
             flash_request: FlashRequest::None,
             watchdog: WatchdogPeriod::Short,
         };
-        self.control.tick(&inputs, self.now_us)
+        robot_loop::tick(&mut self.control, &inputs, self.now_us)
     }
 
     fn run(&mut self, ticks: u32) -> ControlOutputs<'_> {
@@ -105,4 +119,38 @@ fn the_estimator_takes_new_wheels() {
     let (before, after) = (speed_mps(false), speed_mps(true));
     assert!((0.3..0.35).contains(&before), "{before} m/s");
     assert!((after / before - 2.0).abs() < 0.05, "{before}, {after} m/s");
+}
+
+#[test]
+fn diagnostics_show_the_newest_of_every_producer() {
+    let mut bench = Bench::new();
+    for ts_us in 1..=3 {
+        bench.remote.state.ts_us = ts_us;
+        bench.remote.operator.ts_us = ts_us;
+        bench.mag.ts_us = ts_us;
+        bench.logic.ts_us = ts_us;
+        bench.health.late_tasks.status = ts_us == 2;
+        let late_tasks = bench.health.late_tasks;
+        let seen = bench.tick().diagnostics;
+        assert_eq!(seen.remote.ts_us, ts_us);
+        assert_eq!(seen.operator.ts_us, ts_us);
+        assert_eq!(seen.sensors.mag.ts_us, ts_us);
+        assert_eq!(seen.logic.ts_us, ts_us);
+        assert_eq!(seen.late_tasks, late_tasks);
+        let (ts_us, now_us) = (seen.ts_us, bench.now_us);
+        assert_eq!(ts_us, now_us);
+    }
+}
+
+#[test]
+fn what_changes_slowly_is_renewed_every_tenth_tick() {
+    let mut bench = Bench::new();
+    while !bench.tick().diagnostics.tick.count.is_multiple_of(10) {}
+    bench.health.battery_v = 25.0;
+    bench.params.save_ok = 7;
+    for ms in 1..=10 {
+        let seen = bench.tick().diagnostics;
+        let is_new = (seen.battery_v == 25.0, seen.params.save_ok == 7);
+        assert_eq!(is_new, (ms == 10, ms == 10), "{ms} ms");
+    }
 }

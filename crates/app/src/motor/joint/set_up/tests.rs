@@ -167,12 +167,12 @@ fn silence_starts_the_set_up_anew_except_after_a_write() {
     bench.slot(false);
     assert_eq!(bench.orders().last(), Some(&(0x55, 9)));
     let written_us = bench.now_us;
-    bench.set_up.on_silence(written_us + 290_000);
+    bench.set_up.on_silence(written_us + 299_999);
     assert_eq!(
         bench.set_up.expected(),
         Expected::Register(Register::Timeout)
     );
-    bench.set_up.on_silence(written_us + 310_000);
+    bench.set_up.on_silence(written_us + 300_000);
     assert_eq!(bench.set_up.expected(), Expected::Report);
 }
 
@@ -197,6 +197,15 @@ fn an_rs00_is_stopped_asked_for_faults_and_told_its_mode() {
     set_up.on_no_fault();
     assert_eq!(last_bytes(&mut set_up, 15_000), Some((2, 0xFC)));
     assert!(!set_up.is_done());
+    // It fell silent: all over again. Silence while it is being stopped changes nothing.
+    set_up.on_silence(17_000);
+    assert_eq!(last_bytes(&mut set_up, 17_000), Some((0xFF, 0xFD)));
+    set_up.on_silence(19_000);
+    assert_eq!(last_bytes(&mut set_up, 19_000), None);
+    set_up.on_report(Status::Working);
+    last_bytes(&mut set_up, 21_000);
+    set_up.on_no_fault();
+    last_bytes(&mut set_up, 23_000);
     set_up.on_report(Status::Working);
     assert!(set_up.is_done());
 }
