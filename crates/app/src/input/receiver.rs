@@ -243,6 +243,33 @@ mod tests {
         }
     }
 
+    /// 7 ms apart are 142.857 Hz; a frame 10 ms after the last, 100 Hz, counts a tenth.
+    #[test]
+    fn the_frame_rate_is_smoothed() {
+        let mut bench = Bench::sbus();
+        for (pause_us, rate_hz) in [(0, 0.0), (0, 142.857), (0, 142.857), (3_000, 138.571)] {
+            bench.now_us += pause_us;
+            bench.frame(false);
+            let found_hz = bench.updates.last().unwrap().diagnostics.frame_rate_hz;
+            assert!((found_hz - rate_hz).abs() < 0.01, "{found_hz} Hz");
+        }
+    }
+
+    /// Byte 23: bit 2 = frame lost, bit 3 = failsafe.
+    #[test]
+    fn a_frame_that_did_not_come_over_the_air_is_no_sign_of_life() {
+        for (flags, alive) in [(0, true), (1 << 2, false), (1 << 3, false), (3 << 2, false)] {
+            let mut frame = SBUS_CENTRED;
+            frame[23] = flags;
+            let mut receiver = RemoteReceiver::new(RemoteFormat::Sbus, RemoteMapping::default());
+            let mut good_ts_us = Vec::new();
+            receiver.feed(&frame, 1_000_000, |update| {
+                good_ts_us.push(update.diagnostics.good_ts_us);
+            });
+            assert_eq!(good_ts_us, [if alive { 1_000_000 } else { 0 }], "{flags:b}");
+        }
+    }
+
     /// Wherever the line splits a frame and whichever part is damaged.
     #[test]
     fn half_a_damaged_frame_spoils_the_other_half() {
