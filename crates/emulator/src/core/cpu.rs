@@ -21,6 +21,7 @@ use crate::{
     soc::{bus::Soc, peripheral::Unmodelled, reset::ResetCause},
 };
 
+mod alignment;
 mod block_costs;
 mod context;
 mod debug_halt;
@@ -86,6 +87,8 @@ struct Block {
     /// Not yet added to the counters.
     instructions: u16,
     cycles: u16,
+    /// Registers that must be multiples of four when it has run, a bit each.
+    aligned_after: u16,
 }
 
 /// What the engine's hooks share with the run loop.
@@ -122,6 +125,8 @@ pub struct Cpu {
     asleep: Option<SleepKind>,
 }
 
+/// Past every address: the engine would stop where it is told to end as if there were a WFI.
+const NOWHERE: u64 = 1 << 32;
 const ENTRY_CYCLES: u64 = 12;
 const RETURN_CYCLES: u64 = 12;
 const TAIL_CHAIN_CYCLES: u64 = 6;
@@ -275,10 +280,15 @@ impl Cpu {
     /// Lets translated code run once, then does what it stopped for.
     fn execute(&mut self) -> Result<Option<Pause>, Halt> {
         let pc = self.pc();
-        let result = self.engine.emu_start(u64::from(pc | 1), 0, 0, 0);
+        let result = self.engine.emu_start(u64::from(pc | 1), NOWHERE, 0, 0);
+        let aligned = alignment::held_after(&mut self.engine);
         let state = self.state_mut();
         state.settle();
-        let stop = state.stop.take();
+        let stop = match state.stop.take() {
+            stop @ Some(Stop::Reset(_) | Stop::Unmodelled(_)) => stop,
+            _ if !aligned => Some(Stop::Fault(Fault::Unaligned)),
+            stop => stop,
+        };
         match (stop, result) {
             (Some(Stop::Interrupt | Stop::Limit | Stop::Standstill), _) => Ok(None),
             (Some(Stop::ExceptionReturn(code)), _) => {
@@ -301,7 +311,7 @@ impl Cpu {
             (Some(Stop::Reset(cause)), _) => Ok(Some(Pause::Reset(cause))),
             (Some(Stop::Unmodelled(access)), _) => Err(self.halt_in_block(access.to_string())),
             (Some(Stop::Engine(what)), _) => Err(self.halt(what)),
-            (None, Ok(())) => Ok(self.fall_asleep(SleepKind::Interrupt)),
+            (None, Ok(())) => self.wait_for_interrupt(),
             (None, Err(uc_error::INSN_INVALID)) => self.hint_or_undefined(),
             (None, Err(uc_error::EXCEPTION)) => self.raise(Fault::InvalidState).map(|()| None),
             (None, Err(uc_error::FETCH_PROT)) => self.fetch_forbidden().map(|()| None),
@@ -328,6 +338,7 @@ impl Cpu {
         match u16::from_le_bytes(before) {
             WFE | WFE_W if at_block_end => Ok(self.wait_for_event()),
             YIELD | YIELD_W if at_block_end => Ok(None),
+            _ if !self.is_thumb() => self.raise(Fault::InvalidState).map(|()| None),
             _ => self.raise(Fault::UndefinedInstruction).map(|()| None),
         }
     }

@@ -1,5 +1,6 @@
 //! Cortex-M4F: instruction execution through unicorn-engine; exceptions, NVIC, SCB, SysTick and DWT here.
 
+mod alignment;
 pub mod clock;
 pub mod cost;
 pub mod cpu;

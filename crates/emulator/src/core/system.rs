@@ -36,7 +36,12 @@ pub struct System {
 const CCR_STKALIGN: u32 = 1 << 9;
 const CCR_DIV_0_TRP: u32 = 1 << 4;
 const CCR_UNALIGN_TRP: u32 = 1 << 3;
+const SCR_SLEEPONEXIT: u32 = 1 << 1;
+const SCR_SLEEPDEEP: u32 = 1 << 2;
 const SCR_SEVONPEND: u32 = 1 << 4;
+const CCR_USERSETMPEND: u32 = 1 << 1;
+/// Software trigger interrupt register.
+const STIR: u32 = 0xE000_EF00;
 const CPACR_FPU: u32 = 0xF << 20;
 /// ASPEN and LSPEN: automatic state preservation, lazily.
 const FPCCR_RESET: u32 = 0xC000_0000;
@@ -130,9 +135,7 @@ impl System {
                 self.systick.write_value(around.cycles);
                 true
             }
-            r @ (0xE000_E100..=0xE000_E4EF | 0xE000_EF00) => {
-                self.write_nvic(r, access, value, around)
-            }
+            r @ (0xE000_E100..=0xE000_E4EF | STIR) => self.write_nvic(r, access, value, around),
             r @ (0xE000_ED00..=0xE000_ED94 | 0xE000_EF34..=0xE000_EF44) => {
                 self.write_scb(r, access, value)
             }
@@ -148,6 +151,20 @@ impl System {
     /// CCR.STKALIGN: exception frames start at multiples of eight.
     pub fn aligns_stack(&self) -> bool {
         self.ccr & CCR_STKALIGN != 0
+    }
+
+    pub fn sleeps_on_exit(&self) -> bool {
+        self.scr & SCR_SLEEPONEXIT != 0
+    }
+
+    /// Sleep is Stop or Standby mode.
+    pub fn sleeps_deeply(&self) -> bool {
+        self.scr & SCR_SLEEPDEEP != 0
+    }
+
+    /// Without privilege only STIR may be written, and that if CCR allows it (ARMv7-M ARM B3.2.26).
+    pub fn may_be_written_unprivileged(&self, addr: u32) -> bool {
+        addr == STIR && self.ccr & CCR_USERSETMPEND != 0
     }
 
     /// SCR.SEVONPEND: a new pending interrupt is an event.

@@ -1,6 +1,7 @@
-//! Costs of the blocks seen so far, looked up on every block.
+//! What is known of the blocks seen so far, looked up on every block: cost, and accesses that must be aligned.
 
 use crate::core::{
+    alignment::{WordAccesses, word_accesses},
     cost::{BlockCost, block_cost},
     memory::FLASH,
 };
@@ -13,34 +14,56 @@ struct Slot {
     start: u32,
     size: u32,
     cost: BlockCost,
+    /// Where its accesses stand among all; 0 for none.
+    accesses: u16,
 }
 
 /// A direct-mapped cache for code in flash; code elsewhere may change under it and is costed anew each time.
 pub(super) struct BlockCosts {
     slots: Vec<Slot>,
+    accesses: Vec<WordAccesses>,
 }
 
 impl Default for BlockCosts {
     fn default() -> Self {
         Self {
             slots: vec![Slot::default(); SLOTS],
+            accesses: vec![WordAccesses::default()],
         }
     }
 }
 
 impl BlockCosts {
-    pub(super) fn known(&self, start: u32, size: u32) -> Option<BlockCost> {
+    pub(super) fn known(&self, start: u32, size: u32) -> Option<(BlockCost, WordAccesses)> {
         let slot = &self.slots[slot_of(start)];
-        (slot.start == start && slot.size == size).then_some(slot.cost)
+        let known = slot.start == start && slot.size == size;
+        known.then(|| (slot.cost, self.accesses[usize::from(slot.accesses)]))
     }
 
-    pub(super) fn learn(&mut self, start: u32, code: &[u8]) -> BlockCost {
-        let cost = block_cost(code);
+    pub(super) fn learn(&mut self, start: u32, code: &[u8]) -> (BlockCost, WordAccesses) {
+        let (cost, accesses) = (block_cost(code), word_accesses(code));
         let size = code.len() as u32;
-        if FLASH.contains(start, size) {
-            self.slots[slot_of(start)] = Slot { start, size, cost };
+        if FLASH.contains(start, size)
+            && let Some(accesses) = self.keep(accesses)
+        {
+            self.slots[slot_of(start)] = Slot {
+                start,
+                size,
+                cost,
+                accesses,
+            };
         }
-        cost
+        (cost, accesses)
+    }
+
+    /// `None` if there is no room; the block is looked at anew each time then.
+    fn keep(&mut self, accesses: WordAccesses) -> Option<u16> {
+        if accesses == WordAccesses::default() {
+            return Some(0);
+        }
+        let place = u16::try_from(self.accesses.len()).ok()?;
+        self.accesses.push(accesses);
+        Some(place)
     }
 }
 

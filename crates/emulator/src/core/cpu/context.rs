@@ -14,6 +14,7 @@ const XPSR_THUMB: u32 = 1 << 24;
 /// In a stacked xPSR: the frame starts four bytes below the old stack pointer's word.
 const XPSR_PADDED: u32 = 1 << 9;
 const XPSR_FLAGS: u32 = 0xF80F_0000;
+const CONTROL_NPRIV: u32 = 1;
 const CONTROL_SPSEL: u32 = 1 << 1;
 /// FPCA, and the engine's twin of it (SFPA) for its own idea of a secure state: both or neither, or it would start a
 /// new floating-point context in the middle of one.
@@ -66,6 +67,12 @@ pub(super) fn masks(engine: &Unicorn<'_, State>) -> Masks {
     }
 }
 
+/// Thread mode that has given its privilege away; handlers always have it.
+pub(super) fn is_unprivileged(engine: &Unicorn<'_, State>) -> bool {
+    engine.get_data().system.nvic.current() == Exception::THREAD
+        && register(engine, RegisterARM::CONTROL) & CONTROL_NPRIV != 0
+}
+
 impl Cpu {
     pub(super) fn register(&self, name: RegisterARM) -> u32 {
         register(&self.engine, name)
@@ -75,6 +82,12 @@ impl Cpu {
         self.engine
             .reg_write(name, value.into())
             .expect("the engine knows the register");
+    }
+
+    /// The T bit, which only the view of other ARM processors shows.
+    pub(super) fn is_thumb(&self) -> bool {
+        const CPSR_THUMB: u32 = 1 << 5;
+        self.register(RegisterARM::CPSR) & CPSR_THUMB != 0
     }
 
     /// Sets xPSR and makes the engine notice a change of mode, which only a write of the flags alone does.
@@ -120,7 +133,12 @@ impl Cpu {
         let control = self.register(RegisterARM::CONTROL);
         let uses_psp = self.is_thread() && control & CONTROL_SPSEL != 0;
         let extended = control & CONTROL_FPCA != 0;
-        let stacked = self.push_frame(uses_psp, extended);
+        let xpsr = self.register(RegisterARM::XPSR);
+        if is_unprivileged(&self.engine) {
+            // The engine shows the stack pointers to privileged code only, which a handler is.
+            self.set_xpsr(xpsr & XPSR_FLAGS | XPSR_THUMB | exception.number());
+        }
+        let stacked = self.push_frame(uses_psp, extended, xpsr);
         if !stacked {
             self.state_mut().system.faults.record(Fault::Stacking);
         }
@@ -186,7 +204,7 @@ impl Cpu {
     }
 
     /// False where the frame does not fit into RAM; the stack pointer moves anyway, as on silicon.
-    fn push_frame(&mut self, uses_psp: bool, extended: bool) -> bool {
+    fn push_frame(&mut self, uses_psp: bool, extended: bool, xpsr: u32) -> bool {
         let stack = if uses_psp {
             RegisterARM::PSP
         } else {
@@ -203,9 +221,7 @@ impl Cpu {
         let frame = before.wrapping_sub(size) & if aligns { !7 } else { !3 };
         let mut words: Vec<u32> = STACKED.iter().map(|&name| self.register(name)).collect();
         words.push(self.pc());
-        words.push(
-            self.register(RegisterARM::XPSR) & !XPSR_PADDED | if padded { XPSR_PADDED } else { 0 },
-        );
+        words.push(xpsr & !XPSR_PADDED | if padded { XPSR_PADDED } else { 0 });
         if extended {
             words.extend(FP_STACKED.iter().map(|&name| self.register(name)));
             words.extend([self.register(RegisterARM::FPSCR), 0]);
@@ -241,6 +257,9 @@ impl Cpu {
         if !self.pop_frame(exc_return) {
             self.state_mut().system.faults.record(Fault::Unstacking);
             return self.start_handler(Exception::HARD_FAULT, exc_return);
+        }
+        if to_thread {
+            self.sleep_on_exit();
         }
         Ok(())
     }
@@ -302,8 +321,11 @@ impl Cpu {
 
     fn resume(&mut self, pc: u32, xpsr: u32, to_psp: bool, fp_active: bool) {
         let exception = Exception::from_number(xpsr & 0x1FF).unwrap_or(Exception::THREAD);
+        let before = self.register(RegisterARM::CONTROL) & !(CONTROL_FPCA | CONTROL_SPSEL);
+        // Last comes the loss of privilege, after which the engine lets CONTROL be.
+        self.set_register(RegisterARM::CONTROL, before & !CONTROL_NPRIV);
         self.set_xpsr(xpsr | XPSR_THUMB);
-        let mut control = self.register(RegisterARM::CONTROL) & !(CONTROL_FPCA | CONTROL_SPSEL);
+        let mut control = before;
         control |= if fp_active { CONTROL_FPCA } else { 0 };
         control |= if to_psp { CONTROL_SPSEL } else { 0 };
         self.set_register(RegisterARM::CONTROL, control);

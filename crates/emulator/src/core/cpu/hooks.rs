@@ -3,7 +3,7 @@
 use robot_plant::time::Ps;
 use unicorn_engine::{HookType, MemType, Prot, RegisterARM, TlbEntry, TlbType, Unicorn, uc_error};
 
-use super::{Block, State, Stop, context, it_state, sabotage};
+use super::{Block, State, Stop, alignment, context, it_state, sabotage};
 use crate::{
     core::{
         faults::Fault,
@@ -58,11 +58,17 @@ fn block_begins(engine: &mut Unicorn<'_, State>, address: u64, size: u32) {
     if std::mem::take(&mut engine.get_data_mut().reached_out) {
         it_state::mend(engine);
     }
+    let aligned = alignment::held_after(engine);
     let state = engine.get_data_mut();
     state.settle();
-    if state.stop.is_some() {
+    if !aligned && state.stop.is_none() {
+        state.stop = Some(Stop::Fault(Fault::Unaligned));
+        leave(engine);
+    }
+    if engine.get_data().stop.is_some() {
         return;
     }
+    let state = engine.get_data_mut();
     if state.clock.cycles >= state.due_cycle || state.attention {
         boundary(engine);
         if engine.get_data().stop.is_some() {
@@ -82,8 +88,8 @@ fn block_begins(engine: &mut Unicorn<'_, State>, address: u64, size: u32) {
         leave(engine);
         return;
     }
-    let cost = match engine.get_data().costs.known(start, size) {
-        Some(cost) => cost,
+    let (cost, accesses) = match engine.get_data().costs.known(start, size) {
+        Some(known) => known,
         None => {
             let code = engine
                 .mem_read_as_vec(address, size as usize)
@@ -91,6 +97,12 @@ fn block_begins(engine: &mut Unicorn<'_, State>, address: u64, size: u32) {
             engine.get_data_mut().costs.learn(start, &code)
         }
     };
+    if !alignment::holds_before(engine, accesses) {
+        // Before the block instead of before the access.
+        engine.get_data_mut().stop = Some(Stop::Fault(Fault::Unaligned));
+        leave(engine);
+        return;
+    }
     let state = engine.get_data_mut();
     if cost.uses_fpu && !state.system.fpu_on() {
         // Taken before the block instead of before its first floating-point instruction.
@@ -109,6 +121,7 @@ fn block_begins(engine: &mut Unicorn<'_, State>, address: u64, size: u32) {
         end: start + size,
         instructions: cost.instructions,
         cycles: cost.cycles,
+        aligned_after: accesses.after,
     };
 }
 
@@ -269,6 +282,9 @@ fn store_parameters(engine: &mut Unicorn<'_, State>, offset: u64, size: usize, v
 fn read_private(engine: &mut Unicorn<'_, State>, offset: u64, size: usize) -> u64 {
     engine.get_data_mut().reached_out = true;
     let addr = (PRIVATE_PERIPHERALS.0 + offset) as u32;
+    if context::is_unprivileged(engine) {
+        return refuse_unprivileged(engine, addr);
+    }
     let value = with_system(engine, |system, around| {
         system.read(addr, size as u8, around)
     });
@@ -278,6 +294,11 @@ fn read_private(engine: &mut Unicorn<'_, State>, offset: u64, size: usize) -> u6
 fn write_private(engine: &mut Unicorn<'_, State>, offset: u64, size: usize, value: u64) {
     engine.get_data_mut().reached_out = true;
     let addr = (PRIVATE_PERIPHERALS.0 + offset) as u32;
+    let system = &engine.get_data().system;
+    if !system.may_be_written_unprivileged(addr) && context::is_unprivileged(engine) {
+        refuse_unprivileged(engine, addr);
+        return;
+    }
     let done = with_system(engine, |system, around| {
         system.write(addr, size as u8, value as u32, around)
     });
@@ -291,6 +312,14 @@ fn write_private(engine: &mut Unicorn<'_, State>, offset: u64, size: usize, valu
     state.attention = true;
     state.refresh_due();
     leave_if_stopped(engine);
+}
+
+/// The private peripheral bus answers privileged code only: a BusFault, and nothing read or written. It is taken when
+/// the block has run to its end.
+fn refuse_unprivileged(engine: &mut Unicorn<'_, State>, address: u32) -> u64 {
+    engine.get_data_mut().stop = Some(Stop::Fault(Fault::DataBus { address }));
+    leave(engine);
+    0
 }
 
 fn with_system<R>(

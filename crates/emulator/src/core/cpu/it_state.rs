@@ -27,6 +27,11 @@ pub(super) fn mend(engine: &mut Unicorn<'_, State>) {
     }
 }
 
+pub(super) fn is_inside(engine: &Unicorn<'_, State>) -> bool {
+    let xpsr = engine.reg_read(RegisterARM::XPSR);
+    xpsr.is_ok_and(|xpsr| xpsr & IT_STATE != 0)
+}
+
 /// The instruction after these is still a conditional one.
 fn ends_within_it_block(code: &[u8]) -> bool {
     let mut halves = code.as_chunks().0.iter().copied().map(u16::from_le_bytes);

@@ -18,7 +18,26 @@ impl Cpu {
         self.fall_asleep(SleepKind::Event)
     }
 
-    pub(super) fn fall_asleep(&mut self, kind: SleepKind) -> Option<Pause> {
+    /// The engine came out by itself: for a WFI, which leaves the PC past it, and for nothing else that is known.
+    pub(super) fn wait_for_interrupt(&mut self) -> Result<Option<Pause>, Halt> {
+        const WFI: u16 = 0xBF30;
+        const WFI_W: u16 = 0x8003;
+        let mut before = [0; 2];
+        let read = self.read_memory(self.pc().wrapping_sub(2), &mut before);
+        match u16::from_le_bytes(before) {
+            WFI | WFI_W if read => Ok(self.fall_asleep(SleepKind::Interrupt)),
+            _ => Err(self.halt("the engine stopped for no reason".to_owned())),
+        }
+    }
+
+    /// SCR.SLEEPONEXIT: no handler is left, and the code they interrupted does not go on (ARMv7-M ARM B1.5.8).
+    pub(super) fn sleep_on_exit(&mut self) {
+        if self.state().system.sleeps_on_exit() {
+            self.asleep = Some(SleepKind::Interrupt);
+        }
+    }
+
+    fn fall_asleep(&mut self, kind: SleepKind) -> Option<Pause> {
         self.asleep = Some(kind);
         Some(Pause::Asleep {
             thread: self.state().system.nvic.current() == Exception::THREAD,
@@ -36,6 +55,11 @@ impl Cpu {
             let state = self.state_mut();
             if state.wakes(kind, masks) {
                 return Ok(None);
+            }
+            if state.system.sleeps_deeply() {
+                let what = "SCB SCR: SLEEPDEEP is set and the core sleeps: the chip stops all its clocks (RM0090 \
+                            5.3.4, Stop mode), which is not modelled";
+                return Err(self.halt(what.to_owned()));
             }
             if state.clock.cycles >= state.limit_cycle {
                 return Ok(Some(Pause::Limit));

@@ -7,7 +7,10 @@ use robot_plant::{
 
 use super::*;
 
+mod debug;
+mod refused;
 mod sabotage;
+mod sleep;
 mod standstill;
 
 const TRACE: u32 = 0x2000_0000;

@@ -153,3 +153,24 @@ fn a_new_divider_counts_from_its_crossing_on() {
     bench.run(&mut iwdg, end + US);
     assert!(iwdg.take_reset_request());
 }
+
+/// DBG_IWDG_STOP while the core is halted (RM0090 38.16.4).
+#[test]
+fn a_frozen_counter_goes_on_from_where_it_stood() {
+    let (mut bench, mut iwdg) = with_lsi();
+    bench.write(&mut iwdg, KR, 0x5555);
+    bench.write(&mut iwdg, RLR, 143);
+    bench.run(&mut iwdg, 200 * US);
+    bench.write(&mut iwdg, KR, 0xCCCC);
+    bench.write(&mut iwdg, KR, 0xAAAA);
+    let start = bench.now;
+    bench.run(&mut iwdg, start + 10 * MS);
+    iwdg.freeze(true, &mut bench.ctx());
+    bench.run(&mut iwdg, start + 110 * MS);
+    assert!(!iwdg.take_reset_request());
+    iwdg.freeze(false, &mut bench.ctx());
+    bench.run(&mut iwdg, start + 117 * MS);
+    assert!(!iwdg.take_reset_request());
+    bench.run(&mut iwdg, start + 119 * MS);
+    assert!(iwdg.take_reset_request());
+}
