@@ -4,6 +4,7 @@ use robot_app::{
     domain::RobotConfig,
     motor::layout::{ROBOT_LAYOUT, RS00_LAYOUT},
     params::{FlashRequest, ParamState},
+    tuning::PARAMETERS,
 };
 
 use robot_plant::flash_chip::Phase;
@@ -16,7 +17,12 @@ use crate::{
 const HEATER: u32 = 1 << 6;
 const SAFETY: u32 = 1 << 3;
 const GEOMETRY: u32 = 1 << 0;
-const LEFT_FRONT: u32 = 1 << 7;
+
+/// In the masks of `ParamStatus`.
+fn bit_of(group: &str) -> u32 {
+    let place = PARAMETERS.iter().position(|known| known.name == group);
+    1 << place.unwrap()
+}
 
 /// One erase, once the robot rests, makes a sector of which it is known that it is blank.
 #[test]
@@ -69,7 +75,7 @@ fn what_was_saved_is_there_after_a_reboot() {
     assert_eq!(robot.status().save_ok, 2);
     let again = Robot::boot(&chip);
     assert_eq!(again.config, robot.config);
-    assert_eq!(again.status().loaded, HEATER | 1 << 10);
+    assert_eq!(again.status().loaded, HEATER | bit_of("joint-right-rear"));
     // The other groups have defaults, which no one changed: they are in no record.
     assert_eq!(again.status().generation, 1);
 }
@@ -186,7 +192,7 @@ fn what_is_not_understood_stays_in_flash_bit_for_bit() {
     assert_eq!(again.status().foreign, 2);
     let rs00 = Robot::boot_with(&chip, &RS00_LAYOUT);
     assert_eq!(rs00.config.joints[0].zero_rad, 0.5);
-    assert_eq!(rs00.status().loaded, GEOMETRY | LEFT_FRONT);
+    assert_eq!(rs00.status().loaded, GEOMETRY | bit_of("joint-left-front"));
 }
 
 #[test]

@@ -231,6 +231,14 @@ mod tests {
         }
     }
 
+    /// Eleven bits are the wheel's.
+    #[test]
+    fn what_else_lies_beside_the_wheel_is_left_out() {
+        let mut frame = bytes(CENTRED, MIDDLE, [0, 0]);
+        frame[16..].copy_from_slice(&[0x34, 0xFA]);
+        assert_eq!(DbusFrame::parse(&frame).unwrap().wheel, 0x234);
+    }
+
     /// Frames that the parser finds in these bytes, and what it has discarded since boot.
     fn fed(parser: &mut DbusParser, bytes: &[u8], ts_us: u64) -> (usize, u32) {
         let mut frames = 0;

@@ -174,6 +174,7 @@ impl Link {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::domain::DriveMode;
 
     /// All channels 992, no flags (hardware.md section 12).
     const SBUS_CENTRED: [u8; 25] = [
@@ -267,6 +268,76 @@ mod tests {
                 good_ts_us.push(update.diagnostics.good_ts_us);
             });
             assert_eq!(good_ts_us, [if alive { 1_000_000 } else { 0 }], "{flags:b}");
+        }
+    }
+
+    /// After three frames alike, 14 ms apart.
+    fn heard(format: RemoteFormat, frame: &[u8]) -> RemoteUpdate {
+        let mut receiver = RemoteReceiver::new(format, RemoteMapping::default());
+        let mut last = RemoteUpdate::default();
+        for count in 1..=3 {
+            receiver.feed(frame, count * 14_000, |update| last = update);
+        }
+        assert_eq!(last.diagnostics.frames, 3);
+        last
+    }
+
+    /// Enable off, mode at its low end, e-stop off, the rest centred; but for one channel.
+    fn heard_sbus(channel: usize, raw: u16) -> RemoteUpdate {
+        let mut channels = [992; 16];
+        channels[4..7].fill(172);
+        channels[channel] = raw;
+        let mut frame = [0; 25];
+        frame[0] = 0x0F;
+        for bit in 0..16 * 11 {
+            let is_set = channels[bit / 11] >> (bit % 11) & 1;
+            frame[1 + bit / 8] |= (is_set as u8) << (bit % 8);
+        }
+        heard(RemoteFormat::Sbus, &frame)
+    }
+
+    #[test]
+    fn sbus_switches_are_thrown_beyond_half_way() {
+        use DriveMode::{Custom, Manual, Pc};
+        for (raw, enabled) in [(172, false), (1_401, false), (1_402, true), (1_811, true)] {
+            let operator = heard_sbus(4, raw).operator;
+            assert_eq!((operator.enabled, operator.disabled), (enabled, !enabled));
+        }
+        for (raw, mode) in [(581, Manual), (583, Pc), (1_401, Pc), (1_402, Custom)] {
+            assert_eq!(heard_sbus(5, raw).operator.mode, mode, "{raw}");
+        }
+        for (raw, e_stop) in [(172, false), (581, false), (583, true), (1_811, true)] {
+            assert_eq!(heard_sbus(6, raw).operator.e_stop, e_stop, "{raw}");
+        }
+    }
+
+    #[test]
+    fn sbus_sticks_drive_forward_and_turn_right() {
+        for (raw, position) in [(172, -1.0), (992, 0.0), (1_811, 1.0)] {
+            assert_eq!(heard_sbus(0, raw).state.wz, -position);
+            assert_eq!(heard_sbus(1, raw).state.vx, position);
+        }
+    }
+
+    /// 1 = up, 2 = down, 3 = middle: the right switch in bits 4 and 5 of byte 5, the left one above it.
+    #[test]
+    fn dbus_switches_enable_stop_and_choose_the_mode() {
+        let operator = |left: u8, right: u8| {
+            let mut frame = DBUS_CENTRED;
+            frame[5] = left << 6 | right << 4 | frame[5] & 0x0F;
+            heard(RemoteFormat::Dbus, &frame).operator
+        };
+        for (right, enabled, e_stop) in [(1, true, false), (3, false, false), (2, false, true)] {
+            let found = operator(3, right);
+            assert_eq!((found.enabled, found.disabled), (enabled, !enabled));
+            assert_eq!(found.e_stop, e_stop);
+        }
+        for (left, mode) in [
+            (1, DriveMode::Manual),
+            (3, DriveMode::Pc),
+            (2, DriveMode::Custom),
+        ] {
+            assert_eq!(operator(left, 3).mode, mode);
         }
     }
 

@@ -99,6 +99,37 @@ fn a_joint_is_shown_with_sign_and_state() {
     assert_eq!(value(joint, bytes, "marks"), LiveValue::Set(0b10));
 }
 
+/// 0.1 rad = 5.73 deg.
+#[test]
+fn each_axis_shows_its_own_measurement_once_there_is_one() {
+    for (name, expected) in [
+        ("accel", [1.0, -2.0, 3.0]),
+        ("gyro", [10.0, -20.0, 30.0]),
+        ("gyro-bias", [0.1, -0.2, 0.3]),
+        ("mag", [40.0, -50.0, 60.0]),
+        ("attitude", [5.73, -11.46, 17.19]),
+    ] {
+        let page = page(name);
+        for ts_us in [0, 1] {
+            let bytes = read_of(page.first, |diagnostics| {
+                let DiagnosticsSnapshot {
+                    sensors, estimate, ..
+                } = diagnostics;
+                sensors.imu.accel_mps2 = [1.0, -2.0, 3.0];
+                sensors.imu.gyro_dps = [10.0, -20.0, 30.0];
+                sensors.imu.gyro_bias_dps = [0.1, -0.2, 0.3];
+                sensors.mag.mag_ut = [40.0, -50.0, 60.0];
+                estimate.rpy_rad = [0.1, -0.2, 0.3];
+                (sensors.imu.ts_us, sensors.mag.ts_us) = (ts_us, ts_us);
+                estimate.ts_us = ts_us;
+            });
+            let shown: Vec<_> = page.unpack(bytes).map(|(_, value)| value).collect();
+            let expected = expected.map(|value| LiveValue::Measure((ts_us != 0).then_some(value)));
+            assert_eq!(shown, expected, "{name}");
+        }
+    }
+}
+
 /// The lowest number, 0x8000, is kept for that.
 #[test]
 fn what_is_not_known_is_not_a_number() {
