@@ -38,6 +38,7 @@ pub async fn run(
     loop {
         let mut sensor = bus.open();
         if sensor.bring_up().await.is_ok() {
+            task.say_if_unused();
             task.sample_until_lost(&mut sensor).await;
         } else {
             task.report.health.count_error();
@@ -49,6 +50,12 @@ pub async fn run(
 }
 
 impl MagTask {
+    fn say_if_unused(&self) {
+        if self.exchange.config.latest().config.mounting.mag.is_none() {
+            defmt::info!("the heading goes without the magnetometer: mounting.mag is unset");
+        }
+    }
+
     async fn sample_until_lost(&mut self, sensor: &mut Ist8310<'_>) {
         let mut ticker = SteadyTicker::every(HALF_PERIOD);
         let mut bad_in_row: u32 = 0;

@@ -5,12 +5,14 @@
 //! | [`recording`] | files → samples of a sensor |
 //! | [`calibration`] | samples → corrections the firmware applies |
 //! | [`report`] | a correction → an HTML page |
+//! | [`mounting`] | a robot tilted by hand → how its sensors sit |
 //! | [`parameter_file`] | parameters by name, in TOML |
 //! | [`can_link`] | a CAN bus through an slcan adapter or SocketCAN |
 //! | [`tuning`] | the settings of the robot on a bus |
 
 pub mod calibration;
 pub mod can_link;
+pub mod mounting;
 pub mod parameter_file;
 pub mod recording;
 pub mod report;

@@ -3,6 +3,7 @@
 #[path = "../support/mod.rs"]
 mod support;
 
+mod mounting;
 mod saving;
 mod tool;
 mod trial;

@@ -11,12 +11,12 @@ use std::{
 use flate2::{Compression, write::GzEncoder};
 use serde_json::json;
 
-type Vector = [f64; 3];
+pub type Vector = [f64; 3];
 
-const ROWS_A_SECOND: usize = 200;
+pub const ROWS_A_SECOND: usize = 200;
 const HOLD_S: f64 = 1.8;
 const TUMBLE_S: f64 = 8.0;
-const GRAVITY_MPS2: f64 = 9.806_65;
+pub const GRAVITY_MPS2: f64 = 9.806_65;
 const FIELD_UT: f64 = 48.0;
 /// Upwards in the body frame; the first is how the robot boots.
 const POSITIONS: [Vector; 9] = [
@@ -67,7 +67,7 @@ impl SensorErrors {
 
 /// Rows of the trial, column by column.
 #[derive(Default)]
-struct Columns {
+pub struct Columns {
     rows: usize,
     gyro_rps: [Vec<f32>; 3],
     accel_mps2: [Vec<f32>; 3],
@@ -77,9 +77,13 @@ struct Columns {
 
 impl Columns {
     fn push(&mut self, accel_mps2: Vector, field_ut: Vector) {
+        self.push_turning([0.0; 3], accel_mps2, field_ut);
+    }
+
+    pub fn push_turning(&mut self, gyro_rps: Vector, accel_mps2: Vector, field_ut: Vector) {
         for axis in 0..3 {
             // A sensor without any noise counts as frozen.
-            let gyro_rps = 0.001 * self.noise();
+            let gyro_rps = gyro_rps[axis] + 0.001 * self.noise();
             let accel_mps2 = accel_mps2[axis] + 0.02 * self.noise();
             self.gyro_rps[axis].push(gyro_rps as f32);
             self.accel_mps2[axis].push(accel_mps2 as f32);
@@ -126,12 +130,12 @@ pub fn write(directory: &Path, errors: &SensorErrors) -> PathBuf {
         let accel = errors.accel(scaled(direction, GRAVITY_MPS2));
         columns.push(accel, errors.field(scaled(direction, FIELD_UT)));
     }
-    save(directory, &columns)
+    save(directory, "sides", &columns)
 }
 
-fn save(directory: &Path, columns: &Columns) -> PathBuf {
+pub fn save(directory: &Path, name: &str, columns: &Columns) -> PathBuf {
     fs::create_dir_all(directory).expect("the test's own directory");
-    let header = directory.join("sides.json");
+    let header = directory.join(name).with_extension("json");
     let text = json!({
         "rows": columns.rows,
         "columns": [

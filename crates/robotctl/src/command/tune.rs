@@ -275,7 +275,7 @@ impl Wheel {
 }
 
 /// Returns when the robot may be switched off.
-fn confirm_saved(client: &mut TuningClient) -> Result<()> {
+pub(super) fn confirm_saved(client: &mut TuningClient) -> Result<()> {
     print!("saving … ");
     io::stdout().flush()?;
     let done = tuning::wait_until_saved(client, SavePatience::default());

@@ -7,10 +7,11 @@ use std::{
     time::{Duration, Instant},
 };
 
+use nalgebra::Vector3;
 use robot_app::{
     bring_up::BringUp,
     diagnostics::DiagnosticsSnapshot,
-    domain::{BusId, CanFrame, JointState, RobotConfig, StandardId},
+    domain::{BusId, CanFrame, JointState, Orientation, RobotConfig, StandardId},
     motor::layout::ROBOT_LAYOUT,
     params::{ParamError, ParamState, ParamStatus},
     safety::SafetyFlags,
@@ -20,6 +21,7 @@ use robot_app::{
 use super::*;
 use crate::{
     can_link::{CanLink, CanLinkError},
+    mounting::{Watch, WatchError},
     parameter_file::ParameterFile,
 };
 
@@ -390,6 +392,69 @@ fn live_values_have_the_firmware_s_names_and_units() {
     assert!(client.live(joint, 4).unwrap().is_none());
     let pages: usize = LIVE_PAGES.iter().map(|page| page.parts.len()).sum();
     assert_eq!(client.live_all().unwrap().len(), pages);
+}
+
+/// x points down and z forward, so y points left; the magnetometer's x points the IMU's left, its y backward.
+#[test]
+fn sensors_are_watched_along_their_own_axes() {
+    let (bus, mut client) = robot();
+    {
+        let robot = &mut *bus.0.borrow_mut();
+        robot.config.mounting.board = Orientation::XDownZForward;
+        robot.config.mounting.mag = Some(Orientation::XLeftZUp);
+        robot.diagnostics.sensors.imu.accel_mps2 = [1.0, 2.0, 9.0];
+        robot.diagnostics.sensors.imu.ts_us = 1;
+        robot.diagnostics.sensors.mag.mag_ut = [10.0, 20.0, -40.0];
+        robot.diagnostics.sensors.mag.ts_us = 1;
+        robot.diagnostics.estimate.rpy_rad = [0.0, 0.0, std::f32::consts::FRAC_PI_2];
+        robot.diagnostics.estimate.valid = true;
+    }
+    let mut watch = Watch::new(&mut client).unwrap();
+    assert_eq!(watch.board(), Orientation::XDownZForward);
+    let force = watch.still_force().unwrap();
+    assert!(
+        (force - Vector3::new(-9.0, 2.0, 1.0)).norm() < 0.01,
+        "{force}"
+    );
+    // Along the IMU's axes the field is 40, 20, 10.
+    let sample = watch.field().unwrap();
+    let field = sample.field_ut;
+    assert!(
+        (field - Vector3::new(20.0, -40.0, 10.0)).norm() < 0.1,
+        "{field}"
+    );
+    // Turned by a quarter to the left: the nose points north.
+    let nose = sample.attitude * Vector3::x();
+    assert!((nose - Vector3::y()).norm() < 1e-3, "{nose}");
+    watch.check_attitude().unwrap();
+    bus.0.borrow_mut().diagnostics.safety.flags = SafetyFlags::ESTIMATE_INVALID;
+    assert!(Watch::new(&mut client).unwrap().check_attitude().is_err());
+    bus.0.borrow_mut().is_old = true;
+    let error = Watch::new(&mut client).unwrap().still_force().unwrap_err();
+    assert!(matches!(error, WatchError::TooOld));
+}
+
+/// A file with both, in an order that would be refused.
+#[test]
+fn how_a_sensor_sits_is_written_before_its_calibration() {
+    let (bus, mut client) = robot();
+    let both = file(&[
+        ("imu-calibration.accel-bias-x-mps2", 0.1),
+        ("mag-calibration.bias-z-ut", 30.0),
+        ("mounting.board", 13.0),
+    ]);
+    apply(&mut client, &both).unwrap();
+    let config = bus.0.borrow().config;
+    assert_eq!(config.mounting.board, Orientation::XRightZDown);
+    assert_eq!(config.imu.accel_bias_mps2[0], 0.1);
+    let board = find("mounting.board").unwrap();
+    let refused = client.write(board, 0.0).unwrap_err().to_string();
+    assert!(refused.contains("x-forward-z-up"), "{refused}");
+    assert!(
+        refused.contains("tune defaults imu-calibration --yes"),
+        "{refused}"
+    );
+    assert_eq!(bus.0.borrow().config, config);
 }
 
 /// It answers with page 0 in the place of the group, as it does to any command it does not know.

@@ -1,0 +1,207 @@
+//! `robotctl mounting`: guides through some poses and says how the sensors sit.
+
+use std::{
+    io::{self, Write},
+    time::{Duration, Instant},
+};
+
+use anyhow::{Context, Result, bail};
+use robot_app::domain::Orientation;
+use robotctl::{
+    can_link::CanDevice,
+    mounting::{self, BoardFound, FieldSample, MagFound, Poses, Watch, WatchError},
+    tuning::{self, Patience, TuningClient},
+};
+
+use super::tune::confirm_saved;
+
+/// Longest time of turning the robot by hand.
+const TURNING: Duration = Duration::from_secs(90);
+/// The gyro is calibrated and the attitude settled after this.
+const SETTLING: Duration = Duration::from_secs(30);
+
+#[derive(clap::Args)]
+pub struct Mounting {
+    /// Serial device of an slcan adapter or, on Linux, a CAN interface (can0)
+    #[arg(long, value_name = "DEVICE")]
+    can: CanDevice,
+    /// Write what was found to the robot; without it the robot's settings are only checked
+    #[arg(long)]
+    write: bool,
+    /// Find out how the magnetometer sits on the board, too
+    #[arg(long)]
+    mag: bool,
+}
+
+impl Mounting {
+    pub fn run(self) -> Result<()> {
+        let mut client = TuningClient::new(self.can.open()?, Patience::default());
+        println!("Disarm the robot and take its weight: it is tilted by hand, motors off.\n");
+        let found = find_board(&mut client)?;
+        self.conclude(&mut client, "mounting.board", found.orientation)?;
+        if !self.mag {
+            return Ok(());
+        }
+        let board = Watch::new(&mut client)?.board();
+        if board != found.orientation {
+            bail!("the magnetometer can be found only once mounting.board is right: add --write");
+        }
+        self.forget_mag(&mut client)?;
+        let mag = find_mag(&mut client, board)?;
+        self.conclude(&mut client, "mounting.mag", mag.orientation)
+    }
+
+    /// A field that is turned wrongly would turn the heading, by which its turn is judged.
+    fn forget_mag(&self, client: &mut TuningClient) -> Result<()> {
+        if Watch::new(client)?.mag().is_none() {
+            return Ok(());
+        }
+        if !self.write {
+            bail!("mounting.mag is set, so the heading follows it; add --write to find it anew");
+        }
+        let named = tuning::find("mounting.mag")?;
+        client.write(named, named.parse("unset")?)?;
+        Ok(())
+    }
+
+    fn conclude(&self, client: &mut TuningClient, name: &str, found: Orientation) -> Result<()> {
+        let named = tuning::find(name)?;
+        let (is, found_name) = (client.read(named)?, found.name());
+        let wanted = named.parse(found_name)?;
+        if is == wanted {
+            println!("{name} is {found_name} already: right.\n");
+        } else if self.write {
+            client.write(named, wanted)?;
+            println!("{name} = {found_name} (was {})", named.in_words(is));
+            confirm_saved(client)?;
+            println!(
+                "A stop `tilt` from before goes with enable off and e-stop thrown for a second.\n"
+            );
+        } else {
+            println!("{name} is {}: WRONG.", named.in_words(is));
+            println!(
+                "next:   the same with --write, or robotctl tune --can DEVICE set {name} {found_name}\n"
+            );
+        }
+        Ok(())
+    }
+}
+
+fn find_board(client: &mut TuningClient) -> Result<BoardFound> {
+    let mut watch = Watch::new(client)?;
+    let mut pose = |what: &str| -> Result<_> {
+        loop {
+            ask(what)?;
+            match watch.still_force() {
+                Err(moved @ WatchError::Moved(_)) => println!("{moved}"),
+                force => return Ok(force?),
+            }
+        }
+    };
+    let poses = Poses {
+        level: pose("Put it level, as it drives, and let go.")?,
+        nose_up: pose("Lift its nose by 30 to 90 degrees and hold it still.")?,
+        left_up: pose(
+            "Level again, then lift its left side by 30 to 90 degrees and hold it still.",
+        )?,
+    };
+    let found = mounting::find_board(&poses)?;
+    let BoardFound {
+        orientation,
+        up,
+        nose,
+        left,
+    } = found;
+    println!(
+        "\nLevel, the board's {} axis pointed up ({:.0} degrees off).",
+        up.0, up.1
+    );
+    println!(
+        "Nose up by {:.0} degrees, its {} axis rose.",
+        nose.1, nose.0
+    );
+    println!(
+        "Left side up by {:.0} degrees, its {} axis rose.",
+        left.1, left.0
+    );
+    println!(
+        "So on the board {}: {}.",
+        mounting::describe(orientation),
+        orientation.name()
+    );
+    Ok(found)
+}
+
+fn find_mag(client: &mut TuningClient, board: Orientation) -> Result<MagFound> {
+    ask("Put it level and leave it alone until it is calibrated, away from iron.")?;
+    let mut watch = Watch::new(client)?;
+    let deadline = Instant::now() + SETTLING;
+    while let Err(error) = watch.check_attitude() {
+        if Instant::now() > deadline {
+            return Err(error.into());
+        }
+    }
+    println!(
+        "Now turn it slowly in your hands: left, nose up, left side up, upside down, for half a minute."
+    );
+    let samples = turn(&mut watch)?;
+    watch.check_attitude()?;
+    let found = mounting::find_mag(board, &samples)?;
+    let MagFound {
+        orientation,
+        earth_ut,
+        dip_deg,
+        left_ut,
+        second_ut,
+    } = found;
+    println!(
+        "\nThe earth's field is {earth_ut:.0} µT; this way to sit leaves {left_ut:.1} µT, the next best {second_ut:.1}."
+    );
+    let (part, where_) = if dip_deg < 0.0 {
+        ("out of", "south")
+    } else {
+        ("into", "north")
+    };
+    println!(
+        "It points {part} the ground by {:.0} degrees, as {where_} of the equator.",
+        dip_deg.abs()
+    );
+    println!(
+        "If you are on the other side, its axes are a mirror image: do not use it, and report that."
+    );
+    println!(
+        "So on the magnetometer, with forward, left, up for the board's x, y, z: {}: {}.",
+        mounting::describe(orientation),
+        orientation.name()
+    );
+    Ok(found)
+}
+
+/// Until it was turned enough, and then for as long again.
+fn turn(watch: &mut Watch<'_>) -> Result<Vec<FieldSample>> {
+    let start = Instant::now();
+    let mut samples = Vec::new();
+    let mut enough_at = None;
+    while start.elapsed() < TURNING {
+        samples.push(watch.field()?);
+        if enough_at.is_none() && mounting::enough_turned(&samples) {
+            println!("Good; go on for a while.");
+            enough_at = Some(2 * samples.len());
+        }
+        if enough_at.is_some_and(|count| samples.len() >= count) {
+            break;
+        }
+    }
+    Ok(samples)
+}
+
+fn ask(what: &str) -> Result<()> {
+    print!("{what} Then press Enter. ");
+    io::stdout().flush()?;
+    let mut line = String::new();
+    let read = io::stdin().read_line(&mut line);
+    if read.context("nobody answers")? == 0 {
+        bail!("nobody answers");
+    }
+    Ok(())
+}

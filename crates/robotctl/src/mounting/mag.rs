@@ -1,0 +1,155 @@
+//! A robot turned in the hand → how the magnetometer sits on the board.
+//!
+//! Whatever the earth's field is, it stays where it is while the robot turns, and what the robot itself adds turns with it.
+//! Each of the 24 ways to sit is tried: the field and the robot's own that explain the samples best are found, and the way
+//! for which they leave the least is the true one.
+
+use nalgebra::{Matrix3, SymmetricEigen, Vector3};
+use robot_app::domain::Orientation;
+
+/// As the robot believes itself to lie, and what the magnetometer shows at that moment.
+#[derive(Clone, Copy, Debug)]
+pub struct FieldSample {
+    /// Robot → earth, as a rotation matrix.
+    pub attitude: Matrix3<f64>,
+    /// Along the magnetometer's own (right-handed) axes, µT.
+    pub field_ut: Vector3<f64>,
+}
+
+/// Samples below this are too few to say anything.
+const MIN_SAMPLES: usize = 50;
+/// How well each direction of the field must be known, as the mean square by which turning moved it: a tilt by 60° to one
+/// side and back is 0.2.
+const MIN_TURN: f64 = 0.1;
+/// The earth's field is 22 to 67 µT; calibration may be missing.
+const EARTH_UT: std::ops::RangeInclusive<f64> = 12.0..=110.0;
+/// What the best way may leave of the field.
+const MAX_LEFT: f64 = 0.3;
+/// By how much the second best way must be worse.
+const MIN_LEAD: f64 = 2.0;
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MagFound {
+    /// On the board.
+    pub orientation: Orientation,
+    pub earth_ut: f64,
+    /// How steeply it points into the ground, negative: out of it. A mirror image of right-handed axes fits as well as these,
+    /// with the field the wrong way round.
+    pub dip_deg: f64,
+    /// What the best and the second best way leave, µT rms.
+    pub left_ut: f64,
+    pub second_ut: f64,
+}
+
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MagError {
+    #[error(
+        "the robot was turned too little, or about one axis only: turn it left, nose up, left side up, upside down"
+    )]
+    TooLittle,
+    #[error(
+        "the field that turned against the robot is {0:.0} µT, which is not the earth's; go away from iron and motors"
+    )]
+    NotTheEarth(f64),
+    #[error(
+        "no way to sit explains what the magnetometer showed: the best leaves {left_ut:.0} µT of {earth_ut:.0}, the second \
+         best {second_ut:.0}; go away from iron and motors, and turn slowly"
+    )]
+    Unclear {
+        left_ut: f64,
+        second_ut: f64,
+        earth_ut: f64,
+    },
+}
+
+/// Whether the samples so far are enough.
+pub fn enough_turned(samples: &[FieldSample]) -> bool {
+    samples.len() >= MIN_SAMPLES && Turn::of(samples).is_some()
+}
+
+/// `board`: how the board sits, which must be right.
+pub fn find_mag(board: Orientation, samples: &[FieldSample]) -> Result<MagFound, MagError> {
+    if samples.len() < MIN_SAMPLES {
+        return Err(MagError::TooLittle);
+    }
+    let turn = Turn::of(samples).ok_or(MagError::TooLittle)?;
+    let mut ways = Orientation::ALL.map(|mag| {
+        let turned = |field: Vector3<f64>| {
+            let field = field.map(|part| part as f32);
+            Vector3::from(board.turn(mag.turn(field.into()))).map(f64::from)
+        };
+        (mag, turn.fit(samples, turned))
+    });
+    ways.sort_by(|a, b| a.1.left_ut.total_cmp(&b.1.left_ut));
+    let [(orientation, best), (_, second), ..] = ways;
+    let (left_ut, second_ut) = (best.left_ut, second.left_ut);
+    let earth_ut = best.earth_ut.norm();
+    if left_ut > MAX_LEFT * earth_ut || left_ut * MIN_LEAD > second_ut {
+        return Err(MagError::Unclear {
+            left_ut,
+            second_ut,
+            earth_ut,
+        });
+    }
+    if !EARTH_UT.contains(&earth_ut) {
+        return Err(MagError::NotTheEarth(earth_ut));
+    }
+    Ok(MagFound {
+        orientation,
+        earth_ut,
+        dip_deg: (-best.earth_ut.z / earth_ut).asin().to_degrees(),
+        left_ut,
+        second_ut,
+    })
+}
+
+/// Earth → robot, in the mean, and how well the earth's field can be told from the robot's own.
+struct Turn {
+    mean: Matrix3<f64>,
+    inverse: Matrix3<f64>,
+}
+
+struct Fit {
+    earth_ut: Vector3<f64>,
+    left_ut: f64,
+}
+
+impl Turn {
+    /// `None` if the robot was turned too little.
+    fn of(samples: &[FieldSample]) -> Option<Self> {
+        let share = 1.0 / samples.len() as f64;
+        let mean = samples.iter().map(|s| s.attitude.transpose() * share);
+        let mean: Matrix3<f64> = mean.sum();
+        let spread = samples.iter().map(|s| {
+            let off = s.attitude.transpose() - mean;
+            off.transpose() * off * share
+        });
+        let spread: Matrix3<f64> = spread.sum();
+        let least = SymmetricEigen::new(spread).eigenvalues.min();
+        let inverse = spread.try_inverse()?;
+        (least > MIN_TURN).then_some(Self { mean, inverse })
+    }
+
+    /// The earth's field that fits best, and what is left.
+    fn fit(&self, samples: &[FieldSample], turned: impl Fn(Vector3<f64>) -> Vector3<f64>) -> Fit {
+        let share = 1.0 / samples.len() as f64;
+        let mean: Vector3<f64> = samples.iter().map(|s| turned(s.field_ut) * share).sum();
+        let parts = || {
+            samples.iter().map(|s| {
+                let off = s.attitude.transpose() - self.mean;
+                (off, turned(s.field_ut) - mean)
+            })
+        };
+        let sum: Vector3<f64> = parts()
+            .map(|(off, field)| off.transpose() * field * share)
+            .sum();
+        let earth = self.inverse * sum;
+        let left: f64 = parts()
+            .map(|(off, field)| (field - off * earth).norm_squared() * share)
+            .sum();
+        Fit {
+            earth_ut: earth,
+            left_ut: left.sqrt(),
+        }
+    }
+}
