@@ -184,9 +184,11 @@ mod tests {
 
     #[test]
     fn each_flag_has_the_bit_of_its_place_in_the_table() {
-        for (place, (flag, name)) in FLAG_NAMES.iter().enumerate() {
+        for (place, (flag, name)) in (0..).zip(FLAG_NAMES) {
             assert_eq!(flag.bits(), 1 << place, "{name}");
+            assert_eq!(SafetyFlags::name_of_bit(place), Some(name));
         }
+        assert_eq!(SafetyFlags::name_of_bit(31), None);
     }
 
     /// As docs/safety.md has them.

@@ -130,6 +130,66 @@ fn each_axis_shows_its_own_measurement_once_there_is_one() {
     }
 }
 
+/// −500 rpm = 0xFE0C, 41 °C, 7 ms; angle 8,191 = 0x1FFF, 2,000 mA = 0x07D0. 0x8000 and 0x100: not known.
+#[test]
+fn a_wheel_is_shown_once_it_was_heard() {
+    let shown = |page: u8, side: usize, ts_us| {
+        read_of(page, |diagnostics| {
+            let wheel = &mut diagnostics.sensors.motor.wheels[side];
+            (wheel.rpm, wheel.current_ma) = (-500, 2_000.0);
+            (wheel.rotor_angle, wheel.temperature_c) = (8_191, 41);
+            (wheel.age_us, wheel.ts_us) = (7_900, ts_us);
+        })
+    };
+    assert_eq!(shown(0x29, 1, 1), [0x0C, 0xFE, 41, 7 << 1, 0, 0]);
+    assert_eq!(shown(0x28, 0, 0), [0x00, 0x80, 0x00, 7 << 1 | 1, 0, 0]);
+    assert_eq!(shown(0x2B, 1, 1), [0xFF, 0x1F, 0xD0, 0x07, 0, 0]);
+    assert_eq!(shown(0x2A, 0, 0), [0xFF, 0x1F, 0x00, 0x80, 0, 0]);
+}
+
+/// The lowest number of its bits: −128 °C.
+#[test]
+fn a_joint_that_is_silent_has_no_temperature() {
+    for (state, ts_us, byte) in [
+        (JointState::Disabled, 1, 25),
+        (JointState::Silent, 1, 0x80),
+        (JointState::Disabled, 0, 0x80),
+    ] {
+        let bytes = read_of(0x25, |diagnostics| {
+            let joint = &mut diagnostics.sensors.motor.joints[1];
+            (joint.state, joint.ts_us, joint.temperature_c) = (state, ts_us, 25.0);
+        });
+        assert_eq!(bytes[0], byte, "{state:?}");
+    }
+}
+
+#[test]
+fn marks_have_their_names() {
+    let marks = page("joint")
+        .fields
+        .iter()
+        .find(|field| field.name == "marks");
+    let LiveKind::Set { name_of, .. } = marks.unwrap().kind else {
+        panic!("marks are a set");
+    };
+    let named = [0, 1, 2].map(name_of);
+    assert_eq!(named, [Some("frozen"), Some("gives-torque"), None]);
+}
+
+#[test]
+fn a_page_has_a_number_for_each_part_and_no_more() {
+    let joint = page("joint");
+    let numbers = [0, 3, 4, 256].map(|part| joint.number(part));
+    assert_eq!(numbers, [Some(0x20), Some(0x23), None, None]);
+}
+
+#[test]
+fn channels_are_unknown_before_the_first_frame() {
+    let channels = read_of(0x10, |diagnostics| diagnostics.remote.channels = [0.5; 16]);
+    let mut values = page("channels").unpack(channels);
+    assert!(values.all(|(_, value)| value == LiveValue::Measure(None)));
+}
+
 /// The lowest number, 0x8000, is kept for that.
 #[test]
 fn what_is_not_known_is_not_a_number() {
