@@ -60,6 +60,8 @@ pub struct WorldConfig {
     pub plant: PlantKind,
     pub radio: RadioKind,
     pub joints: JointKind,
+    /// What somebody has set as the RS00's CAN time-out; 0 = off, as shipped.
+    pub rs00_timeout: Ps,
     pub seed: u64,
     /// A recorded trial (`<trial>.json` beside its `.f32.gz`) played through the IMU and magnetometer models.
     pub imu_trial: Option<std::path::PathBuf>,
@@ -185,7 +187,7 @@ impl World {
                 C620::new(1, Random::new(seed, Stream::LeftMotor)),
                 C620::new(2, Random::new(seed, Stream::RightMotor)),
             ],
-            joints: joints::drives(config.joints),
+            joints: joints::drives(config.joints, config.rs00_timeout),
             joints_told: Default::default(),
             legs: Legs::default(),
             adapters: Default::default(),

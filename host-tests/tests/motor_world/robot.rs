@@ -40,6 +40,8 @@ impl Robot {
             JointKind::Dm4310 => &ROBOT_LAYOUT,
             JointKind::Rs00 => &RS00_LAYOUT,
         };
+        let mut config = RobotConfig::default();
+        config.joint_ctrl.rs00_timeout_set = 1;
         let world = World::new(WorldConfig {
             joints,
             seed: 3,
@@ -54,11 +56,7 @@ impl Robot {
             flash: FlashGrant::default(),
             world,
             now: 0,
-            control: ControlLoop::with_layout(
-                layout,
-                RobotConfig::default(),
-                UserController::default(),
-            ),
+            control: ControlLoop::with_layout(layout, config, UserController::default()),
             diagnostics: DiagnosticsSnapshot::default(),
             sent: Vec::new(),
         }

@@ -70,7 +70,8 @@ impl<C: ChassisController> Bench<C> {
             Make::Dm4310 => &ROBOT_LAYOUT,
             Make::Rs00 => &RS00_LAYOUT,
         };
-        let config = RobotConfig::default();
+        let mut config = RobotConfig::default();
+        config.joint_ctrl.rs00_timeout_set = 1;
         Self {
             control: ControlLoop::with_layout(layout, config, controller),
             make,

@@ -53,6 +53,7 @@ mod tests {
     use super::*;
 
     const CONFIG: JointControllerConfig = JointControllerConfig {
+        rs00_timeout_set: 0,
         hold_kp: 30.0,
         hold_kd: 2.0,
     };

@@ -71,7 +71,7 @@ impl Default for WheelControllerConfig {
     }
 }
 
-/// How the default controller holds the legs.
+/// How the default controller holds the legs, and what people have done to their motors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct JointControllerConfig {
@@ -79,6 +79,9 @@ pub struct JointControllerConfig {
     pub hold_kp: f32,
     /// N·m·s/rad.
     pub hold_kd: f32,
+    /// 1 when somebody has set the time-out of each RS00: its MIT protocol can neither set nor read it. Of other motors it
+    /// says nothing.
+    pub rs00_timeout_set: u32,
 }
 
 impl Default for JointControllerConfig {
@@ -86,6 +89,7 @@ impl Default for JointControllerConfig {
         Self {
             hold_kp: 20.0,
             hold_kd: 1.0,
+            rs00_timeout_set: 0,
         }
     }
 }

@@ -119,6 +119,7 @@ fn disarmed(inputs: &IndicationInputs<'_>) -> Indication {
     } else if stops_in_part(inputs.safety)
         || blocked_by(ArmingBlockers::JOINTS_NOT_READY)
         || blocked_by(ArmingBlockers::SETTINGS_REFUSED)
+        || blocked_by(ArmingBlockers::JOINT_TIMEOUT_UNSET)
         || blocked_by(ArmingBlockers::DEBUGGER_CATCHES)
     {
         Indication::NotReady

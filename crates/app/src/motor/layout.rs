@@ -162,6 +162,12 @@ impl MotorLayout {
         &self.joints
     }
 
+    /// A joint's motor has a time-out that only people can set: RS00.
+    pub fn has_timeout_to_set_by_hand(&self) -> bool {
+        let is_rs00 = |joint: &JointSlot| matches!(joint.motor, JointMotor::Rs00(_));
+        self.joints.iter().any(is_rs00)
+    }
+
     /// What stops every motor: zero current for speed controllers 1 to 4, then the disable frame of each joint.
     pub const fn safe_frames(&self) -> [(BusId, CanFrame); 5] {
         let zero = CanFrame::new(m3508::COMMAND_ID, [0; 8]);

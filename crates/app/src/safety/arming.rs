@@ -49,6 +49,10 @@ impl ArmingBlockers {
     /// A debugger halts the core where it should send zero frames, and does not let that be undone.
     pub const DEBUGGER_CATCHES: Self = Self(1 << 12);
 
+    /// A joint motor keeps its last command for ever when the bus falls silent, unless somebody has set its time-out, and
+    /// nobody says so.
+    pub const JOINT_TIMEOUT_UNSET: Self = Self(1 << 17);
+
     pub const fn bits(self) -> u32 {
         self.0
     }
@@ -88,7 +92,7 @@ impl ArmingBlockers {
 }
 
 /// Not a constant: tools read the names of the bits out of the image.
-static BLOCKER_NAMES: [(ArmingBlockers, &str); 13] = [
+static BLOCKER_NAMES: [(ArmingBlockers, &str); 14] = [
     (ArmingBlockers::REMOTE_NOT_FRESH, "remote-not-fresh"),
     (ArmingBlockers::ENABLE_OFF, "enable-off"),
     (ArmingBlockers::ENABLE_NOT_CYCLED, "enable-not-cycled"),
@@ -102,6 +106,7 @@ static BLOCKER_NAMES: [(ArmingBlockers, &str); 13] = [
     (ArmingBlockers::FLASH_BUSY, "flash-busy"),
     (ArmingBlockers::SETTINGS_REFUSED, "settings-refused"),
     (ArmingBlockers::DEBUGGER_CATCHES, "debugger-catches"),
+    (ArmingBlockers::JOINT_TIMEOUT_UNSET, "joint-timeout-unset"),
 ];
 
 #[cfg(feature = "defmt")]
@@ -147,6 +152,8 @@ pub struct ArmingInputs<'a> {
     pub params: &'a ParamStatus,
     /// See `DebugProbe::catches`.
     pub debugger_catches: bool,
+    /// See [`ArmingBlockers::JOINT_TIMEOUT_UNSET`].
+    pub joint_timeout_unset: bool,
     pub safety: &'a SafetyStatus,
 }
 
@@ -266,6 +273,10 @@ fn only_forbidding(inputs: &ArmingInputs<'_>) -> ArmingBlockers {
     );
     let joints_ready = inputs.motor.joints.iter().all(is_ready);
     blockers.add_if(ArmingBlockers::JOINTS_NOT_READY, !joints_ready);
+    blockers.add_if(
+        ArmingBlockers::JOINT_TIMEOUT_UNSET,
+        inputs.joint_timeout_unset,
+    );
     blockers.add_if(ArmingBlockers::FLASH_BUSY, inputs.flash_busy);
     blockers.add_if(ArmingBlockers::SETTINGS_REFUSED, inputs.params.refused != 0);
     blockers.add_if(ArmingBlockers::DEBUGGER_CATCHES, inputs.debugger_catches);

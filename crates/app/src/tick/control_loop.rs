@@ -90,6 +90,8 @@ pub struct ControlLoop<
     config: RobotConfig,
     controller: C,
     motors: MotorManager,
+    /// See `MotorLayout::has_timeout_to_set_by_hand`.
+    timeout_by_hand: bool,
     estimator: InsEstimator,
     policy: SafetyPolicy,
     arming: Arming,
@@ -126,6 +128,7 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
             config,
             controller,
             motors: MotorManager::new(layout),
+            timeout_by_hand: layout.has_timeout_to_set_by_hand(),
             estimator,
             policy: SafetyPolicy::default(),
             arming: Arming::default(),
@@ -312,6 +315,8 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
                 flash_busy: self.flash.grant().blocks_arming,
                 params: inputs.params,
                 debugger_catches: inputs.health.debug_probe.catches,
+                joint_timeout_unset: self.timeout_by_hand
+                    && self.config.joint_ctrl.rs00_timeout_set == 0,
                 safety: &diagnostics.safety,
             },
             now_us,

@@ -27,7 +27,7 @@ pub static PARAMETERS: [ParameterGroup; 12] = [
     ParameterGroup {
         number: 3,
         name: "joint-controller",
-        version: 1,
+        version: 2,
         scope: Scope::Robot,
         parameters: &joints::CONTROLLER,
     },

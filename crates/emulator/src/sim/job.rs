@@ -75,6 +75,7 @@ impl Job {
             plant: self.scenario.plant,
             radio: self.scenario.radio,
             joints: self.scenario.joints,
+            rs00_timeout: self.scenario.rs00_timeout,
             imu_temperature_c: self.scenario.imu_temperature_c,
             mounting: self.scenario.mounting,
             mag_mounting: self.scenario.mag_mounting,

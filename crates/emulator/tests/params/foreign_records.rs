@@ -22,7 +22,7 @@ fn foreign() -> [(Id, Stored); 3] {
         (
             (3, 0),
             Stored {
-                version: 2,
+                version: 3,
                 values: pattern(7),
             },
         ),
@@ -89,7 +89,7 @@ fn records_of_a_later_firmware_survive_saves_and_a_change_of_sectors() {
         .wait(3 * SECOND, |robot| robot.is_saved(1))
         .expect("it is saved");
     let stored = newest(&robot.machine.parameter_flash());
-    assert_eq!(stored[&(3, 0)].version, 1);
+    assert_eq!(stored[&(3, 0)].version, 2);
     assert_eq!(stored[&(3, 0)].values[0], 19.0_f32.to_bits());
     assert_eq!(stored[&(41, 0)], foreign()[0].1);
 }

@@ -11,7 +11,7 @@ pub type Setting = (u8, u8);
 pub type Settings = BTreeMap<Setting, u32>;
 
 /// Settings of all groups together.
-pub const COUNT: usize = 87;
+pub const COUNT: usize = 88;
 
 /// A record each.
 pub const GROUPS: usize = CALIBRATED.len();
@@ -33,7 +33,7 @@ const JOINT: [f32; 8] = [1.0, 0.25, -1.25, 1.25, 3.0, 8.0, 90.0, 2.0];
 const CALIBRATED: [(u8, &[f32]); 12] = [
     (1, &[0.07, 0.45, 17.5, 1.0, -1.0]),
     (2, &[1.25, 3.5, 50_000.0, 7_000.0, 900.0, 40_000.0]),
-    (3, &[18.0, 0.75]),
+    (3, &[18.0, 0.75, 1.0]),
     (4, &[120_000.0, 0.4, 20_000.0, 40_000.0, 25.0, 30.0, 0.07, 2_500_000.0, 40_000.0, 0.8, 80.0, 85.0, 20.5, 18.5, 1_500_000.0]),
     (5, &[0.1, -0.2, 0.15, 1.01, 0.99, 1.02, 0.5, -0.25, 0.75, 1.005, 0.995, 1.015]),
     (6, &[12.0, -20.0, 7.0, 1.1, 0.9, 1.05, 0.05, -0.02, 0.03]),
@@ -60,7 +60,7 @@ pub fn calibrated() -> Settings {
 pub fn records(make: Make) -> Vec<(Id, Stored)> {
     let groups = CALIBRATED.into_iter();
     groups
-        .map(|(group, values)| ((group, variant(group, make)), Stored::of(1, values)))
+        .map(|(group, values)| (id(group, make), Stored::of(version(group), values)))
         .collect()
 }
 
@@ -81,6 +81,14 @@ pub fn in_flash(stored: &BTreeMap<Id, Stored>, make: Make) -> Settings {
 /// What a record of this group is filed under.
 pub fn id(group: u8, make: Make) -> Id {
     (group, variant(group, make))
+}
+
+/// Of the group's record.
+fn version(group: u8) -> u8 {
+    match group {
+        3 => 2,
+        _ => 1,
+    }
 }
 
 fn variant(group: u8, make: Make) -> u8 {

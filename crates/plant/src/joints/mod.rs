@@ -80,13 +80,13 @@ pub(crate) struct Joint {
 }
 
 /// ESC_ID or motor identifier 1 to 4; DM4310 reply under 0x11 to 0x14, RS00 under host identifiers set to 0xF1 to 0xF4.
-pub(crate) fn drives(kind: JointKind) -> [Joint; JOINTS] {
+pub(crate) fn drives(kind: JointKind, rs00_timeout: Ps) -> [Joint; JOINTS] {
     std::array::from_fn(|joint| {
         let id = joint as u32 + 1;
         Joint {
             drive: match kind {
                 JointKind::Dm4310 => Drive::Dm4310(Dm4310::new(id, 0x10 + id)),
-                JointKind::Rs00 => Drive::Rs00(Rs00::new(id, 0xF0 + id)),
+                JointKind::Rs00 => Drive::Rs00(Rs00::new(id, 0xF0 + id, rs00_timeout)),
             },
             direction: DIRECTION[joint],
         }
@@ -127,7 +127,7 @@ impl Joint {
         let dt_s = physics_step_s();
         match &mut self.drive {
             Drive::Dm4310(drive) => drive.step(shaft, supply_v, now, dt_s),
-            Drive::Rs00(drive) => drive.step(shaft, supply_v, dt_s),
+            Drive::Rs00(drive) => drive.step(shaft, supply_v, now, dt_s),
         }
     }
 

@@ -196,6 +196,8 @@ fn refused_settings_are_shown_before_the_pilot_tries_to_arm() {
 
 #[test]
 fn a_debugger_that_catches_is_shown_before_the_pilot_tries_to_arm() {
+    let unset = disarmed(|s| s.arming.blockers = ArmingBlockers::JOINT_TIMEOUT_UNSET);
+    assert_eq!(unset, Indication::NotReady);
     let caught = disarmed(|s| s.arming.blockers = ArmingBlockers::DEBUGGER_CATCHES);
     assert_eq!(caught, Indication::NotReady);
 }

@@ -11,6 +11,7 @@ struct Bench {
     flash_busy: bool,
     params: ParamStatus,
     debugger_catches: bool,
+    joint_timeout_unset: bool,
     vx: f32,
     motor: MotorFeedback,
     safety: SafetyStatus,
@@ -33,6 +34,7 @@ impl Bench {
             flash_busy: false,
             params: ParamStatus::default(),
             debugger_catches: false,
+            joint_timeout_unset: false,
             vx: 0.0,
             motor,
             safety: SafetyStatus::of(SafetyFlags::NONE),
@@ -67,6 +69,7 @@ impl Bench {
                 flash_busy: self.flash_busy,
                 params: &self.params,
                 debugger_catches: self.debugger_catches,
+                joint_timeout_unset: self.joint_timeout_unset,
                 safety: &self.safety,
             };
             let (now, token) = self.arming.step(&inputs, self.now_us);
@@ -207,6 +210,13 @@ fn refused_settings_forbid_arming() {
 fn a_debugger_that_catches_forbids_arming_but_lets_no_robot_fall() {
     let result = with_wrong(|bench| bench.debugger_catches = true);
     let expected = (ArmingBlockers::DEBUGGER_CATCHES, ArmingState::Armed);
+    assert_eq!(result, expected);
+}
+
+#[test]
+fn joint_motors_without_a_time_out_forbid_arming() {
+    let result = with_wrong(|bench| bench.joint_timeout_unset = true);
+    let expected = (ArmingBlockers::JOINT_TIMEOUT_UNSET, ArmingState::Armed);
     assert_eq!(result, expected);
 }
 

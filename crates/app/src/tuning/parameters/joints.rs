@@ -1,6 +1,6 @@
 //! The joint controller and each joint's place and limits.
 
-use crate::tuning::parameter::{Parameter, ParameterKind, float, sign};
+use crate::tuning::parameter::{Parameter, ParameterKind, float, integer, sign};
 
 /// What an MIT frame can say (DM4310 and RS00 alike, hardware.md 8.2 and 9).
 const MAX_KP: f32 = 500.0;
@@ -11,9 +11,10 @@ const MAX_RPS: f32 = 33.0;
 const MAX_NM: f32 = 14.0;
 
 #[rustfmt::skip] // One line a setting.
-pub static CONTROLLER: [Parameter; 2] = [
+pub static CONTROLLER: [Parameter; 3] = [
     float!(0, "hold-kp", "N*m/rad", 0.0, MAX_KP, joint_ctrl.hold_kp),
     float!(1, "hold-kd", "N*m*s/rad", 0.0, MAX_KD, joint_ctrl.hold_kd),
+    integer!(2, "rs00-timeout-set", "", 0.0, 1.0, joint_ctrl.rs00_timeout_set),
 ];
 
 #[rustfmt::skip] // One line a setting.

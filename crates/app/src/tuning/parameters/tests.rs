@@ -85,10 +85,11 @@ fn indices_begin_at_zero_and_leave_none_out() {
 /// version and a new line; the old lines stay.
 #[test]
 fn a_group_that_grows_gets_a_new_version() {
-    let stored: [(u8, u8, usize); 12] = [
+    let stored: [(u8, u8, usize); 13] = [
         (1, 1, 5),
         (2, 1, 6),
         (3, 1, 2),
+        (3, 2, 3),
         (4, 1, 15),
         (5, 1, 12),
         (6, 1, 9),
@@ -142,6 +143,7 @@ fn wire_numbers_stay() {
     assert_eq!(read(1, 4), -1.0);
     assert_eq!(read(2, 3), 8_000.0);
     assert_eq!(read(3, 0), 20.0);
+    assert_eq!(read(3, 2), 0.0);
     assert_eq!(read(4, 9), 0.9);
     assert_eq!(read(4, 12), 21.0);
     assert_eq!(read(7, 0), 40.0);

@@ -30,6 +30,8 @@ struct File {
     radio: Radio,
     #[serde(default)]
     joints: Joints,
+    #[serde(default)]
+    rs00_timeout_ms: u32,
     imu_temperature_c: Option<f64>,
     mounting: Option<Spanned<String>>,
     mag_mounting: Option<Spanned<String>>,
@@ -233,6 +235,7 @@ pub(super) fn parse(text: &str, file: &str) -> Result<Scenario, ScenarioError> {
             Joints::Dm4310 => JointKind::Dm4310,
             Joints::Rs00 => JointKind::Rs00,
         },
+        rs00_timeout: u64::from(raw.rs00_timeout_ms) * time::MS,
         imu_temperature_c: raw.imu_temperature_c,
         mounting,
         mag_mounting,

@@ -23,6 +23,8 @@ pub struct Scenario {
     pub plant: PlantKind,
     pub radio: RadioKind,
     pub joints: JointKind,
+    /// What somebody has set as the RS00's CAN time-out; 0 = off.
+    pub rs00_timeout: Ps,
     /// Of the IMU's package at power-on; unset, the board has been on before.
     pub imu_temperature_c: Option<f64>,
     /// Of the board in the robot, and of the magnetometer beside the IMU.

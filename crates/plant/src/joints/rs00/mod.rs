@@ -2,6 +2,8 @@
 
 mod receive;
 
+use crate::time::Ps;
+
 use super::{
     DriveFaults, Shaft,
     actuator::{Actuator, Rating},
@@ -54,9 +56,12 @@ enum Target {
     Speed { vel_rps: f64, most_a: f64 },
 }
 
-/// The last command holds for ever: the motor's own watch over the bus is off as shipped, and its parameter is out of
+/// As shipped the last command holds for ever: the motor's own watch over the bus, parameter 0x7028, is off, and out of
 /// the MIT protocol's reach.
 pub(crate) struct Rs00 {
+    /// Silence after which it goes back to reset mode; 0 = never.
+    can_timeout: Ps,
+    heard_at: Ps,
     motor_id: u32,
     host_id: u32,
     mode: Mode,
@@ -73,8 +78,11 @@ pub(crate) struct Rs00 {
 }
 
 impl Rs00 {
-    pub(crate) fn new(motor_id: u32, host_id: u32) -> Self {
+    /// `can_timeout` as somebody set it in the private protocol.
+    pub(crate) fn new(motor_id: u32, host_id: u32, can_timeout: Ps) -> Self {
         Self {
+            can_timeout,
+            heard_at: 0,
             motor_id,
             host_id,
             mode: Mode::Mit,
@@ -144,7 +152,11 @@ impl Rs00 {
         self.motor_id + u32::from(self.faults.wrong_id) * WRONG_ID
     }
 
-    pub(crate) fn step(&mut self, shaft: Shaft, supply_v: f64, dt_s: f64) {
+    pub(crate) fn step(&mut self, shaft: Shaft, supply_v: f64, now: Ps, dt_s: f64) {
+        // Assumed: it raises no fault, and may be enabled again at once.
+        if self.running && self.can_timeout != 0 && now > self.heard_at + self.can_timeout {
+            self.switch_off();
+        }
         if self.running && self.actuator.winding_c() > OVER_TEMPERATURE_C {
             self.trip(OVER_TEMPERATURE);
         }

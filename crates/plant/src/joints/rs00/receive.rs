@@ -20,6 +20,7 @@ impl Rs00 {
         if !self.powered() || !addressed || frame.extended || frame.remote || frame.dlc != 8 {
             return Heard::Nothing;
         }
+        self.heard_at = now;
         let [service @ .., detail, tail] = frame.data;
         let is_service = frame.id >> 8 == 0 && service == [0xFF; 6];
         match (tail, detail) {

@@ -33,7 +33,7 @@ struct Bench {
 
 fn bench() -> Bench {
     Bench {
-        motor: Rs00::new(3, 0xFD),
+        motor: Rs00::new(3, 0xFD, 0),
         shaft: Shaft::default(),
         now: MS,
     }
@@ -61,12 +61,34 @@ impl Bench {
     fn wait(&mut self, ms: u64) {
         for _ in 0..4 * ms {
             self.now += 250 * US;
-            self.motor.step(self.shaft, 24.0, physics_step_s());
+            self.motor
+                .step(self.shaft, 24.0, self.now, physics_step_s());
         }
     }
 
     fn torque_nm(&self) -> f64 {
         self.motor.actuator().torque_nm()
+    }
+}
+
+/// Parameter 0x7028: 0 as shipped, 2000 for 100 ms; a trip is reset mode.
+#[test]
+fn it_holds_for_ever_unless_its_time_out_was_set() {
+    for (can_timeout, lets_go) in [(0, false), (100 * MS, true)] {
+        let mut bench = bench();
+        bench.motor = Rs00::new(3, 0xFD, can_timeout);
+        bench.ask(3, ENABLE);
+        bench.ask(3, ONE);
+        for _ in 0..5 {
+            bench.wait(90);
+            bench.ask(3, ONE);
+            assert!(bench.motor.enabled());
+        }
+        bench.wait(110);
+        assert_eq!(!bench.motor.enabled(), lets_go);
+        assert_eq!(bench.torque_nm() == 0.0, lets_go);
+        bench.ask(3, ENABLE);
+        assert!(bench.motor.enabled());
     }
 }
 
@@ -157,7 +179,7 @@ fn heat_reads_in_tenths_and_trips_above_145_degrees() {
     bench.ask(3, [0x7F, 0xFF, 0x7F, 0xF0, 0, 0, 0x0F, 0xFF]);
     assert_eq!(bench.torque_nm(), 14.0);
     for _ in 0..600 {
-        bench.motor.step(bench.shaft, 24.0, 1.0);
+        bench.motor.step(bench.shaft, 24.0, bench.now, 1.0);
     }
     assert_eq!(bench.ask(3, READ_FAULTS).expect("a reply")[1], 0x01);
 }
