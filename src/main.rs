@@ -98,6 +98,7 @@ fn main() -> ! {
     sensor.spawn(defmt::unwrap!(tasks::sbus::run(
         board.radio,
         config::REMOTE_FORMAT,
+        exchange,
         writers.remote
     )));
     executors::start_control().spawn(defmt::unwrap!(tasks::control::run(control)));

@@ -2,11 +2,12 @@
 
 use embassy_time::{Duration, Instant, with_timeout};
 use robot_app::domain::RemoteUpdate;
-use robot_app::input::{RemoteFormat, RemoteMapping, RemoteReceiver};
+use robot_app::input::{RemoteFormat, RemoteReceiver};
 use robot_snapshot::Writer;
 
 use crate::deadlines::Watched;
 use crate::drivers::radio_uart::{Burst, RadioUart};
+use crate::exchange::Exchange;
 
 /// Silence is no error here (its age speaks for itself), but the task must show that it lives.
 const CHECK_IN_PERIOD: Duration = Duration::from_millis(10);
@@ -15,15 +16,20 @@ const CHECK_IN_PERIOD: Duration = Duration::from_millis(10);
 pub async fn run(
     mut uart: RadioUart,
     format: RemoteFormat,
+    exchange: &'static Exchange,
     mut output: Writer<'static, RemoteUpdate>,
 ) -> ! {
-    let mut receiver = RemoteReceiver::new(format, RemoteMapping::default());
+    let mut settings = exchange.config.follower();
+    let mut receiver = RemoteReceiver::new(format, settings.last().config.radio);
     let mut bytes = [0; 64];
     loop {
         if let Ok(burst) = with_timeout(CHECK_IN_PERIOD, uart.read(&mut bytes)).await {
             let ts_us = Instant::now().as_micros();
             match burst {
                 Burst::Clean(arrived) => {
+                    if let Some(update) = settings.news() {
+                        receiver.set_mapping(&update.config.radio);
+                    }
                     receiver.feed(arrived, ts_us, |update| output.publish(&update));
                 }
                 Burst::Damaged { count } => receiver.reject(count, ts_us),

@@ -233,6 +233,7 @@ impl Robot {
                 good_ts_us: now_us,
                 ..RemoteDiagnostics::default()
             },
+            ..RemoteUpdate::default()
         }
     }
 

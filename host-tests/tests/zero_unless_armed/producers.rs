@@ -111,5 +111,6 @@ fn remote_update(phase: &Phase, now_us: u64) -> RemoteUpdate {
             good_ts_us: now_us,
             ..RemoteDiagnostics::default()
         },
+        ..RemoteUpdate::default()
     }
 }

@@ -9,6 +9,7 @@ mod imu_status;
 mod last_words;
 mod mounting;
 mod remote;
+mod remote_mapping;
 mod sensors;
 
 pub use can::{BusId, CanFrame, StandardId};
@@ -30,6 +31,7 @@ pub use imu_status::{
 pub use last_words::{LastWords, LateTasks};
 pub use mounting::Orientation;
 pub use remote::{DriveMode, OperatorState, RemoteDiagnostics, RemoteState, RemoteUpdate};
+pub use remote_mapping::{NO_CHANNEL, RemoteChannel, RemoteMapping};
 pub use sensors::{
     ImuState, JointFeedback, JointState, MagState, MotorFeedback, SensorsSnapshot, WheelFeedback,
 };

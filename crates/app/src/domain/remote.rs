@@ -7,7 +7,7 @@ use crate::math::scalar;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct RemoteState {
-    /// −1 … 1 each.
+    /// −1 … 1 each, as of a FrSky transmitter, whatever the settings say.
     pub channels: [f32; 16],
     /// Forward stick, −1 … 1, forward positive.
     pub vx: f32,
@@ -109,4 +109,7 @@ pub struct RemoteUpdate {
     pub state: RemoteState,
     pub operator: OperatorState,
     pub diagnostics: RemoteDiagnostics,
+    /// Channels as on the wire in the last frame, lost or not: SBUS 0 … 2047; of DBUS the four sticks and the wheel,
+    /// 364 … 1684, then zeros.
+    pub raw: [u16; 16],
 }

@@ -1,89 +1,64 @@
-//! Which channel means what.
+//! Frames → sticks and switches.
 
 use super::{DbusFrame, DbusSwitch, SbusFrame, channels};
-use crate::domain::{DriveMode, OperatorState, RemoteState};
-
-/// Index of an SBUS channel, 0 to 15.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ChannelIndex(u8);
-
-impl ChannelIndex {
-    /// `None` above 15.
-    pub const fn new(index: u8) -> Option<Self> {
-        if index < 16 { Some(Self(index)) } else { None }
-    }
-
-    fn of(self, channels: &[f32; 16]) -> f32 {
-        channels.get(usize::from(self.0)).copied().unwrap_or(0.0)
-    }
-}
-
-/// SBUS channel assignment. DBUS needs none: its switches and sticks are labelled on the transmitter.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct RemoteMapping {
-    /// Stick right = positive = turn right, so `wz` is its negative.
-    pub steering: ChannelIndex,
-    pub drive: ChannelIndex,
-    /// Up = high.
-    pub select: ChannelIndex,
-    /// Right = high.
-    pub dead_man: ChannelIndex,
-    /// High = enabled.
-    pub enable: ChannelIndex,
-    /// Low, middle, high = 0, 1, 2.
-    pub mode: ChannelIndex,
-    /// Low = run; anything else stops.
-    pub e_stop: ChannelIndex,
-}
-
-impl Default for RemoteMapping {
-    fn default() -> Self {
-        Self {
-            steering: ChannelIndex(0),
-            drive: ChannelIndex(1),
-            select: ChannelIndex(2),
-            dead_man: ChannelIndex(3),
-            enable: ChannelIndex(4),
-            mode: ChannelIndex(5),
-            e_stop: ChannelIndex(6),
-        }
-    }
-}
+use crate::domain::{DriveMode, OperatorState, RemoteChannel, RemoteMapping, RemoteState};
 
 /// A switch is taken as thrown beyond half way.
 const SWITCH_THRESHOLD: f32 = 0.5;
 /// The dead-man stick counts as held beyond this.
 const DEAD_MAN_THRESHOLD: f32 = 0.7;
+/// Further beyond its low end than this an e-stop switch is none: receivers send 0 for a channel that the transmitter
+/// does not have.
+const E_STOP_LOWEST: f32 = -1.2;
 
+/// A stick or switch without a channel is where it is safe: sticks centred, enable off, e-stop thrown.
 pub(super) fn from_sbus(
     frame: &SbusFrame,
     mapping: &RemoteMapping,
     ts_us: u64,
 ) -> (RemoteState, OperatorState) {
-    let channels = frame
-        .channels
-        .map(|raw| channels::normalise(raw, 172, 992, 1811));
+    let raw = &frame.channels;
+    let stick = |channel: &RemoteChannel| position(channel, raw).clamp(-1.0, 1.0);
     let state = RemoteState {
-        vx: mapping.drive.of(&channels),
-        wz: -mapping.steering.of(&channels),
-        select: mapping.select.of(&channels),
-        channels,
+        channels: raw.map(|raw| channels::normalise(raw, 172, 992, 1811)),
+        vx: stick(&mapping.drive),
+        wz: -stick(&mapping.steering),
+        select: stick(&mapping.select),
         ts_us,
     };
-    let enabled = mapping.enable.of(&channels) > SWITCH_THRESHOLD;
+    let enabled = position(&mapping.enable, raw) > SWITCH_THRESHOLD;
     let operator = OperatorState {
         enabled,
         disabled: !enabled,
-        e_stop: mapping.e_stop.of(&channels) > -SWITCH_THRESHOLD,
-        dead_man: mapping.dead_man.of(&channels) > DEAD_MAN_THRESHOLD,
-        mode: match mapping.mode.of(&channels) {
-            low if low < -SWITCH_THRESHOLD => DriveMode::Manual,
-            high if high > SWITCH_THRESHOLD => DriveMode::Custom,
-            _ => DriveMode::Pc,
+        e_stop: !lets_run(&mapping.e_stop, raw),
+        dead_man: position(&mapping.dead_man, raw) > DEAD_MAN_THRESHOLD,
+        mode: match mapping.mode.position(raw) {
+            None => DriveMode::Manual,
+            Some(low) if low < -SWITCH_THRESHOLD => DriveMode::Manual,
+            Some(high) if high > SWITCH_THRESHOLD => DriveMode::Custom,
+            Some(_) => DriveMode::Pc,
         },
         ts_us,
     };
     (state, operator)
+}
+
+fn position(channel: &RemoteChannel, raw: &[u16; 16]) -> f32 {
+    channel.position(raw).unwrap_or(0.0)
+}
+
+fn lets_run(e_stop: &RemoteChannel, raw: &[u16; 16]) -> bool {
+    let position = e_stop.position(raw);
+    position.is_some_and(|at| (E_STOP_LOWEST..=-SWITCH_THRESHOLD).contains(&at))
+}
+
+pub(super) fn raw_of_dbus(frame: &DbusFrame) -> [u16; 16] {
+    let [a, b, c, d] = frame.sticks;
+    let mut raw = [0; 16];
+    for (channel, value) in raw.iter_mut().zip([a, b, c, d, frame.wheel]) {
+        *channel = value;
+    }
+    raw
 }
 
 pub(super) fn from_dbus(frame: &DbusFrame, ts_us: u64) -> (RemoteState, OperatorState) {
@@ -123,28 +98,128 @@ pub(super) fn from_dbus(frame: &DbusFrame, ts_us: u64) -> (RemoteState, Operator
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::domain::NO_CHANNEL;
+
+    fn sbus(channels: [u16; 16]) -> SbusFrame {
+        SbusFrame {
+            channels,
+            channel_17: false,
+            channel_18: false,
+            frame_lost: false,
+            failsafe: false,
+        }
+    }
+
+    /// Futaba R7003SB: 352, 1024, 1696 (betaflight and PX4 give 350 to 1700).
+    #[test]
+    fn a_stick_goes_from_its_own_low_end_through_its_own_centre_to_its_own_high_end() {
+        let mut mapping = RemoteMapping::default();
+        let futaba = RemoteChannel {
+            low: 352,
+            centre: 1024,
+            high: 1696,
+            ..mapping.drive
+        };
+        mapping.drive = futaba;
+        let vx = |mapping: &RemoteMapping, raw| {
+            let mut channels = [992; 16];
+            channels[usize::try_from(mapping.drive.index).unwrap()] = raw;
+            let (state, _) = from_sbus(&sbus(channels), mapping, 1);
+            state.vx
+        };
+        let positions = [
+            (352, -1.0),
+            (1024, 0.0),
+            (1360, 0.5),
+            (1696, 1.0),
+            (300, -1.0),
+        ];
+        for (raw, expected) in positions {
+            assert_eq!(vx(&mapping, raw), expected, "{raw}");
+        }
+        mapping.drive = RemoteChannel {
+            index: 9,
+            reversed: 1,
+            ..futaba
+        };
+        for (raw, expected) in positions {
+            assert_eq!(vx(&mapping, raw), -expected, "{raw}");
+        }
+    }
+
+    #[test]
+    fn sticks_and_switches_without_a_channel_are_where_it_is_safe() {
+        let mut mapping = RemoteMapping::default();
+        let none = RemoteChannel {
+            index: NO_CHANNEL,
+            ..mapping.drive
+        };
+        for channel in [
+            &mut mapping.steering,
+            &mut mapping.drive,
+            &mut mapping.select,
+            &mut mapping.dead_man,
+            &mut mapping.enable,
+            &mut mapping.mode,
+            &mut mapping.e_stop,
+        ] {
+            *channel = none;
+        }
+        for raw in [0, 172, 992, 1811, 2047] {
+            let (state, operator) = from_sbus(&sbus([raw; 16]), &mapping, 1);
+            assert_eq!((state.vx, state.wz, state.select), (0.0, 0.0, 0.0));
+            assert!(!operator.enabled && operator.disabled && operator.e_stop);
+            assert!(!operator.dead_man);
+            assert_eq!(operator.mode, DriveMode::Manual);
+        }
+    }
+
+    /// One value on all channels, as a receiver without its transmitter may send it: 0, the ends, the centre.
+    #[test]
+    fn no_value_on_all_channels_at_once_lets_the_robot_run() {
+        for raw in 0..=2047 {
+            let (_, operator) = from_sbus(&sbus([raw; 16]), &RemoteMapping::default(), 1);
+            assert!(!operator.enabled || operator.e_stop, "{raw}");
+        }
+    }
+
+    #[test]
+    fn an_e_stop_channel_that_the_transmitter_does_not_have_stops() {
+        let stops = |raw| {
+            let mut channels = [992; 16];
+            channels[6] = raw;
+            from_sbus(&sbus(channels), &RemoteMapping::default(), 1)
+                .1
+                .e_stop
+        };
+        for (raw, expected) in [
+            (0, true),
+            (8, false),
+            (172, false),
+            (582, false),
+            (583, true),
+        ] {
+            assert_eq!(stops(raw), expected, "{raw}");
+        }
+        for raw in [992, 1811, 2047] {
+            assert!(stops(raw), "{raw}");
+        }
+    }
 
     /// Ends and centre of SBUS: 172, 992, 1811; of DBUS: 364, 1024, 1684 (hardware.md section 6). Beyond 0.7: 1566 and
     /// 1487.
     #[test]
     fn the_left_stick_is_dead_man_and_selector_on_both_radios() {
-        let sbus = |select, dead_man| {
+        let of_sbus = |select, dead_man| {
             let mut channels = [992; 16];
             (channels[2], channels[3]) = (select, dead_man);
-            let frame = SbusFrame {
-                channels,
-                channel_17: false,
-                channel_18: false,
-                frame_lost: false,
-                failsafe: false,
-            };
-            let (state, operator) = from_sbus(&frame, &RemoteMapping::default(), 1);
+            let (state, operator) = from_sbus(&sbus(channels), &RemoteMapping::default(), 1);
             (state.select, operator.dead_man)
         };
-        assert_eq!(sbus(992, 992), (0.0, false));
-        assert_eq!(sbus(1811, 1811), (1.0, true));
-        assert_eq!(sbus(172, 172), (-1.0, false));
-        assert_eq!((sbus(992, 1565).1, sbus(992, 1566).1), (false, true));
+        assert_eq!(of_sbus(992, 992), (0.0, false));
+        assert_eq!(of_sbus(1811, 1811), (1.0, true));
+        assert_eq!(of_sbus(172, 172), (-1.0, false));
+        assert_eq!((of_sbus(992, 1565).1, of_sbus(992, 1566).1), (false, true));
         let dbus = |select, dead_man| {
             let frame = DbusFrame {
                 sticks: [1024, 1024, dead_man, select],

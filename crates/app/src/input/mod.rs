@@ -7,7 +7,7 @@ mod mapping;
 mod receiver;
 mod sbus;
 
+pub use crate::domain::RemoteMapping;
 pub use dbus::{DbusFrame, DbusParser, DbusSwitch};
-pub use mapping::{ChannelIndex, RemoteMapping};
 pub use receiver::{RemoteFormat, RemoteReceiver};
 pub use sbus::{SbusFrame, SbusParser};

@@ -40,6 +40,15 @@ impl RemoteReceiver {
         }
     }
 
+    /// Counts from the next frame on. What was confirmed by another mapping is not: sticks and switches start as they do
+    /// at boot.
+    pub fn set_mapping(&mut self, mapping: &RemoteMapping) {
+        if self.mapping != *mapping {
+            self.mapping = *mapping;
+            self.link.forget();
+        }
+    }
+
     /// Takes the bytes that arrived up to `ts_us` (the time of the last one) in chunks of any length.
     pub fn feed(&mut self, bytes: &[u8], ts_us: u64, mut sink: impl FnMut(RemoteUpdate)) {
         let Self {
@@ -51,20 +60,30 @@ impl RemoteReceiver {
             Parser::Sbus(parser) => {
                 parser.feed(bytes, ts_us, |frame| {
                     let (state, operator) = mapping::from_sbus(&frame, mapping, ts_us);
+                    link.raw = frame.channels;
                     let flags = LinkFlags {
                         lost: frame.frame_lost,
                         failsafe: frame.failsafe,
                     };
                     sink(link.accept(state, operator, flags, ts_us));
                 });
-                link.weigh_discarded(parser.discarded_bytes(), sbus::FRAME_LEN);
+                link.weigh_discarded(
+                    parser.discarded_bytes(),
+                    parser.lost_bytes(),
+                    sbus::FRAME_LEN,
+                );
             }
             Parser::Dbus(parser) => {
                 parser.feed(bytes, ts_us, |frame| {
                     let (state, operator) = mapping::from_dbus(&frame, ts_us);
+                    link.raw = mapping::raw_of_dbus(&frame);
                     sink(link.accept(state, operator, LinkFlags::default(), ts_us));
                 });
-                link.weigh_discarded(parser.discarded_bytes(), dbus::FRAME_LEN);
+                link.weigh_discarded(
+                    parser.discarded_bytes(),
+                    parser.discarded_bytes(),
+                    dbus::FRAME_LEN,
+                );
             }
         }
     }
@@ -77,11 +96,19 @@ impl RemoteReceiver {
         match &mut self.parser {
             Parser::Sbus(parser) => {
                 parser.reject(count, ts_us);
-                link.weigh_discarded(parser.discarded_bytes(), sbus::FRAME_LEN);
+                link.weigh_discarded(
+                    parser.discarded_bytes(),
+                    parser.lost_bytes(),
+                    sbus::FRAME_LEN,
+                );
             }
             Parser::Dbus(parser) => {
                 parser.reject(count, ts_us);
-                link.weigh_discarded(parser.discarded_bytes(), dbus::FRAME_LEN);
+                link.weigh_discarded(
+                    parser.discarded_bytes(),
+                    parser.discarded_bytes(),
+                    dbus::FRAME_LEN,
+                );
             }
         }
     }
@@ -97,12 +124,13 @@ struct LinkFlags {
 #[derive(Clone, Debug, Default)]
 struct Link {
     diagnostics: RemoteDiagnostics,
+    raw: [u16; 16],
     state: RemoteState,
     operator: OperatorState,
     confirmation: Confirmation,
     /// One bit a frame, newest lowest, 1 = lost.
     lost_history: u64,
-    /// Discarded bytes that are in the history.
+    /// Lost bytes that are in the history.
     weighed_bytes: u32,
 }
 
@@ -139,14 +167,22 @@ impl Link {
             state: self.state,
             operator: self.operator,
             diagnostics: *diagnostics,
+            raw: self.raw,
         }
     }
 
-    /// Bytes outside of frames are frames that were damaged or cut: each frame's length of them counts as one lost.
-    fn weigh_discarded(&mut self, discarded_bytes: u32, frame_len: usize) {
+    fn forget(&mut self) {
+        self.state = RemoteState::default();
+        self.operator = OperatorState::default();
+        self.confirmation = Confirmation::default();
+    }
+
+    /// Bytes outside of frames, and those among them of frames that were damaged or cut: each frame's length of these
+    /// counts as one lost.
+    fn weigh_discarded(&mut self, discarded_bytes: u32, lost_bytes: u32, frame_len: usize) {
         self.diagnostics.discarded_bytes = discarded_bytes;
         let frame_len = frame_len as u32;
-        while discarded_bytes.wrapping_sub(self.weighed_bytes) >= frame_len {
+        while lost_bytes.wrapping_sub(self.weighed_bytes) >= frame_len {
             self.weighed_bytes = self.weighed_bytes.wrapping_add(frame_len);
             self.remember(true);
         }

@@ -4,6 +4,10 @@
 //! A candidate is trusted if it starts after silence on the line, or right where the frame before it ended. Any other
 //! candidate is not delivered; if it looks like a frame it only makes the next one trusted, so a stream without
 //! silence is found again at its second frame.
+//!
+//! Makers put all sorts of footers there: 0x00, the SBUS2 slots, 0x08 (Futaba R7003SB, which sends five bytes more,
+//! bolderflight/sbus#79). So after silence header and length are enough, if the bytes came in one run; without silence
+//! the footer must be a known one.
 
 use super::channels;
 
@@ -13,6 +17,10 @@ const HEADER: u8 = 0x0F;
 const BYTE_US: u64 = 120;
 /// Longer silence than any inside a frame, shorter than the shortest between frames (3 ms at a 6 ms period).
 const GAP_US: u64 = 2_000;
+/// A receiver sends a frame in one run; a pause of two characters inside means that one was lost and another came later.
+const BREAK_US: u64 = 2 * BYTE_US;
+/// Bytes behind a frame that are no frame's: some receivers add up to seven, which is no fault of the link.
+const MAX_TAIL: u32 = 8;
 
 /// One frame as received.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,8 +36,17 @@ pub struct SbusFrame {
 impl SbusFrame {
     /// `None` unless header and footer are those of SBUS or SBUS2.
     pub fn parse(bytes: &[u8; FRAME_LEN]) -> Option<Self> {
+        let [.., footer] = bytes;
+        if !is_footer(*footer) {
+            return None;
+        }
+        Self::parse_any_footer(bytes)
+    }
+
+    /// `None` unless the header is right. A footer that is the next frame's header means that a byte is missing.
+    fn parse_any_footer(bytes: &[u8; FRAME_LEN]) -> Option<Self> {
         let [header, payload @ .., flags, footer] = bytes;
-        if *header != HEADER || !is_footer(*footer) {
+        if *header != HEADER || *footer == HEADER {
             return None;
         }
         let mut channels = [0; 16];
@@ -46,9 +63,22 @@ impl SbusFrame {
     }
 }
 
-/// 0x00, or the SBUS2 telemetry slots.
+/// 0x00, the SBUS2 telemetry slots, or that of newer Futaba receivers.
 const fn is_footer(byte: u8) -> bool {
-    matches!(byte, 0x00 | 0x04 | 0x14 | 0x24 | 0x34)
+    matches!(byte, 0x00 | 0x04 | 0x08 | 0x14 | 0x24 | 0x34)
+}
+
+/// What tells that a frame must start at the head of the window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Start {
+    /// Nothing.
+    Unknown,
+    /// The frame before ended there.
+    BehindFrame,
+    /// Silence before it, and no pause since.
+    AfterSilence,
+    /// Silence before it, but the bytes since did not come in one run.
+    AfterSilenceBroken,
 }
 
 /// Finds frames in a byte stream.
@@ -56,10 +86,13 @@ const fn is_footer(byte: u8) -> bool {
 pub struct SbusParser {
     window: [u8; FRAME_LEN],
     filled: usize,
-    /// The byte at the head of the window is where a frame must start.
-    aligned: bool,
+    start: Start,
     last_byte_us: Option<u64>,
     discarded_bytes: u32,
+    /// Those of them that a damaged or cut frame left.
+    lost_bytes: u32,
+    /// Discarded since the last frame, while there was no silence and they are few.
+    tail: Option<u32>,
 }
 
 impl Default for SbusParser {
@@ -73,15 +106,22 @@ impl SbusParser {
         Self {
             window: [0; FRAME_LEN],
             filled: 0,
-            aligned: false,
+            start: Start::Unknown,
             last_byte_us: None,
             discarded_bytes: 0,
+            lost_bytes: 0,
+            tail: None,
         }
     }
 
     /// Bytes since boot that belonged to no delivered frame.
     pub const fn discarded_bytes(&self) -> u32 {
         self.discarded_bytes
+    }
+
+    /// As [`discarded_bytes`](Self::discarded_bytes), without what a receiver adds behind a sound frame.
+    pub(super) const fn lost_bytes(&self) -> u32 {
+        self.lost_bytes
     }
 
     /// Takes the bytes that arrived up to `ts_us` (the time of the last one) in chunks of any length.
@@ -102,21 +142,24 @@ impl SbusParser {
     /// before them are dropped.
     pub fn reject(&mut self, count: usize, ts_us: u64) {
         self.discard(self.filled);
-        self.discarded_bytes = self.discarded_bytes.wrapping_add(count as u32);
-        self.aligned = false;
+        self.tail = None;
+        self.count_discarded(count as u32);
+        self.start = Start::Unknown;
         self.last_byte_us = Some(ts_us);
     }
 
     fn notice_silence(&mut self, arrived: usize, ts_us: u64) {
         let line_time_us = (arrived as u64).saturating_mul(BYTE_US);
         let first_byte_us = ts_us.saturating_sub(line_time_us);
-        let silent = match self.last_byte_us {
-            None => true,
-            Some(last) => first_byte_us.saturating_sub(last) >= GAP_US,
-        };
-        if silent {
+        let pause_us = self
+            .last_byte_us
+            .map_or(u64::MAX, |last| first_byte_us.saturating_sub(last));
+        if pause_us >= GAP_US {
             self.discard(self.filled);
-            self.aligned = true;
+            self.tail = None;
+            self.start = Start::AfterSilence;
+        } else if pause_us > BREAK_US && self.start == Start::AfterSilence {
+            self.start = Start::AfterSilenceBroken;
         }
     }
 
@@ -129,20 +172,24 @@ impl SbusParser {
         if self.filled < FRAME_LEN {
             return None;
         }
-        let frame = SbusFrame::parse(&self.window);
+        let frame = match self.start {
+            Start::AfterSilence => SbusFrame::parse_any_footer(&self.window),
+            _ => SbusFrame::parse(&self.window),
+        };
         if frame.is_none() {
-            self.aligned = false;
+            self.start = Start::Unknown;
             self.discard(1);
             self.skip_to_header();
             return None;
         }
-        let trusted = self.aligned;
+        let trusted = self.start != Start::Unknown;
         if trusted {
             self.filled = 0;
+            self.tail = Some(0);
         } else {
             self.discard(FRAME_LEN);
         }
-        self.aligned = true;
+        self.start = Start::BehindFrame;
         frame.filter(|_| trusted)
     }
 
@@ -154,7 +201,7 @@ impl SbusParser {
             .position(|&byte| byte == HEADER)
             .unwrap_or(self.filled);
         if start > 0 {
-            self.aligned = false;
+            self.start = Start::Unknown;
             self.discard(start);
         }
     }
@@ -164,6 +211,15 @@ impl SbusParser {
         let count = count.min(self.filled);
         self.window.copy_within(count..self.filled, 0);
         self.filled = self.filled.saturating_sub(count);
-        self.discarded_bytes = self.discarded_bytes.wrapping_add(count as u32);
+        self.count_discarded(count as u32);
+    }
+
+    fn count_discarded(&mut self, count: u32) {
+        self.discarded_bytes = self.discarded_bytes.wrapping_add(count);
+        let tail = self.tail.map(|tail| tail.saturating_add(count));
+        self.tail = tail.filter(|tail| *tail <= MAX_TAIL);
+        if self.tail.is_none() {
+            self.lost_bytes = self.lost_bytes.wrapping_add(tail.unwrap_or(count));
+        }
     }
 }

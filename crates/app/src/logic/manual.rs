@@ -1,32 +1,68 @@
 //! Sticks → high-level command.
 
-use crate::domain::{HighLevelCommand, RemoteState};
+use crate::{
+    domain::{HighLevelCommand, RemoteState},
+    math::scalar,
+};
 
-/// Sticks closer to the centre than this mean zero: a hand-held stick never returns exactly.
-const DEAD_BAND: f32 = 0.02;
-
-pub(super) fn drive(remote: &RemoteState) -> HighLevelCommand {
+/// `stick_centre` is the limit up to which `Arming` takes a stick for centred: what lets the robot be armed must not move
+/// it.
+pub(super) fn drive(remote: &RemoteState, stick_centre: f32) -> HighLevelCommand {
     HighLevelCommand {
-        vx: outside_dead_band(remote.vx),
-        wz: outside_dead_band(remote.wz),
+        vx: outside_dead_band(remote.vx, stick_centre),
+        wz: outside_dead_band(remote.wz, stick_centre),
     }
 }
 
-fn outside_dead_band(stick: f32) -> f32 {
-    if stick.abs() < DEAD_BAND { 0.0 } else { stick }
+/// 0 up to `dead_band`; from there twice as steep as the stick until it has caught up with it, so that the robot starts
+/// from 0 and full stick stays full. NaN gives 0.
+fn outside_dead_band(stick: f32, dead_band: f32) -> f32 {
+    let beyond = stick.abs() - dead_band;
+    if beyond <= 0.0 || beyond.is_nan() {
+        0.0
+    } else {
+        scalar::min(2.0 * beyond, stick.abs()).copysign(stick)
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    #[test]
-    fn a_nearly_centred_stick_is_centred() {
-        let command = drive(&RemoteState {
-            vx: 0.019,
-            wz: -0.021,
+    fn vx(stick: f32, stick_centre: f32) -> f32 {
+        let remote = RemoteState {
+            vx: stick,
+            wz: -stick,
             ..RemoteState::default()
-        });
-        assert_eq!((command.vx, command.wz), (0.0, -0.021));
+        };
+        let command = drive(&remote, stick_centre);
+        assert_eq!(command.wz, -command.vx);
+        command.vx
+    }
+
+    #[test]
+    fn what_counts_as_centred_for_arming_moves_nothing() {
+        for limit in [0.01, 0.05, 0.3] {
+            assert_eq!(vx(limit, limit), 0.0);
+            assert_eq!(vx(-limit, limit), 0.0);
+        }
+        assert_eq!(vx(f32::NAN, 0.05), 0.0);
+    }
+
+    #[test]
+    fn beyond_the_centre_the_robot_starts_from_zero_and_reaches_full_stick() {
+        for limit in [0.01, 0.05, 0.3] {
+            assert!((vx(limit + 0.001, limit) - 0.002).abs() < 1e-6);
+            assert!((vx(-limit - 0.001, limit) + 0.002).abs() < 1e-6);
+            let mut last = 0.0;
+            for step in 0..=1_000u16 {
+                let now = vx(f32::from(step) * 1e-3, limit);
+                assert!((0.0..=0.002_01).contains(&(now - last)), "{step}");
+                last = now;
+            }
+            assert_eq!(last, 1.0);
+        }
+        assert_eq!(vx(0.4, 0.05), 0.4);
+        assert_eq!(vx(-0.4, 0.05), -0.4);
     }
 }

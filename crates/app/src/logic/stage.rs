@@ -27,7 +27,10 @@ impl<L: CustomLogic> LogicStage<L> {
         }
         let decision = if may_run {
             match mode {
-                DriveMode::Manual => LogicDecision::Drive(manual::drive(&inputs.remote.state)),
+                DriveMode::Manual => {
+                    let stick_centre = inputs.config.stick_centre;
+                    LogicDecision::Drive(manual::drive(&inputs.remote.state, stick_centre))
+                }
                 DriveMode::Pc => from_pc(inputs, now_us),
                 DriveMode::Custom => self.custom.step(inputs, now_us),
             }

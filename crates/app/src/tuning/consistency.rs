@@ -2,18 +2,23 @@
 
 use super::Refusal;
 use crate::domain::{
-    ImuCalibration, JointConfig, MagCalibration, MountingConfig, Orientation, RobotConfig,
+    ImuCalibration, JointConfig, MagCalibration, MountingConfig, NO_CHANNEL, Orientation,
+    RemoteChannel, RemoteMapping, RobotConfig,
     SafetyConfig,
 };
 
 /// Least distance of a joint's two soft limits.
 const LEAST_TRAVEL_RAD: f32 = 0.01;
+/// Least distance of a channel's centre from its ends, in counts: less would make a stick jump.
+const LEAST_SPAN: u32 = 200;
 
 #[inline(never)]
 pub fn check(config: &RobotConfig) -> Result<(), Refusal> {
     let fits = config.joints.iter().all(joint_can_move)
         && battery_limits_in_order(&config.safety)
-        && keeps_directions(&config.mag);
+        && keeps_directions(&config.mag)
+        && config.radio.all().into_iter().all(ends_in_order)
+        && each_channel_once(&config.radio);
     if fits {
         Ok(())
     } else {
@@ -43,6 +48,21 @@ fn mag_axes(mounting: &MountingConfig) -> Orientation {
 
 fn joint_can_move(joint: &JointConfig) -> bool {
     joint.max_rad - joint.min_rad >= LEAST_TRAVEL_RAD
+}
+
+fn ends_in_order(channel: &RemoteChannel) -> bool {
+    let span = |low: u32, high: u32| high.saturating_sub(low) >= LEAST_SPAN;
+    span(channel.low, channel.centre) && span(channel.centre, channel.high)
+}
+
+fn each_channel_once(radio: &RemoteMapping) -> bool {
+    let mut taken: u32 = 0;
+    radio.all().into_iter().all(|channel| {
+        let bit = 1u32.wrapping_shl(channel.index);
+        let is_free = channel.index == NO_CHANNEL || taken & bit == 0;
+        taken |= bit;
+        is_free
+    })
 }
 
 /// Low 0 switches both off, whatever the other is.
@@ -80,6 +100,26 @@ mod tests {
             |config| config.joints[3].max_rad = config.joints[3].min_rad
         ));
         assert!(refused(|config| config.joints[0].min_rad = 2.0));
+    }
+
+    #[test]
+    fn a_stick_has_room_on_both_sides_of_its_centre() {
+        assert!(!refused(|config| config.radio.drive.low = 792));
+        assert!(refused(|config| config.radio.drive.low = 793));
+        assert!(!refused(|config| config.radio.e_stop.high = 1192));
+        assert!(refused(|config| config.radio.e_stop.high = 1191));
+        assert!(refused(|config| config.radio.steering.centre = 2047));
+    }
+
+    #[test]
+    fn two_functions_do_not_share_a_channel() {
+        assert!(refused(|config| config.radio.drive.index = 6));
+        assert!(refused(|config| config.radio.e_stop.index = 0));
+        assert!(!refused(|config| config.radio.e_stop.index = 15));
+        assert!(!refused(|config| {
+            config.radio.select.index = NO_CHANNEL;
+            config.radio.dead_man.index = NO_CHANNEL;
+        }));
     }
 
     #[test]

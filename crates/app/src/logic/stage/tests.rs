@@ -27,6 +27,7 @@ fn remote(mode: DriveMode) -> RemoteUpdate {
             good_ts_us: 1_000_000,
             ..RemoteDiagnostics::default()
         },
+        ..RemoteUpdate::default()
     }
 }
 

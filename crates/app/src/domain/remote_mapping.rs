@@ -1,0 +1,98 @@
+//! Which channel of an SBUS transmitter means what, and how far its sticks and switches go.
+
+/// A channel number that stands for "there is none". Smaller ones are indices into the frame, from 0.
+pub const NO_CHANNEL: u32 = 16;
+
+/// One stick or switch of the transmitter. Counts are as on the wire, 0 … 2047.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C)]
+pub struct RemoteChannel {
+    /// 0 … 15, or [`NO_CHANNEL`].
+    pub index: u32,
+    /// Fully left, down, back or off.
+    pub low: u32,
+    pub centre: u32,
+    /// Fully right, up, forward or on.
+    pub high: u32,
+    /// 1: the transmitter sends it the other way round.
+    pub reversed: u32,
+}
+
+impl RemoteChannel {
+    /// Counts at −100, 0, +100 % of FrSky and of most others; Futaba and RadioLink have theirs at about 352, 1024, 1696.
+    const fn new(index: u32) -> Self {
+        Self {
+            index,
+            low: 172,
+            centre: 992,
+            high: 1811,
+            reversed: 0,
+        }
+    }
+
+    /// −1 at the low end, 0 at the centre, 1 at the high end, and beyond them if the channel goes beyond. `None` without
+    /// a channel.
+    pub fn position(&self, raw: &[u16; 16]) -> Option<f32> {
+        let raw = *raw.get(self.index as usize)?;
+        let centre = self.centre as f32;
+        let offset = f32::from(raw) - centre;
+        let end = if offset < 0.0 { self.low } else { self.high };
+        // Settings leave room between centre and ends; without it there is no position.
+        let span = (end as f32 - centre).abs();
+        let position = if span > 0.0 { offset / span } else { 0.0 };
+        Some(if self.reversed == 1 {
+            -position
+        } else {
+            position
+        })
+    }
+}
+
+/// All that the robot listens to. DBUS needs none of it: its sticks and switches are labelled on the transmitter, and
+/// their counts are fixed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C)]
+pub struct RemoteMapping {
+    /// Stick right = high = turn right.
+    pub steering: RemoteChannel,
+    /// Stick forward = high.
+    pub drive: RemoteChannel,
+    /// Up = high.
+    pub select: RemoteChannel,
+    /// Right = high.
+    pub dead_man: RemoteChannel,
+    /// High = enabled.
+    pub enable: RemoteChannel,
+    /// Low, middle, high = 0, 1, 2.
+    pub mode: RemoteChannel,
+    /// Low = run; anything else stops.
+    pub e_stop: RemoteChannel,
+}
+
+impl RemoteMapping {
+    pub const fn all(&self) -> [&RemoteChannel; 7] {
+        [
+            &self.steering,
+            &self.drive,
+            &self.select,
+            &self.dead_man,
+            &self.enable,
+            &self.mode,
+            &self.e_stop,
+        ]
+    }
+}
+
+impl Default for RemoteMapping {
+    fn default() -> Self {
+        Self {
+            steering: RemoteChannel::new(0),
+            drive: RemoteChannel::new(1),
+            select: RemoteChannel::new(2),
+            dead_man: RemoteChannel::new(3),
+            enable: RemoteChannel::new(4),
+            mode: RemoteChannel::new(5),
+            e_stop: RemoteChannel::new(6),
+        }
+    }
+}
