@@ -1,6 +1,6 @@
 //! `DiagnosticsSnapshot`, the LiveWatch structure of ROBOT_CPP 0.7.
 
-use super::TickStats;
+use super::{Strangers, TickStats};
 use crate::{
     bring_up::BringUpStatus,
     domain::{
@@ -10,7 +10,7 @@ use crate::{
     },
     logic::LogicBus,
     params::ParamStatus,
-    safety::{ArmingStatus, SafetyStatus},
+    safety::{ArmingStatus, MotorFindings, SafetyStatus},
     tuning::TuningStatus,
 };
 
@@ -47,4 +47,10 @@ pub struct DiagnosticsSnapshot {
     pub reset_cause: ResetCause,
     pub imu_calibrated: bool,
     pub debug_probe: DebugProbe,
+    /// Which motors keep the robot from being armed.
+    pub motors: MotorFindings,
+    /// Frames on the buses that nobody here knows.
+    pub strangers: Strangers,
+    /// See `RemoteUpdate`.
+    pub remote_raw: [u16; 16],
 }

@@ -1,6 +1,6 @@
 //! Values that fit this code to one robot.
 
-use super::Orientation;
+use super::{Orientation, RemoteMapping};
 use crate::motor::layout::{MotorLayout, ROBOT_LAYOUT};
 
 /// Wheel geometry (ROBOT_CPP 5.1).
@@ -127,7 +127,7 @@ pub struct SafetyConfig {
     pub max_tx_failures: u32,
     /// How far a stick may be off centre while arming, 0 … 1.
     pub stick_centre: f32,
-    /// How long a flip of the enable switch keeps asking; afterwards it must go off and on again.
+    /// How long a flip of the enable switch may wait for settings being written to flash; for nothing else it waits.
     pub arm_request_us: u32,
     /// A joint's reply older than this: silent.
     pub joint_timeout_us: u32,
@@ -141,6 +141,8 @@ pub struct SafetyConfig {
     pub battery_empty_v: f32,
     /// How long enable off and e-stop thrown together clear latched stops.
     pub clear_hold_us: u32,
+    /// 1: what was stopped in part moves again only after the sticks have been centred.
+    pub resume_centred: u32,
 }
 
 impl Default for SafetyConfig {
@@ -161,6 +163,7 @@ impl Default for SafetyConfig {
             battery_low_v: 21.0,
             battery_empty_v: 19.0,
             clear_hold_us: 1_000_000,
+            resume_centred: 1,
         }
     }
 }
@@ -254,6 +257,7 @@ pub struct RobotConfig {
     pub imu: ImuCalibration,
     pub mag: MagCalibration,
     pub heater: HeaterConfig,
+    pub radio: RemoteMapping,
 }
 
 impl Default for RobotConfig {
@@ -275,6 +279,7 @@ impl RobotConfig {
             imu: ImuCalibration::default(),
             mag: MagCalibration::default(),
             heater: HeaterConfig::default(),
+            radio: RemoteMapping::default(),
         }
     }
 }

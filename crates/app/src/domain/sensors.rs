@@ -42,6 +42,8 @@ pub struct WheelFeedback {
     pub temperature_c: u8,
     /// Its reports contradict themselves or what was commanded: it repeats an old one.
     pub frozen: bool,
+    /// Its angle does not move as its speed says: there are two senders, or its sensor is broken.
+    pub doubtful: bool,
     /// Since `ts_us`; `u32::MAX` before the first report.
     pub age_us: u32,
     /// When it was received, 0 = no report yet.
@@ -56,6 +58,7 @@ impl Default for WheelFeedback {
             current_ma: 0.0,
             temperature_c: 0,
             frozen: false,
+            doubtful: false,
             age_us: u32::MAX,
             ts_us: 0,
         }

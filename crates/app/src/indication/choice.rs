@@ -28,6 +28,8 @@ pub enum Indication {
     /// Bring-up, armed: a motor may move.
     BringUpArmed,
     Armed,
+    /// The pilot has asked, and will be armed as soon as settings are written.
+    Waiting,
     BringUp,
     BatteryLow,
     /// The package is not warm yet.
@@ -37,7 +39,7 @@ pub enum Indication {
     Calibrating,
     /// Wheels, joints, a bus, the settings or a debugger forbid to arm.
     NotReady,
-    /// The enable switch is on, but that does not arm: see the arming blockers.
+    /// The enable switch is on, but that does not arm: see why the request was refused.
     Refused,
     /// As `Ready`, but flash takes no settings: what was changed last goes with the power.
     NotSaved,
@@ -58,8 +60,22 @@ const RADIO: SafetyFlags = SafetyFlags::REMOTE_LOST
     .union(SafetyFlags::REMOTE_FAILSAFE)
     .union(SafetyFlags::REMOTE_QUALITY);
 
+const NOT_READY: [ArmingBlockers; 7] = [
+    ArmingBlockers::JOINT_TIMEOUT_UNSET,
+    ArmingBlockers::DEBUGGER_CATCHES,
+    ArmingBlockers::JOINTS_NOT_READY,
+    ArmingBlockers::SETTINGS_REFUSED,
+    ArmingBlockers::WHEEL_NEVER_HEARD,
+    ArmingBlockers::WHEEL_DOUBTFUL,
+    ArmingBlockers::JOINT_OUT_OF_LIMITS,
+];
+
 impl Indication {
     pub fn of(inputs: &IndicationInputs<'_>) -> Self {
+        // Whatever stops the robot as well refuses the request.
+        if inputs.arming.waiting {
+            return Self::Waiting;
+        }
         if let Some(stop) = stop(inputs) {
             return stop;
         }
@@ -116,12 +132,7 @@ fn disarmed(inputs: &IndicationInputs<'_>) -> Indication {
             CalibrationState::WaitingForStillness => Indication::HoldStill,
             CalibrationState::Measuring | CalibrationState::Done => Indication::Calibrating,
         }
-    } else if stops_in_part(inputs.safety)
-        || blocked_by(ArmingBlockers::JOINTS_NOT_READY)
-        || blocked_by(ArmingBlockers::SETTINGS_REFUSED)
-        || blocked_by(ArmingBlockers::JOINT_TIMEOUT_UNSET)
-        || blocked_by(ArmingBlockers::DEBUGGER_CATCHES)
-    {
+    } else if stops_in_part(inputs.safety) || NOT_READY.into_iter().any(blocked_by) {
         Indication::NotReady
     } else if !blocked_by(ArmingBlockers::ENABLE_OFF) {
         Indication::Refused

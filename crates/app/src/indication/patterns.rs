@@ -80,6 +80,10 @@ pub(super) const fn pattern(indication: Indication) -> Pattern {
         ),
         Indication::BringUpArmed => (&[(Purple, 1_000)], Beeps::Once(&[(true, 300)])),
         Indication::Armed => (&[(Green, 1_000)], Beeps::Once(&[(true, 300)])),
+        Indication::Waiting => (
+            &[(Blue, 150), (Green, 150)],
+            Beeps::Repeated(&[(true, 80), (false, 170)]),
+        ),
         Indication::BringUp => (&[(Purple, 500), (Off, 500)], Beeps::Silent),
         Indication::BatteryLow => (
             &[(Yellow, 200), (Off, 800)],
@@ -106,7 +110,7 @@ pub(super) const fn pattern(indication: Indication) -> Pattern {
 mod tests {
     use super::*;
 
-    const ALL: [Indication; 18] = [
+    const ALL: [Indication; 19] = [
         Indication::EStop,
         Indication::BatteryEmpty,
         Indication::LatchedStop,
@@ -116,6 +120,7 @@ mod tests {
         Indication::ArmedBatteryLow,
         Indication::BringUpArmed,
         Indication::Armed,
+        Indication::Waiting,
         Indication::BringUp,
         Indication::BatteryLow,
         Indication::WarmingUp,
@@ -185,6 +190,7 @@ mod tests {
                 Indication::LatchedStop,
                 Indication::ArmedInPart,
                 Indication::ArmedBatteryLow,
+                Indication::Waiting,
                 Indication::BatteryLow
             ]
         );

@@ -76,6 +76,7 @@ pub fn decode_feedback(frame: &CanFrame, ts_us: u64) -> Option<WheelFeedback> {
         current_ma: f32::from(i16::from_be_bytes([current_h, current_l])) / COUNTS_PER_MA,
         temperature_c,
         frozen: false,
+        doubtful: false,
         age_us: 0,
         ts_us,
     })

@@ -9,6 +9,7 @@
 //! | `joint_limits` | what a joint may be asked for |
 //! | `manager` | all of them: feedback in, frames out |
 
+mod angle_watch;
 pub mod dm4310;
 mod interface;
 mod joint;

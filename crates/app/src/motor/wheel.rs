@@ -1,6 +1,7 @@
 //! One M3508. Its current goes out in a frame it shares with others, so its output is a current, not a frame.
 
 use super::{
+    angle_watch::AngleWatch,
     interface::Motor,
     m3508::{self, EscId},
 };
@@ -23,6 +24,9 @@ pub struct Wheel {
     max_current_ma: f32,
     feedback: WheelFeedback,
     sent: MotorCurrent,
+    permitted: bool,
+    /// Works while the wheel may not move: what it finds forbids arming, and an armed robot has no time to spare.
+    angle_watch: AngleWatch,
     /// Last report with another angle than the one before.
     angle_changed_us: u64,
     /// Last report that differed at all, or agreed with the current sent.
@@ -36,6 +40,8 @@ impl Wheel {
             max_current_ma,
             feedback: WheelFeedback::default(),
             sent: MotorCurrent::ZERO,
+            permitted: false,
+            angle_watch: AngleWatch::default(),
             angle_changed_us: 0,
             plausible_us: 0,
         }
@@ -91,6 +97,11 @@ impl Motor for Wheel {
             return false;
         };
         feedback.frozen = self.is_frozen(&feedback);
+        feedback.doubtful = if self.permitted {
+            self.feedback.doubtful
+        } else {
+            self.angle_watch.is_doubtful(&self.feedback, &feedback)
+        };
         self.feedback = feedback;
         true
     }
@@ -110,6 +121,7 @@ impl Motor for Wheel {
         permitted: bool,
         _now_us: u64,
     ) -> MotorCurrent {
+        self.permitted = permitted;
         self.sent = if permitted {
             // A limit that is no number stays one, and allows nothing.
             let limit_ma = if config.current_limit_ma > self.max_current_ma {

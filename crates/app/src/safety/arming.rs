@@ -1,13 +1,18 @@
 //! Disarmed until the pilot flips the enable switch and nothing speaks against it (design.md section 3, rule 1).
 //!
-//! The switch asks for arming when it goes from off to on; the request lives a few seconds and dies with the switch.
-//! Being disarmed for any reason uses the request up: the switch must go off and on again.
+//! The switch asks for arming when it goes from off to on, and is answered at once: the robot arms, or refuses. A refused
+//! request is used up, as is that of a robot that is disarmed for any reason: the switch must go off and on again, or
+//! the robot would start when nobody expects it any more. Only one thing ends by itself and is waited for: settings
+//! being written to flash, and the attitude that settles anew when the chip has stood still for it.
 
-use super::{SafetyFlags, SafetyStatus, SafetyVerdict};
+use super::{SafetyFlags, SafetyStatus, SafetyVerdict, motor_findings::MotorFindings};
 use crate::{
-    domain::{JointFeedback, JointState, MotorFeedback, OperatorState, RemoteState, SafetyConfig},
+    domain::{OperatorState, SafetyConfig},
     params::ParamStatus,
 };
+
+/// Settings count from the first frame that is this much younger than their change.
+const SETTINGS_LAG_US: u64 = 5_000;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -29,8 +34,9 @@ impl ArmingBlockers {
     pub const REMOTE_NOT_FRESH: Self = Self(1 << 0);
     /// The enable switch is off.
     pub const ENABLE_OFF: Self = Self(1 << 1);
-    /// The enable switch is on but must go off and on again: it was on at boot, or its request is used up or too old.
+    /// The enable switch is on but must go off and on again: it was on at boot, or its request is used up.
     pub const ENABLE_NOT_CYCLED: Self = Self(1 << 2);
+    /// A stick is off centre, or was within the last 0.2 s.
     pub const STICKS_NOT_CENTRED: Self = Self(1 << 3);
     pub const ESTIMATE_INVALID: Self = Self(1 << 4);
     pub const CALIBRATION_PENDING: Self = Self(1 << 5);
@@ -42,12 +48,18 @@ impl ArmingBlockers {
     pub const BRING_UP_READ_ONLY: Self = Self(1 << 8);
     /// Low, or not measured.
     pub const BATTERY_LOW: Self = Self(1 << 9);
-    /// Settings are being written to flash, or room is made for them.
+    /// Settings are being written to flash, or room is made for them. A request waits for the end.
     pub const FLASH_BUSY: Self = Self(1 << 10);
     /// A saved setting was refused at boot; its default need not fit this robot.
     pub const SETTINGS_REFUSED: Self = Self(1 << 11);
     /// A debugger halts the core where it should send zero frames, and does not let that be undone.
     pub const DEBUGGER_CATCHES: Self = Self(1 << 12);
+    /// A wheel has not been heard since boot.
+    pub const WHEEL_NEVER_HEARD: Self = Self(1 << 13);
+    /// A wheel's angle does not move as its speed says: two speed controllers have one number, or its sensor is broken.
+    pub const WHEEL_DOUBTFUL: Self = Self(1 << 14);
+    /// A joint reads an angle beyond its soft limits: its zero is not set, or it is wrong by a turn.
+    pub const JOINT_OUT_OF_LIMITS: Self = Self(1 << 15);
 
     /// A joint motor keeps its last command for ever when the bus falls silent, unless somebody has set its time-out, and
     /// nobody says so.
@@ -80,6 +92,11 @@ impl ArmingBlockers {
         found.map(|(_, name)| *name)
     }
 
+    /// True if the set has nothing that `other` has not.
+    const fn is_within(self, other: Self) -> bool {
+        self.0 & !other.0 == 0
+    }
+
     const fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
@@ -92,7 +109,7 @@ impl ArmingBlockers {
 }
 
 /// Not a constant: tools read the names of the bits out of the image.
-static BLOCKER_NAMES: [(ArmingBlockers, &str); 14] = [
+static BLOCKER_NAMES: [(ArmingBlockers, &str); 17] = [
     (ArmingBlockers::REMOTE_NOT_FRESH, "remote-not-fresh"),
     (ArmingBlockers::ENABLE_OFF, "enable-off"),
     (ArmingBlockers::ENABLE_NOT_CYCLED, "enable-not-cycled"),
@@ -106,6 +123,9 @@ static BLOCKER_NAMES: [(ArmingBlockers, &str); 14] = [
     (ArmingBlockers::FLASH_BUSY, "flash-busy"),
     (ArmingBlockers::SETTINGS_REFUSED, "settings-refused"),
     (ArmingBlockers::DEBUGGER_CATCHES, "debugger-catches"),
+    (ArmingBlockers::WHEEL_NEVER_HEARD, "wheel-never-heard"),
+    (ArmingBlockers::WHEEL_DOUBTFUL, "wheel-doubtful"),
+    (ArmingBlockers::JOINT_OUT_OF_LIMITS, "joint-out-of-limits"),
     (ArmingBlockers::JOINT_TIMEOUT_UNSET, "joint-timeout-unset"),
 ];
 
@@ -126,8 +146,12 @@ impl defmt::Format for ArmingBlockers {
 #[repr(C)]
 pub struct ArmingStatus {
     pub state: ArmingState,
+    /// The pilot has asked, and will be armed when what blocks arming has ended by itself.
+    pub waiting: bool,
     /// Empty while armed.
     pub blockers: ArmingBlockers,
+    /// Why the last request was refused; empty since the robot was armed.
+    pub refused: ArmingBlockers,
 }
 
 /// Exists only while armed; cannot be made anywhere else, copied or kept for the next tick's permit by accident.
@@ -138,13 +162,14 @@ pub struct ArmedToken(());
 #[derive(Clone, Copy, Debug)]
 pub struct ArmingInputs<'a> {
     pub config: &'a SafetyConfig,
-    pub remote: &'a RemoteState,
+    /// See `StickRest`.
+    pub sticks_rest: bool,
     /// Age of the last frame that came over the air.
     pub remote_age_us: u32,
     pub operator: &'a OperatorState,
     pub estimate_valid: bool,
     pub calibrated: bool,
-    pub motor: &'a MotorFeedback,
+    pub motor: &'a MotorFindings,
     /// Bring-up is in the step in which nothing may move.
     pub read_only: bool,
     /// See `FlashPermit`, which grants nothing to an armed robot.
@@ -175,9 +200,20 @@ enum Request {
 pub struct Arming {
     state: ArmingState,
     request: Request,
+    refused: ArmingBlockers,
+    /// Flash was being written, and the attitude has not settled since.
+    unsettled: bool,
+    /// The switch as older frames had it does not count.
+    trusted_from_us: u64,
 }
 
 impl Arming {
+    /// A channel may be the enable switch now that was not before: it must be seen off by frames that came after.
+    pub fn settings_changed(&mut self, now_us: u64) {
+        self.request = Request::MustGoOff;
+        self.trusted_from_us = now_us.saturating_add(SETTINGS_LAG_US);
+    }
+
     /// A token for this tick if the robot is armed.
     pub fn step(
         &mut self,
@@ -185,15 +221,11 @@ impl Arming {
         now_us: u64,
     ) -> (ArmingStatus, Option<ArmedToken>) {
         let fresh = inputs.remote_age_us <= inputs.config.remote_timeout_us;
+        self.unsettled = inputs.flash_busy || self.unsettled && !inputs.estimate_valid;
         self.follow_switch(fresh, inputs, now_us);
         let mut blockers = self.disarming(fresh, inputs);
         match self.state {
-            ArmingState::Disarmed => {
-                blockers = blockers.union(only_forbidding(inputs));
-                if blockers.is_empty() {
-                    self.state = ArmingState::Armed;
-                }
-            }
+            ArmingState::Disarmed => blockers = self.answer(blockers, fresh, inputs, now_us),
             ArmingState::Armed => {
                 if !blockers.is_empty() {
                     self.disarm();
@@ -201,12 +233,37 @@ impl Arming {
                 }
             }
         }
+        let armed = self.state == ArmingState::Armed;
         let status = ArmingStatus {
             state: self.state,
+            waiting: !armed && matches!(self.request, Request::Asked { .. }),
             blockers,
+            refused: self.refused,
         };
-        let token = (self.state == ArmingState::Armed).then_some(ArmedToken(()));
-        (status, token)
+        (status, armed.then_some(ArmedToken(())))
+    }
+
+    /// Arms, waits or refuses, if the pilot asks. `disarming` blocks it at least; all that blocks comes back.
+    #[inline(never)]
+    fn answer(
+        &mut self,
+        disarming: ArmingBlockers,
+        fresh: bool,
+        inputs: &ArmingInputs<'_>,
+        now_us: u64,
+    ) -> ArmingBlockers {
+        let blockers = disarming.union(only_forbidding(inputs));
+        if blockers.is_empty() {
+            self.state = ArmingState::Armed;
+            self.refused = ArmingBlockers::NONE;
+        } else if let Request::Asked { since_us } = self.request
+            && !self.may_wait(since_us, blockers, inputs, now_us)
+        {
+            self.request = Request::MustGoOff;
+            self.refused = blockers;
+            return blockers.union(self.disarming(fresh, inputs));
+        }
+        blockers
     }
 
     fn disarm(&mut self) {
@@ -218,10 +275,10 @@ impl Arming {
 
     /// Only a fresh remote moves the switch: old values are no sign of the pilot's will.
     fn follow_switch(&mut self, fresh: bool, inputs: &ArmingInputs<'_>, now_us: u64) {
-        if !fresh {
+        let operator = inputs.operator;
+        if !fresh || operator.ts_us < self.trusted_from_us {
             return;
         }
-        let operator = inputs.operator;
         if operator.disabled {
             self.request = Request::Ready;
             return;
@@ -229,15 +286,28 @@ impl Arming {
         self.request = match (self.request, operator.enabled) {
             (Request::Ready, true) => Request::Asked { since_us: now_us },
             (Request::Asked { .. }, false) => Request::MustGoOff,
-            (Request::Asked { since_us }, true)
-                if self.state == ArmingState::Disarmed
-                    && now_us.saturating_sub(since_us)
-                        > u64::from(inputs.config.arm_request_us) =>
-            {
-                Request::MustGoOff
-            }
             (request, _) => request,
         };
+    }
+
+    /// True if all that blocks arming comes of the writing to flash, and not for too long yet.
+    #[cold]
+    fn may_wait(
+        &self,
+        since_us: u64,
+        blockers: ArmingBlockers,
+        inputs: &ArmingInputs<'_>,
+        now_us: u64,
+    ) -> bool {
+        let by_flash = ArmingBlockers::FLASH_BUSY
+            .union(ArmingBlockers::ESTIMATE_INVALID)
+            .union(ArmingBlockers::SAFETY_STOP);
+        let unsettled = SafetyFlags::ESTIMATE_INVALID.union(SafetyFlags::IMU_STALE);
+        let waited_us = now_us.saturating_sub(since_us);
+        self.unsettled
+            && blockers.is_within(by_flash)
+            && inputs.safety.would_run_without(unsettled)
+            && waited_us <= u64::from(inputs.config.arm_request_us)
     }
 
     /// What forbids arming and ends it.
@@ -261,18 +331,20 @@ impl Arming {
 /// legs should not fall because its battery gets low.
 fn only_forbidding(inputs: &ArmingInputs<'_>) -> ArmingBlockers {
     let mut blockers = ArmingBlockers::NONE;
-    let stick_limit = inputs.config.stick_centre;
-    let sticks = [inputs.remote.vx, inputs.remote.wz];
-    blockers.add_if(
-        ArmingBlockers::STICKS_NOT_CENTRED,
-        !sticks.iter().all(|stick| stick.abs() <= stick_limit),
-    );
+    blockers.add_if(ArmingBlockers::STICKS_NOT_CENTRED, !inputs.sticks_rest);
     blockers.add_if(
         ArmingBlockers::SAFETY_STOP,
         inputs.safety.verdict != SafetyVerdict::Run,
     );
-    let joints_ready = inputs.motor.joints.iter().all(is_ready);
-    blockers.add_if(ArmingBlockers::JOINTS_NOT_READY, !joints_ready);
+    let motor = inputs.motor;
+    for (blocker, motors) in [
+        (ArmingBlockers::JOINTS_NOT_READY, motor.joints_unready),
+        (ArmingBlockers::WHEEL_NEVER_HEARD, motor.wheels_unheard),
+        (ArmingBlockers::WHEEL_DOUBTFUL, motor.wheels_doubtful),
+        (ArmingBlockers::JOINT_OUT_OF_LIMITS, motor.joints_outside),
+    ] {
+        blockers.add_if(blocker, motors != 0);
+    }
     blockers.add_if(
         ArmingBlockers::JOINT_TIMEOUT_UNSET,
         inputs.joint_timeout_unset,
@@ -285,14 +357,6 @@ fn only_forbidding(inputs: &ArmingInputs<'_>) -> ArmingBlockers {
         inputs.safety.flags.intersects(SafetyFlags::BATTERY_LOW),
     );
     blockers
-}
-
-/// Set up and without a fault.
-fn is_ready(joint: &JointFeedback) -> bool {
-    match joint.state {
-        JointState::Silent | JointState::SettingUp | JointState::Fault => false,
-        JointState::Disabled | JointState::Enabling | JointState::Enabled => true,
-    }
 }
 
 #[cfg(test)]

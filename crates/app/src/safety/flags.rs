@@ -48,6 +48,8 @@ impl SafetyFlags {
     pub const JOINT_FROZEN: Self = Self(1 << 24);
     /// A joint motor replies, but could not be set up or enabled for a second: other settings, another motor.
     pub const JOINT_NOT_READY: Self = Self(1 << 25);
+    /// What stopped a part is over, but the part waits until the sticks have been centred.
+    pub const STICKS_AWAITED: Self = Self(1 << 26);
 
     /// Any of these stops every actuator.
     pub const GLOBAL_STOP: Self = Self(
@@ -114,6 +116,11 @@ impl SafetyFlags {
         Self(self.0 & other.0)
     }
 
+    #[must_use]
+    pub(super) const fn without(self, other: Self) -> Self {
+        Self(self.0 & !other.0)
+    }
+
     pub(super) fn add_if(&mut self, flag: Self, active: bool) {
         if active {
             self.0 |= flag.0;
@@ -137,7 +144,7 @@ impl SafetyFlags {
 }
 
 /// Not a constant: tools read the names of the bits out of the image.
-static FLAG_NAMES: [(SafetyFlags, &str); 26] = [
+static FLAG_NAMES: [(SafetyFlags, &str); 27] = [
     (SafetyFlags::REMOTE_LOST, "remote-lost"),
     (SafetyFlags::REMOTE_FAILSAFE, "remote-failsafe"),
     (SafetyFlags::REMOTE_QUALITY, "remote-quality"),
@@ -164,6 +171,7 @@ static FLAG_NAMES: [(SafetyFlags, &str); 26] = [
     (SafetyFlags::WHEEL_FROZEN, "wheel-frozen"),
     (SafetyFlags::JOINT_FROZEN, "joint-frozen"),
     (SafetyFlags::JOINT_NOT_READY, "joint-not-ready"),
+    (SafetyFlags::STICKS_AWAITED, "sticks-awaited"),
 ];
 
 #[cfg(feature = "defmt")]

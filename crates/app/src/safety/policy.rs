@@ -2,7 +2,8 @@
 
 use super::{
     SafetyFlags, SafetyStatus, battery::BatteryWatch, debounce::Debounce,
-    error_account::ErrorAccount, heat::HeatWatch, latch::Latches, tilt::TiltWatch,
+    error_account::ErrorAccount, heat::HeatWatch, latch::Latches, resume::ResumeWatch,
+    tilt::TiltWatch,
 };
 use crate::domain::{
     BusErrorState, BusHealth, JointState, MotorFeedback, OperatorState, RemoteDiagnostics,
@@ -21,6 +22,8 @@ pub struct SafetyInputs<'a> {
     /// As of now: see `RemoteDiagnostics::at`.
     pub remote: &'a RemoteDiagnostics,
     pub operator: &'a OperatorState,
+    /// The robot is disarmed, or the pilot's sticks rest in the centre: nothing sets off at full stick.
+    pub may_resume: bool,
     /// Last IMU sample, 0 = none yet.
     pub imu_ts_us: u64,
     pub estimate: &'a StateEstimate,
@@ -42,6 +45,7 @@ pub struct SafetyPolicy {
     battery: BatteryWatch,
     joint_unready: Debounce,
     latches: Latches,
+    resume: ResumeWatch,
     flags_seen: SafetyFlags,
     ts_us: u64,
 }
@@ -126,13 +130,18 @@ impl SafetyPolicy {
             !present.intersects(link_bad) && inputs.operator.disabled && inputs.operator.e_stop;
         let hold_us = inputs.config.clear_hold_us;
         let (latched, clear_faults) = self.latches.step(present, gesture, dt_us, hold_us);
-        let flags = present.union(latched);
+        let mut flags = present.union(latched);
+        let may_resume = inputs.may_resume || inputs.config.resume_centred == 0;
+        let over = self.resume.step(flags, may_resume);
+        let stopping = flags.union(over);
+        flags.add_if(SafetyFlags::STICKS_AWAITED, !over.is_empty());
         self.flags_seen = self.flags_seen.union(flags);
         SafetyStatus {
+            flags,
             latched,
             clear_faults,
             flags_seen: self.flags_seen,
-            ..SafetyStatus::of(flags)
+            ..SafetyStatus::of(stopping)
         }
     }
 }

@@ -76,6 +76,11 @@ impl SafetyStatus {
         }
     }
 
+    /// True if nothing else than these conditions stops any part.
+    pub(super) fn would_run_without(&self, conditions: SafetyFlags) -> bool {
+        Self::of(self.flags.without(conditions)).verdict == SafetyVerdict::Run
+    }
+
     pub const fn stops_wheels(&self, bus: BusId) -> bool {
         self.global_stop || self.wheels_stop || self.stops_bus(bus)
     }

@@ -20,15 +20,18 @@ use crate::{
     },
     params::{FlashRequest, ParamStatus},
     safety::{
-        Arming, ArmingInputs, FlashGrant, FlashPermit, FlashPermitInputs, SafetyInputs,
-        SafetyPolicy, TorquePermit, WatchdogPeriod,
+        Arming, ArmingInputs, ArmingState, FlashGrant, FlashPermit, FlashPermitInputs,
+        MotorFindings, SafetyInputs, SafetyPolicy, StickRest, TorquePermit, WatchdogPeriod,
     },
-    tuning::{REPLY_PERIOD_TICKS, TuningAccess, TuningChannel, TuningGate},
+    tuning::{REPLY_PERIOD_TICKS, TuningAccess, TuningChannel, TuningGate, is_request},
 };
 
 /// Ticks between two looks at what changes slowly or interests only who watches: that part of the diagnostics is
 /// renewed in the ticks whose count is a multiple of this.
 pub const DIAGNOSTICS_PERIOD_TICKS: u32 = 10;
+
+/// In which of them sticks and motors are looked at: not the one in which diagnostics are renewed.
+const LOOK_PHASE: u32 = 5;
 
 /// The latest snapshot of each producer.
 #[derive(Clone, Copy, Debug)]
@@ -94,6 +97,10 @@ pub struct ControlLoop<
     timeout_by_hand: bool,
     estimator: InsEstimator,
     policy: SafetyPolicy,
+    /// Of the period in which diagnostics are renewed.
+    phase: u32,
+    stick_rest: StickRest,
+    sticks_rest: bool,
     arming: Arming,
     flash: FlashPermit,
     tuning: TuningChannel,
@@ -131,6 +138,9 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
             timeout_by_hand: layout.has_timeout_to_set_by_hand(),
             estimator,
             policy: SafetyPolicy::default(),
+            phase: 0,
+            stick_rest: StickRest::default(),
+            sticks_rest: false,
             arming: Arming::default(),
             flash: FlashPermit::default(),
             tuning: TuningChannel::new(layout),
@@ -152,7 +162,10 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
     #[cold]
     #[inline(never)]
     fn on_other_frame(&mut self, bus: BusId, frame: &CanFrame, now_us: u64) {
-        let diagnostics: &DiagnosticsSnapshot = self.diagnostics.borrow();
+        let diagnostics: &mut DiagnosticsSnapshot = self.diagnostics.borrow_mut();
+        if !is_request(frame) {
+            return diagnostics.strangers.note(bus, frame.id());
+        }
         let gate = TuningGate::of(diagnostics.arming.state, &diagnostics.operator);
         let Self {
             tuning,
@@ -178,7 +191,7 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
         if *wanted != mounting {
             self.estimator.restart(wheel_odom, field(wanted), now_us);
         }
-        self.take_config();
+        self.take_config(now_us);
     }
 
     /// Before the first tick after the whole chip stood still for `stall_us` (a flash erase): nobody else is to blame
@@ -188,14 +201,20 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
     pub fn after_stall(&mut self, stall_us: u32, now_us: u64) {
         self.diagnostics.borrow_mut().tick.stalled(stall_us);
         self.motors.after_stall(stall_us, now_us);
+        self.stick_rest.after_stall(now_us);
     }
 
     /// One tick; `now_us` is when it began.
     pub fn tick(&mut self, inputs: &ControlInputs<'_>, now_us: u64) -> ControlOutputs<'_> {
-        self.diagnostics.borrow_mut().tick.tick(now_us);
+        let stats = &mut self.diagnostics.borrow_mut().tick;
+        stats.tick(now_us);
+        self.phase = stats.count % DIAGNOSTICS_PERIOD_TICKS;
         self.sense(inputs, now_us);
         let trial = self.try_out(inputs, now_us);
         self.guard_flash(inputs, now_us);
+        if self.phase == LOOK_PHASE {
+            self.look_at_sticks_and_motors(inputs, now_us);
+        }
         let permit = self.judge(inputs, now_us);
         self.act(inputs, permit.as_ref(), trial.as_ref(), now_us);
         self.reply();
@@ -211,11 +230,13 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
     }
 
     /// After a request. The estimator keeps what it makes of its settings; all other stages read them in each tick.
-    fn take_config(&mut self) {
+    fn take_config(&mut self, now_us: u64) {
         let diagnostics = self.diagnostics.borrow_mut();
         let status = *self.tuning.status();
         if status.revision != diagnostics.tuning.revision {
             self.estimator.set_odometry(&self.config.wheel_odom);
+            self.stick_rest.restart();
+            self.arming.settings_changed(now_us);
         }
         diagnostics.tuning = status;
     }
@@ -286,6 +307,20 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
         );
     }
 
+    /// What arming looks at and need not be newer than some milliseconds.
+    #[inline(never)]
+    fn look_at_sticks_and_motors(&mut self, inputs: &ControlInputs<'_>, now_us: u64) {
+        let diagnostics = self.diagnostics.borrow_mut();
+        let config = &self.config;
+        let fresh = diagnostics.remote_diag.age_us <= config.safety.remote_timeout_us;
+        self.sticks_rest =
+            self.stick_rest
+                .step(&inputs.remote.state, fresh, &config.safety, now_us);
+        if diagnostics.arming.state == ArmingState::Disarmed {
+            diagnostics.motors = MotorFindings::of(&diagnostics.sensors.motor, &config.joints);
+        }
+    }
+
     fn judge(&mut self, inputs: &ControlInputs<'_>, now_us: u64) -> Option<TorquePermit> {
         let diagnostics = self.diagnostics.borrow_mut();
         diagnostics.safety = self.policy.evaluate(
@@ -293,6 +328,7 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
                 config: &self.config.safety,
                 remote: &diagnostics.remote_diag,
                 operator: &inputs.remote.operator,
+                may_resume: self.sticks_rest || diagnostics.arming.state == ArmingState::Disarmed,
                 imu_ts_us: inputs.imu.ts_us,
                 estimate: &diagnostics.estimate,
                 motor: &diagnostics.sensors.motor,
@@ -305,12 +341,12 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
         let (status, token) = self.arming.step(
             &ArmingInputs {
                 config: &self.config.safety,
-                remote: &inputs.remote.state,
+                sticks_rest: self.sticks_rest,
                 remote_age_us: diagnostics.remote_diag.age_us,
                 operator: &inputs.remote.operator,
                 estimate_valid: diagnostics.estimate.valid,
                 calibrated: inputs.health.imu_calibrated,
-                motor: &diagnostics.sensors.motor,
+                motor: &diagnostics.motors,
                 read_only: self.bring_up.blocks_arming(),
                 flash_busy: self.flash.grant().blocks_arming,
                 params: inputs.params,
@@ -432,13 +468,10 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
             diagnostics.logic = *inputs.logic;
         }
         diagnostics.late_tasks = health.late_tasks;
-        if !diagnostics
-            .tick
-            .count
-            .is_multiple_of(DIAGNOSTICS_PERIOD_TICKS)
-        {
+        if self.phase != 0 {
             return;
         }
+        diagnostics.remote_raw = inputs.remote.raw;
         diagnostics.can = health.can;
         diagnostics.imu_health = health.imu;
         diagnostics.mag_health = health.mag;

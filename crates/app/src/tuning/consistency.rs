@@ -3,8 +3,7 @@
 use super::Refusal;
 use crate::domain::{
     ImuCalibration, JointConfig, MagCalibration, MountingConfig, NO_CHANNEL, Orientation,
-    RemoteChannel, RemoteMapping, RobotConfig,
-    SafetyConfig,
+    RemoteChannel, RemoteMapping, RobotConfig, SafetyConfig,
 };
 
 /// Least distance of a joint's two soft limits.

@@ -18,6 +18,7 @@ pub use live::{JOINTS, LIVE_PAGES, LiveField, LiveKind, LivePage, LiveSource, Li
 pub use parameter::{Parameter, ParameterGroup, ParameterKind, Scope};
 pub use parameters::PARAMETERS;
 pub(crate) use parameters::bit;
+pub(crate) use protocol::is_request;
 pub use protocol::{READ_ID, REPLY_ID, WRITE_ID};
 pub use refusal::Refusal;
 pub use status::TuningStatus;

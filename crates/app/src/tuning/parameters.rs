@@ -4,12 +4,13 @@ use super::{Parameter, ParameterGroup, Refusal, Scope};
 
 mod joints;
 mod mounting;
+mod radio;
 mod safety;
 mod sensors;
 mod wheels;
 
 /// By group.
-pub static PARAMETERS: [ParameterGroup; 12] = [
+pub static PARAMETERS: [ParameterGroup; 14] = [
     ParameterGroup {
         number: WHEEL_GEOMETRY,
         name: "wheel-geometry",
@@ -34,7 +35,7 @@ pub static PARAMETERS: [ParameterGroup; 12] = [
     ParameterGroup {
         number: 4,
         name: "safety",
-        version: 1,
+        version: 2,
         scope: Scope::Robot,
         parameters: &safety::SAFETY,
     },
@@ -65,6 +66,20 @@ pub static PARAMETERS: [ParameterGroup; 12] = [
         version: 1,
         scope: Scope::Robot,
         parameters: &mounting::MOUNTING,
+    },
+    ParameterGroup {
+        number: 9,
+        name: "radio",
+        version: 1,
+        scope: Scope::Robot,
+        parameters: &radio::CHANNELS,
+    },
+    ParameterGroup {
+        number: 10,
+        name: "radio-travel",
+        version: 1,
+        scope: Scope::Robot,
+        parameters: &radio::TRAVEL,
     },
     ParameterGroup {
         number: 16,

@@ -72,6 +72,11 @@ impl Restored {
     }
 }
 
+/// True for frames that are for the tuning channel.
+pub fn is_request(frame: &CanFrame) -> bool {
+    frame.id() == WRITE_ID || frame.id() == READ_ID
+}
+
 impl Request {
     /// `None` for a frame that is not for the tuning channel.
     pub fn decode(frame: &CanFrame) -> Option<Result<Self, Refusal>> {

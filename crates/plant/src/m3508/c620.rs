@@ -34,7 +34,7 @@ pub(crate) struct EscFaults {
 }
 
 pub(crate) struct C620 {
-    /// 1 … 4.
+    /// 1 … 4, as set by its button.
     id: u8,
     pub(crate) motor: M3508,
     faults: EscFaults,
@@ -72,6 +72,16 @@ impl C620 {
         }
         self.motor.heated = faults.hot;
         self.faults = faults;
+    }
+
+    /// Somebody set another number, 1 … 4; it restarts with that.
+    pub(crate) fn set_number(&mut self, id: u8) {
+        if id != self.id {
+            self.id = id;
+            self.commanded_raw = 0;
+            self.feedback_pending = false;
+            self.motor.cut();
+        }
     }
 
     /// Another ESC listens to 0x1FF and feeds back under an identifier of its own.
@@ -220,6 +230,25 @@ mod tests {
         assert_eq!(frame.data[2..6], [0x04, 0x80, 0x10, 0x00]);
         assert_eq!(frame.data[7], 0);
         assert!((29..=32).contains(&frame.data[6]));
+    }
+
+    #[test]
+    fn with_another_number_it_obeys_and_answers_under_that() {
+        let mut esc = esc(1);
+        esc.set_number(2);
+        esc.receive(&CanFrame {
+            id: 0x200,
+            extended: false,
+            remote: false,
+            dlc: 8,
+            data: [0x10, 0, 0x20, 0, 0, 0, 0, 0],
+        });
+        assert_eq!(esc.commanded_ma(), 10_000.0);
+        esc.prepare_feedback(0.0);
+        assert_eq!(esc.pending().expect("feedback is due").id, 0x202);
+        esc.set_number(1);
+        assert_eq!(esc.commanded_ma(), 0.0);
+        assert!(esc.pending().is_none());
     }
 
     #[test]

@@ -31,6 +31,7 @@ impl World {
             | Fault::GyroSpike
             | Fault::MagGone
             | Fault::I2cHeld => self.set_sensor_faults(),
+            Fault::Motor0Doubled | Fault::Motor1Doubled => self.number_escs(),
             _ => {}
         }
         for (motor, faults) in MOTORS.iter().enumerate() {
@@ -39,6 +40,14 @@ impl World {
             }
         }
         Ok(())
+    }
+
+    /// Left 1, right 2, unless one has the other's number.
+    fn number_escs(&mut self) {
+        let [left, right] = &mut self.escs;
+        let has = |fault| self.faults.has(fault);
+        left.set_number(if has(Fault::Motor1Doubled) { 2 } else { 1 });
+        right.set_number(if has(Fault::Motor0Doubled) { 1 } else { 2 });
     }
 
     /// The board's power, which its sensors share; motors, radio and PC have their own.

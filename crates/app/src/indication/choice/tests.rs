@@ -16,7 +16,11 @@ impl Situation {
             ArmingState::Disarmed => ArmingBlockers::ENABLE_OFF,
         };
         Self {
-            arming: ArmingStatus { state, blockers },
+            arming: ArmingStatus {
+                state,
+                blockers,
+                ..ArmingStatus::default()
+            },
             safety: SafetyStatus {
                 global_stop: false,
                 wheels_stop: false,
@@ -156,6 +160,21 @@ fn disarmed_says_what_it_waits_for() {
         blocked(ArmingBlockers::JOINTS_NOT_READY),
         Indication::NotReady
     );
+    for motors in [
+        ArmingBlockers::WHEEL_NEVER_HEARD,
+        ArmingBlockers::WHEEL_DOUBTFUL,
+        ArmingBlockers::JOINT_OUT_OF_LIMITS,
+    ] {
+        assert_eq!(blocked(motors), Indication::NotReady);
+    }
+    assert_eq!(disarmed(|s| s.arming.waiting = true), Indication::Waiting);
+    // While it settles after an erase the attitude is a stop.
+    let settling = disarmed(|s| {
+        s.arming.waiting = true;
+        s.safety.flags = SafetyFlags::ESTIMATE_INVALID;
+        s.safety.global_stop = true;
+    });
+    assert_eq!(settling, Indication::Waiting);
     assert_eq!(
         disarmed(|s| s.safety.joints_stop = true),
         Indication::NotReady

@@ -8,8 +8,12 @@ use crate::{
 
 /// Heater: 45 °C, 0.5, 0.25, 0.75.
 const HEATER: [u32; 4] = [0x4234_0000, 0x3F00_0000, 0x3E80_0000, 0x3F40_0000];
-const HEATER_POSITION: Position = 6;
 const NAN: u32 = 0x7FC0_0000;
+
+fn position(number: u8) -> Position {
+    let mut groups = PARAMETERS.iter();
+    groups.position(|group| group.number == number).unwrap()
+}
 
 fn record(key: u8, variant: u8, version: u8, values: &[u32]) -> Record {
     Record {
@@ -27,7 +31,7 @@ fn loaded(record: &Record, groups: &[ParameterGroup]) -> (Verdict, RobotConfig) 
 
 /// `PARAMETERS` of a later firmware: the heater's group has grown to what it is now.
 fn later_firmware(version: u8) -> [ParameterGroup; 1] {
-    let heater = &PARAMETERS[HEATER_POSITION];
+    let heater = &PARAMETERS[position(7)];
     assert_eq!(heater.name, "heater");
     [ParameterGroup { version, ..*heater }]
 }
@@ -35,11 +39,11 @@ fn later_firmware(version: u8) -> [ParameterGroup; 1] {
 #[test]
 fn a_record_holds_the_values_in_the_order_of_their_indices() {
     let (verdict, config) = loaded(&record(7, 0, 1, &HEATER), &PARAMETERS);
-    assert_eq!(verdict, Verdict::Loaded(HEATER_POSITION));
+    assert_eq!(verdict, Verdict::Loaded(position(7)));
     let heater = config.heater;
     assert_eq!((heater.target_c, heater.kp), (45.0, 0.5));
     assert_eq!((heater.ki, heater.max_duty), (0.25, 0.75));
-    let encoded = encode(&PARAMETERS[HEATER_POSITION], &config, &ROBOT_LAYOUT);
+    let encoded = encode(&PARAMETERS[position(7)], &config, &ROBOT_LAYOUT);
     assert_eq!(encoded, record(7, 0, 1, &HEATER));
 }
 
@@ -49,9 +53,20 @@ fn every_group_comes_back_as_it_was() {
     for parameter in PARAMETERS.iter().flat_map(|group| group.parameters) {
         parameter.write(&mut tuned, parameter.max).unwrap();
     }
-    // A field that all of these maxima turn round.
+    // Fields that all of these maxima turn round, channels without travel.
     tuned.mag = RobotConfig::default().mag;
     tuned.mag.bias_ut = [-12.5, 3.0, 0.1];
+    for (count, channel) in (0..).zip([
+        &mut tuned.radio.steering,
+        &mut tuned.radio.drive,
+        &mut tuned.radio.select,
+        &mut tuned.radio.dead_man,
+        &mut tuned.radio.enable,
+        &mut tuned.radio.mode,
+        &mut tuned.radio.e_stop,
+    ]) {
+        (channel.low, channel.centre) = (count, 1_000 + count);
+    }
     for joint in &mut tuned.joints {
         joint.min_rad = -0.1;
     }
@@ -96,7 +111,7 @@ fn a_record_that_does_not_fit_its_version_is_refused() {
     }
     let longer = [HEATER[0], HEATER[1], HEATER[2], HEATER[3], HEATER[0]];
     let (verdict, _) = loaded(&record(7, 0, 1, &longer), &PARAMETERS);
-    assert_eq!(verdict, Verdict::Refused(HEATER_POSITION));
+    assert_eq!(verdict, Verdict::Refused(position(7)));
 }
 
 /// The checks of a tuning write: each value for itself, and then all together.
@@ -125,8 +140,7 @@ fn one_bad_value_keeps_the_whole_group_out() {
         assert_eq!(config, RobotConfig::default(), "{record:?}");
     }
     let (verdict, config) = loaded(&joint([0x3F80_0000, half, two]), &PARAMETERS);
-    let position = PARAMETERS.iter().position(|group| group.number == 16);
-    assert_eq!(verdict, Verdict::Loaded(position.unwrap()));
+    assert_eq!(verdict, Verdict::Loaded(position(16)));
     assert_eq!(
         (config.joints[0].min_rad, config.joints[0].max_rad),
         (0.5, 2.0)
@@ -152,17 +166,15 @@ fn a_joint_s_record_belongs_to_one_make_of_motor() {
         let values = [0x3F80_0000, half, 0, half, half, half, half, half];
         record(18, variant, 1, &values)
     };
-    let group = PARAMETERS.iter().position(|group| group.number == 18);
-    let position = group.unwrap();
     for (layout, own, other) in [(&ROBOT_LAYOUT, 1, 2), (&RS00_LAYOUT, 2, 1)] {
         let mut config = RobotConfig::for_layout(layout);
         let verdict = load(&joint(other), &PARAMETERS, layout, &mut config);
         assert_eq!(verdict, Verdict::Foreign);
         assert_eq!(config, RobotConfig::for_layout(layout));
         let verdict = load(&joint(own), &PARAMETERS, layout, &mut config);
-        assert_eq!(verdict, Verdict::Loaded(position));
+        assert_eq!(verdict, Verdict::Loaded(position(18)));
         assert_eq!(config.joints[2].zero_rad, 0.5);
-        let encoded = encode(&PARAMETERS[position], &config, layout);
+        let encoded = encode(&PARAMETERS[position(18)], &config, layout);
         assert_eq!(encoded, joint(own));
     }
 }

@@ -1,4 +1,5 @@
 use super::*;
+use crate::domain::{JointState, MotorFeedback, RobotConfig};
 
 struct Bench {
     arming: Arming,
@@ -12,7 +13,9 @@ struct Bench {
     params: ParamStatus,
     debugger_catches: bool,
     joint_timeout_unset: bool,
-    vx: f32,
+    sticks_rest: bool,
+    estimate_valid: bool,
+    remote_age_us: u32,
     motor: MotorFeedback,
     safety: SafetyStatus,
 }
@@ -22,6 +25,10 @@ impl Bench {
         let mut motor = MotorFeedback::default();
         for joint in &mut motor.joints {
             joint.state = JointState::Disabled;
+            joint.ts_us = 1;
+        }
+        for wheel in &mut motor.wheels {
+            wheel.ts_us = 1;
         }
         Self {
             arming: Arming::default(),
@@ -35,7 +42,9 @@ impl Bench {
             params: ParamStatus::default(),
             debugger_catches: false,
             joint_timeout_unset: false,
-            vx: 0.0,
+            sticks_rest: true,
+            estimate_valid: true,
+            remote_age_us: 5_000,
             motor,
             safety: SafetyStatus::of(SafetyFlags::NONE),
         }
@@ -45,26 +54,28 @@ impl Bench {
         (self.enabled, self.disabled) = (true, false);
     }
 
+    fn flip_off(&mut self) {
+        (self.enabled, self.disabled) = (false, true);
+    }
+
     fn run(&mut self, milliseconds: u64) -> ArmingStatus {
         let mut status = ArmingStatus::default();
         for _ in 0..milliseconds {
             self.now_us += 1_000;
             let inputs = ArmingInputs {
                 config: &self.config,
-                remote: &RemoteState {
-                    vx: self.vx,
-                    ..RemoteState::default()
-                },
-                remote_age_us: 5_000,
+                sticks_rest: self.sticks_rest,
+                remote_age_us: self.remote_age_us,
                 operator: &OperatorState {
                     enabled: self.enabled,
                     disabled: self.disabled,
                     e_stop: false,
+                    ts_us: self.now_us,
                     ..OperatorState::default()
                 },
-                estimate_valid: true,
+                estimate_valid: self.estimate_valid,
                 calibrated: self.calibrated,
-                motor: &self.motor,
+                motor: &MotorFindings::of(&self.motor, &RobotConfig::default().joints),
                 read_only: self.read_only,
                 flash_busy: self.flash_busy,
                 params: &self.params,
@@ -88,26 +99,83 @@ fn off_then_on_arms_at_once() {
     assert_eq!(bench.run(1).state, ArmingState::Armed);
 }
 
-#[test]
-fn a_request_waits_a_while_for_the_calibration_but_not_for_ever() {
+/// Flips the switch with one thing wrong, then mends it.
+fn refused_by(spoil: impl Fn(&mut Bench), mend: impl Fn(&mut Bench), blocker: ArmingBlockers) {
     let mut bench = Bench::new();
-    bench.calibrated = false;
+    spoil(&mut bench);
     bench.run(1);
     bench.flip_on();
-    assert_eq!(
-        bench.run(2_000).blockers,
-        ArmingBlockers::CALIBRATION_PENDING
-    );
-    bench.calibrated = true;
-    assert_eq!(bench.run(1).state, ArmingState::Armed);
+    let status = bench.run(1);
+    assert!(status.blockers.contains(blocker), "{:?}", status.blockers);
+    assert!(status.blockers.contains(ArmingBlockers::ENABLE_NOT_CYCLED));
+    assert!(status.refused.contains(blocker), "{:?}", status.refused);
+    mend(&mut bench);
+    let later = bench.run(5_000);
+    assert_eq!(later.blockers, ArmingBlockers::ENABLE_NOT_CYCLED);
+    assert_eq!(later.refused, status.refused);
+    bench.flip_off();
+    bench.run(1);
+    bench.flip_on();
+    let armed = bench.run(1);
+    assert_eq!(armed.state, ArmingState::Armed);
+    assert_eq!(armed.refused, ArmingBlockers::NONE);
+}
 
-    let mut late = Bench::new();
-    late.calibrated = false;
-    late.run(1);
-    late.flip_on();
-    late.run(3_100);
-    late.calibrated = true;
-    assert_eq!(late.run(1).blockers, ArmingBlockers::ENABLE_NOT_CYCLED);
+#[test]
+fn a_refused_request_is_used_up() {
+    use ArmingBlockers as B;
+    refused_by(
+        |b| b.calibrated = false,
+        |b| b.calibrated = true,
+        B::CALIBRATION_PENDING,
+    );
+    refused_by(
+        |b| b.sticks_rest = false,
+        |b| b.sticks_rest = true,
+        B::STICKS_NOT_CENTRED,
+    );
+    refused_by(
+        |b| b.estimate_valid = false,
+        |b| b.estimate_valid = true,
+        B::ESTIMATE_INVALID,
+    );
+    refused_by(
+        |b| b.read_only = true,
+        |b| b.read_only = false,
+        B::BRING_UP_READ_ONLY,
+    );
+    refused_by(
+        |b| b.safety = SafetyStatus::of(SafetyFlags::CAN1_CONGESTED),
+        |b| b.safety = SafetyStatus::of(SafetyFlags::NONE),
+        B::SAFETY_STOP,
+    );
+    // Motors that get their power later.
+    refused_by(
+        |b| b.motor.joints[2].state = JointState::Silent,
+        |b| b.motor.joints[2].state = JointState::Disabled,
+        B::JOINTS_NOT_READY,
+    );
+    refused_by(
+        |b| b.motor.wheels[1].ts_us = 0,
+        |b| b.motor.wheels[1].ts_us = 1,
+        B::WHEEL_NEVER_HEARD,
+    );
+}
+
+/// Settings may give another channel to the enable switch, one that is on.
+#[test]
+fn a_switch_that_is_on_when_settings_change_must_be_seen_off_first() {
+    let mut bench = Bench::new();
+    bench.run(10);
+    bench.arming.settings_changed(bench.now_us);
+    // Frames from before the change still say off.
+    bench.run(4);
+    bench.flip_on();
+    assert_eq!(bench.run(10).blockers, ArmingBlockers::ENABLE_NOT_CYCLED);
+    bench.flip_off();
+    bench.run(1);
+    bench.flip_on();
+    assert_eq!(bench.run(1).state, ArmingState::Armed);
 }
 
 /// Blockers when the switch is flipped with this one thing wrong, and whether the robot stays armed when it goes
@@ -117,7 +185,16 @@ fn with_wrong(spoil: impl Fn(&mut Bench)) -> (ArmingBlockers, ArmingState) {
     before.run(1);
     before.flip_on();
     spoil(&mut before);
-    let blockers = before.run(1).blockers;
+    let status = before.run(1);
+    assert_eq!(
+        status.waiting,
+        status.refused.is_empty() && !status.blockers.is_empty()
+    );
+    let blockers = if status.waiting {
+        status.blockers
+    } else {
+        status.refused
+    };
 
     let mut later = Bench::new();
     later.run(1);
@@ -186,17 +263,102 @@ fn reading_only_forbids_arming_and_disarms() {
     );
 }
 
-#[test]
-fn a_flip_while_flash_is_busy_arms_when_it_is_done() {
-    let result = with_wrong(|bench| bench.flash_busy = true);
-    assert_eq!(result, (ArmingBlockers::FLASH_BUSY, ArmingState::Armed));
+/// A robot whose pilot has asked while flash was being written.
+fn asked_while_flash_is_busy() -> Bench {
     let mut bench = Bench::new();
     bench.flash_busy = true;
     bench.run(1);
     bench.flip_on();
-    assert_eq!(bench.run(600).blockers, ArmingBlockers::FLASH_BUSY);
+    bench
+}
+
+#[test]
+fn a_flip_while_flash_is_busy_arms_when_it_is_done() {
+    let result = with_wrong(|bench| bench.flash_busy = true);
+    assert_eq!(result, (ArmingBlockers::FLASH_BUSY, ArmingState::Armed));
+    let mut bench = asked_while_flash_is_busy();
+    let status = bench.run(600);
+    assert_eq!(status.blockers, ArmingBlockers::FLASH_BUSY);
+    assert!(status.waiting);
+    assert_eq!(status.refused, ArmingBlockers::NONE);
     bench.flash_busy = false;
+    let status = bench.run(1);
+    assert_eq!(status.state, ArmingState::Armed);
+    assert!(!status.waiting);
+}
+
+/// Samples have a gap where the chip stood still.
+#[test]
+fn it_waits_for_the_attitude_that_settles_anew_after_an_erase() {
+    let mut bench = asked_while_flash_is_busy();
+    bench.run(10);
+    bench.estimate_valid = false;
+    bench.safety = SafetyStatus::of(SafetyFlags::ESTIMATE_INVALID.union(SafetyFlags::IMU_STALE));
+    assert!(bench.run(100).waiting);
+    bench.flash_busy = false;
+    assert!(bench.run(500).waiting);
+    bench.estimate_valid = true;
+    bench.safety = SafetyStatus::of(SafetyFlags::NONE);
     assert_eq!(bench.run(1).state, ArmingState::Armed);
+    // The next time there is nothing to wait for.
+    bench.flip_off();
+    bench.run(1);
+    bench.estimate_valid = false;
+    bench.flip_on();
+    assert!(!bench.run(1).waiting);
+}
+
+#[test]
+fn a_request_does_not_wait_for_ever() {
+    for (waited_ms, waiting) in [(2_999, true), (3_002, false)] {
+        let mut bench = asked_while_flash_is_busy();
+        assert_eq!(bench.run(waited_ms).waiting, waiting);
+    }
+}
+
+#[test]
+fn a_waiting_request_is_refused_by_whatever_else_goes_wrong() {
+    let spoils: [fn(&mut Bench); 7] = [
+        |bench| bench.sticks_rest = false,
+        |bench| bench.calibrated = false,
+        |bench| bench.remote_age_us = 100_001,
+        |bench| bench.read_only = true,
+        |bench| bench.motor.joints[0].state = JointState::Fault,
+        |bench| bench.safety = SafetyStatus::of(SafetyFlags::E_STOP),
+        |bench| bench.safety = SafetyStatus::of(SafetyFlags::JOINT_SILENT),
+    ];
+    for spoil in spoils {
+        let mut bench = asked_while_flash_is_busy();
+        assert!(bench.run(10).waiting);
+        spoil(&mut bench);
+        assert!(!bench.run(1).waiting);
+        bench.flash_busy = false;
+        assert_eq!(bench.run(10).state, ArmingState::Disarmed);
+    }
+}
+
+#[test]
+fn wheels_that_are_not_what_they_should_be_forbid_arming_but_do_not_disarm() {
+    for wheel in 0..2 {
+        let result = with_wrong(|bench| bench.motor.wheels[wheel].ts_us = 0);
+        assert_eq!(
+            result,
+            (ArmingBlockers::WHEEL_NEVER_HEARD, ArmingState::Armed)
+        );
+        let result = with_wrong(|bench| bench.motor.wheels[wheel].doubtful = true);
+        assert_eq!(result, (ArmingBlockers::WHEEL_DOUBTFUL, ArmingState::Armed));
+    }
+}
+
+#[test]
+fn a_joint_beyond_its_limits_forbids_arming_but_does_not_disarm() {
+    for joint in 0..4 {
+        let result = with_wrong(|bench| bench.motor.joints[joint].pos_rad = -6.3);
+        assert_eq!(
+            result,
+            (ArmingBlockers::JOINT_OUT_OF_LIMITS, ArmingState::Armed)
+        );
+    }
 }
 
 #[test]
@@ -221,12 +383,10 @@ fn joint_motors_without_a_time_out_forbid_arming() {
 }
 
 #[test]
-fn a_stick_off_centre_or_without_a_value_forbids_arming() {
-    for vx in [0.5, -0.5, f32::NAN] {
-        let result = with_wrong(|bench| bench.vx = vx);
-        let expected = (ArmingBlockers::STICKS_NOT_CENTRED, ArmingState::Armed);
-        assert_eq!(result, expected);
-    }
+fn a_stick_that_does_not_rest_forbids_arming_but_does_not_disarm() {
+    let result = with_wrong(|bench| bench.sticks_rest = false);
+    let expected = (ArmingBlockers::STICKS_NOT_CENTRED, ArmingState::Armed);
+    assert_eq!(result, expected);
 }
 
 #[test]

@@ -12,6 +12,7 @@ struct Bench {
     health: SystemHealth,
     imu_age_us: u64,
     command_age_us: u64,
+    may_resume: bool,
     now_us: u64,
 }
 
@@ -50,6 +51,7 @@ impl Bench {
             },
             imu_age_us: 5_000,
             command_age_us: 10_000,
+            may_resume: true,
             now_us: 10_000_000,
         };
         bench.tick();
@@ -63,6 +65,7 @@ impl Bench {
                 config: &self.config,
                 remote: &self.remote,
                 operator: &self.operator,
+                may_resume: self.may_resume,
                 imu_ts_us: self.now_us - self.imu_age_us,
                 estimate: &self.estimate,
                 motor: &self.motor,
@@ -491,4 +494,95 @@ fn a_jump_of_the_clock_neither_clears_nor_stops() {
     }
     bench.now_us -= 1_000_000_000;
     assert_eq!(bench.tick().latched, SafetyFlags::WHEEL_FROZEN);
+}
+
+/// Something stops a part, and ends: what is stopped while it lasts, after it with the sticks pushed, and after the
+/// sticks have been centred. Wheels, joints.
+fn stops_around(begin: fn(&mut Bench), end: fn(&mut Bench)) -> [(bool, bool); 3] {
+    let mut bench = Bench::new();
+    let stops = |bench: &mut Bench| {
+        let status = bench.run(20);
+        let bus_1 = BusId::Can1;
+        (status.stops_wheels(bus_1), status.stops_joints(BusId::Can2))
+    };
+    bench.may_resume = false;
+    begin(&mut bench);
+    let during = stops(&mut bench);
+    end(&mut bench);
+    let pushed = stops(&mut bench);
+    let awaited = bench.tick().flags.intersects(SafetyFlags::STICKS_AWAITED);
+    assert_eq!(awaited, pushed != (false, false));
+    bench.may_resume = true;
+    let centred = stops(&mut bench);
+    assert!(!bench.tick().flags.intersects(SafetyFlags::STICKS_AWAITED));
+    bench.may_resume = false;
+    assert_eq!(stops(&mut bench), centred);
+    [during, pushed, centred]
+}
+
+#[test]
+fn what_was_stopped_in_part_waits_until_the_sticks_are_centred() {
+    let joints = [(false, true), (false, true), (false, false)];
+    let wheels = [(true, false), (true, false), (false, false)];
+    let silent_joint = stops_around(
+        |b| b.motor.joints[1].age_us = 60_000,
+        |b| b.motor.joints[1].age_us = 2_000,
+    );
+    assert_eq!(silent_joint, joints);
+    let bus_off = stops_around(
+        |b| b.health.can[1].state = BusErrorState::BusOff,
+        |b| b.health.can[1].state = BusErrorState::Active,
+    );
+    assert_eq!(bus_off, joints);
+    let congested = stops_around(
+        |b| b.health.can[0].tx_failures_in_row = 21,
+        |b| b.health.can[0].tx_failures_in_row = 0,
+    );
+    assert_eq!(congested, wheels);
+}
+
+/// While it is silent its current goes on, open loop; what gets its supply back does not set off.
+#[test]
+fn a_wheel_that_was_silent_waits_when_it_is_back() {
+    let open_loop = [(false, false), (true, false), (false, false)];
+    for wheel in [
+        stops_around(
+            |b| b.motor.wheels[0].age_us = 60_000,
+            |b| b.motor.wheels[0].age_us = 1_000,
+        ),
+        stops_around(
+            |b| b.motor.wheels[1].age_us = 60_000,
+            |b| b.motor.wheels[1].age_us = 1_000,
+        ),
+    ] {
+        assert_eq!(wheel, open_loop);
+    }
+}
+
+#[test]
+fn a_setting_lets_it_go_on_at_once() {
+    let at_once = stops_around(
+        |b| {
+            b.config.resume_centred = 0;
+            b.motor.joints[1].age_us = 60_000;
+        },
+        |b| b.motor.joints[1].age_us = 2_000,
+    );
+    assert_eq!(at_once, [(false, true), (false, false), (false, false)]);
+}
+
+/// A second cause that begins while the first one's stop lasts is not forgotten either.
+#[test]
+fn all_causes_must_be_over_before_centred_sticks_count() {
+    let mut bench = Bench::new();
+    bench.may_resume = false;
+    bench.motor.joints[1].age_us = 60_000;
+    bench.run(5);
+    bench.may_resume = true;
+    assert!(bench.run(5).joints_stop);
+    bench.may_resume = false;
+    bench.motor.joints[1].age_us = 2_000;
+    assert!(bench.run(5).joints_stop);
+    bench.may_resume = true;
+    assert!(!bench.run(1).joints_stop);
 }

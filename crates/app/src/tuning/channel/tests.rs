@@ -348,7 +348,13 @@ fn anyone_may_ask_whether_everything_is_saved() {
     assert_eq!(bench.reply(TuningGate::Shut, 0x7A1, &[0x31]), expected);
 }
 
-/// Groups 7 (bit 6 of the table) and 8 (bit 7) were refused: bits 7 and 8 of the reply.
+/// Its bit in a mask by place in the table.
+fn place(number: u8) -> u32 {
+    let mut groups = crate::tuning::PARAMETERS.iter();
+    1 << groups.position(|group| group.number == number).unwrap()
+}
+
+/// Groups 7 and 16 were refused: bits 7 and 16 of the reply.
 #[test]
 fn anyone_may_ask_what_boot_found_in_the_store() {
     let mut bench = Bench::default();
@@ -357,10 +363,10 @@ fn anyone_may_ask_what_boot_found_in_the_store() {
         lost_sectors: 1,
         damaged: 300,
         foreign: 4,
-        refused: 1 << 6 | 1 << 7,
+        refused: place(7) | place(16),
         ..ParamStatus::default()
     };
-    let expected = [0x32, 1, 255, 4, 0x80, 0x01, 0x00, 0x00];
+    let expected = [0x32, 1, 255, 4, 0x80, 0x00, 0x01, 0x00];
     assert_eq!(bench.read(&[0x32]), expected);
     assert_eq!(bench.reply(TuningGate::Shut, 0x7A1, &[0x32]), expected);
 }
@@ -386,17 +392,17 @@ fn anyone_may_look_at_any_time() {
 #[test]
 fn defaults_that_change_nothing_are_told_to_the_store() {
     let mut bench = Bench::default();
+    let all = (1 << crate::tuning::PARAMETERS.len()) - 1;
     bench.write(&[0x30, 7, 0, 0, 0, 0, 0, 0]);
     let status = *bench.channel.status();
-    assert_eq!((status.restored, status.revision), (1 << 6, 1));
+    assert_eq!((status.restored, status.revision), (place(7), 1));
     bench.write(&[0x30, 0, 0, 0, 0, 0, 0, 0]);
     let status = *bench.channel.status();
-    let every = (1 << crate::tuning::PARAMETERS.len()) - 1;
-    assert_eq!((status.restored, status.revision), (every, 2));
+    assert_eq!((status.restored, status.revision), (all, 2));
     bench.write(&[0x20, 7, 0, 0, 0x00, 0x00, 0xF0, 0x41]);
-    bench.write(&[0x30, 15, 0, 0, 0, 0, 0, 0]);
+    bench.write(&[0x30, 31, 0, 0, 0, 0, 0, 0]);
     let status = *bench.channel.status();
-    assert_eq!((status.restored, status.revision), (every, 3));
+    assert_eq!((status.restored, status.revision), (all, 3));
 }
 
 /// The store looks at the settings only now and then: a change it has not seen yet is not called saved.

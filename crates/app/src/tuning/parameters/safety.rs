@@ -3,7 +3,7 @@
 use crate::tuning::parameter::{Parameter, ParameterKind, float, integer};
 
 #[rustfmt::skip] // One line a setting.
-pub static SAFETY: [Parameter; 15] = [
+pub static SAFETY: [Parameter; 16] = [
     integer!(0, "remote-timeout-us", "us", 30_000.0, 500_000.0, safety.remote_timeout_us),
     float!(1, "min-remote-quality", "", 0.1, 1.0, safety.min_remote_quality),
     integer!(2, "imu-timeout-us", "us", 10_000.0, 100_000.0, safety.imu_timeout_us),
@@ -19,4 +19,5 @@ pub static SAFETY: [Parameter; 15] = [
     float!(12, "battery-low-v", "V", 0.0, 60.0, safety.battery_low_v),
     float!(13, "battery-empty-v", "V", 0.0, 60.0, safety.battery_empty_v),
     integer!(14, "clear-hold-us", "us", 200_000.0, 10_000_000.0, safety.clear_hold_us),
+    integer!(15, "resume-centred", "", 0.0, 1.0, safety.resume_centred),
 ];

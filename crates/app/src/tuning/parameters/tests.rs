@@ -85,16 +85,19 @@ fn indices_begin_at_zero_and_leave_none_out() {
 /// version and a new line; the old lines stay.
 #[test]
 fn a_group_that_grows_gets_a_new_version() {
-    let stored: [(u8, u8, usize); 13] = [
+    let stored: [(u8, u8, usize); 16] = [
         (1, 1, 5),
         (2, 1, 6),
         (3, 1, 2),
         (3, 2, 3),
         (4, 1, 15),
+        (4, 2, 16),
         (5, 1, 12),
         (6, 1, 9),
         (7, 1, 4),
         (8, 1, 2),
+        (9, 1, 14),
+        (10, 1, 21),
         (16, 1, 8),
         (17, 1, 8),
         (18, 1, 8),
