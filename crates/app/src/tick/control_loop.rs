@@ -262,7 +262,13 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
     /// The command of bring-up, which replaces any other.
     fn try_out(&mut self, inputs: &ControlInputs<'_>, now_us: u64) -> Option<ChassisCommand> {
         let diagnostics = self.diagnostics.borrow_mut();
-        diagnostics.remote_diag = inputs.remote.diagnostics.at(now_us);
+        let link = &inputs.remote.diagnostics;
+        if self.phase == 0 || diagnostics.remote_diag.frames != link.frames {
+            diagnostics.remote_diag = link.at(now_us);
+        } else {
+            // The rate falls slowly; the age stops the robot.
+            diagnostics.remote_diag.age_us = age_us(link.good_ts_us, now_us);
+        }
         let command = self.bring_up.step(
             &BringUpInputs {
                 remote: &inputs.remote.state,

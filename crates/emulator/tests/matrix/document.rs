@@ -106,11 +106,14 @@ fn armed(wanted: &Armed, seen: Option<&Observed>) -> String {
         After::WheelsOnly => "then wheels drive on",
         After::JointsOnly => "then joints hold on",
         After::WhatRan => "what stopped stays off",
+        After::WheelsWait => "then wheels wait until the stick is centred",
+        After::JointsWait => "then joints wait until the stick is centred",
     };
     let wheels = seen.map(|seen| measured(&seen.wheels, seen));
     let joints = seen.map(|seen| measured(&seen.joints, seen));
     match (wanted.wheels, wanted.joints) {
-        (Group::Runs, Group::Runs) => format!("{flags}runs on"),
+        (Group::Runs, Group::Runs) if wanted.after == After::Drives => format!("{flags}runs on"),
+        (Group::Runs, Group::Runs) => format!("{flags}runs on; {after}"),
         (Group::Either, Group::Either) => format!("{flags}may stop; {after}"),
         (Group::Zero(wheels_ms), Group::Zero(joints_ms)) if wheels_ms == joints_ms => {
             let both = wheels.zip(joints);

@@ -10,7 +10,7 @@ use robot_plant::{
 };
 
 use crate::{
-    expected::Row,
+    expected::{After, Row},
     observed::{ARMED_SLACK, Observed, Phase, Wire},
     support,
 };
@@ -24,6 +24,9 @@ const DRIVES: Ps = 2_700 * MS;
 const FAULT: Ps = 3_300 * MS + 370_000_000;
 const FAULT_LASTS: Ps = 2_000 * MS;
 const SAMPLE: Ps = MS;
+/// A stick that has been centred for 0.2 s is at rest; what moves after that is seen in the last 0.2 s.
+const CENTRED: Ps = 300 * MS;
+const PUSHED: Ps = 500 * MS;
 
 /// Faults that are no fault of a device but of the pilot.
 pub const E_STOP: &str = "e-stop";
@@ -31,7 +34,7 @@ pub const E_STOP: &str = "e-stop";
 /// The run of one cell.
 pub fn run(row: &Row, phase: Phase) -> Observed {
     let fault = row.fault;
-    let end = FAULT + FAULT_LASTS + (row.back_within_ms * MS as f64) as Ps;
+    let back = FAULT + FAULT_LASTS + (row.back_within_ms * MS as f64) as Ps;
     let mut drive = Drive::new();
     drive.until(READY);
     if phase != Phase::Disarmed {
@@ -45,13 +48,24 @@ pub fn run(row: &Row, phase: Phase) -> Observed {
     assert_eq!(drive.armed(), phase != Phase::Disarmed, "{fault}, {phase}");
     drive.begin(fault);
     match phase {
-        Phase::Disarmed => drive.try_to_arm_twice(fault, end),
-        Phase::Driving | Phase::Idle => {
+        Phase::Disarmed => drive.try_to_arm_twice(fault, back),
+        Phase::Idle => {
             drive.until(FAULT + FAULT_LASTS);
             drive.end(fault);
-            drive.until(FAULT + FAULT_LASTS + 100 * MS);
+            drive.until(back - PUSHED);
             drive.pilot(stick(0.4));
-            drive.until(end);
+            drive.until(back);
+        }
+        Phase::Driving => {
+            drive.until(FAULT + FAULT_LASTS);
+            drive.end(fault);
+            drive.until(back);
+            if matches!(row.driving.after, After::WheelsWait | After::JointsWait) {
+                drive.centre();
+                drive.until(back + CENTRED);
+                drive.pilot(stick(0.4));
+                drive.until(back + CENTRED + PUSHED);
+            }
         }
     }
     drive.conclude()
@@ -96,6 +110,7 @@ struct Drive {
     flags_during: u64,
     fault_since: Option<Ps>,
     fault_until: Option<Ps>,
+    centred_at: Option<Ps>,
     observed: Observed,
 }
 
@@ -129,6 +144,7 @@ impl Drive {
             flags_during: 0,
             fault_since: None,
             fault_until: None,
+            centred_at: None,
             observed: Observed::default(),
         }
     }
@@ -136,6 +152,11 @@ impl Drive {
     fn pilot(&mut self, input: RemoteInput) {
         let deed = Deed::Remote(input);
         Board::act(&mut self.machine, &deed).expect("a pilot can always act");
+    }
+
+    fn centre(&mut self) {
+        self.centred_at = Some(self.now);
+        self.pilot(stick(0.0));
     }
 
     fn begin(&mut self, fault: &str) {
@@ -265,6 +286,7 @@ impl Drive {
         observed.struck = struck.map_or(0, |at| at - since);
         observed.fault_ended = self.fault_until.expect("the fault ended") - since;
         observed.ended = self.now - since;
+        observed.centred = self.centred_at.map(|at| at - since);
         observed.armed_at_end = self.last_armed == Some(self.now);
         observed.resets = self.machine.resets();
         let errors = Machine::board_errors(&self.machine).into_iter();

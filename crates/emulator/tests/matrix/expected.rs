@@ -27,6 +27,10 @@ pub enum After {
     JointsOnly,
     /// What the fault stopped stays off, the rest drives on.
     WhatRan,
+    /// The wheels stay off until the stick has been centred, then all drives; the joints go on at once.
+    WheelsWait,
+    /// The same the other way round.
+    JointsWait,
 }
 
 /// An armed phase.
@@ -126,6 +130,13 @@ impl Row {
     /// A human must look first: the enable switch alone does not arm again.
     fn latched(mut self) -> Self {
         self.disarmed.arms_after = Arms::No;
+        self
+    }
+
+    /// While the stick is pushed, what got its supply or its bus back does not set off.
+    fn waiting(mut self, after: After) -> Self {
+        self.driving.after = after;
+        self.driving.flags.may.push("sticks-awaited");
         self
     }
 
@@ -250,6 +261,7 @@ fn buses() -> Vec<Row> {
             flags(must, may),
             After::Drives,
         )
+        .waiting(After::WheelsWait)
     };
     // A DM4310 that hears nothing for 100 ms goes limp by itself and says so until it is cleared.
     let can2 = |fault, must: &[&'static str], may: &[&'static str]| {
@@ -289,25 +301,34 @@ fn buses() -> Vec<Row> {
 
 fn wheels() -> Vec<Row> {
     let mut rows = Vec::new();
-    for (gone, wrong_id, frozen, hot, silent) in [
-        (
+    for [gone, wrong_id, doubled, frozen, hot, silent, silent_other] in [
+        [
             "motor-0-gone",
             "motor-0-wrong-id",
+            "motor-0-doubled",
             "motor-0-frozen",
             "motor-0-hot",
             "wheel-left-silent",
-        ),
-        (
+            "wheel-right-silent",
+        ],
+        [
             "motor-1-gone",
             "motor-1-wrong-id",
+            "motor-1-doubled",
             "motor-1-frozen",
             "motor-1-hot",
             "wheel-right-silent",
-        ),
+            "wheel-left-silent",
+        ],
     ] {
         // Control of a silent wheel falls back to open loop.
-        rows.push(harmless(gone, flags(&[silent], &[])));
-        rows.push(harmless(wrong_id, flags(&[silent], &[])));
+        let heard_before = |fault, silent| harmless(fault, flags(&[silent], &[]));
+        rows.push(heard_before(gone, silent).waiting(After::WheelsWait));
+        rows.push(heard_before(wrong_id, silent).waiting(After::WheelsWait));
+        // The other wheel has this one's number: its own is silent, and this one's reports contradict each other.
+        let doubled = heard_before(doubled, silent_other).waiting(After::WheelsWait);
+        let twice = &["two nodes send identifier"];
+        rows.push(doubled.arms_during(Arms::No).complaining(twice));
         let stopped = row(
             frozen,
             Group::Zero(110.0),
@@ -324,7 +345,7 @@ fn wheels() -> Vec<Row> {
             flags(&["wheel-hot"], &[]),
             After::Drives,
         );
-        rows.push(stopped);
+        rows.push(stopped.waiting(After::WheelsWait));
     }
     rows
 }
@@ -365,16 +386,17 @@ fn joints() -> Vec<Row> {
             row(fault, Group::Runs, Group::Zero(within_ms), flags, after)
         };
         let silent = || flags(&["joint-silent"], &["joint-fault"]);
-        rows.push(joints(gone, 60.0, silent(), After::Drives));
-        rows.push(joints(wrong_id, 110.0, silent(), After::Drives));
+        let waits = |row: Row| row.waiting(After::JointsWait);
+        rows.push(waits(joints(gone, 60.0, silent(), After::Drives)));
+        rows.push(waits(joints(wrong_id, 110.0, silent(), After::Drives)));
         // A leg at rest repeats its position rightly.
         rows.push(harmless(frozen, Flags::default()));
-        rows.push(joints(
+        rows.push(waits(joints(
             hot,
             600.0,
             flags(&["joint-hot"], &[]),
             After::Drives,
-        ));
+        )));
         rows.push(joints(fault, 10.0, flags(&["joint-fault"], &[]), After::WheelsOnly).latched());
     }
     // An armed robot writes no register.

@@ -46,12 +46,45 @@ fn armed(wanted: &Armed, seen: &Observed, driving: bool) -> Vec<String> {
         After::WheelsOnly => (true, false),
         After::JointsOnly => (false, true),
         After::WhatRan => (ran(wheels) || !driving && ran(joints), ran(joints)),
+        After::WheelsWait => return [all, waited("wheels", wheels, seen), back(seen)].concat(),
+        After::JointsWait => return [all, waited("joints", joints, seen), back(seen)].concat(),
     };
     let obey = |from, to| wheels.iter().any(|wheel| wheel.told_torque_in(from, to));
     let hold = |from, to| joints.iter().any(|joint| joint.had_torque_in(from, to));
     all.extend(after("wheels", wheels_move, obey, seen));
     all.extend(after("joints", joints_move, hold, seen));
     all
+}
+
+/// No torque with the stick still pushed.
+fn waited(name: &str, wires: &[Wire], seen: &Observed) -> Vec<String> {
+    let Some(centred) = seen.centred else {
+        return vec!["the stick was never centred".to_owned()];
+    };
+    let moved = wires
+        .iter()
+        .any(|wire| wire.had_torque_in(centred - LATELY, centred));
+    if moved {
+        vec![format!("{name} do not wait for a centred stick")]
+    } else {
+        Vec::new()
+    }
+}
+
+/// All obeys at the end of the run.
+fn back(seen: &Observed) -> Vec<String> {
+    let (from, to) = (seen.ended - LATELY, seen.ended);
+    let wheels = wheels(seen)
+        .iter()
+        .all(|wheel| wheel.told_torque_in(from, to));
+    let joints = joints(seen)
+        .iter()
+        .all(|joint| joint.had_torque_in(from, to));
+    [("wheels", wheels), ("joints", joints)]
+        .into_iter()
+        .filter(|(_, obeys)| !obeys)
+        .map(|(name, _)| format!("{name} do not come back after the stick was centred"))
+        .collect()
 }
 
 fn wheels(seen: &Observed) -> &[Wire] {

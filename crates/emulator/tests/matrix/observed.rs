@@ -94,6 +94,8 @@ pub struct Observed {
     /// When the fault ended, and the run; since the fault started.
     pub fault_ended: Ps,
     pub ended: Ps,
+    /// When the pilot let go of the stick that was pushed until then.
+    pub centred: Option<Ps>,
     /// Safety flags that rose while the fault was there.
     pub flags: BTreeSet<String>,
     /// While the fault was there: resets of the chip.
