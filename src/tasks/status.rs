@@ -6,6 +6,7 @@ use robot_app::diagnostics::DiagnosticsSnapshot;
 use robot_app::indication::{Indication, IndicationInputs, IndicationPlayer};
 use robot_snapshot::Writer;
 
+use crate::config::LAYOUT;
 use crate::deadlines::Watched;
 use crate::drivers::battery::Battery;
 use crate::drivers::buzzer::Buzzer;
@@ -14,9 +15,13 @@ use crate::exchange::Exchange;
 use crate::stall::SteadyTicker;
 use bring_up_log::BringUpLog;
 use change_log::ChangeLog;
+use motor_log::MotorLog;
+use radio_log::RadioLog;
 
 mod bring_up_log;
 mod change_log;
+mod motor_log;
+mod radio_log;
 mod summary;
 
 const PERIOD: Duration = Duration::from_hz(200);
@@ -35,6 +40,9 @@ pub async fn run(
 ) -> ! {
     let mut changes = ChangeLog::default();
     let mut bring_up = BringUpLog::default();
+    let mut motors = MotorLog::default();
+    let mut radio = RadioLog::default();
+    let mut settings = exchange.config.follower();
     let mut player = IndicationPlayer::default();
     let mut ticker = SteadyTicker::every(PERIOD);
     let mut round: u32 = 0;
@@ -53,6 +61,9 @@ pub async fn run(
         buzzer.sound(signal.buzzer);
         changes.report(&diagnostics);
         bring_up.report_changes(&diagnostics);
+        settings.news();
+        motors.report(&diagnostics, &settings.last().config.joints, &LAYOUT);
+        radio.report(&diagnostics);
         if round.is_multiple_of(SUMMARY_DIVIDER) {
             summary::log(&diagnostics);
             bring_up.report_joints(&diagnostics);

@@ -6,14 +6,14 @@ use robot_app::domain::{
 };
 use robot_app::safety::{ArmingBlockers, ArmingState, SafetyFlags};
 
-/// In the order of `ChassisCommand`.
-const JOINT_NAMES: [&str; 4] = ["left front", "left rear", "right front", "right rear"];
+use super::motor_log::JOINT_NAMES;
 
 /// What was logged last.
 #[derive(Default)]
 pub struct ChangeLog {
     arming: ChangeNotice<ArmingState>,
     blockers: ChangeNotice<ArmingBlockers>,
+    refused: ChangeNotice<ArmingBlockers>,
     flags: ChangeNotice<SafetyFlags>,
     /// Fault code of each joint.
     joint_faults: [ChangeNotice<u32>; 4],
@@ -53,6 +53,24 @@ impl ChangeLog {
             && let Some(blockers) = self.blockers.due(d.arming.blockers, d.ts_us)
         {
             defmt::info!("arming blocked by: {}", blockers);
+        }
+        // Each refusal anew: the switch was off in between.
+        let refused = if d
+            .arming
+            .blockers
+            .contains(ArmingBlockers::ENABLE_NOT_CYCLED)
+        {
+            d.arming.refused
+        } else {
+            ArmingBlockers::NONE
+        };
+        if let Some(refused) = self.refused.due(refused, d.ts_us)
+            && !refused.is_empty()
+        {
+            defmt::warn!(
+                "arming refused: {}; switch enable off and on again",
+                refused
+            );
         }
         if let Some(flags) = self.flags.due(d.safety.flags, d.ts_us) {
             defmt::warn!("safety: {} -> {}", flags, d.safety.verdict);
