@@ -73,7 +73,7 @@ fn joints_are_limp_until_armed_and_hold_their_pose_then() {
     );
 }
 
-/// `(fault, flag, goes on by itself)`.
+/// `(fault, flag, goes on by itself once the stick is centred)`.
 #[test]
 fn a_bad_joint_stops_all_joints_and_the_wheels_go_on() {
     let cases = [
@@ -97,6 +97,9 @@ fn a_bad_joint_stops_all_joints_and_the_wheels_go_on() {
         assert!((speed / 0.6 - 1.0).abs() < 0.05, "{fault}: {speed} m/s");
         robot.fault(fault, false);
         robot.run_until(8.0, |_| ());
+        assert_eq!(enabled(&robot), [false; 4], "{fault} over, stick pushed");
+        robot.remote(sticks(0.0, 0.0));
+        robot.run_until(8.5, |_| ());
         assert_eq!(enabled(&robot), [goes_on; 4], "{fault} over");
         if !goes_on {
             clear(&mut robot);
@@ -117,6 +120,8 @@ fn a_new_mode_stops_all_joints_for_a_moment() {
 
 fn take_a_new_mode(slow: bool) {
     let mut robot = driving(PlantKind::Stand, RadioKind::Sbus);
+    // With a pushed stick they would wait until it is centred.
+    robot.remote(sticks(0.0, 0.0));
     robot.fault("joint-writes-slow", slow);
     let hold = JointCommand {
         mode: JointMode::Mit,
@@ -134,11 +139,11 @@ fn take_a_new_mode(slow: bool) {
         ..ChassisCommand::default()
     };
     robot.direct = Some(command);
-    robot.run_until(5.2, |_| ());
+    robot.run_until(5.4, |_| ());
     command.joints[2] = turn;
     robot.direct = Some(command);
     let mut silent_ms = 0;
-    robot.run_until(5.8, |robot| {
+    robot.run_until(6.0, |robot| {
         let safety = robot.diagnostics().safety;
         silent_ms += u32::from(safety.flags.intersects(SafetyFlags::JOINT_SILENT));
         assert!(robot.armed() && !safety.wheels_stop);
@@ -192,7 +197,7 @@ fn a_low_battery_forbids_the_next_drive_and_an_empty_one_ends_this_one() {
     robot.run_until(7.2, |_| ());
     robot.remote(ENABLE);
     robot.run_until(7.4, assert_limp_later);
-    assert_eq!(blockers(&robot), ["battery-low"]);
+    assert_eq!(blockers(&robot), ["enable-not-cycled", "battery-low"]);
 
     let mut robot = driving(PlantKind::Stand, RadioKind::Sbus);
     robot.fault("battery-empty", true);

@@ -182,7 +182,10 @@ fn a_stick_off_centre_does_not_arm() {
     robot.run_until(2.5, assert_still);
     robot.remote(ENABLE);
     robot.run_until(4.0, assert_still);
-    assert_eq!(blockers(&robot), ["sticks-not-centred"]);
+    assert_eq!(
+        blockers(&robot),
+        ["enable-not-cycled", "sticks-not-centred"]
+    );
 }
 
 /// Truth from the plant; what the firmware believes from its estimate. The accelerometer's offset (20 mg by the

@@ -128,7 +128,8 @@ fn a_joint_beyond_its_soft_limit_is_held_as_softly_as_any() {
         let phases = [
             good(1_500, false),
             with_frame(false, 0x7A0, [0x20, 16, 3, 0, a, b, c, d]),
-            good(10, false),
+            // Sticks must rest for 0.2 s by the new settings.
+            good(300, false),
             bring_up(3, 2, 1, 0),
             stick(300, false),
             stick(300, true),

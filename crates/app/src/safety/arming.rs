@@ -58,7 +58,8 @@ impl ArmingBlockers {
     pub const WHEEL_NEVER_HEARD: Self = Self(1 << 13);
     /// A wheel's angle does not move as its speed says: two speed controllers have one number, or its sensor is broken.
     pub const WHEEL_DOUBTFUL: Self = Self(1 << 14);
-    /// A joint reads an angle beyond its soft limits: its zero is not set, or it is wrong by a turn.
+    /// A joint reads an angle beyond its soft limits: its zero is not set, or it is wrong by a turn. Not while bring-up
+    /// tries out motors, which gives one of them little torque.
     pub const JOINT_OUT_OF_LIMITS: Self = Self(1 << 15);
 
     /// A joint motor keeps its last command for ever when the bus falls silent, unless somebody has set its time-out, and
@@ -172,6 +173,8 @@ pub struct ArmingInputs<'a> {
     pub motor: &'a MotorFindings,
     /// Bring-up is in the step in which nothing may move.
     pub read_only: bool,
+    /// Bring-up is in a step in which motors are tried out.
+    pub tries_motors: bool,
     /// See `FlashPermit`, which grants nothing to an armed robot.
     pub flash_busy: bool,
     pub params: &'a ParamStatus,
@@ -341,13 +344,16 @@ fn only_forbidding(inputs: &ArmingInputs<'_>) -> ArmingBlockers {
         (ArmingBlockers::JOINTS_NOT_READY, motor.joints_unready),
         (ArmingBlockers::WHEEL_NEVER_HEARD, motor.wheels_unheard),
         (ArmingBlockers::WHEEL_DOUBTFUL, motor.wheels_doubtful),
-        (ArmingBlockers::JOINT_OUT_OF_LIMITS, motor.joints_outside),
     ] {
         blockers.add_if(blocker, motors != 0);
     }
     blockers.add_if(
         ArmingBlockers::JOINT_TIMEOUT_UNSET,
         inputs.joint_timeout_unset,
+    );
+    blockers.add_if(
+        ArmingBlockers::JOINT_OUT_OF_LIMITS,
+        motor.joints_outside != 0 && !inputs.tries_motors,
     );
     blockers.add_if(ArmingBlockers::FLASH_BUSY, inputs.flash_busy);
     blockers.add_if(ArmingBlockers::SETTINGS_REFUSED, inputs.params.refused != 0);

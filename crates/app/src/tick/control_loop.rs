@@ -263,7 +263,9 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
     fn try_out(&mut self, inputs: &ControlInputs<'_>, now_us: u64) -> Option<ChassisCommand> {
         let diagnostics = self.diagnostics.borrow_mut();
         let link = &inputs.remote.diagnostics;
-        if self.phase == 0 || diagnostics.remote_diag.frames != link.frames {
+        let known = &diagnostics.remote_diag;
+        let news = known.frames != link.frames || known.frame_ts_us != link.frame_ts_us;
+        if news || self.phase == 0 {
             diagnostics.remote_diag = link.at(now_us);
         } else {
             // The rate falls slowly; the age stops the robot.
@@ -354,6 +356,7 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
                 calibrated: inputs.health.imu_calibrated,
                 motor: &diagnostics.motors,
                 read_only: self.bring_up.blocks_arming(),
+                tries_motors: self.bring_up.tries_motors(),
                 flash_busy: self.flash.grant().blocks_arming,
                 params: inputs.params,
                 debugger_catches: inputs.health.debug_probe.catches,

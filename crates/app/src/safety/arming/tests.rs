@@ -9,6 +9,7 @@ struct Bench {
     disabled: bool,
     calibrated: bool,
     read_only: bool,
+    tries_motors: bool,
     flash_busy: bool,
     params: ParamStatus,
     debugger_catches: bool,
@@ -38,6 +39,7 @@ impl Bench {
             disabled: true,
             calibrated: true,
             read_only: false,
+            tries_motors: false,
             flash_busy: false,
             params: ParamStatus::default(),
             debugger_catches: false,
@@ -77,6 +79,7 @@ impl Bench {
                 calibrated: self.calibrated,
                 motor: &MotorFindings::of(&self.motor, &RobotConfig::default().joints),
                 read_only: self.read_only,
+                tries_motors: self.tries_motors,
                 flash_busy: self.flash_busy,
                 params: &self.params,
                 debugger_catches: self.debugger_catches,
@@ -359,6 +362,16 @@ fn a_joint_beyond_its_limits_forbids_arming_but_does_not_disarm() {
             (ArmingBlockers::JOINT_OUT_OF_LIMITS, ArmingState::Armed)
         );
     }
+}
+
+/// A new robot finds out which way its joints turn before their zeros are set.
+#[test]
+fn a_joint_beyond_its_limits_may_be_tried_out() {
+    let result = with_wrong(|bench| {
+        bench.motor.joints[1].pos_rad = 6.3;
+        bench.tries_motors = true;
+    });
+    assert_eq!(result, (ArmingBlockers::NONE, ArmingState::Armed));
 }
 
 #[test]
