@@ -80,7 +80,7 @@ fn a_set_and_a_choice_lie_side_by_side() {
 fn a_joint_is_shown_with_sign_and_state() {
     let bytes = read_of(0x22, |diagnostics| {
         let joint = &mut diagnostics.sensors.motor.joints[2];
-        joint.pos_rad = -1.5707;
+        joint.pos_rad = -1.5712;
         joint.vel_rps = 2.5;
         joint.state = JointState::Disabled;
         joint.reports_enabled = true;
