@@ -136,6 +136,8 @@ pub struct Machine {
     image: Image,
     rtt: Option<Rtt>,
     log: Option<DefmtLog>,
+    /// False once the probe that read it is pulled.
+    log_is_read: bool,
     diagnostics: Diagnostics,
     stack: StackWatch,
     /// Deepest stack before the last loss of power.
@@ -159,6 +161,7 @@ impl Machine {
         Ok(Self {
             rtt: image.symbol(RTT_CONTROL_BLOCK).map(Rtt::new),
             log: DefmtLog::new(&bytes)?,
+            log_is_read: true,
             diagnostics: Diagnostics::find(&bytes, &image).map_err(MachineError::Image)?,
             stack: StackWatch::of(&image),
             stack_peak: 0,
@@ -216,7 +219,7 @@ impl Machine {
     }
 
     fn poll_log(&mut self) {
-        let (Some(rtt), Some(log)) = (&self.rtt, &mut self.log) else {
+        let (Some(rtt), Some(log), true) = (&self.rtt, &mut self.log, self.log_is_read) else {
             return;
         };
         let mut bytes = Vec::new();

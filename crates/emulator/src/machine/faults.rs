@@ -82,7 +82,7 @@ const ENTRIES: &[Entry] = &[
     board("power-cut", Kind::PowerCut, "the board and its sensors have no power; motors, radio and PC have; then it boots"),
     board("flash-stuck-bits", Kind::FlashStuckBits, "one bit in every word of the parameter sectors is stuck at 1"),
     board("flash-erase-fails", Kind::FlashEraseFails, "erasing a parameter sector takes its time and does nothing"),
-    board("probe-attached", Kind::ProbeAttached, "a debug probe catches reset and hard fault, as probe-rs does by default; what it sets stays until the power goes"),
+    board("probe-attached", Kind::ProbeAttached, "a debug probe catches reset and hard fault, as probe-rs does by default; what it sets stays until the power goes, but nobody reads the log"),
     board("probe-insists", Kind::ProbeInsists, "a debugger catches reset and hard fault, and again as soon as that is cleared"),
     board("probe-breakpoints", Kind::ProbeBreakpoints, "a debugger leaves breakpoints where the program fails, and watchdogs that wait for it"),
     board("probe-halts-5ms", Kind::ProbeHalts(5), "a debug probe halts the core for 5 ms"),
@@ -126,8 +126,9 @@ impl Machine {
             Kind::ProbeAttached if active => self.attach_probe(),
             Kind::ProbeBreakpoints if active => self.leave_breakpoints(),
             Kind::ProbeHalts(ms) if active => self.halt_core(ms * MS),
+            Kind::ProbeAttached => self.pull_probe(),
             // Nothing of it goes with the probe.
-            Kind::ProbeAttached | Kind::ProbeBreakpoints | Kind::ProbeHalts(_) => {}
+            Kind::ProbeBreakpoints | Kind::ProbeHalts(_) => {}
         }
         Ok(())
     }

@@ -11,10 +11,19 @@ const CAUGHT_BY_DEFAULT: u32 = DEMCR_VC_CORERESET | DEMCR_VC_HARDERR;
 const BROKEN_AT: [&str; 4] = ["HardFault", "DefaultHandler", "main", "_defmt_panic"];
 
 impl Machine {
-    /// As `probe-rs run` leaves the core when it lets it go on. Pulling the probe changes nothing: on the STM32F4 it
-    /// takes nothing back (`vendor/st/sequences/stm32_armv7.rs`), and only power-on clears what it has set.
+    /// As `probe-rs run` leaves the core when it lets it go on, with the log to be waited for.
     pub fn attach_probe(&mut self) {
         self.cpu.debug().attach(CAUGHT_BY_DEFAULT);
+        self.log_is_read = true;
+        if let Some(rtt) = &self.rtt {
+            rtt.ask_to_block(&mut self.cpu);
+        }
+    }
+
+    /// Nothing is taken back: on the STM32F4 probe-rs does not (`vendor/st/sequences/stm32_armv7.rs`), and only power-on
+    /// clears what it has set in the core. Nobody reads the log any more.
+    pub(super) fn pull_probe(&mut self) {
+        self.log_is_read = false;
     }
 
     /// As a session of OpenOCD and gdb that was killed: breakpoints, and watchdogs that stand in every halt.

@@ -7,6 +7,9 @@ const UP_BUFFER: u32 = 24 + 4;
 const UP_SIZE: u32 = 24 + 8;
 const UP_WRITE: u32 = 24 + 12;
 const UP_READ: u32 = 24 + 16;
+const UP_FLAGS: u32 = 24 + 20;
+/// The image waits for the reader when the ring is full, if it heeds that.
+const BLOCK_IF_FULL: u32 = 2;
 /// More than any ring on a chip with 192 KiB of RAM; a control block that says more is not initialised yet.
 const LARGEST_RING: u32 = 0x1_0000;
 
@@ -19,6 +22,12 @@ pub struct Rtt {
 impl Rtt {
     pub fn new(control_block: u32) -> Self {
         Self { control_block }
+    }
+
+    /// What a reader asks for that wants to lose nothing; the next boot forgets it.
+    pub fn ask_to_block(&self, cpu: &mut Cpu) {
+        let flags = self.control_block + UP_FLAGS;
+        cpu.memory().write(flags, &BLOCK_IF_FULL.to_le_bytes());
     }
 
     /// Takes what the image has written, so that its ring never fills.
