@@ -146,6 +146,12 @@ fn load_settings(flash: ParamFlash) -> (ParamService<ParamFlash>, RobotConfig) {
             status.lost_sectors
         );
     }
+    if status.strange_sectors != 0 {
+        defmt::info!(
+            "settings: {=u8} flash sectors hold something else, such as an older firmware",
+            status.strange_sectors
+        );
+    }
     (service, config)
 }
 

@@ -51,8 +51,8 @@ pub fn keep_time<R>(work: impl FnOnce() -> R, repaired: impl FnOnce(u32)) -> Opt
 }
 
 /// A debugger stops the counter when it goes. False if the counter stands still all the same.
-fn start_cycle_counter() -> bool {
-    // SAFETY: nobody else owns these two, and their one writer runs in thread mode.
+pub(super) fn start_cycle_counter() -> bool {
+    // SAFETY: nobody else owns these two, and all their writers run in thread mode: at boot, and for an erase.
     let mut core = unsafe { Peripherals::steal() };
     core.DCB.enable_trace();
     core.DWT.enable_cycle_counter();

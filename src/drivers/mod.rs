@@ -5,6 +5,7 @@ pub mod bmi088;
 pub mod buzzer;
 pub mod can;
 pub mod clock_repair;
+pub mod cycle_jitter;
 pub mod debug_probe;
 pub mod heater;
 pub mod ist8310;

@@ -12,6 +12,7 @@ use robot_snapshot::{Follower, Writer};
 
 use crate::config::LAYOUT;
 use crate::drivers::can::CanPort;
+use crate::drivers::cycle_jitter::CycleJitter;
 use crate::drivers::debug_probe;
 use crate::drivers::watchdog::Watchdog;
 use crate::exchange::{
@@ -60,6 +61,7 @@ pub struct ControlContext {
     watchdog: Watchdog,
     health: SystemHealth,
     stalls: StallWatch,
+    jitter: CycleJitter,
     control_loop: RobotLoop,
     output: Output,
 }
@@ -140,6 +142,7 @@ impl ControlContext {
                 ..SystemHealth::default()
             },
             stalls: StallWatch::new(),
+            jitter: CycleJitter::start(),
             control_loop: RobotLoop::with_diagnostics(
                 &LAYOUT,
                 exchange.config.latest().config,
@@ -175,14 +178,17 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
         watchdog,
         health,
         stalls,
+        jitter,
         control_loop,
         output,
     } = context;
 
     if let Some(stall_us) = stalls.news() {
+        jitter.restart();
         ports.iter_mut().for_each(CanPort::drop_backlog);
         control_loop.after_stall(stall_us, now_us);
     }
+    jitter.tick();
     for port in ports.iter_mut() {
         port.begin_tick(now_us);
         let bus = port.bus();
@@ -217,6 +223,7 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
     output.publish(&outputs);
     if is_diagnostics_tick(outputs.diagnostics) {
         health.radio_line = RADIO_LINE.health();
+        health.max_jitter_cycles = jitter.max_cycles();
         health.debug_probe = debug_probe::undo();
     }
     watchdog.set_long(outputs.flash.needs_long_watchdog);

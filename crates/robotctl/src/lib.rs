@@ -8,12 +8,18 @@
 //! | [`mounting`] | a robot tilted by hand → how its sensors sit |
 //! | [`parameter_file`] | parameters by name, in TOML |
 //! | [`can_link`] | a CAN bus through an slcan adapter or SocketCAN |
-//! | [`tuning`] | the settings of the robot on a bus |
+//! | [`tuning`] | the settings of the robot on a bus, and its live values |
+//! | [`status`] | live values → words and JSON |
+//! | [`recorder`] | samples of the robot on a bus → a table |
+//! | [`first_board`] | the checks of a first board, and their report |
 
 pub mod calibration;
 pub mod can_link;
+pub mod first_board;
 pub mod mounting;
 pub mod parameter_file;
+pub mod recorder;
 pub mod recording;
 pub mod report;
+pub mod status;
 pub mod tuning;

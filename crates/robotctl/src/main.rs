@@ -1,6 +1,8 @@
-//! `robotctl`: calibrates the robot's sensors and tunes it over CAN.
+//! `robotctl`: calibrates the robot's sensors, tunes it and watches it over CAN.
 
 mod command;
+
+use std::process::ExitCode;
 
 use clap::Parser;
 
@@ -12,6 +14,13 @@ struct Arguments {
     command: command::Command,
 }
 
-fn main() -> anyhow::Result<()> {
-    Arguments::parse().command.run()
+fn main() -> ExitCode {
+    match Arguments::parse().command.run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) if command::output::is_closed(&error) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("Error: {error:?}");
+            ExitCode::FAILURE
+        }
+    }
 }

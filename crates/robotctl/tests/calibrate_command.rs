@@ -124,3 +124,87 @@ fn a_magnetometer_table_becomes_values_and_a_page() {
     let page = fs::read_to_string(directory.join("calibration-mag.html")).unwrap();
     assert!(page.matches("<circle").count() > 1_000);
 }
+
+/// The same recording as other programs export it: numbers of each field, and the header.
+fn exported(
+    header: &str,
+    separator: &str,
+    factors: [f64; 2],
+    finish: impl Fn(String) -> String,
+) -> String {
+    let [time_factor, factor] = factors;
+    let rows = accel_table(&UP);
+    let rows = rows.lines().skip(1).map(|row| {
+        let numbers = row.split(',').map(|field| field.parse::<f64>().unwrap());
+        let fields = numbers.enumerate().map(|(place, number)| {
+            let factor = if place == 0 { time_factor } else { factor };
+            finish(format!("{:.6}", number * factor))
+        });
+        fields.collect::<Vec<_>>().join(separator)
+    });
+    let header = header.replace(' ', separator);
+    std::iter::once(header)
+        .chain(rows)
+        .collect::<Vec<_>>()
+        .join("\r\n")
+}
+
+#[test]
+fn tables_of_other_programs_give_the_same_values() {
+    const G: f64 = 1.0 / 9.806_65;
+    let point = |text: String| text;
+    let comma = |text: String| text.replace('.', ",");
+    let names = "t ax ay az";
+    for (case, table) in [
+        ("semicolon", exported(names, ";", [1.0, 1.0], point)),
+        ("german", exported(names, ";", [1.0, 1.0], comma)),
+        ("tab", exported(names, "\t", [1.0, 1.0], point)),
+        ("upper", exported("T AX AY AZ", ",", [1.0, 1.0], point)),
+        ("g", exported(names, ",", [1.0, G], point)),
+        ("ms", exported(names, ",", [1e3, 1.0], point)),
+        ("us", exported(names, ",", [1e6, 1.0], point)),
+        (
+            "all",
+            exported("Time Acc_X Acc_Y Acc_Z", ";", [1e3, G], comma),
+        ),
+    ] {
+        let directory = directory(&format!("calibrate-{case}"));
+        fs::write(directory.join("a.csv"), table).unwrap();
+        let output = robotctl(&directory, &["calibrate", "accel", "a.csv"]);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{case}: {said}");
+        let bias = value(&directory, "imu-calibration", "accel-bias-x-mps2");
+        let scale = value(&directory, "imu-calibration", "accel-scale-z");
+        assert!((bias - 0.2).abs() < 1e-3, "{case}: {bias}");
+        assert!((scale - 1.0 / 1.01).abs() < 1e-3, "{case}: {scale}");
+        let converted = ["g", "ms", "us", "all"].contains(&case);
+        assert_eq!(said.contains("note: a.csv: "), converted, "{case}: {said}");
+    }
+}
+
+#[test]
+fn a_table_in_doubt_is_refused_with_its_cause() {
+    let directory = directory("calibrate-doubt");
+    for (table, cause) in [
+        (
+            exported("t ax ay az", ",", [100.0, 1.0], |text| text),
+            "`t_ms` or `t_us`",
+        ),
+        (
+            exported("t ax ay az", ",", [1.0, 208.9], |text| text),
+            "raw counts",
+        ),
+        (
+            exported("t ax ay az", ",", [1.0, 1.0], |text| text.replace('.', ",")),
+            "decimal commas",
+        ),
+    ] {
+        fs::write(directory.join("a.csv"), table).unwrap();
+        let output = robotctl(&directory, &["calibrate", "accel", "a.csv"]);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(
+            !output.status.success() && said.contains(cause),
+            "`{cause}` in {said}"
+        );
+    }
+}

@@ -115,6 +115,24 @@ fn noise(seed: u64, length: usize) -> Vec<u8> {
         .collect()
 }
 
+/// Both heads hurt, all else as it was: that was a store, and its settings are gone.
+#[test]
+fn two_hurt_heads_are_no_other_firmware() {
+    let (mut chip, _) = two_sectors_in_use();
+    for sector in PARAMETER_SECTORS.take(2) {
+        let range = sector_range(sector).expect("a sector");
+        for copy in [8, 24] {
+            let garbage = noise((u64::from(sector) << 8) + copy, 16);
+            let place = range.start + copy as u32;
+            chip.set_contents(place, &garbage).expect("in range");
+        }
+    }
+    let (store, found) = boot(&mut chip).expect("boots");
+    assert!(found.is_empty());
+    let report = store.report();
+    assert_eq!((report.lost_sectors, report.strange_sectors), (2, 0));
+}
+
 /// Whichever one, two or three sectors are garbage: the other ones' records are there.
 #[test]
 fn garbage_in_whole_sectors_costs_what_they_held() {
@@ -129,8 +147,12 @@ fn garbage_in_whole_sectors_costs_what_they_held() {
         }
         let (store, found) = boot(&mut chip).expect("boots");
         // With the clean sector ruined too, one of them may be what an erase left that was cut short.
-        let told = [0, 1, 1, 2, 0, 1, 1, 2][usize::from(broken)];
-        assert_eq!(store.report().lost_sectors, told, "{broken}");
+        let lost = [0, 1, 1, 0, 0, 1, 1, 0][usize::from(broken)];
+        // With no store left, noise looks as if another program had always been there.
+        let strange = [0, 0, 0, 2, 0, 0, 0, 3][usize::from(broken)];
+        let report = store.report();
+        let told = (report.lost_sectors, report.strange_sectors);
+        assert_eq!(told, (lost, strange), "{broken}");
         match broken & 3 {
             // The active one is whole.
             0 | 1 => assert_eq!(found, contents),

@@ -16,6 +16,8 @@ pub struct TickStats {
     /// Distance of `dt_us` from the period.
     pub jitter_us: u32,
     pub max_jitter_us: u32,
+    /// The same by the core's cycle counter (DWT), 168 a microsecond, and of the task's entry; 0 if that does not run.
+    pub max_jitter_cycles: u32,
     /// Whole periods in which no tick ran.
     pub missed: u32,
     /// Times the whole chip stood still for a flash erase.

@@ -125,6 +125,8 @@ pub struct SystemHealth {
     /// Of the run before this one.
     pub last_words: LastWords,
     pub reset_cause: ResetCause,
+    /// See `TickStats`.
+    pub max_jitter_cycles: u32,
     /// Start-up gyro calibration finished.
     pub imu_calibrated: bool,
     pub late_tasks: LateTasks,

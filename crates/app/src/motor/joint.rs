@@ -30,6 +30,17 @@ const DISABLED_REPLIES: u8 = 2;
 /// Slots between two looks at the fault word of a motor that does not show every fault by itself.
 const FAULT_POLL_SLOTS: u8 = 64;
 
+/// Some steps of what a DM4310 reports as its speed: 0.015 rad/s each.
+const STANDING_RPS: f32 = 0.1;
+
+/// Why a joint stands at no known angle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NotStanding {
+    /// It does not report, repeats an old report, or its ranges are not known yet.
+    Unknown,
+    Turns,
+}
+
 /// How far the motor has been brought.
 #[derive(Clone, Debug)]
 enum Phase {
@@ -110,6 +121,25 @@ impl Joint {
     /// The command it obeys, as far as it is enabled.
     pub fn sent(&self) -> &JointCommand {
         &self.sent
+    }
+
+    /// Where the motor stands, in its own coordinates: to call that place another angle. Of its newest report, whatever
+    /// the settings were when it came.
+    pub fn standing_angle_rad(&self) -> Result<f32, NotStanding> {
+        let is_ready = match self.state() {
+            JointState::Silent | JointState::SettingUp => false,
+            JointState::Disabled
+            | JointState::Enabling
+            | JointState::Enabled
+            | JointState::Fault => !self.frozen,
+        };
+        match &self.report {
+            Some(report) if is_ready && report.motion.vel_rps.abs() <= STANDING_RPS => {
+                Ok(report.motion.pos_rad)
+            }
+            Some(_) if is_ready => Err(NotStanding::Turns),
+            _ => Err(NotStanding::Unknown),
+        }
     }
 
     fn state(&self) -> JointState {

@@ -2,7 +2,13 @@
 
 use heapless::Vec;
 
-use super::{interface::Motor, joint::Joint, layout::MotorLayout, m3508, wheel::Wheel};
+use super::{
+    interface::Motor,
+    joint::{Joint, NotStanding},
+    layout::MotorLayout,
+    m3508,
+    wheel::Wheel,
+};
 use crate::{
     domain::{
         BusId, CanFrame, ChassisCommand, JointCommand, MotorCurrent, MotorFeedback, RobotConfig,
@@ -51,6 +57,11 @@ impl MotorManager {
             }
         }
         false
+    }
+
+    /// Where a joint's motor stands, in its own coordinates. `None` if there is no such joint.
+    pub fn standing_angle_rad(&self, joint: usize) -> Option<Result<f32, NotStanding>> {
+        self.joints.get(joint).map(Joint::standing_angle_rad)
     }
 
     /// Feedback with ages brought up to `now_us`; once a tick, before [`compose`](Self::compose).

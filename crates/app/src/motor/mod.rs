@@ -22,4 +22,5 @@ pub mod rs00;
 mod set_point;
 mod wheel;
 
+pub use joint::NotStanding;
 pub(crate) use manager::{MotorManager, TickFrames};

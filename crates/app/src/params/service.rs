@@ -54,6 +54,7 @@ impl<F: NorFlash> ParamService<F> {
         let found = service.store.report();
         service.status.damaged = found.damaged;
         service.status.lost_sectors = found.lost_sectors;
+        service.status.strange_sectors = found.strange_sectors;
         service.settle();
         let config = service.load();
         service.saver = Saver::new(config);

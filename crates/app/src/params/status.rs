@@ -105,6 +105,9 @@ pub struct ParamStatus {
     /// Sectors found ruined at boot by something else than a power cut: settings saved there are gone, and older values
     /// or defaults are in use.
     pub lost_sectors: u8,
+    /// Sectors found at boot to hold something else than settings, such as parts of a firmware flashed before this one.
+    /// They are erased when their turn comes.
+    pub strange_sectors: u8,
 }
 
 /// What the parameter task wants to do to flash; the control tick says when it may.

@@ -43,6 +43,8 @@ pub struct StoreReport {
     /// Sectors whose head was ruined by something else than a power cut, as found by `open`: what was saved there is
     /// gone, and an older value or none is in its place.
     pub lost_sectors: u8,
+    /// Sectors that hold something else than a store, as found by `open` where there was no store either.
+    pub strange_sectors: u8,
 }
 
 /// Records in `F`: 48 KiB from offset 0, sectors of 16 KiB, words of 4 bytes.
@@ -58,6 +60,7 @@ pub struct Store<F> {
     rotation: Option<Rotation>,
     damaged: u16,
     lost_sectors: u8,
+    strange_sectors: u8,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -127,6 +130,7 @@ impl<F: NorFlash> Store<F> {
             rotation: None,
             damaged: 0,
             lost_sectors: 0,
+            strange_sectors: 0,
         };
         store.scan();
         store
@@ -152,6 +156,7 @@ impl<F: NorFlash> Store<F> {
             damaged: self.damaged,
             free_slots: free.into(),
             lost_sectors: self.lost_sectors,
+            strange_sectors: self.strange_sectors,
         }
     }
 

@@ -171,12 +171,14 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
             tuning,
             config,
             bring_up,
+            motors,
             ..
         } = self;
         let access = TuningAccess {
             config,
             bring_up,
             diagnostics,
+            standing_angle_rad: &|joint| motors.standing_angle_rad(joint),
         };
         let mounting = access.config.mounting;
         if let Some(reply) = tuning.on_frame(bus, frame, gate, access) {
@@ -425,12 +427,26 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
     fn reply(&mut self) {
         let diagnostics: &DiagnosticsSnapshot = self.diagnostics.borrow();
         if !diagnostics.tick.count.is_multiple_of(REPLY_PERIOD_TICKS) {
+            if self.tuning.recorder().is_running() {
+                self.send_recorded();
+            }
             return;
         }
         // Motors take two of three mailboxes (layout), a reply the third.
         let _ = self.frames.extend_from_slice(&self.replies);
         self.replies.clear();
         self.tuning.begin_slot();
+    }
+
+    /// Rare.
+    #[cold]
+    #[inline(never)]
+    fn send_recorded(&mut self) {
+        let diagnostics: &DiagnosticsSnapshot = self.diagnostics.borrow();
+        let gate = TuningGate::of(diagnostics.arming.state, &diagnostics.operator);
+        // Motors take two of three mailboxes (layout), and no reply goes out in this tick.
+        self.frames
+            .extend(self.tuning.recorder().next(gate, diagnostics));
     }
 
     fn demand<'a>(&self, logic: &'a LogicBus, now_us: u64) -> Demand<'a> {
@@ -488,6 +504,7 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
         diagnostics.imu_calibrated = health.imu_calibrated;
         diagnostics.imu_status = health.imu_status;
         diagnostics.reset_cause = health.reset_cause;
+        diagnostics.tick.max_jitter_cycles = health.max_jitter_cycles;
         diagnostics.last_words = health.last_words;
         diagnostics.battery_v = health.battery_v;
         diagnostics.debug_probe = health.debug_probe;

@@ -1,8 +1,8 @@
 //! Requests in, at most one reply a slot and bus out.
 
 use super::{
-    LiveSource, PARAMETERS, ParameterGroup, Refusal, TuningStatus, bit, consistency, live,
-    parameters,
+    LiveSource, PARAMETERS, ParameterGroup, Recorder, Refusal, TuningStatus, bit, consistency,
+    live, parameters,
     protocol::{self, Request, Restored},
     wheel_geometry::WheelGeometry,
 };
@@ -10,7 +10,7 @@ use crate::{
     bring_up::BringUp,
     diagnostics::DiagnosticsSnapshot,
     domain::{BusId, CanFrame, OperatorState, RobotConfig},
-    motor::layout::MotorLayout,
+    motor::{NotStanding, layout::MotorLayout},
     safety::ArmingState,
 };
 
@@ -35,12 +35,15 @@ impl TuningGate {
 /// 250 replies a second and bus at most: what the layout's load leaves room for.
 pub const REPLY_PERIOD_TICKS: u32 = 4;
 
+/// Where the motor of a joint stands, in its own coordinates; `None` if there is no such joint.
+pub type StandingAngle<'a> = &'a dyn Fn(usize) -> Option<Result<f32, NotStanding>>;
+
 /// What requests read and change.
-#[derive(Debug)]
 pub struct TuningAccess<'a> {
     pub config: &'a mut RobotConfig,
     pub bring_up: &'a mut BringUp,
     pub diagnostics: &'a DiagnosticsSnapshot,
+    pub standing_angle_rad: StandingAngle<'a>,
 }
 
 #[derive(Clone, Debug)]
@@ -50,6 +53,7 @@ pub struct TuningChannel {
     /// Index = `BusId`: a reply was made in this slot.
     replied: [bool; 2],
     status: TuningStatus,
+    recorder: Recorder,
 }
 
 impl TuningChannel {
@@ -58,6 +62,7 @@ impl TuningChannel {
             layout,
             replied: [false; 2],
             status: TuningStatus::default(),
+            recorder: Recorder::default(),
         }
     }
 
@@ -79,6 +84,7 @@ impl TuningChannel {
             config,
             bring_up,
             diagnostics,
+            standing_angle_rad,
         } = access;
         let params = &diagnostics.params;
         let request = Request::decode(frame)?;
@@ -105,6 +111,7 @@ impl TuningChannel {
                 };
                 live::read(page, &source).map(|bytes| protocol::live_reply(page, bytes))
             }
+            Request::ReadRecording => Ok(protocol::recording_reply(self.recorder.status())),
             _ if gate == TuningGate::Shut => Err(Refusal::Armed),
             Request::WriteGeometry(geometry) => self
                 .change(config, |candidate| geometry.apply(candidate))
@@ -125,8 +132,22 @@ impl TuningChannel {
                 bring_up.request(request);
                 Ok(protocol::echo(frame))
             }
+            Request::ZeroJoint { joint, angle_rad } => {
+                let standing = standing_angle_rad(joint.into());
+                let motor_rad = standing.ok_or(Refusal::UnknownParameter)??;
+                self.zero_joint(config, joint, motor_rad, angle_rad)
+                    .map(|()| protocol::echo(frame))
+            }
+            Request::Record(seconds) => {
+                self.recorder.start(bus, seconds, diagnostics);
+                Ok(protocol::echo(frame))
+            }
         });
         Some(self.conclude(frame, done))
+    }
+
+    pub fn recorder(&mut self) -> &mut Recorder {
+        &mut self.recorder
     }
 
     pub fn status(&self) -> &TuningStatus {
@@ -143,6 +164,26 @@ impl TuningChannel {
         let mut candidate = *config;
         apply(&mut candidate)?;
         self.adopt(config, &candidate, 0)
+    }
+
+    /// Joint angle = direction · (motor angle − zero): moves the zero.
+    #[inline(never)]
+    fn zero_joint(
+        &mut self,
+        config: &mut RobotConfig,
+        joint: u8,
+        motor_rad: f32,
+        angle_rad: f32,
+    ) -> Result<(), Refusal> {
+        let parameter = parameters::joint_zero(joint)?;
+        if angle_rad < parameter.min || angle_rad > parameter.max {
+            return Err(Refusal::OutOfRange);
+        }
+        self.change(config, |candidate| {
+            let joint = candidate.joints.get(usize::from(joint));
+            let direction = joint.ok_or(Refusal::UnknownParameter)?.direction;
+            parameter.write(candidate, motor_rad - direction * angle_rad)
+        })
     }
 
     #[inline(never)]

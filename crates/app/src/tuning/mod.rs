@@ -9,6 +9,7 @@ mod live;
 mod parameter;
 mod parameters;
 mod protocol;
+mod recording;
 mod refusal;
 mod status;
 mod wheel_geometry;
@@ -20,5 +21,8 @@ pub use parameters::PARAMETERS;
 pub(crate) use parameters::bit;
 pub(crate) use protocol::is_request;
 pub use protocol::{READ_ID, REPLY_ID, WRITE_ID};
+pub use recording::{
+    MAX_RECORDING_S, RecordedSample, RecordedSensor, Recorder, RecordingState, RecordingStatus,
+};
 pub use refusal::Refusal;
 pub use status::TuningStatus;

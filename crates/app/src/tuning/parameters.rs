@@ -113,6 +113,15 @@ pub static PARAMETERS: [ParameterGroup; 14] = [
 
 pub(super) const WHEEL_GEOMETRY: u8 = 1;
 
+/// Groups of the other joints follow in the order of the motor layout.
+const FIRST_JOINT: u8 = 16;
+const JOINT_ZERO: u8 = 1;
+
+/// The setting for where the zero of a joint is in its motor's coordinates.
+pub(super) fn joint_zero(joint: u8) -> Result<&'static Parameter, Refusal> {
+    find(FIRST_JOINT.saturating_add(joint), JOINT_ZERO)
+}
+
 /// Of the group at this position of [`PARAMETERS`], in a mask of groups.
 pub(crate) const fn bit(position: usize) -> u32 {
     1u32.wrapping_shl(position as u32)

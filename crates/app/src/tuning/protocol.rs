@@ -1,7 +1,8 @@
 //! The bytes of requests and replies, all little-endian.
 
 use super::{
-    PARAMETERS, ParameterGroup, Refusal, bit, live::PAGE_BYTES, wheel_geometry::WheelGeometry,
+    MAX_RECORDING_S, PARAMETERS, ParameterGroup, RecordingStatus, Refusal, bit, live::PAGE_BYTES,
+    wheel_geometry::WheelGeometry,
 };
 use crate::{
     bring_up::BringUpRequest,
@@ -9,7 +10,7 @@ use crate::{
     params::{ParamState, ParamStatus},
 };
 
-const fn id(raw: u16) -> StandardId {
+pub(super) const fn id(raw: u16) -> StandardId {
     match StandardId::new(raw) {
         Some(id) => id,
         None => unreachable!(),
@@ -31,6 +32,9 @@ const READ_STORE: u8 = 0x31;
 const READ_FINDINGS: u8 = 0x32;
 const READ_LIVE: u8 = 0x33;
 const BRING_UP: u8 = 0x40;
+const ZERO_JOINT: u8 = 0x41;
+const RECORD: u8 = 0x42;
+const READ_RECORDING: u8 = 0x43;
 /// No old client takes it for the answer to 0x10 or 0x11.
 const REFUSED: u8 = 0xEE;
 
@@ -53,6 +57,14 @@ pub enum Request {
     /// The page with this number.
     ReadLive(u8),
     BringUp(BringUpRequest),
+    /// Where this joint stands now is to be called this angle.
+    ZeroJoint {
+        joint: u8,
+        angle_rad: f32,
+    },
+    /// For so many seconds; 0 ends a recording.
+    Record(u16),
+    ReadRecording,
 }
 
 /// What gets its defaults back.
@@ -95,7 +107,12 @@ impl Request {
         let known = matches!(
             frame.payload(),
             [] | [
-                WRITE_GEOMETRY | WRITE_PARAMETER | RESTORE_DEFAULTS | BRING_UP,
+                WRITE_GEOMETRY
+                    | WRITE_PARAMETER
+                    | RESTORE_DEFAULTS
+                    | BRING_UP
+                    | ZERO_JOINT
+                    | RECORD,
                 ..
             ]
         );
@@ -121,6 +138,14 @@ impl Request {
                     .map(Self::BringUp)
                     .ok_or(Refusal::OutOfRange)
             }
+            [ZERO_JOINT, joint, 0, 0, a, b, c, d] => Ok(Self::ZeroJoint {
+                joint,
+                angle_rad: f32::from_le_bytes([a, b, c, d]),
+            }),
+            [RECORD, low, high, 0, 0, 0, 0, 0] => match u16::from_le_bytes([low, high]) {
+                seconds @ ..=MAX_RECORDING_S => Ok(Self::Record(seconds)),
+                _ => Err(Refusal::OutOfRange),
+            },
             // A byte that must be 0 is not.
             _ => Err(Refusal::OutOfRange),
         }
@@ -134,6 +159,7 @@ impl Request {
             [READ_STORE, ..] => Ok(Self::ReadStore),
             [READ_FINDINGS, ..] => Ok(Self::ReadFindings),
             [READ_LIVE, page, ..] => Ok(Self::ReadLive(page)),
+            [READ_RECORDING, ..] => Ok(Self::ReadRecording),
             [] | [READ_PARAMETER | READ_LIVE, ..] => Err(Refusal::WrongLength),
             _ => Err(Refusal::UnknownCommand),
         }
@@ -204,6 +230,13 @@ pub fn findings_reply(params: &ParamStatus) -> CanFrame {
 
 pub fn live_reply(page: u8, [a, b, c, d, e, f]: [u8; PAGE_BYTES]) -> CanFrame {
     CanFrame::new(REPLY_ID, [READ_LIVE, page, a, b, c, d, e, f])
+}
+
+pub fn recording_reply(status: &RecordingStatus) -> CanFrame {
+    let [a, b, c, _] = status.imu.to_le_bytes();
+    let [d, e, f, _] = status.mag.to_le_bytes();
+    let state = status.state as u8;
+    CanFrame::new(REPLY_ID, [READ_RECORDING, state, a, b, c, d, e, f])
 }
 
 fn saturated(count: u32) -> [u8; 2] {

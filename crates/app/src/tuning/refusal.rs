@@ -1,5 +1,7 @@
 //! Why a request changed nothing.
 
+use crate::motor::NotStanding;
+
 /// The numbers are on the wire and never change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -19,10 +21,14 @@ pub enum Refusal {
     Inconsistent = 7,
     /// A sensor would be turned whose calibration is for how it was.
     Calibrated = 8,
+    /// The joint does not report, repeats an old report, or is not set up.
+    JointNotReady = 9,
+    /// The joint turns.
+    JointTurns = 10,
 }
 
 impl Refusal {
-    const ALL: [Self; 8] = [
+    const ALL: [Self; 10] = [
         Self::WrongLength,
         Self::UnknownCommand,
         Self::UnknownParameter,
@@ -31,6 +37,8 @@ impl Refusal {
         Self::NotFinite,
         Self::Inconsistent,
         Self::Calibrated,
+        Self::JointNotReady,
+        Self::JointTurns,
     ];
 
     pub const fn code(self) -> u8 {
@@ -40,6 +48,15 @@ impl Refusal {
     /// `None` unless `code` is one that [`code`](Self::code) gives.
     pub fn from_code(code: u8) -> Option<Self> {
         Self::ALL.into_iter().find(|reason| reason.code() == code)
+    }
+}
+
+impl From<NotStanding> for Refusal {
+    fn from(reason: NotStanding) -> Self {
+        match reason {
+            NotStanding::Unknown => Self::JointNotReady,
+            NotStanding::Turns => Self::JointTurns,
+        }
     }
 }
 

@@ -8,18 +8,31 @@ mod saving;
 mod tool;
 mod trial;
 
-use std::path::{Path, PathBuf};
+use std::{
+    path::{Path, PathBuf},
+    time::Duration,
+};
 
+use anyhow::Context;
 use robot_emulator::sim::{job::Job, scenario::Scenario};
 use robot_plant::{recording::run_length, world::CanBusId};
 use robotctl::{
     calibration::{accel, mag},
     parameter_file::ParameterFile,
+    recorder::{self, RecordPatience},
     recording::{self, Sample, Sensor},
-    tuning,
+    tuning::{self, TuningClient},
 };
 use tool::Tool;
 use trial::SensorErrors;
+
+/// Nearly all of the trial.
+const RECORDED_S: u16 = 24;
+/// In time of the computer, on which the board may run slowly.
+const PATIENCE: RecordPatience = RecordPatience {
+    look: Duration::from_millis(50),
+    silence: Duration::from_secs(60),
+};
 
 fn job() -> Job {
     let text = "name = \"tool\"\nseconds = 2\nplant = \"stand\"\n";
@@ -39,16 +52,24 @@ fn settings_of_the_running_image_are_read_and_changed() {
         client.write(tuning::find("wheel-geometry.track-m")?, 0.37)?;
         let arming = client.live(tuning::live_page("arming"), 0)?;
         let joint = client.live(tuning::live_page("joint"), 3)?;
+        // One of each side: they turn in opposite directions.
+        client.zero_joint(1, 0.5)?;
+        client.zero_joint(2, -0.25)?;
+        let zeros = (joint_angle(client, 1)?, joint_angle(client, 2)?);
         let accel = client.live(tuning::live_page("accel"), 0)?;
         let live = [arming, joint, accel].map(|page| page.expect("this firmware has it"));
-        Ok((client.read_geometry()?, live))
+        Ok((client.read_geometry()?, live, zeros))
     });
     let mut job = job();
     let flash = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("settings.bin");
     std::fs::write(&flash, clean_flash()).expect("a file for its flash");
     job.flash_file = Some(flash);
     let outcome = job.run(&mut [&mut tool]).expect("the machine starts");
-    let (geometry, [arming, joint, accel]) = tool.result().expect("the robot answers");
+    let (geometry, [arming, joint, accel], zeros) = tool.result().expect("the robot answers");
+    assert!(
+        (zeros.0 - 0.5).abs() < 0.002 && (zeros.1 + 0.25).abs() < 0.002,
+        "{zeros:?}"
+    );
     assert_eq!(arming.choice("state"), "disarmed");
     assert!(
         arming.has("blockers", "enable-off"),
@@ -66,7 +87,15 @@ fn settings_of_the_running_image_are_read_and_changed() {
     assert!(outcome.summary.ok, "{:?}", outcome.summary.board_errors);
     assert_eq!(outcome.summary.control.missed, 0);
     assert_eq!(outcome.result.value("diag.tuning.refused"), Some(0.0));
-    assert_eq!(outcome.result.value("diag.tuning.revision"), Some(1.0));
+    assert_eq!(outcome.result.value("diag.tuning.revision"), Some(3.0));
+}
+
+/// A disabled joint reports every other tick, and no reply comes within the tick of its request.
+fn joint_angle(client: &mut TuningClient, joint: usize) -> anyhow::Result<f64> {
+    let page = tuning::live_page("joint");
+    client.live(page, joint)?;
+    let reading = client.live(page, joint)?.context("this firmware has it")?;
+    reading.number("angle-rad").context("the joint is heard")
 }
 
 /// What the firmware made of the trial, as `run.mcap` has it.
@@ -85,7 +114,12 @@ fn clean_flash() -> Vec<u8> {
     flash
 }
 
-fn play(trial: &Path, out: &Path, parameters: ParameterFile) {
+/// What the tool did while the trial played.
+fn play<T: Send + 'static>(
+    trial: &Path,
+    out: &Path,
+    work: impl FnOnce(&mut TuningClient) -> anyhow::Result<T> + Send + 'static,
+) -> T {
     let mut job = job();
     std::fs::create_dir_all(out).expect("a folder for the run");
     let flash = out.join("flash.bin");
@@ -93,14 +127,14 @@ fn play(trial: &Path, out: &Path, parameters: ParameterFile) {
     job.flash_file = Some(flash);
     job.scenario.length = run_length(trial).expect("a trial");
     job.imu_trial = Some(trial.to_owned());
-    let mut tool = Tool::new(move |client| Ok(tuning::apply(client, &parameters)?.len()));
+    let mut tool = Tool::new(work);
     let outcome = job.run_into(out, &mut tool).expect("the machine starts");
-    tool.result().expect("the values are applied");
     assert!(outcome.summary.ok, "{:?}", outcome.summary.board_errors);
+    tool.result().expect("the robot does as it is told")
 }
 
-/// A robot whose sensors are wrong is recorded on all sides, calibrated from its own recording, and measures right after
-/// the values were written to it.
+/// A robot whose sensors are wrong is recorded over CAN on all sides, calibrated from that, and measures right after the
+/// values were written to it.
 #[test]
 fn a_recording_of_the_image_corrects_its_sensors() {
     let directory = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("calibration");
@@ -108,9 +142,17 @@ fn a_recording_of_the_image_corrects_its_sensors() {
     let trial = trial::write(&directory, &errors);
     let (before, after) = (directory.join("before"), directory.join("after"));
 
-    play(&trial, &before, ParameterFile::default());
-    let accel = accel::calibrate(&[samples(&before, Sensor::Accelerometer)]).expect("a good fit");
-    let mag = mag::calibrate(&[samples(&before, Sensor::Magnetometer)], None).expect("a good fit");
+    let recorded = play(&trial, &before, |client| {
+        Ok(recorder::record(client, RECORDED_S, PATIENCE, |_| {})?)
+    });
+    let (imu, field) = recorded.samples.counts();
+    assert!(imu >= 199 * u32::from(RECORDED_S), "{imu}");
+    assert!(field >= 49 * u32::from(RECORDED_S), "{field}");
+    let table = before.join("sides.csv");
+    std::fs::write(&table, recorded.samples.table()).expect("a table");
+    let load = |sensor| recording::load(&table, sensor).expect("a recording");
+    let accel = accel::calibrate(&[load(Sensor::Accelerometer)]).expect("a good fit");
+    let mag = mag::calibrate(&[load(Sensor::Magnetometer)], None).expect("a good fit");
     let mut parameters = ParameterFile::default();
     accel.correction.write(&mut parameters);
     mag.correction.write(&mut parameters);
@@ -123,7 +165,9 @@ fn a_recording_of_the_image_corrects_its_sensors() {
         assert!(bias_error.abs() < 0.3, "{:?}", mag.correction);
     }
 
-    play(&trial, &after, parameters);
+    play(&trial, &after, move |client| {
+        Ok(tuning::apply(client, &parameters)?.len())
+    });
     let accel = accel::calibrate(&[samples(&after, Sensor::Accelerometer)]).expect("a good fit");
     let mag = mag::calibrate(&[samples(&after, Sensor::Magnetometer)], None).expect("a good fit");
     assert!(accel.residual_before_mps2 < 0.01, "{accel:?}");

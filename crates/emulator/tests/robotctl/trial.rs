@@ -15,6 +15,8 @@ pub type Vector = [f64; 3];
 
 pub const ROWS_A_SECOND: usize = 200;
 const HOLD_S: f64 = 1.8;
+/// The first position is held longer: the tool has begun to record before it ends.
+const FIRST_HOLD_S: f64 = 3.4;
 const TUMBLE_S: f64 = 8.0;
 pub const GRAVITY_MPS2: f64 = 9.806_65;
 const FIELD_UT: f64 = 48.0;
@@ -113,10 +115,11 @@ fn rows(seconds: f64) -> usize {
 /// Writes the trial into `directory` and returns its header.
 pub fn write(directory: &Path, errors: &SensorErrors) -> PathBuf {
     let mut columns = Columns::default();
-    for up in POSITIONS {
+    for (number, up) in POSITIONS.into_iter().enumerate() {
+        let hold_s = if number == 0 { FIRST_HOLD_S } else { HOLD_S };
         let accel = errors.accel(scaled(up, GRAVITY_MPS2));
         let field = errors.field(scaled(up, -FIELD_UT));
-        for _ in 0..rows(HOLD_S) {
+        for _ in 0..rows(hold_s) {
             columns.push(accel, field);
         }
     }

@@ -4,4 +4,4 @@ pub mod accel;
 mod least_squares;
 pub mod mag;
 mod parameters;
-mod statistics;
+pub(crate) mod statistics;

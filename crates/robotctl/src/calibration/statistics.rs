@@ -14,7 +14,7 @@ pub(super) fn rms(values: impl ExactSizeIterator<Item = f64>) -> f64 {
 }
 
 /// 0 for nothing.
-pub(super) fn median(mut values: Vec<f64>) -> f64 {
+pub(crate) fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(0.0)
 }

@@ -46,7 +46,8 @@ impl CanDevice {
             #[cfg(not(target_os = "linux"))]
             Self::SocketCan(name) => Err(CanLinkError::Open {
                 device: name.clone(),
-                why: "network interfaces for CAN exist on Linux only; name a serial device".into(),
+                why: "network interfaces for CAN exist on Linux only; name the serial port of an slcan adapter, such as COM3"
+                    .into(),
             }),
         }
     }

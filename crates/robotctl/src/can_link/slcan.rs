@@ -39,7 +39,7 @@ impl Slcan {
             .open()
             .map_err(|e| CanLinkError::Open {
                 device: name.into_owned(),
-                why: e.to_string(),
+                why: format!("{e}; {}", cure(&e)),
             })?;
         let mut link = Self {
             port,
@@ -99,6 +99,25 @@ impl Slcan {
             Err(e) if matches!(e.kind(), ErrorKind::TimedOut | ErrorKind::Interrupted) => Ok(()),
             Err(e) => Err(e.into()),
         }
+    }
+}
+
+/// What to do about a port that cannot be opened.
+fn cure(error: &serialport::Error) -> String {
+    if error.kind() == serialport::ErrorKind::Io(ErrorKind::PermissionDenied) {
+        return if cfg!(windows) {
+            "another program has it open".to_owned()
+        } else {
+            "add yourself to its group, often `sudo usermod -aG dialout $USER`, and log in again"
+                .to_owned()
+        };
+    }
+    let ports = serialport::available_ports().unwrap_or_default();
+    let names: Vec<String> = ports.into_iter().map(|port| port.port_name).collect();
+    if names.is_empty() {
+        "this computer has no serial port: is the adapter plugged in?".to_owned()
+    } else {
+        format!("serial ports here: {}", names.join(", "))
     }
 }
 

@@ -13,6 +13,8 @@ use robotctl::{
     report,
 };
 
+use super::output::say;
+
 #[derive(clap::Subcommand)]
 pub enum Sensor {
     /// From the robot held still on each of its six sides (columns `t,ax,ay,az` in s and m/s²)
@@ -54,10 +56,10 @@ impl Sensor {
 
 impl Files {
     fn load(&self, sensor: recording::Sensor) -> Result<Vec<Vec<Sample>>> {
-        let loaded = self
-            .recordings
-            .iter()
-            .map(|path| recording::load(path, sensor));
+        let loaded = self.recordings.iter().map(|path| {
+            let note = |text: &str| eprintln!("note: {}: {text}", path.display());
+            recording::load_noting(path, sensor, note)
+        });
         Ok(loaded.collect::<Result<_, _>>()?)
     }
 
@@ -76,15 +78,15 @@ impl Files {
         let report = self.report.clone().unwrap_or_else(beside);
         std::fs::write(&report, page)
             .with_context(|| format!("cannot write {}", report.display()))?;
-        println!(
+        say!(
             "\nvalues: {}\nplots:  {}",
             self.out.display(),
             report.display()
-        );
-        println!(
+        )?;
+        say!(
             "next:   robotctl tune --can DEVICE apply {}",
             self.out.display()
-        );
+        )?;
         Ok(())
     }
 }
@@ -96,43 +98,49 @@ fn accel(files: &Files) -> Result<()> {
         sample.value = active.undo(sample.value);
     }
     let fit = accel::calibrate(&recordings)?;
-    print_accel(&fit);
+    print_accel(&fit)?;
     let page = report::accel_report(&fit)?;
     files.write("accel", &page, |file| fit.correction.write(file))
 }
 
-fn print_accel(fit: &AccelFit) {
-    println!(
+fn print_accel(fit: &AccelFit) -> Result<()> {
+    say!(
         "{:<20} {:>8} {:>10} {:>10}",
-        "still position", "from s", "before", "after"
-    );
+        "still position",
+        "from s",
+        "before",
+        "after"
+    )?;
     let windows = fit.windows.iter().map(|w| (w, ""));
     let rejected = fit.rejected.iter().map(|w| (w, "left out"));
     for (window, mark) in windows.chain(rejected) {
         let up = Face::up(window.mean_mps2).map_or("slanted", Face::describe);
         let error = |c: &AccelCorrection| c.apply(window.mean_mps2).norm() - accel::GRAVITY_MPS2;
-        println!(
+        say!(
             "{up:<20} {:>8.1} {:>+10.4} {:>+10.4} {mark}",
             window.start_s,
             error(&AccelCorrection::NONE),
             error(&fit.correction)
-        );
+        )?;
     }
-    println!(
+    say!(
         "{:<29} {:>10.4} {:>10.4} m/s² rms\n",
-        "error of gravity", fit.residual_before_mps2, fit.residual_after_mps2
-    );
-    println!("axis  offset m/s²    scale");
+        "error of gravity",
+        fit.residual_before_mps2,
+        fit.residual_after_mps2
+    )?;
+    say!("axis  offset m/s²    scale")?;
     for (index, axis) in ["x", "y", "z"].iter().enumerate() {
         let (bias, scale) = (fit.correction.bias_mps2[index], fit.correction.scale[index]);
-        println!("{axis:<4} {bias:>+12.4} {scale:>8.5}");
+        say!("{axis:<4} {bias:>+12.4} {scale:>8.5}")?;
     }
     if !fit.is_checked() {
-        println!(
+        say!(
             "\nSix positions for six unknowns: the error after is zero whatever was measured. Add a few slanted positions \
              to check it."
-        );
+        )?;
     }
+    Ok(())
 }
 
 fn mag(files: &Files, field_ut: Option<f64>) -> Result<()> {
@@ -144,31 +152,33 @@ fn mag(files: &Files, field_ut: Option<f64>) -> Result<()> {
             .context("the active soft-iron matrix has no inverse")?;
     }
     let fit = mag::calibrate(&recordings, field_ut)?;
-    print_mag(&fit);
+    print_mag(&fit)?;
     let page = report::mag_report(&fit)?;
     files.write("mag", &page, |file| fit.correction.write(file))
 }
 
-fn print_mag(fit: &MagFit) {
-    println!(
+fn print_mag(fit: &MagFit) -> Result<()> {
+    say!(
         "samples     {:>8}   {} left out",
         fit.samples.len(),
         fit.rejected
-    );
-    println!("directions  {:>6.0} %", fit.coverage.share * 100.0);
-    println!("strength    {:>8.2} µT", fit.field_ut);
-    println!(
+    )?;
+    say!("directions  {:>6.0} %", fit.coverage.share * 100.0)?;
+    say!("strength    {:>8.2} µT", fit.field_ut)?;
+    say!(
         "it varies   {:>8.2} µT before, {:.2} µT after (rms)\n",
-        fit.residual_before_ut, fit.residual_after_ut
-    );
-    println!("axis  offset µT   soft iron");
+        fit.residual_before_ut,
+        fit.residual_after_ut
+    )?;
+    say!("axis  offset µT   soft iron")?;
     for (row, axis) in ["x", "y", "z"].iter().enumerate() {
         let matrix = fit.correction.soft_iron.row(row);
         let parts: Vec<String> = matrix.iter().map(|v| format!("{v:>+8.4}")).collect();
-        println!(
+        say!(
             "{axis:<4} {:>+10.2}  {}",
             fit.correction.bias_ut[row],
             parts.join(" ")
-        );
+        )?;
     }
+    Ok(())
 }

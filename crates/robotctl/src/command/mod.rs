@@ -1,11 +1,19 @@
 //! The commands of the tool; `--help` lists them.
 
 mod calibrate;
+mod connection;
+mod first_board;
+mod joint;
 mod mounting;
+pub mod output;
+mod record;
+mod status;
 mod tune;
 
 #[derive(clap::Subcommand)]
 pub enum Command {
+    /// Show what the robot is doing, and what keeps it from being armed
+    Status(status::Status),
     /// Find a sensor's offsets and scales from recorded samples
     Calibrate {
         #[command(subcommand)]
@@ -13,16 +21,26 @@ pub enum Command {
     },
     /// Find out how board and magnetometer sit, by tilting the robot (docs/mounting.md)
     Mounting(mounting::Mounting),
+    /// Record accelerometer, gyro and magnetometer of the disarmed robot over CAN
+    Record(record::Record),
     /// Read and change the robot's settings over CAN
     Tune(tune::Tune),
+    /// Set a joint's zero
+    Joint(joint::JointCommand),
+    /// Walk through the checks for whoever first has a board, and write a report (docs/first-board.md)
+    FirstBoard(first_board::FirstBoard),
 }
 
 impl Command {
     pub fn run(self) -> anyhow::Result<()> {
         match self {
+            Self::Status(status) => status.run(),
             Self::Calibrate { sensor } => sensor.run(),
             Self::Mounting(mounting) => mounting.run(),
+            Self::Record(record) => record.run(),
             Self::Tune(tune) => tune.run(),
+            Self::Joint(joint) => joint.run(),
+            Self::FirstBoard(first_board) => first_board.run(),
         }
     }
 }

@@ -1,27 +1,25 @@
 //! `robotctl tune`: the robot's settings over CAN.
 
-use std::{
-    io::{self, Write},
-    num::NonZeroI16,
-    path::PathBuf,
-};
+use std::{num::NonZeroI16, path::PathBuf};
 
 use anyhow::{Context, Result, bail};
 use robotctl::{
-    can_link::CanDevice,
     parameter_file::ParameterFile,
     tuning::{
-        self, BringUpStep, Motor, Named, Patience, SaveError, SavePatience, Trial, TuningClient,
+        self, BringUpStep, Motor, Named, SaveError, SavePatience, Trial, TuningClient,
         WheelGeometry,
     },
 };
 
+use super::{
+    connection::Connection,
+    output::{begin, say},
+};
+
 #[derive(clap::Args)]
 pub struct Tune {
-    /// Serial device of an slcan adapter (/dev/ttyACM0, COM3; of the emulated board: /dev/pts/N) or, on Linux, a CAN
-    /// interface (can0)
-    #[arg(long, value_name = "DEVICE", global = true)]
-    can: Option<CanDevice>,
+    #[command(flatten)]
+    connection: Connection,
     #[command(subcommand)]
     action: Action,
 }
@@ -85,6 +83,22 @@ enum Step {
 }
 
 impl Step {
+    fn what_now(&self) -> &'static str {
+        match self {
+            Self::Off => "bring-up is off",
+            Self::ReadOnly => {
+                "bring-up: read only; the robot cannot be armed. Turn each joint by hand: `robotctl status --watch` \
+                 shows its angle"
+            }
+            Self::ZeroTorque => {
+                "bring-up: zero torque; once armed, motors are enabled and every joint and wheel still turns freely"
+            }
+            Self::Motor { .. } => {
+                "bring-up: one motor; once armed, it gives a little torque while the dead-man stick is held"
+            }
+        }
+    }
+
     fn request(&self) -> BringUpStep {
         match *self {
             Self::Off => BringUpStep::Off,
@@ -129,79 +143,70 @@ impl Tune {
             Action::Defaults { group, yes } => self.defaults(group.as_deref(), *yes),
             Action::Status => self.status(),
             Action::Wheel(wheel) => self.wheel(wheel),
-            Action::BringUp { step } => Ok(self.client()?.bring_up(step.request())?),
+            Action::BringUp { step } => self.bring_up(step),
         }
     }
 
-    fn client(&self) -> Result<TuningClient> {
-        let Some(device) = &self.can else {
-            bail!("say where the CAN bus is: --can /dev/ttyACM0 (slcan adapter) or --can can0");
-        };
-        Ok(TuningClient::new(device.open()?, Patience::default()))
-    }
-
     fn list(&self, filter: &str) -> Result<()> {
-        let mut client = match &self.can {
-            Some(_) => Some(self.client()?),
-            None => None,
+        let mut client = match self.connection.is_given() {
+            true => Some(self.connection.open()?),
+            false => None,
         };
-        println!("{:<40} {:>12} {:<10} range", "setting", "value", "unit");
+        say!("{:<40} {:>12} {:<10} range", "setting", "value", "unit")?;
         for named in tuning::all().filter(|n| n.full_name().contains(filter)) {
             let value = match &mut client {
                 Some(client) => named.in_words(client.read(named)?),
                 None => String::new(),
             };
-            let parameter = named.parameter;
-            println!(
-                "{:<40} {value:>12} {:<10} {} … {}",
+            say!(
+                "{:<40} {value:>12} {:<10} {}",
                 named.full_name(),
-                parameter.unit,
-                parameter.min,
-                parameter.max
-            );
+                named.parameter.unit,
+                short(named.range())
+            )?;
         }
         Ok(())
     }
 
     fn get(&self, name: &str) -> Result<()> {
         let named = tuning::find(name)?;
-        let value = self.client()?.read(named)?;
-        println!("{}", shown(named, value));
+        let value = self.connection.open()?.read(named)?;
+        say!("{}", shown(named, value))?;
         Ok(())
     }
 
     fn set(&self, name: &str, value: &str) -> Result<()> {
         let named = tuning::find(name)?;
         let value = named.parse(value)?;
-        let mut client = self.client()?;
+        let mut client = self.connection.open()?;
         let before = client.read(named)?;
         client.write(named, value)?;
-        println!("{} (was {})", shown(named, value), named.in_words(before));
+        say!("{} (was {})", shown(named, value), named.in_words(before))?;
         confirm_saved(&mut client)
     }
 
     fn apply(&self, path: &std::path::Path) -> Result<()> {
         let file = ParameterFile::load(path)?;
-        let mut client = self.client()?;
+        let mut client = self.connection.open()?;
         for applied in tuning::apply(&mut client, &file)? {
             let was = if applied.before == applied.after {
                 "unchanged".to_owned()
             } else {
                 format!("was {}", applied.named.in_words(applied.before))
             };
-            println!("{} ({was})", shown(applied.named, applied.after));
+            say!("{} ({was})", shown(applied.named, applied.after))?;
         }
         confirm_saved(&mut client)
     }
 
     fn save(&self, path: &std::path::Path) -> Result<()> {
-        let mut client = self.client()?;
+        let mut client = self.connection.open()?;
         let mut file = ParameterFile::default();
         for named in tuning::all() {
             file.set(&named.full_name(), client.read(named)?);
         }
         file.save(path)?;
-        println!("{} settings in {}", file.iter().len(), path.display());
+        say!("{} settings in {}", file.iter().len(), path.display())?;
         Ok(())
     }
 
@@ -214,26 +219,32 @@ impl Tune {
                  save FILE` keeps a copy)"
             );
         }
-        let mut client = self.client()?;
+        let mut client = self.connection.open()?;
         client.restore_defaults(group)?;
-        println!("{whose}: defaults");
+        say!("{whose}: defaults")?;
         confirm_saved(&mut client)
     }
 
+    fn bring_up(&self, step: &Step) -> Result<()> {
+        self.connection.open()?.bring_up(step.request())?;
+        say!("{}", step.what_now())?;
+        Ok(())
+    }
+
     fn status(&self) -> Result<()> {
-        let mut client = self.client()?;
+        let mut client = self.connection.open()?;
         match client.store()? {
-            Some(report) => println!("{report}"),
-            None => println!("this firmware saves no settings: they last until it is reset"),
+            Some(report) => say!("{report}")?,
+            None => say!("this firmware saves no settings: they last until it is reset")?,
         }
         if let Some(findings) = client.boot_findings()? {
-            println!("{findings}");
+            say!("{findings}")?;
         }
         Ok(())
     }
 
     fn wheel(&self, wheel: &Wheel) -> Result<()> {
-        let mut client = self.client()?;
+        let mut client = self.connection.open()?;
         let before = client.read_geometry()?;
         let wanted = wheel.changed(before)?;
         if wanted != before {
@@ -246,11 +257,11 @@ impl Tune {
             track_mm,
             ..
         } = wanted;
-        println!("radius {radius_mm} mm, track {track_mm} mm");
-        println!("gear ratio {}", f64::from(wanted.gear_ratio_x100) / 100.0);
+        say!("radius {radius_mm} mm, track {track_mm} mm")?;
+        say!("gear ratio {}", f64::from(wanted.gear_ratio_x100) / 100.0)?;
         let direction = |reversed| if reversed { "reversed" } else { "forward" };
-        println!("left motor {}", direction(wanted.left_reversed));
-        println!("right motor {}", direction(wanted.right_reversed));
+        say!("left motor {}", direction(wanted.left_reversed))?;
+        say!("right motor {}", direction(wanted.right_reversed))?;
         if wanted == before {
             return Ok(());
         }
@@ -276,10 +287,9 @@ impl Wheel {
 
 /// Returns when the robot may be switched off.
 pub(super) fn confirm_saved(client: &mut TuningClient) -> Result<()> {
-    print!("saving … ");
-    io::stdout().flush()?;
+    begin!("saving … ")?;
     let done = tuning::wait_until_saved(client, SavePatience::default());
-    println!("{}", if done.is_ok() { "saved" } else { "not saved" });
+    say!("{}", if done.is_ok() { "saved" } else { "not saved" })?;
     match done {
         // As it always was with that firmware: no failure of this command.
         Err(error @ SaveError::NeverSaves) => eprintln!("note: {error}"),
@@ -294,4 +304,13 @@ fn shown(named: Named, value: f32) -> String {
     let (name, unit) = (named.full_name(), named.parameter.unit);
     let text = format!("{name} = {} {unit}", named.in_words(value));
     text.trim_end().to_owned()
+}
+
+/// For one line of a list: names of many choices are cut short.
+fn short(range: String) -> String {
+    const MOST: usize = 60;
+    match range.char_indices().nth(MOST) {
+        Some((end, _)) => format!("{} …", range.get(..end).unwrap_or_default()),
+        None => range,
+    }
 }

@@ -1,7 +1,9 @@
-//! Recorded samples of one sensor: from a table of comma-separated values or from a `run.mcap`.
+//! Recorded samples of one sensor: from a table of separated values or from a `run.mcap`.
 
+mod header;
 mod mcap;
 mod table;
+mod units;
 
 use std::path::{Path, PathBuf};
 
@@ -66,6 +68,15 @@ pub enum RecordingError {
 /// All samples of a file in the order of their times. A name that ends in `.mcap` is a recording of the robot or the
 /// emulated board, any other a table.
 pub fn load(path: &Path, sensor: Sensor) -> Result<Vec<Sample>, RecordingError> {
+    load_noting(path, sensor, |_| {})
+}
+
+/// As [`load`]; `note` is told which unit the numbers were taken for where the header names none.
+pub fn load_noting(
+    path: &Path,
+    sensor: Sensor,
+    mut note: impl FnMut(&str),
+) -> Result<Vec<Sample>, RecordingError> {
     let bytes = std::fs::read(path).map_err(|source| RecordingError::File {
         path: path.to_owned(),
         source,
@@ -80,12 +91,16 @@ pub fn load(path: &Path, sensor: Sensor) -> Result<Vec<Sample>, RecordingError> 
         })?;
         (samples, "its /diag messages lack the sensor")
     } else {
-        let samples = table::samples(&bytes, sensor).map_err(|e| RecordingError::Table {
+        let table = table::read(&bytes, sensor).map_err(|e| RecordingError::Table {
             path: path.to_owned(),
             line: e.line,
             why: e.why,
         })?;
-        (samples, "there is only a header")
+        table.notes.iter().for_each(|text| note(text));
+        (
+            table.samples,
+            "no row under its header has a value of this sensor",
+        )
     };
     if samples.is_empty() {
         return Err(RecordingError::Empty {

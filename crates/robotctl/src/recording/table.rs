@@ -1,9 +1,20 @@
-//! Comma-separated values under a header line that names the columns: `t` in seconds and three axes. Other columns are
-//! ignored, as are empty lines and lines that start with `#`.
+//! Tables of values under a header line that names the columns: time and three axes. Other columns are ignored, as are
+//! empty lines, lines that start with `#`, and rows that have no value of the sensor.
+//!
+//! | what | may be |
+//! |---|---|
+//! | separator | comma, semicolon, tab |
+//! | decimals | point; comma where it does not separate |
+//! | names | `t`, `time`, `timestamp`; `ax`, `acc_x`, `accel_x`; `mx`, `mag_x`; in upper or lower case |
+//! | units | s, m/s², µT; any other if the header names it (`t_ms`, `ax [g]`) or the numbers leave no doubt |
 
 use nalgebra::Vector3;
 
-use super::{Sample, Sensor};
+use super::{
+    Sample, Sensor,
+    header::{Columns, Header},
+    units::{self, Quantity},
+};
 
 #[derive(Debug, PartialEq)]
 pub(super) struct TableError {
@@ -12,94 +23,117 @@ pub(super) struct TableError {
     pub why: String,
 }
 
-pub(super) fn samples(bytes: &[u8], sensor: Sensor) -> Result<Vec<Sample>, TableError> {
+/// The samples, in s and the sensor's unit, and what was taken for granted.
+#[derive(Debug, Default, PartialEq)]
+pub(super) struct Table {
+    pub samples: Vec<Sample>,
+    pub notes: Vec<String>,
+}
+
+pub(super) fn read(bytes: &[u8], sensor: Sensor) -> Result<Table, TableError> {
     let text = std::str::from_utf8(bytes).map_err(|_| TableError {
         line: 1,
-        why: "this is no text".into(),
+        why: "this is no text in UTF-8".into(),
     })?;
     let mut lines = text
+        .trim_start_matches('\u{feff}')
         .lines()
         .enumerate()
-        .map(|(index, line)| (index + 1, line.trim().trim_start_matches('\u{feff}')))
-        .filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
-    let Some((line, header)) = lines.next() else {
-        return Ok(Vec::new());
+        .map(|(index, line)| (index + 1, line.trim_end_matches('\r')))
+        .filter(|(_, line)| !line.trim().is_empty() && !line.trim_start().starts_with('#'));
+    let Some((header_line, header)) = lines.next() else {
+        return Ok(Table::default());
     };
-    let columns = Columns::find(header, sensor).map_err(|why| TableError { line, why })?;
+    let of_header = |why| TableError {
+        line: header_line,
+        why,
+    };
+    let header = Header::parse(header, sensor).map_err(of_header)?;
     let mut samples: Vec<Sample> = Vec::new();
     for (line, row) in lines {
-        let sample = columns.read(row).map_err(|why| TableError { line, why })?;
+        let sample = sample(&header, row).map_err(|why| TableError { line, why })?;
+        let Some(sample) = sample else {
+            continue;
+        };
         if samples.last().is_some_and(|last| last.t_s > sample.t_s) {
             let why = "time runs backwards: one recording a file".into();
             return Err(TableError { line, why });
         }
         samples.push(sample);
     }
-    Ok(samples)
+    let notes = convert(&mut samples, &header.columns, sensor).map_err(of_header)?;
+    Ok(Table { samples, notes })
 }
 
-/// Places of the columns in a row.
-struct Columns {
-    time: usize,
-    axes: [usize; 3],
+/// `None` if the row has no value of the sensor.
+fn sample(header: &Header, row: &str) -> Result<Option<Sample>, String> {
+    let fields = header.fields(row)?;
+    let field = |place: usize| fields.get(place).copied().unwrap_or_default();
+    let axes = header.columns.axes.map(|axis| axis.place);
+    if axes.iter().all(|place| field(*place).is_empty()) && fields.len() > axes[0] {
+        return Ok(None);
+    }
+    let number = |place: usize| {
+        let field = field(place);
+        match header.number(field) {
+            Some(number) if number.is_finite() => Ok(number),
+            _ => Err(format!("column {}: `{field}` is no number", place + 1)),
+        }
+    };
+    let [x, y, z] = axes;
+    Ok(Some(Sample {
+        t_s: number(header.columns.time.place)?,
+        value: Vector3::new(number(x)?, number(y)?, number(z)?),
+    }))
 }
 
-impl Columns {
-    fn find(header: &str, sensor: Sensor) -> Result<Self, String> {
-        let names: Vec<&str> = header.split(',').map(str::trim).collect();
-        let place = |name: &str| {
-            names.iter().position(|n| *n == name).ok_or_else(|| {
-                let [x, y, z] = sensor.columns();
-                format!("no column `{name}`; the header must be `t,{x},{y},{z}`")
-            })
-        };
-        let [x, y, z] = sensor.columns();
-        Ok(Self {
-            time: place("t")?,
-            axes: [place(x)?, place(y)?, place(z)?],
-        })
+/// Into s and the sensor's unit.
+fn convert(
+    samples: &mut [Sample],
+    columns: &Columns,
+    sensor: Sensor,
+) -> Result<Vec<String>, String> {
+    let mut notes = Vec::new();
+    let time_factor = match columns.time.factor {
+        Some(factor) => factor,
+        None => {
+            let times: Vec<f64> = samples.iter().map(|sample| sample.t_s).collect();
+            let guess = units::of_time(&times)?;
+            notes.extend(guess.taken_for.map(|unit| format!("time is in {unit}")));
+            guess.factor
+        }
+    };
+    let [x, y, z] = columns.axes.map(|axis| axis.factor);
+    let factors = match (x, y, z) {
+        (Some(x), Some(y), Some(z)) => Vector3::new(x, y, z),
+        (None, None, None) => {
+            let strengths: Vec<f64> = samples.iter().map(|sample| sample.value.norm()).collect();
+            let guess = units::of_vectors(sensor, &strengths)?;
+            notes.extend(guess.taken_for.map(|unit| format!("values are in {unit}")));
+            Vector3::repeat(guess.factor)
+        }
+        _ => {
+            return Err(
+                "some of the three axes have a unit in the header and some have none".into(),
+            );
+        }
+    };
+    for sample in samples {
+        sample.t_s *= time_factor;
+        sample.value.component_mul_assign(&factors);
     }
+    Ok(notes)
+}
 
-    fn read(&self, row: &str) -> Result<Sample, String> {
-        let fields: Vec<&str> = row.split(',').map(str::trim).collect();
-        let number = |place: usize| {
-            let field = fields.get(place).copied().unwrap_or_default();
-            match field.parse::<f64>() {
-                Ok(number) if number.is_finite() => Ok(number),
-                _ => Err(format!("column {}: `{field}` is no number", place + 1)),
-            }
-        };
-        let [x, y, z] = self.axes;
-        Ok(Sample {
-            t_s: number(self.time)?,
-            value: Vector3::new(number(x)?, number(y)?, number(z)?),
-        })
-    }
+/// For the messages of the header.
+pub(super) fn expected(sensor: Sensor) -> String {
+    let [x, y, z] = sensor.columns();
+    let unit = match Quantity::Of(sensor) {
+        Quantity::Of(Sensor::Accelerometer) => "m/s²",
+        _ => "µT",
+    };
+    format!("the header must be `t,{x},{y},{z}` (s and {unit})")
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn columns_are_found_by_name_in_any_order() {
-        let text = "# board 7\nmy, t ,mx,gap,mz\n\n2,0.5,1,9,-3e1\n";
-        let samples = samples(text.as_bytes(), Sensor::Magnetometer).unwrap();
-        let value = Vector3::new(1.0, 2.0, -30.0);
-        assert_eq!(samples, [Sample { t_s: 0.5, value }]);
-    }
-
-    #[test]
-    fn a_wrong_line_is_named() {
-        let error = |text: &str| {
-            let error = samples(text.as_bytes(), Sensor::Accelerometer).unwrap_err();
-            (error.line, error.why)
-        };
-        let (line, why) = error("t,ax,ay\n");
-        assert_eq!(line, 1);
-        assert!(why.contains("`az`") && why.contains("t,ax,ay,az"), "{why}");
-        assert_eq!(error("t,ax,ay,az\n0,1,2,3\n1,2,nan,4\n").0, 3);
-        assert_eq!(error("t,ax,ay,az\n0,1,2\n").0, 2);
-        assert_eq!(error("t,ax,ay,az\n1,0,0,9\n0.5,0,0,9\n").0, 3);
-    }
-}
+mod tests;

@@ -69,23 +69,10 @@ fn checked(named: Named, value: f32) -> Result<Named, ApplyError> {
     if may_be(named.parameter, value) {
         return Ok(named);
     }
-    let Parameter {
-        min,
-        max,
-        kind,
-        unit,
-        ..
-    } = *named.parameter;
-    let allowed = match kind {
-        ParameterKind::Float => format!("{min} … {max} {unit}"),
-        ParameterKind::Integer => format!("a whole number, {min} … {max} {unit}"),
-        ParameterKind::Sign => "1 or -1".to_owned(),
-        ParameterKind::Choice(names) => names.join(", "),
-    };
     Err(ApplyError::Range {
         name: named.full_name(),
         value: named.in_words(value),
-        allowed: allowed.trim_end().to_owned(),
+        allowed: named.allowed(),
     })
 }
 

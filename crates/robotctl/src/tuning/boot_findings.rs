@@ -29,13 +29,32 @@ impl BootFindings {
         }
     }
 
-    fn refused_in_words(&self) -> String {
+    pub fn refused_names(&self) -> Vec<String> {
         let name = |group: &Result<&str, u8>| match group {
             Ok(name) => (*name).to_owned(),
             Err(number) => format!("group {number}"),
         };
-        let names: Vec<_> = self.refused.iter().map(name).collect();
-        names.join(", ")
+        self.refused.iter().map(name).collect()
+    }
+
+    /// What the user must know; `None` if all is well.
+    pub fn warnings(&self) -> Option<String> {
+        let mut warnings = Vec::new();
+        if self.lost_sectors != 0 {
+            warnings.push(format!(
+                "RUINED SECTORS   {}: newer values may be lost and older ones in use; check all with \
+                 `robotctl tune list`",
+                self.lost_sectors
+            ));
+        }
+        if !self.refused.is_empty() {
+            warnings.push(format!(
+                "REFUSED          {}: defaults are in use, and the robot does not arm; set the group's values, or \
+                 accept the defaults with `robotctl tune defaults GROUP --yes`",
+                self.refused_names().join(", ")
+            ));
+        }
+        (!warnings.is_empty()).then(|| warnings.join("\n"))
     }
 }
 
@@ -47,21 +66,8 @@ fn name(number: u8) -> Result<&'static str, u8> {
 impl fmt::Display for BootFindings {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "found at boot:")?;
-        if self.lost_sectors != 0 {
-            write!(
-                f,
-                "\nRUINED SECTORS   {}: newer values may be lost and older ones in use; check all with \
-                 `robotctl tune list`",
-                self.lost_sectors
-            )?;
-        }
-        if !self.refused.is_empty() {
-            write!(
-                f,
-                "\nREFUSED          {}: defaults are in use, and the robot does not arm; set the group's values, or \
-                 accept the defaults with `robotctl tune defaults GROUP --yes`",
-                self.refused_in_words()
-            )?;
+        if let Some(warnings) = self.warnings() {
+            write!(f, "\n{warnings}")?;
         }
         writeln!(f, "\ndamaged places   {}", self.damaged)?;
         write!(f, "foreign records  {}", self.foreign)

@@ -14,6 +14,16 @@ pub enum Motor {
     RightRear = 5,
 }
 
+/// The four joints by their numbers on the wire, which are also those of their live pages.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+#[repr(u8)]
+pub enum Joint {
+    LeftFront = 0,
+    LeftRear = 1,
+    RightFront = 2,
+    RightRear = 3,
+}
+
 /// What the motor on trial does while the pilot holds the dead-man stick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Trial {

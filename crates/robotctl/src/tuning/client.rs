@@ -2,10 +2,12 @@
 
 use std::time::{Duration, Instant};
 
-use robot_app::tuning::{LIVE_PAGES, LivePage, ParameterGroup, Refusal};
+use robot_app::tuning::{
+    LIVE_PAGES, LivePage, MAX_RECORDING_S, ParameterGroup, RecordedSample, Refusal,
+};
 
 use super::{
-    BootFindings, BringUpStep, LiveReading, Named, StoreReport, WheelGeometry,
+    BootFindings, BringUpStep, LiveReading, Named, RecordingReport, StoreReport, WheelGeometry,
     request::{self, Reply, Request},
 };
 use crate::can_link::{CanLink, CanLinkError};
@@ -35,10 +37,14 @@ pub enum TuningError {
         "the robot does not answer: is it on, is this one of its two CAN buses at 1 Mbit/s, and is the bus terminated?"
     )]
     Silent,
-    #[error("{what}: {}", explain(*.reason))]
+    #[error("this firmware shows no such live values: it is older than this robotctl")]
+    TooOld,
+    #[error("{what}: {}", explain(*.reason, .allowed.as_deref()))]
     Refused {
         what: String,
         reason: Result<Refusal, u8>,
+        /// Which values it may have.
+        allowed: Option<String>,
     },
 }
 
@@ -47,13 +53,27 @@ impl TuningError {
     pub(super) fn is_inconsistent(&self) -> bool {
         matches!(self, Self::Refused { reason, .. } if *reason == Ok(Refusal::Inconsistent))
     }
+
+    fn with_allowed(mut self, values: impl Fn() -> String) -> Self {
+        if let Self::Refused { allowed, .. } = &mut self {
+            *allowed = Some(values());
+        }
+        self
+    }
 }
 
 /// What a refusal means and what to do about it.
-fn explain(reason: Result<Refusal, u8>) -> String {
+fn explain(reason: Result<Refusal, u8>, allowed: Option<&str>) -> String {
     let text = match reason {
-        Ok(Refusal::Armed) => "refused while the robot is armed: switch enable off",
-        Ok(Refusal::OutOfRange) => "refused, the value is out of its range",
+        Ok(Refusal::Armed) => {
+            "refused while the robot is armed or its enable switch is on: switch enable off"
+        }
+        Ok(Refusal::OutOfRange) => {
+            return match allowed {
+                Some(allowed) => format!("out of range: {allowed}"),
+                None => "refused, a value is out of its range".to_owned(),
+            };
+        }
         Ok(Refusal::Inconsistent) => {
             "refused, it does not fit another setting (limits in the wrong order, or a soft-iron matrix that turns the \
              field round): change that one first"
@@ -66,6 +86,11 @@ fn explain(reason: Result<Refusal, u8>) -> String {
         Ok(Refusal::UnknownParameter | Refusal::UnknownCommand | Refusal::WrongLength) => {
             "the robot does not know this request: firmware and robotctl are of different versions"
         }
+        Ok(Refusal::JointNotReady) => {
+            "refused, the joint does not report or is not set up yet: is its motor powered and on the bus? \
+             (`robotctl status` shows its state)"
+        }
+        Ok(Refusal::JointTurns) => "refused, the joint turns: hold it still",
         Err(code) => {
             return format!("refused for reason {code}, which this robotctl does not know");
         }
@@ -77,11 +102,17 @@ fn explain(reason: Result<Refusal, u8>) -> String {
 pub struct TuningClient {
     link: Box<dyn CanLink>,
     patience: Patience,
+    /// Samples of a recording, as they came.
+    recorded: Vec<RecordedSample>,
 }
 
 impl TuningClient {
     pub fn new(link: Box<dyn CanLink>, patience: Patience) -> Self {
-        Self { link, patience }
+        Self {
+            link,
+            patience,
+            recorded: Vec::new(),
+        }
     }
 
     pub fn read(&mut self, named: Named) -> Result<f32, TuningError> {
@@ -99,10 +130,10 @@ impl TuningClient {
             index: named.parameter.index,
             value,
         };
-        let (min, max) = (named.parameter.min, named.parameter.max);
         let words = named.in_words(value);
-        let what = || format!("{} = {words} ({min} … {max})", named.full_name());
-        self.exchange(request, what).map(drop)
+        let what = || format!("{} = {words}", named.full_name());
+        let written = self.exchange(request, what).map(drop);
+        written.map_err(|error| error.with_allowed(|| named.allowed()))
     }
 
     pub fn read_geometry(&mut self) -> Result<WheelGeometry, TuningError> {
@@ -182,6 +213,38 @@ impl TuningClient {
         self.exchange(request, || "bring-up".to_owned()).map(drop)
     }
 
+    /// Makes the angle at which this joint stands now `angle_rad`, in joint coordinates, by moving its zero. The robot
+    /// must be disarmed, the joint heard and still.
+    pub fn zero_joint(&mut self, joint: u8, angle_rad: f32) -> Result<(), TuningError> {
+        let request = Request::ZeroJoint { joint, angle_rad };
+        let done = self.exchange(request, || format!("zero of joint {joint}"));
+        let allowed = || "angle and zero must both be within ±12.57 rad".to_owned();
+        done.map(drop).map_err(|error| error.with_allowed(allowed))
+    }
+
+    /// The robot sends each sample of its IMU and magnetometer for so many seconds; 0 ends that. Must be disarmed.
+    pub fn start_recording(&mut self, seconds: u16) -> Result<(), TuningError> {
+        self.recorded.clear();
+        let request = Request::Record(seconds);
+        let done = self.exchange(request, || "recording".to_owned());
+        let allowed = || format!("at most {MAX_RECORDING_S} s");
+        done.map(drop).map_err(|error| error.with_allowed(allowed))
+    }
+
+    /// How many samples the robot has sent, and whether it still does.
+    pub fn recording(&mut self) -> Result<RecordingReport, TuningError> {
+        let reply = self.exchange(Request::ReadRecording, || "recording".to_owned())?;
+        Ok(RecordingReport::from_bytes(reply))
+    }
+
+    /// Samples that were heard until `deadline` and since the last call.
+    pub fn hear_samples(&mut self, deadline: Instant) -> Result<Vec<RecordedSample>, TuningError> {
+        while let Some(frame) = self.link.receive(deadline)? {
+            self.recorded.extend(RecordedSample::decode(&frame));
+        }
+        Ok(std::mem::take(&mut self.recorded))
+    }
+
     /// Asks again if no reply comes: requests say what to be, not what to change, so twice is as good as once.
     fn exchange(
         &mut self,
@@ -196,9 +259,13 @@ impl TuningClient {
                     Some(Reply::Done(bytes)) => return Ok(bytes),
                     Some(Reply::Refused(reason)) => {
                         let what = what();
-                        return Err(TuningError::Refused { what, reason });
+                        return Err(TuningError::Refused {
+                            what,
+                            reason,
+                            allowed: None,
+                        });
                     }
-                    None => {}
+                    None => self.recorded.extend(RecordedSample::decode(&frame)),
                 }
             }
         }

@@ -1,6 +1,6 @@
 //! Settings by name: `group.setting`.
 
-use robot_app::tuning::{PARAMETERS, Parameter, ParameterGroup};
+use robot_app::tuning::{PARAMETERS, Parameter, ParameterGroup, ParameterKind};
 
 /// A setting and the group it is in.
 #[derive(Clone, Copy, Debug)]
@@ -12,6 +12,23 @@ pub struct Named {
 impl Named {
     pub fn full_name(&self) -> String {
         format!("{}.{}", self.group.name, self.parameter.name)
+    }
+
+    /// Which values it may have, without its unit.
+    pub fn range(&self) -> String {
+        let Parameter { min, max, kind, .. } = *self.parameter;
+        match kind {
+            ParameterKind::Float => format!("{min} … {max}"),
+            ParameterKind::Integer => format!("a whole number, {min} … {max}"),
+            ParameterKind::Sign => "1 or -1".to_owned(),
+            ParameterKind::Choice(names) => names.join(", "),
+        }
+    }
+
+    /// Which values it may have.
+    pub fn allowed(&self) -> String {
+        let allowed = format!("{} {}", self.range(), self.parameter.unit);
+        allowed.trim_end().to_owned()
     }
 }
 

@@ -14,6 +14,9 @@ const READ_STORE: u8 = 0x31;
 const READ_FINDINGS: u8 = 0x32;
 const READ_LIVE: u8 = 0x33;
 const BRING_UP: u8 = 0x40;
+const ZERO_JOINT: u8 = 0x41;
+const RECORD: u8 = 0x42;
+const READ_RECORDING: u8 = 0x43;
 const REFUSED: u8 = 0xEE;
 
 /// A request, and how to know its reply.
@@ -39,6 +42,13 @@ pub(super) enum Request {
     ReadLive(u8),
     /// The bytes after the command.
     BringUp([u8; 7]),
+    ZeroJoint {
+        joint: u8,
+        angle_rad: f32,
+    },
+    /// Seconds.
+    Record(u16),
+    ReadRecording,
 }
 
 /// What the robot says to a request.
@@ -71,6 +81,15 @@ impl Request {
             Self::ReadFindings => CanFrame::new(READ_ID, [READ_FINDINGS, 0, 0, 0, 0, 0, 0, 0]),
             Self::ReadLive(page) => CanFrame::new(READ_ID, [READ_LIVE, page, 0, 0, 0, 0, 0, 0]),
             Self::BringUp(bytes) => write(BRING_UP, bytes),
+            Self::ZeroJoint { joint, angle_rad } => {
+                let [a, b, c, d] = angle_rad.to_le_bytes();
+                write(ZERO_JOINT, [joint, 0, 0, a, b, c, d])
+            }
+            Self::Record(seconds) => {
+                let [low, high] = seconds.to_le_bytes();
+                write(RECORD, [low, high, 0, 0, 0, 0, 0])
+            }
+            Self::ReadRecording => CanFrame::new(READ_ID, [READ_RECORDING, 0, 0, 0, 0, 0, 0, 0]),
         }
     }
 
@@ -92,11 +111,15 @@ impl Request {
         let ours = match self {
             Self::Read { .. } => frame.payload().starts_with(&asked[..4]),
             Self::ReadLive(_) => frame.payload().starts_with(&asked[..2]),
-            Self::ReadGeometry | Self::ReadStore | Self::ReadFindings => command == asked[0],
+            Self::ReadGeometry | Self::ReadStore | Self::ReadFindings | Self::ReadRecording => {
+                command == asked[0]
+            }
             Self::Write { .. }
             | Self::WriteGeometry(_)
             | Self::RestoreDefaults(_)
-            | Self::BringUp(_) => frame.payload() == asked,
+            | Self::BringUp(_)
+            | Self::ZeroJoint { .. }
+            | Self::Record(_) => frame.payload() == asked,
         };
         ours.then_some(Reply::Done(rest))
     }
@@ -111,7 +134,10 @@ impl Request {
             | Self::RestoreDefaults(_)
             | Self::ReadStore
             | Self::ReadFindings
-            | Self::BringUp(_) => [0, 0],
+            | Self::ReadRecording
+            | Self::BringUp(_)
+            | Self::ZeroJoint { .. }
+            | Self::Record(_) => [0, 0],
         }
     }
 }
@@ -187,6 +213,23 @@ mod tests {
         let refused = Some(Reply::Refused(Ok(Refusal::UnknownParameter)));
         assert_eq!(ask.reply(&refusal), refused);
         assert_eq!(Request::ReadLive(8).reply(&refusal), None);
+    }
+
+    /// −0.5 is 0xBF000000; 90 s.
+    #[test]
+    fn a_zero_and_a_recording_are_the_documented_bytes() {
+        let zero = Request::ZeroJoint {
+            joint: 3,
+            angle_rad: -0.5,
+        };
+        assert_eq!(zero.frame(), frame(0x7A0, [0x41, 3, 0, 0, 0, 0, 0, 0xBF]));
+        let record = Request::Record(90);
+        assert_eq!(record.frame(), frame(0x7A0, [0x42, 90, 0, 0, 0, 0, 0, 0]));
+        let ask = Request::ReadRecording;
+        assert_eq!(ask.frame(), frame(0x7A1, [0x43, 0, 0, 0, 0, 0, 0, 0]));
+        let reply = frame(0x7A2, [0x43, 1, 2, 0, 0, 1, 0, 0]);
+        let bytes = [1, 2, 0, 0, 1, 0, 0];
+        assert_eq!(ask.reply(&reply), Some(Reply::Done(bytes)));
     }
 
     #[test]

@@ -1,120 +1,24 @@
 //! The client against the firmware's own tuning channel, over a bus that carries other frames and loses some.
 
-use std::{
-    cell::RefCell,
-    collections::VecDeque,
-    rc::Rc,
-    time::{Duration, Instant},
-};
+use std::time::Duration;
 
 use nalgebra::Vector3;
 use robot_app::{
-    bring_up::BringUp,
-    diagnostics::DiagnosticsSnapshot,
-    domain::{BusId, CanFrame, JointState, Orientation, RobotConfig, StandardId},
-    motor::layout::ROBOT_LAYOUT,
+    domain::{JointState, Orientation, RobotConfig},
+    motor::NotStanding,
     params::{ParamError, ParamState, ParamStatus},
     safety::SafetyFlags,
-    tuning::{LIVE_PAGES, PARAMETERS, Refusal, TuningAccess, TuningChannel, TuningGate},
+    tuning::{LIVE_PAGES, PARAMETERS, Refusal, TuningGate},
 };
 
-use super::*;
+use super::{
+    testing::{Bus, robot},
+    *,
+};
 use crate::{
-    can_link::{CanLink, CanLinkError},
     mounting::{Watch, WatchError},
     parameter_file::ParameterFile,
 };
-
-struct Robot {
-    channel: TuningChannel,
-    config: RobotConfig,
-    gate: TuningGate,
-    diagnostics: DiagnosticsSnapshot,
-    /// Looks at the store after which everything is saved.
-    looks_to_save: Option<usize>,
-    /// From before there was a store.
-    is_old: bool,
-    /// Replies that the bus still loses.
-    to_lose: usize,
-    requests: usize,
-    replies: VecDeque<CanFrame>,
-}
-
-impl Robot {
-    /// A store that needs some looks until it has saved.
-    fn look(&mut self, frame: &CanFrame) {
-        if frame.payload().first() != Some(&0x31) {
-            return;
-        }
-        match &mut self.looks_to_save {
-            Some(0) => self.diagnostics.params.seen = self.channel.status().revision,
-            Some(left) => *left -= 1,
-            None => {}
-        }
-    }
-
-    /// The firmware's own reply or, from an old one, that it does not know the command (docs/tuning.md).
-    fn reply(&mut self, frame: &CanFrame) -> Option<CanFrame> {
-        if self.is_old
-            && let Some(command @ (0x31..=0x33)) = frame.payload().first()
-        {
-            let reply = StandardId::new(0x7A2).unwrap();
-            return Some(CanFrame::new(reply, [0xEE, *command, 2, 0, 0, 0, 0, 0]));
-        }
-        self.channel.begin_slot();
-        let access = TuningAccess {
-            config: &mut self.config,
-            bring_up: &mut BringUp::default(),
-            diagnostics: &self.diagnostics,
-        };
-        self.channel.on_frame(BusId::Can2, frame, self.gate, access)
-    }
-}
-
-#[derive(Clone)]
-struct Bus(Rc<RefCell<Robot>>);
-
-impl CanLink for Bus {
-    fn send(&mut self, frame: &CanFrame) -> Result<(), CanLinkError> {
-        let robot = &mut *self.0.borrow_mut();
-        robot.requests += 1;
-        robot.look(frame);
-        let reply = robot.reply(frame);
-        // Traffic of the motors comes first.
-        let feedback = StandardId::new(0x201).unwrap();
-        robot.replies.push_back(CanFrame::new(feedback, [0x21; 8]));
-        if robot.to_lose > 0 {
-            robot.to_lose -= 1;
-        } else {
-            robot.replies.extend(reply);
-        }
-        Ok(())
-    }
-
-    fn receive(&mut self, _: Instant) -> Result<Option<CanFrame>, CanLinkError> {
-        Ok(self.0.borrow_mut().replies.pop_front())
-    }
-}
-
-fn robot() -> (Bus, TuningClient) {
-    let bus = Bus(Rc::new(RefCell::new(Robot {
-        channel: TuningChannel::new(&ROBOT_LAYOUT),
-        diagnostics: DiagnosticsSnapshot::default(),
-        looks_to_save: Some(0),
-        is_old: false,
-        config: RobotConfig::default(),
-        gate: TuningGate::Open,
-        to_lose: 0,
-        requests: 0,
-        replies: VecDeque::new(),
-    })));
-    let patience = Patience {
-        each_try: Duration::ZERO,
-        tries: 3,
-    };
-    let client = TuningClient::new(Box::new(bus.clone()), patience);
-    (bus, client)
-}
 
 fn file(values: &[(&str, f32)]) -> ParameterFile {
     let mut file = ParameterFile::default();
@@ -408,6 +312,7 @@ fn sensors_are_watched_along_their_own_axes() {
         robot.diagnostics.sensors.mag.ts_us = 1;
         robot.diagnostics.estimate.rpy_rad = [0.0, 0.0, std::f32::consts::FRAC_PI_2];
         robot.diagnostics.estimate.valid = true;
+        robot.diagnostics.estimate.ts_us = 1;
     }
     let mut watch = Watch::new(&mut client).unwrap();
     assert_eq!(watch.board(), Orientation::XDownZForward);
@@ -464,4 +369,38 @@ fn an_old_firmware_has_no_live_values() {
     bus.0.borrow_mut().is_old = true;
     assert!(client.live(live_page("arming"), 0).unwrap().is_none());
     assert!(client.live_all().unwrap().is_empty());
+}
+
+#[test]
+fn a_value_out_of_range_is_refused_with_its_range() {
+    let (_bus, mut client) = robot();
+    let mut complaint = |name: &str, value| {
+        let error = client.write(find(name).unwrap(), value).unwrap_err();
+        error.to_string()
+    };
+    assert_eq!(
+        complaint("heater.target-c", 60.0),
+        "heater.target-c = 60: out of range: 0 … 55 degC"
+    );
+    assert_eq!(
+        complaint("joint-left-rear.direction", 0.5),
+        "joint-left-rear.direction = 0.5: out of range: 1 or -1"
+    );
+}
+
+/// The motor stands at 0.75 rad; on the mirrored right side as 0.25 rad its zero is at 1.
+#[test]
+fn a_joint_gets_its_zero_where_it_stands() {
+    let (bus, mut client) = robot();
+    bus.0.borrow_mut().to_lose = 1;
+    client.zero_joint(2, 0.25).unwrap();
+    assert_eq!(bus.0.borrow().config.joints[2].zero_rad, 1.0);
+    bus.0.borrow_mut().standing = Err(NotStanding::Turns);
+    let error = client.zero_joint(2, 0.0).unwrap_err().to_string();
+    assert!(error.contains("hold it still"), "{error}");
+    bus.0.borrow_mut().standing = Err(NotStanding::Unknown);
+    let error = client.zero_joint(2, 0.0).unwrap_err().to_string();
+    assert!(error.contains("is its motor powered"), "{error}");
+    let error = client.zero_joint(2, 30.0).unwrap_err().to_string();
+    assert!(error.contains("is its motor powered"), "{error}");
 }

@@ -190,3 +190,31 @@ fn an_rs00_names_faults_only_when_asked() {
         assert_eq!(joint.report.is_some(), is_report, "{said:?}");
     }
 }
+
+/// Position 0x8000 + 0x1000 of ±12.5 rad is 1.5627 rad; speed 0x800 is 0.007 rad/s, 0x810 is 0.24 (protocol of the motor).
+#[test]
+fn only_a_joint_that_is_set_up_and_still_stands_somewhere() {
+    let [slot, ..] = ROBOT_LAYOUT.joints();
+    let mut joint = Joint::new(slot);
+    assert_eq!(joint.standing_angle_rad(), Err(NotStanding::Unknown));
+    let hear = |joint: &mut Joint, speed: [u8; 2], at_us| {
+        let reply = [0x01, 0x90, 0, speed[0], speed[1], 0, 25, 25];
+        let frame = CanFrame::new(StandardId::new(0x11).unwrap(), reply);
+        assert!(joint.receive(&frame, at_us));
+        joint.watch(50_000, at_us);
+    };
+    hear(&mut joint, [0x80, 0x08], 1_000);
+    assert_eq!(joint.standing_angle_rad(), Err(NotStanding::Unknown));
+    joint.phase = Phase::Disabled;
+    hear(&mut joint, [0x80, 0x08], 2_000);
+    let angle_rad = joint.standing_angle_rad().unwrap();
+    assert!((angle_rad - 1.5627).abs() < 1e-3, "{angle_rad}");
+    hear(&mut joint, [0x81, 0x08], 3_000);
+    assert_eq!(joint.standing_angle_rad(), Err(NotStanding::Turns));
+    hear(&mut joint, [0x80, 0x08], 4_000);
+    joint.frozen = true;
+    assert_eq!(joint.standing_angle_rad(), Err(NotStanding::Unknown));
+    joint.frozen = false;
+    joint.watch(50_000, 60_000);
+    assert_eq!(joint.standing_angle_rad(), Err(NotStanding::Unknown));
+}

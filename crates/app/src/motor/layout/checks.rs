@@ -22,8 +22,8 @@ const TICKS_PER_SECOND: u32 = 1_000;
 const MAX_FRAMES_PER_TICK: u32 = 2;
 /// The longest schedule.
 const TICKS: u8 = 8;
-/// Identifiers of the tuning channel.
-const TUNING_IDS: [u16; 3] = [0x7A0, 0x7A1, 0x7A2];
+/// Identifiers of the tuning channel, first and last: requests, reply, recorded samples.
+const TUNING_IDS: [u16; 2] = [0x7A0, 0x7A5];
 /// All that DJI's speed controllers may use: commands and feedback.
 const FIRST_DJI_ID: u16 = m3508::COMMAND_ID.raw() - 1;
 const LAST_DJI_ID: u16 = m3508::COMMAND_ID.raw() + 8;
@@ -48,9 +48,9 @@ pub const fn load_fits_bus(wheels: &WheelGroup, joints: &Joints) {
 }
 
 /// One command frame for all wheels, one feedback frame from each, at 1 kHz; a command and a reply for each joint in
-/// its slots; a request and a reply in each slot of the tuning channel.
+/// its slots; a request and a reply in each slot of the tuning channel, and in the ticks between them a recorded sample.
 const fn bits_per_second(wheels: &WheelGroup, joints: &Joints, bus: BusId) -> u32 {
-    let mut frames = 2 * TICKS_PER_SECOND / REPLY_PERIOD_TICKS;
+    let mut frames = TICKS_PER_SECOND + TICKS_PER_SECOND / REPLY_PERIOD_TICKS;
     if same(wheels.bus, bus) {
         frames += (1 + wheels.escs.len() as u32) * TICKS_PER_SECOND;
     }
@@ -161,10 +161,7 @@ const fn assert_reserved_ids_are_free(wheels: &WheelGroup, joint: &JointSlot) {
             "a joint uses an identifier of the wheels' speed controllers"
         );
         assert!(
-            id != TUNING_IDS[0]
-                && id != TUNING_IDS[1]
-                && id != TUNING_IDS[2]
-                && id != dm4310::REGISTER_ID.raw(),
+            (id < TUNING_IDS[0] || id > TUNING_IDS[1]) && id != dm4310::REGISTER_ID.raw(),
             "a joint uses an identifier of the tuning channel or of register access"
         );
         index += 1;

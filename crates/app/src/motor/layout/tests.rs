@@ -100,6 +100,12 @@ fn a_reply_with_an_rs00s_number_in_its_low_byte() {
 }
 
 #[test]
+#[should_panic(expected = "identifier of the tuning channel or of register access")]
+fn a_reply_among_recorded_samples() {
+    joints(|joints| joints[0].motor = dm4310(1, 0x7A5));
+}
+
+#[test]
 #[should_panic(expected = "both wheels have the same number")]
 fn two_wheels_with_one_number() {
     let mut wheels = *ROBOT_LAYOUT.wheels();

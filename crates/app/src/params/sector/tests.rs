@@ -78,6 +78,25 @@ fn a_head_holds_something_beyond_two_stuck_bits_a_word() {
     }
 }
 
+/// Code of another firmware, an erased or cleared place and noise have none of them; a head of which bits are wrong, or
+/// only one word is left, has.
+#[test]
+fn a_head_of_the_store_is_known_by_its_marks() {
+    let mut hurt = *b"\xC1\xEA\x5E\xD0";
+    hurt[2] ^= 0x3F;
+    assert!(head_with(0, &hurt).has_marks());
+    assert!(head_with(8, b"PRM1").has_marks());
+    assert!(head_with(24, b"PRM2").has_marks());
+    // The vector table of an image for this chip: stack pointer, then handlers.
+    let table =
+        *b"\x00\x00\x02\x20\xd1\x01\x00\x08\x15\x33\x00\x08\x17\x33\x00\x08\x19\x33\x00\x08";
+    // Thumb code: push, mov, bl, cmp, beq, ldr, bx.
+    let code = *b"\x10\xb5\x04\x46\xff\xf7\xf8\xff\x00\x28\x02\xd0\x20\x68\x10\xbd\x00\x20\x70\x47";
+    for other in [&table[..], &code, &[0x5A; 128], &[0; 128], &[BLANK; 128]] {
+        assert!(!head_with(0, other).has_marks(), "{other:X?}");
+    }
+}
+
 #[test]
 fn slots_lie_128_bytes_apart_and_sectors_16_kib() {
     assert_eq!(offset(0, 1), 0x80);

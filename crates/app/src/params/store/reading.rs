@@ -41,13 +41,22 @@ impl<F: NorFlash> Store<F> {
     #[inline(never)]
     pub(super) fn scan(&mut self) {
         let mut ruined: u8 = 0;
+        let mut without_marks: u8 = 0;
         for sector in 0..SECTORS {
             let head = self.read_head(sector);
             let state = self.state_of(sector, &head);
             self.set_state(sector, state);
             if state == SectorState::Garbage && head.is_ruined() {
                 ruined = ruined.saturating_add(1);
+                if !head.has_marks() && !self.read_slot(sector, FIRST_SLOT).is_intact() {
+                    without_marks = without_marks.saturating_add(1);
+                }
             }
+        }
+        // A store in use has cleared the heads of what was there before it.
+        if self.active_sector().is_none() {
+            self.strange_sectors = without_marks;
+            ruined = ruined.saturating_sub(without_marks);
         }
         // One may be what is left of an erase that was cut short: a sector is erased only while none is clean.
         let by_a_cut = u8::from(self.first_in(SectorState::Clean).is_none());

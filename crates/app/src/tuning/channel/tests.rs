@@ -16,6 +16,8 @@ struct Bench {
     config: RobotConfig,
     bring_up: BringUp,
     diagnostics: DiagnosticsSnapshot,
+    /// Of the motor of joint 1 … 4.
+    standing: [Result<f32, NotStanding>; 4],
 }
 
 impl Default for Bench {
@@ -25,6 +27,7 @@ impl Default for Bench {
             config: RobotConfig::default(),
             bring_up: BringUp::default(),
             diagnostics: DiagnosticsSnapshot::default(),
+            standing: [Err(NotStanding::Unknown); 4],
         }
     }
 }
@@ -41,6 +44,7 @@ impl Bench {
             config: &mut self.config,
             bring_up: &mut self.bring_up,
             diagnostics: &self.diagnostics,
+            standing_angle_rad: &|joint| self.standing.get(joint).copied(),
         };
         self.channel.on_frame(bus, frame, gate, access)
     }
@@ -385,6 +389,94 @@ fn anyone_may_look_at_any_time() {
         bench.write(&[0x33, 7, 0, 0, 0, 0, 0, 0])[..3],
         [0xEE, 0x33, 2]
     );
+    assert!(bench.unchanged());
+}
+
+/// Joints 0 (forward) and 2 (mirrored), each with its motor at 0.75 rad (0x3F400000). As 0 rad, the zeros are there; as
+/// 0.5 rad (0x3F000000) the forward joint's zero is at 0.25, the mirrored one's at 1.25.
+#[test]
+fn where_a_joint_stands_gets_the_angle_that_is_asked_for() {
+    let mut bench = Bench {
+        standing: [
+            Ok(0.75),
+            Err(NotStanding::Unknown),
+            Ok(0.75),
+            Err(NotStanding::Turns),
+        ],
+        ..Bench::default()
+    };
+    let zero = |bench: &Bench, joint: usize| bench.config.joints[joint].zero_rad;
+    for joint in [0, 2] {
+        let request = [0x41, joint, 0, 0, 0, 0, 0, 0];
+        assert_eq!(bench.write(&request), request);
+        assert_eq!(zero(&bench, joint.into()), 0.75);
+    }
+    for joint in [0, 2] {
+        let request = [0x41, joint, 0, 0, 0x00, 0x00, 0x00, 0x3F];
+        assert_eq!(bench.write(&request), request);
+        // As after a reply that was lost.
+        assert_eq!(bench.write(&request), request);
+    }
+    assert_eq!((zero(&bench, 0), zero(&bench, 2)), (0.25, 1.25));
+    assert_eq!(bench.channel.status().revision, 4);
+}
+
+/// 13 rad (0x41500000) is beyond any joint; NaN is 0x7FC00000. The motor at 12.5 rad as −1 rad (0xBF800000): a zero at
+/// 13.5.
+#[test]
+fn a_zero_is_refused_where_it_would_be_wrong() {
+    let mut bench = Bench {
+        standing: [
+            Ok(12.5),
+            Err(NotStanding::Unknown),
+            Ok(0.0),
+            Err(NotStanding::Turns),
+        ],
+        ..Bench::default()
+    };
+    for (request, reason) in [
+        ([0x41, 1, 0, 0, 0, 0, 0, 0], 9),
+        ([0x41, 3, 0, 0, 0, 0, 0, 0], 10),
+        ([0x41, 4, 0, 0, 0, 0, 0, 0], 3),
+        ([0x41, 2, 0, 0, 0x00, 0x00, 0x50, 0x41], 4),
+        ([0x41, 2, 0, 0, 0x00, 0x00, 0xC0, 0x7F], 6),
+        ([0x41, 0, 0, 0, 0x00, 0x00, 0x80, 0xBF], 4),
+        ([0x41, 2, 1, 0, 0, 0, 0, 0], 4),
+    ] {
+        assert_eq!(bench.write(&request), [0xEE, 0x41, reason, 0, 0, 0, 0, 0]);
+        assert!(bench.unchanged());
+    }
+    let request = [0x41, 2, 0, 0, 0, 0, 0, 0];
+    let armed = [0xEE, 0x41, 5, 0, 0, 0, 0, 0];
+    assert_eq!(bench.reply(TuningGate::Shut, 0x7A0, &request), armed);
+    assert!(bench.unchanged());
+}
+
+/// 600 s = 0x0258; state 1, no samples yet.
+#[test]
+fn a_recording_is_started_followed_and_ended() {
+    let mut bench = Bench::default();
+    assert_eq!(bench.read(&[0x43]), [0x43, 0, 0, 0, 0, 0, 0, 0]);
+    let start = [0x42, 0x58, 0x02, 0, 0, 0, 0, 0];
+    assert_eq!(
+        bench.reply(TuningGate::Shut, 0x7A0, &start),
+        [0xEE, 0x42, 5, 0, 0, 0, 0, 0]
+    );
+    assert_eq!(
+        bench.write(&[0x42, 0x59, 0x02, 0, 0, 0, 0, 0]),
+        [0xEE, 0x42, 4, 0, 0, 0, 0, 0]
+    );
+    assert!(!bench.channel.recorder().is_running());
+    assert_eq!(bench.write(&start), start);
+    bench.diagnostics.sensors.mag.ts_us = 1;
+    let recorded = bench
+        .channel
+        .recorder()
+        .next(TuningGate::Open, &bench.diagnostics);
+    assert!(recorded.is_some_and(|(bus, _)| bus == BusId::Can1));
+    assert_eq!(bench.read(&[0x43]), [0x43, 1, 0, 0, 0, 1, 0, 0]);
+    bench.write(&[0x42, 0, 0, 0, 0, 0, 0, 0]);
+    assert!(!bench.channel.recorder().is_running());
     assert!(bench.unchanged());
 }
 

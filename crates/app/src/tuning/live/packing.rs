@@ -8,8 +8,7 @@ impl LivePage {
         let mut page: u64 = 0;
         let mut place: u32 = 0;
         for field in self.fields {
-            let raw = u64::from(field.raw(source, part));
-            page |= raw.checked_shl(place).unwrap_or(0);
+            page |= u64::from(field.raw(source, part)).wrapping_shl(place);
             place = place.wrapping_add(field.bits.into());
         }
         let [a, b, c, d, e, f, ..] = page.to_le_bytes();
@@ -34,11 +33,12 @@ impl LivePage {
 impl LiveField {
     /// All ones in the field's width.
     fn mask(&self) -> u32 {
-        u32::MAX.checked_shr(self.unused_bits()).unwrap_or(0)
+        u32::MAX.wrapping_shr(self.unused_bits())
     }
 
+    /// Fields have 1 to 32 bits, so this is a shift that there is.
     fn unused_bits(&self) -> u32 {
-        32_u32.saturating_sub(self.bits.into())
+        32_u32.wrapping_sub(self.bits.into())
     }
 
     /// Of a measure: the lowest number.

@@ -24,7 +24,7 @@ const ROBOT: [&str; 1] = [""];
 const CHANNELS: [&str; 4] = ["0-3", "4-7", "8-11", "12-15"];
 
 /// By number.
-pub static LIVE_PAGES: [LivePage; 30] = [
+pub static LIVE_PAGES: [LivePage; 32] = [
     page(0x00, "version", &ROBOT, &system::VERSION),
     page(0x01, "run", &ROBOT, &system::RUN),
     page(0x02, "boot", &ROBOT, &system::BOOT),
@@ -39,6 +39,8 @@ pub static LIVE_PAGES: [LivePage; 30] = [
     page(0x0B, "radio-line", &ROBOT, &radio::LINE),
     page(0x0C, "radio-errors", &ROBOT, &radio::ERRORS),
     page(0x0D, "bring-up", &ROBOT, &motors::BRING_UP),
+    page(0x0E, "store", &ROBOT, &system::STORE),
+    page(0x0F, "tick", &ROBOT, &system::TICK),
     page(0x10, "channels", &CHANNELS, &radio::CHANNELS),
     page(0x14, "accel", &ROBOT, &sensors::ACCEL),
     page(0x15, "gyro", &ROBOT, &sensors::GYRO),

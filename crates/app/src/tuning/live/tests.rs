@@ -75,22 +75,22 @@ fn a_set_and_a_choice_lie_side_by_side() {
     assert_eq!(name_of(31), None);
 }
 
-/// −1.571 rad = −1571 = 0xF9DD, 2.5 rad/s = 250 = 0x00FA, state 2 in the low four bits of byte 4, mark 1 in bit 5.
+/// −1.2503 rad = −1250 = 0xFB1E, 2.5 rad/s = 250 = 0x00FA, state 2 in the low four bits of byte 4, mark 1 in bit 5.
 #[test]
 fn a_joint_is_shown_with_sign_and_state() {
     let bytes = read_of(0x22, |diagnostics| {
         let joint = &mut diagnostics.sensors.motor.joints[2];
-        joint.pos_rad = -1.5712;
+        joint.pos_rad = -1.2503;
         joint.vel_rps = 2.5;
         joint.state = JointState::Disabled;
         joint.reports_enabled = true;
         joint.ts_us = 1;
     });
-    assert_eq!(bytes, [0xDD, 0xF9, 0xFA, 0x00, 0x22, 0]);
+    assert_eq!(bytes, [0x1E, 0xFB, 0xFA, 0x00, 0x22, 0]);
     let joint = page("joint");
     assert_eq!(
         value(joint, bytes, "angle-rad"),
-        LiveValue::Measure(Some(-1.571))
+        LiveValue::Measure(Some(-1.25))
     );
     assert_eq!(
         value(joint, bytes, "state"),
@@ -289,7 +289,7 @@ fn a_page_that_is_none_is_refused() {
         diagnostics: &diagnostics,
         layout: &ROBOT_LAYOUT,
     };
-    for number in [0x0E, 0x2A + 6, 0xFF] {
+    for number in [0x1D, 0x2A + 6, 0xFF] {
         assert_eq!(read(number, &source), Err(Refusal::UnknownParameter));
     }
 }

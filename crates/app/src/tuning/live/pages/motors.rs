@@ -113,20 +113,24 @@ const TRIALS: [&str; 7] = [
     "silent",
 ];
 
-fn joint(live: &LiveSource<'_>, part: usize) -> JointFeedback {
+/// `part` is one there is.
+fn joint<'a>(live: &LiveSource<'a>, part: usize) -> &'a JointFeedback {
     let joints = &live.diagnostics.sensors.motor.joints;
-    joints.get(part).copied().unwrap_or_default()
+    let [first, ..] = joints;
+    joints.get(part).unwrap_or(first)
 }
 
-fn heard_joint(live: &LiveSource<'_>, part: usize) -> Option<JointFeedback> {
+fn heard_joint<'a>(live: &LiveSource<'a>, part: usize) -> Option<&'a JointFeedback> {
     Some(joint(live, part)).filter(|joint| joint.ts_us != 0 && joint.state != JointState::Silent)
 }
 
-fn wheel(live: &LiveSource<'_>, part: usize) -> WheelFeedback {
+/// `part` is one there is.
+fn wheel<'a>(live: &LiveSource<'a>, part: usize) -> &'a WheelFeedback {
     let wheels = &live.diagnostics.sensors.motor.wheels;
-    wheels.get(part).copied().unwrap_or_default()
+    let [first, ..] = wheels;
+    wheels.get(part).unwrap_or(first)
 }
 
-fn heard_wheel(live: &LiveSource<'_>, part: usize) -> Option<WheelFeedback> {
+fn heard_wheel<'a>(live: &LiveSource<'a>, part: usize) -> Option<&'a WheelFeedback> {
     Some(wheel(live, part)).filter(|wheel| wheel.ts_us != 0)
 }

@@ -107,6 +107,33 @@ pub const POWER: [LiveField; 1] = [measure!("battery-v", "V", 16, 500, |live, _|
     }
 })];
 
+/// What boot found in the sectors of the settings.
+pub const STORE: [LiveField; 3] = [
+    count!("lost-sectors", "", 4, |live, _| live
+        .diagnostics
+        .params
+        .lost_sectors
+        .into()),
+    count!("strange-sectors", "", 4, |live, _| live
+        .diagnostics
+        .params
+        .strange_sectors
+        .into()),
+    count!("generation", "", 32, |live, _| live
+        .diagnostics
+        .params
+        .generation),
+];
+
+/// Jitter by the core's cycle counter, 168 a microsecond.
+pub const TICK: [LiveField; 2] = [
+    count!("max-jitter-cycles", "", 24, |live, _| live
+        .diagnostics
+        .tick
+        .max_jitter_cycles),
+    count!("period-us", "us", 16, |live, _| live.diagnostics.tick.dt_us),
+];
+
 pub const CAN: [LiveField; 6] = [
     choice!(
         "state",
@@ -164,8 +191,10 @@ pub(super) const LAST_WORDS: [&str; 10] = [
 const DEBUGGER: [&str; 2] = ["attached", "catches"];
 const STOPPED: [&str; 4] = ["wheels", "joints", "can1", "can2"];
 
-fn health(live: &LiveSource<'_>, bus: usize) -> BusHealth {
-    live.diagnostics.can.get(bus).copied().unwrap_or_default()
+/// `bus` is one there is.
+fn health<'a>(live: &LiveSource<'a>, bus: usize) -> &'a BusHealth {
+    let [first, second] = &live.diagnostics.can;
+    if bus == 0 { first } else { second }
 }
 
 /// As in stored settings; 0 if they differ.

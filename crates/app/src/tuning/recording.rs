@@ -1,0 +1,277 @@
+//! The sensors' samples as they come, each in a frame of its own, for so many seconds while the robot is disarmed.
+//!
+//! The frame of a sample has x, y and z in whole steps as `i16` and the low 16 bits of its time in units of 100 µs as
+//! `u16`, all little-endian. Frames leave in ticks without a reply, one a tick, in the mailbox that motors leave free.
+
+use super::{TuningGate, protocol::id};
+use crate::{
+    diagnostics::DiagnosticsSnapshot,
+    domain::{BusId, CanFrame, StandardId},
+};
+
+/// Longest recording.
+pub const MAX_RECORDING_S: u16 = 600;
+
+/// Who measured a recorded sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RecordedSensor {
+    /// m/s².
+    Accel,
+    /// deg/s.
+    Gyro,
+    /// µT.
+    Mag,
+}
+
+impl RecordedSensor {
+    const ALL: [Self; 3] = [Self::Accel, Self::Gyro, Self::Mag];
+
+    pub const fn frame_id(self) -> StandardId {
+        match self {
+            Self::Accel => id(0x7A3),
+            Self::Gyro => id(0x7A4),
+            Self::Mag => id(0x7A5),
+        }
+    }
+
+    /// Steps a unit: about those of the sensor itself, and its whole range fits.
+    const fn steps(self) -> f32 {
+        match self {
+            Self::Accel => 256.0,
+            Self::Gyro => 16.0,
+            Self::Mag => 10.0,
+        }
+    }
+
+    fn frame(self, vector: [f32; 3], ts_us: u64) -> CanFrame {
+        let [[a, b], [c, d], [e, f]] = vector.map(|value| {
+            let steps = value * self.steps();
+            let half = if steps < 0.0 { -0.5 } else { 0.5 };
+            // The conversion saturates.
+            ((steps + half) as i16).to_le_bytes()
+        });
+        let [g, h] = ((ts_us / 100) as u16).to_le_bytes();
+        CanFrame::new(self.frame_id(), [a, b, c, d, e, f, g, h])
+    }
+}
+
+/// A sample as the PC gets it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RecordedSample {
+    pub sensor: RecordedSensor,
+    /// As in the firmware's diagnostics.
+    pub value: [f32; 3],
+    /// 100 µs; wraps.
+    pub time: u16,
+}
+
+impl RecordedSample {
+    /// `None` for any other frame.
+    pub fn decode(frame: &CanFrame) -> Option<Self> {
+        let mut sensors = RecordedSensor::ALL.into_iter();
+        let sensor = sensors.find(|sensor| sensor.frame_id() == frame.id())?;
+        let [a, b, c, d, e, f, g, h] = frame.full_payload()?;
+        let value = [[a, b], [c, d], [e, f]]
+            .map(|bytes| f32::from(i16::from_le_bytes(bytes)) / sensor.steps());
+        let time = u16::from_le_bytes([g, h]);
+        Some(Self {
+            sensor,
+            value,
+            time,
+        })
+    }
+}
+
+/// How the recording goes, or how the last one ended. The numbers are on the wire and never change.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u8)]
+pub enum RecordingState {
+    /// None since boot, or it ended when it was to end.
+    #[default]
+    Ended = 0,
+    Running = 1,
+    /// The robot was armed, or the enable switch went on.
+    CutShort = 2,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RecordingStatus {
+    pub state: RecordingState,
+    /// Samples of the IMU sent, each as a frame of the accelerometer and one of the gyro.
+    pub imu: u32,
+    pub mag: u32,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Running {
+    bus: BusId,
+    until_us: u64,
+    /// Of the last samples sent.
+    imu_ts_us: u64,
+    mag_ts_us: u64,
+    /// The other half of an IMU sample, for the next tick.
+    gyro: Option<CanFrame>,
+}
+
+/// Sends nothing until it is started.
+#[derive(Clone, Debug, Default)]
+pub struct Recorder {
+    running: Option<Running>,
+    status: RecordingStatus,
+}
+
+impl Recorder {
+    /// A new recording in the place of any other; 0 s only ends that one.
+    pub fn start(&mut self, bus: BusId, seconds: u16, diagnostics: &DiagnosticsSnapshot) {
+        let duration_us = u64::from(seconds).saturating_mul(1_000_000);
+        self.running = (seconds != 0).then(|| Running {
+            bus,
+            until_us: diagnostics.ts_us.saturating_add(duration_us),
+            imu_ts_us: diagnostics.sensors.imu.ts_us,
+            mag_ts_us: diagnostics.sensors.mag.ts_us,
+            gyro: None,
+        });
+        self.status = RecordingStatus {
+            state: match self.running {
+                Some(_) => RecordingState::Running,
+                None => RecordingState::Ended,
+            },
+            ..RecordingStatus::default()
+        };
+    }
+
+    pub const fn is_running(&self) -> bool {
+        self.running.is_some()
+    }
+
+    pub const fn status(&self) -> &RecordingStatus {
+        &self.status
+    }
+
+    /// In each tick without a reply while it is running.
+    #[cold]
+    #[inline(never)]
+    pub fn next(
+        &mut self,
+        gate: TuningGate,
+        diagnostics: &DiagnosticsSnapshot,
+    ) -> Option<(BusId, CanFrame)> {
+        let running = self.running.as_mut()?;
+        let sensors = &diagnostics.sensors;
+        if gate == TuningGate::Shut {
+            self.end(RecordingState::CutShort);
+            return None;
+        }
+        if sensors.ts_us >= running.until_us {
+            self.end(RecordingState::Ended);
+            return None;
+        }
+        let frame = if let Some(gyro) = running.gyro.take() {
+            gyro
+        } else if sensors.imu.ts_us != running.imu_ts_us {
+            let ts_us = sensors.imu.ts_us;
+            running.imu_ts_us = ts_us;
+            running.gyro = Some(RecordedSensor::Gyro.frame(sensors.imu.gyro_dps, ts_us));
+            self.status.imu = self.status.imu.wrapping_add(1);
+            RecordedSensor::Accel.frame(sensors.imu.accel_mps2, ts_us)
+        } else if sensors.mag.ts_us != running.mag_ts_us {
+            running.mag_ts_us = sensors.mag.ts_us;
+            self.status.mag = self.status.mag.wrapping_add(1);
+            RecordedSensor::Mag.frame(sensors.mag.mag_ut, sensors.mag.ts_us)
+        } else {
+            return None;
+        };
+        Some((running.bus, frame))
+    }
+
+    fn end(&mut self, state: RecordingState) {
+        self.running = None;
+        self.status.state = state;
+    }
+}
+
+impl RecordingState {
+    const ALL: [Self; 3] = [Self::Ended, Self::Running, Self::CutShort];
+
+    /// `None` for a number that stands for none.
+    pub fn from_code(code: u8) -> Option<Self> {
+        Self::ALL.into_iter().find(|state| *state as u8 == code)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 1 s into a run, sensors just sampled.
+    fn start(seconds: u16) -> (Recorder, DiagnosticsSnapshot) {
+        let mut diagnostics = DiagnosticsSnapshot {
+            ts_us: 1_000_000,
+            ..DiagnosticsSnapshot::default()
+        };
+        diagnostics.sensors.imu.ts_us = 999_000;
+        diagnostics.sensors.mag.ts_us = 998_000;
+        let mut recorder = Recorder::default();
+        recorder.start(BusId::Can2, seconds, &diagnostics);
+        (recorder, diagnostics)
+    }
+
+    fn payload(sent: Option<(BusId, CanFrame)>) -> (u16, [u8; 8]) {
+        let (bus, frame) = sent.expect("a frame");
+        assert_eq!(bus, BusId::Can2);
+        (frame.id().raw(), frame.full_payload().unwrap())
+    }
+
+    /// 9.8125 m/s² = 2512 = 0x09D0, −1 = −256 = 0xFF00; −2.5 deg/s = −40 = 0xFFD8; 48.1 µT = 481 = 0x01E1. Times
+    /// 1.0041 s = 10,041 = 0x2739, 1.0032 s = 10,032 = 0x2730.
+    #[test]
+    fn each_sample_is_sent_once_in_steps_with_its_time() {
+        let (mut recorder, mut diagnostics) = start(1);
+        assert_eq!(recorder.next(TuningGate::Open, &diagnostics), None);
+        let imu = &mut diagnostics.sensors.imu;
+        imu.accel_mps2 = [-1.0, 0.0, 9.8125];
+        imu.gyro_dps = [0.0, 0.0, -2.5];
+        imu.ts_us = 1_004_199;
+        diagnostics.sensors.mag.mag_ut = [48.1, 0.0, 1e9];
+        diagnostics.sensors.mag.ts_us = 1_003_200;
+        let mut next = || recorder.next(TuningGate::Open, &diagnostics);
+        let accel = [0x00, 0xFF, 0, 0, 0xD0, 0x09, 0x39, 0x27];
+        assert_eq!(payload(next()), (0x7A3, accel));
+        assert_eq!(
+            payload(next()),
+            (0x7A4, [0, 0, 0, 0, 0xD8, 0xFF, 0x39, 0x27])
+        );
+        let mag = [0xE1, 0x01, 0, 0, 0xFF, 0x7F, 0x30, 0x27];
+        assert_eq!(payload(next()), (0x7A5, mag));
+        assert_eq!(next(), None);
+        let status = *recorder.status();
+        assert_eq!((status.imu, status.mag), (1, 1));
+        let frame = CanFrame::new(StandardId::new(0x7A3).unwrap(), accel);
+        let sample = RecordedSample {
+            sensor: RecordedSensor::Accel,
+            value: [-1.0, 0.0, 9.8125],
+            time: 10_041,
+        };
+        assert_eq!(RecordedSample::decode(&frame), Some(sample));
+        let other = CanFrame::new(StandardId::new(0x7A2).unwrap(), accel);
+        assert_eq!(RecordedSample::decode(&other), None);
+    }
+
+    #[test]
+    fn it_ends_by_itself_or_when_the_robot_may_move() {
+        for (gate, at_us, state) in [
+            (TuningGate::Open, 1_999_999, RecordingState::Running),
+            (TuningGate::Open, 2_000_000, RecordingState::Ended),
+            (TuningGate::Shut, 1_500_000, RecordingState::CutShort),
+        ] {
+            let (mut recorder, mut diagnostics) = start(1);
+            diagnostics.sensors.ts_us = at_us;
+            diagnostics.sensors.imu.ts_us = at_us;
+            let sent = recorder.next(gate, &diagnostics);
+            assert_eq!(sent.is_some(), state == RecordingState::Running);
+            assert_eq!(recorder.is_running(), sent.is_some());
+            assert_eq!(recorder.status().state, state);
+        }
+        assert!(!start(0).0.is_running());
+    }
+}

@@ -1,0 +1,40 @@
+//! What a command says on standard output. Whoever reads it may stop early, as `head` does.
+
+use std::{
+    fmt,
+    io::{self, Write},
+};
+
+/// Standard output took no more.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot write to standard output: {0}")]
+pub struct OutputError(io::Error);
+
+/// True if nobody reads what this command says: no failure, but nothing more to do.
+pub fn is_closed(error: &anyhow::Error) -> bool {
+    let output = error.chain().find_map(|cause| cause.downcast_ref());
+    matches!(output, Some(OutputError(cause)) if cause.kind() == io::ErrorKind::BrokenPipe)
+}
+
+/// For [`say!`] and [`begin!`].
+pub fn write(text: fmt::Arguments<'_>) -> Result<(), OutputError> {
+    let mut output = io::stdout().lock();
+    let written = output.write_fmt(text).and_then(|()| output.flush());
+    written.map_err(OutputError)
+}
+
+/// As `println!`, but an error is one of the command.
+macro_rules! say {
+    ($($text:tt)*) => {
+        $crate::command::output::write(format_args!("{}\n", format_args!($($text)*)))
+    };
+}
+
+/// As `say!`, but the line goes on.
+macro_rules! begin {
+    ($($text:tt)*) => {
+        $crate::command::output::write(format_args!($($text)*))
+    };
+}
+
+pub(crate) use {begin, say};

@@ -1,0 +1,59 @@
+//! `robotctl status`: one look at the robot, or one after the other.
+
+use std::{thread, time::Duration};
+
+use anyhow::{Result, ensure};
+use robotctl::{status::Status as RobotStatus, tuning::TuningClient};
+
+use super::{
+    connection::Connection,
+    output::{begin, say},
+};
+
+/// Clears the terminal and goes to its first place.
+const CLEAR: &str = "\x1b[2J\x1b[H";
+
+#[derive(clap::Args)]
+pub struct Status {
+    #[command(flatten)]
+    connection: Connection,
+    /// For scripts: one line of JSON with all live values
+    #[arg(long)]
+    json: bool,
+    /// Again and again, until Ctrl-C
+    #[arg(long)]
+    watch: bool,
+    /// Pause between two looks, in ms
+    #[arg(long, value_name = "MS", default_value_t = 500, requires = "watch")]
+    every: u64,
+}
+
+impl Status {
+    pub fn run(self) -> Result<()> {
+        let mut client = self.connection.open()?;
+        loop {
+            self.show(&mut client)?;
+            if !self.watch {
+                return Ok(());
+            }
+            thread::sleep(Duration::from_millis(self.every));
+        }
+    }
+
+    fn show(&self, client: &mut TuningClient) -> Result<()> {
+        let status = RobotStatus::read(client)?;
+        ensure!(
+            !status.is_empty(),
+            "this firmware shows no live values: it is older than this robotctl"
+        );
+        if self.json {
+            say!("{}", status.to_json())?;
+            return Ok(());
+        }
+        if self.watch {
+            begin!("{CLEAR}")?;
+        }
+        begin!("{status}")?;
+        Ok(())
+    }
+}

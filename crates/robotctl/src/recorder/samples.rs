@@ -1,0 +1,139 @@
+//! Samples as they came → rows of a table.
+
+use nalgebra::Vector3;
+use robot_app::tuning::{RecordedSample, RecordedSensor};
+
+use super::RecordError;
+use crate::calibration::{accel::AccelCorrection, mag::MagCorrection};
+
+/// Of the robot's time on the wire.
+const UNITS_A_SECOND: f64 = 10_000.0;
+
+const HEADING: &str = "\
+# Written by `robotctl record`: x forward, y left, z up; accelerometer and magnetometer without the robot's corrections.
+# t in s, a in m/s2, g in deg/s, m in uT
+t,ax,ay,az,gx,gy,gz,mx,my,mz
+";
+
+type Vector = Vector3<f64>;
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Measured {
+    Imu {
+        accel_mps2: Vector,
+        /// Missing if its frame was lost.
+        gyro_dps: Option<Vector>,
+    },
+    Mag(Vector),
+}
+
+/// In the order of their times.
+#[derive(Clone, Debug, Default)]
+pub struct Samples {
+    /// The low 16 bits of a time are those that came.
+    rows: Vec<(i64, Measured)>,
+    /// Of the sample that came last.
+    last_time: Option<i64>,
+}
+
+impl Samples {
+    pub(super) fn extend(&mut self, heard: &[RecordedSample]) {
+        for sample in heard {
+            self.push(sample);
+        }
+    }
+
+    fn push(&mut self, sample: &RecordedSample) {
+        let time = self.unwrapped(sample.time);
+        let value = Vector::from_iterator(sample.value.into_iter().map(f64::from));
+        let measured = match sample.sensor {
+            RecordedSensor::Accel => Measured::Imu {
+                accel_mps2: value,
+                gyro_dps: None,
+            },
+            RecordedSensor::Mag => Measured::Mag(value),
+            RecordedSensor::Gyro => return self.add_gyro(time, value),
+        };
+        // The magnetometer's time is the middle of its measurement: it may come after younger samples of the IMU.
+        let place = self.rows.partition_point(|(other, _)| *other <= time);
+        self.rows.insert(place, (time, measured));
+    }
+
+    /// It follows the accelerometer's half of the same sample.
+    fn add_gyro(&mut self, time: i64, value: Vector) {
+        let of_this_time = self.rows.iter_mut().rev();
+        for (_, measured) in of_this_time.take_while(|(other, _)| *other >= time) {
+            if let Measured::Imu { gyro_dps, .. } = measured {
+                *gyro_dps = Some(value);
+            }
+        }
+    }
+
+    /// The nearest to the last one: sixteen bits of it came.
+    fn unwrapped(&mut self, time: u16) -> i64 {
+        let time = match self.last_time {
+            None => time.into(),
+            Some(last) => last + i64::from(time.wrapping_sub(last as u16).cast_signed()),
+        };
+        self.last_time = Some(time);
+        time
+    }
+
+    /// Samples of the IMU and of the magnetometer.
+    pub fn counts(&self) -> (u32, u32) {
+        let is_imu = |(_, measured): &&(i64, Measured)| matches!(measured, Measured::Imu { .. });
+        let imu = self.rows.iter().filter(is_imu).count();
+        (imu as u32, (self.rows.len() - imu) as u32)
+    }
+
+    pub fn duration_s(&self) -> f64 {
+        let last = self.rows.last().map_or(0, |(last, _)| *last);
+        self.seconds(last)
+    }
+
+    fn seconds(&self, time: i64) -> f64 {
+        let first = self.rows.first().map_or(time, |(first, _)| *first);
+        (time - first) as f64 / UNITS_A_SECOND
+    }
+
+    /// As the sensors had it before the robot corrected it.
+    pub(super) fn undo(
+        &mut self,
+        accel: &AccelCorrection,
+        mag: &MagCorrection,
+    ) -> Result<(), RecordError> {
+        for (_, measured) in &mut self.rows {
+            match measured {
+                Measured::Imu { accel_mps2, .. } => *accel_mps2 = accel.undo(*accel_mps2),
+                Measured::Mag(field_ut) => {
+                    *field_ut = mag.undo(*field_ut).ok_or(RecordError::SoftIron)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// As `robotctl calibrate` and spreadsheets read it: a row a sample; what a row does not have is empty.
+    pub fn table(&self) -> String {
+        let mut table = String::from(HEADING);
+        for (time, measured) in &self.rows {
+            let row = match measured {
+                Measured::Imu {
+                    accel_mps2,
+                    gyro_dps,
+                } => {
+                    let gyro = gyro_dps.map_or(",,".to_owned(), |gyro| fields(&gyro, 4));
+                    format!("{},{gyro},,,", fields(accel_mps2, 4))
+                }
+                Measured::Mag(field_ut) => format!(",,,,,,{}", fields(field_ut, 2)),
+            };
+            table.push_str(&format!("{:.4},{row}\n", self.seconds(*time)));
+        }
+        table
+    }
+}
+
+fn fields(vector: &Vector, digits: usize) -> String {
+    let [x, y, z] = [vector.x, vector.y, vector.z];
+    format!("{x:.digits$},{y:.digits$},{z:.digits$}")
+}

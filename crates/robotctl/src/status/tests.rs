@@ -1,0 +1,79 @@
+//! The words and the JSON of a robot made up here.
+
+use robot_app::{
+    diagnostics::DiagnosticsSnapshot,
+    domain::{JointState, LastWords, ResetCause},
+    safety::{ArmingState, SafetyVerdict},
+};
+
+use super::*;
+use crate::tuning::testing;
+
+fn status(fill: impl FnOnce(&mut DiagnosticsSnapshot)) -> Status {
+    Status::read(&mut testing::client(fill)).unwrap()
+}
+
+#[test]
+fn what_speaks_against_arming_is_told_with_what_to_do() {
+    let text = status(|diagnostics| {
+        diagnostics.reset_cause = ResetCause::IndependentWatchdog;
+        diagnostics.last_words = LastWords::ImuLate;
+        diagnostics.ts_us = 3_661_000_000;
+        diagnostics.battery_v = 23.994;
+        let joint = &mut diagnostics.sensors.motor.joints[1];
+        (joint.state, joint.ts_us, joint.pos_rad) = (JointState::Fault, 1, -0.5);
+        (joint.temperature_c, joint.fault_code) = (41.0, 0xD);
+        diagnostics.params.strange_sectors = 2;
+    })
+    .to_string();
+    for line in [
+        "firmware    0.1.0, joints dm4310, up 1:01:01 h",
+        "last reset  watchdog, before it: task imu was late",
+        "state       disarmed",
+        "stopped     everything",
+        "battery     23.99 V",
+        "wheel left         NEVER HEARD",
+        "joint left-rear    fault, -0.500 rad, 41 degC, fault code 0xD",
+        "joint right-rear   silent",
+        "2 flash sectors for settings hold something else",
+    ] {
+        assert!(text.contains(line), "`{line}` in\n{text}");
+    }
+    assert!(!text.contains("RUINED"), "{text}");
+}
+
+#[test]
+fn an_armed_robot_has_no_blockers() {
+    let text = status(|diagnostics| {
+        diagnostics.arming.state = ArmingState::Armed;
+        diagnostics.safety.verdict = SafetyVerdict::Run;
+        diagnostics.params.lost_sectors = 1;
+    })
+    .to_string();
+    assert!(text.contains("state       armed\n"), "{text}");
+    assert!(text.contains("stopped     nothing\n"), "{text}");
+    assert!(!text.contains("what keeps it"), "{text}");
+    assert!(
+        text.contains("RUINED SECTORS   1: newer values may be lost"),
+        "{text}"
+    );
+}
+
+#[test]
+fn scripts_get_every_value_by_name() {
+    let json = status(|diagnostics| {
+        diagnostics.battery_v = 23.5;
+        diagnostics.sensors.motor.wheels[1].rotor_angle = 8_000;
+    })
+    .to_json();
+    assert_eq!(json["power"]["battery-v"], 23.5);
+    assert_eq!(json["joint"]["left-front"]["state"], "silent");
+    assert_eq!(
+        json["joint"]["left-front"]["angle-rad"],
+        serde_json::Value::Null
+    );
+    assert_eq!(json["wheel-motor"]["right"]["rotor-angle"], 8_000);
+    assert_eq!(json["safety"]["stopped"][0], "wheels");
+    assert_eq!(json["settings"]["saved"], true);
+    assert_eq!(json["found-at-boot"]["ruined-sectors"], 0);
+}

@@ -1,0 +1,370 @@
+//! The status for people, the most urgent first.
+
+use std::fmt::{self, Display, Formatter};
+
+use robot_app::tuning::{JOINTS, LiveValue, WHEELS};
+
+use super::{Status, advice};
+use crate::tuning::LiveReading;
+
+/// Pages that have words of their own here; any other is listed as it is.
+const PUT_INTO_WORDS: [&str; 18] = [
+    "version",
+    "run",
+    "boot",
+    "arming",
+    "safety",
+    "latched",
+    "power",
+    "operator",
+    "radio",
+    "bring-up",
+    "attitude",
+    "imu",
+    "sensors",
+    "joint",
+    "joint-health",
+    "wheel",
+    "can",
+    "store",
+];
+/// Pages for whoever looks for something; `--json` has them.
+const LEFT_OUT: [&str; 14] = [
+    "seen",
+    "radio-frames",
+    "radio-line",
+    "radio-errors",
+    "channels",
+    "gyro",
+    "mag",
+    "rejects",
+    "gyro-bias",
+    "gyro-buffer",
+    "wheel-motor",
+    "accel",
+    "can-frames",
+    "tick",
+];
+
+impl Display for Status {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        self.firmware(f)?;
+        self.arming(f)?;
+        self.flags(f)?;
+        self.radio(f)?;
+        self.motors(f)?;
+        self.sensors(f)?;
+        self.buses(f)?;
+        self.settings(f)?;
+        self.others(f)
+    }
+}
+
+impl Status {
+    fn firmware(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        if let Some(version) = self.page("version") {
+            let part = |field| whole(version, field);
+            let (major, minor, patch) = (part("major"), part("minor"), part("patch"));
+            let joints = version.choice("joint-motors");
+            write!(f, "firmware    {major}.{minor}.{patch}, joints {joints}")?;
+        }
+        if let Some(run) = self.page("run") {
+            write!(f, ", up {}", duration(run.number("uptime-s")))?;
+            match run.number("missed-ticks") {
+                Some(missed) if missed > 0.0 => write!(f, ", {missed} TICKS MISSED")?,
+                _ => {}
+            }
+        }
+        if let Some(boot) = self.page("boot") {
+            write!(f, "\nlast reset  {}", boot.choice("reset-cause"))?;
+            let words = boot.choice("last-words");
+            if words != "nothing was reported" {
+                write!(f, ", before it: {words}")?;
+            }
+        }
+        writeln!(f)
+    }
+
+    fn arming(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        if let Some(arming) = self.page("arming") {
+            writeln!(f, "state       {}", arming.choice("state"))?;
+            if arming.has("debugger", "attached") {
+                writeln!(
+                    f,
+                    "debugger    attached, or was since power-on: never attach or detach while armed"
+                )?;
+            }
+            let blockers = arming.set("blockers");
+            if !blockers.is_empty() {
+                writeln!(f, "\nwhat keeps it from being armed:")?;
+                list(f, &blockers, advice::for_blocker)?;
+            }
+        }
+        if let Some(bring_up) = self.page("bring-up") {
+            let step = bring_up.choice("step");
+            if step == "one-motor" {
+                let (motor, trial) = (bring_up.choice("motor"), bring_up.choice("trial"));
+                writeln!(f, "bring-up    one motor: {motor}, {trial}")?;
+            } else if step != "off" {
+                writeln!(f, "bring-up    {step}")?;
+            }
+        }
+        Ok(())
+    }
+
+    fn flags(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Some(safety) = self.page("safety") else {
+            return Ok(());
+        };
+        let stopped = match safety.choice("verdict").as_str() {
+            "run" => "nothing".to_owned(),
+            "global-stop" => "everything".to_owned(),
+            _ => safety.set("stopped").join(", "),
+        };
+        writeln!(f, "\nstopped     {stopped}")?;
+        let flags = safety.set("flags");
+        if !flags.is_empty() {
+            writeln!(f, "flags:")?;
+            list(f, &flags, advice::for_flag)?;
+        }
+        let latched = self.page("latched").map(|page| page.set("flags"));
+        if let Some(latched) = latched.filter(|latched| !latched.is_empty()) {
+            writeln!(
+                f,
+                "these stay until cleared by enable off and e-stop thrown for a second: {}",
+                latched.join(", ")
+            )?;
+        }
+        Ok(())
+    }
+
+    fn radio(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Some(radio) = self.page("radio") else {
+            return Ok(());
+        };
+        let age = match radio.number("age-ms") {
+            Some(age) if age < 65_535.0 => format!("last frame {age} ms ago"),
+            _ => "no frame yet, or none for a minute".to_owned(),
+        };
+        write!(
+            f,
+            "\nradio       {} Hz, {} % good, {age}",
+            number(radio.number("rate-hz"), 0),
+            number(radio.number("quality-percent"), 0)
+        )?;
+        if radio.has("marks", "failsafe") {
+            write!(f, ", FAILSAFE")?;
+        }
+        if let Some(operator) = self.page("operator") {
+            let mut switches = operator.set("switches");
+            switches.push(format!("mode {}", operator.choice("mode")));
+            write!(f, "\nswitches    {}", switches.join(", "))?;
+        }
+        if let Some(power) = self.page("power") {
+            write!(f, "\nbattery     ")?;
+            match power.number("battery-v") {
+                Some(volts) => write!(f, "{volts:.2} V")?,
+                None => write!(f, "not measured, or none")?,
+            }
+        }
+        writeln!(f)
+    }
+
+    fn motors(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        writeln!(f)?;
+        for (part, name) in WHEELS.iter().enumerate() {
+            let Some(wheel) = self.part("wheel", part) else {
+                continue;
+            };
+            write!(f, "wheel {name:<12} ")?;
+            match (wheel.number("rotor-rpm"), wheel.number("age-ms")) {
+                (Some(rpm), Some(age)) => {
+                    let temperature = number(wheel.number("temperature-c"), 0);
+                    write!(f, "rotor {rpm} rpm, {temperature} degC, heard {age} ms ago")?;
+                }
+                _ => write!(f, "NEVER HEARD")?,
+            }
+            marks(f, wheel)?;
+        }
+        for (part, name) in JOINTS.iter().enumerate() {
+            let Some(joint) = self.part("joint", part) else {
+                continue;
+            };
+            let state = joint.choice("state");
+            write!(f, "joint {name:<12} {state}")?;
+            if let Some(angle) = joint.number("angle-rad") {
+                write!(f, ", {angle:+.3} rad")?;
+            }
+            if let Some(health) = self.part("joint-health", part) {
+                if let Some(temperature) = health.number("temperature-c") {
+                    write!(f, ", {temperature} degC")?;
+                }
+                match health.number("fault-code") {
+                    Some(code) if code > 0.0 => write!(f, ", fault code 0x{:X}", code as u32)?,
+                    _ => {}
+                }
+            }
+            marks(f, joint)?;
+        }
+        Ok(())
+    }
+
+    fn sensors(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Some(imu) = self.page("imu") else {
+            return Ok(());
+        };
+        write!(
+            f,
+            "\nIMU         {} degC, heater {} ({} %), gyro calibration {}",
+            number(imu.number("temperature-c"), 1),
+            imu.choice("heater"),
+            number(imu.number("heater-percent"), 0),
+            imu.choice("calibration")
+        )?;
+        if let Some(sensors) = self.page("sensors") {
+            for sensor in ["imu", "mag"] {
+                if !sensors.has("ready", sensor) {
+                    write!(f, ", {sensor} NOT READY")?;
+                }
+            }
+            let errors = |field| whole(sensors, field);
+            let (imu, mag) = (errors("imu-errors"), errors("mag-errors"));
+            write!(f, "\nerrors      IMU {imu}, magnetometer {mag}")?;
+        }
+        if let Some(attitude) = self.page("attitude") {
+            let angle = |field| number(attitude.number(field), 1);
+            write!(
+                f,
+                "\nattitude    roll {}, pitch {}, yaw {} deg",
+                angle("roll-deg"),
+                angle("pitch-deg"),
+                angle("yaw-deg")
+            )?;
+            if !imu.has("marks", "attitude-valid") {
+                write!(f, " (not valid)")?;
+            }
+        }
+        writeln!(f)
+    }
+
+    fn buses(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        for (part, name) in ["CAN1", "CAN2"].iter().enumerate() {
+            if let Some(can) = self.part("can", part) {
+                let state = can.choice("state");
+                let count = |field| whole(can, field);
+                let (offs, back) = (count("bus-offs"), count("taken-back"));
+                let lost = count("lost");
+                writeln!(
+                    f,
+                    "{name}        {state}, {offs} times off, {back} frames not sent, {lost} lost"
+                )?;
+            }
+        }
+        Ok(())
+    }
+
+    fn settings(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        if let Some(store) = &self.store {
+            writeln!(f, "settings    {}", store.state_in_words())?;
+        }
+        let findings = self.findings.as_ref();
+        let strange = self
+            .page("store")
+            .map(|page| whole(page, "strange-sectors"));
+        if let Some(warnings) = findings.and_then(|found| found.warnings()) {
+            writeln!(f, "{warnings}")?;
+        }
+        match strange {
+            Some(count) if count > 0 => writeln!(f, "{}", strange_sectors(count)),
+            _ => Ok(()),
+        }
+    }
+
+    /// Pages that a newer firmware table has and this text does not know.
+    fn others(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let known = |name: &str| PUT_INTO_WORDS.contains(&name) || LEFT_OUT.contains(&name);
+        let others = self.pages.iter();
+        for reading in others.filter(|reading| !known(reading.page.name)) {
+            write!(f, "{}:", reading.title())?;
+            rest(f, reading)?;
+            writeln!(f)?;
+        }
+        Ok(())
+    }
+}
+
+/// For sectors that were never a store.
+pub fn strange_sectors(count: u32) -> String {
+    format!(
+        "{count} flash sectors for settings hold something else, such as an older firmware; they are erased when their turn \
+         comes, and nothing of this robot is lost unless it had settings saved"
+    )
+}
+
+fn list(
+    f: &mut Formatter<'_>,
+    names: &[String],
+    advice: fn(&str) -> Option<&'static str>,
+) -> fmt::Result {
+    for name in names {
+        let advice = advice(name).unwrap_or_default();
+        let line = format!("  {name:<22} {advice}");
+        writeln!(f, "{}", line.trim_end())?;
+    }
+    Ok(())
+}
+
+/// All fields of the page, as they are.
+fn rest(f: &mut Formatter<'_>, reading: &LiveReading) -> fmt::Result {
+    for (field, value) in reading.values() {
+        match value {
+            LiveValue::Count(count) => write!(f, ", {field} {count}")?,
+            LiveValue::Measure(Some(measured)) => write!(f, ", {field} {measured}")?,
+            LiveValue::Measure(None) => write!(f, ", {field} unknown")?,
+            LiveValue::Choice(_) => write!(f, ", {field} {}", reading.choice(field))?,
+            LiveValue::Set(0) => {}
+            LiveValue::Set(_) => write!(f, ", {}", reading.set(field).join(", "))?,
+        }
+    }
+    Ok(())
+}
+
+fn marks(f: &mut Formatter<'_>, reading: &LiveReading) -> fmt::Result {
+    for mark in reading.set("marks") {
+        write!(f, ", {}", mark.to_uppercase())?;
+    }
+    writeln!(f)
+}
+
+fn whole(reading: &LiveReading, field: &str) -> u32 {
+    reading.number(field).unwrap_or_default() as u32
+}
+
+fn number(value: Option<f64>, digits: usize) -> String {
+    value.map_or("?".to_owned(), |value| format!("{value:.digits$}"))
+}
+
+fn duration(seconds: Option<f64>) -> String {
+    let seconds = seconds.unwrap_or_default() as u64;
+    let (hours, minutes) = (seconds / 3_600, seconds / 60 % 60);
+    format!("{hours}:{minutes:02}:{:02} h", seconds % 60)
+}
+
+#[cfg(test)]
+mod tests {
+    use robot_app::tuning::LIVE_PAGES;
+
+    use super::*;
+
+    #[test]
+    fn pages_that_are_named_here_exist() {
+        for name in PUT_INTO_WORDS.iter().chain(&LEFT_OUT) {
+            assert!(LIVE_PAGES.iter().any(|page| page.name == *name), "{name}");
+        }
+    }
+
+    #[test]
+    fn hours_are_shown_as_such() {
+        assert_eq!(duration(Some(3_661.0)), "1:01:01 h");
+    }
+}

@@ -1,0 +1,45 @@
+//! How a recording goes (docs/tuning.md, `43`).
+
+use robot_app::tuning::RecordingState;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RecordingReport {
+    /// `Err` is a number this tool does not know.
+    pub state: Result<RecordingState, u8>,
+    /// Samples the robot has sent of its IMU …
+    pub imu: u32,
+    /// … and of its magnetometer.
+    pub mag: u32,
+}
+
+impl RecordingReport {
+    /// Of the bytes after the command.
+    pub(super) fn from_bytes([state, a, b, c, d, e, f]: [u8; 7]) -> Self {
+        Self {
+            state: RecordingState::from_code(state).ok_or(state),
+            imu: u32::from_le_bytes([a, b, c, 0]),
+            mag: u32::from_le_bytes([d, e, f, 0]),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// docs/tuning.md: cut short after 258 and 65,537 samples.
+    #[test]
+    fn the_documented_bytes_are_understood() {
+        let expected = RecordingReport {
+            state: Ok(RecordingState::CutShort),
+            imu: 258,
+            mag: 65_537,
+        };
+        let report = RecordingReport::from_bytes([2, 2, 1, 0, 1, 0, 1]);
+        assert_eq!(report, expected);
+        assert_eq!(
+            RecordingReport::from_bytes([9, 0, 0, 0, 0, 0, 0]).state,
+            Err(9)
+        );
+    }
+}

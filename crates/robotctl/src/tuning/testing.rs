@@ -1,0 +1,121 @@
+//! A robot for tests: the firmware's own tuning channel behind a bus that carries other frames and loses some.
+
+use std::{
+    cell::RefCell,
+    collections::VecDeque,
+    rc::Rc,
+    time::{Duration, Instant},
+};
+
+use robot_app::{
+    bring_up::BringUp,
+    diagnostics::DiagnosticsSnapshot,
+    domain::{BusId, CanFrame, RobotConfig, StandardId},
+    motor::{NotStanding, layout::ROBOT_LAYOUT},
+    tuning::{TuningAccess, TuningChannel, TuningGate},
+};
+
+use super::{Patience, TuningClient};
+use crate::can_link::{CanLink, CanLinkError};
+
+pub(crate) struct Robot {
+    pub channel: TuningChannel,
+    pub config: RobotConfig,
+    pub gate: TuningGate,
+    pub diagnostics: DiagnosticsSnapshot,
+    /// Of every joint's motor.
+    pub standing: Result<f32, NotStanding>,
+    /// Looks at the store after which everything is saved.
+    pub looks_to_save: Option<usize>,
+    /// From before there was a store.
+    pub is_old: bool,
+    /// Replies that the bus still loses.
+    pub to_lose: usize,
+    pub requests: usize,
+    pub replies: VecDeque<CanFrame>,
+}
+
+impl Robot {
+    /// A store that needs some looks until it has saved.
+    fn look(&mut self, frame: &CanFrame) {
+        if frame.payload().first() != Some(&0x31) {
+            return;
+        }
+        match &mut self.looks_to_save {
+            Some(0) => self.diagnostics.params.seen = self.channel.status().revision,
+            Some(left) => *left -= 1,
+            None => {}
+        }
+    }
+
+    /// The firmware's own reply or, from an old one, that it does not know the command (docs/tuning.md).
+    fn reply(&mut self, frame: &CanFrame) -> Option<CanFrame> {
+        if self.is_old
+            && let Some(command @ (0x31..=0x33)) = frame.payload().first()
+        {
+            let reply = StandardId::new(0x7A2).unwrap();
+            return Some(CanFrame::new(reply, [0xEE, *command, 2, 0, 0, 0, 0, 0]));
+        }
+        self.channel.begin_slot();
+        let access = TuningAccess {
+            config: &mut self.config,
+            bring_up: &mut BringUp::default(),
+            diagnostics: &self.diagnostics,
+            standing_angle_rad: &|_| Some(self.standing),
+        };
+        self.channel.on_frame(BusId::Can2, frame, self.gate, access)
+    }
+}
+
+#[derive(Clone)]
+pub(crate) struct Bus(pub Rc<RefCell<Robot>>);
+
+impl CanLink for Bus {
+    fn send(&mut self, frame: &CanFrame) -> Result<(), CanLinkError> {
+        let robot = &mut *self.0.borrow_mut();
+        robot.requests += 1;
+        robot.look(frame);
+        let reply = robot.reply(frame);
+        // Traffic of the motors comes first.
+        let feedback = StandardId::new(0x201).unwrap();
+        robot.replies.push_back(CanFrame::new(feedback, [0x21; 8]));
+        if robot.to_lose > 0 {
+            robot.to_lose -= 1;
+        } else {
+            robot.replies.extend(reply);
+        }
+        Ok(())
+    }
+
+    fn receive(&mut self, _: Instant) -> Result<Option<CanFrame>, CanLinkError> {
+        Ok(self.0.borrow_mut().replies.pop_front())
+    }
+}
+
+pub(crate) fn robot() -> (Bus, TuningClient) {
+    let bus = Bus(Rc::new(RefCell::new(Robot {
+        channel: TuningChannel::new(&ROBOT_LAYOUT),
+        diagnostics: DiagnosticsSnapshot::default(),
+        standing: Ok(0.75),
+        looks_to_save: Some(0),
+        is_old: false,
+        config: RobotConfig::default(),
+        gate: TuningGate::Open,
+        to_lose: 0,
+        requests: 0,
+        replies: VecDeque::new(),
+    })));
+    let patience = Patience {
+        each_try: Duration::ZERO,
+        tries: 3,
+    };
+    let client = TuningClient::new(Box::new(bus.clone()), patience);
+    (bus, client)
+}
+
+/// Of a robot with these diagnostics, over a bus that loses nothing.
+pub(crate) fn client(fill: impl FnOnce(&mut DiagnosticsSnapshot)) -> TuningClient {
+    let (bus, client) = robot();
+    fill(&mut bus.0.borrow_mut().diagnostics);
+    client
+}
