@@ -6,5 +6,5 @@ mod outputs;
 mod signals;
 
 pub use nets::{connect, drive_inputs, drives_input};
-pub use outputs::{Outputs, PwmTimers};
+pub use outputs::{Outputs, PwmTimers, check_mag_reset};
 pub use signals::{Signal, check, check_speed};

@@ -388,3 +388,43 @@ fn a_can_jump_width_past_the_end_of_the_bit() {
     let patch = patch(0x4000_641C, 3 << 24, 3 << 24);
     must_complain(patch, &["CAN1: SJW of 4 quanta, with 3 after the sample"]);
 }
+
+/// GPIOH_MODER bits 23:22 and GPIOG_MODER bits 13:12: what drives nothing.
+#[test]
+fn pins_that_were_never_made_outputs() {
+    let led = (0x4002_1C00, 3 << 22, 0);
+    let reset = (0x4002_1800, 3 << 12, 0);
+    let found = complaints(&[led, reset].map(|p| patch(p.0, p.1, p.2)));
+    must_name(
+        &found.failing,
+        &["PH11 is an input, needs an output: the green LED"],
+    );
+    must_name(&found.suspicious, &["PG6 floats"]);
+}
+
+/// FLASH_ACR bits 8 to 10. Nothing fails, but the times of the run are not those of the board.
+#[test]
+fn flash_without_prefetch_and_caches() {
+    let found = complaints(&[patch(0x4002_3C00, 7 << 8, 0)]);
+    assert_eq!(found.failing, Vec::<String>::new());
+    for what in ["prefetch", "instruction cache", "data cache"] {
+        must_name(&found.suspicious, &["FLASH:", what, "off at 5 wait states"]);
+    }
+}
+
+/// ADC3_SMPR2 bits 26:24: 3 cycles at 21 MHz, too short for the divider of 20 kOhm.
+#[test]
+fn a_battery_sampled_too_shortly() {
+    let patch = patch(0x4001_2210, 7 << 24, 0);
+    must_doubt(
+        patch,
+        &["ADC3: the battery's divider is sampled for 142 ns"],
+    );
+}
+
+/// TIM10_CCER bit 1: the heater is on while it should be off.
+#[test]
+fn an_inverted_heater_fails_the_default_drive() {
+    let patch = patch(0x4001_4420, 1 << 1, 1 << 1);
+    must_name(&drive_fails(patch), &["truth.imu.heater_duty"]);
+}

@@ -343,7 +343,8 @@ impl Soc {
         false
     }
 
-    fn patched(&self, addr: u32, value: u32) -> u32 {
+    /// What a write of `value` to `addr` becomes by the patches.
+    pub fn patched(&self, addr: u32, value: u32) -> u32 {
         self.patches
             .iter()
             .filter(|p| p.address == addr)

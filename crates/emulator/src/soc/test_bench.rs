@@ -75,6 +75,10 @@ impl Bench {
             bench.change_pin(Pin::new(port, number), |pin| pin.open_drain = true);
         }
         bench.change_pin(Pin::new('F', 10), |pin| pin.mode = PinMode::Analog);
+        bench.change_pin(Pin::new('G', 6), |pin| {
+            pin.mode = PinMode::Output;
+            pin.high = true;
+        });
         wiring::connect(&mut bench.pins);
         bench
     }

@@ -6,6 +6,7 @@ use super::signals::mode_name;
 use crate::{
     board_errors::BoardErrors,
     soc::{
+        peripheral::Ctx,
         pins::{Pin, PinBank, PinMode, Pull},
         timer::{Timer, output::Wave},
     },
@@ -50,6 +51,14 @@ pub struct PwmTimers<'a> {
     pub tim5: &'a Timer,
     /// Channel 1 is the heater.
     pub tim10: &'a Timer,
+}
+
+/// The IST8310 is talked to.
+pub fn check_mag_reset(ctx: &mut Ctx<'_>) {
+    if ctx.pins.mode(MAG_RESET) != PinMode::Output && ctx.pins.level(MAG_RESET).is_none() {
+        let message = format!("{MAG_RESET} floats: whether the IST8310 leaves its reset is chance");
+        ctx.errors.suspect(ctx.now, message);
+    }
 }
 
 /// What the chip last drove onto the devices, so that they hear of changes only.
@@ -159,24 +168,29 @@ impl Reader<'_> {
     /// What a MOSFET's gate sees: its pull-down keeps it off while the pin drives no high level.
     fn drive(&mut self, gate: &Gate, timer: &Timer, channel: usize) -> Wave {
         let settings = self.pins.settings(gate.pin);
-        let wave = match settings.mode {
-            PinMode::Output => Wave {
-                hz: 0.0,
-                duty: f64::from(u8::from(settings.high)),
-            },
-            _ => timer.wave(channel).unwrap_or(OFF),
+        let by_timer = timer.wave(channel).unwrap_or(OFF);
+        let by_port = Wave {
+            hz: 0.0,
+            duty: f64::from(u8::from(settings.high)),
+        };
+        let (wave, reaches) = match settings.mode {
+            PinMode::Output => (by_port, true),
+            PinMode::Alternate(number) => (by_timer, number == gate.timer_af),
+            PinMode::Input | PinMode::Analog if by_timer.duty == 0.0 => (by_port, false),
+            PinMode::Input | PinMode::Analog => (by_timer, false),
         };
         if wave.duty == 0.0 {
             return wave;
         }
-        let reaches = matches!(settings.mode, PinMode::Output)
-            || settings.mode == PinMode::Alternate(gate.timer_af);
         if reaches && !settings.open_drain {
             return wave;
         }
         let (name, pin) = (gate.name, gate.pin);
         let message = if reaches {
             format!("{pin} is open-drain, needs push-pull: the {name} stays off")
+        } else if by_timer.duty == 0.0 {
+            let found = mode_name(settings.mode);
+            format!("{pin} is {found}, needs an output: the {name} stays off")
         } else {
             let (timer, found) = (gate.timer_name, mode_name(settings.mode));
             format!(

@@ -299,8 +299,10 @@ fn write_private(engine: &mut Unicorn<'_, State>, offset: u64, size: usize, valu
         refuse_unprivileged(engine, addr);
         return;
     }
+    let soc = engine.get_data().soc.as_ref();
+    let value = soc.map_or(value as u32, |soc| soc.patched(addr, value as u32));
     let done = with_system(engine, |system, around| {
-        system.write(addr, size as u8, value as u32, around)
+        system.write(addr, size as u8, value, around)
     });
     if let Err(access) = done {
         refuse(engine, access);

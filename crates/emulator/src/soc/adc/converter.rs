@@ -1,6 +1,6 @@
 //! One converter: single conversions of one input, started by software.
 
-use robot_plant::time::{Ps, US};
+use robot_plant::time::{NS, Ps, US};
 
 use super::{Common, MAX_ADC_HZ, VREFINT_V, unmodelled};
 use crate::{
@@ -17,6 +17,9 @@ use crate::{
 const STABLE_AFTER: Ps = 3 * US;
 /// Least sampling time of the internal reference (DS8626, embedded reference voltage).
 const VREFINT_SAMPLING: Ps = 10 * US;
+/// The battery's divider (20 kΩ) and the switch (6 kΩ) charge 7 pF to half a count of 12 bits in 9.7 time constants
+/// (DS8626, ADC characteristics, equation for the external input impedance).
+const BATTERY_SAMPLING: Ps = 1_750 * NS;
 
 mod sr {
     pub const EOC: u32 = 1 << 1;
@@ -138,6 +141,13 @@ impl Converter {
         if input == Input::Vrefint && sampling < VREFINT_SAMPLING {
             let what =
                 format!("{name}: VREFINT is sampled for less than 10 us: the result is too low");
+            ctx.errors.suspect(ctx.now, what);
+        }
+        if input == Input::Battery && sampling < BATTERY_SAMPLING {
+            let ns = sampling / NS;
+            let what = format!(
+                "{name}: the battery's divider is sampled for {ns} ns: the result is too low"
+            );
             ctx.errors.suspect(ctx.now, what);
         }
         let at = ctx.now + sampling + cycles_to_ps(self.resolution_bits().into(), clock_hz);

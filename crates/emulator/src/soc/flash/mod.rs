@@ -15,13 +15,14 @@ mod tests;
 
 use robot_plant::{
     flash_chip::{FlashChip, PARAMETER_SECTORS, Phase},
-    time::Ps,
+    time::{MS, Ps},
 };
 
 use crate::soc::{
     access::Access,
     irq::Irq,
     peripheral::{Ctx, Peripheral, Unmodelled},
+    scheduler::Target,
 };
 use data_cache::DataCache;
 use history::History;
@@ -67,7 +68,14 @@ pub struct Flash {
     power_fails: bool,
     /// Number of the scheduler event that still counts.
     generation: u32,
+    /// When the caches should be on: a while after the clock needed wait states first.
+    caches_due: Option<Ps>,
 }
+
+/// Tag of the event that looks at the caches; no generation gets there.
+const CACHE_LOOK: u32 = u32::MAX;
+/// A boot may take its time.
+const CACHES_ON_WITHIN: Ps = 100 * MS;
 
 impl Default for Flash {
     fn default() -> Self {
@@ -84,6 +92,7 @@ impl Default for Flash {
             planned_cut: None,
             power_fails: false,
             generation: 0,
+            caches_due: None,
         }
     }
 }
@@ -194,12 +203,17 @@ impl Flash {
     }
 
     /// Files a board error where `hclk_hz` asks for more wait states than set.
-    pub fn check_speed(&self, ctx: &mut Ctx<'_>) {
+    pub fn check_speed(&mut self, ctx: &mut Ctx<'_>) {
         let needed = ctx
             .clocks
             .hclk_hz
             .div_ceil(HZ_PER_WAIT_STATE)
             .saturating_sub(1);
+        if needed > 0 && self.caches_due.is_none() {
+            let at = ctx.now + CACHES_ON_WITHIN;
+            self.caches_due = Some(at);
+            ctx.scheduler.at(at, Target::Flash, CACHE_LOOK);
+        }
         let set = self.acr & acr::LATENCY;
         if set < needed {
             let hclk_hz = ctx.clocks.hclk_hz;
@@ -207,6 +221,23 @@ impl Flash {
                 ctx.now,
                 format!("FLASH: {set} wait states at HCLK {hclk_hz} Hz, needs {needed}: fetches return garbage"),
             );
+        }
+    }
+
+    /// Time follows the count of instructions: what the wait states cost without the caches is not in it.
+    fn check_caches(&self, ctx: &mut Ctx<'_>) {
+        for (bit, name) in [
+            (acr::PRFTEN, "prefetch"),
+            (acr::ICEN, "instruction cache"),
+            (acr::DCEN, "data cache"),
+        ] {
+            if self.acr & bit == 0 {
+                let states = self.acr & acr::LATENCY;
+                let message = format!(
+                    "FLASH: {name} off at {states} wait states: code takes longer than this run shows"
+                );
+                ctx.errors.suspect(ctx.now, message);
+            }
         }
     }
 
@@ -257,6 +288,9 @@ impl Peripheral for Flash {
     }
 
     fn event(&mut self, tag: u32, ctx: &mut Ctx<'_>) {
+        if tag == CACHE_LOOK && self.caches_due == Some(ctx.now) {
+            self.check_caches(ctx);
+        }
         if tag != self.generation {
             return;
         }
@@ -282,6 +316,7 @@ impl Peripheral for Flash {
         self.cache = DataCache::default();
         self.power_fails = false;
         self.generation += 1;
+        self.caches_due = None;
         ctx.irq.set(FLASH_IRQ, false);
     }
 }

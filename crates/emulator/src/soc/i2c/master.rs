@@ -200,6 +200,7 @@ impl Master {
     }
 
     fn address_sent(&mut self, byte: u8, ctx: &mut Ctx<'_>) {
+        wiring::check_mag_reset(ctx);
         let scl = wiring::check(Signal::I2c3Scl, ctx);
         let sda = wiring::check(Signal::I2c3Sda, ctx);
         let scl_hz = self.scl_hz(ctx);

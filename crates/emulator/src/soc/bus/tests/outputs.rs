@@ -32,6 +32,8 @@ fn an_led_follows_its_port_pin() {
     // PH12 is red, active high.
     bench.write(GPIOH + 0x18, 1 << 12);
     assert_eq!(truth(&bench, "truth.led.r"), 0.0);
+    let expected = "PH12 is an input, needs an output: the red LED stays off";
+    assert_eq!(bench.errors(), [expected]);
     bench.write(GPIOH, 0b01 << 24);
     assert_eq!(truth(&bench, "truth.led.r"), 1.0);
     bench.write(GPIOH + 0x18, 1 << 28);
@@ -63,8 +65,8 @@ fn an_led_is_dimmed_by_its_timer() {
 fn an_open_drain_stage_opens_no_mosfet_and_releases_no_chip_select() {
     let mut bench = board();
     bench.write(GPIOH + 0x04, 1 << 12);
-    bench.write(GPIOH + 0x18, 1 << 12);
     bench.write(GPIOH, 0b01 << 24);
+    bench.write(GPIOH + 0x18, 1 << 12);
     assert_eq!(truth(&bench, "truth.led.r"), 0.0);
     // PA4, the accelerometer's chip select; then with the chip's pull-up.
     bench.write(GPIOA + 0x04, 1 << 4);
