@@ -15,6 +15,13 @@ use robotctl::{
 
 use super::tune::confirm_saved;
 
+/// As `println!`, but what nobody reads is an error of the command and no panic.
+macro_rules! say {
+    ($($text:tt)*) => {
+        writeln!(io::stdout(), $($text)*)?
+    };
+}
+
 /// Longest time of turning the robot by hand.
 const TURNING: Duration = Duration::from_secs(90);
 /// The gyro is calibrated and the attitude settled after this.
@@ -36,7 +43,7 @@ pub struct Mounting {
 impl Mounting {
     pub fn run(self) -> Result<()> {
         let mut client = TuningClient::new(self.can.open()?, Patience::default());
-        println!("Disarm the robot and take its weight: it is tilted by hand, motors off.\n");
+        say!("Disarm the robot and take its weight: it is tilted by hand, motors off.\n");
         let found = find_board(&mut client)?;
         self.conclude(&mut client, "mounting.board", found.orientation)?;
         if !self.mag {
@@ -69,17 +76,17 @@ impl Mounting {
         let (is, found_name) = (client.read(named)?, found.name());
         let wanted = named.parse(found_name)?;
         if is == wanted {
-            println!("{name} is {found_name} already: right.\n");
+            say!("{name} is {found_name} already: right.\n");
         } else if self.write {
             client.write(named, wanted)?;
-            println!("{name} = {found_name} (was {})", named.in_words(is));
+            say!("{name} = {found_name} (was {})", named.in_words(is));
             confirm_saved(client)?;
-            println!(
+            say!(
                 "A stop `tilt` from before goes with enable off and e-stop thrown for a second.\n"
             );
         } else {
-            println!("{name} is {}: WRONG.", named.in_words(is));
-            println!(
+            say!("{name} is {}: WRONG.", named.in_words(is));
+            say!(
                 "next:   the same with --write, or robotctl tune --can DEVICE set {name} {found_name}\n"
             );
         }
@@ -93,7 +100,7 @@ fn find_board(client: &mut TuningClient) -> Result<BoardFound> {
         loop {
             ask(what)?;
             match watch.still_force() {
-                Err(moved @ WatchError::Moved(_)) => println!("{moved}"),
+                Err(moved @ WatchError::Moved(_)) => say!("{moved}"),
                 force => return Ok(force?),
             }
         }
@@ -112,19 +119,22 @@ fn find_board(client: &mut TuningClient) -> Result<BoardFound> {
         nose,
         left,
     } = found;
-    println!(
+    say!(
         "\nLevel, the board's {} axis pointed up ({:.0} degrees off).",
-        up.0, up.1
+        up.0,
+        up.1
     );
-    println!(
+    say!(
         "Nose up by {:.0} degrees, its {} axis rose.",
-        nose.1, nose.0
+        nose.1,
+        nose.0
     );
-    println!(
+    say!(
         "Left side up by {:.0} degrees, its {} axis rose.",
-        left.1, left.0
+        left.1,
+        left.0
     );
-    println!(
+    say!(
         "So on the board {}: {}.",
         mounting::describe(orientation),
         orientation.name()
@@ -141,7 +151,7 @@ fn find_mag(client: &mut TuningClient, board: Orientation) -> Result<MagFound> {
             return Err(error.into());
         }
     }
-    println!(
+    say!(
         "Now turn it slowly in your hands: left, nose up, left side up, upside down, for half a minute."
     );
     let samples = turn(&mut watch)?;
@@ -154,7 +164,7 @@ fn find_mag(client: &mut TuningClient, board: Orientation) -> Result<MagFound> {
         left_ut,
         second_ut,
     } = found;
-    println!(
+    say!(
         "\nThe earth's field is {earth_ut:.0} µT; this way to sit leaves {left_ut:.1} µT, the next best {second_ut:.1}."
     );
     let (part, where_) = if dip_deg < 0.0 {
@@ -162,14 +172,14 @@ fn find_mag(client: &mut TuningClient, board: Orientation) -> Result<MagFound> {
     } else {
         ("into", "north")
     };
-    println!(
+    say!(
         "It points {part} the ground by {:.0} degrees, as {where_} of the equator.",
         dip_deg.abs()
     );
-    println!(
+    say!(
         "If you are on the other side, its axes are a mirror image: do not use it, and report that."
     );
-    println!(
+    say!(
         "So on the magnetometer, with forward, left, up for the board's x, y, z: {}: {}.",
         mounting::describe(orientation),
         orientation.name()
@@ -185,7 +195,7 @@ fn turn(watch: &mut Watch<'_>) -> Result<Vec<FieldSample>> {
     while start.elapsed() < TURNING {
         samples.push(watch.field()?);
         if enough_at.is_none() && mounting::enough_turned(&samples) {
-            println!("Good; go on for a while.");
+            say!("Good; go on for a while.");
             enough_at = Some(2 * samples.len());
         }
         if enough_at.is_some_and(|count| samples.len() >= count) {
@@ -196,7 +206,7 @@ fn turn(watch: &mut Watch<'_>) -> Result<Vec<FieldSample>> {
 }
 
 fn ask(what: &str) -> Result<()> {
-    print!("{what} Then press Enter. ");
+    write!(io::stdout(), "{what} Then press Enter. ")?;
     io::stdout().flush()?;
     let mut line = String::new();
     let read = io::stdin().read_line(&mut line);
