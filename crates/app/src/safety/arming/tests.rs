@@ -426,4 +426,6 @@ fn each_blocker_has_a_bit_of_its_own_and_the_table_is_in_their_order() {
         bits.is_sorted_by(|lower, higher| lower < higher),
         "{bits:x?}"
     );
+    let both = ArmingBlockers::REMOTE_NOT_FRESH.union(ArmingBlockers::FLASH_BUSY);
+    assert!(both.names().eq(["remote-not-fresh", "flash-busy"]));
 }
