@@ -1,7 +1,7 @@
 //! `robotctl mounting`: guides through some poses and says how the sensors sit.
 
 use std::{
-    io::{self, Write},
+    io,
     time::{Duration, Instant},
 };
 
@@ -13,14 +13,10 @@ use robotctl::{
     tuning::{self, Patience, TuningClient},
 };
 
-use super::tune::confirm_saved;
-
-/// As `println!`, but what nobody reads is an error of the command and no panic.
-macro_rules! say {
-    ($($text:tt)*) => {
-        writeln!(io::stdout(), $($text)*)?
-    };
-}
+use super::{
+    output::{begin, say},
+    tune::confirm_saved,
+};
 
 /// Longest time of turning the robot by hand.
 const TURNING: Duration = Duration::from_secs(90);
@@ -43,7 +39,7 @@ pub struct Mounting {
 impl Mounting {
     pub fn run(self) -> Result<()> {
         let mut client = TuningClient::new(self.can.open()?, Patience::default());
-        say!("Disarm the robot and take its weight: it is tilted by hand, motors off.\n");
+        say!("Disarm the robot and take its weight: it is tilted by hand, motors off.\n")?;
         let found = find_board(&mut client)?;
         self.conclude(&mut client, "mounting.board", found.orientation)?;
         if !self.mag {
@@ -76,19 +72,19 @@ impl Mounting {
         let (is, found_name) = (client.read(named)?, found.name());
         let wanted = named.parse(found_name)?;
         if is == wanted {
-            say!("{name} is {found_name} already: right.\n");
+            say!("{name} is {found_name} already: right.\n")?;
         } else if self.write {
             client.write(named, wanted)?;
-            say!("{name} = {found_name} (was {})", named.in_words(is));
+            say!("{name} = {found_name} (was {})", named.in_words(is))?;
             confirm_saved(client)?;
             say!(
                 "A stop `tilt` from before goes with enable off and e-stop thrown for a second.\n"
-            );
+            )?;
         } else {
-            say!("{name} is {}: WRONG.", named.in_words(is));
+            say!("{name} is {}: WRONG.", named.in_words(is))?;
             say!(
                 "next:   the same with --write, or robotctl tune --can DEVICE set {name} {found_name}\n"
-            );
+            )?;
         }
         Ok(())
     }
@@ -100,7 +96,7 @@ fn find_board(client: &mut TuningClient) -> Result<BoardFound> {
         loop {
             ask(what)?;
             match watch.still_force() {
-                Err(moved @ WatchError::Moved(_)) => say!("{moved}"),
+                Err(moved @ WatchError::Moved(_)) => say!("{moved}")?,
                 force => return Ok(force?),
             }
         }
@@ -123,22 +119,22 @@ fn find_board(client: &mut TuningClient) -> Result<BoardFound> {
         "\nLevel, the board's {} axis pointed up ({:.0} degrees off).",
         up.0,
         up.1
-    );
+    )?;
     say!(
         "Nose up by {:.0} degrees, its {} axis rose.",
         nose.1,
         nose.0
-    );
+    )?;
     say!(
         "Left side up by {:.0} degrees, its {} axis rose.",
         left.1,
         left.0
-    );
+    )?;
     say!(
         "So on the board {}: {}.",
         mounting::describe(orientation),
         orientation.name()
-    );
+    )?;
     Ok(found)
 }
 
@@ -153,7 +149,7 @@ fn find_mag(client: &mut TuningClient, board: Orientation) -> Result<MagFound> {
     }
     say!(
         "Now turn it slowly in your hands: left, nose up, left side up, upside down, for half a minute."
-    );
+    )?;
     let samples = turn(&mut watch)?;
     watch.check_attitude()?;
     let found = mounting::find_mag(board, &samples)?;
@@ -166,7 +162,7 @@ fn find_mag(client: &mut TuningClient, board: Orientation) -> Result<MagFound> {
     } = found;
     say!(
         "\nThe earth's field is {earth_ut:.0} µT; this way to sit leaves {left_ut:.1} µT, the next best {second_ut:.1}."
-    );
+    )?;
     let (part, where_) = if dip_deg < 0.0 {
         ("out of", "south")
     } else {
@@ -175,15 +171,15 @@ fn find_mag(client: &mut TuningClient, board: Orientation) -> Result<MagFound> {
     say!(
         "It points {part} the ground by {:.0} degrees, as {where_} of the equator.",
         dip_deg.abs()
-    );
+    )?;
     say!(
         "If you are on the other side, its axes are a mirror image: do not use it, and report that."
-    );
+    )?;
     say!(
         "So on the magnetometer, with forward, left, up for the board's x, y, z: {}: {}.",
         mounting::describe(orientation),
         orientation.name()
-    );
+    )?;
     Ok(found)
 }
 
@@ -195,7 +191,7 @@ fn turn(watch: &mut Watch<'_>) -> Result<Vec<FieldSample>> {
     while start.elapsed() < TURNING {
         samples.push(watch.field()?);
         if enough_at.is_none() && mounting::enough_turned(&samples) {
-            say!("Good; go on for a while.");
+            say!("Good; go on for a while.")?;
             enough_at = Some(2 * samples.len());
         }
         if enough_at.is_some_and(|count| samples.len() >= count) {
@@ -206,8 +202,7 @@ fn turn(watch: &mut Watch<'_>) -> Result<Vec<FieldSample>> {
 }
 
 fn ask(what: &str) -> Result<()> {
-    write!(io::stdout(), "{what} Then press Enter. ")?;
-    io::stdout().flush()?;
+    begin!("{what} Then press Enter. ")?;
     let mut line = String::new();
     let read = io::stdin().read_line(&mut line);
     if read.context("nobody answers")? == 0 {
