@@ -37,6 +37,8 @@ pub struct Motion {
     pub accel_mps2: [f32; 3],
     /// Somewhere in the 5 ms an axis was at the end of the BMI088's range. It is cut off there.
     pub saturated: bool,
+    /// How long each axis of the gyro was there, ms.
+    pub gyro_clipped_ms: [u8; 3],
 }
 
 /// Every whole 5 ms of the recording. A row counts as constant over its interval, so at 200 Hz its rows come out as
@@ -79,9 +81,21 @@ impl Rows<'_> {
                 gyro_rps,
                 accel_mps2,
                 saturated: self.covered(&window).any(is_saturated),
+                gyro_clipped_ms: self.clipped_ms(&window),
             }),
             field_ut: field.flatten(),
         }
+    }
+
+    /// Rounded up: an axis that is cut off at all is told.
+    fn clipped_ms(&self, window: &Range<Ps>) -> [u8; 3] {
+        let at_end = |row: &Row| {
+            row.gyro_rps
+                .map(|rate| f64::from(u8::from(rate.abs() >= GYRO_RANGE_RPS)))
+        };
+        let share = self.mean(window, at_end).unwrap_or_default();
+        let ms = IMU_PERIOD as f64 / MS as f64;
+        share.map(|share| (f64::from(share) * ms).ceil() as u8)
     }
 
     fn covered(&self, window: &Range<Ps>) -> impl Iterator<Item = &Row> {

@@ -117,6 +117,7 @@ impl Sensors {
                 accel_mps2: motion.accel_mps2,
                 gyro_dps: std::array::from_fn(|axis| gyro_dps[axis] + self.gyro_offset_dps[axis]),
                 saturated: motion.saturated,
+                gyro_clipped_ms: motion.gyro_clipped_ms,
                 ts_us: START_US + sample.end_us,
                 ..ImuState::default()
             };

@@ -106,6 +106,7 @@ impl Victim {
             },
             temperature_c: value(noise),
             saturated: noise.below(2) == 0,
+            gyro_clipped_ms: std::array::from_fn(|_| noise.below(256) as u8),
             ts_us: time_us(noise, self.now_us),
         };
         let mag = MagState {

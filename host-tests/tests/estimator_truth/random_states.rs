@@ -72,6 +72,7 @@ fn a_million_random_states_keep_it_sound() {
             gyro_dps: in_cube(&mut noise, current.rate_dps).map(|rate| rate as f32),
             accel_mps2: std::array::from_fn(|axis| (gravity[axis] + push[axis]) as f32),
             saturated: noise.below(20) == 0,
+            gyro_clipped_ms: std::array::from_fn(|_| noise.below(6).saturating_sub(4) as u8),
             ts_us: now_us,
             ..ImuState::default()
         };

@@ -161,6 +161,7 @@ impl World {
             accel_mps2: accel.map(|part| part.clamp(-accel_end, accel_end) as f32),
             saturated: gyro.iter().any(|rate| rate.abs() > gyro_end)
                 || accel.iter().any(|part| part.abs() > accel_end),
+            gyro_clipped_ms: gyro.map(|rate| if rate.abs() > gyro_end { 5 } else { 0 }),
             gyro_bias_dps: (self.sensors.taken_out_dps)(self.time_s()).map(|part| part as f32),
             ts_us: self
                 .clock_us(self.elapsed_us)

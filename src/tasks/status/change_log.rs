@@ -135,6 +135,15 @@ impl ChangeLog {
                     defmt::warn!("the imu tells no temperature: the gyro offset may drift");
                 }
             }
+            Some(CalibrationState::OffsetRefused) => {
+                let [x, y, z] = d.sensors.imu.gyro_dps;
+                defmt::warn!(
+                    "gyro calibration refused: {=f32} {=f32} {=f32} dps from the stored offset, at most 2. The robot turns slowly: hold it still. If it does stand still, store the offset (imu-calibration.gyro-bias-x-dps, -y-, -z-)",
+                    x,
+                    y,
+                    z
+                );
+            }
             Some(state) => defmt::info!("gyro calibration: {}", state),
             None => {}
         }

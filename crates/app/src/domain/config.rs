@@ -186,7 +186,7 @@ pub struct MountingConfig {
 pub struct ImuCalibration {
     pub accel_bias_mps2: [f32; 3],
     pub accel_scale: [f32; 3],
-    /// Stored offset; the start-up calibration replaces it.
+    /// Stored offset; the start-up calibration replaces it by what it measures within 2 °/s of it.
     pub gyro_bias_dps: [f32; 3],
     pub gyro_scale: [f32; 3],
 }

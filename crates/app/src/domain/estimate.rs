@@ -24,8 +24,9 @@ pub struct StateEstimate {
     /// were used since boot, since a gap of more than 100 ms between samples, since a sample that no sensor can measure
     /// (NaN, infinite, out of range), since the ticks' time last ran backwards, stood still or jumped by more than 20 ms,
     /// and since a rest showed the attitude to be wrong (offset by more than 1 °/s, up by more than 30°), upon which it
-    /// jumps. While false the other fields hold what is left of the last good ones. Says nothing about heading (the
-    /// magnetometer may be missing) or wheels.
+    /// jumps. False also from a turn beyond the gyro's range, or such a gap, until 0.6 s of rest or some seconds of
+    /// motion have shown where up is. While false the other fields hold what is left of the last good ones. Says nothing
+    /// about heading (the magnetometer may be missing) or wheels.
     pub valid: bool,
 }
 

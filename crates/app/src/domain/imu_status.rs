@@ -36,6 +36,9 @@ pub enum CalibrationState {
     WaitingForStillness = 1,
     Measuring = 2,
     Done = 3,
+    /// The last still second showed an offset too far from the stored one: a slow turn looks just so. It is measured
+    /// again.
+    OffsetRefused = 4,
 }
 
 /// What is known of the package's temperature: the offset of the gyro moves with it.
@@ -72,6 +75,8 @@ pub struct ImuRejects {
     pub frozen: u32,
     pub implausible: u32,
     pub saturated: u32,
+    /// Single frames of the gyro that their neighbours contradict: the rest of the sample was used.
+    pub gyro_frames: u32,
 }
 
 /// What was wrong with the gyro's buffer since boot.

@@ -14,6 +14,9 @@ pub struct ImuState {
     pub temperature_c: f32,
     /// An axis is at the end of its range, so the true value may lie beyond.
     pub saturated: bool,
+    /// How long each axis of the gyro was at the end of its range within the interval, ms: it turned further than
+    /// `gyro_dps` says, by an unknown angle.
+    pub gyro_clipped_ms: [u8; 3],
     /// End of the interval since the sample before, whose mean rate `gyro_dps` is; the delay of the sensor's filter is
     /// taken off. 0 = no sample yet.
     pub ts_us: u64,

@@ -129,7 +129,9 @@ fn disarmed(inputs: &IndicationInputs<'_>) -> Indication {
     } else if blocked_by(ArmingBlockers::CALIBRATION_PENDING) {
         match inputs.calibration.state {
             CalibrationState::WaitingForTemperature => Indication::WarmingUp,
-            CalibrationState::WaitingForStillness => Indication::HoldStill,
+            CalibrationState::WaitingForStillness | CalibrationState::OffsetRefused => {
+                Indication::HoldStill
+            }
             CalibrationState::Measuring | CalibrationState::Done => Indication::Calibrating,
         }
     } else if stops_in_part(inputs.safety) || NOT_READY.into_iter().any(blocked_by) {

@@ -12,7 +12,7 @@ use crate::{
         CalibrationState, HeaterConfig, ImuCalibration, ImuRejects, ImuState, ImuStatus,
         Orientation,
     },
-    math::Vector3,
+    math::{Vector3, vector},
 };
 
 /// Why a sample was rejected.
@@ -26,7 +26,7 @@ pub enum ImuSampleError {
     /// The accelerometer's own clock stands still, the gyro has measured nothing, or no count has changed for longer than
     /// noise allows.
     Frozen,
-    /// No robot moves like that, or the sensor has not been sane for long enough since it did.
+    /// No gyro turns like that, or the sensor has not been sane for long enough since it did.
     Implausible,
     /// At the end of the range for longer than a blow or a spin can take.
     Saturated,
@@ -152,15 +152,20 @@ impl ImuPipeline {
             bmi088::decode_gyro(gyro_answer, gyro_frames).ok_or(ImuSampleError::GyroAbsent)?;
         self.gyro_buffer.judge(&gyro);
         let frozen = self.frozen(&accel, &gyro);
-        let saturated = self.plausibility.judge(&accel, &gyro, read_us)?;
+        let judged = self.plausibility.judge(&accel, &gyro, read_us)?;
         if frozen {
             return Err(ImuSampleError::Frozen);
         }
+        let mistakes = &mut self.rejects.gyro_frames;
+        *mistakes = mistakes.wrapping_add(judged.gyro.mistakes.into());
+        let gyro_dps = vector::scale(judged.gyro.mean_counts, GyroRaw::DPS_PER_COUNT);
+        let clipped_ms = self.mounting.turn(judged.gyro.clipped_ms.map(f32::from));
         Ok(CheckedSample {
             accel_mps2: self.mounting.turn(accel.mps2()),
-            gyro_dps: self.mounting.turn(gyro.dps()),
+            gyro_dps: self.mounting.turn(gyro_dps),
+            gyro_clipped_ms: clipped_ms.map(|ms| ms.abs() as u8),
             temperature_c: accel.temperature.map(|temperature| temperature.celsius()),
-            saturated,
+            saturated: judged.saturated,
         })
     }
 
@@ -176,6 +181,7 @@ impl ImuPipeline {
         );
         let sample = Sample {
             gyro_dps: raw.gyro_dps,
+            stored_offset_dps: calibration.gyro_bias_dps,
             accel_mps2,
             temperature_c: raw.temperature_c,
             ts_us: read_us,
@@ -191,6 +197,7 @@ impl ImuPipeline {
             gyro_bias_dps,
             temperature_c: self.heater.status().temperature_c,
             saturated,
+            gyro_clipped_ms: raw.gyro_clipped_ms,
             ts_us: bmi088::measured_until_us(read_us),
         }
     }
@@ -231,6 +238,7 @@ impl ImuPipeline {
 struct CheckedSample {
     accel_mps2: Vector3,
     gyro_dps: Vector3,
+    gyro_clipped_ms: [u8; 3],
     temperature_c: Option<f32>,
     saturated: bool,
 }
@@ -241,6 +249,20 @@ mod tests {
 
     fn new_pipeline() -> ImuPipeline {
         ImuPipeline::new(ImuCalibration::default(), HeaterConfig::default())
+    }
+
+    /// A sample whose buffer brings these, the newest being in the registers too.
+    fn process_frames<const N: usize>(
+        pipeline: &mut ImuPipeline,
+        index: u32,
+        frames: [[i16; 3]; N],
+    ) -> Result<ImuState, ImuSampleError> {
+        let (accel, mut gyro) = answers(index);
+        let frames = frames.map(|frame| frame.map(i16::to_le_bytes));
+        let bytes = frames.as_flattened().as_flattened();
+        gyro[3..9].copy_from_slice(&bytes[bytes.len() - 6..]);
+        gyro[15] = N as u8;
+        pipeline.process(&accel, &gyro, bytes, u64::from(index) * 5_000)
     }
 
     /// BMI088 answers at rest, level, the gyro's buffer overrun, by the datasheet: 1 g is 2730 counts at ±12 g, temperature 0x1020 shifted = 39.125 °C.
@@ -305,6 +327,10 @@ mod tests {
         assert!((forward - 9.306_65).abs() < 0.01 && left.abs() + up.abs() < 0.01);
         let [forward, left, up] = state.gyro_dps;
         assert!((forward - 5.005).abs() < 0.01 && left.abs() + up.abs() < 0.01);
+        // And so is what was cut off: x points to the right.
+        let rates = [20_000, i16::MAX, i16::MAX, i16::MAX].map(|x| [x, 0, 0]);
+        let state = process_frames(&mut pipeline, 2, rates).unwrap();
+        assert_eq!(state.gyro_clipped_ms, [0, 4, 0]);
     }
 
     #[test]
@@ -451,31 +477,35 @@ mod tests {
                 .unwrap()
                 .saturated
         );
-        let (accel, mut gyro) = answers(3);
-        gyro[3..5].copy_from_slice(&i16::MIN.to_le_bytes());
-        assert_eq!(
-            pipeline.process(&accel, &gyro, &[], 15_000),
-            Err(ImuSampleError::Implausible)
-        );
+        // Two frames: the first, and its like.
+        let nonsense = process_frames(&mut pipeline, 3, [[i16::MIN, 0, 164]; 2]);
+        assert_eq!(nonsense, Err(ImuSampleError::Implausible));
         assert_eq!(pipeline.status().rejects.implausible, 1);
     }
 
-    /// Half of ±2000 °/s is 16,384 counts: more than a robot turns faster within 5 ms.
     #[test]
-    fn frames_that_differ_too_much_or_end_the_range_are_noticed() {
-        let (accel, mut gyro) = answers(1);
-        gyro[15] = 2;
-        // An earlier frame and the newest, which is what the registers show.
-        let process = |gyro: &[u8; 16], x: i16| {
-            let earlier = [x, 0, 164].map(i16::to_le_bytes).concat();
-            let frames = [&earlier[..], &gyro[3..9]].concat();
-            new_pipeline().process(&accel, gyro, &frames, 5_000)
+    fn a_wrong_frame_is_counted_and_its_sample_used() {
+        let mut pipeline = new_pipeline();
+        let (good, wrong) = ([0, 0, 164], [i16::MIN, 0, 164]);
+        let state = process_frames(&mut pipeline, 1, [good, good, wrong, good, good]).unwrap();
+        assert!((state.gyro_dps[2] - 10.01).abs() < 0.01 && !state.saturated);
+        assert!(state.gyro_dps[0].abs() < 0.01);
+        assert_eq!(pipeline.status().rejects.gyro_frames, 1);
+    }
+
+    /// By hand: 1000 °/s in one frame of two, then two frames at the end of the range.
+    #[test]
+    fn a_blow_is_averaged_and_its_end_of_the_range_told() {
+        let mut pipeline = new_pipeline();
+        let mut process = |index: u32, frames: [i16; 2]| {
+            process_frames(&mut pipeline, index, frames.map(|y| [0, y, 164]))
         };
-        assert_eq!(process(&gyro, 16_384), Err(ImuSampleError::Implausible));
-        let good = process(&gyro, 3_276).unwrap();
-        assert!((good.gyro_dps[0] - 100.0).abs() < 0.1);
-        gyro[3..5].copy_from_slice(&20_000i16.to_le_bytes());
-        assert!(process(&gyro, i16::MAX).unwrap().saturated);
-        assert!(!process(&gyro, i16::MAX - 1).unwrap().saturated);
+        let rising = process(1, [0, 16_384]).unwrap();
+        let beyond = process(2, [i16::MAX; 2]).unwrap();
+        assert!(!rising.saturated && beyond.saturated);
+        assert_eq!(beyond.gyro_clipped_ms, [0, 5, 0]);
+        // What the jump kept back is made up for: 500 and 2000 °/s in the mean.
+        let sum = rising.gyro_dps[1] + beyond.gyro_dps[1];
+        assert!((sum - 2_500.0).abs() < 0.1, "{sum}");
     }
 }

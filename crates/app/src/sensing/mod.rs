@@ -4,6 +4,7 @@ mod accel_delay;
 mod battery;
 pub mod bmi088;
 mod calibration;
+mod gyro_series;
 mod heater;
 mod imu_pipeline;
 pub mod ist8310;

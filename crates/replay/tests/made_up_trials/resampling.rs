@@ -81,5 +81,7 @@ fn what_the_boards_imu_cannot_measure_is_cut_off_and_marked() {
     let marked: Vec<usize> = (0..8).filter(|i| motion(*i).saturated).collect();
     assert_eq!(marked, [3, 5]);
     assert!((motion(3).gyro_rps[0] + 34.907).abs() < 1e-3);
+    assert_eq!(motion(3).gyro_clipped_ms, [5, 0, 0]);
+    assert_eq!(motion(5).gyro_clipped_ms, [0; 3]);
     assert!((motion(5).accel_mps2[0] - 117.680).abs() < 1e-3);
 }

@@ -4,7 +4,6 @@ use super::{
     bring_up::write_command,
     registers::{READ, accel, gyro},
 };
-use crate::math::{Vector3, vector};
 
 /// Bytes to exchange for one accelerometer sample: acceleration, sensor time and temperature in one burst.
 /// Answer: address echo, dummy byte, then registers 0x12 to 0x23.
@@ -89,11 +88,8 @@ pub struct TemperatureRaw(i16);
 pub struct GyroRaw {
     /// The newest.
     pub counts: [i16; 3],
-    /// The smallest and the largest since the last read.
-    pub lowest: [i16; 3],
-    pub highest: [i16; 3],
-    /// Mean since the last read; the newest where the buffer was of no use.
-    pub mean_counts: [f32; 3],
+    frames: [[i16; 3]; MAX_FRAMES],
+    frame_count: usize,
     /// Something was measured since the last read.
     pub fresh: bool,
     /// Frames that were left out because no rate makes them.
@@ -201,32 +197,41 @@ impl AccelRaw {
 
 impl GyroRaw {
     /// °/s a count at ±2000 °/s.
-    const DPS_PER_COUNT: f32 = 1.0 / 16.384;
+    pub const DPS_PER_COUNT: f32 = 1.0 / 16.384;
 
     /// Nothing but what the data registers show.
-    pub fn of(counts: [i16; 3]) -> Self {
+    fn of(counts: [i16; 3]) -> Self {
         Self {
             counts,
-            lowest: counts,
-            highest: counts,
-            mean_counts: counts.map(f32::from),
+            frames: [[0; 3]; MAX_FRAMES],
+            frame_count: 0,
             fresh: false,
             spikes: 0,
             buffer: BufferVerdict::Unknown,
         }
     }
 
-    /// The mean of the buffer's frames counts if the newest of them is what the registers show, or cannot be compared
-    /// because the registers show a spike.
+    /// All that was measured since the last read, one a millisecond, the newest last; the newest alone where the buffer
+    /// was of no use.
+    pub fn frames(&self) -> &[[i16; 3]] {
+        match self.frames.get(..self.frame_count) {
+            Some(frames) if !frames.is_empty() => frames,
+            _ => core::slice::from_ref(&self.counts),
+        }
+    }
+
+    /// The buffer's frames count if the newest of them is what the registers show, or cannot be compared because the
+    /// registers show a spike.
     fn take_frames(&mut self, registers: [i16; 3], frames: &[[u8; FRAME_LEN]]) {
-        let mut mean = Mean::default();
         let mut newest = [None; 2];
+        let mut count = 0usize;
         for bytes in frames {
             let counts = frame(*bytes);
             if counts == SPIKE {
                 self.spikes = self.spikes.saturating_add(1);
-            } else {
-                mean.add(counts);
+            } else if let Some(place) = self.frames.get_mut(count) {
+                *place = counts;
+                count = count.saturating_add(1);
                 newest = [newest[1], Some(counts)];
             }
         }
@@ -236,53 +241,13 @@ impl GyroRaw {
         let is_shown = |counts: [i16; 3]| is_near(counts, registers);
         if registers == SPIKE {
             self.counts = last;
-            (self.lowest, self.highest) = (last, last);
         } else if is_shown(last) || before.is_some_and(is_shown) {
             self.buffer = BufferVerdict::Agrees;
         } else {
             self.buffer = BufferVerdict::Differs;
             return;
         }
-        self.lowest = least(self.lowest, mean.lowest);
-        self.highest = most(self.highest, mean.highest);
-        self.mean_counts = mean.counts();
-    }
-
-    /// Mean rate since the last read.
-    pub fn dps(&self) -> [f32; 3] {
-        vector::scale(self.mean_counts, Self::DPS_PER_COUNT)
-    }
-}
-
-/// Of at most 8 frames: their sum fits single precision without rounding.
-struct Mean {
-    sum: Vector3,
-    frames: f32,
-    lowest: [i16; 3],
-    highest: [i16; 3],
-}
-
-impl Default for Mean {
-    fn default() -> Self {
-        Self {
-            sum: [0.0; 3],
-            frames: 0.0,
-            lowest: [i16::MAX; 3],
-            highest: [i16::MIN; 3],
-        }
-    }
-}
-
-impl Mean {
-    fn add(&mut self, counts: [i16; 3]) {
-        self.sum = vector::add(self.sum, counts.map(f32::from));
-        self.frames += 1.0;
-        self.lowest = least(self.lowest, counts);
-        self.highest = most(self.highest, counts);
-    }
-
-    fn counts(&self) -> Vector3 {
-        vector::scale(self.sum, 1.0 / self.frames)
+        self.frame_count = count;
     }
 }
 
@@ -290,14 +255,6 @@ fn is_near(one: [i16; 3], other: [i16; 3]) -> bool {
     one.iter()
         .zip(other)
         .all(|(a, b)| a.abs_diff(b) <= MAX_DIFFERENCE)
-}
-
-fn least([a, b, c]: [i16; 3], [x, y, z]: [i16; 3]) -> [i16; 3] {
-    [a.min(x), b.min(y), c.min(z)]
-}
-
-fn most([a, b, c]: [i16; 3], [x, y, z]: [i16; 3]) -> [i16; 3] {
-    [a.max(x), b.max(y), c.max(z)]
 }
 
 impl TemperatureRaw {
@@ -342,30 +299,23 @@ mod tests {
         counts.flat_map(|count| count.to_le_bytes()).collect()
     }
 
-    /// By hand: (90 + 100) / 2, (−300 − 200) / 2, (296 + 300) / 2.
     #[test]
-    fn frames_are_averaged_and_their_ends_known() {
-        let frames = bytes([[90, -300, 296], [100, -200, 300]]);
-        let raw = decode_gyro(&answer(2), &frames).unwrap();
+    fn frames_come_as_they_were_measured() {
+        let frames = [[90, -300, 296], [100, -200, 300]];
+        let raw = decode_gyro(&answer(2), &bytes(frames)).unwrap();
         assert_eq!(raw.counts, [100, -200, 300]);
-        assert_eq!(raw.mean_counts, [95.0, -250.0, 298.0]);
-        assert_eq!(raw.lowest, [90, -300, 296]);
-        assert_eq!(raw.highest, [100, -200, 300]);
+        assert_eq!(raw.frames(), frames);
         assert!(raw.fresh);
         assert_eq!((raw.buffer, raw.spikes), (BufferVerdict::Agrees, 0));
-        for (got, expected) in raw.dps().iter().zip([5.7983, -15.2588, 18.1885]) {
-            assert!((got - expected).abs() < 1e-3, "{:?}", raw.dps());
-        }
     }
 
     /// A sample that came between the registers and the buffer makes the last frame but one the registers' own.
     #[test]
     fn a_sample_in_between_is_no_difference() {
-        let frames = bytes([[0; 3], [100, -200, 300], [900, -900, 900]]);
-        let raw = decode_gyro(&answer(3), &frames).unwrap();
+        let frames = [[0; 3], [100, -200, 300], [900, -900, 900]];
+        let raw = decode_gyro(&answer(3), &bytes(frames)).unwrap();
         assert_eq!(raw.buffer, BufferVerdict::Agrees);
-        assert_eq!(raw.mean_counts[0], 1_000.0 / 3.0);
-        assert_eq!((raw.lowest[1], raw.highest[2]), (-900, 900));
+        assert_eq!(raw.frames(), frames);
     }
 
     /// X shows Z, Y shows X, Z shows Y; or an axis is a little more than 1 °/s off.
@@ -374,8 +324,7 @@ mod tests {
         for off in [[300, 100, -200], [117, -200, 300], [100, -200, 283]] {
             let raw = decode_gyro(&answer(2), &bytes([off, off])).unwrap();
             assert_eq!(raw.buffer, BufferVerdict::Differs, "{off:?}");
-            assert_eq!(raw.mean_counts, [100.0, -200.0, 300.0]);
-            assert_eq!((raw.lowest, raw.highest), (raw.counts, raw.counts));
+            assert_eq!(raw.frames(), [[100, -200, 300]]);
         }
         let within = decode_gyro(&answer(1), &bytes([[116, -216, 284]])).unwrap();
         assert_eq!(within.buffer, BufferVerdict::Agrees);
@@ -386,16 +335,14 @@ mod tests {
         let spike = [i16::MIN; 3];
         let good = [100, -200, 300];
         let raw = decode_gyro(&answer(4), &bytes([spike, good, spike, good])).unwrap();
-        assert_eq!(raw.mean_counts, [100.0, -200.0, 300.0]);
+        assert_eq!(raw.frames(), [good, good]);
         assert_eq!((raw.buffer, raw.spikes), (BufferVerdict::Agrees, 2));
-        assert_eq!((raw.lowest, raw.highest), (good, good));
         // In the registers too.
         let mut registers = answer(2);
         registers[3..9].copy_from_slice(&bytes([spike]));
         let raw = decode_gyro(&registers, &bytes([[90, -190, 310], spike])).unwrap();
         assert_eq!(raw.counts, [90, -190, 310]);
-        assert_eq!((raw.lowest, raw.highest), (raw.counts, raw.counts));
-        assert_eq!(raw.mean_counts, [90.0, -190.0, 310.0]);
+        assert_eq!(raw.frames(), [[90, -190, 310]]);
         assert_eq!((raw.buffer, raw.spikes), (BufferVerdict::Unknown, 1));
         // One axis at the end of the range is a rate, and nothing but spikes is nothing.
         let one = [i16::MIN, -200, 300];
@@ -407,7 +354,7 @@ mod tests {
     #[test]
     fn without_frames_the_newest_values_count() {
         let stale = decode_gyro(&answer(0xE4), &[]).unwrap();
-        assert_eq!(stale.mean_counts, [100.0, -200.0, 300.0]);
+        assert_eq!(stale.frames(), [[100, -200, 300]]);
         assert_eq!(stale.buffer, BufferVerdict::Stale);
         assert!(stale.fresh);
         assert!(!decode_gyro(&answer(0), &[]).unwrap().fresh);

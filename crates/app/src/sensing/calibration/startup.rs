@@ -12,6 +12,8 @@ use crate::{
 pub struct Sample {
     pub gyro_dps: Vector3,
     pub accel_mps2: Vector3,
+    /// The offset that was stored as a setting.
+    pub stored_offset_dps: Vector3,
     /// `None` while the sensor marks it invalid.
     pub temperature_c: Option<f32>,
     pub ts_us: u64,
@@ -44,10 +46,16 @@ impl StartupCalibration {
             self.gyro.restart();
             CalibrationState::WaitingForTemperature
         } else {
-            self.gyro
-                .feed(sample.gyro_dps, sample.accel_mps2, sample.ts_us);
+            self.gyro.feed(
+                sample.gyro_dps,
+                sample.accel_mps2,
+                sample.stored_offset_dps,
+                sample.ts_us,
+            );
             if self.gyro.bias_dps().is_some() {
                 CalibrationState::Done
+            } else if self.gyro.refused() {
+                CalibrationState::OffsetRefused
             } else if self.gyro.is_measuring() {
                 CalibrationState::Measuring
             } else {
@@ -66,6 +74,7 @@ mod tests {
     struct Bench {
         heater: Heater,
         calibration: StartupCalibration,
+        stored_offset_dps: Vector3,
         ts_us: u64,
     }
 
@@ -74,6 +83,7 @@ mod tests {
             Self {
                 heater: Heater::new(HeaterConfig::default()),
                 calibration: StartupCalibration::default(),
+                stored_offset_dps: [0.0; 3],
                 ts_us: 0,
             }
         }
@@ -87,6 +97,7 @@ mod tests {
                 self.calibration.feed(
                     &Sample {
                         gyro_dps: [0.5 + ripple, 0.0, turning_dps],
+                        stored_offset_dps: self.stored_offset_dps,
                         accel_mps2: [0.0, 0.0, 9.81],
                         temperature_c: Some(temperature_c),
                         ts_us: self.ts_us,
@@ -132,6 +143,35 @@ mod tests {
         assert_eq!(cold.progress, 0.0);
         let again = bench.run(150, 40.0, 0.0);
         assert_eq!(again.state, CalibrationState::Measuring);
+    }
+
+    /// A robot that turns slowly and evenly, or a gyro that is far off: only its owner knows.
+    #[test]
+    fn an_offset_beyond_two_degrees_a_second_is_refused_unless_it_is_stored() {
+        let mut bench = Bench::new();
+        assert_ne!(
+            bench.run(195, 40.0, 2.1).state,
+            CalibrationState::OffsetRefused
+        );
+        for _ in 0..5 {
+            let turning = bench.run(210, 40.0, 2.1);
+            assert_eq!(turning.state, CalibrationState::OffsetRefused);
+            assert_eq!(bench.calibration.gyro_bias_dps(), None);
+        }
+        let knocked = bench.run(1, 40.0, 20.0);
+        assert_eq!(knocked.state, CalibrationState::WaitingForStillness);
+        let still = bench.run(210, 40.0, 1.9);
+        assert_eq!(still.state, CalibrationState::Done);
+
+        let mut bench = Bench::new();
+        bench.stored_offset_dps = [0.4, 0.0, -4.0];
+        assert_eq!(
+            bench.run(250, 40.0, 1.9).state,
+            CalibrationState::OffsetRefused
+        );
+        assert_eq!(bench.run(250, 40.0, -5.5).state, CalibrationState::Done);
+        let [.., z] = bench.calibration.gyro_bias_dps().unwrap();
+        assert!((z + 5.5).abs() < 1e-3);
     }
 
     #[test]

@@ -14,17 +14,19 @@ const MAX_PAUSE_US: u32 = 50_000;
 /// Standing still: the BMI088 shows 0.014 °/s/√Hz, which is 0.14 °/s rms in means over 5 ms.
 const MAX_GYRO_STD_DPS: f32 = 0.4;
 const MAX_GYRO_EXCURSION_DPS: f32 = 3.0;
-/// Largest zero-rate offset that is taken for an offset (datasheet: ±1 °/s typical).
-const MAX_BIAS_DPS: f32 = 5.0;
+/// Furthest from the stored offset that is taken for an offset (datasheet: ±1 °/s typical). Beyond, a robot that turns
+/// slowly and evenly is more likely.
+const MAX_OFFSET_DPS: f32 = 2.0;
 const GRAVITY_MPS2: f32 = 9.806_65;
 const MAX_GRAVITY_ERROR_MPS2: f32 = 1.0;
 const MAX_ACCEL_EXCURSION_MPS2: f32 = 0.7;
 
-/// Feed it every sample; the first still second fixes the offset for good.
+/// Feed it every sample; the first still second whose offset can be one fixes it for good.
 #[derive(Clone, Debug, Default)]
 pub struct StartupGyroBias {
     window: Option<Window>,
     bias_dps: Option<Vector3>,
+    refused: bool,
 }
 
 /// Sums relative to the first sample, so that single precision is enough.
@@ -43,6 +45,12 @@ impl StartupGyroBias {
     /// The still second starts anew, unless the offset is known.
     pub fn restart(&mut self) {
         self.window = None;
+        self.refused = false;
+    }
+
+    /// The robot has stood still since a second whose rate was too large for an offset.
+    pub const fn refused(&self) -> bool {
+        self.refused
     }
 
     /// True once the robot has stood still for a moment.
@@ -69,19 +77,35 @@ impl StartupGyroBias {
     }
 
     /// `gyro_dps` with its offset still in it.
-    pub fn feed(&mut self, gyro_dps: Vector3, accel_mps2: Vector3, ts_us: u64) {
+    pub fn feed(
+        &mut self,
+        gyro_dps: Vector3,
+        accel_mps2: Vector3,
+        stored_offset_dps: Vector3,
+        ts_us: u64,
+    ) {
         if self.bias_dps.is_some() {
             return;
         }
         let window = match self.window.take() {
             Some(window) if window.continues_with(gyro_dps, accel_mps2, ts_us) => window,
-            _ => Window::starting_with(gyro_dps, accel_mps2, ts_us),
+            Some(_) => {
+                self.refused = false;
+                Window::starting_with(gyro_dps, accel_mps2, ts_us)
+            }
+            None => Window::starting_with(gyro_dps, accel_mps2, ts_us),
         };
         let window = window.with(gyro_dps, ts_us);
         if window.samples < MIN_SAMPLES || age_us(window.start_us, ts_us) < MIN_SPAN_US {
             self.window = Some(window);
         } else {
-            self.bias_dps = window.still_mean_dps();
+            let mean_dps = window.still_mean_dps();
+            let plausible = |mean_dps: &Vector3| {
+                let change_dps = vector::sub(*mean_dps, stored_offset_dps);
+                vector::is_within(change_dps, MAX_OFFSET_DPS)
+            };
+            self.bias_dps = mean_dps.filter(plausible);
+            self.refused = mean_dps.is_some() && self.bias_dps.is_none();
         }
     }
 }
@@ -119,7 +143,7 @@ impl Window {
         self
     }
 
-    /// The mean rate, if its spread and size say that the robot stood still.
+    /// The mean rate, if its spread says that the robot stood still, or turned evenly.
     fn still_mean_dps(&self) -> Option<Vector3> {
         let inverse = 1.0 / f32::from(self.samples);
         let mean_offset = vector::scale(self.sum_dps, inverse);
@@ -131,7 +155,7 @@ impl Window {
         let quiet = variance
             .iter()
             .all(|&value| value < MAX_GYRO_STD_DPS * MAX_GYRO_STD_DPS);
-        (quiet && vector::is_within(mean, MAX_BIAS_DPS)).then_some(mean)
+        quiet.then_some(mean)
     }
 }
 
@@ -147,6 +171,7 @@ mod tests {
             bias.feed(
                 vector::add(rate, [ripple, -ripple, ripple]),
                 LEVEL,
+                [0.0; 3],
                 from_us + index * 5_000,
             );
         }
@@ -168,7 +193,7 @@ mod tests {
     fn a_bump_starts_the_second_anew() {
         let mut bias = StartupGyroBias::default();
         feed_still(&mut bias, 150, 1, [0.0; 3]);
-        bias.feed([10.0, 0.0, 0.0], LEVEL, 1 + 150 * 5_000);
+        bias.feed([10.0, 0.0, 0.0], LEVEL, [0.0; 3], 1 + 150 * 5_000);
         feed_still(&mut bias, 199, 1 + 151 * 5_000, [0.0; 3]);
         assert_eq!(bias.bias_dps(), None);
         feed_still(&mut bias, 3, 1 + 350 * 5_000, [0.0; 3]);
@@ -183,9 +208,9 @@ mod tests {
         for index in 0..2_000u64 {
             let ts_us = 1 + index * 5_000;
             let swing = if index % 2 == 0 { 1.0 } else { -1.0 };
-            shaking.feed([swing, 0.0, 0.0], LEVEL, ts_us);
-            falling.feed([0.0; 3], [0.0, 0.0, 0.5], ts_us);
-            turning.feed([0.0, 0.0, 20.0], LEVEL, ts_us);
+            shaking.feed([swing, 0.0, 0.0], LEVEL, [0.0; 3], ts_us);
+            falling.feed([0.0; 3], [0.0, 0.0, 0.5], [0.0; 3], ts_us);
+            turning.feed([0.0, 0.0, 20.0], LEVEL, [0.0; 3], ts_us);
         }
         assert_eq!(shaking.bias_dps(), None);
         assert_eq!(falling.bias_dps(), None);

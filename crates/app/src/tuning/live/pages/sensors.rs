@@ -153,11 +153,12 @@ pub const GYRO_BIAS: [LiveField; 3] = [
     measure!("z-dps", "deg/s", 16, 1_000, |live, _| bias(live, 2)),
 ];
 
-const CALIBRATION: [&str; 4] = [
+const CALIBRATION: [&str; 5] = [
     "waiting-for-temperature",
     "waiting-for-stillness",
     "measuring",
     "done",
+    "offset-refused",
 ];
 const MARKS: [&str; 3] = ["calibrated", "attitude-valid", "saturated"];
 
