@@ -45,7 +45,8 @@ impl Wheels {
 }
 
 /// Outputs from the begin of the record on. `phase`: of the IMU's readings against the chips' own clocks.
-pub fn play(header: &Path, phase: Ps, wheels: Wheels) -> anyhow::Result<Run> {
+/// And how many IMU samples were rejected.
+pub fn play(header: &Path, phase: Ps, wheels: Wheels) -> anyhow::Result<(Run, u32)> {
     let mut world = World::new(WorldConfig {
         plant: PlantKind::Stand,
         seed: 1,
@@ -63,10 +64,11 @@ pub fn play(header: &Path, phase: Ps, wheels: Wheels) -> anyhow::Result<Run> {
         }
     }
     assert!(board.sensors.imu_calibrated(), "the record begins at rest");
-    Ok(Run {
+    let run = Run {
         mode: Mode::NineAxis,
         ticks,
-    })
+    };
+    Ok((run, board.rejected))
 }
 
 struct Board {
@@ -76,6 +78,7 @@ struct Board {
     imu: ImuState,
     mag: MagState,
     estimate: StateEstimate,
+    rejected: u32,
     imu_at: Ps,
     mag_at: Ps,
     tick_at: Ps,
@@ -97,6 +100,7 @@ impl Board {
             imu: ImuState::default(),
             mag: MagState::default(),
             estimate: StateEstimate::default(),
+            rejected: 0,
             imu_at: up + phase,
             mag_at: up,
             tick_at: up + TICK_PHASE,
@@ -107,8 +111,9 @@ impl Board {
     fn step(&mut self, world: &mut World) {
         while self.imu_at.min(self.mag_at) <= self.tick_at {
             if self.imu_at <= self.mag_at {
-                if let Ok(state) = self.sensors.read_imu(world, self.imu_at) {
-                    self.imu = state;
+                match self.sensors.read_imu(world, self.imu_at) {
+                    Ok(state) => self.imu = state,
+                    Err(_) => self.rejected += 1,
                 }
                 self.imu_at += IMU_PERIOD;
             } else {

@@ -31,7 +31,7 @@ fn compare(header: &Path, wheels: Wheels) -> anyhow::Result<Compared> {
         figures.ok_or_else(|| anyhow::anyhow!("{} has no reference", trial.name))
     };
     let alone = score(&robot_replay::run(&trial, Mode::NineAxis, [0.0; 3]))?;
-    let sensed = PHASES.map(|phase| score(&board::play(header, phase, wheels)?));
+    let sensed = PHASES.map(|phase| score(&board::play(header, phase, wheels)?.0));
     Ok(Compared {
         name: trial.name.clone(),
         alone,

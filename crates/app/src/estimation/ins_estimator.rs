@@ -24,8 +24,6 @@ const MAX_ACCEL_MPS2: f32 = 300.0;
 const MAX_FIELD_UT: f32 = 5_000.0;
 /// A field sample older than this, or newer, is turned to the present as if it were only so old.
 const MAX_MAG_AGE_S: f32 = 0.03;
-/// A rate beyond this in a saturated sample was cut off (BMI088: ±2000 °/s).
-const CLIPPED_RATE_DPS: f32 = 1_950.0;
 
 /// A sample that was measured so long after the settings changed was turned by the new ones: the sensors' tasks look at the
 /// settings before each.
@@ -159,7 +157,7 @@ impl InsEstimator {
         let gyro_rps = imu.gyro_dps.map(f32::to_radians);
         let clipped = Clipped {
             accel: imu.saturated,
-            gyro: imu.saturated && !vector::is_within(imu.gyro_dps, CLIPPED_RATE_DPS),
+            gyro_ms: imu.gyro_clipped_ms,
         };
         // Without what the known motion adds, the force points up.
         let standing_mps2 = vector::sub(imu.accel_mps2, self.motion.kinematic_mps2());
@@ -216,7 +214,9 @@ impl InsEstimator {
         estimate.gyro_bias_rps = self.attitude.bias_rps();
         estimate.accel_bias_mps2 = self.motion.accel_bias_mps2();
         estimate.ts_us = now_us;
-        estimate.valid = imu_age_us <= MAX_IMU_AGE_US && self.settled_samples >= SETTLING_SAMPLES;
+        estimate.valid = imu_age_us <= MAX_IMU_AGE_US
+            && self.settled_samples >= SETTLING_SAMPLES
+            && self.attitude.knows_up();
     }
 }
 

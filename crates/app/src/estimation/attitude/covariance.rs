@@ -10,7 +10,10 @@ use super::{
     rows,
     window::{PARAMETERS, Parameters},
 };
-use crate::{estimation::magnetic::Certainty, math::scalar};
+use crate::{
+    estimation::magnetic::Certainty,
+    math::{Vector3, scalar, vector},
+};
 
 /// Angles about east, north and up in rad, speed east and north in m/s, gyro bias and misalignment.
 pub(super) const ERRORS: usize = 17;
@@ -45,6 +48,11 @@ pub(super) const FIRST_ANGLE: f32 = (10.0 * DEG) * (10.0 * DEG);
 const FIRST_SPEED: f32 = 1.0;
 const FIRST_BIAS: f32 = (3.0 * DEG) * (3.0 * DEG);
 const FIRST_MISALIGNMENT: f32 = 0.006 * 0.006;
+/// Up as a rest of 0.6 s shows it: 0.5°, and 0.1 m/s of speed.
+const UP_AT_REST: f32 = (0.5 * DEG) * (0.5 * DEG);
+const SPEED_AT_REST: f32 = 0.1 * 0.1;
+/// Of a heading of which nothing is known.
+const HALF_TURN: f32 = (90.0 * DEG) * (90.0 * DEG);
 /// Below this a variance has no meaning in single precision.
 const LEAST_VARIANCE: f32 = 1e-12;
 
@@ -85,17 +93,61 @@ impl Covariance {
         self.rows.get_mut(index)?.get_mut(index)
     }
 
-    /// The gyro bias is another one from now on, known as well as `variance` says.
+    /// The errors from `first` on are others from now on, with these variances and nothing to do with what was known.
+    #[cold]
     #[inline(never)]
-    pub fn replace_bias(&mut self, variance: f32) {
+    pub fn replace(&mut self, first: usize, variances: &[f32]) {
+        let replaced = first..first.saturating_add(variances.len());
         for (index, row) in self.rows.iter_mut().enumerate() {
-            if (BIAS..MISALIGNMENT).contains(&index) {
+            if replaced.contains(&index) {
                 row.fill(0.0);
+            } else if let Some(part) = row.get_mut(replaced.clone()) {
+                part.fill(0.0);
             }
-            let [_, _, _, _, _, x, y, z, ..] = row;
-            (*x, *y, *z) = (0.0, 0.0, 0.0);
         }
-        self.doubt(BIAS, &[variance; 3]);
+        self.doubt(first, variances);
+    }
+
+    /// The gyro bias is another one from now on, known as well as `variance` says.
+    pub fn replace_bias(&mut self, variance: f32) {
+        self.replace(BIAS, &[variance; 3]);
+    }
+
+    /// The gyro did not see a part of the turn. `unseen_rad`: by each axis of ENU, what each of the body's may have
+    /// turned further. Nor was the acceleration seen as it was, so the speed felt begins anew.
+    #[cold]
+    #[inline(never)]
+    pub fn doubt_turn(&mut self, unseen_rad: &[Vector3; 3]) {
+        let sum: f32 = unseen_rad.iter().map(|row| vector::dot(*row, *row)).sum();
+        let share = if sum > HALF_TURN {
+            HALF_TURN / sum
+        } else {
+            1.0
+        };
+        for (row, one) in self.rows.iter_mut().zip(unseen_rad) {
+            for (part, other) in row.iter_mut().zip(unseen_rad) {
+                *part += share * vector::dot(*one, *other);
+            }
+        }
+        self.replace(SPEED, &[FIRST_SPEED; 2]);
+    }
+
+    /// Rest has shown where up is. The heading is what it was, give or take `turn_variance`.
+    #[cold]
+    #[inline(never)]
+    pub fn know_up(&mut self, turn_variance: f32) {
+        let [_, _, heading] = self.variances(0);
+        let heading = scalar::min(heading + turn_variance, HALF_TURN);
+        self.replace(
+            0,
+            &[
+                UP_AT_REST,
+                UP_AT_REST,
+                heading,
+                SPEED_AT_REST,
+                SPEED_AT_REST,
+            ],
+        );
     }
 
     pub fn certainty(&self) -> Certainty {

@@ -40,6 +40,8 @@ pub(super) struct ErrorFilter {
     findings: Findings,
     lesson: Lesson,
     correction: Correction,
+    /// See [`Covariance::doubt_turn`].
+    unseen_rad: Option<[Vector3; 3]>,
 }
 
 impl ErrorFilter {
@@ -53,6 +55,7 @@ impl ErrorFilter {
             findings: Findings::default(),
             lesson: Lesson::default(),
             correction: Correction::default(),
+            unseen_rad: None,
         }
     }
 
@@ -60,7 +63,26 @@ impl ErrorFilter {
     #[cold]
     pub fn restart(&mut self) {
         self.done = None;
+        self.unseen_rad = None;
         self.covariance.restart();
+    }
+
+    /// Rest has shown where up is; see [`Covariance::know_up`].
+    #[cold]
+    pub fn know_up(&mut self, turn_variance: f32) {
+        self.done = None;
+        self.unseen_rad = None;
+        self.covariance.know_up(turn_variance);
+    }
+
+    /// In the window that is about to be worked off.
+    pub fn doubt_turn(&mut self, unseen_rad: [Vector3; 3]) {
+        self.unseen_rad = Some(unseen_rad);
+    }
+
+    /// Nothing that was not seen waits to be taken into account.
+    pub const fn is_up_to_date(&self) -> bool {
+        self.unseen_rad.is_none()
     }
 
     /// The gyro bias is another one from now on; what was being found out of the old one is not added to it.
@@ -88,7 +110,12 @@ impl ErrorFilter {
             0..3 => self.forecast.turn_axis(done.into(), &self.covariance),
             3 => self.forecast.carry_rows(&mut self.covariance),
             4 => self.forecast.carry_columns(&mut self.covariance),
-            5 => self.forecast.add_noise(&mut self.covariance),
+            5 => {
+                self.forecast.add_noise(&mut self.covariance);
+                if let Some(unseen_rad) = self.unseen_rad.take() {
+                    self.covariance.doubt_turn(&unseen_rad);
+                }
+            }
             6..18 => self.learn(done.saturating_sub(6)),
             _ => {
                 self.done = None;

@@ -43,14 +43,26 @@ const UNKNOWN_BIAS: f32 = (1.0 * DEG) * (1.0 * DEG);
 const LEAST_UPRIGHT2: f32 = 0.75;
 /// A bias taken out elsewhere leaves this.
 const CALIBRATED_BIAS_VARIANCE: f32 = (0.1 * DEG) * (0.1 * DEG);
-/// Rate that the gyro may miss while it is at the end of its range.
-const CLIPPED_RATE_RPS: f32 = 300.0 * DEG;
+/// A force beyond this is a blow, after which the speed is known no better than if it had been cut off. People's hands
+/// get to 50.
+const BLOW_MPS2: f32 = 60.0;
+/// Rate beyond the end of the gyro's range, one standard deviation: blows turn a robot by up to 3500 °/s, of which the
+/// gyro shows 2000.
+const UNSEEN_RPS: f32 = 1_500.0 * DEG;
+/// Up is known, and known no more, when it is this sure.
+const KNOWN_UP: f32 = (2.0 * DEG) * (2.0 * DEG);
+/// Until up is known, so many quiet windows in a row show it, …
+const UP_WINDOWS: u8 = 3;
+/// … if their force is gravity's within this, m/s².
+const UP_FORCE_MPS2: f32 = 0.3;
 
-/// Which sensors were at the end of their range.
+/// What was at the end of its range.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Clipped {
+    /// Accelerometer or gyro.
     pub accel: bool,
-    pub gyro: bool,
+    /// How long, by axis of the body.
+    pub gyro_ms: [u8; 3],
 }
 
 #[derive(Clone, Debug)]
@@ -60,8 +72,11 @@ pub(super) struct AttitudeFilter {
     filter: ErrorFilter,
     rest: RestDetector,
     magnetic: Magnetic,
-    clipped_s: f32,
     aligned: bool,
+    /// What the gyro did not see in this window, if anything; see `Covariance::doubt_turn`.
+    unseen_rad: Option<[Vector3; 3]>,
+    /// Too much was not seen: it takes a rest or some motion to tell where up is.
+    up_unknown: bool,
 }
 
 impl AttitudeFilter {
@@ -72,8 +87,9 @@ impl AttitudeFilter {
             filter: ErrorFilter::new(),
             rest: RestDetector::default(),
             magnetic: Magnetic::new(),
-            clipped_s: 0.0,
             aligned: false,
+            unseen_rad: None,
+            up_unknown: false,
         }
     }
 
@@ -97,10 +113,10 @@ impl AttitudeFilter {
         self.strapdown.accelerate(accel_enu, dt_s);
         self.window.add_accel(accel_enu);
         self.rest.feed(gyro_rps, accel_mps2);
-        if clipped.gyro {
-            self.clipped_s += dt_s;
+        if clipped.gyro_ms != [0; 3] {
+            self.miss_turn(&carried.middle, clipped.gyro_ms);
         }
-        if clipped.accel {
+        if clipped.accel || vector::dot(accel_mps2, accel_mps2) > BLOW_MPS2 * BLOW_MPS2 {
             self.window.blind_s += dt_s;
         }
         self.apply_correction();
@@ -131,27 +147,53 @@ impl AttitudeFilter {
         let [vx, vy] = self.strapdown.speed_mps;
         self.strapdown.speed_mps = [vx + east, vy + north];
         self.magnetic.tilt(angle_rad);
+        if self.up_unknown && self.unseen_rad.is_none() && self.filter.is_up_to_date() {
+            self.up_unknown = self.filter.covariance.certainty().tilt > KNOWN_UP;
+        }
+    }
+
+    /// The body has turned further than the gyro shows.
+    #[cold]
+    #[inline(never)]
+    fn miss_turn(&mut self, to_enu: &[Vector3; 3], clipped_ms: [u8; 3]) {
+        let most_rad = clipped_ms.map(|ms| f32::from(ms) * 1e-3 * UNSEEN_RPS);
+        let unseen_rad = self.unseen_rad.get_or_insert_default();
+        for (sum, axis) in unseen_rad.iter_mut().zip(to_enu) {
+            *sum = vector::add(*sum, vector::multiply(*axis, most_rad));
+        }
+        let [east, north, _] = *unseen_rad;
+        let unseen = scalar::max(vector::dot(east, east), vector::dot(north, north));
+        if unseen + self.filter.covariance.certainty().tilt > KNOWN_UP {
+            self.up_unknown = true;
+        }
+    }
+
+    /// Up is known: nothing has happened that the gyro did not see, or it was found again since.
+    pub const fn knows_up(&self) -> bool {
+        !self.up_unknown
     }
 
     fn close_window(&mut self) -> bool {
-        if self.clipped_s > 0.0 {
-            let angle_rad = CLIPPED_RATE_RPS * self.clipped_s;
-            self.window.unseen_rad2 += angle_rad * angle_rad;
-            self.clipped_s = 0.0;
+        if let Some(unseen_rad) = self.unseen_rad.take() {
+            self.filter.doubt_turn(unseen_rad);
+            self.strapdown.speed_mps = [0.0; 2];
         }
         let t = self.window.duration_s;
         let field = self.magnetic.close(t, self.filter.covariance.certainty());
         self.filter.covariance.doubt(UP, &[field.doubt]);
-        let rest_rate = self
-            .rest
-            .close(field.body_ut)
-            .filter(|rate| self.may_be_bias(*rate));
+        let rest = self.rest.close(field.body_ut);
+        let rest_rate = rest
+            .filter(|rest| rest.proven || self.may_be_bias(rest.rate_rps))
+            .map(|rest| rest.rate_rps);
         if let Some(rate_rps) = rest_rate {
             let lost = self.is_lost(rate_rps);
             if lost || self.bias_is_unknown() {
                 self.start_from_rest(rate_rps);
                 return !lost;
             }
+        }
+        if self.up_unknown && self.rest.quiet_windows() >= UP_WINDOWS && self.feels_gravity() {
+            return self.find_up_at_rest();
         }
         if let Some(turn_rad) = field.first_heading_rad {
             self.turn_to_north(turn_rad);
@@ -186,15 +228,42 @@ impl AttitudeFilter {
         let beyond_rps = self.strapdown.gyro.corrected(rate_rps);
         let bias_rps = &mut self.strapdown.gyro.bias_rps;
         *bias_rps = vector::add(*bias_rps, beyond_rps);
+        self.lift();
+        self.filter.restart();
+        self.filter.replace_bias(CALIBRATED_BIAS_VARIANCE);
+        self.magnetic = Magnetic::new();
+    }
+
+    /// The attitude turns so that the window's mean force points up; the window ends, and up is known. The cosine of the
+    /// angle.
+    fn lift(&mut self) -> f32 {
         let force = self.window.accel_mps2();
         let up = vector::scale(force, scalar::inverse_sqrt(vector::dot(force, force)));
         let righting = Quaternion::lifting(up);
         self.strapdown.attitude = righting.after(self.strapdown.attitude).normalised();
         self.strapdown.speed_mps = [0.0; 2];
         self.window = Window::new();
-        self.filter.restart();
-        self.filter.replace_bias(CALIBRATED_BIAS_VARIANCE);
-        self.magnetic = Magnetic::new();
+        self.unseen_rad = None;
+        self.up_unknown = false;
+        let [.., cosine] = up;
+        cosine
+    }
+
+    fn feels_gravity(&self) -> bool {
+        let off_mps2 = vector::norm(self.window.accel_mps2()) - GRAVITY_MPS2;
+        off_mps2.abs() < UP_FORCE_MPS2
+    }
+
+    /// What the gyro has missed rest makes up for, but for the heading: by so much as up was off that may be too. False
+    /// if that was far.
+    #[cold]
+    #[inline(never)]
+    fn find_up_at_rest(&mut self) -> bool {
+        let cosine = self.lift();
+        // The angle's square, from its chord.
+        self.filter.know_up(2.0 - 2.0 * cosine);
+        self.magnetic.forget_world();
+        cosine > 0.0 && cosine * cosine > LEAST_UPRIGHT2
     }
 
     fn may_be_bias(&self, rate_rps: Vector3) -> bool {
@@ -275,9 +344,9 @@ impl AttitudeFilter {
     /// After a gap in the samples: keeps attitude and gyro model, doubts the attitude, forgets all that was adding up.
     pub fn restart_after_gap(&mut self) {
         self.window = Window::new();
-        self.clipped_s = 0.0;
         self.rest.restart();
         self.magnetic.restart();
         self.filter.covariance.doubt(0, &[FIRST_ANGLE; 3]);
+        self.up_unknown = self.aligned;
     }
 }

@@ -16,6 +16,8 @@ const MAX_FIELD_CHANGE_UT: f32 = 0.5;
 /// Rest is believed after so many windows of 0.2 s in a row; where the field is watched it takes longer to see a turn.
 const WINDOWS: u8 = 7;
 const WINDOWS_WITH_FIELD: u8 = 20;
+/// … and after so many an even turn of 0.5 °/s would have shown in a level field of 12 µT: then the rate is all offset.
+const WINDOWS_OF_PROOF: u8 = 35;
 /// The field when the rest began is the mean of so many windows; the field now as many, the older the less.
 const FIELD_WINDOWS: u8 = 6;
 
@@ -26,6 +28,15 @@ pub(super) struct RestDetector {
     windows: u8,
     field_then_ut: Vector3,
     field_now_ut: Vector3,
+}
+
+/// A window of a rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Rest {
+    /// Mean rate, all of it the gyro's offset unless this is a slow even turn.
+    pub rate_rps: Vector3,
+    /// The field stood still for long enough: it is no turn.
+    pub proven: bool,
 }
 
 /// Of one window.
@@ -59,8 +70,8 @@ impl RestDetector {
         sums.count = sums.count.saturating_add(1);
     }
 
-    /// Ends a window. `field_ut`: mean of the magnetometer in the body. Mean rate of the window if at rest.
-    pub fn close(&mut self, field_ut: Option<Vector3>) -> Option<Vector3> {
+    /// Ends a window. `field_ut`: mean of the magnetometer in the body. If at rest, what that shows.
+    pub fn close(&mut self, field_ut: Option<Vector3>) -> Option<Rest> {
         let sums = core::mem::take(&mut self.sums);
         let Some(means) = sums.quiet_means() else {
             self.restart();
@@ -82,7 +93,15 @@ impl RestDetector {
             Some(_) => WINDOWS_WITH_FIELD,
             None => WINDOWS,
         };
-        (self.windows >= needed).then_some(means.gyro_rps)
+        (self.windows >= needed).then_some(Rest {
+            rate_rps: means.gyro_rps,
+            proven: field_ut.is_some() && self.windows >= WINDOWS_OF_PROOF,
+        })
+    }
+
+    /// Windows in a row so far that were quiet and alike.
+    pub const fn quiet_windows(&self) -> u8 {
+        self.windows
     }
 
     fn field_stands(&mut self, field_ut: Option<Vector3>) -> bool {

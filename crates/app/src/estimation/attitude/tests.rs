@@ -13,7 +13,7 @@ const STATES: usize = ERRORS;
 const EARTH_UT: [f64; 3] = [0.0, 20.0, -45.0];
 const NEVER: Clipped = Clipped {
     accel: false,
-    gyro: false,
+    gyro_ms: [0; 3],
 };
 
 /// A robot that stands for a minute, then is carried about for one, and so on.

@@ -63,7 +63,7 @@ fn the_rate_at_rest_is_the_mean_of_the_window() {
         }
         found = detector.close(None);
     }
-    let [x, y, z] = found.expect("rest");
+    let [x, y, z] = found.expect("rest").rate_rps;
     assert!((x - 0.03).abs() < 1e-6 && (y + 0.02).abs() < 1e-6 && (z - 0.01).abs() < 1e-6);
 }
 
@@ -92,6 +92,33 @@ fn noise_of_the_field_is_not_a_turn() {
         Some(vector::add(FIELD_UT, [x, y, z]))
     };
     assert_eq!(first_rest(30, still, upright, field), Some(20));
+}
+
+/// As steady as an offset; from the thirty-fifth window on it would be taken for one.
+#[test]
+fn a_turn_is_never_proven_to_be_an_offset_and_a_rest_is_in_seven_seconds() {
+    let first_proof = |rate_dps: f32, level_ut: f32| {
+        let rate_rps = rate_dps.to_radians();
+        let mut detector = RestDetector::default();
+        (1..=300_u16).find(|window| {
+            for _ in 0..SAMPLES {
+                detector.feed([0.0, 0.0, rate_rps], GRAVITY);
+            }
+            let angle = rate_rps * 0.2 * f32::from(*window);
+            let field = [level_ut * angle.sin(), level_ut * angle.cos(), -45.0];
+            detector.close(Some(field)).is_some_and(|rest| rest.proven)
+        })
+    };
+    for rate_dps in [0.5, -0.7, 1.0, -2.0, 4.0] {
+        for level_ut in [12.0, 20.0, 30.0] {
+            assert_eq!(
+                first_proof(rate_dps, level_ut),
+                None,
+                "{rate_dps} {level_ut}"
+            );
+        }
+    }
+    assert_eq!(first_proof(0.0, 20.0), Some(35));
 }
 
 /// A motor's: seen as the mean of each 5 ms at 50 Hz.

@@ -1,0 +1,244 @@
+//! A robot that stands or drives, is hit, and is brought upright again; in double precision, one row a millisecond.
+
+use std::f64::consts::PI;
+
+pub type Vector = [f64; 3];
+
+const GRAVITY_MPS2: f64 = 9.81;
+/// East, north, up.
+const EARTH_UT: Vector = [0.0, 20.0, -44.0];
+const DT_S: f64 = 1e-3;
+/// From the end of a blow until the robot is righted.
+const DAZED_S: f64 = 0.15;
+const MAX_RIGHTING_DPS: f64 = 90.0;
+/// Closer to upright than this it counts as righted, and closer than that where it nods anyway.
+const UPRIGHT_RAD: f64 = 0.002;
+const NODDING_RAD: f64 = 0.04;
+
+#[derive(Clone, Copy, Debug)]
+pub struct Blow {
+    pub at_s: f64,
+    /// Body axis, right hand.
+    pub axis: Vector,
+    pub peak_dps: f64,
+    pub ms: f64,
+    /// At full rate at once, or as half a sine.
+    pub abrupt: bool,
+    /// For as long, in body axes.
+    pub accel_mps2: Vector,
+}
+
+impl Blow {
+    fn share(&self, t_s: f64) -> Option<f64> {
+        let share = (t_s - self.at_s) / (self.ms * 1e-3);
+        (0.0..1.0).contains(&share).then_some(share)
+    }
+
+    fn rate_dps(&self, t_s: f64) -> Vector {
+        let Some(share) = self.share(t_s) else {
+            return [0.0; 3];
+        };
+        let form = if self.abrupt { 1.0 } else { (PI * share).sin() };
+        scale(self.axis, form * self.peak_dps)
+    }
+
+    pub fn end_s(&self) -> f64 {
+        self.at_s + self.ms * 1e-3
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Base {
+    Standing,
+    /// Turns about the vertical at this rate.
+    Turning {
+        dps: i32,
+    },
+    /// Weaves, speeds up and brakes, nods.
+    Driving,
+}
+
+impl Base {
+    /// From rest, which the start-up calibration needs, in a second.
+    fn rate_dps(self, t_s: f64) -> Vector {
+        scale(self.full_rate_dps(t_s), begun(t_s))
+    }
+
+    fn full_rate_dps(self, t_s: f64) -> Vector {
+        match self {
+            Self::Standing => [0.0; 3],
+            Self::Turning { dps } => [0.0, 0.0, f64::from(dps)],
+            Self::Driving => [
+                8.0 * wave(0.9, t_s),
+                12.0 * wave(1.3, t_s),
+                60.0 * wave(0.4, t_s),
+            ],
+        }
+    }
+
+    /// Along the nose and to the left.
+    fn accel_mps2(self, t_s: f64) -> [f64; 2] {
+        self.full_accel_mps2(t_s).map(|part| begun(t_s) * part)
+    }
+
+    fn full_accel_mps2(self, t_s: f64) -> [f64; 2] {
+        match self {
+            Self::Standing | Self::Turning { .. } => [0.0; 2],
+            Self::Driving => [1.5 * wave(0.5, t_s), 0.5 * wave(0.4, t_s + 0.3)],
+        }
+    }
+}
+
+fn begun(t_s: f64) -> f64 {
+    (t_s - 2.0).clamp(0.0, 1.0)
+}
+
+fn wave(hz: f64, t_s: f64) -> f64 {
+    (2.0 * PI * hz * t_s).sin()
+}
+
+#[derive(Clone, Copy, Debug)]
+pub struct Row {
+    pub gyro_rps: Vector,
+    pub accel_mps2: Vector,
+    pub field_ut: Vector,
+    /// Body → ENU.
+    pub q_wxyz: [f64; 4],
+}
+
+/// Rows, and when the robot stands upright again for good: with a base that rests it rests from then on.
+pub fn rows(base: Base, blows: &[Blow], seconds: f64, seed: u64) -> (Vec<Row>, f64) {
+    let mut noise = Noise::new(seed);
+    let mut q = [1.0, 0.0, 0.0, 0.0];
+    let mut rows = Vec::new();
+    let (mut fallen, mut upright_s) = (false, 0.0);
+    for step in 0..(seconds / DT_S).round() as u32 {
+        let t_s = f64::from(step) * DT_S;
+        let mut dps = base.rate_dps(t_s);
+        for blow in blows {
+            dps = add(dps, blow.rate_dps(t_s));
+        }
+        let dazed = blows
+            .iter()
+            .any(|blow| (blow.at_s..blow.end_s() + DAZED_S).contains(&t_s));
+        let (righting_dps, tilt_rad) = righting(q);
+        fallen = dazed
+            || fallen
+                && tilt_rad
+                    > if base == Base::Driving {
+                        NODDING_RAD
+                    } else {
+                        UPRIGHT_RAD
+                    };
+        if fallen {
+            upright_s = t_s;
+        }
+        if fallen && !dazed {
+            dps = add(dps, righting_dps);
+        }
+        let rate_rps = dps.map(f64::to_radians);
+        q = turned(q, scale(rate_rps, DT_S));
+        let mut felt = felt_mps2(base, q, t_s);
+        for blow in blows {
+            if blow.share(t_s).is_some() {
+                felt = add(felt, blow.accel_mps2);
+            }
+        }
+        rows.push(Row {
+            gyro_rps: add(rate_rps, noise.vector(0.15_f64.to_radians())),
+            accel_mps2: add(felt, noise.vector(0.06)),
+            field_ut: add(to_body(q, EARTH_UT), noise.vector(0.4)),
+            q_wxyz: q,
+        });
+    }
+    (rows, upright_s)
+}
+
+/// Rate that brings the body's z axis up, and how far it is from there.
+fn righting(q: [f64; 4]) -> (Vector, f64) {
+    let [x, y, z] = to_body(q, [0.0, 0.0, 1.0]);
+    let tilt_rad = x.hypot(y).atan2(z);
+    // Up is at (x, y, z) in the body: turning about (−y, x, 0) takes z there.
+    let axis = [-y, x, 0.0];
+    let length = x.hypot(y);
+    if length < 1e-9 {
+        return ([0.0; 3], tilt_rad);
+    }
+    let dps = (tilt_rad.to_degrees() * 8.0).min(MAX_RIGHTING_DPS);
+    (scale(axis, dps / length), tilt_rad)
+}
+
+fn felt_mps2(base: Base, q: [f64; 4], t_s: f64) -> Vector {
+    let [along, left] = base.accel_mps2(t_s);
+    let [w, x, y, z] = q;
+    let yaw = (2.0 * (w * z + x * y)).atan2(1.0 - 2.0 * (y * y + z * z));
+    let (sin, cos) = yaw.sin_cos();
+    to_body(
+        q,
+        [
+            cos * along - sin * left,
+            sin * along + cos * left,
+            GRAVITY_MPS2,
+        ],
+    )
+}
+
+pub fn add(a: Vector, b: Vector) -> Vector {
+    std::array::from_fn(|axis| a[axis] + b[axis])
+}
+
+pub fn scale(a: Vector, factor: f64) -> Vector {
+    a.map(|part| factor * part)
+}
+
+fn product([w, x, y, z]: [f64; 4], [bw, bx, by, bz]: [f64; 4]) -> [f64; 4] {
+    [
+        w * bw - x * bx - y * by - z * bz,
+        w * bx + x * bw + y * bz - z * by,
+        w * by - x * bz + y * bw + z * bx,
+        w * bz + x * by - y * bx + z * bw,
+    ]
+}
+
+fn turned(q: [f64; 4], [x, y, z]: Vector) -> [f64; 4] {
+    let angle = (x * x + y * y + z * z).sqrt();
+    if angle == 0.0 {
+        return q;
+    }
+    let sinc = (angle / 2.0).sin() / angle;
+    let turned = product(q, [(angle / 2.0).cos(), sinc * x, sinc * y, sinc * z]);
+    let length = turned.iter().map(|part| part * part).sum::<f64>().sqrt();
+    turned.map(|part| part / length)
+}
+
+fn to_body([w, x, y, z]: [f64; 4], [vx, vy, vz]: Vector) -> Vector {
+    let [_, x, y, z] = product(product([w, -x, -y, -z], [0.0, vx, vy, vz]), [w, x, y, z]);
+    [x, y, z]
+}
+
+/// Splitmix, and twelve of its numbers added for a normal one.
+pub struct Noise(u64);
+
+impl Noise {
+    pub fn new(seed: u64) -> Self {
+        Self(seed.wrapping_mul(0xD134_2543_DE82_EF95))
+    }
+
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.uniform()
+    }
+
+    /// 0 … 1.
+    pub fn uniform(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// Of parts with this standard deviation.
+    pub fn vector(&mut self, std: f64) -> Vector {
+        std::array::from_fn(|_| std * ((0..12).map(|_| self.uniform()).sum::<f64>() - 6.0))
+    }
+}
