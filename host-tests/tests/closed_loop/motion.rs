@@ -205,15 +205,25 @@ fn one_wheel_and_the_gyro_are_enough() {
     }
 }
 
-/// Wheels in the air: what the accelerometer does not feel is no motion, until the wheels have turned for so long that
-/// it cannot tell any more.
+/// Wheels in the air: what the accelerometer does not feel is no motion, for however long they turn.
 #[test]
-fn wheels_that_turn_in_the_air_are_no_motion_for_two_seconds() {
+fn wheels_that_turn_in_the_air_are_no_motion() {
     let mut robot = driving(PlantKind::Stand, RadioKind::Sbus);
+    for (vx, wz) in [(0.4, 0.0), (0.4, 0.3), (0.0, 0.8), (-1.0, 0.0), (0.1, 0.0)] {
+        robot.remote(sticks(vx, wz));
+        let until_s = robot.seconds() + 5.0;
+        robot.run_until(until_s, |robot| {
+            let speeds = robot.diagnostics().estimate.vel_mps;
+            assert!(
+                speeds.iter().all(|mps| mps.abs() < 0.2),
+                "{speeds:?} at {} s",
+                robot.seconds()
+            );
+        });
+    }
+    robot.remote(sticks(0.0, 0.0));
+    let until_s = robot.seconds() + 1.0;
+    robot.run_until(until_s, |_| ());
     let speeds = robot.diagnostics().estimate.vel_mps;
-    assert!(speeds.iter().all(|mps| mps.abs() < 0.15), "{speeds:?}");
-    robot.run_until(6.0, |_| ());
-    let [east, north, _] = robot.diagnostics().estimate.vel_mps;
-    let mps = east.hypot(north);
-    assert!((mps - 0.6).abs() < 0.05, "{mps} m/s");
+    assert!(speeds.iter().all(|mps| mps.abs() < 1e-3), "{speeds:?}");
 }

@@ -57,6 +57,13 @@ impl Axes {
         self.rotation.map(|row| vector::dot(row, body))
     }
 
+    /// The part of a body vector along the level forward axis.
+    pub fn forward(&self, body: Vector3) -> f32 {
+        let [east, north, _] = self.rotation;
+        let [fx, fy] = self.forward;
+        fx * vector::dot(east, body) + fy * vector::dot(north, body)
+    }
+
     /// World → forward, left, up.
     pub fn flat(&self, [x, y, z]: Vector3) -> Vector3 {
         let [fx, fy] = self.forward;

@@ -6,6 +6,7 @@
 mod axes;
 mod position;
 mod slip;
+mod standstill;
 #[cfg(test)]
 mod tests;
 mod velocity_filter;
@@ -16,10 +17,11 @@ mod zero_velocity;
 use self::{
     axes::Axes,
     position::Position,
+    standstill::Standstill,
     velocity_filter::VelocityFilter,
     wheel_speed::{ForwardSpeeds, WheelSpeeds},
-    wheel_trust::{WheelTrust, Word},
-    zero_velocity::ZeroVelocity,
+    wheel_trust::{InertialSurplus, WheelTrust, Word},
+    zero_velocity::{WheelEvidence, ZeroVelocity},
 };
 use crate::{
     domain::{MotorFeedback, WheelOdomConfig},
@@ -57,6 +59,7 @@ pub(super) struct MotionEstimator {
     wheels: WheelSpeeds,
     trust: WheelTrust,
     zero_velocity: ZeroVelocity,
+    standstill: Standstill,
     filter: VelocityFilter,
     position: Position,
     kinematic_mps2: Vector3,
@@ -70,6 +73,7 @@ impl MotionEstimator {
             wheels: WheelSpeeds::new(config),
             trust: WheelTrust::new(),
             zero_velocity: ZeroVelocity::new(),
+            standstill: Standstill::new(),
             filter: VelocityFilter::new(),
             position: Position::new(),
             kinematic_mps2: [0.0; 3],
@@ -86,6 +90,7 @@ impl MotionEstimator {
     pub fn restart(&mut self) {
         self.trust = WheelTrust::new();
         self.zero_velocity = ZeroVelocity::new();
+        self.standstill = Standstill::new();
     }
 
     /// Takes a new sample, which ended `age_s` ago; `pose` and `motor` are those of now.
@@ -111,16 +116,17 @@ impl MotionEstimator {
         let speeds = self.wheels.forward_speeds(motor, &axes);
         let wheels = self.trust.evidence(speeds);
         let felt = (felt_mps2, free_mps2);
-        self.kinematic_mps2 = if self
-            .zero_velocity
-            .feed(felt, pose.rate_rps, wheels, sample.dt_s)
-        {
-            self.filter.hold_still(free_mps2, sample.dt_s);
-            self.trust.confirm(wheels);
-            [0.0; 3]
-        } else {
-            self.carry_on(free_mps2, speeds, &axes, age_s, sample.dt_s)
-        };
+        let stood = self.standstill.lasts();
+        self.kinematic_mps2 =
+            if self
+                .zero_velocity
+                .feed(felt, pose.rate_rps, wheels, stood, sample.dt_s)
+            {
+                self.stand(free_mps2, speeds, wheels, &axes, sample.dt_s);
+                [0.0; 3]
+            } else {
+                self.carry_on(free_mps2, speeds, &axes, age_s, sample.dt_s)
+            };
         self.wheels_stood_s = if wheel_speed::any_turns(motor) {
             0.0
         } else {
@@ -132,6 +138,28 @@ impl MotionEstimator {
         self.filter.stay_plausible();
         let step_m = vector::scale(self.filter.velocity_after(-0.5 * sample.dt_s), sample.dt_s);
         self.position.add(step_m);
+    }
+
+    fn stand(
+        &mut self,
+        free_mps2: Vector3,
+        speeds: ForwardSpeeds,
+        wheels: WheelEvidence,
+        axes: &Axes,
+        dt_s: f32,
+    ) {
+        if wheels == WheelEvidence::Spinning {
+            self.filter.stop(dt_s);
+            self.trust.spin(speeds, dt_s);
+            self.standstill
+                .go_on(axes.forward(free_mps2), self.zero_velocity.is_quiet(), dt_s);
+            return;
+        }
+        self.filter.hold_still(free_mps2, dt_s);
+        if wheels == WheelEvidence::Standing {
+            self.trust.confirm();
+            self.standstill.begin();
+        }
     }
 
     /// What accelerated the robot, in body axes; nothing if the velocity was set anew.
@@ -148,7 +176,14 @@ impl MotionEstimator {
             .predict(if known { free_mps2 } else { [0.0; 3] }, axes, dt_s);
         let [forward_mps, left_mps, up_mps] = axes.flat(self.filter.velocity_after(age_s));
         let surplus = speeds.map(|speed| speed.map(|speed_mps| speed_mps - forward_mps));
-        let word = self.trust.step(surplus, dt_s);
+        if self.standstill.counts() {
+            let quiet = self.zero_velocity.is_quiet();
+            self.standstill
+                .leave(axes.forward(free_mps2), axes.yaw_rps(), quiet, dt_s);
+        }
+        let inertial = self.standstill.speed();
+        let inertial = inertial.map(|speed| InertialSurplus::new(speeds, &speed));
+        let word = self.trust.step(surplus, inertial, dt_s);
         let (forward, left) = match word {
             Word::Proven(surplus_mps) | Word::Believed(surplus_mps) => (surplus_mps, -left_mps),
             Word::Unheard => (0.0, -left_mps),
@@ -163,7 +198,8 @@ impl MotionEstimator {
                 return [0.0; 3];
             }
         };
-        let learning = matches!(word, Word::Proven(_));
+        // What a standstill has shown of the offset is better than anything in the next seconds.
+        let learning = matches!(word, Word::Proven(_)) && !self.standstill.counts();
         let innovation_mps = [forward, left, -up_mps];
         let gained_mps2 = self.filter.correct(innovation_mps, axes, dt_s, learning);
         match word {

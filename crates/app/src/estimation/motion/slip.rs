@@ -29,10 +29,7 @@ impl Grip {
     pub fn step(self, surplus_mps: f32, dt_s: f32) -> Self {
         let off_mps = surplus_mps.abs();
         match self {
-            Self::Rolling if off_mps > SLIP_MPS => Self::Slipping {
-                since_s: 0.0,
-                agreed_s: 0.0,
-            },
+            Self::Rolling if off_mps > SLIP_MPS => Self::SLIPPING,
             Self::Rolling => Self::Rolling,
             Self::Slipping { since_s, agreed_s } => {
                 let drift_mps = DRIFT_MPS2 * since_s;
@@ -46,6 +43,22 @@ impl Grip {
                     agreed_s,
                 }
             }
+        }
+    }
+
+    pub const SLIPPING: Self = Self::Slipping {
+        since_s: 0.0,
+        agreed_s: 0.0,
+    };
+
+    /// As `step`, where what is known otherwise does not drift.
+    pub fn step_beside_rest(self, speed_mps: f32, dt_s: f32) -> Self {
+        match self.step(speed_mps, dt_s) {
+            Self::Slipping { agreed_s, .. } => Self::Slipping {
+                since_s: 0.0,
+                agreed_s,
+            },
+            Self::Rolling => Self::Rolling,
         }
     }
 

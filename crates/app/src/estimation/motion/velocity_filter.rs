@@ -145,9 +145,14 @@ impl VelocityFilter {
         self.accel_mps2 = [0.0; 3];
     }
 
+    /// The body stands.
+    pub fn stop(&mut self, dt_s: f32) {
+        self.leak(dt_s / STILL_S);
+    }
+
     /// The body stands: what accelerates it is nothing but offset.
     pub fn hold_still(&mut self, free_mps2: Vector3, dt_s: f32) {
-        self.leak(dt_s / STILL_S);
+        self.stop(dt_s);
         let share = scalar::min(dt_s / STILL_BIAS_S, 1.0);
         self.accel_bias_mps2 = vector::add(self.accel_bias_mps2, vector::scale(free_mps2, share));
     }

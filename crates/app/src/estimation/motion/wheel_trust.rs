@@ -2,6 +2,7 @@
 
 use super::{
     slip::Grip,
+    standstill::InertialSpeed,
     wheel_speed::{self, ForwardSpeeds},
     zero_velocity::WheelEvidence,
 };
@@ -10,6 +11,10 @@ use super::{
 const MAX_COAST_S: f32 = 2.0;
 /// Wheels that rolled for so long without a break are proven.
 const PROOF_S: f32 = 1.0;
+/// Wheels that both roll agree with the gyro on how the robot turns, and so with each other within this, …
+const DISAGREE_MPS: f32 = 0.3;
+/// … unless one of them spins: the other is as fast as the robot within this.
+const AGREE_MPS: f32 = 0.1;
 /// A rim slower than this stands.
 const STANDING_MPS: f32 = 0.02;
 
@@ -29,6 +34,22 @@ pub(super) enum Word {
     Anew(f32),
     /// None is heard, and the accelerometer no longer counts either.
     None,
+}
+
+/// Wheel speeds less what the accelerometer says since a standstill.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct InertialSurplus {
+    surplus: ForwardSpeeds,
+    tolerance_mps: f32,
+}
+
+impl InertialSurplus {
+    pub fn new(speeds: ForwardSpeeds, inertial: &InertialSpeed) -> Self {
+        Self {
+            surplus: speeds.map(|speed| speed.map(|mps| mps - inertial.forward_mps)),
+            tolerance_mps: inertial.tolerance_mps,
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -55,8 +76,17 @@ impl WheelTrust {
         self.coasting_s >= MAX_COAST_S
     }
 
-    /// `surplus`: wheel speeds less the robot's.
-    pub fn step(&mut self, surplus: ForwardSpeeds, dt_s: f32) -> Word {
+    /// `surplus`: wheel speeds less the robot's, and less what it can be after a standstill.
+    pub fn step(
+        &mut self,
+        surplus: ForwardSpeeds,
+        inertial: Option<InertialSurplus>,
+        dt_s: f32,
+    ) -> Word {
+        if let Some(inertial) = inertial {
+            self.leave_standstill(&inertial);
+        }
+        self.compare(surplus);
         let mut rolling = surplus;
         for (grip, surplus) in self.grip.iter_mut().zip(&mut rolling) {
             *grip = surplus.map_or(Grip::Rolling, |mps| grip.step(mps, dt_s));
@@ -79,6 +109,31 @@ impl WheelTrust {
         }
     }
 
+    /// A wheel that the accelerometer has not seen speed up spins.
+    fn leave_standstill(&mut self, inertial: &InertialSurplus) {
+        for (grip, surplus) in self.grip.iter_mut().zip(inertial.surplus) {
+            if grip.rolls() && surplus.is_some_and(|mps| mps.abs() > inertial.tolerance_mps) {
+                *grip = Grip::SLIPPING;
+            }
+        }
+    }
+
+    /// Of two wheels that contradict the gyro the one that is as fast as the robot rolls, if there is one.
+    fn compare(&mut self, surplus: ForwardSpeeds) {
+        let [Some(left), Some(right)] = surplus else {
+            return;
+        };
+        let both_roll = self.grip.iter().all(|grip| grip.rolls());
+        if !both_roll || (left - right).abs() <= DISAGREE_MPS {
+            return;
+        }
+        for (grip, mps) in self.grip.iter_mut().zip([left, right]) {
+            if mps.abs() > AGREE_MPS {
+                *grip = Grip::SLIPPING;
+            }
+        }
+    }
+
     fn roll(&mut self, surplus_mps: f32, dt_s: f32) -> Word {
         if self.coasting_s > 0.0 {
             self.coasting_s = 0.0;
@@ -95,6 +150,11 @@ impl WheelTrust {
         let Some(surplus_mps) = wheel_speed::mean(surplus) else {
             return Word::None;
         };
+        if let [Some(left), Some(right)] = surplus
+            && (left - right).abs() > DISAGREE_MPS
+        {
+            return Word::None;
+        }
         self.grip = [Grip::Rolling; 2];
         self.coasting_s = 0.0;
         self.rolling_s = 0.0;
@@ -102,10 +162,15 @@ impl WheelTrust {
     }
 
     /// The robot stands still: wheels that stand say so rightly.
-    pub fn confirm(&mut self, wheels: WheelEvidence) {
-        if wheels == WheelEvidence::Standing {
-            self.coasting_s = 0.0;
-            self.rolling_s = PROOF_S;
+    pub fn confirm(&mut self) {
+        self.coasting_s = 0.0;
+        self.rolling_s = PROOF_S;
+    }
+
+    /// The robot stands still, its wheels spin.
+    pub fn spin(&mut self, speeds: ForwardSpeeds, dt_s: f32) {
+        for (grip, speed) in self.grip.iter_mut().zip(speeds) {
+            *grip = speed.map_or(Grip::Rolling, |mps| grip.step_beside_rest(mps, dt_s));
         }
     }
 
@@ -114,13 +179,14 @@ impl WheelTrust {
         if speeds == [None; 2] {
             return WheelEvidence::Silent;
         }
-        let stands = |(speed, grip): (Option<f32>, Grip)| {
-            speed.is_none_or(|mps| grip.rolls() && mps.abs() <= STANDING_MPS)
-        };
-        if speeds.into_iter().zip(self.grip).all(stands) {
-            WheelEvidence::Standing
-        } else {
-            WheelEvidence::Turning
+        let mut evidence = WheelEvidence::Standing;
+        for (speed, grip) in speeds.into_iter().zip(self.grip) {
+            match speed {
+                Some(_) if !grip.rolls() => evidence = WheelEvidence::Spinning,
+                Some(mps) if mps.abs() > STANDING_MPS => return WheelEvidence::Turning,
+                _ => {}
+            }
         }
+        evidence
     }
 }

@@ -19,7 +19,10 @@ const MAX_FREE_MPS2: f32 = 1.0;
 pub(super) enum WheelEvidence {
     /// All that are heard stand, and none slips.
     Standing,
+    /// At least one rolls.
     Turning,
+    /// All that turn slip.
+    Spinning,
     Silent,
 }
 
@@ -27,6 +30,7 @@ pub(super) enum WheelEvidence {
 pub(super) struct ZeroVelocity {
     /// None before the first sample.
     smooth_mps2: Option<Vector3>,
+    quiet: bool,
     quiet_s: f32,
 }
 
@@ -34,36 +38,41 @@ impl ZeroVelocity {
     pub const fn new() -> Self {
         Self {
             smooth_mps2: None,
+            quiet: false,
             quiet_s: 0.0,
         }
     }
 
-    /// `accel_mps2`: specific force in body axes and what is left of it without gravity and offset. True while the robot
-    /// stands still.
+    /// The last sample was.
+    pub const fn is_quiet(&self) -> bool {
+        self.quiet
+    }
+
+    /// `accel_mps2`: specific force in body axes and what is left of it without gravity and offset. `stood`: nothing but
+    /// the wheels speaks against the robot's still standing. True while the robot stands still.
     pub fn feed(
         &mut self,
         accel_mps2: (Vector3, Vector3),
         rate_rps: Vector3,
         wheels: WheelEvidence,
+        stood: bool,
         dt_s: f32,
     ) -> bool {
+        self.quiet = self.judge(accel_mps2, rate_rps, dt_s);
         let needed_s = match wheels {
             WheelEvidence::Standing => STANDING_S,
             WheelEvidence::Silent => UNHEARD_S,
+            WheelEvidence::Spinning => return stood && self.quiet,
             WheelEvidence::Turning => {
                 self.quiet_s = 0.0;
                 return false;
             }
         };
-        self.quiet_s = if self.is_quiet(accel_mps2, rate_rps, dt_s) {
-            self.quiet_s + dt_s
-        } else {
-            0.0
-        };
+        self.quiet_s = if self.quiet { self.quiet_s + dt_s } else { 0.0 };
         self.quiet_s >= needed_s
     }
 
-    fn is_quiet(
+    fn judge(
         &mut self,
         (felt_mps2, free_mps2): (Vector3, Vector3),
         rate_rps: Vector3,
