@@ -76,6 +76,7 @@ faults! {
     VddaHigh "vdda-high" "the board's 3.3 V supply, to which the converters compare, is at 3.4 V",
     VddaLow "vdda-low" "the board's 3.3 V supply, to which the converters compare, is at 3.2 V",
     Tilted "tilted" "body falls forward to 80°, and is put upright at the end (not while a recording plays)",
+    Blow "blow" "body is struck: nose down by 35° at 3500 °/s, beyond the gyro's range; it is put upright at the end (not while a recording plays)",
     FloorSlippery "floor-slippery" "floor like wet ice: the wheels spin when they push, and slide when they brake (plant rolling)",
 }
 

@@ -419,6 +419,9 @@ fn power_and_pose() -> Vec<Row> {
         harmless("vdda-low", Flags::default()),
         // 0.9 rad at 2 rad/s, and 50 ms to be sure.
         global("tilted", 600.0, flags(&["tilt"], &["estimate-invalid"])).latched(),
+        // 3 ms until the gyro shows the end of its range, two samples of 5 ms, 3 ms to zero. At rest again it is valid
+        // within 1.5 s, which may be while the body still leans.
+        global("blow", 16.0, flags(&["estimate-invalid"], &[])).arms_during(Arms::Either),
         harmless("floor-slippery", Flags::default()),
     ]
 }

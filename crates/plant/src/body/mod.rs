@@ -9,7 +9,7 @@ use crate::{bmi088::Motion, m3508::Friction, world::PlantKind};
 pub(crate) use legs::Legs;
 use rolling::Rolling;
 use stand::Stand;
-pub(crate) use tilt::Tilt;
+pub(crate) use tilt::{Stance, Tilt};
 
 /// Wheel radius in m.
 pub(crate) const WHEEL_RADIUS_M: f64 = 0.06;

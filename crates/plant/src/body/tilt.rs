@@ -1,13 +1,42 @@
-//! A body that falls forward about its axle, and is put upright again.
+//! A body that falls forward about its axle or is struck, and is put upright again.
 
 use crate::{
     attitude::{self, Quaternion},
     bmi088::Motion,
 };
 
+const DEG: f64 = std::f64::consts::PI / 180.0;
 const FALL_RPS: f64 = 2.0;
 /// Where it lies.
-const LYING_RAD: f64 = 80.0 * std::f64::consts::PI / 180.0;
+const LYING_RAD: f64 = 80.0 * DEG;
+/// What a gyro of ±2000 °/s cannot see.
+const BLOW_RPS: f64 = 3_500.0 * DEG;
+const STRUCK_RAD: f64 = 35.0 * DEG;
+
+/// Where the body goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Stance {
+    Upright,
+    Fallen,
+    Struck,
+}
+
+impl Stance {
+    const fn goal_rad(self) -> f64 {
+        match self {
+            Self::Upright => 0.0,
+            Self::Fallen => LYING_RAD,
+            Self::Struck => STRUCK_RAD,
+        }
+    }
+
+    const fn speed_rps(self) -> f64 {
+        match self {
+            Self::Upright | Self::Fallen => FALL_RPS,
+            Self::Struck => BLOW_RPS,
+        }
+    }
+}
 
 /// Pitch beyond what the mechanics know: about the body's y axis, nose down positive. The fall is taken to turn about
 /// the IMU itself, so it adds a rate and no force.
@@ -18,10 +47,9 @@ pub(crate) struct Tilt {
 }
 
 impl Tilt {
-    pub(crate) fn step(&mut self, falling: bool, dt_s: f64) {
-        let goal_rad = if falling { LYING_RAD } else { 0.0 };
-        let way_rad = goal_rad - self.pitch_rad;
-        let most_rad = FALL_RPS * dt_s;
+    pub(crate) fn step(&mut self, stance: Stance, dt_s: f64) {
+        let way_rad = stance.goal_rad() - self.pitch_rad;
+        let most_rad = stance.speed_rps() * dt_s;
         let moved_rad = way_rad.clamp(-most_rad, most_rad);
         self.pitch_rad += moved_rad;
         self.rate_rps = moved_rad / dt_s;
@@ -59,7 +87,7 @@ mod tests {
     fn it_falls_to_80_degrees_at_2_rad_a_second_and_comes_back() {
         let mut tilt = Tilt::default();
         for _ in 0..2_000 {
-            tilt.step(true, 250e-6);
+            tilt.step(Stance::Fallen, 250e-6);
         }
         // Half a second: 1 rad. Gravity's reaction points to the tail and up: −sin 1, cos 1; the turn about the
         // earth's vertical likewise.
@@ -70,15 +98,30 @@ mod tests {
             assert!((got - expected).abs() < 1e-4, "{felt:?}");
         }
         for _ in 0..2_000 {
-            tilt.step(true, 250e-6);
+            tilt.step(Stance::Fallen, 250e-6);
         }
         let lying = tilt.felt(LEVEL);
         assert!((lying.accel_mps2[2] - 9.80665 * 0.173_648).abs() < 1e-4);
         assert_eq!(lying.gyro_rps[1], 0.0);
         for _ in 0..4_000 {
-            tilt.step(false, 250e-6);
+            tilt.step(Stance::Upright, 250e-6);
         }
         assert_eq!(tilt.felt(LEVEL).accel_mps2, LEVEL.accel_mps2);
+    }
+
+    /// 35° at 3500 °/s are 10 ms.
+    #[test]
+    fn a_blow_is_faster_than_a_gyro_can_see() {
+        let mut tilt = Tilt::default();
+        for _ in 0..38 {
+            tilt.step(Stance::Struck, 250e-6);
+            assert!((tilt.felt(LEVEL).gyro_rps[1] - 61.087).abs() < 0.1);
+        }
+        for _ in 0..4 {
+            tilt.step(Stance::Struck, 250e-6);
+        }
+        let struck = tilt.felt(LEVEL);
+        assert!((struck.accel_mps2[2] - 9.80665 * 0.819_152).abs() < 1e-4);
     }
 
     /// The attitude turns the earth's upward gravity reaction into what the accelerometer feels.

@@ -4,7 +4,7 @@ use super::{PHYSICS_STEP, World, physics_step_s};
 use crate::{
     attitude,
     bmi088::Motion,
-    body::Floor,
+    body::{Floor, Stance},
     faults::{Fault, RADIO_LOSSES},
     joints::{JOINTS, Shaft},
     m3508::M3508,
@@ -86,8 +86,7 @@ impl World {
         };
         self.body
             .step(torques_nm, M3508::friction(), floor, physics_step_s());
-        self.tilt
-            .step(self.faults.has(Fault::Tilted), physics_step_s());
+        self.tilt.step(self.stance(), physics_step_s());
         let Motion {
             accel_mps2,
             gyro_rps,
@@ -140,6 +139,16 @@ impl World {
     pub(super) fn shaft_rps(&self) -> [f64; 2] {
         let wheel_rps = self.body.wheel_rps();
         [SHAFT_SIGN[0] * wheel_rps[0], SHAFT_SIGN[1] * wheel_rps[1]]
+    }
+
+    fn stance(&self) -> Stance {
+        if self.faults.has(Fault::Blow) {
+            Stance::Struck
+        } else if self.faults.has(Fault::Tilted) {
+            Stance::Fallen
+        } else {
+            Stance::Upright
+        }
     }
 
     /// What a sensor in the body feels, in the body's axes.
