@@ -176,6 +176,36 @@ mod tests {
         assert!(refused(|config| {
             config.mag.soft_iron = [[1.0, 0.8, 0.8], [0.8, 1.0, -0.8], [0.8, -0.8, 1.0]];
         }));
+        // Mirroring: the determinant is 0.05 − 0.125; its leading parts are fine, and so is each pair of axes with y.
+        assert!(refused(|config| {
+            config.mag.soft_iron = [[1.0, 0.0, 0.5], [0.0, 0.5, 0.0], [0.5, 0.0, 0.1]];
+        }));
+        // By hand 0.5 · 0.1 − 0.2² = 0.01, and the same about each axis: the least that stretches still stands.
+        for [x, y, z] in [[0, 1, 2], [1, 2, 0], [2, 0, 1]] {
+            let of_pair = |shear: f32| {
+                let mut matrix = [[0.0; 3]; 3];
+                matrix[x][x] = 1.0;
+                matrix[y][y] = 0.5;
+                matrix[z][z] = 0.1;
+                matrix[y][z] = shear;
+                matrix[z][y] = shear;
+                matrix
+            };
+            assert!(!refused(|config| config.mag.soft_iron = of_pair(0.2)));
+            assert!(!refused(|config| config.mag.soft_iron = of_pair(-0.2)));
+            assert!(refused(|config| config.mag.soft_iron = of_pair(0.24)));
+            assert!(refused(|config| config.mag.soft_iron = of_pair(-0.24)));
+        }
+        // By hand: 1 · (1 − 0.25) − 0.5 · (0.5 − 0.25 s) + 0.5 s · (0.25 − 0.5 s), with s = 1 or −1: 0.5 and 0.
+        let all = |sign: f32| {
+            [
+                [1.0, 0.5, 0.5 * sign],
+                [0.5, 1.0, 0.5],
+                [0.5 * sign, 0.5, 1.0],
+            ]
+        };
+        assert!(!refused(|config| config.mag.soft_iron = all(1.0)));
+        assert!(refused(|config| config.mag.soft_iron = all(-1.0)));
         // Two axes mirrored: the determinant, 0.25, does not show it.
         assert!(refused(|config| {
             config.mag.soft_iron = [[0.5, 1.0, 1.0], [1.0, 0.5, 1.0], [1.0, 1.0, 1.0]];
