@@ -120,15 +120,12 @@ impl WheelTrust {
 
     /// Of two wheels that contradict the gyro the one that is as fast as the robot rolls, if there is one.
     fn compare(&mut self, surplus: ForwardSpeeds) {
-        let [Some(left), Some(right)] = surplus else {
-            return;
-        };
         let both_roll = self.grip.iter().all(|grip| grip.rolls());
-        if !both_roll || (left - right).abs() <= DISAGREE_MPS {
+        if !both_roll || !contradict(surplus) {
             return;
         }
-        for (grip, mps) in self.grip.iter_mut().zip([left, right]) {
-            if mps.abs() > AGREE_MPS {
+        for (grip, mps) in self.grip.iter_mut().zip(surplus) {
+            if mps.is_some_and(|mps| mps.abs() > AGREE_MPS) {
                 *grip = Grip::SLIPPING;
             }
         }
@@ -147,14 +144,9 @@ impl WheelTrust {
     }
 
     fn start_over(&mut self, surplus: ForwardSpeeds) -> Word {
-        let Some(surplus_mps) = wheel_speed::mean(surplus) else {
+        let Some(surplus_mps) = wheel_speed::mean(nearer(surplus)) else {
             return Word::None;
         };
-        if let [Some(left), Some(right)] = surplus
-            && (left - right).abs() > DISAGREE_MPS
-        {
-            return Word::None;
-        }
         self.grip = [Grip::Rolling; 2];
         self.coasting_s = 0.0;
         self.rolling_s = 0.0;
@@ -188,5 +180,26 @@ impl WheelTrust {
             }
         }
         evidence
+    }
+}
+
+/// Two wheels that the gyro says cannot both roll.
+fn contradict(surplus: ForwardSpeeds) -> bool {
+    match surplus {
+        [Some(left), Some(right)] => (left - right).abs() > DISAGREE_MPS,
+        _ => false,
+    }
+}
+
+/// Of two that contradict the gyro the one nearer to the speed known so far, unless that is far too.
+fn nearer(surplus: ForwardSpeeds) -> ForwardSpeeds {
+    if !contradict(surplus) {
+        return surplus;
+    }
+    let near = |speed: Option<f32>| speed.filter(|mps| mps.abs() <= DISAGREE_MPS);
+    match surplus.map(near) {
+        [Some(left), Some(right)] if left.abs() <= right.abs() => [Some(left), None],
+        [Some(_), Some(right)] => [None, Some(right)],
+        one => one,
     }
 }
