@@ -50,6 +50,7 @@ fn sample(q: &mut Quaternion, index: u64) -> Sample {
             gyro_rps: rate_rps.map(|rate| (rate + OFFSET_RPS) as f32),
             accel_mps2: accel.map(|part| part as f32),
             saturated: false,
+            gyro_clipped_ms: [0; 3],
         }),
         field_ut: index
             .is_multiple_of(SAMPLES_A_FIELD)
