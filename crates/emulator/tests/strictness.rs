@@ -428,3 +428,10 @@ fn an_inverted_heater_fails_the_default_drive() {
     let patch = patch(0x4001_4420, 1 << 1, 1 << 1);
     must_name(&drive_fails(patch), &["truth.imu.heater_duty"]);
 }
+
+/// NVIC_IPR of UART5, whose interrupt runs the control tick: below the sensors' 4.
+#[test]
+fn a_control_tick_below_the_sensors_fails_the_default_drive() {
+    let patch = patch(0xE000_E435, 0xFF, 0x50);
+    must_name(&drive_fails(patch), &["diag.tick.jitter_us"]);
+}
