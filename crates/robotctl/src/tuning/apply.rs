@@ -1,6 +1,9 @@
 //! A parameter file written to the robot.
 
-use robot_app::tuning::{Parameter, ParameterKind};
+use robot_app::{
+    domain::NO_CHANNEL,
+    tuning::{Parameter, ParameterKind},
+};
 
 use super::{Named, TuningClient, TuningError, UnknownName, find};
 use crate::parameter_file::ParameterFile;
@@ -85,6 +88,23 @@ fn may_be(parameter: &Parameter, value: f32) -> bool {
     of_kind && (parameter.min..=parameter.max).contains(&value)
 }
 
+/// Channels of the radio that were given up for another function.
+#[derive(Default)]
+struct Freed(Vec<u8>);
+
+impl Freed {
+    /// True for a radio channel that has not been given up yet; it counts as that from now on.
+    fn take(&mut self, setting: &Applied) -> bool {
+        let Named { group, parameter } = setting.named;
+        let is_channel = group.name == "radio" && parameter.name.ends_with("-channel");
+        let is_new = is_channel && !self.0.contains(&parameter.index);
+        if is_new {
+            self.0.push(parameter.index);
+        }
+        is_new
+    }
+}
+
 /// How the sensors sit is written before their calibrations, which are for how they sit. A value that does not fit the
 /// others yet is written after them.
 fn write_all(
@@ -92,6 +112,7 @@ fn write_all(
     settings: &[Applied],
     written: &mut usize,
 ) -> Result<(), TuningError> {
+    let mut freed = Freed::default();
     let mut waiting: Vec<&Applied> = settings.iter().filter(|s| s.before != s.after).collect();
     waiting.sort_by_key(|setting| setting.named.group.name != MOUNTING);
     while !waiting.is_empty() {
@@ -109,7 +130,11 @@ fn write_all(
             }
         }
         if let (true, Some(error)) = (refused.len() == tried, last_error) {
-            return Err(error);
+            // Channels that change places wait for each other in a ring.
+            let Some(channel) = refused.iter().find(|setting| freed.take(setting)) else {
+                return Err(error);
+            };
+            client.write(channel.named, NO_CHANNEL as f32)?;
         }
         waiting = refused;
     }

@@ -119,6 +119,29 @@ fn a_file_is_applied_whatever_the_order_of_its_values() {
     assert_eq!(max.map(|a| (a.before, a.after)), Some((1.5, 3.0)));
 }
 
+/// No two functions may share a channel, not even for a moment.
+#[test]
+fn channels_of_the_radio_may_change_places() {
+    let (bus, mut client) = robot();
+    let values = [
+        ("radio.steering-channel", 1.0),
+        ("radio.drive-channel", 2.0),
+        ("radio.select-channel", 0.0),
+        ("radio.enable-channel", 6.0),
+        ("radio.e-stop-channel", 4.0),
+    ];
+    apply(&mut client, &file(&values)).unwrap();
+    let radio = bus.0.borrow().config.radio;
+    assert_eq!((radio.steering.index, radio.drive.index), (1, 2));
+    assert_eq!(radio.select.index, 0);
+    assert_eq!((radio.enable.index, radio.e_stop.index), (6, 4));
+    let twice = [
+        ("radio.steering-channel", 9.0),
+        ("radio.drive-channel", 9.0),
+    ];
+    apply(&mut client, &file(&twice)).unwrap_err();
+}
+
 #[test]
 fn a_file_with_a_mistake_changes_nothing() {
     let (bus, mut client) = robot();
