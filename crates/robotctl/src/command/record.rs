@@ -8,6 +8,9 @@ use robotctl::recorder::{self, RecordPatience};
 
 use super::{connection::Connection, output::say};
 
+/// Ten samples of the IMU.
+const LONG_GAP_S: f64 = 0.05;
+
 #[derive(clap::Args)]
 pub struct Record {
     #[command(flatten)]
@@ -50,6 +53,12 @@ impl Record {
             "recorded {seconds:.1} s: {imu} samples of accelerometer and gyro, {mag} of the magnetometer, {} lost",
             recorded.lost
         )?;
+        let gap = recorded.samples.longest_gap_s();
+        if gap > LONG_GAP_S {
+            say!(
+                "note: {gap:.2} s are missing in one place: the robot erased flash meanwhile, or was busy"
+            )?;
+        }
         if mag == 0 {
             say!("note: the magnetometer gave none")?;
         }

@@ -91,6 +91,12 @@ impl Samples {
         self.seconds(last)
     }
 
+    /// Longest time without any sample: the robot stands still while it erases flash.
+    pub fn longest_gap_s(&self) -> f64 {
+        let gaps = self.rows.windows(2).map(|pair| pair[1].0 - pair[0].0);
+        gaps.max().unwrap_or(0) as f64 / UNITS_A_SECOND
+    }
+
     fn seconds(&self, time: i64) -> f64 {
         let first = self.rows.first().map_or(time, |(first, _)| *first);
         (time - first) as f64 / UNITS_A_SECOND

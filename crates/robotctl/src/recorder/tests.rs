@@ -38,7 +38,10 @@ fn rows_are_in_order_whatever_order_they_came_in() {
         sample(RecordedSensor::Gyro, 64, 12.0),
     ]);
     assert_eq!(samples.counts(), (3, 1));
-    assert_eq!(samples.duration_s(), 0.01);
+    assert_eq!(
+        (samples.duration_s(), samples.longest_gap_s()),
+        (0.01, 0.005)
+    );
     let table = samples.table();
     let rows: Vec<&str> = table.lines().skip(3).collect();
     assert_eq!(
