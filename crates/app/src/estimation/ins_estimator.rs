@@ -50,6 +50,8 @@ pub struct InsEstimator {
     mag_ts_us: u64,
     applied_bias_dps: Vector3,
     settled_samples: u16,
+    /// As of the last sample: there were enough, and up is known.
+    trusted: bool,
     /// What was measured until then is not looked at.
     deaf_until_us: u64,
     field: Field,
@@ -67,6 +69,7 @@ impl InsEstimator {
             mag_ts_us: 0,
             applied_bias_dps: [0.0; 3],
             settled_samples: 0,
+            trusted: false,
             deaf_until_us: 0,
             field: Field::ShowsNorth,
             ts_us: 0,
@@ -132,6 +135,7 @@ impl InsEstimator {
             return passed_us as u32;
         }
         self.settled_samples = 0;
+        self.trusted = false;
         self.motion.restart();
         0
     }
@@ -139,6 +143,7 @@ impl InsEstimator {
     fn take_imu(&mut self, imu: &ImuState) -> Option<AccelSample> {
         if !is_measurement(imu) {
             self.settled_samples = 0;
+            self.trusted = false;
             return None;
         }
         let gap_us = age_us(self.imu_ts_us, imu.ts_us);
@@ -169,6 +174,7 @@ impl InsEstimator {
         } else {
             0
         };
+        self.trusted = self.settled_samples >= SETTLING_SAMPLES && self.attitude.knows_up();
         // What was cut off no longer averages out: the speed would never come back.
         let accel_mps2 = (!imu.saturated).then_some(imu.accel_mps2);
         Some(AccelSample { accel_mps2, dt_s })
@@ -214,9 +220,7 @@ impl InsEstimator {
         estimate.gyro_bias_rps = self.attitude.bias_rps();
         estimate.accel_bias_mps2 = self.motion.accel_bias_mps2();
         estimate.ts_us = now_us;
-        estimate.valid = imu_age_us <= MAX_IMU_AGE_US
-            && self.settled_samples >= SETTLING_SAMPLES
-            && self.attitude.knows_up();
+        estimate.valid = imu_age_us <= MAX_IMU_AGE_US && self.trusted;
     }
 }
 
