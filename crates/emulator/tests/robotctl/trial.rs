@@ -18,6 +18,8 @@ const HOLD_S: f64 = 1.8;
 /// The first position is held longer: the tool has begun to record before it ends.
 const FIRST_HOLD_S: f64 = 3.4;
 const TUMBLE_S: f64 = 8.0;
+/// And the first again at the end: on a busy computer the tool begins late.
+const LAST_HOLD_S: f64 = 2.5;
 pub const GRAVITY_MPS2: f64 = 9.806_65;
 const FIELD_UT: f64 = 48.0;
 /// Upwards in the body frame; the first is how the robot boots.
@@ -115,13 +117,16 @@ fn rows(seconds: f64) -> usize {
 /// Writes the trial into `directory` and returns its header.
 pub fn write(directory: &Path, errors: &SensorErrors) -> PathBuf {
     let mut columns = Columns::default();
-    for (number, up) in POSITIONS.into_iter().enumerate() {
-        let hold_s = if number == 0 { FIRST_HOLD_S } else { HOLD_S };
+    let hold = |columns: &mut Columns, up: Vector, seconds: f64| {
         let accel = errors.accel(scaled(up, GRAVITY_MPS2));
         let field = errors.field(scaled(up, -FIELD_UT));
-        for _ in 0..rows(hold_s) {
+        for _ in 0..rows(seconds) {
             columns.push(accel, field);
         }
+    };
+    for (number, up) in POSITIONS.into_iter().enumerate() {
+        let hold_s = if number == 0 { FIRST_HOLD_S } else { HOLD_S };
+        hold(&mut columns, up, hold_s);
     }
     // Fifteen turns while the field's direction goes from pole to pole.
     let count = rows(TUMBLE_S);
@@ -133,6 +138,7 @@ pub fn write(directory: &Path, errors: &SensorErrors) -> PathBuf {
         let accel = errors.accel(scaled(direction, GRAVITY_MPS2));
         columns.push(accel, errors.field(scaled(direction, FIELD_UT)));
     }
+    hold(&mut columns, POSITIONS[0], LAST_HOLD_S);
     save(directory, "sides", &columns)
 }
 
