@@ -100,8 +100,6 @@ pub struct State {
     stats: Execution,
     costs: BlockCosts,
     block: Block,
-    /// The block has accessed the chip.
-    reached_out: bool,
     /// `Soc::next_event` as last seen, and the cycle at which it or anything else is due.
     soc_event: Ps,
     due_cycle: u64,
@@ -142,7 +140,6 @@ impl Cpu {
             system: System::default(),
             stats: Execution::default(),
             costs: BlockCosts::default(),
-            reached_out: false,
             block: Block::default(),
             soc_event: 0,
             due_cycle: 0,

@@ -55,9 +55,6 @@ fn page_rights(_: &mut Unicorn<'_, State>, page: u64, access: MemType) -> Option
 }
 
 fn block_begins(engine: &mut Unicorn<'_, State>, address: u64, size: u32) {
-    if std::mem::take(&mut engine.get_data_mut().reached_out) {
-        it_state::mend(engine);
-    }
     let aligned = alignment::held_after(engine);
     let state = engine.get_data_mut();
     state.settle();
@@ -244,7 +241,7 @@ fn stored(engine: &mut Unicorn<'_, State>, done: Result<(), Unmodelled>) {
 }
 
 fn read_peripheral(engine: &mut Unicorn<'_, State>, offset: u64, size: usize) -> u64 {
-    engine.get_data_mut().reached_out = true;
+    it_state::mend(engine);
     let addr = (PERIPHERALS.0 + offset) as u32;
     let value = with_soc(engine, |soc, now, memory| {
         soc.read(addr, size as u8, now, memory)
@@ -253,7 +250,7 @@ fn read_peripheral(engine: &mut Unicorn<'_, State>, offset: u64, size: usize) ->
 }
 
 fn write_peripheral(engine: &mut Unicorn<'_, State>, offset: u64, size: usize, value: u64) {
-    engine.get_data_mut().reached_out = true;
+    it_state::mend(engine);
     let addr = (PERIPHERALS.0 + offset) as u32;
     let done = with_soc(engine, |soc, now, memory| {
         soc.write(addr, size as u8, value as u32, now, memory)
@@ -262,7 +259,7 @@ fn write_peripheral(engine: &mut Unicorn<'_, State>, offset: u64, size: usize, v
 }
 
 fn load_parameters(engine: &mut Unicorn<'_, State>, offset: u64, size: usize) -> u64 {
-    engine.get_data_mut().reached_out = true;
+    it_state::mend(engine);
     let addr = PARAMETER_FLASH.base + offset as u32;
     let value = with_soc(engine, |soc, now, memory| {
         soc.load_parameters(addr, size as u8, now, memory)
@@ -271,7 +268,7 @@ fn load_parameters(engine: &mut Unicorn<'_, State>, offset: u64, size: usize) ->
 }
 
 fn store_parameters(engine: &mut Unicorn<'_, State>, offset: u64, size: usize, value: u64) {
-    engine.get_data_mut().reached_out = true;
+    it_state::mend(engine);
     let addr = PARAMETER_FLASH.base + offset as u32;
     let done = with_soc(engine, |soc, now, memory| {
         soc.store_parameters(addr, size as u8, value as u32, now, memory)
@@ -280,7 +277,7 @@ fn store_parameters(engine: &mut Unicorn<'_, State>, offset: u64, size: usize, v
 }
 
 fn read_private(engine: &mut Unicorn<'_, State>, offset: u64, size: usize) -> u64 {
-    engine.get_data_mut().reached_out = true;
+    it_state::mend(engine);
     let addr = (PRIVATE_PERIPHERALS.0 + offset) as u32;
     if context::is_unprivileged(engine) {
         return refuse_unprivileged(engine, addr);
@@ -292,7 +289,7 @@ fn read_private(engine: &mut Unicorn<'_, State>, offset: u64, size: usize) -> u6
 }
 
 fn write_private(engine: &mut Unicorn<'_, State>, offset: u64, size: usize, value: u64) {
-    engine.get_data_mut().reached_out = true;
+    it_state::mend(engine);
     let addr = (PRIVATE_PERIPHERALS.0 + offset) as u32;
     let system = &engine.get_data().system;
     if !system.may_be_written_unprivileged(addr) && context::is_unprivileged(engine) {

@@ -141,6 +141,23 @@ fn a_higher_priority_interrupts_a_handler_and_a_lower_one_waits() {
     assert_eq!(traced(&cpu), [1, 2, 3, 4, 9, 5]);
 }
 
+/// The load is done in the first round only; what follows it is done in each.
+#[test]
+fn code_behind_a_conditional_load_from_a_register_is_never_skipped() {
+    let before = [
+        0x2300, 0x3301, // movs r3, #0; again: adds r3, #1
+        0xF243, 0x0100, 0x2B01, 0xF2C4,
+        0x0100, // movw r1, #0x3000; cmp r3, #1; movt r1, #0x4000
+        0xBF04, 0x6888, 0xEA5F,
+        0x72C0, // itt eq; ldreq r0, [r1, #8] (IWDG_RLR: odd); lslseq r2, r0, #31
+        0xD004, // beq end
+    ];
+    let after = [0x2B03, 0xD1EF, STAY]; // cmp r3, #3; bne again; end: b .
+    let mut cpu = board(&program(&[&before, &trace(7), &after]), &[]);
+    run_until(&mut cpu, 100 * US).expect("no fault");
+    assert_eq!(traced(&cpu), [7, 7, 7]);
+}
+
 #[test]
 fn a_waiting_handler_follows_without_unstacking() {
     // r2 is in the frame: only a return to thread mode would restore it between the handlers.
