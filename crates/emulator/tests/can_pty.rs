@@ -89,7 +89,7 @@ fn received(outcome: &Outcome) -> f64 {
 }
 
 /// A new chip's flash gets its first erase later.
-const BEFORE_ERASE_S: f64 = 0.6;
+const BEFORE_ERASE_S: f64 = 0.5;
 
 /// 20 ms apart so that a burst fits into the firmware's queue: 0x7A1, which it knows, and 0x3FF, which nobody owns.
 fn injection() -> Vec<(Ps, String)> {
@@ -129,10 +129,10 @@ fn a_pc_hears_the_commands_and_is_heard_by_the_firmware() {
     assert_eq!((port.from_pc, port.dropped), (80, 0));
     assert_eq!(received(&with) - received(&without), 80.0);
 
-    // One command a tick and one feedback of each motor in 500 ms.
+    // One command a tick and one feedback of each motor in 400 ms.
     for (start, what) in [("t2008", "commands"), ("t2018", "left"), ("t2028", "right")] {
         let count = talking.frames(start);
-        assert!((490..=502).contains(&count), "{count} {what}");
+        assert!((390..=402).contains(&count), "{count} {what}");
     }
     let command = silent.heard.split('\r').find(|l| l.starts_with("t200"));
     let stamp = command.and_then(|l| l.strip_prefix("t2008")?.strip_prefix("0000000000000000"));

@@ -61,6 +61,8 @@ impl ArmingBlockers {
     /// A joint reads an angle beyond its soft limits: its zero is not set, or it is wrong by a turn. Not while bring-up
     /// tries out motors, which gives one of them little torque.
     pub const JOINT_OUT_OF_LIMITS: Self = Self(1 << 15);
+    /// Samples of the IMU were rejected within the last half second.
+    pub const ATTITUDE_UNSETTLED: Self = Self(1 << 16);
 
     /// A joint motor keeps its last command for ever when the bus falls silent, unless somebody has set its time-out, and
     /// nobody says so.
@@ -110,7 +112,7 @@ impl ArmingBlockers {
 }
 
 /// Not a constant: tools read the names of the bits out of the image.
-static BLOCKER_NAMES: [(ArmingBlockers, &str); 17] = [
+static BLOCKER_NAMES: [(ArmingBlockers, &str); 18] = [
     (ArmingBlockers::REMOTE_NOT_FRESH, "remote-not-fresh"),
     (ArmingBlockers::ENABLE_OFF, "enable-off"),
     (ArmingBlockers::ENABLE_NOT_CYCLED, "enable-not-cycled"),
@@ -127,6 +129,7 @@ static BLOCKER_NAMES: [(ArmingBlockers, &str); 17] = [
     (ArmingBlockers::WHEEL_NEVER_HEARD, "wheel-never-heard"),
     (ArmingBlockers::WHEEL_DOUBTFUL, "wheel-doubtful"),
     (ArmingBlockers::JOINT_OUT_OF_LIMITS, "joint-out-of-limits"),
+    (ArmingBlockers::ATTITUDE_UNSETTLED, "attitude-unsettled"),
     (ArmingBlockers::JOINT_TIMEOUT_UNSET, "joint-timeout-unset"),
 ];
 
@@ -169,6 +172,8 @@ pub struct ArmingInputs<'a> {
     pub remote_age_us: u32,
     pub operator: &'a OperatorState,
     pub estimate_valid: bool,
+    /// See `AttitudeRest`.
+    pub attitude_settled: bool,
     pub calibrated: bool,
     pub motor: &'a MotorFindings,
     /// Bring-up is in the step in which nothing may move.
@@ -224,7 +229,8 @@ impl Arming {
         now_us: u64,
     ) -> (ArmingStatus, Option<ArmedToken>) {
         let fresh = inputs.remote_age_us <= inputs.config.remote_timeout_us;
-        self.unsettled = inputs.flash_busy || self.unsettled && !inputs.estimate_valid;
+        let settled = inputs.estimate_valid && inputs.attitude_settled;
+        self.unsettled = inputs.flash_busy || self.unsettled && !settled;
         self.follow_switch(fresh, inputs, now_us);
         let mut blockers = self.disarming(fresh, inputs);
         match self.state {
@@ -304,6 +310,7 @@ impl Arming {
     ) -> bool {
         let by_flash = ArmingBlockers::FLASH_BUSY
             .union(ArmingBlockers::ESTIMATE_INVALID)
+            .union(ArmingBlockers::ATTITUDE_UNSETTLED)
             .union(ArmingBlockers::SAFETY_STOP);
         let unsettled = SafetyFlags::ESTIMATE_INVALID.union(SafetyFlags::IMU_STALE);
         let waited_us = now_us.saturating_sub(since_us);
@@ -335,6 +342,7 @@ impl Arming {
 fn only_forbidding(inputs: &ArmingInputs<'_>) -> ArmingBlockers {
     let mut blockers = ArmingBlockers::NONE;
     blockers.add_if(ArmingBlockers::STICKS_NOT_CENTRED, !inputs.sticks_rest);
+    blockers.add_if(ArmingBlockers::ATTITUDE_UNSETTLED, !inputs.attitude_settled);
     blockers.add_if(
         ArmingBlockers::SAFETY_STOP,
         inputs.safety.verdict != SafetyVerdict::Run,

@@ -1,6 +1,7 @@
 //! Who may move: flags, verdict, arming, permit.
 
 mod arming;
+mod attitude_rest;
 mod battery;
 mod debounce;
 mod error_account;
@@ -17,6 +18,7 @@ mod stick_rest;
 mod tilt;
 
 pub use arming::{ArmedToken, Arming, ArmingBlockers, ArmingInputs, ArmingState, ArmingStatus};
+pub use attitude_rest::AttitudeRest;
 pub use flags::SafetyFlags;
 pub use flash_permit::{FlashGrant, FlashPermit, FlashPermitInputs, WatchdogPeriod};
 pub use motor_findings::MotorFindings;

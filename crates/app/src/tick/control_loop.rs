@@ -20,8 +20,9 @@ use crate::{
     },
     params::{FlashRequest, ParamStatus},
     safety::{
-        Arming, ArmingInputs, ArmingState, FlashGrant, FlashPermit, FlashPermitInputs,
-        MotorFindings, SafetyInputs, SafetyPolicy, StickRest, TorquePermit, WatchdogPeriod,
+        Arming, ArmingInputs, ArmingState, AttitudeRest, FlashGrant, FlashPermit,
+        FlashPermitInputs, MotorFindings, SafetyInputs, SafetyPolicy, StickRest, TorquePermit,
+        WatchdogPeriod,
     },
     tuning::{REPLY_PERIOD_TICKS, TuningAccess, TuningChannel, TuningGate, is_request},
 };
@@ -101,6 +102,8 @@ pub struct ControlLoop<
     phase: u32,
     stick_rest: StickRest,
     sticks_rest: bool,
+    attitude_rest: AttitudeRest,
+    attitude_settled: bool,
     arming: Arming,
     flash: FlashPermit,
     tuning: TuningChannel,
@@ -141,6 +144,8 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
             phase: 0,
             stick_rest: StickRest::default(),
             sticks_rest: false,
+            attitude_rest: AttitudeRest::default(),
+            attitude_settled: false,
             arming: Arming::default(),
             flash: FlashPermit::default(),
             tuning: TuningChannel::new(layout),
@@ -215,7 +220,7 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
         let trial = self.try_out(inputs, now_us);
         self.guard_flash(inputs, now_us);
         if self.phase == LOOK_PHASE {
-            self.look_at_sticks_and_motors(inputs, now_us);
+            self.look_at_what_must_rest(inputs, now_us);
         }
         let permit = self.judge(inputs, now_us);
         self.act(inputs, permit.as_ref(), trial.as_ref(), now_us);
@@ -319,13 +324,15 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
 
     /// What arming looks at and need not be newer than some milliseconds.
     #[inline(never)]
-    fn look_at_sticks_and_motors(&mut self, inputs: &ControlInputs<'_>, now_us: u64) {
+    fn look_at_what_must_rest(&mut self, inputs: &ControlInputs<'_>, now_us: u64) {
         let diagnostics = self.diagnostics.borrow_mut();
         let config = &self.config;
         let fresh = diagnostics.remote_diag.age_us <= config.safety.remote_timeout_us;
         self.sticks_rest =
             self.stick_rest
                 .step(&inputs.remote.state, fresh, &config.safety, now_us);
+        let rejects = &inputs.health.imu_status.rejects;
+        self.attitude_settled = self.attitude_rest.step(rejects, now_us);
         if diagnostics.arming.state == ArmingState::Disarmed {
             diagnostics.motors = MotorFindings::of(&diagnostics.sensors.motor, &config.joints);
         }
@@ -352,6 +359,7 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
             &ArmingInputs {
                 config: &self.config.safety,
                 sticks_rest: self.sticks_rest,
+                attitude_settled: self.attitude_settled,
                 remote_age_us: diagnostics.remote_diag.age_us,
                 operator: &inputs.remote.operator,
                 estimate_valid: diagnostics.estimate.valid,

@@ -240,7 +240,8 @@ fn sensors() -> Vec<Row> {
     let dead = flags(&["imu-stale"], &["imu-errors", "estimate-invalid"]);
     let wrong = || flags(&["imu-stale", "imu-errors"], &["estimate-invalid", "tilt"]);
     vec![
-        global("imu-gone", 35.0, dead),
+        // After a gap of two seconds up is found anew, which takes half a second of rest.
+        global("imu-gone", 35.0, dead).back_within_ms(1_600.0),
         global("imu-frozen", 100.0, wrong()).latched(),
         global("imu-extreme", 100.0, wrong()).latched(),
         // Wrong frames are known by themselves, or by the data registers.

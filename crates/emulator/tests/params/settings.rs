@@ -11,7 +11,7 @@ pub type Setting = (u8, u8);
 pub type Settings = BTreeMap<Setting, u32>;
 
 /// Settings of all groups together.
-pub const COUNT: usize = 88;
+pub const COUNT: usize = 124;
 
 /// A record each.
 pub const GROUPS: usize = CALIBRATED.len();
@@ -28,17 +28,24 @@ pub enum Make {
 
 const JOINT: [f32; 8] = [1.0, 0.25, -1.25, 1.25, 3.0, 8.0, 90.0, 2.0];
 
-/// Allowed values that differ from the defaults, directions aside. The robot drives with them.
+const TRAVEL: [f32; 21] = [
+    182.0, 990.0, 1801.0, 182.0, 993.0, 1801.0, 182.0, 992.0, 1801.0, 182.0, 992.0, 1801.0, 182.0,
+    992.0, 1801.0, 182.0, 992.0, 1801.0, 182.0, 992.0, 1801.0,
+];
+
+/// Allowed values that differ from the defaults, directions and what the pilot needs aside. The robot drives with them.
 #[rustfmt::skip] // One line a group.
-const CALIBRATED: [(u8, &[f32]); 12] = [
+const CALIBRATED: [(u8, &[f32]); 14] = [
     (1, &[0.07, 0.45, 17.5, 1.0, -1.0]),
     (2, &[1.25, 3.5, 50_000.0, 7_000.0, 900.0, 40_000.0]),
     (3, &[18.0, 0.75, 1.0]),
-    (4, &[120_000.0, 0.4, 20_000.0, 40_000.0, 25.0, 30.0, 0.07, 2_500_000.0, 40_000.0, 0.8, 80.0, 85.0, 20.5, 18.5, 1_500_000.0]),
+    (4, &[120_000.0, 0.4, 20_000.0, 40_000.0, 25.0, 30.0, 0.07, 2_500_000.0, 40_000.0, 0.8, 80.0, 85.0, 20.5, 18.5, 1_500_000.0, 0.0]),
     (5, &[0.1, -0.2, 0.15, 1.01, 0.99, 1.02, 0.5, -0.25, 0.75, 1.005, 0.995, 1.015]),
     (6, &[12.0, -20.0, 7.0, 1.1, 0.9, 1.05, 0.05, -0.02, 0.03]),
     (7, &[42.0, 0.25, 0.02, 0.9]),
     (8, &[4.0, 9.0]),
+    (9, &[0.0, 1.0, 7.0, 8.0, 4.0, 5.0, 6.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0]),
+    (10, &TRAVEL),
     (16, &JOINT),
     (17, &JOINT),
     (18, &JOINT),
@@ -86,7 +93,7 @@ pub fn id(group: u8, make: Make) -> Id {
 /// Of the group's record.
 fn version(group: u8) -> u8 {
     match group {
-        3 => 2,
+        3 | 4 => 2,
         _ => 1,
     }
 }

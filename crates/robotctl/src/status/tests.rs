@@ -3,7 +3,7 @@
 use robot_app::{
     diagnostics::DiagnosticsSnapshot,
     domain::{JointState, LastWords, ResetCause},
-    safety::{ArmingState, SafetyVerdict},
+    safety::{ArmingBlockers, ArmingState, SafetyVerdict},
 };
 
 use super::*;
@@ -40,6 +40,28 @@ fn what_speaks_against_arming_is_told_with_what_to_do() {
         assert!(text.contains(line), "`{line}` in\n{text}");
     }
     assert!(!text.contains("RUINED"), "{text}");
+}
+
+#[test]
+fn the_motor_that_forbids_arming_is_named_and_what_is_heard_instead() {
+    let text = status(|diagnostics| {
+        diagnostics.arming.refused = ArmingBlockers::WHEEL_NEVER_HEARD;
+        diagnostics.motors.wheels_doubtful = 0b10;
+        diagnostics.motors.joints_outside = 0b100;
+        let joint = &mut diagnostics.sensors.motor.joints[2];
+        (joint.state, joint.ts_us, joint.pos_rad) = (JointState::Disabled, 1, 6.5);
+        let strangers = &mut diagnostics.strangers.buses[0];
+        (strangers.frames, strangers.last_id, strangers.esc_id) = (9, 0x123, 0x205);
+    })
+    .to_string();
+    for line in [
+        "the last flip of enable was refused: wheel-never-heard\n",
+        "wheel right        NEVER HEARD, TWO MOTORS WITH ITS NUMBER",
+        "joint right-front  disabled, +6.500 rad, 0 degC, OUT OF ITS LIMITS",
+        "heard and meant for nobody: 0x123; 0x205 is a C620 with number 5\n",
+    ] {
+        assert!(text.contains(line), "`{line}` in\n{text}");
+    }
 }
 
 #[test]

@@ -8,7 +8,7 @@ use super::{Status, advice};
 use crate::tuning::LiveReading;
 
 /// Pages that have words of their own here; any other is listed as it is.
-const PUT_INTO_WORDS: [&str; 18] = [
+const PUT_INTO_WORDS: [&str; 21] = [
     "version",
     "run",
     "boot",
@@ -27,14 +27,18 @@ const PUT_INTO_WORDS: [&str; 18] = [
     "wheel",
     "can",
     "store",
+    "motor-findings",
+    "refused",
+    "strangers",
 ];
 /// Pages for whoever looks for something; `--json` has them.
-const LEFT_OUT: [&str; 14] = [
+const LEFT_OUT: [&str; 15] = [
     "seen",
     "radio-frames",
     "radio-line",
     "radio-errors",
     "channels",
+    "raw-channels",
     "gyro",
     "mag",
     "rejects",
@@ -98,6 +102,15 @@ impl Status {
             if !blockers.is_empty() {
                 writeln!(f, "\nwhat keeps it from being armed:")?;
                 list(f, &blockers, advice::for_blocker)?;
+            }
+        }
+        if let Some(refused) = self.page("refused") {
+            let why = refused.set("blockers");
+            if !why.is_empty() {
+                writeln!(f, "the last flip of enable was refused: {}", why.join(", "))?;
+            }
+            if refused.has("marks", "waiting") {
+                writeln!(f, "it arms as soon as flash is written: enable is on")?;
             }
         }
         if let Some(bring_up) = self.page("bring-up") {
@@ -184,6 +197,9 @@ impl Status {
                 }
                 _ => write!(f, "NEVER HEARD")?,
             }
+            if self.is_found("wheels-doubtful", name) {
+                write!(f, ", TWO MOTORS WITH ITS NUMBER, or a broken angle sensor")?;
+            }
             marks(f, wheel)?;
         }
         for (part, name) in JOINTS.iter().enumerate() {
@@ -204,9 +220,17 @@ impl Status {
                     _ => {}
                 }
             }
+            if self.is_found("joints-out-of-limits", name) {
+                write!(f, ", OUT OF ITS LIMITS")?;
+            }
             marks(f, joint)?;
         }
         Ok(())
+    }
+
+    fn is_found(&self, finding: &str, motor: &str) -> bool {
+        let findings = self.page("motor-findings");
+        findings.is_some_and(|findings| findings.has(finding, motor))
     }
 
     fn sensors(&self, f: &mut Formatter<'_>) -> fmt::Result {
@@ -259,6 +283,9 @@ impl Status {
                     "{name}        {state}, {offs} times off, {back} frames not sent, {lost} lost"
                 )?;
             }
+            if let Some(strangers) = self.part("strangers", part) {
+                stranger(f, strangers)?;
+            }
         }
         Ok(())
     }
@@ -291,6 +318,19 @@ impl Status {
         }
         Ok(())
     }
+}
+
+/// A motor that does not answer may be talking under another number.
+fn stranger(f: &mut Formatter<'_>, strangers: &LiveReading) -> fmt::Result {
+    let (last, esc) = (whole(strangers, "last-id"), whole(strangers, "esc-id"));
+    if last != 0 {
+        write!(f, "  heard and meant for nobody: 0x{last:03X}")?;
+        if esc != 0 {
+            write!(f, "; 0x{esc:03X} is a C620 with number {}", esc - 0x200)?;
+        }
+        writeln!(f)?;
+    }
+    Ok(())
 }
 
 /// For sectors that were never a store.

@@ -16,6 +16,7 @@ struct Bench {
     joint_timeout_unset: bool,
     sticks_rest: bool,
     estimate_valid: bool,
+    attitude_settled: bool,
     remote_age_us: u32,
     motor: MotorFeedback,
     safety: SafetyStatus,
@@ -46,6 +47,7 @@ impl Bench {
             joint_timeout_unset: false,
             sticks_rest: true,
             estimate_valid: true,
+            attitude_settled: true,
             remote_age_us: 5_000,
             motor,
             safety: SafetyStatus::of(SafetyFlags::NONE),
@@ -76,6 +78,7 @@ impl Bench {
                     ..OperatorState::default()
                 },
                 estimate_valid: self.estimate_valid,
+                attitude_settled: self.attitude_settled,
                 calibrated: self.calibrated,
                 motor: &MotorFindings::of(&self.motor, &RobotConfig::default().joints),
                 read_only: self.read_only,
@@ -378,6 +381,13 @@ fn a_joint_beyond_its_limits_may_be_tried_out() {
 fn refused_settings_forbid_arming() {
     let result = with_wrong(|bench| bench.params.refused = 1);
     let expected = (ArmingBlockers::SETTINGS_REFUSED, ArmingState::Armed);
+    assert_eq!(result, expected);
+}
+
+#[test]
+fn an_attitude_that_has_not_settled_forbids_arming_but_lets_no_robot_fall() {
+    let result = with_wrong(|bench| bench.attitude_settled = false);
+    let expected = (ArmingBlockers::ATTITUDE_UNSETTLED, ArmingState::Armed);
     assert_eq!(result, expected);
 }
 

@@ -375,7 +375,7 @@ fn anyone_may_ask_what_boot_found_in_the_store() {
     assert_eq!(bench.reply(TuningGate::Shut, 0x7A1, &[0x32]), expected);
 }
 
-/// Page 7, battery: 24.5 V in steps of 2 mV are 12,250 = 0x2FDA. Page 0x31 is none.
+/// Page 7, battery: 24.5 V in steps of 2 mV are 12,250 = 0x2FDA. Page 0x71 is none.
 #[test]
 fn anyone_may_look_at_any_time() {
     let mut bench = Bench::default();
@@ -383,7 +383,7 @@ fn anyone_may_look_at_any_time() {
     let expected = [0x33, 7, 0xDA, 0x2F, 0, 0, 0, 0];
     assert_eq!(bench.read(&[0x33, 7]), expected);
     assert_eq!(bench.reply(TuningGate::Shut, 0x7A1, &[0x33, 7]), expected);
-    assert_eq!(bench.read(&[0x33, 0x31]), [0xEE, 0x33, 3, 0x31, 0, 0, 0, 0]);
+    assert_eq!(bench.read(&[0x33, 0x71]), [0xEE, 0x33, 3, 0x71, 0, 0, 0, 0]);
     assert_eq!(bench.read(&[0x33]), [0xEE, 0x33, 1, 0, 0, 0, 0, 0]);
     assert_eq!(
         bench.write(&[0x33, 7, 0, 0, 0, 0, 0, 0])[..3],

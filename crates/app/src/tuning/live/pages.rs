@@ -24,7 +24,7 @@ const ROBOT: [&str; 1] = [""];
 const CHANNELS: [&str; 4] = ["0-3", "4-7", "8-11", "12-15"];
 
 /// By number.
-pub static LIVE_PAGES: [LivePage; 32] = [
+pub static LIVE_PAGES: [LivePage; 36] = [
     page(0x00, "version", &ROBOT, &system::VERSION),
     page(0x01, "run", &ROBOT, &system::RUN),
     page(0x02, "boot", &ROBOT, &system::BOOT),
@@ -51,12 +51,16 @@ pub static LIVE_PAGES: [LivePage; 32] = [
     page(0x1A, "rejects", &ROBOT, &sensors::REJECTS),
     page(0x1B, "gyro-bias", &ROBOT, &sensors::GYRO_BIAS),
     page(0x1C, "gyro-buffer", &ROBOT, &sensors::GYRO_BUFFER),
+    page(0x1D, "motor-findings", &ROBOT, &motors::FINDINGS),
+    page(0x1E, "refused", &ROBOT, &system::REFUSED),
     page(0x20, "joint", &JOINTS, &motors::JOINT),
     page(0x24, "joint-health", &JOINTS, &motors::JOINT_HEALTH),
     page(0x28, "wheel", &WHEELS, &motors::WHEEL),
     page(0x2A, "wheel-motor", &WHEELS, &motors::WHEEL_MOTOR),
     page(0x2C, "can", &BUSES, &system::CAN),
     page(0x2E, "can-frames", &BUSES, &system::CAN_FRAMES),
+    page(0x30, "strangers", &BUSES, &system::STRANGERS),
+    page(0x34, "raw-channels", &CHANNELS, &radio::RAW_CHANNELS),
 ];
 
 const fn page(

@@ -87,6 +87,37 @@ pub const BRING_UP: [LiveField; 4] = [
     }),
 ];
 
+/// Which motors keep the robot from being armed; renewed while it is disarmed.
+pub const FINDINGS: [LiveField; 5] = [
+    set!(
+        "wheels-never-heard",
+        2,
+        |bit| named(&WHEELS, bit),
+        |live, _| { live.diagnostics.motors.wheels_unheard.into() }
+    ),
+    set!(
+        "wheels-doubtful",
+        2,
+        |bit| named(&WHEELS, bit),
+        |live, _| { live.diagnostics.motors.wheels_doubtful.into() }
+    ),
+    set!("joints-silent", 4, |bit| named(&JOINTS, bit), |live, _| {
+        live.diagnostics.motors.joints_silent.into()
+    }),
+    set!(
+        "joints-not-ready",
+        4,
+        |bit| named(&JOINTS, bit),
+        |live, _| { live.diagnostics.motors.joints_unready.into() }
+    ),
+    set!(
+        "joints-out-of-limits",
+        4,
+        |bit| named(&JOINTS, bit),
+        |live, _| { live.diagnostics.motors.joints_outside.into() }
+    ),
+];
+
 const JOINT_STATES: [&str; 6] = [
     "silent",
     "setting-up",

@@ -86,14 +86,30 @@ pub const CHANNELS: [LiveField; 4] = [
     measure!("fourth", "", 12, 1_000, |live, part| channel(live, part, 3)),
 ];
 
+/// The same as the receiver sends them: SBUS 0 … 2047; of DBUS five, the others 0. 0 until a frame came.
+pub const RAW_CHANNELS: [LiveField; 4] = [
+    count!("first", "", 12, |live, part| raw_channel(live, part, 0)),
+    count!("second", "", 12, |live, part| raw_channel(live, part, 1)),
+    count!("third", "", 12, |live, part| raw_channel(live, part, 2)),
+    count!("fourth", "", 12, |live, part| raw_channel(live, part, 3)),
+];
+
 const SWITCHES: [&str; 4] = ["enabled", "disabled", "e-stop", "dead-man"];
 
 /// Unknown until a frame came.
 fn channel(live: &LiveSource<'_>, part: usize, place: usize) -> f32 {
     let remote = &live.diagnostics.remote;
-    let index = part.saturating_mul(4).saturating_add(place);
-    match remote.channels.get(index) {
+    match remote.channels.get(index_of(part, place)) {
         Some(channel) if remote.ts_us != 0 => *channel,
         _ => f32::NAN,
     }
+}
+
+fn raw_channel(live: &LiveSource<'_>, part: usize, place: usize) -> u32 {
+    let raw = live.diagnostics.remote_raw.get(index_of(part, place));
+    raw.copied().unwrap_or(0).into()
+}
+
+fn index_of(part: usize, place: usize) -> usize {
+    part.saturating_mul(4).saturating_add(place)
 }

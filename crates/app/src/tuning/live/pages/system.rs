@@ -1,7 +1,7 @@
 //! The firmware, the board, and who may move.
 
 use super::*;
-use crate::domain::BusHealth;
+use crate::{diagnostics::BusStrangers, domain::BusHealth};
 
 pub const VERSION: [LiveField; 4] = [
     count!("major", "", 8, |_, _| number(env!(
@@ -67,6 +67,29 @@ pub const ARMING: [LiveField; 3] = [
         let probe = &live.diagnostics.debug_probe;
         marks([probe.attached, probe.catches])
     }),
+];
+
+/// Why the last flip of the enable switch did not arm.
+pub const REFUSED: [LiveField; 2] = [
+    set!("blockers", 32, ArmingBlockers::name_of_bit, |live, _| live
+        .diagnostics
+        .arming
+        .refused
+        .bits()),
+    set!("marks", 1, |bit| named(&["waiting"], bit), |live, _| {
+        marks([live.diagnostics.arming.waiting])
+    }),
+];
+
+/// Frames that nobody here knows; identifiers are 0 until one came.
+pub const STRANGERS: [LiveField; 3] = [
+    count!("frames", "", 16, |live, bus| stranger(live, bus).frames),
+    count!("last-id", "", 12, |live, bus| stranger(live, bus)
+        .last_id
+        .into()),
+    count!("esc-id", "", 12, |live, bus| stranger(live, bus)
+        .esc_id
+        .into()),
 ];
 
 pub const SAFETY: [LiveField; 3] = [
@@ -214,4 +237,9 @@ fn number(text: &str) -> u32 {
     digits.fold(0, |sum: u32, digit| {
         sum.wrapping_mul(10).wrapping_add(digit)
     })
+}
+
+fn stranger(live: &LiveSource<'_>, bus: usize) -> BusStrangers {
+    let buses = &live.diagnostics.strangers.buses;
+    buses.get(bus).copied().unwrap_or_default()
 }
