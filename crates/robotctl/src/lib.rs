@@ -6,6 +6,7 @@
 //! | [`calibration`] | samples → corrections the firmware applies |
 //! | [`report`] | a correction → an HTML page |
 //! | [`mounting`] | a robot tilted by hand → how its sensors sit |
+//! | [`radio`] | a transmitter's controls, moved one by one → which channel is which |
 //! | [`parameter_file`] | parameters by name, in TOML |
 //! | [`can_link`] | a CAN bus through an slcan adapter or SocketCAN |
 //! | [`tuning`] | the settings of the robot on a bus, and its live values |
@@ -18,6 +19,7 @@ pub mod can_link;
 pub mod first_board;
 pub mod mounting;
 pub mod parameter_file;
+pub mod radio;
 pub mod recorder;
 pub mod recording;
 pub mod report;

@@ -1,11 +1,13 @@
 //! The commands of the tool; `--help` lists them.
 
+mod answer;
 mod calibrate;
 mod connection;
 mod first_board;
 mod joint;
 mod mounting;
 pub mod output;
+mod radio;
 mod record;
 mod status;
 mod tune;
@@ -21,6 +23,8 @@ pub enum Command {
     },
     /// Find out how board and magnetometer sit, by tilting the robot (docs/mounting.md)
     Mounting(mounting::Mounting),
+    /// Find out which channel of an SBUS transmitter is which, by moving its controls (docs/bring-up.md)
+    Radio(radio::Radio),
     /// Record accelerometer, gyro and magnetometer of the disarmed robot over CAN
     Record(record::Record),
     /// Read and change the robot's settings over CAN
@@ -37,6 +41,7 @@ impl Command {
             Self::Status(status) => status.run(),
             Self::Calibrate { sensor } => sensor.run(),
             Self::Mounting(mounting) => mounting.run(),
+            Self::Radio(radio) => radio.run(),
             Self::Record(record) => record.run(),
             Self::Tune(tune) => tune.run(),
             Self::Joint(joint) => joint.run(),

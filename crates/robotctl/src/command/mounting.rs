@@ -1,11 +1,8 @@
 //! `robotctl mounting`: guides through some poses and says how the sensors sit.
 
-use std::{
-    io,
-    time::{Duration, Instant},
-};
+use std::time::{Duration, Instant};
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail};
 use robot_app::domain::Orientation;
 use robotctl::{
     can_link::CanDevice,
@@ -13,10 +10,7 @@ use robotctl::{
     tuning::{self, Patience, TuningClient},
 };
 
-use super::{
-    output::{begin, say},
-    tune::confirm_saved,
-};
+use super::{answer::ask, output::say, tune::confirm_saved};
 
 /// Longest time of turning the robot by hand.
 const TURNING: Duration = Duration::from_secs(90);
@@ -199,14 +193,4 @@ fn turn(watch: &mut Watch<'_>) -> Result<Vec<FieldSample>> {
         }
     }
     Ok(samples)
-}
-
-fn ask(what: &str) -> Result<()> {
-    begin!("{what} Then press Enter. ")?;
-    let mut line = String::new();
-    let read = io::stdin().read_line(&mut line);
-    if read.context("nobody answers")? == 0 {
-        bail!("nobody answers");
-    }
-    Ok(())
 }

@@ -1,0 +1,18 @@
+//! Asking the person at the keyboard.
+
+use std::io;
+
+use anyhow::{Context, Result, bail};
+
+use super::output::begin;
+
+/// What was typed before Enter.
+pub fn ask(what: &str) -> Result<String> {
+    begin!("{what} Then press Enter. ")?;
+    let mut line = String::new();
+    let read = io::stdin().read_line(&mut line);
+    if read.context("nobody answers")? == 0 {
+        bail!("nobody answers");
+    }
+    Ok(line.trim().to_owned())
+}

@@ -1,0 +1,217 @@
+//! `robotctl radio`: guides through the controls of an SBUS transmitter and says which channel is which.
+
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result};
+use robot_app::{domain::NO_CHANNEL, tuning::Refusal};
+use robotctl::{
+    can_link::CanDevice,
+    radio::{self, Control, Found, Moved, Still, Watch, WatchError},
+    tuning::{self, BringUpStep, Patience, TuningClient, TuningError},
+};
+
+use super::{answer::ask, output::say, tune::confirm_saved};
+
+/// Of moving the sticks round all their ends.
+const ROUND: Duration = Duration::from_secs(8);
+
+#[derive(clap::Args)]
+pub struct Radio {
+    /// Serial device of an slcan adapter or, on Linux, a CAN interface (can0)
+    #[arg(long, value_name = "DEVICE")]
+    can: CanDevice,
+    /// Write what was found to the robot; without it the robot's settings are only compared
+    #[arg(long)]
+    write: bool,
+}
+
+impl Radio {
+    pub fn run(self) -> Result<()> {
+        let mut client = TuningClient::new(self.can.open()?, Patience::default());
+        say!(
+            "For SBUS; DBUS needs no settings. Robot disarmed, wheels off the ground, transmitter on."
+        )?;
+        Watch::new(&mut client).check_disarmed()?;
+        let enable = tuning::find(radio::ENABLE_CHANNEL)?;
+        let enable_was = client.read(enable)?;
+        bring_up(&mut client, BringUpStep::ReadOnly, enable_was)?;
+        say!(
+            "The robot is in bring-up, read only: it cannot be armed until this command has ended.\n"
+        )?;
+        if self.write {
+            client.write(enable, NO_CHANNEL as f32)?;
+        }
+        let found = find(&mut Watch::new(&mut client));
+        if self.write && found.is_err() {
+            // All else is still as it was. Once writing has begun, only a whole mapping may have an enable channel.
+            client.write(enable, enable_was)?;
+        }
+        let done = found.and_then(|found| self.conclude(&mut client, &found, enable_was));
+        // A guide that was broken off leaves the robot where it cannot be armed.
+        done.context("the robot stays in bring-up and cannot be armed: `robotctl tune --can DEVICE bring-up off`")?;
+        bring_up(&mut client, BringUpStep::Off, enable_was)
+    }
+
+    fn conclude(&self, client: &mut TuningClient, found: &[Found], enable_was: f32) -> Result<()> {
+        say!("\nSo:")?;
+        for control in found {
+            say!("{}", control.in_words())?;
+        }
+        let differing = radio::differing(client, found, enable_was)?;
+        if differing.is_empty() {
+            say!("\nThe robot's settings are right.")?;
+        } else {
+            say!("\nThe robot's settings differ:")?;
+        }
+        for (named, is, wanted) in &differing {
+            say!("{} = {wanted} (the robot had {is})", named.full_name())?;
+        }
+        if self.write {
+            radio::write(client, found)?;
+            confirm_saved(client)?;
+        } else if !differing.is_empty() {
+            say!("next:   the same with --write, or robotctl tune --can DEVICE set NAME VALUE")?;
+        }
+        Ok(())
+    }
+}
+
+/// Asks until the robot reads its enable switch, as it knows it now, as off.
+fn bring_up(client: &mut TuningClient, step: BringUpStep, enable: f32) -> Result<()> {
+    loop {
+        match client.bring_up(step) {
+            Err(TuningError::Refused {
+                reason: Ok(Refusal::Armed),
+                ..
+            }) => ask(&format!(
+                "The robot reads channel {enable}, which its settings call enable, as on: put the control of \
+                 that channel to its other end."
+            ))?,
+            done => return Ok(done?),
+        };
+    }
+}
+
+fn find(watch: &mut Watch<'_>) -> Result<Vec<Found>> {
+    let rest = loop {
+        ask(
+            "Enable off, e-stop thrown, mode at manual, sticks let go; one without a spring in its middle.",
+        )?;
+        if let Some(rest) = heard(watch.still())? {
+            break rest;
+        }
+    };
+    let mut found = Vec::new();
+    let mut sticks = Vec::new();
+    for control in Control::STICKS {
+        let moved = find_moved(watch, control, &rest, &found)?;
+        // Its ends come later; until then its place is taken.
+        found.push(moved.map_or(missing(control), |moved| Found::switch(&moved)));
+        sticks.extend(moved);
+    }
+    let ends = find_ends(watch, &sticks)?;
+    for found in &mut found {
+        let ends = ends.iter().find(|stick| stick.control == found.control);
+        *found = *ends.unwrap_or(found);
+    }
+    for control in Control::SWITCHES {
+        let moved = find_moved(watch, control, &rest, &found)?;
+        found.push(moved.map_or(missing(control), |moved| Found::switch(&moved)));
+    }
+    put_back(watch, &rest)?;
+    Ok(found)
+}
+
+/// `None` if the transmitter has no such control.
+fn find_moved(
+    watch: &mut Watch<'_>,
+    control: Control,
+    rest: &Still,
+    found: &[Found],
+) -> Result<Option<Moved>> {
+    if control.may_be_missing() {
+        say!("(Without a {} control, type none.)", control.name())?;
+    }
+    loop {
+        let answer = ask(control.request())?;
+        if control.may_be_missing() && answer == "none" {
+            return Ok(None);
+        }
+        let Some(held) = heard(watch.still())? else {
+            continue;
+        };
+        match Moved::find(control, rest, &held, found) {
+            Ok(moved) => {
+                say!(
+                    "Channel {} went from {} to {}: {}.",
+                    moved.index,
+                    moved.from,
+                    moved.to,
+                    control.name()
+                )?;
+                return Ok(Some(moved));
+            }
+            Err(error) => say!("{error}")?,
+        }
+    }
+}
+
+/// Settings are taken with the enable switch off only.
+fn put_back(watch: &mut Watch<'_>, rest: &Still) -> Result<()> {
+    loop {
+        ask("Put the e-stop back to stop.")?;
+        let Some(now) = heard(watch.still())? else {
+            continue;
+        };
+        match rest.check_back(&now) {
+            Ok(()) => return Ok(()),
+            Err(error) => say!("{error}")?,
+        }
+    }
+}
+
+fn find_ends(watch: &mut Watch<'_>, sticks: &[Moved]) -> Result<Vec<Found>> {
+    'again: loop {
+        ask(
+            "Let go. After Enter, move both sticks slowly round all their ends for eight seconds.",
+        )?;
+        let start = Instant::now();
+        let mut frames = Vec::new();
+        while start.elapsed() < ROUND {
+            let Some(frame) = heard(watch.frame())? else {
+                continue 'again;
+            };
+            frames.push(frame);
+        }
+        let ends = sticks.iter().map(|moved| {
+            let channel = radio::stick(moved, &frames)?;
+            Ok(Found {
+                control: moved.control,
+                channel: Some(channel),
+            })
+        });
+        match ends.collect::<Result<Vec<_>, radio::MoveError>>() {
+            Ok(ends) => return Ok(ends),
+            Err(error) => say!("{error}")?,
+        }
+    }
+}
+
+/// `None` after saying so if the radio was not heard, which the pilot can mend.
+fn heard<T>(seen: Result<T, WatchError>) -> Result<Option<T>> {
+    match seen {
+        Ok(seen) => Ok(Some(seen)),
+        Err(error @ WatchError::NotHeard) => {
+            say!("{error}")?;
+            Ok(None)
+        }
+        Err(error) => Err(error.into()),
+    }
+}
+
+fn missing(control: Control) -> Found {
+    Found {
+        control,
+        channel: None,
+    }
+}

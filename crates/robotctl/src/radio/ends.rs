@@ -1,0 +1,55 @@
+//! How far sticks and switches go.
+
+use robot_app::domain::RemoteChannel;
+
+use super::{
+    Frame, Moved,
+    movement::{MoveError, sorted},
+};
+
+/// An end counts once as many frames show it: SBUS has no checksum, so a single one may be wrong.
+const FRAMES_AT_AN_END: usize = 3;
+/// The end at which the stick was held must be reached again, but for this.
+const MOST_MISSED: u16 = 60;
+/// Least distance of a stick's end from its centre.
+const LEAST_SPAN: u16 = 300;
+
+/// A stick by its ends in `frames`, in which it went round all of them.
+pub fn stick(moved: &Moved, frames: &[Frame]) -> Result<RemoteChannel, MoveError> {
+    let counts = sorted(frames, moved.index);
+    let (centre, held) = (moved.from, moved.to);
+    let end = |place: Option<usize>| place.and_then(|place| counts.get(place));
+    let low = *end(Some(FRAMES_AT_AN_END - 1)).unwrap_or(&centre);
+    let high = *end(counts.len().checked_sub(FRAMES_AT_AN_END)).unwrap_or(&centre);
+    let (down, up) = (centre.saturating_sub(low), high.saturating_sub(centre));
+    let reached =
+        low <= held.saturating_add(MOST_MISSED) && held <= high.saturating_add(MOST_MISSED);
+    let is_lopsided = down.min(up) < LEAST_SPAN.max(down.max(up) / 2);
+    if !reached || is_lopsided {
+        return Err(MoveError::Ends {
+            name: moved.control.name(),
+            index: moved.index,
+            low,
+            centre,
+            high,
+            held,
+        });
+    }
+    Ok(channel(moved, low, centre, high))
+}
+
+/// A switch, which has been at both of its ends.
+pub(super) fn switch(moved: &Moved) -> RemoteChannel {
+    let (low, high) = (moved.from.min(moved.to), moved.from.max(moved.to));
+    channel(moved, low, low.midpoint(high), high)
+}
+
+fn channel(moved: &Moved, low: u16, centre: u16, high: u16) -> RemoteChannel {
+    RemoteChannel {
+        index: moved.index as u32,
+        low: low.into(),
+        centre: centre.into(),
+        high: high.into(),
+        reversed: moved.is_reversed().into(),
+    }
+}

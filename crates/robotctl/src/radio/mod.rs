@@ -1,0 +1,15 @@
+//! Which channel of an SBUS transmitter means what, found by moving one control after the other (docs/bring-up.md).
+
+mod control;
+mod ends;
+mod movement;
+mod settings;
+#[cfg(test)]
+mod tests;
+mod watch;
+
+pub use control::Control;
+pub use ends::stick;
+pub use movement::{Frame, MoveError, Moved, Still};
+pub use settings::{ENABLE_CHANNEL, Found, differing, write};
+pub use watch::{Watch, WatchError};
