@@ -6,7 +6,7 @@
 use core::time::Duration;
 
 use estimator_bench::{board, uf_ahrs::AllInOne};
-use uf_ahrs::{Ahrs, Madgwick, MadgwickParams};
+use uf_ahrs::{Madgwick, MadgwickParams};
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
