@@ -6,7 +6,7 @@
 use core::time::Duration;
 
 use estimator_bench::{board, uf_ahrs::AllInOne};
-use uf_ahrs::{Ahrs, Mahony, MahonyParams};
+use uf_ahrs::{Mahony, MahonyParams};
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
