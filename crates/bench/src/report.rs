@@ -13,8 +13,8 @@ use crate::{
 use robot_emulator::sim::{budgets, summary::Summary};
 
 /// What the shipped image may take.
-const IMAGE_FLASH_BYTES: f64 = 128.0 * 1024.0;
-const IMAGE_RAM_BYTES: f64 = 48.0 * 1024.0;
+const IMAGE_FLASH_BYTES: f64 = 256.0 * 1024.0;
+const IMAGE_RAM_BYTES: f64 = 64.0 * 1024.0;
 /// What the estimator may take.
 pub const UPDATE_MEAN: f64 = 2_000.0;
 pub const UPDATE_MAX: f64 = 3_000.0;
