@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-/// A program of the package `estimator-bench`.
+/// A program of the package `robot-estimator-bench`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Filter {
     /// Of the program's file.

@@ -2,7 +2,7 @@
 
 mod computed;
 
-use estimator_bench::mailbox::Input;
+use robot_estimator_bench::mailbox::Input;
 use robot_replay::{FIELD_AGE_US, Sample, Trial};
 
 /// The board's clock at time 0 of the motion. Not 0, which stands for "no sample yet".

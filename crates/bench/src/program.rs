@@ -6,12 +6,12 @@
 use std::{collections::HashMap, fs, path::Path};
 
 use anyhow::{Context, bail, ensure};
-use estimator_bench::mailbox::{COUNTED, INPUT_WORDS, Input, OUTPUT_WORDS, SYMBOL};
 use robot_emulator::core::{
     cost::block_cost,
     image::Image,
     memory::{self, FLASH},
 };
+use robot_estimator_bench::mailbox::{COUNTED, INPUT_WORDS, Input, OUTPUT_WORDS, SYMBOL};
 use unicorn_engine::{Arch, ArmCpuModel, Mode, Prot, RegisterARM, Unicorn};
 
 /// System control space; all it has to do is keep what start-up writes.

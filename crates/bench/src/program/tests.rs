@@ -7,7 +7,7 @@ use crate::{
 };
 
 fn boot(program: &str) -> Program {
-    let built = "../../target/estimator-bench/thumbv7em-none-eabihf/release";
+    let built = "../../target/robot-estimator-bench/thumbv7em-none-eabihf/release";
     let usual = || Path::new(env!("CARGO_MANIFEST_DIR")).join(built);
     let folder = env::var_os("ROBOT_FILTERS").map_or_else(usual, PathBuf::from);
     Program::boot(&folder.join(program)).expect("`cargo xtask test` builds it")

@@ -7,7 +7,7 @@ use std::{
 
 /// `ROBOT_FILTERS`, or where `cargo xtask` builds them.
 pub fn folder() -> PathBuf {
-    let built = "../../target/estimator-bench/thumbv7em-none-eabihf/release";
+    let built = "../../target/robot-estimator-bench/thumbv7em-none-eabihf/release";
     let usual = || Path::new(env!("CARGO_MANIFEST_DIR")).join(built);
     let folder = env::var_os("ROBOT_FILTERS").map_or_else(usual, PathBuf::from);
     assert!(

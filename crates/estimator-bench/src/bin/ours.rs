@@ -3,13 +3,13 @@
 #![no_std]
 #![no_main]
 
-use estimator_bench::{
-    board::{self, Filter},
-    mailbox::Input,
-};
 use robot_app::{
     domain::{ImuState, MagState, MotorFeedback, StateEstimate, WheelFeedback, WheelOdomConfig},
     estimation::InsEstimator,
+};
+use robot_estimator_bench::{
+    board::{self, Filter},
+    mailbox::Input,
 };
 
 struct Ours {

@@ -5,7 +5,7 @@
 
 use core::time::Duration;
 
-use estimator_bench::{board, uf_ahrs::AllInOne};
+use robot_estimator_bench::{board, uf_ahrs::AllInOne};
 use uf_ahrs::{Madgwick, MadgwickParams};
 
 #[cortex_m_rt::entry]

@@ -5,11 +5,11 @@
 
 use core::time::Duration;
 
-use estimator_bench::{
+use nalgebra::{UnitQuaternion, Vector3};
+use robot_estimator_bench::{
     board::{self, Filter, Fresh, Samples},
     mailbox::Input,
 };
-use nalgebra::{UnitQuaternion, Vector3};
 use uf_ahrs::{Vqf, VqfParams};
 
 struct UfVqf {

@@ -3,7 +3,7 @@
 #![no_std]
 #![no_main]
 
-use estimator_bench::{
+use robot_estimator_bench::{
     board::{self, Filter, Fresh, Samples},
     mailbox::Input,
 };

@@ -14,7 +14,7 @@ use crate::{
 };
 
 const PACKAGE: &str = "robot-firmware";
-const FILTERS: &str = "estimator-bench";
+const FILTERS: &str = "robot-estimator-bench";
 
 /// Which compiler has a core library for the board.
 enum Compiler {
