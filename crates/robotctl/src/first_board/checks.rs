@@ -57,7 +57,7 @@ pub static CHECKS: [Check; 24] = [
         title: "The radio is heard",
         connect: "Receiver on DBUS, transmitter on.",
         act: "Wait for two seconds; move each stick and switch and watch `robotctl status --watch`.",
-        see: "60 to 150 frames a second, all good; each control does what README says.",
+        see: "60 to 150 frames a second, all good; each control does what docs/driving.md says.",
         note: "Make of the receiver; frames a second with one decimal.",
         how: Prepared(measured::radio),
     },

@@ -56,7 +56,7 @@ fn round(index: usize, low: u16, high: u16) -> Vec<Frame> {
     frames
 }
 
-/// By README: drive forward, steering right, selector up, dead-man right, enable on, mode custom and e-stop stop are +1.
+/// By docs/driving.md: drive forward, steering right, selector up, dead-man right, enable on, mode custom and e-stop stop are +1.
 #[test]
 fn each_control_at_its_high_end_is_at_plus_one_for_the_robot() {
     for (control, index) in Control::STICKS.into_iter().zip([1, 0, 2, 3]) {

@@ -20,7 +20,7 @@ pub const WHEELS: [&str; 2] = ["left", "right"];
 pub const JOINTS: [&str; 4] = ["left-front", "left-rear", "right-front", "right-rear"];
 const BUSES: [&str; 2] = ["can1", "can2"];
 const ROBOT: [&str; 1] = [""];
-/// Numbered as in README.
+/// Numbered as in docs/driving.md.
 const CHANNELS: [&str; 4] = ["0-3", "4-7", "8-11", "12-15"];
 
 /// By number.
