@@ -1,33 +1,22 @@
-//! Line plots over time, the path on the ground, and histograms, as SVG text.
+//! Plots of lines over time, of a path on the ground, and histograms.
 
 use std::ops::Range;
 
-use plotters::{
-    coord::Shift,
-    prelude::*,
-    style::text_anchor::{HPos, Pos, VPos},
+use plotters::prelude::*;
+
+use crate::{
+    BLUE, ChartError, GREEN, GREY, Legend, ORANGE, WIDTH,
+    canvas::{self, Area, DrawError, GRID},
+    label_style,
 };
 
-use crate::{ChartError, Legend};
-
-pub const WIDTH: u32 = 980;
-
-/// Colours that colour-blind readers can tell apart (Okabe and Ito).
-pub const BLUE: RGBColor = RGBColor(0, 114, 178);
-pub const ORANGE: RGBColor = RGBColor(213, 94, 0);
-pub const GREEN: RGBColor = RGBColor(0, 158, 115);
-pub const PURPLE: RGBColor = RGBColor(170, 80, 150);
-pub const GREY: RGBColor = RGBColor(120, 120, 120);
-const INK: RGBColor = RGBColor(50, 55, 60);
-const GRID: RGBColor = RGBColor(225, 228, 232);
-
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-
+/// One line of a plot.
 pub struct Curve {
     pub label: String,
     pub colour: RGBColor,
-    /// Drawn thin and light, under the others: a reference or command.
+    /// Drawn broad and light: a reference or a command.
     pub faint: bool,
+    /// Time and value; `None` leaves a gap in the line.
     pub points: Vec<(f64, Option<f64>)>,
 }
 
@@ -36,7 +25,7 @@ impl Curve {
         self.points.iter().any(|p| p.1.is_some())
     }
 
-    /// Unbroken pieces: a gap in the values is a gap in the line.
+    /// Returns the pieces of the line between its gaps.
     fn pieces(&self) -> impl Iterator<Item = Vec<(f64, f64)>> + '_ {
         self.points
             .split(|(_, v)| v.is_none_or(|v| !v.is_finite()))
@@ -55,14 +44,15 @@ pub struct TimePlot<'a> {
     pub unit: &'a str,
     pub height: u32,
     pub time: Range<f64>,
-    /// Instants at which something is done from outside.
+    /// Instants marked by a dashed line, such as those of a scenario's actions.
     pub marks: &'a [f64],
-    /// Spans on a tinted ground.
+    /// Spans of time with a tinted background.
     pub shaded: &'a [Range<f64>],
     pub curves: Vec<Curve>,
 }
 
 impl TimePlot<'_> {
+    /// Lists the curves that have a value.
     pub fn legend(&self) -> Vec<Legend> {
         let drawn = self.curves.iter().filter(|c| c.has_points());
         drawn
@@ -74,22 +64,15 @@ impl TimePlot<'_> {
             .collect()
     }
 
-    /// `None` if no curve has a value.
+    /// Draws the plot as SVG text; `None` if no curve has a value.
     pub fn draw(&self) -> Result<Option<String>, ChartError> {
         if !self.curves.iter().any(Curve::has_points) {
             return Ok(None);
         }
-        let mut svg = String::new();
-        let area = SVGBackend::with_string(&mut svg, (WIDTH, self.height)).into_drawing_area();
-        self.draw_on(&area).map_err(ChartError::new)?;
-        drop(area);
-        Ok(Some(svg))
+        canvas::svg((WIDTH, self.height), |area| self.draw_on(area)).map(Some)
     }
 
-    fn draw_on<'b>(
-        &self,
-        area: &Area<'b>,
-    ) -> Result<(), DrawingAreaErrorKind<<SVGBackend<'b> as DrawingBackend>::ErrorType>> {
+    fn draw_on<'b>(&self, area: &Area<'b>) -> Result<(), DrawError<'b>> {
         let values = self.curves.iter().flat_map(|c| &c.points);
         let range = padded(values.filter_map(|p| p.1));
         let mut chart = ChartBuilder::on(area)
@@ -132,17 +115,11 @@ impl TimePlot<'_> {
     }
 }
 
-pub fn label_style() -> TextStyle<'static> {
-    TextStyle::from(("sans-serif", 15).into_font())
-        .color(&INK)
-        .pos(Pos::new(HPos::Left, VPos::Top))
-}
+/// Values smaller than this are shown as zero.
+const SHOWN_AS_ZERO: f64 = 1e-6;
 
-/// Values all smaller than this are shown as zero.
-const NOTHING: f64 = 1e-6;
-
-/// A range around all finite values, with room above and below; never empty, and no smaller than its labels can tell
-/// where everything is zero.
+/// Returns a range around all finite values, with room above and below. It is never empty, and where all values are zero
+/// it is wide enough for its labels to differ.
 fn padded(values: impl Iterator<Item = f64>) -> Range<f64> {
     let finite = values.filter(|v| v.is_finite());
     let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
@@ -152,14 +129,14 @@ fn padded(values: impl Iterator<Item = f64>) -> Range<f64> {
         return 0.0..1.0;
     }
     let size = high.abs().max(low.abs());
-    if size < NOTHING {
+    if size < SHOWN_AS_ZERO {
         return -1.0..1.0;
     }
     let room = ((high - low) * 0.08).max(size * 1e-3);
     low - room..high + room
 }
 
-/// A path on the ground seen from above, both axes at one scale.
+/// Draws a path on the ground seen from above, both axes at one scale.
 pub fn draw_path(points: &[(f64, f64)], unit: &str) -> Result<String, ChartError> {
     const SIDE: u32 = 520;
     let (x, y) = (
@@ -171,10 +148,8 @@ pub fn draw_path(points: &[(f64, f64)], unit: &str) -> Result<String, ChartError
         let middle = 0.5 * (r.start + r.end);
         middle - half..middle + half
     };
-    let mut svg = String::new();
-    let area = SVGBackend::with_string(&mut svg, (SIDE, SIDE)).into_drawing_area();
-    let draw = || {
-        let mut chart = ChartBuilder::on(&area)
+    canvas::svg((SIDE, SIDE), |area| {
+        let mut chart = ChartBuilder::on(area)
             .margin(10)
             .x_label_area_size(40)
             .y_label_area_size(58)
@@ -198,21 +173,16 @@ pub fn draw_path(points: &[(f64, f64)], unit: &str) -> Result<String, ChartError
                 .filter_map(|(p, colour)| Some(Circle::new(*p?, 5, colour.filled()))),
         )?;
         Ok(())
-    };
-    draw().map_err(|e: DrawingAreaErrorKind<_>| ChartError::new(e))?;
-    drop(area);
-    Ok(svg)
+    })
 }
 
-/// Counts in bins of equal width starting at 0, on a logarithmic scale.
+/// Draws counts in bins of equal width that start at 0, on a logarithmic scale.
 pub fn draw_histogram(bins: &[u64], bin_width: f64, unit: &str) -> Result<String, ChartError> {
     let used = bins.iter().rposition(|n| *n > 0).map_or(1, |last| last + 1);
     let highest = bins.iter().copied().max().unwrap_or(1).max(1) as f64;
     let width = bin_width * used.max(8) as f64;
-    let mut svg = String::new();
-    let area = SVGBackend::with_string(&mut svg, (WIDTH, 240)).into_drawing_area();
-    let draw = || {
-        let mut chart = ChartBuilder::on(&area)
+    canvas::svg((WIDTH, 240), |area| {
+        let mut chart = ChartBuilder::on(area)
             .margin(8)
             .margin_right(16)
             .x_label_area_size(40)
@@ -240,8 +210,5 @@ pub fn draw_histogram(bins: &[u64], bin_width: f64, unit: &str) -> Result<String
             });
         chart.draw_series(bars)?;
         Ok(())
-    };
-    draw().map_err(|e: DrawingAreaErrorKind<_>| ChartError::new(e))?;
-    drop(area);
-    Ok(svg)
+    })
 }

@@ -1,10 +1,10 @@
-//! Long series cut down to what a plot can show.
+//! Thins out long series for a plot.
 
-/// Pieces of a series; each is left with two points. A plot is some 900 pixels wide.
+/// A series is cut into this many pieces, and each keeps two points. A plot is some 900 pixels wide.
 const PIECES: usize = 450;
 
-/// The least and the greatest value of each of `PIECES` equal pieces, so that no peak is lost. A piece with a gap in it
-/// ends with a gap.
+/// Keeps the least and the greatest value of each piece of a long series, so that no peak is lost. A piece with a gap in
+/// it ends with a gap.
 pub fn thinned(points: &[(f64, Option<f64>)]) -> Vec<(f64, Option<f64>)> {
     if points.len() <= 2 * PIECES {
         return points.to_vec();

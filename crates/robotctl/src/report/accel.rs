@@ -1,23 +1,25 @@
 //! The accelerometer's page.
 
-use super::{ReportError, chart, page};
+use robot_chart::{ChartError, Figure, before_and_after, document, draw_residuals, header, table};
+
 use crate::calibration::accel::{AccelCorrection, AccelFit, Face, GRAVITY_MPS2, StillWindow};
 
-/// Positions, their errors before and after, and the correction.
-pub fn accel_report(fit: &AccelFit) -> Result<String, ReportError> {
+/// Returns the page with all positions, their errors before and after, and the correction.
+pub fn accel_report(fit: &AccelFit) -> Result<String, ChartError> {
     let errors = |c: &AccelCorrection| -> Vec<f64> {
         fit.windows.iter().map(|w| error_mps2(c, w)).collect()
     };
-    let svg = chart::errors(
-        &errors(&AccelCorrection::NONE),
-        &errors(&fit.correction),
-        "m/s²",
-    )?;
-    let figure = page::figure(
-        "Error of gravity in each still position",
-        "<span class=\"before\">as measured</span>, <span class=\"after\">corrected</span>; zero is 1 g",
-        &svg,
-    );
+    let figure = Figure {
+        title: "Error of gravity in each still position".to_owned(),
+        caption: "Zero is 1 g.".to_owned(),
+        legend: before_and_after(),
+        svg: draw_residuals(
+            &errors(&AccelCorrection::NONE),
+            &errors(&fit.correction),
+            "m/s²",
+        )?,
+    };
+    let title = "Accelerometer calibration";
     let summary = format!(
         "{} positions, {} left out. Error (root mean square) {:.4} m/s² before, {:.4} after.",
         fit.windows.len(),
@@ -25,15 +27,13 @@ pub fn accel_report(fit: &AccelFit) -> Result<String, ReportError> {
         fit.residual_before_mps2,
         fit.residual_after_mps2
     );
-    Ok(page::page(
-        "Accelerometer calibration",
-        &[
-            page::paragraph(&summary),
-            correction_table(&fit.correction),
-            figure,
-            position_table(fit),
-        ],
-    ))
+    let parts = [
+        header(title, &summary),
+        correction_table(&fit.correction),
+        figure.html(),
+        position_table(fit),
+    ];
+    Ok(document(title, &parts.concat()))
 }
 
 fn error_mps2(correction: &AccelCorrection, window: &StillWindow) -> f64 {
@@ -52,7 +52,7 @@ fn correction_table(correction: &AccelCorrection) -> String {
             ]
         })
         .collect();
-    page::table(&["axis", "offset, m/s²", "scale"], &rows)
+    table(&["axis", "offset, m/s²", "scale"], &rows)
 }
 
 fn position_table(fit: &AccelFit) -> String {
@@ -70,7 +70,7 @@ fn position_table(fit: &AccelFit) -> String {
             ]
         })
         .collect();
-    page::table(
+    table(
         &["position", "time, s", "error before, m/s²", "after"],
         &rows,
     )

@@ -1,14 +1,11 @@
 //! The magnetometer's page.
 
-use super::{
-    ReportError,
-    chart::{self, Cloud},
-    page,
-};
+use robot_chart::{ChartError, Cloud, Figure, before_and_after, document, header, table};
+
 use crate::calibration::mag::MagFit;
 
-/// The samples before and after, and the correction.
-pub fn mag_report(fit: &MagFit) -> Result<String, ReportError> {
+/// Returns the page with the samples before and after, and the correction.
+pub fn mag_report(fit: &MagFit) -> Result<String, ChartError> {
     let before: Vec<[f64; 3]> = fit.samples.iter().map(|v| (*v).into()).collect();
     let corrected = fit.samples.iter().map(|v| fit.correction.apply(*v));
     let after: Vec<[f64; 3]> = corrected.map(Into::into).collect();
@@ -17,12 +14,13 @@ pub fn mag_report(fit: &MagFit) -> Result<String, ReportError> {
         after: &after,
         radius: fit.field_ut,
     };
-    let figure = page::figure(
-        "The field seen along each axis",
-        "<span class=\"before\">as measured</span>, <span class=\"after\">corrected</span>; the circle is a field of equal \
-         strength in all attitudes",
-        &chart::projections(&cloud, "µT")?,
-    );
+    let figure = Figure {
+        title: "The field seen along each axis".to_owned(),
+        caption: "The circle is a field of equal strength in all attitudes.".to_owned(),
+        legend: before_and_after(),
+        svg: cloud.draw("µT")?,
+    };
+    let title = "Magnetometer calibration";
     let summary = format!(
         "{} samples, {} left out, {:.0} % of all directions. Strength {:.2} µT; it varies (root mean square) by {:.2} µT \
          before and {:.2} µT after.",
@@ -33,10 +31,12 @@ pub fn mag_report(fit: &MagFit) -> Result<String, ReportError> {
         fit.residual_before_ut,
         fit.residual_after_ut
     );
-    Ok(page::page(
-        "Magnetometer calibration",
-        &[page::paragraph(&summary), correction_table(fit), figure],
-    ))
+    let parts = [
+        header(title, &summary),
+        correction_table(fit),
+        figure.html(),
+    ];
+    Ok(document(title, &parts.concat()))
 }
 
 fn correction_table(fit: &MagFit) -> String {
@@ -55,5 +55,5 @@ fn correction_table(fit: &MagFit) -> String {
             row
         })
         .collect();
-    page::table(&["axis", "offset, µT", "soft iron", "", ""], &rows)
+    table(&["axis", "offset, µT", "soft iron", "", ""], &rows)
 }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use plotters::prelude::*;
-use robot_chart::{ChartError, GREY, WIDTH, label_style};
+use robot_chart::{ChartError, GREY, WIDTH, draw_svg, label_style};
 
 pub struct Lane {
     pub label: String,
@@ -42,10 +42,8 @@ impl Lane {
 pub fn draw(lanes: &[Lane], time: Range<f64>, marks: &[f64]) -> Result<String, ChartError> {
     let count = lanes.len() as i32;
     let height = 48 + 26 * lanes.len() as u32;
-    let mut svg = String::new();
-    let area = SVGBackend::with_string(&mut svg, (WIDTH, height)).into_drawing_area();
-    let draw = || {
-        let mut chart = ChartBuilder::on(&area)
+    draw_svg((WIDTH, height), |area| {
+        let mut chart = ChartBuilder::on(area)
             .margin(8)
             .margin_right(16)
             .x_label_area_size(26)
@@ -89,10 +87,7 @@ pub fn draw(lanes: &[Lane], time: Range<f64>, marks: &[f64]) -> Result<String, C
             chart.draw_series(LineSeries::new(line, GREY.mix(0.35)))?;
         }
         Ok(())
-    };
-    draw().map_err(|e: DrawingAreaErrorKind<_>| ChartError::new(e))?;
-    drop(area);
-    Ok(svg)
+    })
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use std::{fmt::Write, ops::Range};
 
 use robot_chart::{
-    BLUE, ChartError, Curve, Figure, GREEN, ORANGE, TimePlot, document, escaped, thinned,
+    BLUE, ChartError, Curve, Figure, GREEN, ORANGE, TimePlot, document, escaped, header, thinned,
 };
 use robot_replay::{At, Figures, Instant, Run, Tick, Trial};
 
@@ -129,14 +129,13 @@ fn curve(label: &str, colour: robot_chart::Colour, points: Vec<(f64, Option<f64>
     }
 }
 
+const SUBTITLE: &str = "Root mean square errors in degrees over the scored phase, at the reference's times and at every \
+    output. Plots: time in s, from the first valid estimate on.";
+
 pub fn page(task: &Task, outcomes: &[Outcome]) -> String {
     let title = format!("Replay {}", table::title(task));
     let parts = [
-        format!(
-            "<header><div><h1>{}</h1><div class=\"soft\">Root mean square errors in degrees over the scored phase, at \
-             the reference's times and at every output. Plots: time in s, from the first valid estimate on.</div></div></header>\n",
-            escaped(&title)
-        ),
+        header(&title, SUBTITLE),
         errors_table(outcomes),
         outcomes
             .iter()
