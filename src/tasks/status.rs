@@ -72,7 +72,7 @@ pub async fn run(
 }
 
 fn indication(diagnostics: &DiagnosticsSnapshot) -> Indication {
-    Indication::of(&IndicationInputs {
+    Indication::select(&IndicationInputs {
         arming: &diagnostics.arming,
         safety: &diagnostics.safety,
         calibration: &diagnostics.imu_status.calibration,

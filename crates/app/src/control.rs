@@ -1,6 +1,6 @@
-//! High-level command and measurements → actuator command.
+//! The control stage: high-level command and measurements → actuator commands.
 //!
-//! To write your own algorithm, edit `user_controller.rs`.
+//! Put your own algorithm into `user_controller.rs`.
 
 mod chassis_controller;
 mod default_controller;

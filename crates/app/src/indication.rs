@@ -1,9 +1,9 @@
-//! What the robot tells people who see and hear it: state → LED and buzzer. The table for people is `docs/indications.md`.
+//! The indication stage: state → LED and buzzer. `docs/indications.md` has the table for the pilot.
 
-mod choice;
 mod patterns;
 mod player;
+mod selection;
 
-pub use choice::{Indication, IndicationInputs};
 pub use patterns::Colour;
 pub use player::{IndicationPlayer, Signal};
+pub use selection::{Indication, IndicationInputs};

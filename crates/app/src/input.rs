@@ -1,15 +1,15 @@
-//! Radio bytes → sticks, switches and link quality.
+//! The radio input stage: bytes from the receiver → sticks, switches and link quality.
 
 mod channels;
-mod confirmation;
 mod dbus;
-mod line_finding;
+mod glitch_filter;
+mod line_diagnosis;
 mod mapping;
 mod receiver;
 mod sbus;
 
 pub use crate::domain::RemoteMapping;
 pub use dbus::{DbusFrame, DbusParser, DbusSwitch};
-pub use line_finding::{LineFinding, LineLook};
+pub use line_diagnosis::{LineCounters, LineDiagnosis};
 pub use receiver::{RemoteFormat, RemoteReceiver};
 pub use sbus::{SbusFrame, SbusParser};

@@ -29,7 +29,7 @@
 //!   `bmi088::BUFFER_RESET` if `take_buffer_reset` says so; every 20 ms write `ist8310::START_SINGLE_SHOT`, wait
 //!   `ist8310::MEASUREMENT_US`, read `ist8310::READ_LEN` bytes from `ist8310::READ_FROM` and hand them to
 //!   `sensing::MagPipeline::process`.
-//! - status task: `sensing::BatteryMonitor::feed` at 200 Hz; at 100 Hz `indication::Indication::of` what diagnostics say, and `indication::IndicationPlayer::step`
+//! - status task: `sensing::BatteryMonitor::feed` at 200 Hz; at 100 Hz `indication::Indication::select` what diagnostics say, and `indication::IndicationPlayer::step`
 //!   for LED and buzzer.
 //! - logic task, 100 Hz: `logic::LogicStage::step`.
 //! - boot: `params::ParamService::boot` gives the settings; params task, each ms: `ParamService::step` with what the

@@ -1,6 +1,6 @@
-//! What shall be done: remote, PC or the user's own logic → command on the logic bus.
+//! The logic stage: commands of the pilot, a PC or your own logic → one command on the logic bus.
 //!
-//! To write your own logic, edit `user_logic.rs`.
+//! Put your own logic into `user_logic.rs`.
 
 mod bus;
 mod custom_logic;

@@ -1,7 +1,7 @@
 //! Why no frame of the radio arrives, once a second.
 
 use robot_app::diagnostics::DiagnosticsSnapshot;
-use robot_app::input::{LineFinding, LineLook};
+use robot_app::input::{LineCounters, LineDiagnosis};
 
 use crate::config::REMOTE_FORMAT;
 
@@ -10,9 +10,9 @@ const PERIOD_US: u64 = 1_000_000;
 /// What was seen and logged last.
 #[derive(Default)]
 pub struct RadioLog {
-    look: LineLook,
+    look: LineCounters,
     looked_us: u64,
-    told: LineFinding,
+    told: LineDiagnosis,
 }
 
 impl RadioLog {
@@ -21,28 +21,28 @@ impl RadioLog {
             return;
         }
         self.looked_us = d.ts_us;
-        let now = LineLook::new(&d.radio_line, &d.remote_diag);
+        let now = LineCounters::new(&d.radio_line, &d.remote_diag);
         let before = core::mem::replace(&mut self.look, now);
-        let found = LineFinding::between(&before, &now, REMOTE_FORMAT);
+        let found = LineDiagnosis::between(&before, &now, REMOTE_FORMAT);
         if found == self.told {
             return;
         }
         self.told = found;
         match found {
-            LineFinding::Frames => defmt::info!("radio: frames arrive"),
-            LineFinding::Quiet => defmt::warn!(
+            LineDiagnosis::Frames => defmt::info!("radio: frames arrive"),
+            LineDiagnosis::Quiet => defmt::warn!(
                 "radio: nothing arrives: receiver not plugged in, without supply, or silent without its transmitter"
             ),
-            LineFinding::Errors => defmt::warn!(
+            LineDiagnosis::Errors => defmt::warn!(
                 "radio: bytes with errors, no frames: another baud rate (fast SBUS?), or the signal is not inverted as it should be"
             ),
-            LineFinding::LooksLikeSbus => defmt::warn!(
+            LineDiagnosis::LooksLikeSbus => defmt::warn!(
                 "radio: bytes but no frames: this looks like SBUS, and the image is built for DBUS"
             ),
-            LineFinding::LooksLikeDbus => defmt::warn!(
+            LineDiagnosis::LooksLikeDbus => defmt::warn!(
                 "radio: bytes but no frames: this looks like DBUS; build the image with ROBOT_REMOTE=dbus"
             ),
-            LineFinding::OtherProtocol => {
+            LineDiagnosis::OtherProtocol => {
                 defmt::warn!("radio: bytes but no frames: another protocol");
             }
         }

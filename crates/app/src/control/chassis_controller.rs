@@ -1,40 +1,49 @@
-//! The interface of a controller (ROBOT_CPP 3.4).
+//! The interface of a controller (ROBOT_CPP section 3.4).
 
 use crate::domain::{
     ChassisCommand, HighLevelCommand, JointControllerConfig, OperatorState, SensorsSnapshot,
     StateEstimate, WheelControllerConfig, WheelOdomConfig,
 };
 
-/// All a controller may look at in one tick.
+/// What a controller gets in one tick.
 #[derive(Clone, Copy, Debug)]
 pub struct ChassisControllerInput<'a> {
+    /// Measurements of all sensors and motors.
     pub sensors: &'a SensorsSnapshot,
+    /// Estimated attitude and motion.
     pub estimate: &'a StateEstimate,
+    /// Geometry of the wheels.
     pub wheel_odom_cfg: &'a WheelOdomConfig,
+    /// Gains and limits of the wheel controller.
     pub wheel_ctrl_cfg: &'a WheelControllerConfig,
+    /// Gains of the joint controller.
     pub joint_ctrl_cfg: &'a JointControllerConfig,
+    /// The pilot's switches.
     pub operator_state: &'a OperatorState,
-    /// From whoever is in command; not sure to be inside −1 … 1.
+    /// The command to follow. Its components are meant to lie in −1…1, but may not.
     pub hl_cmd: HighLevelCommand,
-    /// Wheel commands of this tick go nowhere: what integrates their errors must start again.
+    /// The wheel commands of this tick are discarded. Controllers restart what integrates wheel errors.
     pub wheels_stopped: bool,
-    /// The same for joints.
+    /// The joint commands of this tick are discarded.
     pub joints_stopped: bool,
 }
 
-/// What it wants. Not valid = zero on every actuator.
+/// What a controller returns.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// The actuator commands.
 pub struct ChassisControllerOutput {
+    /// Whether `cmd` is valid. If not, every actuator gets zero.
     pub cmd: ChassisCommand,
     pub cmd_valid: bool,
 }
 
-/// A control algorithm, called at 1 kHz while the robot is armed and a high-level command is valid and fresh. Whatever
-/// it returns is limited and may be cut to zero by the safety policy.
+/// A control algorithm. It is called at 1 kHz while the robot is armed and a valid, fresh high-level command is
+/// present. The safety policy limits its output and may cut it to zero.
 pub trait ChassisController {
+    /// Computes the actuator commands of one tick.
     fn step(&mut self, input: &ChassisControllerInput<'_>) -> ChassisControllerOutput;
 
-    /// Forgets integrators and filters: called in every tick without [`step`](Self::step), so that a controller starts
-    /// each drive fresh. If only wheels or only joints are cut off, `step` goes on and the input says so.
+    /// Clears integrators and filters. It is called in every tick without [`step`](Self::step), so each drive starts
+    /// fresh. If only wheels or only joints are stopped, `step` continues and the input says so.
     fn reset(&mut self);
 }

@@ -11,7 +11,28 @@ use crate::{
     math::scalar,
 };
 
-/// Keeps the pose of the joints from when they were enabled.
+/// The controller that the image ships with.
+///
+/// ```
+/// use robot_app::control::{ChassisController, ChassisControllerInput, DefaultController};
+/// use robot_app::domain::{HighLevelCommand, OperatorState, RobotConfig, SensorsSnapshot, StateEstimate};
+///
+/// let config = RobotConfig::default();
+/// let output = DefaultController::default().step(&ChassisControllerInput {
+///     sensors: &SensorsSnapshot::default(),
+///     estimate: &StateEstimate::default(),
+///     wheel_odom_cfg: &config.wheel_odom,
+///     wheel_ctrl_cfg: &config.wheel_ctrl,
+///     joint_ctrl_cfg: &config.joint_ctrl,
+///     operator_state: &OperatorState::default(),
+///     hl_cmd: HighLevelCommand { vx: 0.05, wz: 0.0 },
+///     wheels_stopped: false,
+///     joints_stopped: false,
+/// });
+/// let [left, right] = output.cmd.wheels.map(|wheel| wheel.current_ma);
+/// // The right motor sits mirrored.
+/// assert!(output.cmd_valid && left > 0.0 && right < 0.0);
+/// ```
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DefaultController {
     pose: PoseHold,
@@ -43,7 +64,7 @@ impl ChassisController for DefaultController {
     }
 }
 
-/// Ground speeds of the left and right wheel that give the wanted drive and turn.
+/// Ground speeds in m/s of the left and right wheel for the commanded drive and turn.
 fn wheel_targets_mps(
     hl_cmd: HighLevelCommand,
     odom: &WheelOdomConfig,
@@ -112,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn each_drive_holds_the_pose_it_began_with() {
+    fn each_drive_holds_the_pose_it_started_with() {
         let mut controller = DefaultController::default();
         let mut held_rad = |reset: bool, is_rad: f32| {
             let mut sensors = SensorsSnapshot::default();
@@ -131,35 +152,36 @@ mod tests {
         assert_eq!(held_rad(true, -0.5), [-0.5; 4]);
     }
 
-    /// By hand: 0.05 · 1.5 m/s = 0.075 m/s, times 60 A per m/s = 4.5 A; the right motor sits mirrored.
+    /// 0.05 · 1.5 m/s = 0.075 m/s, times 60 A per m/s = 4.5 A. The right motor sits mirrored.
     #[test]
     fn driving_forward_pushes_both_wheels_forward() {
         let [left, right] = step(HighLevelCommand { vx: 0.05, wz: 0.0 }, [0, 0], 0);
         assert!((left - 4_500.0).abs() < 0.5 && (right + 4_500.0).abs() < 0.5);
     }
 
-    /// By hand: 0.05 · 4 rad/s · 0.21 m = 0.042 m/s, times 60 A per m/s = 2.52 A; left wheel back, right wheel forward.
+    /// 0.05 · 4 rad/s · 0.21 m = 0.042 m/s, times 60 A per m/s = 2.52 A, backward on the left and forward on the
+    /// right.
     #[test]
     fn a_left_turn_drives_the_right_wheel_forward() {
         let [left, right] = step(HighLevelCommand { vx: 0.0, wz: 0.05 }, [0, 0], 0);
         assert!((left + 2_520.0).abs() < 0.5 && (right + 2_520.0).abs() < 0.5);
     }
 
-    /// 0.6 m/s is 10 rad/s of a 0.06 m wheel, 95.49 rpm there and 1833.8 rpm at the rotor.
+    /// A wheel of 0.06 m radius at 0.6 m/s turns at 10 rad/s, which is 95.49 rpm, or 1833.8 rpm at the rotor.
     #[test]
-    fn at_the_wanted_speed_hardly_any_current_is_left() {
+    fn at_the_target_speed_the_current_is_close_to_zero() {
         let [left, right] = step(HighLevelCommand { vx: 0.4, wz: 0.0 }, [1834, -1834], 0);
         assert!(left.abs() < 20.0 && right.abs() < 20.0, "{left} {right}");
     }
 
     #[test]
-    fn full_stick_from_rest_is_limited() {
+    fn the_current_at_full_stick_from_standstill_is_limited() {
         let [left, right] = step(HighLevelCommand { vx: 1.0, wz: 0.0 }, [0, 0], 0);
         assert_eq!((left, right), (8_000.0, -8_000.0));
     }
 
     #[test]
-    fn without_feedback_the_current_follows_the_stick() {
+    fn without_feedback_the_current_is_proportional_to_the_stick() {
         let [left, right] = step(HighLevelCommand { vx: 1.0, wz: 0.0 }, [3000, 0], 50_001);
         assert_eq!((left, right), (1_500.0, -1_500.0));
     }

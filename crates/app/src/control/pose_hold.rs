@@ -1,8 +1,8 @@
-//! Holds each joint where it was when its motor began to obey.
+//! Holds each joint at the angle it had when its motor was enabled.
 
 use crate::domain::{JointCommand, JointControllerConfig, JointFeedback, JointMode, JointState};
 
-/// The angle each joint is held at.
+/// The held angle of each joint.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct PoseHold {
     pose_rad: [Option<f32>; 4],
@@ -26,8 +26,8 @@ impl PoseHold {
     }
 }
 
-/// Follows a joint that is not held yet: its leg may sink until the motor obeys, and a leg that was let go must not jump
-/// back. `None`: where it is is not known.
+/// Follows a joint until its motor is enabled: its leg may sink until then, and must not jump back. Returns `None`
+/// while the angle is unknown.
 fn held_angle(held_rad: Option<f32>, joint: &JointFeedback) -> Option<f32> {
     let measured_rad = Some(joint.pos_rad).filter(|angle| angle.is_finite());
     match joint.state {
@@ -78,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn each_joint_stays_where_it_was_when_it_began_to_obey() {
+    fn each_joint_is_held_where_its_motor_was_enabled() {
         let mut hold = PoseHold::default();
         hold.step(&joints(JointState::Disabled, 1.0), &CONFIG);
         hold.step(&joints(JointState::Enabling, 0.9), &CONFIG);
@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn a_joint_that_obeys_already_is_held_where_it_is_first_seen() {
+    fn an_enabled_joint_is_held_where_it_is_first_seen() {
         let mut hold = PoseHold::default();
         for pos_rad in [0.5, 0.4] {
             let commands = hold.step(&joints(JointState::Enabled, pos_rad), &CONFIG);
@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn a_joint_that_cannot_be_seen_is_off_and_does_not_jump_back_later() {
+    fn a_lost_joint_is_released_and_does_not_jump_back() {
         for lost in [JointState::Silent, JointState::SettingUp, JointState::Fault] {
             let mut hold = PoseHold::default();
             hold.step(&joints(JointState::Enabled, 0.5), &CONFIG);
@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn an_angle_that_is_none_is_not_held() {
+    fn an_angle_that_is_nan_is_not_held() {
         let mut hold = PoseHold::default();
         for state in [JointState::Disabled, JointState::Enabled] {
             let commands = hold.step(&joints(state, f32::NAN), &CONFIG);

@@ -1,13 +1,14 @@
 //! The place for your own control algorithm.
 //!
 //! Write it in `step`: read `input`, set `cmd.wheels[0]` (left) and `[1]` (right) in mA and `cmd.joints[0..4]` (left
-//! front, left rear, right front, right rear: mode, angle, speed, gains, torque), set `cmd_valid`. State goes into the
-//! struct, and `reset` brings it back to the start. As shipped it delegates to the default controller.
+//! front, left rear, right front, right rear: mode, angle, speed, gains, torque), and set `cmd_valid`. State goes
+//! into the struct; `reset` restores its initial value. The shipped version delegates to the default controller.
 
 use super::{
     ChassisController, ChassisControllerInput, ChassisControllerOutput, DefaultController,
 };
 
+/// Your control algorithm.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct UserController {
     default: DefaultController,

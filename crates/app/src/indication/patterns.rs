@@ -1,22 +1,30 @@
-//! One LED and one beep pattern for each indication. Colours and rates are so far apart that they tell across a room.
+//! One LED and one beep pattern for each indication. Colours and rates differ enough to be told apart across a room.
 
 use super::Indication;
 
-/// Of the red-green-blue LED.
+/// A colour of the red-green-blue LED.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Colour {
+    /// No light.
     Off,
+    /// Red.
     Red,
+    /// Green.
     Green,
+    /// Blue.
     Blue,
+    /// Red and green.
     Yellow,
+    /// Red and blue.
     Purple,
+    /// Green and blue.
     Cyan,
+    /// All three.
     White,
 }
 
 impl Colour {
-    /// Which of red, green and blue are on.
+    /// Whether red, green and blue are on.
     pub const fn red_green_blue(self) -> [bool; 3] {
         match self {
             Self::Off => [false, false, false],
@@ -31,10 +39,10 @@ impl Colour {
     }
 }
 
-/// A value and for how many milliseconds it holds.
+/// A value and its duration in ms.
 pub(super) type Step<T> = (T, u32);
 
-/// What the buzzer does from the moment the indication comes up.
+/// What the buzzer plays when the indication appears.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Beeps {
     Silent,
@@ -44,7 +52,7 @@ pub(super) enum Beeps {
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pattern {
-    /// Repeated for as long as it is shown.
+    /// Repeated as long as the indication is shown.
     pub led: &'static [Step<Colour>],
     pub beeps: Beeps,
 }
@@ -132,7 +140,7 @@ mod tests {
         Indication::Ready,
     ];
 
-    /// What an eye takes in: the colours, and how often a second they repeat; 0 for a steady light.
+    /// What an eye perceives: the colours, and the rate in mHz at which they repeat, 0 for a steady light.
     fn look(indication: Indication) -> (Vec<Colour>, u32) {
         let led = pattern(indication).led;
         let mut colours: Vec<Colour> = led.iter().map(|(colour, _)| *colour).collect();
@@ -162,9 +170,9 @@ mod tests {
         }
     }
 
-    /// Flashes faster than 5 a second blur; slower than one in two seconds look steady.
+    /// Faster than 7 flashes a second blur; slower than one in two seconds look steady.
     #[test]
-    fn an_eye_and_an_ear_can_follow() {
+    fn patterns_are_slow_enough_to_see_and_hear() {
         for indication in ALL {
             let (_, millihertz) = look(indication);
             assert!(millihertz == 0 || (500..=7_000).contains(&millihertz));
@@ -178,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn only_alarms_go_on_sounding() {
+    fn only_alarms_keep_beeping() {
         let sounding: Vec<Indication> = ALL
             .into_iter()
             .filter(|indication| matches!(pattern(*indication).beeps, Beeps::Repeated(_)))

@@ -6,14 +6,27 @@ use super::{
 };
 use crate::domain::age_us;
 
-/// LED and buzzer now.
+/// What LED and buzzer do now.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Signal {
+    /// Colour of the LED.
     pub led: Colour,
+    /// Whether the buzzer sounds.
     pub buzzer: bool,
 }
 
-/// Call [`step`](Self::step) a hundred times a second: the shortest step is 80 ms.
+/// Plays the pattern of the current indication. Call [`step`](Self::step) at 100 Hz, as the shortest element lasts 80
+/// ms.
+///
+/// ```
+/// use robot_app::indication::{Colour, Indication, IndicationPlayer};
+///
+/// let mut player = IndicationPlayer::default();
+/// let start = player.step(Indication::Ready, 1_000_000);
+/// assert_eq!((start.led, start.buzzer), (Colour::Blue, true)); // beeps once
+/// let later = player.step(Indication::Ready, 1_600_000);
+/// assert_eq!((later.led, later.buzzer), (Colour::Off, false)); // blinks
+/// ```
 #[derive(Clone, Debug, Default)]
 pub struct IndicationPlayer {
     shown: Option<Indication>,
@@ -21,7 +34,7 @@ pub struct IndicationPlayer {
 }
 
 impl IndicationPlayer {
-    /// An indication that was not shown before starts at the beginning of its pattern.
+    /// Returns the signal at `now_us`. A new indication starts at the beginning of its pattern.
     pub fn step(&mut self, indication: Indication, now_us: u64) -> Signal {
         if self.shown != Some(indication) {
             self.shown = Some(indication);
@@ -46,7 +59,7 @@ fn repeated<T: Copy>(steps: &[Step<T>], elapsed_ms: u32) -> Option<T> {
     at(steps, elapsed_ms.checked_rem(total_ms)?)
 }
 
-/// `None` past the last step.
+/// Returns the value at `elapsed_ms`, or `None` past the last element.
 fn at<T: Copy>(steps: &[Step<T>], elapsed_ms: u32) -> Option<T> {
     let mut left_ms = elapsed_ms;
     for &(value, ms) in steps {
@@ -94,21 +107,22 @@ mod tests {
         );
     }
 
-    /// Three short beeps, then quiet until 3 s after the first; red on and off five times a second.
+    /// The buzzer gives three short beeps and is quiet until 3 s after the first. The LED turns red five times a
+    /// second.
     #[test]
-    fn an_alarm_goes_on() {
+    fn an_alarm_repeats_until_it_ends() {
         let mut player = IndicationPlayer::default();
-        let heard: Vec<u64> = (0..600)
+        let sounding: Vec<u64> = (0..600)
             .map(|step| step * 10)
             .filter(|ms| play(&mut player, Indication::LatchedStop, *ms).1)
             .collect();
-        let starts: Vec<u64> = heard
+        let starts: Vec<u64> = sounding
             .iter()
             .copied()
-            .filter(|ms| !heard.contains(&ms.wrapping_sub(10)))
+            .filter(|ms| !sounding.contains(&ms.wrapping_sub(10)))
             .collect();
         assert_eq!(starts, [0, 200, 400, 3_000, 3_200, 3_400]);
-        assert_eq!(heard.len(), 60);
+        assert_eq!(sounding.len(), 60);
         let reds = (0..100)
             .filter(|step| {
                 play(&mut player, Indication::LatchedStop, 6_000 + step * 10).0 == Colour::Red

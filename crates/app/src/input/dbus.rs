@@ -1,26 +1,31 @@
-//! DJI DBUS (DT7/DR16): 18 bytes at 100 kbaud 8E1 every 14 ms, no header and no checksum (hardware.md section 6.2).
+//! DJI DBUS (DT7/DR16): 18 bytes at 100 kbaud 8E1 every 14 ms, without header or checksum (hardware.md section 6.2).
 //!
-//! A frame is exactly 18 bytes after silence, with sticks, switches and mouse buttons inside their range; anything else
-//! up to the next silence is dropped.
+//! A frame is exactly 18 bytes after an idle line, with sticks, switches and mouse buttons in range. Anything else is
+//! dropped up to the next idle line.
 
 use super::channels;
 
 pub(super) const FRAME_LEN: usize = 18;
-/// 11 bit at 100 kbaud.
+/// One character has 11 bits at 100 kbaud.
 const BYTE_US: u64 = 110;
-/// Longer silence than any inside a frame, shorter than the 12 ms between frames.
-const GAP_US: u64 = 2_000;
+/// An idle line of this length separates frames. It is longer than any pause inside a frame and shorter than the 12
+/// ms between frames.
+const IDLE_US: u64 = 2_000;
 const CENTRE: u16 = 1024;
-/// DJI rejects anything further from the centre (the sticks end at ±660).
+/// DJI rejects values further from the centre than this. The sticks end at ±660.
 const MAX_OFFSET: u16 = 700;
-/// The bits above are not the wheel's.
+/// The thumb wheel uses the lower 11 bits of its word.
 const WHEEL_BITS: u16 = 0x7FF;
 
+/// A three-position switch of the transmitter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum DbusSwitch {
+    /// Away from the pilot.
     Up,
+    /// In the middle.
     Middle,
+    /// Towards the pilot.
     Down,
 }
 
@@ -35,19 +40,23 @@ impl DbusSwitch {
     }
 }
 
-/// One frame as received. Mouse and keyboard are checked but not kept: nothing uses them.
+/// One received frame. Mouse and keyboard are checked for range and then dropped, as nothing uses them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DbusFrame {
-    /// Right horizontal, right vertical, left horizontal, left vertical: 364 / 1024 / 1684.
+    /// Right horizontal, right vertical, left horizontal, left vertical: 364 / 1024 / 1684 counts at low end, centre
+    /// and high end.
     pub sticks: [u16; 4],
+    /// The right switch.
     pub right_switch: DbusSwitch,
+    /// The left switch.
     pub left_switch: DbusSwitch,
-    /// 364 / 1024 / 1684 from a transmitter with a thumb wheel. Others send anything: it proves nothing about a frame.
+    /// 364 / 1024 / 1684 counts from a transmitter with a thumb wheel. Others send arbitrary values, so it is not
+    /// checked.
     pub wheel: u16,
 }
 
 impl DbusFrame {
-    /// `None` if a field is outside what the receiver can send.
+    /// Decodes a frame. Returns `None` if a field is outside what a receiver can send.
     pub fn parse(bytes: &[u8; FRAME_LEN]) -> Option<Self> {
         let [packed @ .., _, _, wheel_low, wheel_high] = bytes;
         let [
@@ -91,7 +100,7 @@ impl DbusFrame {
 pub struct DbusParser {
     window: [u8; FRAME_LEN],
     filled: usize,
-    /// More bytes than a frame came without silence.
+    /// More bytes than one frame arrived without an idle line in between.
     overrun: bool,
     last_byte_us: Option<u64>,
     discarded_bytes: u32,
@@ -104,6 +113,7 @@ impl Default for DbusParser {
 }
 
 impl DbusParser {
+    /// A parser that has seen no byte yet.
     pub const fn new() -> Self {
         Self {
             window: [0; FRAME_LEN],
@@ -114,17 +124,18 @@ impl DbusParser {
         }
     }
 
-    /// Bytes since boot that belonged to no delivered frame.
+    /// Number of bytes since boot that belonged to no delivered frame. It wraps.
     pub const fn discarded_bytes(&self) -> u32 {
         self.discarded_bytes
     }
 
-    /// Takes the bytes that arrived up to `ts_us` (the time of the last one) in chunks of any length.
+    /// Takes the bytes that arrived up to `ts_us`, the time of the last one, in chunks of any length. `sink` gets
+    /// each complete frame.
     pub fn feed(&mut self, bytes: &[u8], ts_us: u64, mut sink: impl FnMut(DbusFrame)) {
         if bytes.is_empty() {
             return;
         }
-        self.notice_silence(bytes.len(), ts_us);
+        self.detect_idle_line(bytes.len(), ts_us);
         for &byte in bytes {
             self.push(byte);
         }
@@ -137,13 +148,13 @@ impl DbusParser {
                 }
                 None => self.drop_window(),
             }
-            // Whatever follows without silence is not a frame.
+            // Bytes that follow without an idle line cannot be a frame.
             self.overrun = true;
         }
     }
 
-    /// As [`feed`](Self::feed) for `count` bytes of which the line damaged at least one: they and whatever comes before
-    /// the next silence are dropped.
+    /// Takes the place of [`feed`](Self::feed) for `count` bytes of which at least one was damaged on the line. They
+    /// are dropped, and so is everything up to the next idle line.
     pub fn reject(&mut self, count: usize, ts_us: u64) {
         self.drop_window();
         self.discarded_bytes = self.discarded_bytes.wrapping_add(count as u32);
@@ -151,13 +162,13 @@ impl DbusParser {
         self.last_byte_us = Some(ts_us);
     }
 
-    fn notice_silence(&mut self, arrived: usize, ts_us: u64) {
+    fn detect_idle_line(&mut self, arrived: usize, ts_us: u64) {
         let first_byte_us = ts_us.saturating_sub((arrived as u64).saturating_mul(BYTE_US));
-        let silent = match self.last_byte_us {
+        let idle = match self.last_byte_us {
             None => true,
-            Some(last) => first_byte_us.saturating_sub(last) >= GAP_US,
+            Some(last) => first_byte_us.saturating_sub(last) >= IDLE_US,
         };
-        if silent {
+        if idle {
             self.drop_window();
             self.overrun = false;
         }
@@ -188,10 +199,10 @@ mod tests {
     use super::*;
 
     const CENTRED: [u16; 4] = [CENTRE; 4];
-    /// Both switches in the middle.
+    /// Both switches are in the middle.
     const MIDDLE: u8 = 0b1111;
 
-    /// Four sticks of 11 bits, lowest first, then the right switch and the left one.
+    /// Packs four sticks of 11 bits, lowest first, then the right switch and the left one.
     fn bytes(sticks: [u16; 4], switches: u8, buttons: [u8; 2]) -> [u8; FRAME_LEN] {
         let mut bits = u64::from(switches) << 44;
         for (place, stick) in (0..).zip(sticks) {
@@ -204,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stick_beyond_its_ends_makes_the_frame_none() {
+    fn a_frame_with_a_stick_out_of_range_is_rejected() {
         for stick in 0..4 {
             for (count, is_frame) in [(323, false), (324, true), (1_724, true), (1_725, false)] {
                 let mut sticks = CENTRED;
@@ -217,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn a_switch_is_up_down_or_in_the_middle_and_a_button_pressed_or_not() {
+    fn switches_and_buttons_accept_only_their_codes() {
         use DbusSwitch::{Down, Middle, Up};
         let parse = |switches, buttons| DbusFrame::parse(&bytes(CENTRED, switches, buttons));
         for (code, expected) in [(0, None), (1, Some(Up)), (2, Some(Down)), (3, Some(Middle))] {
@@ -231,15 +242,14 @@ mod tests {
         }
     }
 
-    /// Eleven bits are the wheel's.
     #[test]
-    fn what_else_lies_beside_the_wheel_is_left_out() {
+    fn only_the_lower_eleven_bits_of_the_wheel_are_used() {
         let mut frame = bytes(CENTRED, MIDDLE, [0, 0]);
         frame[16..].copy_from_slice(&[0x34, 0xFA]);
         assert_eq!(DbusFrame::parse(&frame).unwrap().wheel, 0x234);
     }
 
-    /// Frames that the parser finds in these bytes, and what it has discarded since boot.
+    /// Returns the number of frames in these bytes, and the bytes discarded since boot.
     fn fed(parser: &mut DbusParser, bytes: &[u8], ts_us: u64) -> (usize, u32) {
         let mut frames = 0;
         parser.feed(bytes, ts_us, |_| frames += 1);
@@ -247,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_counts_between_damage_or_too_many_bytes_and_the_next_silence() {
+    fn after_damage_or_an_overrun_bytes_are_dropped_until_the_line_is_idle() {
         let frame = bytes(CENTRED, MIDDLE, [0, 0]);
         let mut damaged = DbusParser::new();
         damaged.reject(18, 1_000_000);

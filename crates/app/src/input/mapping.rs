@@ -1,17 +1,17 @@
-//! Frames → sticks and switches.
+//! Maps the channels of a frame to sticks and switches.
 
 use super::{DbusFrame, DbusSwitch, SbusFrame, channels};
 use crate::domain::{DriveMode, OperatorState, RemoteChannel, RemoteMapping, RemoteState};
 
-/// A switch is taken as thrown beyond half way.
+/// A switch counts as thrown beyond half way.
 const SWITCH_THRESHOLD: f32 = 0.5;
-/// The dead-man stick counts as held beyond this.
+/// The dead-man stick counts as held beyond this position.
 const DEAD_MAN_THRESHOLD: f32 = 0.7;
-/// Further beyond its low end than this an e-stop switch is none: receivers send 0 for a channel that the transmitter
-/// does not have.
+/// An e-stop channel further below its low end than this is absent: receivers send 0 for a channel that the
+/// transmitter does not have.
 const E_STOP_LOWEST: f32 = -1.2;
 
-/// A stick or switch without a channel is where it is safe: sticks centred, enable off, e-stop thrown.
+/// A stick or switch without a channel takes its safe position: sticks centred, enable off, e-stop thrown.
 pub(super) fn from_sbus(
     frame: &SbusFrame,
     mapping: &RemoteMapping,
@@ -30,7 +30,7 @@ pub(super) fn from_sbus(
     let operator = OperatorState {
         enabled,
         disabled: !enabled,
-        e_stop: !lets_run(&mapping.e_stop, raw),
+        e_stop: !e_stop_is_released(&mapping.e_stop, raw),
         dead_man: position(&mapping.dead_man, raw) > DEAD_MAN_THRESHOLD,
         mode: match mapping.mode.position(raw) {
             None => DriveMode::Manual,
@@ -47,7 +47,7 @@ fn position(channel: &RemoteChannel, raw: &[u16; 16]) -> f32 {
     channel.position(raw).unwrap_or(0.0)
 }
 
-fn lets_run(e_stop: &RemoteChannel, raw: &[u16; 16]) -> bool {
+fn e_stop_is_released(e_stop: &RemoteChannel, raw: &[u16; 16]) -> bool {
     let position = e_stop.position(raw);
     position.is_some_and(|at| (E_STOP_LOWEST..=-SWITCH_THRESHOLD).contains(&at))
 }
@@ -110,9 +110,9 @@ mod tests {
         }
     }
 
-    /// Futaba R7003SB: 352, 1024, 1696 (betaflight and PX4 give 350 to 1700).
+    /// A Futaba R7003SB sends 352, 1024, 1696 (betaflight and PX4 give 350 to 1700).
     #[test]
-    fn a_stick_goes_from_its_own_low_end_through_its_own_centre_to_its_own_high_end() {
+    fn each_stick_is_scaled_by_its_own_ends_and_centre() {
         let mut mapping = RemoteMapping::default();
         let futaba = RemoteChannel {
             low: 352,
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn sticks_and_switches_without_a_channel_are_where_it_is_safe() {
+    fn sticks_and_switches_without_a_channel_take_their_safe_position() {
         let mut mapping = RemoteMapping::default();
         let none = RemoteChannel {
             index: NO_CHANNEL,
@@ -174,9 +174,9 @@ mod tests {
         }
     }
 
-    /// One value on all channels, as a receiver without its transmitter may send it: 0, the ends, the centre.
+    /// A receiver without its transmitter may send one value on all channels: 0, an end or the centre.
     #[test]
-    fn no_value_on_all_channels_at_once_lets_the_robot_run() {
+    fn no_single_value_on_all_channels_enables_the_robot() {
         for raw in 0..=2047 {
             let (_, operator) = from_sbus(&sbus([raw; 16]), &RemoteMapping::default(), 1);
             assert!(!operator.enabled || operator.e_stop, "{raw}");
@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn an_e_stop_channel_that_the_transmitter_does_not_have_stops() {
+    fn a_missing_e_stop_channel_stops_the_robot() {
         let stops = |raw| {
             let mut channels = [992; 16];
             channels[6] = raw;
@@ -206,10 +206,10 @@ mod tests {
         }
     }
 
-    /// Ends and centre of SBUS: 172, 992, 1811; of DBUS: 364, 1024, 1684 (hardware.md section 6). Beyond 0.7: 1566 and
-    /// 1487.
+    /// Low end, centre and high end are 172, 992, 1811 for SBUS and 364, 1024, 1684 for DBUS (hardware.md section 6).
+    /// The threshold of 0.7 lies at 1566 and 1487.
     #[test]
-    fn the_left_stick_is_dead_man_and_selector_on_both_radios() {
+    fn on_both_radios_the_left_stick_is_dead_man_and_selector() {
         let of_sbus = |select, dead_man| {
             let mut channels = [992; 16];
             (channels[2], channels[3]) = (select, dead_man);

@@ -1,15 +1,17 @@
-//! Either radio format behind one interface, with the quality of the link.
+//! One interface for both radio formats, with the quality of the link.
 
 use super::{
-    DbusParser, RemoteMapping, SbusParser, confirmation::Confirmation, dbus, mapping, sbus,
+    DbusParser, RemoteMapping, SbusParser, dbus, glitch_filter::GlitchFilter, mapping, sbus,
 };
 use crate::domain::{OperatorState, RemoteDiagnostics, RemoteState, RemoteUpdate, age_us};
 
-/// Which receiver is plugged into the DBUS connector.
+/// Which receiver is connected to the DBUS connector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum RemoteFormat {
+    /// Futaba SBUS and compatible receivers.
     Sbus,
+    /// DJI DR16.
     Dbus,
 }
 
@@ -19,7 +21,27 @@ enum Parser {
     Dbus(DbusParser),
 }
 
-/// Bytes in, one [`RemoteUpdate`] a frame out.
+/// Decodes the radio's byte stream into one [`RemoteUpdate`] a frame.
+///
+/// ```
+/// use robot_app::input::{RemoteFormat, RemoteMapping, RemoteReceiver};
+///
+/// // All sticks centred, all switches at their centre.
+/// const FRAME: [u8; 25] = [
+///     0x0F, 0xE0, 0x03, 0x1F, 0xF8, 0xC0, 0x07, 0x3E, 0xF0, 0x81, 0x0F, 0x7C, 0xE0, 0x03, 0x1F,
+///     0xF8, 0xC0, 0x07, 0x3E, 0xF0, 0x81, 0x0F, 0x7C, 0x00, 0x00,
+/// ];
+/// let mut receiver = RemoteReceiver::new(RemoteFormat::Sbus, RemoteMapping::default());
+/// let mut updates = Vec::new();
+/// for frame in 1..=3 {
+///     receiver.feed(&FRAME, frame * 14_000, |update| updates.push(update));
+/// }
+/// assert_eq!(updates.len(), 3);
+/// let newest = updates[2];
+/// assert_eq!(newest.diagnostics.good_ts_us, 42_000);
+/// assert_eq!(newest.state.vx, 0.0);
+/// assert!(!newest.operator.enabled);
+/// ```
 #[derive(Clone, Debug)]
 pub struct RemoteReceiver {
     parser: Parser,
@@ -28,6 +50,7 @@ pub struct RemoteReceiver {
 }
 
 impl RemoteReceiver {
+    /// A receiver that has seen no byte yet.
     pub fn new(format: RemoteFormat, mapping: RemoteMapping) -> Self {
         let parser = match format {
             RemoteFormat::Sbus => Parser::Sbus(SbusParser::new()),
@@ -40,16 +63,17 @@ impl RemoteReceiver {
         }
     }
 
-    /// Counts from the next frame on. What was confirmed by another mapping is not: sticks and switches start as they do
-    /// at boot.
+    /// Changes the mapping from the next frame on. Sticks and switches start as they do at boot, as the old mapping
+    /// may have put them elsewhere.
     pub fn set_mapping(&mut self, mapping: &RemoteMapping) {
         if self.mapping != *mapping {
             self.mapping = *mapping;
-            self.link.forget();
+            self.link.reset();
         }
     }
 
-    /// Takes the bytes that arrived up to `ts_us` (the time of the last one) in chunks of any length.
+    /// Takes the bytes that arrived up to `ts_us`, the time of the last one, in chunks of any length. `sink` gets one
+    /// update for each complete frame.
     pub fn feed(&mut self, bytes: &[u8], ts_us: u64, mut sink: impl FnMut(RemoteUpdate)) {
         let Self {
             parser,
@@ -67,7 +91,7 @@ impl RemoteReceiver {
                     };
                     sink(link.accept(state, operator, flags, ts_us));
                 });
-                link.weigh_discarded(
+                link.count_discarded(
                     parser.discarded_bytes(),
                     parser.lost_bytes(),
                     sbus::FRAME_LEN,
@@ -79,7 +103,7 @@ impl RemoteReceiver {
                     link.raw = mapping::raw_of_dbus(&frame);
                     sink(link.accept(state, operator, LinkFlags::default(), ts_us));
                 });
-                link.weigh_discarded(
+                link.count_discarded(
                     parser.discarded_bytes(),
                     parser.discarded_bytes(),
                     dbus::FRAME_LEN,
@@ -88,15 +112,15 @@ impl RemoteReceiver {
         }
     }
 
-    /// Instead of [`feed`](Self::feed) for `count` bytes among which the UART flagged a parity, framing, noise or
-    /// overrun error: no frame with any of them is accepted.
+    /// Takes the place of [`feed`](Self::feed) for `count` bytes among which the UART flagged a parity, framing,
+    /// noise or overrun error. No frame with any of them is accepted.
     pub fn reject(&mut self, count: usize, ts_us: u64) {
         let link = &mut self.link;
         link.diagnostics.damaged_bursts = link.diagnostics.damaged_bursts.wrapping_add(1);
         match &mut self.parser {
             Parser::Sbus(parser) => {
                 parser.reject(count, ts_us);
-                link.weigh_discarded(
+                link.count_discarded(
                     parser.discarded_bytes(),
                     parser.lost_bytes(),
                     sbus::FRAME_LEN,
@@ -104,7 +128,7 @@ impl RemoteReceiver {
             }
             Parser::Dbus(parser) => {
                 parser.reject(count, ts_us);
-                link.weigh_discarded(
+                link.count_discarded(
                     parser.discarded_bytes(),
                     parser.discarded_bytes(),
                     dbus::FRAME_LEN,
@@ -120,22 +144,22 @@ struct LinkFlags {
     failsafe: bool,
 }
 
-/// Frame statistics and the last values that came over the air.
+/// Frame statistics, and the last values that came over the air.
 #[derive(Clone, Debug, Default)]
 struct Link {
     diagnostics: RemoteDiagnostics,
     raw: [u16; 16],
     state: RemoteState,
     operator: OperatorState,
-    confirmation: Confirmation,
-    /// One bit a frame, newest lowest, 1 = lost.
+    glitch_filter: GlitchFilter,
+    /// One bit for each of the last 64 frames, the newest lowest. 1 means lost.
     lost_history: u64,
-    /// Lost bytes that are in the history.
-    weighed_bytes: u32,
+    /// The part of the parser's lost bytes that the history already counts.
+    counted_bytes: u32,
 }
 
 impl Link {
-    /// Share of the newest interval in the smoothed frame rate.
+    /// Weight of the newest interval in the smoothed frame rate.
     const RATE_GAIN: f32 = 0.1;
 
     fn accept(
@@ -150,7 +174,7 @@ impl Link {
         diagnostics.frames = diagnostics.frames.wrapping_add(1);
         diagnostics.failsafe = flags.failsafe;
         diagnostics.frame_ts_us = ts_us;
-        self.remember(flags.lost);
+        self.push_history(flags.lost);
         let diagnostics = &mut self.diagnostics;
         let good = 64u32.saturating_sub(self.lost_history.count_ones());
         diagnostics.quality = good as f32 / 64.0;
@@ -160,7 +184,7 @@ impl Link {
         // In lost and failsafe frames the receiver repeats or invents values.
         if !flags.lost && !flags.failsafe {
             diagnostics.good_ts_us = ts_us;
-            (self.state, self.operator) = self.confirmation.confirm(state, operator);
+            (self.state, self.operator) = self.glitch_filter.filter(state, operator);
         }
         diagnostics.age_us = age_us(diagnostics.good_ts_us, ts_us);
         RemoteUpdate {
@@ -171,24 +195,24 @@ impl Link {
         }
     }
 
-    fn forget(&mut self) {
+    fn reset(&mut self) {
         self.state = RemoteState::default();
         self.operator = OperatorState::default();
-        self.confirmation = Confirmation::default();
+        self.glitch_filter = GlitchFilter::default();
     }
 
-    /// Bytes outside of frames, and those among them of frames that were damaged or cut: each frame's length of these
-    /// counts as one lost.
-    fn weigh_discarded(&mut self, discarded_bytes: u32, lost_bytes: u32, frame_len: usize) {
+    /// Updates the counters of bytes outside of frames. Bytes that a damaged or cut frame left count as one lost
+    /// frame for each frame length.
+    fn count_discarded(&mut self, discarded_bytes: u32, lost_bytes: u32, frame_len: usize) {
         self.diagnostics.discarded_bytes = discarded_bytes;
         let frame_len = frame_len as u32;
-        while lost_bytes.wrapping_sub(self.weighed_bytes) >= frame_len {
-            self.weighed_bytes = self.weighed_bytes.wrapping_add(frame_len);
-            self.remember(true);
+        while lost_bytes.wrapping_sub(self.counted_bytes) >= frame_len {
+            self.counted_bytes = self.counted_bytes.wrapping_add(frame_len);
+            self.push_history(true);
         }
     }
 
-    fn remember(&mut self, lost: bool) {
+    fn push_history(&mut self, lost: bool) {
         self.lost_history = self.lost_history << 1 | u64::from(lost);
     }
 
@@ -212,12 +236,12 @@ mod tests {
     use super::*;
     use crate::domain::DriveMode;
 
-    /// All channels 992, no flags (hardware.md section 12).
+    /// All channels are 992 and no flag is set (hardware.md section 12).
     const SBUS_CENTRED: [u8; 25] = [
         0x0F, 0xE0, 0x03, 0x1F, 0xF8, 0xC0, 0x07, 0x3E, 0xF0, 0x81, 0x0F, 0x7C, 0xE0, 0x03, 0x1F,
         0xF8, 0xC0, 0x07, 0x3E, 0xF0, 0x81, 0x0F, 0x7C, 0x00, 0x00,
     ];
-    /// Sticks 1024, switches in the middle (hardware.md section 12).
+    /// All sticks are 1024 and both switches in the middle (hardware.md section 12).
     const DBUS_CENTRED: [u8; 18] = [
         0x00, 0x04, 0x20, 0x00, 0x01, 0xF8, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0x00, 0x04,
     ];
@@ -249,7 +273,7 @@ mod tests {
             }
         }
 
-        /// The bytes from `from` to `to` of a frame as one burst.
+        /// Sends the bytes from `from` to `to` of the frame as one burst.
         fn burst(&mut self, from: usize, to: usize, damaged: bool) {
             self.now_us += (to - from) as u64 * self.character_us;
             if damaged {
@@ -269,7 +293,7 @@ mod tests {
     }
 
     #[test]
-    fn a_damaged_frame_is_dropped_and_the_next_one_is_not() {
+    fn a_damaged_frame_is_dropped_and_the_next_one_accepted() {
         for mut bench in [Bench::sbus(), Bench::dbus()] {
             bench.frame(false);
             bench.frame(true);
@@ -280,7 +304,7 @@ mod tests {
         }
     }
 
-    /// 7 ms apart are 142.857 Hz; a frame 10 ms after the last, 100 Hz, counts a tenth.
+    /// An interval of 7 ms is 142.857 Hz. The last interval of 10 ms, 100 Hz, has a weight of a tenth.
     #[test]
     fn the_frame_rate_is_smoothed() {
         let mut bench = Bench::sbus();
@@ -292,9 +316,9 @@ mod tests {
         }
     }
 
-    /// Byte 23: bit 2 = frame lost, bit 3 = failsafe.
+    /// In byte 23, bit 2 is frame lost and bit 3 failsafe.
     #[test]
-    fn a_frame_that_did_not_come_over_the_air_is_no_sign_of_life() {
+    fn lost_and_failsafe_frames_do_not_refresh_the_link() {
         for (flags, alive) in [(0, true), (1 << 2, false), (1 << 3, false), (3 << 2, false)] {
             let mut frame = SBUS_CENTRED;
             frame[23] = flags;
@@ -307,8 +331,8 @@ mod tests {
         }
     }
 
-    /// After three frames alike, 14 ms apart.
-    fn heard(format: RemoteFormat, frame: &[u8]) -> RemoteUpdate {
+    /// Returns the update after three equal frames, 14 ms apart.
+    fn decoded(format: RemoteFormat, frame: &[u8]) -> RemoteUpdate {
         let mut receiver = RemoteReceiver::new(format, RemoteMapping::default());
         let mut last = RemoteUpdate::default();
         for count in 1..=3 {
@@ -318,8 +342,9 @@ mod tests {
         last
     }
 
-    /// Enable off, mode at its low end, e-stop off, the rest centred; but for one channel.
-    fn heard_sbus(channel: usize, raw: u16) -> RemoteUpdate {
+    /// As [`decoded`] for a frame with enable off, mode at its low end, e-stop off and all else centred, but for one
+    /// channel.
+    fn decoded_sbus(channel: usize, raw: u16) -> RemoteUpdate {
         let mut channels = [992; 16];
         channels[4..7].fill(172);
         channels[channel] = raw;
@@ -329,39 +354,40 @@ mod tests {
             let is_set = channels[bit / 11] >> (bit % 11) & 1;
             frame[1 + bit / 8] |= (is_set as u8) << (bit % 8);
         }
-        heard(RemoteFormat::Sbus, &frame)
+        decoded(RemoteFormat::Sbus, &frame)
     }
 
     #[test]
-    fn sbus_switches_are_thrown_beyond_half_way() {
+    fn sbus_switches_act_beyond_half_way() {
         use DriveMode::{Custom, Manual, Pc};
         for (raw, enabled) in [(172, false), (1_401, false), (1_402, true), (1_811, true)] {
-            let operator = heard_sbus(4, raw).operator;
+            let operator = decoded_sbus(4, raw).operator;
             assert_eq!((operator.enabled, operator.disabled), (enabled, !enabled));
         }
         for (raw, mode) in [(581, Manual), (583, Pc), (1_401, Pc), (1_402, Custom)] {
-            assert_eq!(heard_sbus(5, raw).operator.mode, mode, "{raw}");
+            assert_eq!(decoded_sbus(5, raw).operator.mode, mode, "{raw}");
         }
         for (raw, e_stop) in [(172, false), (581, false), (583, true), (1_811, true)] {
-            assert_eq!(heard_sbus(6, raw).operator.e_stop, e_stop, "{raw}");
+            assert_eq!(decoded_sbus(6, raw).operator.e_stop, e_stop, "{raw}");
         }
     }
 
     #[test]
     fn sbus_sticks_drive_forward_and_turn_right() {
         for (raw, position) in [(172, -1.0), (992, 0.0), (1_811, 1.0)] {
-            assert_eq!(heard_sbus(0, raw).state.wz, -position);
-            assert_eq!(heard_sbus(1, raw).state.vx, position);
+            assert_eq!(decoded_sbus(0, raw).state.wz, -position);
+            assert_eq!(decoded_sbus(1, raw).state.vx, position);
         }
     }
 
-    /// 1 = up, 2 = down, 3 = middle: the right switch in bits 4 and 5 of byte 5, the left one above it.
+    /// A switch sends 1 for up, 2 for down, 3 for middle. The right one lies in bits 4 and 5 of byte 5, the left one
+    /// above it.
     #[test]
-    fn dbus_switches_enable_stop_and_choose_the_mode() {
+    fn dbus_switches_enable_stop_and_select_the_mode() {
         let operator = |left: u8, right: u8| {
             let mut frame = DBUS_CENTRED;
             frame[5] = left << 6 | right << 4 | frame[5] & 0x0F;
-            heard(RemoteFormat::Dbus, &frame).operator
+            decoded(RemoteFormat::Dbus, &frame).operator
         };
         for (right, enabled, e_stop) in [(1, true, false), (3, false, false), (2, false, true)] {
             let found = operator(3, right);
@@ -377,9 +403,9 @@ mod tests {
         }
     }
 
-    /// Wherever the line splits a frame and whichever part is damaged.
+    /// This holds wherever the line splits a frame and whichever part is damaged.
     #[test]
-    fn half_a_damaged_frame_spoils_the_other_half() {
+    fn damage_to_one_half_of_a_frame_rejects_the_whole_frame() {
         for make in [Bench::sbus, Bench::dbus] {
             let len = make().frame.len();
             for cut in 1..len {
@@ -397,9 +423,9 @@ mod tests {
         }
     }
 
-    /// Frames right behind each other: no silence tells where one starts.
+    /// The frames follow each other directly, so no idle line shows where one starts.
     #[test]
-    fn without_silence_sbus_is_back_at_the_second_frame() {
+    fn without_idle_lines_sbus_resynchronises_at_the_second_frame() {
         let mut bench = Bench::sbus();
         bench.frame(false);
         bench.burst(0, 25, true);
@@ -421,7 +447,7 @@ mod tests {
         }
         bench.frame(false);
         assert_eq!(bench.updates[64].diagnostics.quality, 48.0 / 64.0);
-        // Twenty-five frames cut to 24 bytes make 24 frames' length of discarded bytes.
+        // Twenty-five frames cut to 24 bytes discard as many bytes as 24 frames have.
         for _ in 0..25 {
             bench.now_us += 4_000;
             bench.burst(0, 24, false);

@@ -1,22 +1,27 @@
-//! The output of the logic stage (ROBOT_CPP 3.3).
+//! The output of the logic stage (ROBOT_CPP section 3.3).
 
 use super::LogicDecision;
 use crate::domain::{ChassisCommand, HighLevelCommand};
 
-/// `cmd` goes straight to the actuators and wins over `hl_cmd`, which goes through the controller. Neither valid: zero.
+/// One command for the control tick. `cmd` goes straight to the actuators and has priority over `hl_cmd`, which goes
+/// through the controller. If neither is valid, every actuator gets zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct LogicBus {
+    /// Direct actuator command.
     pub cmd: ChassisCommand,
+    /// Whether `cmd` is valid.
     pub cmd_valid: bool,
+    /// Command for the controller.
     pub hl_cmd: HighLevelCommand,
+    /// Whether `hl_cmd` is valid.
     pub hl_valid: bool,
-    /// When it was decided, 0 = never.
+    /// Time of the decision in µs since boot, 0 = never.
     pub ts_us: u64,
 }
 
 impl LogicBus {
-    /// What is not valid is zero.
+    /// Fills in one of the two commands and leaves the other one zero.
     pub(super) fn from_decision(decision: LogicDecision, ts_us: u64) -> Self {
         let bus = Self {
             ts_us,

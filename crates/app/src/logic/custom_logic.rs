@@ -1,12 +1,13 @@
-//! The interface of a user's own logic.
+//! The interface of your own logic.
 
 use super::{LogicDecision, LogicInputs};
 
-/// Decides at 100 Hz while the mode switch says custom and the pilot's switches let the robot run. Whatever it wants is
-/// limited and may be cut to zero by the safety policy.
+/// Decides at 100 Hz while the mode switch is at custom and the pilot's switches allow motion. The safety policy
+/// limits its commands and may cut them to zero.
 pub trait CustomLogic {
+    /// Returns the command of this round.
     fn step(&mut self, inputs: &LogicInputs<'_>, now_us: u64) -> LogicDecision;
 
-    /// Back to the start: called in every round without [`step`](Self::step).
+    /// Restores the initial state. It is called in every round without [`step`](Self::step).
     fn reset(&mut self);
 }

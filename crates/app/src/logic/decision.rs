@@ -1,15 +1,15 @@
-//! What one source of commands wants.
+//! The decision of one command source.
 
 use crate::domain::{ChassisCommand, HighLevelCommand};
 
-/// One of three; the last two still need the permit of the control tick.
+/// The command of one source. Drive and direct commands still need the torque permit of the control tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum LogicDecision {
-    /// No valid command: zero on every actuator.
+    /// No valid command: every actuator gets zero.
     #[default]
     Nothing,
-    /// Through the controller.
+    /// A command for the controller.
     Drive(HighLevelCommand),
-    /// Straight to the actuators, past the controller.
+    /// A command for the actuators that bypasses the controller.
     Direct(ChassisCommand),
 }

@@ -1,4 +1,4 @@
-//! All that a decision may look at.
+//! The inputs of a decision.
 
 use super::PcCommand;
 use crate::{
@@ -6,13 +6,15 @@ use crate::{
     domain::{RemoteUpdate, SafetyConfig},
 };
 
-/// The latest of everything (ROBOT_CPP's `logic_tick` gets sensors and health).
+/// The newest value of each input.
 #[derive(Clone, Copy, Debug)]
 pub struct LogicInputs<'a> {
+    /// Limits of ages and sticks.
     pub config: &'a SafetyConfig,
+    /// Sticks, switches and link quality.
     pub remote: &'a RemoteUpdate,
-    /// `None` without a PC link.
+    /// The PC's command, `None` without a PC link.
     pub pc: Option<&'a PcCommand>,
-    /// Sensors, estimate, health and safety as of the last hundredth of a second.
+    /// Sensors, estimate, health and safety state, at most 10 ms old.
     pub diagnostics: &'a DiagnosticsSnapshot,
 }

@@ -1,12 +1,12 @@
-//! Sticks → high-level command.
+//! Manual driving: sticks → high-level command.
 
 use crate::{
     domain::{HighLevelCommand, RemoteState},
     math::scalar,
 };
 
-/// `stick_centre` is the limit up to which `Arming` takes a stick for centred: what lets the robot be armed must not move
-/// it.
+/// Maps the sticks to a drive command. `stick_centre` is the limit up to which `Arming` takes a stick for centred, so
+/// a stick that permits arming moves nothing.
 pub(super) fn drive(remote: &RemoteState, stick_centre: f32) -> HighLevelCommand {
     HighLevelCommand {
         vx: outside_dead_band(remote.vx, stick_centre),
@@ -14,8 +14,8 @@ pub(super) fn drive(remote: &RemoteState, stick_centre: f32) -> HighLevelCommand
     }
 }
 
-/// 0 up to `dead_band`; from there twice as steep as the stick until it has caught up with it, so that the robot starts
-/// from 0 and full stick stays full. NaN gives 0.
+/// Removes the dead band. The output starts from 0 at `dead_band` and rises twice as steeply as the stick until it
+/// meets it, so full stick stays full. NaN gives 0.
 fn outside_dead_band(stick: f32, dead_band: f32) -> f32 {
     let beyond = stick.abs() - dead_band;
     if beyond <= 0.0 || beyond.is_nan() {
@@ -41,7 +41,7 @@ mod tests {
     }
 
     #[test]
-    fn what_counts_as_centred_for_arming_moves_nothing() {
+    fn a_stick_that_is_centred_for_arming_moves_nothing() {
         for limit in [0.01, 0.05, 0.3] {
             assert_eq!(vx(limit, limit), 0.0);
             assert_eq!(vx(-limit, limit), 0.0);
@@ -50,7 +50,7 @@ mod tests {
     }
 
     #[test]
-    fn beyond_the_centre_the_robot_starts_from_zero_and_reaches_full_stick() {
+    fn beyond_the_dead_band_the_command_rises_from_zero_to_full() {
         for limit in [0.01, 0.05, 0.3] {
             assert!((vx(limit + 0.001, limit) - 0.002).abs() < 1e-6);
             assert!((vx(-limit - 0.001, limit) + 0.002).abs() < 1e-6);

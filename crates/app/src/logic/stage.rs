@@ -1,31 +1,56 @@
-//! 100 Hz decision what to do (ROBOT_CPP 2.2.5).
+//! Decides at 100 Hz what the robot shall do (ROBOT_CPP section 2.2.5).
 //!
-//! The mode switch says who decides: the sticks, the PC, or the user's own logic. It may move while the robot is armed:
-//! the new source's command counts from the next round, within 10 ms, whatever the old one wanted, and without a valid
-//! one the robot is without torque.
+//! The mode switch selects the source: the sticks, the PC, or your own logic. It may move while the robot is armed.
+//! The new source takes over in the next round, within 10 ms. Without a valid command from it the robot has no
+//! torque.
 
 use super::{CustomLogic, LogicBus, LogicDecision, LogicInputs, UserLogic, manual};
 use crate::domain::{DriveMode, age_us};
 
-/// Asks whoever is in command while the pilot lets the robot run.
+/// Selects the command source and asks it for a command.
+///
+/// ```
+/// use robot_app::diagnostics::DiagnosticsSnapshot;
+/// use robot_app::domain::{RemoteUpdate, SafetyConfig};
+/// use robot_app::logic::{LogicInputs, LogicStage, UserLogic};
+///
+/// let mut remote = RemoteUpdate::default();
+/// remote.diagnostics.good_ts_us = 1_000_000;
+/// remote.operator.enabled = true;
+/// remote.operator.e_stop = false;
+/// remote.state.vx = 1.0;
+/// let inputs = LogicInputs {
+///     config: &SafetyConfig::default(),
+///     remote: &remote,
+///     pc: None,
+///     diagnostics: &DiagnosticsSnapshot::default(),
+/// };
+/// let mut stage = LogicStage::new(UserLogic);
+/// let bus = stage.step(&inputs, 1_010_000);
+/// assert!(bus.hl_valid && bus.hl_cmd.vx == 1.0);
+/// // Half a second without a frame: no command.
+/// assert!(!stage.step(&inputs, 1_500_000).hl_valid);
+/// ```
 #[derive(Clone, Debug, Default)]
 pub struct LogicStage<L: CustomLogic = UserLogic> {
     custom: L,
 }
 
 impl<L: CustomLogic> LogicStage<L> {
+    /// A stage with this custom logic.
     pub const fn new(custom: L) -> Self {
         Self { custom }
     }
 
-    /// A valid command only while the remote is fresh, not in failsafe, enabled and not stopped, in every mode.
+    /// Returns a valid command only while the remote is fresh, enabled, not in failsafe and not e-stopped. This holds
+    /// in every mode.
     pub fn step(&mut self, inputs: &LogicInputs<'_>, now_us: u64) -> LogicBus {
         let mode = inputs.remote.operator.mode;
-        let may_run = pilot_lets_run(inputs, now_us);
-        if !may_run || mode != DriveMode::Custom {
+        let allowed = pilot_allows_motion(inputs, now_us);
+        if !allowed || mode != DriveMode::Custom {
             self.custom.reset();
         }
-        let decision = if may_run {
+        let decision = if allowed {
             match mode {
                 DriveMode::Manual => {
                     let stick_centre = inputs.config.stick_centre;
@@ -41,14 +66,14 @@ impl<L: CustomLogic> LogicStage<L> {
     }
 }
 
-fn pilot_lets_run(inputs: &LogicInputs<'_>, now_us: u64) -> bool {
+fn pilot_allows_motion(inputs: &LogicInputs<'_>, now_us: u64) -> bool {
     let remote = inputs.remote;
     let link = remote.diagnostics.at(now_us);
     let connected = link.age_us <= inputs.config.remote_timeout_us && !link.failsafe;
     connected && remote.operator.enabled && !remote.operator.e_stop
 }
 
-/// The PC's command has an age like any other.
+/// Accepts the PC's command up to its maximum age.
 fn from_pc(inputs: &LogicInputs<'_>, now_us: u64) -> LogicDecision {
     match inputs.pc {
         Some(pc) if age_us(pc.ts_us, now_us) <= inputs.config.command_timeout_us => {

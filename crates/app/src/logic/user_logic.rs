@@ -1,11 +1,12 @@
-//! The place for your own logic: what the robot does while the mode switch says custom.
+//! The place for your own logic, which decides while the mode switch is at custom.
 //!
-//! Write it in `step`: read `inputs`, return `LogicDecision::Drive` (normalised speed and turn, goes through the
-//! controller) or `LogicDecision::Direct` (currents and joint commands, past the controller). State goes into the
-//! struct, and `reset` brings it back to the start. As shipped it wants nothing, and the robot stands without torque.
+//! Write it in `step`: read `inputs` and return `LogicDecision::Drive` (normalised speed and turn for the controller)
+//! or `LogicDecision::Direct` (currents and joint commands that bypass the controller). State goes into the struct;
+//! `reset` restores its initial value. The shipped version returns no command, and the robot stands without torque.
 
 use super::{CustomLogic, LogicDecision, LogicInputs};
 
+/// Your own logic.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct UserLogic;
 

@@ -31,7 +31,7 @@ fn remote(mode: DriveMode) -> RemoteUpdate {
     }
 }
 
-/// Counts its steps since the last reset and asks for that current; from the third on by sticks.
+/// Requests its number of steps since the last reset as a current, and from the third step on a drive command.
 #[derive(Default)]
 struct Counting(u8);
 
@@ -88,7 +88,7 @@ fn sticks_reach_the_high_level_command_in_manual_mode() {
 }
 
 #[test]
-fn the_pc_steers_in_its_mode_while_its_command_is_fresh() {
+fn in_pc_mode_the_pc_steers_while_its_command_is_fresh() {
     let mut stage = LogicStage::new(UserLogic);
     let mut in_mode = |mode, pc: Option<PcCommand>| {
         let bus = step(&mut stage, &remote(mode), pc.as_ref(), NOW_US);
@@ -105,7 +105,7 @@ fn the_pc_steers_in_its_mode_while_its_command_is_fresh() {
 }
 
 #[test]
-fn the_users_logic_decides_in_its_mode_and_starts_anew_each_time() {
+fn custom_logic_decides_in_custom_mode_and_restarts_each_time() {
     let mut stage = LogicStage::new(Counting::default());
     let mut current_ma = |mode| {
         let bus = step(&mut stage, &remote(mode), None, NOW_US);
@@ -124,7 +124,7 @@ fn the_users_logic_decides_in_its_mode_and_starts_anew_each_time() {
 }
 
 #[test]
-fn the_users_logic_starts_anew_when_the_pilot_lets_it_run_again() {
+fn custom_logic_restarts_when_the_pilot_enables_again() {
     let mut stage = LogicStage::new(Counting::default());
     let mut current_ma = |enabled| {
         let mut remote = remote(DriveMode::Custom);
@@ -137,7 +137,7 @@ fn the_users_logic_starts_anew_when_the_pilot_lets_it_run_again() {
 }
 
 #[test]
-fn the_users_logic_as_shipped_wants_nothing() {
+fn the_shipped_user_logic_gives_no_command() {
     let bus = step(
         &mut LogicStage::new(UserLogic),
         &remote(DriveMode::Custom),
@@ -148,9 +148,9 @@ fn the_users_logic_as_shipped_wants_nothing() {
 }
 
 #[test]
-fn every_reason_to_stop_invalidates_every_command() {
-    type Spoil = fn(&mut RemoteUpdate);
-    let spoils: [Spoil; 5] = [
+fn every_reason_to_stop_invalidates_all_commands() {
+    type Fault = fn(&mut RemoteUpdate);
+    let faults: [Fault; 5] = [
         |remote| remote.diagnostics.good_ts_us = NOW_US - 100_001,
         |remote| remote.diagnostics.good_ts_us = 0,
         |remote| remote.diagnostics.failsafe = true,
@@ -158,13 +158,13 @@ fn every_reason_to_stop_invalidates_every_command() {
         |remote| remote.operator.e_stop = true,
     ];
     for mode in [DriveMode::Manual, DriveMode::Pc, DriveMode::Custom] {
-        for spoil in spoils {
+        for inject in faults {
             let mut remote = remote(mode);
             let mut stage = LogicStage::new(Counting::default());
             let pc = pc_command(NOW_US);
             let before = step(&mut stage, &remote, Some(&pc), NOW_US);
             assert!(before.cmd_valid || before.hl_valid, "{mode:?}");
-            spoil(&mut remote);
+            inject(&mut remote);
             let bus = step(&mut stage, &remote, Some(&pc), NOW_US);
             let zero = LogicBus {
                 ts_us: NOW_US,

@@ -1,6 +1,6 @@
 use super::*;
 
-/// Armed, or disarmed with the enable switch off, and nothing wrong.
+/// Armed, or disarmed with the enable switch off, without any fault.
 struct Situation {
     arming: ArmingStatus,
     safety: SafetyStatus,
@@ -38,7 +38,7 @@ impl Situation {
     }
 
     fn shows(&self) -> Indication {
-        Indication::of(&IndicationInputs {
+        Indication::select(&IndicationInputs {
             arming: &self.arming,
             safety: &self.safety,
             calibration: &self.calibration,
@@ -70,7 +70,7 @@ fn stopped(flags: SafetyFlags, latched: SafetyFlags) -> Indication {
 }
 
 #[test]
-fn stops_come_before_everything_and_in_order_of_urgency() {
+fn stops_come_first_in_order_of_urgency() {
     let none = SafetyFlags::NONE;
     let e_stop = SafetyFlags::E_STOP;
     let empty = SafetyFlags::BATTERY_EMPTY;
@@ -92,9 +92,9 @@ fn stops_come_before_everything_and_in_order_of_urgency() {
     assert_eq!(stopped(SafetyFlags::TASK_LATE, none), Indication::Fault);
 }
 
-/// While armed its wheels may still turn: nobody must take the robot for stopped and go near.
+/// While the robot is armed its wheels may still turn, and nobody must take it for stopped and come near.
 #[test]
-fn a_latched_stop_of_the_joints_calls_for_a_look_only_when_disarmed() {
+fn a_latched_stop_of_the_joints_is_shown_only_when_disarmed() {
     let faulty = |s: &mut Situation| {
         s.safety.joints_stop = true;
         s.safety.flags = SafetyFlags::JOINT_FAULT;
@@ -105,7 +105,7 @@ fn a_latched_stop_of_the_joints_calls_for_a_look_only_when_disarmed() {
 }
 
 #[test]
-fn armed_says_what_is_less_than_whole() {
+fn an_armed_robot_shows_what_is_degraded() {
     assert_eq!(armed(|_| ()), Indication::Armed);
     assert_eq!(
         armed(|s| s.bring_up = BringUpStep::OneMotor),
@@ -127,7 +127,7 @@ fn armed_says_what_is_less_than_whole() {
 }
 
 #[test]
-fn disarmed_says_what_it_waits_for() {
+fn a_disarmed_robot_shows_what_it_waits_for() {
     assert_eq!(disarmed(|_| ()), Indication::Ready);
     assert_eq!(
         disarmed(|s| s.bring_up = BringUpStep::ReadOnly),
@@ -168,7 +168,7 @@ fn disarmed_says_what_it_waits_for() {
         assert_eq!(blocked(motors), Indication::NotReady);
     }
     assert_eq!(disarmed(|s| s.arming.waiting = true), Indication::Waiting);
-    // While it settles after an erase the attitude is a stop.
+    // The attitude settles after an erase, which is a stop.
     let settling = disarmed(|s| {
         s.arming.waiting = true;
         s.safety.flags = SafetyFlags::ESTIMATE_INVALID;
@@ -188,7 +188,7 @@ fn disarmed_says_what_it_waits_for() {
 }
 
 #[test]
-fn settings_that_cannot_be_saved_are_told_when_nothing_else_is_wrong() {
+fn unsaved_settings_are_shown_when_nothing_else_is_wrong() {
     let failing = |s: &mut Situation| {
         s.params.unsaved = 1;
         s.params.state = ParamState::BackingOff;
@@ -200,7 +200,7 @@ fn settings_that_cannot_be_saved_are_told_when_nothing_else_is_wrong() {
         s.arming.blockers = ArmingBlockers::STICKS_NOT_CENTRED;
     });
     assert_eq!(refused, Indication::Refused);
-    // A save on its way, and an erase that failed while everything is saved.
+    // A save in progress, and an erase that failed while everything is saved, are not shown.
     let waiting = disarmed(|s| s.params.unsaved = 1);
     assert_eq!(waiting, Indication::Ready);
     let no_spare = disarmed(|s| s.params.state = ParamState::BackingOff);
@@ -214,7 +214,7 @@ fn refused_settings_are_shown_before_the_pilot_tries_to_arm() {
 }
 
 #[test]
-fn a_debugger_that_catches_is_shown_before_the_pilot_tries_to_arm() {
+fn a_debugger_with_vector_catch_is_shown_before_the_pilot_tries_to_arm() {
     let unset = disarmed(|s| s.arming.blockers = ArmingBlockers::JOINT_TIMEOUT_UNSET);
     assert_eq!(unset, Indication::NotReady);
     let caught = disarmed(|s| s.arming.blockers = ArmingBlockers::DEBUGGER_CATCHES);

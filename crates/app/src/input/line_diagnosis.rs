@@ -1,39 +1,40 @@
-//! What is wrong with a radio line on which no frame arrives.
+//! Diagnoses a radio line on which no frame arrives.
 
 use super::RemoteFormat;
 use crate::domain::{RadioLineHealth, RemoteDiagnostics};
 
-/// Fewer bytes than this in the time looked at are nothing but noise.
+/// Fewer bytes than this between two readings are noise.
 const FEW_BYTES: u32 = 20;
 
-/// What happened between two looks, a second or so apart.
+/// What the radio line carried between two readings of its counters, about a second apart.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum LineFinding {
+pub enum LineDiagnosis {
     /// Frames arrive.
     #[default]
     Frames,
-    /// Next to nothing arrives: no receiver, no supply, or it is silent without its transmitter.
+    /// Almost no bytes arrive: there is no receiver, it has no supply, or it is idle without its transmitter.
     Quiet,
-    /// Bytes, but most bursts of them with errors: another baud rate, or the signal is inverted.
+    /// Most bursts have line errors: the baud rate differs, or the signal is inverted.
     Errors,
-    /// Sound bytes in bursts as long as an SBUS frame, on an image for DBUS.
+    /// Sound bytes arrive in bursts as long as an SBUS frame, but the image expects DBUS.
     LooksLikeSbus,
-    /// Sound bytes in bursts as long as a DBUS frame, on an image for SBUS.
+    /// Sound bytes arrive in bursts as long as a DBUS frame, but the image expects SBUS.
     LooksLikeDbus,
-    /// Sound bytes, and no frames: another protocol.
+    /// Sound bytes arrive but form no frames: another protocol.
     OtherProtocol,
 }
 
-/// Counters at one look.
+/// The line's counters at one moment.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct LineLook {
+pub struct LineCounters {
     frames: u32,
     bytes: u32,
     bursts: u32,
     errors: u32,
 }
 
-impl LineLook {
+impl LineCounters {
+    /// Takes a reading of the counters.
     pub fn new(line: &RadioLineHealth, remote: &RemoteDiagnostics) -> Self {
         Self {
             frames: remote.frames,
@@ -44,9 +45,9 @@ impl LineLook {
     }
 }
 
-impl LineFinding {
-    /// `format` is what the image expects.
-    pub fn between(before: &LineLook, now: &LineLook, format: RemoteFormat) -> Self {
+impl LineDiagnosis {
+    /// Compares two readings. `format` is what the image expects.
+    pub fn between(before: &LineCounters, now: &LineCounters, format: RemoteFormat) -> Self {
         let since = |now: u32, before: u32| now.wrapping_sub(before);
         let bytes = since(now.bytes, before.bytes);
         let bursts = since(now.bursts, before.bursts);
@@ -60,7 +61,7 @@ impl LineFinding {
         if errors >= bursts / 2 && errors > 0 {
             return Self::Errors;
         }
-        // To the nearest whole byte: a receiver's frames are all of one length.
+        // Rounded to a whole byte. A receiver's frames all have the same length.
         let mean = bytes
             .saturating_add(bursts / 2)
             .checked_div(bursts)
@@ -77,14 +78,15 @@ impl LineFinding {
 mod tests {
     use super::*;
 
-    /// A second with this many of each, after counters that had already wrapped.
+    /// Diagnoses a second with these numbers of frames, bytes, bursts and errors, with counters that have already
+    /// wrapped.
     fn after(
         frames: u32,
         bytes: u32,
         bursts: u32,
         errors: u32,
         format: RemoteFormat,
-    ) -> LineFinding {
+    ) -> LineDiagnosis {
         let start = u32::MAX - 3;
         let look = |frames: u32, bytes: u32, bursts: u32, errors: u32| {
             let line = RadioLineHealth {
@@ -97,60 +99,66 @@ mod tests {
                 frames: start.wrapping_add(frames),
                 ..RemoteDiagnostics::default()
             };
-            LineLook::new(&line, &remote)
+            LineCounters::new(&line, &remote)
         };
         let (before, now) = (look(0, 0, 0, 0), look(frames, bytes, bursts, errors));
-        LineFinding::between(&before, &now, format)
+        LineDiagnosis::between(&before, &now, format)
     }
 
     #[test]
-    fn frames_are_all_that_is_wanted() {
+    fn any_frame_means_that_the_line_works() {
         assert_eq!(
             after(1, 2_500, 100, 90, RemoteFormat::Sbus),
-            LineFinding::Frames
+            LineDiagnosis::Frames
         );
     }
 
     #[test]
-    fn a_few_stray_bytes_are_no_receiver() {
-        assert_eq!(after(0, 0, 0, 0, RemoteFormat::Sbus), LineFinding::Quiet);
-        assert_eq!(after(0, 19, 19, 19, RemoteFormat::Dbus), LineFinding::Quiet);
+    fn a_few_stray_bytes_count_as_a_quiet_line() {
+        assert_eq!(after(0, 0, 0, 0, RemoteFormat::Sbus), LineDiagnosis::Quiet);
+        assert_eq!(
+            after(0, 19, 19, 19, RemoteFormat::Dbus),
+            LineDiagnosis::Quiet
+        );
     }
 
     #[test]
-    fn bursts_with_errors_are_the_wrong_rate_or_polarity() {
+    fn bursts_with_errors_mean_wrong_baud_rate_or_polarity() {
         assert_eq!(
             after(0, 2_500, 100, 50, RemoteFormat::Sbus),
-            LineFinding::Errors
+            LineDiagnosis::Errors
         );
         assert_eq!(
             after(0, 2_500, 100, 49, RemoteFormat::Sbus),
-            LineFinding::OtherProtocol
+            LineDiagnosis::OtherProtocol
         );
-        assert_eq!(after(0, 20, 1, 1, RemoteFormat::Sbus), LineFinding::Errors);
+        assert_eq!(
+            after(0, 20, 1, 1, RemoteFormat::Sbus),
+            LineDiagnosis::Errors
+        );
     }
 
     #[test]
-    fn sound_bursts_tell_the_other_make_by_their_length() {
+    fn the_length_of_sound_bursts_reveals_the_other_protocol() {
         assert_eq!(
             after(0, 18 * 71, 71, 0, RemoteFormat::Sbus),
-            LineFinding::LooksLikeDbus
+            LineDiagnosis::LooksLikeDbus
         );
         assert_eq!(
             after(0, 25 * 70 + 9, 70, 0, RemoteFormat::Dbus),
-            LineFinding::LooksLikeSbus
+            LineDiagnosis::LooksLikeSbus
         );
         assert_eq!(
             after(0, 25 * 70, 70, 0, RemoteFormat::Sbus),
-            LineFinding::OtherProtocol
+            LineDiagnosis::OtherProtocol
         );
         assert_eq!(
             after(0, 18 * 71, 71, 0, RemoteFormat::Dbus),
-            LineFinding::OtherProtocol
+            LineDiagnosis::OtherProtocol
         );
         assert_eq!(
             after(0, 32 * 140, 140, 0, RemoteFormat::Sbus),
-            LineFinding::OtherProtocol
+            LineDiagnosis::OtherProtocol
         );
     }
 }

@@ -1,28 +1,34 @@
-//! SBUS and DBUS have no checksum, and two flipped bits pass a parity check: nothing is believed that one frame alone
-//! says, except a stop.
+//! Rejects single corrupted radio frames.
+//!
+//! SBUS and DBUS have no checksum, and two flipped bits pass a parity check. A single frame is therefore trusted for
+//! one thing only: a stop.
 
 use crate::domain::{DriveMode, OperatorState, RemoteState};
 
-/// Combines each frame with the two before it. Starts with centred sticks, disabled and stopped.
+/// Combines each frame with the two before it. It starts with centred sticks, disabled and with the e-stop set.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Confirmation {
+pub(super) struct GlitchFilter {
     last: [RemoteState; 2],
     last_operator: OperatorState,
     mode: DriveMode,
 }
 
-impl Confirmation {
-    /// Sticks: the middle one of the last three frames, so that a wrong one never shows and a true one shows one frame
-    /// later. Enable, the dead-man stick and the end of an e-stop need two frames in a row, their opposites stop the
-    /// robot at once; but the enable switch counts as off, for the next time it goes on, only after two. The mode needs two
-    /// equal frames.
-    pub fn confirm(
+impl GlitchFilter {
+    /// Returns the filtered sticks and switches.
+    ///
+    /// - Sticks: the median of the last three frames. A single wrong value never shows; a true one shows one frame
+    ///   later.
+    /// - Enable, the dead-man stick and the release of the e-stop need two equal frames. Their opposites stop the
+    ///   robot at once.
+    /// - `disabled`, which re-arms the enable switch, needs two frames.
+    /// - The mode changes after two equal frames.
+    pub fn filter(
         &mut self,
         state: RemoteState,
         operator: OperatorState,
     ) -> (RemoteState, OperatorState) {
         let [older, last] = self.last;
-        let confirmed = RemoteState {
+        let filtered = RemoteState {
             vx: median(older.vx, last.vx, state.vx),
             wz: median(older.wz, last.wz, state.wz),
             select: median(older.select, last.select, state.select),
@@ -31,7 +37,7 @@ impl Confirmation {
         if operator.mode == self.last_operator.mode {
             self.mode = operator.mode;
         }
-        let confirmed_operator = OperatorState {
+        let filtered_operator = OperatorState {
             enabled: operator.enabled && self.last_operator.enabled,
             disabled: operator.disabled && self.last_operator.disabled,
             e_stop: operator.e_stop || self.last_operator.e_stop,
@@ -41,7 +47,7 @@ impl Confirmation {
         };
         self.last = [last, state];
         self.last_operator = operator;
-        (confirmed, confirmed_operator)
+        (filtered, filtered_operator)
     }
 }
 
@@ -76,45 +82,51 @@ mod tests {
     }
 
     fn feed(
-        confirmation: &mut Confirmation,
+        glitch_filter: &mut GlitchFilter,
         (state, operator): (RemoteState, OperatorState),
     ) -> (f32, f32, OperatorState) {
-        let (state, operator) = confirmation.confirm(state, operator);
+        let (state, operator) = glitch_filter.filter(state, operator);
         (state.vx, state.wz, operator)
     }
 
     #[test]
-    fn one_wrong_frame_moves_no_stick() {
-        let mut confirmation = Confirmation::default();
+    fn a_single_wrong_frame_moves_no_stick() {
+        let mut glitch_filter = GlitchFilter::default();
         let vx: Vec<f32> = [0.4, 0.4, 0.4, -1.0, 0.4, 0.4, 1.0, 0.5, 0.5]
-            .map(|vx| feed(&mut confirmation, frame(vx, true, false, DriveMode::Manual)).0)
+            .map(|vx| {
+                feed(
+                    &mut glitch_filter,
+                    frame(vx, true, false, DriveMode::Manual),
+                )
+                .0
+            })
             .to_vec();
         assert_eq!(vx, [0.0, 0.4, 0.4, 0.4, 0.4, 0.4, 0.4, 0.5, 0.5]);
     }
 
     #[test]
-    fn both_sticks_are_watched() {
-        let mut confirmation = Confirmation::default();
+    fn both_sticks_are_filtered() {
+        let mut glitch_filter = GlitchFilter::default();
         for _ in 0..3 {
             feed(
-                &mut confirmation,
+                &mut glitch_filter,
                 frame(0.25, true, false, DriveMode::Manual),
             );
         }
         let (vx, wz, _) = feed(
-            &mut confirmation,
+            &mut glitch_filter,
             frame(-0.75, true, false, DriveMode::Manual),
         );
         assert_eq!((vx, wz), (0.25, -0.25));
     }
 
     #[test]
-    fn a_stop_needs_one_frame_and_its_end_two() {
-        let mut confirmation = Confirmation::default();
+    fn an_e_stop_needs_one_frame_and_its_release_two() {
+        let mut glitch_filter = GlitchFilter::default();
         let stops: Vec<bool> = [false, false, true, false, false]
             .map(|e_stop| {
                 feed(
-                    &mut confirmation,
+                    &mut glitch_filter,
                     frame(0.0, true, e_stop, DriveMode::Manual),
                 )
                 .2
@@ -125,8 +137,8 @@ mod tests {
     }
 
     #[test]
-    fn the_dead_man_stick_needs_two_frames_and_its_end_one() {
-        let mut confirmation = Confirmation::default();
+    fn the_dead_man_stick_needs_two_frames_and_its_release_one() {
+        let mut glitch_filter = GlitchFilter::default();
         let held: Vec<bool> = [true, false, true, true, true, false]
             .map(|dead_man| {
                 let (state, operator) = frame(0.0, true, false, DriveMode::Manual);
@@ -134,31 +146,31 @@ mod tests {
                     dead_man,
                     ..operator
                 };
-                feed(&mut confirmation, (state, operator)).2.dead_man
+                feed(&mut glitch_filter, (state, operator)).2.dead_man
             })
             .to_vec();
         assert_eq!(held, [false, false, false, true, true, false]);
     }
 
     #[test]
-    fn one_wrong_frame_is_no_flick_of_the_selector() {
-        let mut confirmation = Confirmation::default();
+    fn a_single_wrong_frame_does_not_flick_the_selector() {
+        let mut glitch_filter = GlitchFilter::default();
         let selected: Vec<f32> = [0.0, 0.0, 1.0, 0.0, 1.0, 1.0]
             .map(|select| {
                 let (state, operator) = frame(0.0, true, false, DriveMode::Manual);
                 let state = RemoteState { select, ..state };
-                confirmation.confirm(state, operator).0.select
+                glitch_filter.filter(state, operator).0.select
             })
             .to_vec();
         assert_eq!(selected, [0.0, 0.0, 0.0, 0.0, 1.0, 1.0]);
     }
 
     #[test]
-    fn enable_needs_two_frames_and_its_end_one() {
-        let mut confirmation = Confirmation::default();
+    fn enable_needs_two_frames_and_disable_one() {
+        let mut glitch_filter = GlitchFilter::default();
         let enabled: Vec<bool> = [true, false, true, true, false, true]
             .map(|on| {
-                feed(&mut confirmation, frame(0.0, on, false, DriveMode::Manual))
+                feed(&mut glitch_filter, frame(0.0, on, false, DriveMode::Manual))
                     .2
                     .enabled
             })
@@ -166,13 +178,14 @@ mod tests {
         assert_eq!(enabled, [false, false, false, true, false, false]);
     }
 
-    /// One damaged frame while the switch is on must not look like a flip of the switch, nor the first frame after boot.
+    /// Neither one damaged frame while the switch is on nor the first frame after boot may look like a flip of the
+    /// switch.
     #[test]
-    fn off_counts_after_two_frames() {
-        let mut confirmation = Confirmation::default();
+    fn the_switch_counts_as_off_after_two_frames() {
+        let mut glitch_filter = GlitchFilter::default();
         let off: Vec<bool> = [false, true, false, true, false, false, true]
             .map(|on| {
-                feed(&mut confirmation, frame(0.0, on, false, DriveMode::Manual))
+                feed(&mut glitch_filter, frame(0.0, on, false, DriveMode::Manual))
                     .2
                     .disabled
             })
@@ -181,12 +194,12 @@ mod tests {
     }
 
     #[test]
-    fn a_mode_needs_two_equal_frames() {
+    fn a_mode_change_needs_two_equal_frames() {
         use DriveMode::{Custom, Pc};
-        let mut confirmation = Confirmation::default();
+        let mut glitch_filter = GlitchFilter::default();
         let modes: Vec<u8> = [Pc, Pc, Custom, Pc, Custom, Custom]
             .map(|mode| {
-                feed(&mut confirmation, frame(0.0, true, false, mode))
+                feed(&mut glitch_filter, frame(0.0, true, false, mode))
                     .2
                     .mode as u8
             })

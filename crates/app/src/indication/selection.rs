@@ -1,4 +1,4 @@
-//! Which of the things that are true now is shown: the first of the list that holds.
+//! Selects what is shown: the most urgent condition that holds.
 
 use crate::{
     bring_up::BringUpStep,
@@ -7,52 +7,62 @@ use crate::{
     safety::{ArmingBlockers, ArmingState, ArmingStatus, SafetyFlags, SafetyStatus},
 };
 
-/// In order of priority, the most urgent first.
+/// What LED and buzzer show, in order of priority with the most urgent first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Indication {
-    /// The pilot threw the e-stop.
+    /// The pilot has thrown the e-stop.
     EStop,
-    /// Charge or change the battery; everything stopped.
+    /// Everything has stopped because the battery is empty: charge or change it.
     BatteryEmpty,
-    /// A stop that stays until a human has looked and cleared it; nothing is armed.
+    /// Something latched a stop. It stays until a person has looked and cleared it. Nothing is armed.
     LatchedStop,
-    /// No radio, or a bad one.
+    /// The radio is lost, in failsafe, or of poor quality.
     RadioLost,
-    /// Anything else that stops everything.
+    /// Everything has stopped for another reason.
     Fault,
-    /// Armed, but wheels, joints or a bus are stopped.
+    /// The robot is armed, but its wheels, its joints or one bus are stopped.
     ArmedInPart,
-    /// Armed, and the battery is nearly empty: land it.
+    /// The robot is armed and the battery is nearly empty: bring it to rest.
     ArmedBatteryLow,
-    /// Bring-up, armed: a motor may move.
+    /// The robot is armed in bring-up: one motor may move.
     BringUpArmed,
+    /// The robot is armed.
     Armed,
-    /// The pilot has asked, and will be armed as soon as settings are written.
+    /// The pilot has asked to arm. The robot arms as soon as the settings are written.
     Waiting,
+    /// The robot is disarmed in bring-up.
     BringUp,
+    /// The battery is low, which forbids arming.
     BatteryLow,
-    /// The package is not warm yet.
+    /// The inertial sensor is not warm yet.
     WarmingUp,
-    /// The start-up calibration needs a robot that stands still.
+    /// The start-up calibration waits for the robot to stand still.
     HoldStill,
+    /// The start-up calibration is measuring.
     Calibrating,
-    /// Wheels, joints, a bus, the settings or a debugger forbid to arm.
+    /// Wheels, joints, a bus, the settings or a debugger forbid arming.
     NotReady,
-    /// The enable switch is on, but that does not arm: see why the request was refused.
+    /// The enable switch is on, but the robot did not arm. Diagnostics name the reason.
     Refused,
-    /// As `Ready`, but flash takes no settings: what was changed last goes with the power.
+    /// As `Ready`, but the flash accepts no settings: the last changes will be lost at power-off.
     NotSaved,
-    /// The enable switch arms.
+    /// The enable switch arms the robot.
     Ready,
 }
 
+/// What the selection looks at.
 #[derive(Clone, Copy, Debug)]
 pub struct IndicationInputs<'a> {
+    /// State and blockers of arming.
     pub arming: &'a ArmingStatus,
+    /// The safety policy's flags and stops.
     pub safety: &'a SafetyStatus,
+    /// Progress of the start-up calibration.
     pub calibration: &'a CalibrationStatus,
+    /// Step of bring-up.
     pub bring_up: BringUpStep,
+    /// State of the parameter store.
     pub params: &'a ParamStatus,
 }
 
@@ -71,8 +81,9 @@ const NOT_READY: [ArmingBlockers; 7] = [
 ];
 
 impl Indication {
-    pub fn of(inputs: &IndicationInputs<'_>) -> Self {
-        // Whatever stops the robot as well refuses the request.
+    /// Selects the most urgent indication.
+    pub fn select(inputs: &IndicationInputs<'_>) -> Self {
+        // A request to arm that waits for flash comes first: a stop would have refused it.
         if inputs.arming.waiting {
             return Self::Waiting;
         }
@@ -88,10 +99,11 @@ impl Indication {
 
 fn stop(inputs: &IndicationInputs<'_>) -> Option<Indication> {
     let safety = inputs.safety;
-    // Whoever goes near to look must not find that the other motors are live.
+    // A latched stop is shown only when nothing can move. People come near to look, and other motors must not be
+    // live.
     let all_still = safety.global_stop || inputs.arming.state == ArmingState::Disarmed;
     let has = |flags| safety.flags.intersects(flags);
-    // Without the radio nobody knows where the switch is.
+    // Without the radio the position of the switch is unknown.
     if has(SafetyFlags::E_STOP) && !has(SafetyFlags::REMOTE_LOST) {
         Some(Indication::EStop)
     } else if has(SafetyFlags::BATTERY_EMPTY) {
