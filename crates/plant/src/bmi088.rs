@@ -1,50 +1,32 @@
 //! BMI088 inertial sensor: two dies in one package, each an SPI device of its own (Bosch BST-BMI088-DS000 rev 1.8).
 
 mod accel;
+mod die;
 mod fifo;
 mod gyro;
 mod low_pass;
 mod sample_clock;
 mod thermal;
+mod transaction;
 mod write_gap;
 
 use crate::{
     complaint::Complaint,
+    motion::{Motion, MotionSource},
     random::{Random, Stream},
-    time::{Ps, SECOND},
-    world::{PHYSICS_STEP, SpiSelect},
+    time::Ps,
+    wire::SpiSelect,
 };
 use accel::AccelDie;
+use die::Die;
 use gyro::GyroDie;
 use thermal::Thermal;
+use transaction::Transaction;
 
 /// Fastest serial clock of both dies.
 const MAX_SCK_HZ: u32 = 10_000_000;
 /// Beyond it, but DJI's own programs for this board run so, and work.
 const SCK_SEEN_TO_WORK_HZ: u32 = 10_500_000;
-
-/// Written to either die's SOFTRESET register it starts the die anew.
-const SOFTRESET: u8 = 0xB6;
-/// Of either die's status register.
-const DATA_READY: u8 = 1 << 7;
-
-/// What the package feels: specific force and angular rate in sensor axes.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Motion {
-    /// m/s², +9.8 on the axis pointing up at rest.
-    pub accel_mps2: [f64; 3],
-    /// rad/s.
-    pub gyro_rps: [f64; 3],
-}
-
-/// Where the motion comes from, and so how the dies' own analogue chain treats it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum MotionSource {
-    /// True motion: offset, noise and filter of the dies apply.
-    Physics,
-    /// The output of another sensor, whose offset and noise are in it already: only filter, range and quantisation apply.
-    Recording,
-}
 
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct ImuFaults {
@@ -58,57 +40,6 @@ pub(crate) struct ImuFaults {
     pub fifo_shift: bool,
     /// Now and then a gyro sample is −32768 on all axes (ArduPilot issues 22710 and 25178).
     pub gyro_spikes: bool,
-}
-
-/// Register file seen over SPI by one die.
-trait Die {
-    /// Bytes between the address and the first data byte of a read.
-    const DUMMY_BYTES: usize;
-    /// Read over and over in a burst, while every other register is followed by the next.
-    const FIFO_DATA: u8;
-    fn read(&mut self, register: u8, now: Ps) -> u8;
-    /// `selected_at`: since when the chip select is low.
-    fn write(&mut self, register: u8, value: u8, selected_at: Ps, now: Ps);
-    /// The chip select rises.
-    fn deselected(&mut self, now: Ps);
-    /// False where the die leaves MISO to the pull-up.
-    fn drives_miso(&self) -> bool;
-}
-
-/// State of one chip select: bytes seen since it fell.
-#[derive(Clone, Copy, Debug, Default)]
-struct Transaction {
-    selected: bool,
-    since: Ps,
-    bytes: usize,
-    address: u8,
-}
-
-impl Transaction {
-    fn exchange<D: Die>(&mut self, die: &mut D, mosi: u8, now: Ps) -> u8 {
-        const READ: u8 = 0x80;
-        let index = self.bytes;
-        self.bytes += 1;
-        if index == 0 {
-            self.address = mosi;
-            return 0xFF;
-        }
-        let register = self.address & !READ;
-        if self.address & READ == 0 {
-            // The datasheet knows single-byte writes only.
-            if index == 1 {
-                die.write(register, mosi, self.since, now);
-            }
-            return 0xFF;
-        }
-        match index.checked_sub(1 + D::DUMMY_BYTES) {
-            Some(_) if register == D::FIFO_DATA && die.drives_miso() => die.read(register, now),
-            Some(offset) if die.drives_miso() => {
-                die.read(register.wrapping_add(offset as u8) & 0x7F, now)
-            }
-            _ => 0xFF,
-        }
-    }
 }
 
 pub(crate) struct Bmi088 {
@@ -212,11 +143,7 @@ impl Bmi088 {
         if wire.selected == selected {
             return;
         }
-        *wire = Transaction {
-            selected,
-            since: now,
-            ..Transaction::default()
-        };
+        *wire = Transaction::begin(selected, now);
         if !selected {
             match device {
                 SpiSelect::Accel => self.accel.deselected(now),
@@ -265,20 +192,10 @@ impl Bmi088 {
     }
 }
 
-/// How often the analogue chains advance.
-fn rate_of_steps_hz() -> f64 {
-    SECOND as f64 / PHYSICS_STEP as f64
-}
-
 /// Three axes at an end of the range each.
 fn extremes(random: &mut Random) -> [i16; 3] {
     const ENDS: [i16; 3] = [i16::MAX, i16::MIN, -i16::MAX];
     std::array::from_fn(|_| ENDS[random.below(3) as usize])
-}
-
-/// Rounds to the nearest code and clips at the ends of an `i16`, as the converter does.
-fn quantise(counts: f64) -> i16 {
-    counts.round() as i16
 }
 
 #[cfg(test)]

@@ -1,6 +1,13 @@
 //! Everything that can go wrong outside the chip, by name.
 
-use crate::world::FaultInfo;
+/// A fault that a scenario can start and end.
+#[derive(Clone, Copy, Debug)]
+pub struct FaultInfo {
+    /// As scenarios write it, such as `imu-gone`.
+    pub name: &'static str,
+    /// One sentence: what is broken, and what happens at the end of the fault.
+    pub what: &'static str,
+}
 
 macro_rules! faults {
     ($($fault:ident $name:literal $what:literal,)*) => {

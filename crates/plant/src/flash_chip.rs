@@ -5,6 +5,7 @@
 
 mod cells;
 mod defects;
+mod error;
 mod nor_flash;
 mod power;
 mod sectors;
@@ -14,31 +15,16 @@ mod tests;
 
 use std::ops::Range;
 
-use thiserror::Error;
-
 use crate::random::{Random, Stream};
-use cells::Cells;
+use cells::{Cells, WORD};
 use defects::Defects;
 use power::{Outcome, Power};
 use sectors::{PARAMETER_ADDRESSES, PerSector};
 
 pub use defects::{EraseFault, StuckBit};
+pub use error::FlashError;
 pub use power::Phase;
 pub use sectors::{PARAMETER_SECTORS, sector_range};
-
-const WORD: u32 = 4;
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-pub enum FlashError {
-    #[error("the flash is without power")]
-    PowerLost,
-    #[error("{0:#010x} is not the address of a word")]
-    NotAligned(u32),
-    #[error("{0:#010x} lies outside of the parameters' sectors")]
-    OutOfRange(u32),
-    #[error("sector {0} is none of the parameters'")]
-    OtherSector(u8),
-}
 
 /// Contents, wear and defects of sectors 1–3, where the parameters are kept. Everything random in it follows from the
 /// seed.

@@ -1,8 +1,8 @@
 //! IST8310 magnetometer on I2C.
 
 use crate::{
-    bmi088::MotionSource,
     complaint::Complaint,
+    motion::MotionSource,
     random::{Random, Stream},
     time::{MS, Ps, US},
 };

@@ -18,6 +18,8 @@ mod faults;
 mod ist8310;
 mod joints;
 mod m3508;
+mod motion;
+mod physics;
 mod radio;
 mod random;
 mod supply;

@@ -5,6 +5,3 @@ mod motor;
 
 pub(crate) use c620::{C620, EscFaults};
 pub(crate) use motor::{Friction, M3508};
-
-/// Rotor turns a turn of the output shaft.
-pub(crate) const GEAR: f64 = 3591.0 / 187.0;

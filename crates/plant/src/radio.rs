@@ -1,9 +1,10 @@
 //! The receiver on the DBUS connector and the pilot behind it.
 
-pub(crate) mod dbus;
+mod dbus;
+mod faults;
 mod line_noise;
-pub(crate) mod pilot;
-pub(crate) mod sbus;
+mod pilot;
+mod sbus;
 
 use std::collections::VecDeque;
 
@@ -11,24 +12,20 @@ use crate::{
     random::{Random, Stream},
     time::Ps,
     wire::{LineFormat, UartChar},
-    world::{RadioKind, RemoteInput},
 };
+pub(crate) use faults::RadioFaults;
 use line_noise::LineNoise;
 use pilot::Pilot;
+pub use pilot::RemoteInput;
 
-/// What is wrong with the radio link at the moment.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct RadioFaults {
-    /// Receiver unplugged: not a character more, not even the rest of a frame.
-    pub silent: bool,
-    /// Receiver has lost the transmitter for long.
-    pub failsafe: bool,
-    /// Receiver missed the last radio packet.
-    pub frame_lost: bool,
-    /// Bit errors and stray bytes on the line.
-    pub noise: bool,
-    /// Share of the frames that is lost, 0 … 1.
-    pub loss: f64,
+/// Which receiver is plugged into the DBUS connector.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum RadioKind {
+    /// SBUS, 16 channels every 7 ms.
+    #[default]
+    Sbus,
+    /// DJI DR16, 18 bytes every 14 ms.
+    Dbus,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

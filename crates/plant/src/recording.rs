@@ -2,23 +2,24 @@
 //!
 //! The robot stands still while the record plays: the record moves its sensors only.
 
+mod error;
 mod trial;
 
 use std::path::Path;
 
 use crate::{
     attitude::{self, Quaternion},
-    bmi088::Motion,
+    motion::Motion,
     time::{MS, Ps, to_seconds},
-    world::WorldError,
 };
+pub use error::{TrialDefect, TrialError};
 pub use trial::{Row, Trial};
 
 /// Room for boot and sensor start-up before the record begins. Until then its first moments, which are all at rest,
 /// play backwards: real noise, and no jump where the record starts.
 pub const LEAD_IN: Ps = 1_000 * MS;
 /// How long a run lasts that plays all of the trial `header` describes: lead-in and every row.
-pub fn run_length(header: &Path) -> Result<Ps, WorldError> {
+pub fn run_length(header: &Path) -> Result<Ps, TrialError> {
     Ok(LEAD_IN + trial::duration(header)?)
 }
 
@@ -28,7 +29,7 @@ pub(crate) struct Playback {
 }
 
 impl Playback {
-    pub(crate) fn open(header: &Path) -> Result<Self, WorldError> {
+    pub(crate) fn open(header: &Path) -> Result<Self, TrialError> {
         let mut trial = Trial::load(header)?;
         trial.bridge_failures();
         Ok(Self { trial })

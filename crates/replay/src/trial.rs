@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use robot_plant::{recording, world::WorldError};
+use robot_plant::recording::{self, TrialError};
 
 use crate::{
     reference::Reference,
@@ -21,7 +21,7 @@ pub enum ReplayError {
     #[error("{path} holds several folders of trials, name one of them: {}", folders.join(", "))]
     SeveralFolders { path: PathBuf, folders: Vec<String> },
     #[error(transparent)]
-    Trial(#[from] WorldError),
+    Trial(#[from] TrialError),
 }
 
 /// One recording, in the form in which the firmware would have met it.

@@ -1,6 +1,6 @@
 //! How far one attitude is from another (D. Laidig et al., "BROAD", Data 6 (7), 2021, section 4).
 
-use super::{Quaternion, conjugate, multiply};
+use super::quaternion::{Quaternion, conjugate, multiply};
 
 /// e = estimate · conj(reference): the rotation in the earth frame that takes the reference to the estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,14 +1,17 @@
 //! Accelerometer die of the BMI088 (datasheet chapters 4.5 and 5.3).
 
 use super::{
-    DATA_READY, Die, MotionSource, SOFTRESET, low_pass::LowPass, quantise, rate_of_steps_hz,
-    sample_clock::SampleClock, write_gap::WriteGap,
+    die::{DATA_READY, Die, SOFTRESET, quantise, rate_of_steps_hz},
+    low_pass::LowPass,
+    sample_clock::SampleClock,
+    write_gap::WriteGap,
 };
 use crate::{
     complaint::Complaint,
+    motion::MotionSource,
+    physics::STANDARD_GRAVITY_MPS2,
     random::Random,
     time::{MS, Ps, SECOND},
-    world::STANDARD_GRAVITY_MPS2,
 };
 
 mod register {

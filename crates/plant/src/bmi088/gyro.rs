@@ -1,11 +1,15 @@
 //! Gyroscope die of the BMI088 (datasheet chapters 4.6 and 5.5).
 
 use super::{
-    DATA_READY, Die, MotionSource, SOFTRESET, fifo::Fifo, low_pass::LowPass, quantise,
-    rate_of_steps_hz, sample_clock::SampleClock, write_gap::WriteGap,
+    die::{DATA_READY, Die, SOFTRESET, quantise, rate_of_steps_hz},
+    fifo::Fifo,
+    low_pass::LowPass,
+    sample_clock::SampleClock,
+    write_gap::WriteGap,
 };
 use crate::{
     complaint::Complaint,
+    motion::MotionSource,
     random::Random,
     time::{MS, Ps},
 };

@@ -1,8 +1,8 @@
 use super::*;
 use crate::{
     complaint::Severity,
+    physics::{PHYSICS_STEP, physics_step_s},
     time::{MS, US},
-    world::physics_step_s,
 };
 
 const SCK_HZ: u32 = 5_250_000;

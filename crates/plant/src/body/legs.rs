@@ -2,7 +2,7 @@
 //!
 //! The linkage that couples the two joints of a leg, and the body's weight on it, are not modelled.
 
-use super::turn_shaft;
+use super::shaft::turn_shaft;
 use crate::{joints::JOINTS, m3508::Friction};
 
 /// A link about its hip with the motor's reflected rotor: an assumption.

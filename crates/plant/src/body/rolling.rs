@@ -2,8 +2,13 @@
 //!
 //! Balance is taken for granted: pitch and roll stay zero.
 
-use super::{Floor, Pose, TRACK_M, WHEEL_INERTIA_KGM2, WHEEL_RADIUS_M, WheelTorques, turn_shaft};
-use crate::{bmi088::Motion, m3508::Friction, world::STANDARD_GRAVITY_MPS2};
+use super::{
+    floor::Floor,
+    pose::Pose,
+    shaft::turn_shaft,
+    wheels::{TRACK_M, WHEEL_INERTIA_KGM2, WHEEL_RADIUS_M, WheelTorques},
+};
+use crate::{m3508::Friction, motion::Motion, physics::STANDARD_GRAVITY_MPS2};
 
 /// Robot with legs and wheels, kg (hardware.md 11).
 const MASS_KG: f64 = 9.0;

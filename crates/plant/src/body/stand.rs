@@ -1,7 +1,10 @@
 //! Body clamped level on a stand, wheels in the air.
 
-use super::{WHEEL_INERTIA_KGM2, WheelTorques, turn_shaft};
-use crate::{bmi088::Motion, m3508::Friction, world::STANDARD_GRAVITY_MPS2};
+use super::{
+    shaft::turn_shaft,
+    wheels::{WHEEL_INERTIA_KGM2, WheelTorques},
+};
+use crate::{m3508::Friction, motion::Motion, physics::STANDARD_GRAVITY_MPS2};
 
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Stand {
@@ -30,7 +33,7 @@ impl Stand {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::m3508::{GEAR, M3508};
+    use crate::m3508::M3508;
 
     /// Runs one motor at a wanted current and supply until it is steady: (output rpm, current in A).
     fn steady_state(wanted_a: f64, supply_v: f64) -> (f64, f64) {
@@ -51,7 +54,7 @@ mod tests {
         let (rpm, current_a) = steady_state(20.0, 24.0);
         assert!((rpm - 482.0).abs() < 1.0, "{rpm} rpm");
         assert!((current_a - 0.78).abs() < 0.01, "{current_a} A");
-        assert!((rpm * GEAR - 9_256.0).abs() < 30.0);
+        assert!((rpm * 3591.0 / 187.0 - 9_256.0).abs() < 30.0);
         let (reverse_rpm, _) = steady_state(-20.0, 24.0);
         assert!((reverse_rpm + rpm).abs() < 1e-6);
     }

@@ -2,7 +2,7 @@
 
 use crate::{
     attitude::{self, Quaternion},
-    bmi088::Motion,
+    motion::Motion,
 };
 
 const DEG: f64 = std::f64::consts::PI / 180.0;
@@ -49,8 +49,8 @@ pub(crate) struct Tilt {
 impl Tilt {
     pub(crate) fn step(&mut self, stance: Stance, dt_s: f64) {
         let way_rad = stance.goal_rad() - self.pitch_rad;
-        let most_rad = stance.speed_rps() * dt_s;
-        let moved_rad = way_rad.clamp(-most_rad, most_rad);
+        let max_rad = stance.speed_rps() * dt_s;
+        let moved_rad = way_rad.clamp(-max_rad, max_rad);
         self.pitch_rad += moved_rad;
         self.rate_rps = moved_rad / dt_s;
     }

@@ -4,6 +4,8 @@ use std::ops::Range;
 
 use crate::random::Random;
 
+/// Bytes in a word, the smallest unit that the flash programs.
+pub(super) const WORD: u32 = 4;
 /// One word in that many escapes an erase that leaves some.
 const ONE_WORD_ESCAPES_IN: u32 = 64;
 /// Bits an erase cut near its end may leave undecided in a whole sector.

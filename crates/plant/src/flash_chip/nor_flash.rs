@@ -5,7 +5,7 @@ use embedded_storage::nor_flash::{
     check_write,
 };
 
-use super::{FlashChip, FlashError, PARAMETER_SECTORS, WORD, sectors::PARAMETER_ADDRESSES};
+use super::{FlashChip, FlashError, PARAMETER_SECTORS, cells::WORD, sectors::PARAMETER_ADDRESSES};
 
 const SECTOR: u32 = 16 * 1024;
 const CAPACITY: u32 = PARAMETER_ADDRESSES.end - PARAMETER_ADDRESSES.start;

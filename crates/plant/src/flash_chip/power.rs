@@ -1,6 +1,6 @@
 //! The supply of the flash, and the step at which it goes.
 
-use super::FlashError;
+use super::error::FlashError;
 
 /// Where within a step the power goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -70,10 +70,10 @@ impl Actuator {
         // The no-load speed is reached against the gear's friction, hence without it the motor would run on a little.
         let free_rps = rating.no_load_rps * supply_v / rating.supply_v
             + rating.slope_rps_per_nm * rating.friction_nm;
-        let most_nm = (free_rps - vel_rps) / rating.slope_rps_per_nm;
-        let least_nm = (-free_rps - vel_rps) / rating.slope_rps_per_nm;
+        let max_nm = (free_rps - vel_rps) / rating.slope_rps_per_nm;
+        let min_nm = (-free_rps - vel_rps) / rating.slope_rps_per_nm;
         wanted_nm
-            .clamp(least_nm, most_nm)
+            .clamp(min_nm, max_nm)
             .clamp(-rating.peak_nm, rating.peak_nm)
     }
 

@@ -4,13 +4,16 @@ mod receive;
 mod registers;
 
 use super::{
-    DriveFaults, Shaft,
     actuator::{Actuator, Rating},
+    drive::{Drive, DriveFaults, Reception, Shaft},
     mit_frame::MitCommand,
     reply::ReplyBox,
     speed_loop::{self, SpeedLoop},
 };
-use crate::time::{Ps, US};
+use crate::{
+    time::{Ps, US},
+    wire::CanFrame,
+};
 use registers::Registers;
 
 /// V1.1: peak 7 N·m, 200 rpm without load at 24 V, static friction 0.15 N·m. From memory of the datasheet: 120 rpm at
@@ -53,7 +56,7 @@ enum State {
 enum Target {
     None,
     Mit(MitCommand),
-    PositionSpeed { pos_rad: f64, most_rps: f64 },
+    PositionSpeed { pos_rad: f64, max_rps: f64 },
     Speed { vel_rps: f64 },
 }
 
@@ -68,7 +71,7 @@ pub(crate) struct Dm4310 {
     /// Shaft angle that reads as 0, rad.
     zero_rad: f64,
     faults: DriveFaults,
-    heard_at: Ps,
+    last_frame_at: Ps,
     /// Deaf and mute while it stores its registers.
     deaf_until: Ps,
     replies: ReplyBox,
@@ -87,22 +90,11 @@ impl Dm4310 {
             actuator: Actuator::new(&RATING),
             zero_rad: 0.0,
             faults: DriveFaults::default(),
-            heard_at: 0,
+            last_frame_at: 0,
             deaf_until: 0,
             replies: ReplyBox::default(),
             stop_frames: 0,
         }
-    }
-
-    pub(crate) fn set_faults(&mut self, faults: DriveFaults, now: Ps) {
-        if faults.gone || faults.wrong_id != self.faults.wrong_id {
-            self.power_cycle(now);
-        }
-        if faults.tripped {
-            self.switch_off(State::Tripped(Trip::OverCurrent));
-        }
-        self.actuator.heated = faults.hot;
-        self.faults = faults;
     }
 
     /// Settings that were not stored are lost; the heat and the place of the zero stay.
@@ -120,30 +112,6 @@ impl Dm4310 {
         self.actuator.cut();
     }
 
-    pub(crate) fn powered(&self) -> bool {
-        !self.faults.gone
-    }
-
-    pub(crate) fn enabled(&self) -> bool {
-        self.state == State::Enabled
-    }
-
-    pub(crate) fn stop_frames(&self) -> u64 {
-        self.stop_frames
-    }
-
-    pub(super) fn actuator(&self) -> &Actuator {
-        &self.actuator
-    }
-
-    pub(super) fn replies(&self) -> &ReplyBox {
-        &self.replies
-    }
-
-    pub(super) fn replies_mut(&mut self) -> &mut ReplyBox {
-        &mut self.replies
-    }
-
     fn esc_id(&self) -> u32 {
         (self.registers.esc_id + u32::from(self.faults.wrong_id) * WRONG_ID) & STANDARD_ID
     }
@@ -152,43 +120,85 @@ impl Dm4310 {
         (self.registers.mst_id + u32::from(self.faults.wrong_id) * WRONG_ID) & STANDARD_ID
     }
 
-    pub(crate) fn step(&mut self, shaft: Shaft, supply_v: f64, now: Ps, dt_s: f64) {
-        self.watch(now);
-        let most_nm = RATING.peak_nm;
-        let goal_rps = match self.target {
-            Target::None | Target::Mit(_) => None,
-            Target::PositionSpeed { pos_rad, most_rps } => {
-                let here_rad = shaft.pos_rad - self.zero_rad;
-                Some(speed_loop::towards(pos_rad, here_rad, most_rps))
-            }
-            Target::Speed { vel_rps } => Some(vel_rps),
-        };
-        if let Some(goal_rps) = goal_rps {
-            self.speed_loop.step(goal_rps, shaft.vel_rps, most_nm, dt_s);
-        }
-        let wanted_nm = self.enabled().then(|| self.asked_nm(shaft));
-        self.actuator.step(wanted_nm, shaft.vel_rps, supply_v, dt_s);
-    }
-
     /// The motor's own guards.
     fn watch(&mut self, now: Ps) {
         if self.state != State::Enabled {
             return;
         }
         let timeout = u64::from(self.registers.timeout) * TIMEOUT_UNIT;
-        if timeout != 0 && now > self.heard_at + timeout {
+        if timeout != 0 && now > self.last_frame_at + timeout {
             self.switch_off(State::Tripped(Trip::CommunicationLost));
         } else if self.actuator.winding_c() > f64::from(self.registers.over_temperature_c) {
             self.switch_off(State::Tripped(Trip::RotorTemperature));
         }
     }
+}
 
-    /// Torque its present command asks for, before the limits of motor and supply.
-    pub(crate) fn asked_nm(&self, shaft: Shaft) -> f64 {
+impl Drive for Dm4310 {
+    fn set_faults(&mut self, faults: DriveFaults, now: Ps) {
+        if faults.gone || faults.wrong_id != self.faults.wrong_id {
+            self.power_cycle(now);
+        }
+        if faults.tripped {
+            self.switch_off(State::Tripped(Trip::OverCurrent));
+        }
+        self.actuator.heated = faults.hot;
+        self.faults = faults;
+    }
+
+    fn powered(&self) -> bool {
+        !self.faults.gone
+    }
+
+    fn receive(&mut self, frame: &CanFrame, shaft: Shaft, now: Ps) -> Reception {
+        self.take_frame(frame, shaft, now)
+    }
+
+    fn enabled(&self) -> bool {
+        self.state == State::Enabled
+    }
+
+    fn stop_frames(&self) -> u64 {
+        self.stop_frames
+    }
+
+    fn actuator(&self) -> &Actuator {
+        &self.actuator
+    }
+
+    fn replies(&self) -> &ReplyBox {
+        &self.replies
+    }
+
+    fn replies_mut(&mut self) -> &mut ReplyBox {
+        &mut self.replies
+    }
+
+    fn step(&mut self, shaft: Shaft, supply_v: f64, now: Ps, dt_s: f64) {
+        self.watch(now);
+        let max_nm = RATING.peak_nm;
+        let goal_rps = match self.target {
+            Target::None | Target::Mit(_) => None,
+            Target::PositionSpeed { pos_rad, max_rps } => {
+                let here_rad = shaft.pos_rad - self.zero_rad;
+                Some(speed_loop::towards(pos_rad, here_rad, max_rps))
+            }
+            Target::Speed { vel_rps } => Some(vel_rps),
+        };
+        if let Some(goal_rps) = goal_rps {
+            self.speed_loop.step(goal_rps, shaft.vel_rps, max_nm, dt_s);
+        }
+        let wanted_nm = self.enabled().then(|| self.commanded_nm(shaft));
+        self.actuator.step(wanted_nm, shaft.vel_rps, supply_v, dt_s);
+    }
+
+    fn commanded_nm(&self, shaft: Shaft) -> f64 {
         match self.target {
             Target::None => 0.0,
-            Target::Mit(command) => command.asked_nm(shaft.pos_rad - self.zero_rad, shaft.vel_rps),
-            Target::PositionSpeed { .. } | Target::Speed { .. } => self.speed_loop.asked_nm(),
+            Target::Mit(command) => {
+                command.commanded_nm(shaft.pos_rad - self.zero_rad, shaft.vel_rps)
+            }
+            Target::PositionSpeed { .. } | Target::Speed { .. } => self.speed_loop.commanded_nm(),
         }
     }
 }

@@ -9,8 +9,8 @@ pub(super) struct Ranges {
     pub torque_nm: f64,
 }
 
-const MOST_KP: f64 = 500.0;
-const MOST_KD: f64 = 5.0;
+const MAX_KP: f64 = 500.0;
+const MAX_KD: f64 = 5.0;
 
 /// What a motion-control frame asks for.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -23,7 +23,7 @@ pub(super) struct MitCommand {
 }
 
 impl MitCommand {
-    pub(super) fn asked_nm(&self, pos_rad: f64, vel_rps: f64) -> f64 {
+    pub(super) fn commanded_nm(&self, pos_rad: f64, vel_rps: f64) -> f64 {
         self.kp_nm_per_rad * (self.pos_rad - pos_rad)
             + self.kd_nms_per_rad * (self.vel_rps - vel_rps)
             + self.torque_nm
@@ -32,7 +32,7 @@ impl MitCommand {
 
 /// Position and speed as the reader of a reply decodes them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct FedBack {
+pub(crate) struct Feedback {
     pub pos_rad: f64,
     pub vel_rps: f64,
 }
@@ -44,8 +44,8 @@ impl Ranges {
         MitCommand {
             pos_rad: value(field(48, 16), 16, -self.pos_rad, self.pos_rad),
             vel_rps: value(field(36, 12), 12, -self.vel_rps, self.vel_rps),
-            kp_nm_per_rad: value(field(24, 12), 12, 0.0, MOST_KP),
-            kd_nms_per_rad: value(field(12, 12), 12, 0.0, MOST_KD),
+            kp_nm_per_rad: value(field(24, 12), 12, 0.0, MAX_KP),
+            kd_nms_per_rad: value(field(12, 12), 12, 0.0, MAX_KD),
             torque_nm: value(field(0, 12), 12, -self.torque_nm, self.torque_nm),
         }
     }
@@ -56,13 +56,13 @@ impl Ranges {
         pos_rad: f64,
         vel_rps: f64,
         torque_nm: f64,
-    ) -> ([u8; 5], FedBack) {
+    ) -> ([u8; 5], Feedback) {
         let pos = code(pos_rad, 16, self.pos_rad);
         let vel = code(vel_rps, 12, self.vel_rps);
         let torque = code(torque_nm, 12, self.torque_nm);
         let bits = u64::from(pos) << 24 | u64::from(vel) << 12 | u64::from(torque);
         let [_, _, _, bytes @ ..] = bits.to_be_bytes();
-        let said = FedBack {
+        let said = Feedback {
             pos_rad: value(pos, 16, -self.pos_rad, self.pos_rad),
             vel_rps: value(vel, 12, -self.vel_rps, self.vel_rps),
         };

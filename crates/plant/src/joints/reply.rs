@@ -1,6 +1,6 @@
 //! The one frame a motor sends for each frame it gets.
 
-use super::mit_frame::FedBack;
+use super::mit_frame::Feedback;
 use crate::{
     time::{Ps, US},
     wire::CanFrame,
@@ -13,15 +13,15 @@ const REPLY_TIME: Ps = 150 * US;
 struct Reply {
     ready_at: Ps,
     frame: CanFrame,
-    fed_back: Option<FedBack>,
+    fed_back: Option<Feedback>,
 }
 
 /// A reply that found no way onto the bus is replaced by the next one.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ReplyBox {
     waiting: Option<Reply>,
-    last_feedback: Option<([u8; 8], FedBack)>,
-    on_the_wire: FedBack,
+    last_feedback: Option<([u8; 8], Feedback)>,
+    on_the_wire: Feedback,
 }
 
 impl ReplyBox {
@@ -30,7 +30,7 @@ impl ReplyBox {
         &mut self,
         id: u32,
         data: [u8; 8],
-        fed_back: FedBack,
+        fed_back: Feedback,
         frozen: bool,
         now: Ps,
     ) {
@@ -47,7 +47,7 @@ impl ReplyBox {
         self.put(id, data, None, received + REPLY_TIME);
     }
 
-    fn put(&mut self, id: u32, data: [u8; 8], fed_back: Option<FedBack>, ready_at: Ps) {
+    fn put(&mut self, id: u32, data: [u8; 8], fed_back: Option<Feedback>, ready_at: Ps) {
         let frame = CanFrame {
             id,
             extended: false,
@@ -84,7 +84,7 @@ impl ReplyBox {
     }
 
     /// What the last feedback on the wire said.
-    pub(super) fn on_the_wire(&self) -> FedBack {
+    pub(super) fn on_the_wire(&self) -> Feedback {
         self.on_the_wire
     }
 }

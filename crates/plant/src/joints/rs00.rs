@@ -2,15 +2,14 @@
 
 mod receive;
 
-use crate::time::Ps;
-
 use super::{
-    DriveFaults, Shaft,
     actuator::{Actuator, Rating},
+    drive::{Drive, DriveFaults, Reception, Shaft},
     mit_frame::{MitCommand, Ranges},
     reply::ReplyBox,
     speed_loop::{self, SpeedLoop},
 };
+use crate::{time::Ps, wire::CanFrame};
 
 const RANGES: Ranges = Ranges {
     pos_rad: 12.57,
@@ -52,8 +51,8 @@ enum Mode {
 enum Target {
     None,
     Mit(MitCommand),
-    Position { pos_rad: f64, most_rps: f64 },
-    Speed { vel_rps: f64, most_a: f64 },
+    Position { pos_rad: f64, max_rps: f64 },
+    Speed { vel_rps: f64, max_a: f64 },
 }
 
 /// As shipped the last command holds for ever: the motor's own watch over the bus, parameter 0x7028, is off, and out of
@@ -61,7 +60,7 @@ enum Target {
 pub(crate) struct Rs00 {
     /// Silence after which it goes back to reset mode; 0 = never.
     can_timeout: Ps,
-    heard_at: Ps,
+    last_frame_at: Ps,
     motor_id: u32,
     host_id: u32,
     mode: Mode,
@@ -82,7 +81,7 @@ impl Rs00 {
     pub(crate) fn new(motor_id: u32, host_id: u32, can_timeout: Ps) -> Self {
         Self {
             can_timeout,
-            heard_at: 0,
+            last_frame_at: 0,
             motor_id,
             host_id,
             mode: Mode::Mit,
@@ -98,7 +97,25 @@ impl Rs00 {
         }
     }
 
-    pub(crate) fn set_faults(&mut self, faults: DriveFaults) {
+    fn switch_off(&mut self) {
+        self.running = false;
+        self.target = Target::None;
+        self.speed_loop = SpeedLoop::default();
+        self.actuator.cut();
+    }
+
+    fn trip(&mut self, fault: u32) {
+        self.fault_word |= fault;
+        self.switch_off();
+    }
+
+    fn id(&self) -> u32 {
+        self.motor_id + u32::from(self.faults.wrong_id) * WRONG_ID
+    }
+}
+
+impl Drive for Rs00 {
+    fn set_faults(&mut self, faults: DriveFaults, _now: Ps) {
         if faults.gone || faults.wrong_id != self.faults.wrong_id {
             self.mode = Mode::Mit;
             self.fault_word = 0;
@@ -112,49 +129,37 @@ impl Rs00 {
         self.faults = faults;
     }
 
-    fn switch_off(&mut self) {
-        self.running = false;
-        self.target = Target::None;
-        self.speed_loop = SpeedLoop::default();
-        self.actuator.cut();
-    }
-
-    fn trip(&mut self, fault: u32) {
-        self.fault_word |= fault;
-        self.switch_off();
-    }
-
-    pub(crate) fn powered(&self) -> bool {
+    fn powered(&self) -> bool {
         !self.faults.gone
     }
 
-    pub(crate) fn enabled(&self) -> bool {
+    fn receive(&mut self, frame: &CanFrame, shaft: Shaft, now: Ps) -> Reception {
+        self.take_frame(frame, shaft, now)
+    }
+
+    fn enabled(&self) -> bool {
         self.running
     }
 
-    pub(crate) fn stop_frames(&self) -> u64 {
+    fn stop_frames(&self) -> u64 {
         self.stop_frames
     }
 
-    pub(super) fn actuator(&self) -> &Actuator {
+    fn actuator(&self) -> &Actuator {
         &self.actuator
     }
 
-    pub(super) fn replies(&self) -> &ReplyBox {
+    fn replies(&self) -> &ReplyBox {
         &self.replies
     }
 
-    pub(super) fn replies_mut(&mut self) -> &mut ReplyBox {
+    fn replies_mut(&mut self) -> &mut ReplyBox {
         &mut self.replies
     }
 
-    fn id(&self) -> u32 {
-        self.motor_id + u32::from(self.faults.wrong_id) * WRONG_ID
-    }
-
-    pub(crate) fn step(&mut self, shaft: Shaft, supply_v: f64, now: Ps, dt_s: f64) {
+    fn step(&mut self, shaft: Shaft, supply_v: f64, now: Ps, dt_s: f64) {
         // Assumed: it raises no fault, and may be enabled again at once.
-        if self.running && self.can_timeout != 0 && now > self.heard_at + self.can_timeout {
+        if self.running && self.can_timeout != 0 && now > self.last_frame_at + self.can_timeout {
             self.switch_off();
         }
         if self.running && self.actuator.winding_c() > OVER_TEMPERATURE_C {
@@ -162,29 +167,30 @@ impl Rs00 {
         }
         let goal = match self.target {
             Target::None | Target::Mit(_) => None,
-            Target::Position { pos_rad, most_rps } => {
+            Target::Position { pos_rad, max_rps } => {
                 let here_rad = shaft.pos_rad - self.zero_rad;
-                let goal_rps = speed_loop::towards(pos_rad, here_rad, most_rps);
+                let goal_rps = speed_loop::towards(pos_rad, here_rad, max_rps);
                 Some((goal_rps, RATING.peak_nm))
             }
-            Target::Speed { vel_rps, most_a } => {
-                let most_nm = (most_a.abs() * TORQUE_NM_PER_A).min(RATING.peak_nm);
-                Some((vel_rps, most_nm))
+            Target::Speed { vel_rps, max_a } => {
+                let max_nm = (max_a.abs() * TORQUE_NM_PER_A).min(RATING.peak_nm);
+                Some((vel_rps, max_nm))
             }
         };
-        if let Some((goal_rps, most_nm)) = goal {
-            self.speed_loop.step(goal_rps, shaft.vel_rps, most_nm, dt_s);
+        if let Some((goal_rps, max_nm)) = goal {
+            self.speed_loop.step(goal_rps, shaft.vel_rps, max_nm, dt_s);
         }
-        let wanted_nm = self.running.then(|| self.asked_nm(shaft));
+        let wanted_nm = self.running.then(|| self.commanded_nm(shaft));
         self.actuator.step(wanted_nm, shaft.vel_rps, supply_v, dt_s);
     }
 
-    /// Torque its present command asks for, before the limits of motor and supply.
-    pub(crate) fn asked_nm(&self, shaft: Shaft) -> f64 {
+    fn commanded_nm(&self, shaft: Shaft) -> f64 {
         match self.target {
             Target::None => 0.0,
-            Target::Mit(command) => command.asked_nm(shaft.pos_rad - self.zero_rad, shaft.vel_rps),
-            Target::Position { .. } | Target::Speed { .. } => self.speed_loop.asked_nm(),
+            Target::Mit(command) => {
+                command.commanded_nm(shaft.pos_rad - self.zero_rad, shaft.vel_rps)
+            }
+            Target::Position { .. } | Target::Speed { .. } => self.speed_loop.commanded_nm(),
         }
     }
 }

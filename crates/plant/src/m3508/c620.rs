@@ -1,11 +1,11 @@
 //! C620 motor controller: command in, current loop, feedback out.
 
-use super::{GEAR, motor::M3508};
+use super::motor::{GEAR, M3508};
 use crate::{
+    physics::{PHYSICS_STEP, physics_step_s},
     random::Random,
     time::{Ps, SECOND, US},
     wire::CanFrame,
-    world::{PHYSICS_STEP, physics_step_s},
 };
 
 const COMMAND_ID: u32 = 0x200;

@@ -1,5 +1,7 @@
 //! Torque, friction and heat of the M3508 at its output shaft.
 
+/// Rotor turns per turn of the output shaft.
+pub(crate) const GEAR: f64 = 3591.0 / 187.0;
 /// N·m at the output shaft per ampere of torque current (hardware.md 7).
 const TORQUE_NM_PER_A: f64 = 0.3;
 /// Datasheet: 482 rpm and 0.78 A without load at 24 V.
@@ -79,9 +81,9 @@ impl M3508 {
         dt_s: f64,
     ) {
         let back_emf_v = BACK_EMF_V_PER_RPS * shaft_rps;
-        let most_a = (supply_v - back_emf_v) / RESISTANCE_OHM;
-        let least_a = (-supply_v - back_emf_v) / RESISTANCE_OHM;
-        let goal_a = wanted_a.clamp(least_a, most_a.max(least_a));
+        let max_a = (supply_v - back_emf_v) / RESISTANCE_OHM;
+        let min_a = (-supply_v - back_emf_v) / RESISTANCE_OHM;
+        let goal_a = wanted_a.clamp(min_a, max_a.max(min_a));
         self.current_a += (goal_a - self.current_a) * follow;
         if self.current_a.abs() < NO_CURRENT_A {
             self.current_a = 0.0;

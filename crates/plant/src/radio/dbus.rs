@@ -1,6 +1,6 @@
 //! DJI DR16 receiver: 18 bytes at 100 kbaud 8E1 every 14 ms, no header, no checksum (hardware.md 6.2).
 
-use super::{RadioFaults, pilot::Pilot};
+use super::{faults::RadioFaults, pilot::Pilot};
 use crate::{
     time::{MS, Ps},
     wire::{LineFormat, Parity},

@@ -1,6 +1,23 @@
 //! Sticks and switches in the pilot's hands.
 
-use crate::world::RemoteInput;
+/// A change of sticks and switches. An unset field keeps its value.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RemoteInput {
+    /// Enable switch.
+    pub enable: Option<bool>,
+    /// Emergency stop.
+    pub e_stop: Option<bool>,
+    /// Drive stick, −1 … 1, forward positive.
+    pub vx: Option<f64>,
+    /// Steering stick, −1 … 1, left turn (counter-clockwise from above) positive.
+    pub wz: Option<f64>,
+    /// Three-position switch: 0, 1, 2.
+    pub mode: Option<u8>,
+    /// Left stick, −1 … 1, right positive.
+    pub left_x: Option<f64>,
+    /// Left stick, −1 … 1, up positive.
+    pub left_y: Option<f64>,
+}
 
 /// Sticks in −1 … 1, switches as set. Starts disabled, centred, mode 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -2,7 +2,7 @@
 //!
 //! The connector's inverter is on the board, so the MCU pin sees normal polarity.
 
-use super::{RadioFaults, pilot::Pilot};
+use super::{faults::RadioFaults, pilot::Pilot};
 use crate::{
     time::{MS, Ps},
     wire::{LineFormat, Parity},

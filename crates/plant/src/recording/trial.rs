@@ -1,14 +1,15 @@
 //! The record's file format: a JSON header beside gzipped columns of 32-bit floats (BROAD trials, `README.md` there).
 
-use std::{io::Read, path::Path};
+use std::{
+    io::{self, Read},
+    path::Path,
+};
 
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
 
-use crate::{
-    time::{Ps, SECOND},
-    world::WorldError,
-};
+use super::error::{TrialDefect, TrialError};
+use crate::time::{Ps, SECOND};
 
 #[derive(Deserialize)]
 struct Header {
@@ -21,11 +22,10 @@ struct Header {
 }
 
 impl Header {
-    fn read(path: &Path) -> Result<Self, WorldError> {
-        let text = std::fs::read_to_string(path).map_err(|e| wrong(path, e.to_string()))?;
-        let header: Self = serde_json::from_str(&text).map_err(|e| wrong(path, e.to_string()))?;
+    fn read(path: &Path) -> Result<Self, TrialDefect> {
+        let header: Self = serde_json::from_str(&std::fs::read_to_string(path)?)?;
         if header.rows == 0 || header.rate_num == 0 {
-            return Err(wrong(path, "no rows, or no rate".into()));
+            return Err(TrialDefect::Empty);
         }
         Ok(header)
     }
@@ -35,21 +35,21 @@ impl Header {
     }
 }
 
-fn wrong(path: &Path, why: String) -> WorldError {
-    WorldError::Trial {
+fn defect_of(path: &Path) -> impl Fn(TrialDefect) -> TrialError {
+    move |defect| TrialError {
         path: path.to_owned(),
-        why,
+        defect,
     }
 }
 
 /// Time from the first row to the end of the last.
-pub(super) fn duration(header_path: &Path) -> Result<Ps, WorldError> {
-    let header = Header::read(header_path)?;
+pub(super) fn duration(header_path: &Path) -> Result<Ps, TrialError> {
+    let header = Header::read(header_path).map_err(defect_of(header_path))?;
     Ok(header.rows as Ps * header.row_period())
 }
 
-/// The header's checksum, where it names one, against the data.
-fn check_sum(header: &Header, bytes: &[u8]) -> Result<(), String> {
+/// Compares the data with the header's checksum, where it names one.
+fn check_sum(header: &Header, bytes: &[u8]) -> Result<(), TrialDefect> {
     let Some(expected) = &header.sha256_raw else {
         return Ok(());
     };
@@ -58,12 +58,26 @@ fn check_sum(header: &Header, bytes: &[u8]) -> Result<(), String> {
         .map(|byte| format!("{byte:02x}"))
         .collect();
     if found != expected.to_lowercase() {
-        return Err(format!(
-            "the data's SHA-256 is {found}, the header's sha256_raw {expected}: \
-             one of the two files is not the one that was published; copy both again"
-        ));
+        return Err(TrialDefect::Checksum {
+            found,
+            expected: expected.clone(),
+        });
     }
     Ok(())
+}
+
+/// The bytes of the columns beside the header.
+fn unpack(header_path: &Path) -> Result<Vec<u8>, TrialDefect> {
+    let path = header_path.with_extension("f32.gz");
+    let read = || -> io::Result<Vec<u8>> {
+        let mut bytes = Vec::new();
+        flate2::read::GzDecoder::new(std::fs::File::open(&path)?).read_to_end(&mut bytes)?;
+        Ok(bytes)
+    };
+    read().map_err(|source| TrialDefect::DataFile {
+        file: path.clone(),
+        source,
+    })
 }
 
 /// Means over the interval that ends with the row, in the sensors' axes. A sensor that failed reads NaN.
@@ -87,37 +101,35 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// Reads `<trial>.json` and the `<trial>.f32.gz` beside it, and compares them by length and checksum.
-    pub fn load(header_path: &Path) -> Result<Self, WorldError> {
-        let header = Header::read(header_path)?;
-        let fail = |why: String| wrong(header_path, why);
-        let data_path = header_path.with_extension("f32.gz");
-        let file = std::fs::File::open(&data_path)
-            .map_err(|error| fail(format!("{}: {error}", data_path.display())))?;
-        let mut bytes = Vec::new();
-        flate2::read::GzDecoder::new(file)
-            .read_to_end(&mut bytes)
-            .map_err(|error| fail(format!("{}: {error}", data_path.display())))?;
-        Self::parse(&header, &bytes).map_err(fail)
+    /// Reads `<trial>.json` and the `<trial>.f32.gz` beside it.
+    ///
+    /// # Errors
+    /// A file is missing, or the two do not fit together by length or checksum.
+    pub fn load(header_path: &Path) -> Result<Self, TrialError> {
+        let load = || {
+            let header = Header::read(header_path)?;
+            Self::parse(&header, &unpack(header_path)?)
+        };
+        load().map_err(defect_of(header_path))
     }
 
-    fn parse(header: &Header, bytes: &[u8]) -> Result<Self, String> {
+    fn parse(header: &Header, bytes: &[u8]) -> Result<Self, TrialDefect> {
         let expected = header.rows * header.columns.len() * 4;
         if bytes.len() != expected {
-            return Err(format!(
-                "header speaks of {expected} bytes at {}/{} Hz, data has {}",
-                header.rate_num,
-                header.rate_den,
-                bytes.len()
-            ));
+            return Err(TrialDefect::Length {
+                expected,
+                found: bytes.len(),
+                rate_num: header.rate_num,
+                rate_den: header.rate_den,
+            });
         }
         check_sum(header, bytes)?;
-        let column = |name: &str| -> Result<Vec<f64>, String> {
+        let column = |name: &'static str| -> Result<Vec<f64>, TrialDefect> {
             let index = header
                 .columns
                 .iter()
                 .position(|column| column == name)
-                .ok_or_else(|| format!("no column `{name}`"))?;
+                .ok_or(TrialDefect::MissingColumn(name))?;
             let bytes = &bytes[index * header.rows * 4..(index + 1) * header.rows * 4];
             Ok(bytes
                 .chunks_exact(4)
@@ -128,7 +140,7 @@ impl Trial {
         let accel = [column("ax")?, column("ay")?, column("az")?];
         let field = [column("mx")?, column("my")?, column("mz")?];
         let known = |name: &str| header.columns.iter().any(|column| column == name);
-        let column_or = |name: &str, otherwise: f64| match known(name) {
+        let column_or = |name: &'static str, otherwise: f64| match known(name) {
             true => column(name),
             false => Ok(vec![otherwise; header.rows]),
         };

@@ -1,13 +1,14 @@
 //! The passage of time.
 
-use super::{PHYSICS_STEP, World, physics_step_s};
+use super::World;
 use crate::{
     attitude,
-    bmi088::Motion,
     body::{Floor, Stance},
     faults::{Fault, RADIO_LOSSES},
     joints::{JOINTS, Shaft},
     m3508::M3508,
+    motion::Motion,
+    physics::{PHYSICS_STEP, physics_step_s},
     radio::RadioFaults,
     supply::Charge,
     time::Ps,
@@ -123,7 +124,7 @@ impl World {
             power_w += joint.torque_nm() * self.legs.vel_rps[index];
             let (torque_nm, friction_nm) = (joint.torque_nm(), joint.friction_nm());
             if joint.enabled() != was_enabled {
-                self.tell_joint(index, at);
+                self.report_joint(index, at);
             }
             self.legs
                 .step(index, torque_nm, friction_nm, physics_step_s());

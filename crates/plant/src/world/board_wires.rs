@@ -1,7 +1,12 @@
 //! Every wire of the board but CAN.
 
-use super::{SpiSelect, World};
-use crate::{complaint::Complaint, faults::Fault, time::Ps, wire::UartChar};
+use super::World;
+use crate::{
+    complaint::Complaint,
+    faults::Fault,
+    time::Ps,
+    wire::{SpiSelect, UartChar},
+};
 
 /// SPI1: BMI088.
 impl World {

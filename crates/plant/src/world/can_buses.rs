@@ -1,12 +1,12 @@
 //! Who sits on the CAN buses. The bus model asks every node at each start of frame; nodes are numbered from 0 on each
 //! bus.
 
-use super::{CanBusId, WireEvent, World, signals};
+use super::{WireEvent, World, signals};
 use crate::{
     can_adapter::{AdapterMode, CanAdapter},
     faults::Fault,
     time::Ps,
-    wire::CanFrame,
+    wire::{CanBusId, CanFrame},
 };
 
 /// The highest priority there is.
@@ -133,12 +133,24 @@ impl World {
                 });
             }
             Node::Adapter => {
-                self.note_tuning_reply(frame, now);
+                self.record_tuning_reply(frame, now);
                 self.can_adapter(bus).hear(frame, now);
             }
-            Node::Joint(joint) => self.joint_heard(joint, frame, now),
+            Node::Joint(joint) => self.joint_received(joint, frame, now),
             Node::Esc(_) | Node::Rogue(_) => {}
         }
+    }
+
+    fn record_tuning_reply(&mut self, frame: &CanFrame, at: Ps) {
+        if !self.tuning_replies.record(frame) {
+            return;
+        }
+        let count = (signals::TUNING_REPLIES, self.tuning_replies.count as f64);
+        let bytes = self.tuning_replies.last.iter().enumerate();
+        let bytes = bytes.map(|(index, value)| (signals::tuning_reply(index), *value));
+        let events = [count].into_iter().chain(bytes);
+        self.wire_events
+            .extend(events.map(|(signal, value)| WireEvent { at, signal, value }));
     }
 
     /// True while a fault cuts or shorts this bus for everybody.

@@ -1,13 +1,14 @@
 //! What a scenario does to the world and asks of it.
 
-use super::{FaultInfo, RemoteInput, World, WorldError};
+use super::{World, WorldError};
 use crate::{
     attitude::{self, Quaternion},
     bmi088::ImuFaults,
-    faults::{self, Fault, MOTORS},
+    faults::{self, Fault, FaultInfo, MOTORS},
     ist8310::MagFaults,
     joints::DriveFaults,
     m3508::EscFaults,
+    radio::RemoteInput,
     time::Ps,
 };
 
@@ -96,7 +97,7 @@ impl World {
                     slow_writes: self.faults.has(Fault::JointWritesSlow),
                 };
                 self.joints[joint].set_faults(drive_faults, self.now);
-                self.tell_joint(joint, self.now);
+                self.report_joint(joint, self.now);
             }
         }
     }

@@ -55,7 +55,9 @@ macro_rules! joint_on_the_wire {
                 f64::from(w.joints[$joint].enabled())
             }),
             (concat!($name, ".torque_nm"), |w| {
-                w.joints[$joint].wire_state(w.joint_shaft($joint)).asked_nm
+                w.joints[$joint]
+                    .wire_state(w.joint_shaft($joint))
+                    .commanded_nm
             }),
             (concat!($name, ".pos_rad"), |w| {
                 w.joints[$joint].fed_back().pos_rad

@@ -1,8 +1,8 @@
 //! Replies on the tuning channel, as a PC's adapter hears them on either bus.
 
-use super::{WireEvent, World, signals};
-use crate::{time::Ps, wire::CanFrame};
+use crate::wire::CanFrame;
 
+/// Identifier of a reply (docs/tuning.md).
 const REPLY_ID: u32 = 0x7A2;
 
 #[derive(Clone, Copy, Debug)]
@@ -21,23 +21,18 @@ impl Default for TuningReplies {
     }
 }
 
-impl World {
-    pub(super) fn note_tuning_reply(&mut self, frame: &CanFrame, at: Ps) {
+impl TuningReplies {
+    /// Takes a frame from the bus; true if it is a reply.
+    pub(super) fn record(&mut self, frame: &CanFrame) -> bool {
         if frame.id != REPLY_ID || frame.extended || frame.remote {
-            return;
+            return false;
         }
+        self.last = [f64::NAN; 8];
         let bytes = frame.data.iter().take(frame.dlc.into());
-        let mut last = [f64::NAN; 8];
-        for (value, byte) in last.iter_mut().zip(bytes) {
+        for (value, byte) in self.last.iter_mut().zip(bytes) {
             *value = f64::from(*byte);
         }
-        self.tuning_replies.last = last;
-        self.tuning_replies.count += 1;
-        let count = (signals::TUNING_REPLIES, self.tuning_replies.count as f64);
-        let bytes = last.iter().enumerate();
-        let bytes = bytes.map(|(index, value)| (signals::tuning_reply(index), *value));
-        let events = [count].into_iter().chain(bytes);
-        self.wire_events
-            .extend(events.map(|(signal, value)| WireEvent { at, signal, value }));
+        self.count += 1;
+        true
     }
 }

@@ -3,7 +3,7 @@
 use super::registers::{ControlMode, NotModelled};
 use super::{Dm4310, State, Target};
 use crate::{
-    joints::{Heard, Shaft},
+    joints::drive::{Drive, Reception, Shaft},
     time::{MS, Ps},
     wire::CanFrame,
 };
@@ -30,17 +30,17 @@ const SET_ZERO: u8 = 0xFE;
 const CLEAR: u8 = 0xFB;
 
 impl Dm4310 {
-    pub(crate) fn receive(&mut self, frame: &CanFrame, shaft: Shaft, now: Ps) -> Heard {
+    pub(super) fn take_frame(&mut self, frame: &CanFrame, shaft: Shaft, now: Ps) -> Reception {
         if !self.powered() || frame.extended || frame.remote || now < self.deaf_until {
-            return Heard::Nothing;
+            return Reception::Ignored;
         }
         if frame.id == REGISTERS {
             return self.register_request(frame, shaft, now);
         }
         if frame.id & ADDRESS != self.esc_id() {
-            return Heard::Nothing;
+            return Reception::Ignored;
         }
-        self.heard_at = now;
+        self.last_frame_at = now;
         if let Some(tail) = service(frame) {
             self.serve(tail, shaft);
         } else if let Some(target) = self.target_of(frame)
@@ -49,7 +49,7 @@ impl Dm4310 {
             self.target = target;
         }
         self.reply(shaft, now);
-        Heard::Frame
+        Reception::Accepted
     }
 
     fn mode_offset(&self) -> u32 {
@@ -91,7 +91,7 @@ impl Dm4310 {
             (ControlMode::PositionSpeed, 8) if first.is_finite() && second.is_finite() => {
                 Some(Target::PositionSpeed {
                     pos_rad: first,
-                    most_rps: second,
+                    max_rps: second,
                 })
             }
             (ControlMode::Speed, 4 | 8) if first.is_finite() => {
@@ -101,12 +101,12 @@ impl Dm4310 {
         }
     }
 
-    fn register_request(&mut self, frame: &CanFrame, shaft: Shaft, now: Ps) -> Heard {
+    fn register_request(&mut self, frame: &CanFrame, shaft: Shaft, now: Ps) -> Reception {
         let [low, high, request, register, value @ ..] = frame.data;
         if u32::from(u16::from_le_bytes([low, high])) != self.esc_id() || frame.dlc < 4 {
-            return Heard::Nothing;
+            return Reception::Ignored;
         }
-        self.heard_at = now;
+        self.last_frame_at = now;
         let done = match (request, frame.dlc) {
             (READ, _) => self.answer(frame, now),
             (WRITE, 8) => {
@@ -127,11 +127,11 @@ impl Dm4310 {
                 self.reply(shaft, now);
                 Ok(())
             }
-            _ => return Heard::Nothing,
+            _ => return Reception::Ignored,
         };
         match done {
-            Ok(()) => Heard::Frame,
-            Err(NotModelled) => Heard::NotModelled(format!(
+            Ok(()) => Reception::Accepted,
+            Err(NotModelled) => Reception::NotModelled(format!(
                 "DM4310: request {request:#04x} for register {register:#04x} with {value:02x?} is not modelled"
             )),
         }

@@ -1,7 +1,7 @@
 //! Frames written by hand from hardware.md 8.1 and section 12.
 
 use super::*;
-use crate::{joints::Heard, time::MS, wire::CanFrame, world::physics_step_s};
+use crate::{physics::physics_step_s, time::MS};
 
 const ENABLE: [u8; 8] = [0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFC];
 const DISABLE: [u8; 8] = [0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFD];
@@ -25,7 +25,7 @@ fn bench() -> Bench {
 }
 
 impl Bench {
-    fn send(&mut self, id: u32, data: [u8; 8]) -> Heard {
+    fn send(&mut self, id: u32, data: [u8; 8]) -> Reception {
         let frame = CanFrame {
             id,
             extended: false,
@@ -71,14 +71,14 @@ fn enabled_it_pulls_as_the_reference_command_says() {
     assert_eq!(first, [0x01, 0x7F, 0xFF, 0x7F, 0xF7, 0xFF, 30, 30]);
     assert_eq!(bench.motor.actuator().torque_nm(), 0.0);
     assert_eq!(bench.ask(1, ENABLE).expect("a reply")[0], 0x11);
-    assert_eq!(bench.motor.asked_nm(bench.shaft), 0.0);
+    assert_eq!(bench.motor.commanded_nm(bench.shaft), 0.0);
     bench.shaft = Shaft {
         pos_rad: 0.8,
         vel_rps: 0.5,
     };
     let reply = bench.ask(1, ONE).expect("a reply");
     // 20·(1 − 0.8) + 1·(0 − 0.5) + 0.5 = 4 N·m, to within the codes' steps.
-    assert!((bench.motor.asked_nm(bench.shaft) - 4.0).abs() < 0.05);
+    assert!((bench.motor.commanded_nm(bench.shaft) - 4.0).abs() < 0.05);
     assert!((bench.motor.actuator().torque_nm() - 4.0).abs() < 0.05);
     // 0.8 rad: 13.3/25·65535 = 34864.6; 0.5 rad/s: 30.5/60·4095 = 2081.6.
     assert_eq!(reply[..4], [0x11, 0x88, 0x30, 0x82]);
@@ -87,7 +87,7 @@ fn enabled_it_pulls_as_the_reference_command_says() {
     assert_eq!(bench.motor.stop_frames(), 1);
     // Enabled anew it waits for a command.
     bench.ask(1, ENABLE);
-    assert_eq!(bench.motor.asked_nm(bench.shaft), 0.0);
+    assert_eq!(bench.motor.commanded_nm(bench.shaft), 0.0);
 }
 
 #[test]
@@ -100,7 +100,7 @@ fn it_replies_once_and_150_us_after_the_frame() {
     assert!(bench.reply().is_some());
     assert!(bench.reply().is_none());
     for foreign in [0, 2, 0x102, 0x200, 0x211, 0x7A0] {
-        assert_eq!(bench.send(foreign, DISABLE), Heard::Nothing);
+        assert_eq!(bench.send(foreign, DISABLE), Reception::Ignored);
     }
 }
 
@@ -112,7 +112,7 @@ fn every_identifier_with_its_low_byte_reaches_it() {
     for id in [0x101, 0x201, 0x301, 0x501, 0x701] {
         assert_eq!(bench.ask(id, ENABLE).expect("a reply")[0], 0x11, "{id:#x}");
         assert_eq!(bench.ask(id, ONE).expect("a reply")[0], 0x11, "{id:#x}");
-        assert_eq!(bench.motor.asked_nm(bench.shaft), 0.0, "{id:#x}");
+        assert_eq!(bench.motor.commanded_nm(bench.shaft), 0.0, "{id:#x}");
         assert_eq!(bench.ask(id, DISABLE).expect("a reply")[0], 0x01, "{id:#x}");
     }
 }
@@ -124,7 +124,7 @@ fn torque_ends_at_the_peak_and_the_no_load_speed() {
     // Torque code 0xFFF alone: 10 N·m asked.
     bench.send(1, [0x7F, 0xFF, 0x7F, 0xF0, 0, 0, 0x0F, 0xFF]);
     bench.wait(1);
-    assert_eq!(bench.motor.asked_nm(bench.shaft), 10.0);
+    assert_eq!(bench.motor.commanded_nm(bench.shaft), 10.0);
     assert_eq!(bench.motor.actuator().torque_nm(), 7.0);
     bench.shaft.vel_rps = 20.94;
     bench.wait(1);
@@ -166,11 +166,11 @@ fn parameters_are_read_and_written_at_once_and_storing_takes_150_ms_of_silence()
     // Another motor's register, and one this model lacks.
     assert_eq!(
         bench.send(0x7FF, [2, 0, 0x33, 9, 0, 0, 0, 0]),
-        Heard::Nothing
+        Reception::Ignored
     );
     assert!(matches!(
         bench.send(0x7FF, read(0x40)),
-        Heard::NotModelled(_)
+        Reception::NotModelled(_)
     ));
 }
 
@@ -204,7 +204,7 @@ fn only_what_was_stored_survives_a_power_cycle() {
         };
         bench.motor.set_faults(gone, bench.now);
         assert!(!bench.motor.powered());
-        assert_eq!(bench.send(1, ENABLE), Heard::Nothing);
+        assert_eq!(bench.send(1, ENABLE), Reception::Ignored);
         bench.motor.set_faults(DriveFaults::default(), bench.now);
     };
     bench.ask(0x7FF, [1, 0, 0x55, 9, 40, 0, 0, 0]);
@@ -273,7 +273,7 @@ fn only_frames_of_the_present_mode_count() {
     assert_eq!(bench.ask(1, ENABLE).expect("a reply")[0], 0x11);
     for (id, foreign) in [(1, ONE), (0x201, towards(1.0, 0.0))] {
         assert_eq!(bench.ask(id, foreign).expect("a reply")[0], 0x11);
-        assert_eq!(bench.motor.asked_nm(bench.shaft), 0.0);
+        assert_eq!(bench.motor.commanded_nm(bench.shaft), 0.0);
     }
     assert!(bench.ask(0x101, towards(-0.5, 2.0)).is_some());
     bench.wait(2);
@@ -286,7 +286,7 @@ fn only_frames_of_the_present_mode_count() {
     bench.wait(2);
     assert!(bench.motor.actuator().torque_nm() > 1.0);
     bench.ask(0x201, towards(f32::NAN, 0.0));
-    assert!(bench.motor.asked_nm(bench.shaft).is_finite());
+    assert!(bench.motor.commanded_nm(bench.shaft).is_finite());
 }
 
 #[test]
@@ -326,8 +326,8 @@ fn frozen_hot_and_renamed_motors_say_so_or_do_not() {
     };
     bench.motor.set_faults(renamed, bench.now);
     assert!(!bench.motor.enabled());
-    assert_eq!(bench.send(1, ENABLE), Heard::Nothing);
-    assert_eq!(bench.send(9, DISABLE), Heard::Frame);
+    assert_eq!(bench.send(1, ENABLE), Reception::Ignored);
+    assert_eq!(bench.send(9, DISABLE), Reception::Accepted);
     bench.wait(1);
     let reply = bench.reply().expect("under another name");
     assert_eq!((reply.id, reply.data[0]), (0x19, 0x09));

@@ -2,7 +2,7 @@
 
 use super::{Mode, RANGES, Rs00, Target};
 use crate::{
-    joints::{Heard, Shaft},
+    joints::drive::{Drive, Reception, Shaft},
     time::Ps,
     wire::CanFrame,
 };
@@ -15,12 +15,12 @@ const FAULTS: u8 = 0xFB;
 const PLAIN: u8 = 0xFF;
 
 impl Rs00 {
-    pub(crate) fn receive(&mut self, frame: &CanFrame, shaft: Shaft, now: Ps) -> Heard {
+    pub(super) fn take_frame(&mut self, frame: &CanFrame, shaft: Shaft, now: Ps) -> Reception {
         let addressed = frame.id & 0xFF == self.id() && frame.id <= 0x2FF;
         if !self.powered() || !addressed || frame.extended || frame.remote || frame.dlc != 8 {
-            return Heard::Nothing;
+            return Reception::Ignored;
         }
-        self.heard_at = now;
+        self.last_frame_at = now;
         let [service @ .., detail, tail] = frame.data;
         let is_service = frame.id >> 8 == 0 && service == [0xFF; 6];
         match (tail, detail) {
@@ -34,16 +34,19 @@ impl Rs00 {
             (FAULTS, PLAIN) if is_service => self.clear_faults(),
             (FAULTS, _) if is_service => {
                 self.reply_faults(now);
-                return Heard::Frame;
+                return Reception::Accepted;
             }
             // Identifiers, saving, reports of its own accord, another protocol.
             (0xF7..=0xFA | STOP, _) if is_service => {
-                return Heard::NotModelled(format!("RS00: {:02x?} is not modelled", frame.data));
+                return Reception::NotModelled(format!(
+                    "RS00: {:02x?} is not modelled",
+                    frame.data
+                ));
             }
             _ => self.take_target(frame),
         }
         self.reply(shaft, now);
-        Heard::Frame
+        Reception::Accepted
     }
 
     /// Assumed: only while stopped.
@@ -90,13 +93,13 @@ impl Rs00 {
             Mode::Position if finite => {
                 self.target = Target::Position {
                     pos_rad: first,
-                    most_rps: second,
+                    max_rps: second,
                 }
             }
             Mode::Speed if finite => {
                 self.target = Target::Speed {
                     vel_rps: first,
-                    most_a: second,
+                    max_a: second,
                 }
             }
             Mode::Position | Mode::Speed => {}

@@ -2,10 +2,8 @@
 
 use super::*;
 use crate::{
-    joints::Heard,
-    time::{MS, Ps, US},
-    wire::CanFrame,
-    world::physics_step_s,
+    physics::physics_step_s,
+    time::{MS, US},
 };
 
 const ENABLE: [u8; 8] = [0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFC];
@@ -48,7 +46,7 @@ impl Bench {
             dlc: 8,
             data,
         };
-        if self.motor.receive(&frame, self.shaft, self.now) != Heard::Frame {
+        if self.motor.receive(&frame, self.shaft, self.now) != Reception::Accepted {
             return None;
         }
         self.wait(1);
@@ -151,13 +149,13 @@ fn a_fault_is_a_bit_a_word_and_no_torque_until_cleared() {
         tripped: true,
         ..DriveFaults::default()
     };
-    bench.motor.set_faults(tripped);
+    bench.motor.set_faults(tripped, bench.now);
     assert_eq!(bench.torque_nm(), 0.0);
     // Bit 5 of byte 6, state 0.
     assert_eq!(bench.ask(3, ONE).expect("a reply")[6], 0x21);
     let word = bench.ask(3, READ_FAULTS).expect("a reply");
     assert_eq!(word[..5], [3, 0x02, 0, 0, 0]);
-    bench.motor.set_faults(DriveFaults::default());
+    bench.motor.set_faults(DriveFaults::default(), bench.now);
     assert_eq!(bench.ask(3, ENABLE).expect("a reply")[6], 0x21);
     assert_eq!(bench.ask(3, CLEAR).expect("a reply")[6], 0x01);
     assert_eq!(bench.ask(3, ENABLE).expect("a reply")[6], 0x81);
@@ -171,10 +169,10 @@ fn heat_reads_in_tenths_and_trips_above_145_degrees() {
         hot: true,
         ..DriveFaults::default()
     };
-    bench.motor.set_faults(hot);
+    bench.motor.set_faults(hot, bench.now);
     // 1200 = 0x4B0.
     assert_eq!(bench.ask(3, STOP).expect("a reply")[6..], [0x04, 0xB0]);
-    bench.motor.set_faults(DriveFaults::default());
+    bench.motor.set_faults(DriveFaults::default(), bench.now);
     bench.ask(3, ENABLE);
     bench.ask(3, [0x7F, 0xFF, 0x7F, 0xF0, 0, 0, 0x0F, 0xFF]);
     assert_eq!(bench.torque_nm(), 14.0);
@@ -213,5 +211,5 @@ fn another_motors_frames_and_services_beyond_the_model_are_told_apart() {
         data: [0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x05, 0xFA],
     };
     let heard = bench.motor.receive(&rename, bench.shaft, bench.now);
-    assert!(matches!(heard, Heard::NotModelled(_)));
+    assert!(matches!(heard, Reception::NotModelled(_)));
 }

@@ -1,0 +1,36 @@
+//! What both dies of the BMI088 have in common.
+
+use crate::{
+    physics::PHYSICS_STEP,
+    time::{Ps, SECOND},
+};
+
+/// Starts the die anew when it is written to its SOFTRESET register.
+pub(super) const SOFTRESET: u8 = 0xB6;
+/// "Data ready" in the status register of either die.
+pub(super) const DATA_READY: u8 = 1 << 7;
+
+/// Register file seen over SPI by one die.
+pub(super) trait Die {
+    /// Bytes between the address and the first data byte of a read.
+    const DUMMY_BYTES: usize;
+    /// Read over and over in a burst, while every other register is followed by the next.
+    const FIFO_DATA: u8;
+    fn read(&mut self, register: u8, now: Ps) -> u8;
+    /// `selected_at`: since when the chip select is low.
+    fn write(&mut self, register: u8, value: u8, selected_at: Ps, now: Ps);
+    /// The chip select rises.
+    fn deselected(&mut self, now: Ps);
+    /// False where the die leaves MISO to the pull-up.
+    fn drives_miso(&self) -> bool;
+}
+
+/// Rate at which the analogue chains advance, Hz.
+pub(super) fn rate_of_steps_hz() -> f64 {
+    SECOND as f64 / PHYSICS_STEP as f64
+}
+
+/// Rounds to the nearest code and clips at the ends of an `i16`, as the converter does.
+pub(super) fn quantise(counts: f64) -> i16 {
+    counts.round() as i16
+}

@@ -1,0 +1,60 @@
+//! The world at time 0.
+
+use super::{Indicators, World, WorldConfig, WorldError, signals, tuning_replies::TuningReplies};
+use crate::{
+    bmi088::Bmi088,
+    body::{Body, Legs, Tilt},
+    faults::ActiveFaults,
+    ist8310::Ist8310,
+    joints,
+    m3508::C620,
+    motion::MotionSource,
+    physics::PHYSICS_STEP,
+    radio::Receiver,
+    random::{Random, Stream},
+    recording::Playback,
+    supply::Battery,
+};
+
+impl World {
+    /// Everything powered on at time 0, sticks centred, switches off.
+    pub fn new(config: WorldConfig) -> Result<Self, WorldError> {
+        let playback = match &config.imu_trial {
+            Some(path) => Some(Playback::open(path)?),
+            None => None,
+        };
+        let source = match playback {
+            Some(_) => MotionSource::Recording,
+            None => MotionSource::Physics,
+        };
+        let seed = config.seed;
+        Ok(Self {
+            now: 0,
+            next_step: PHYSICS_STEP,
+            body: Body::new(config.plant),
+            tilt: Tilt::default(),
+            escs: [
+                C620::new(1, Random::new(seed, Stream::LeftMotor)),
+                C620::new(2, Random::new(seed, Stream::RightMotor)),
+            ],
+            joints: joints::drives(config.joints, config.rs00_timeout),
+            joints_reported: Default::default(),
+            legs: Legs::default(),
+            adapters: Default::default(),
+            tuning_replies: TuningReplies::default(),
+            battery: Battery::default(),
+            imu: Bmi088::new(seed, source, config.imu_temperature_c),
+            mag: Ist8310::new(seed, source),
+            mounting: config.mounting,
+            mag_mounting: config.mag_mounting,
+            radio: Receiver::new(config.radio, seed),
+            signal_names: signals::names(playback.is_some()),
+            playback,
+            indicators: Indicators::default(),
+            faults: ActiveFaults::default(),
+            board_supply: true,
+            wire_events: Vec::new(),
+            complaints: Vec::new(),
+        })
+    }
+}
