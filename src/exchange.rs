@@ -18,9 +18,9 @@
 //! | `debugger_view.rs` | control task | a debugger | 1 kHz |
 
 use robot_app::diagnostics::DiagnosticsSnapshot;
+use robot_app::domain::LogicBus;
+use robot_app::domain::{FlashRequest, ParamStatus};
 use robot_app::domain::{ImuState, ImuStatus, MagState, RemoteUpdate, RobotConfig, SensorHealth};
-use robot_app::logic::LogicBus;
-use robot_app::params::{FlashRequest, ParamStatus};
 use robot_snapshot::{Snapshot, Writer};
 use static_cell::StaticCell;
 

@@ -3,9 +3,9 @@
 use embassy_time::{Duration, Instant};
 use robot_app::control::UserController;
 use robot_app::diagnostics::DiagnosticsSnapshot;
+use robot_app::domain::FlashRequest;
+use robot_app::domain::LogicBus;
 use robot_app::domain::{CalibrationState, LateTasks, RemoteUpdate, SystemHealth};
-use robot_app::logic::LogicBus;
-use robot_app::params::FlashRequest;
 use robot_app::tick::robot_loop::{self, RobotLoop};
 use robot_app::tick::{ControlInputs, ControlOutputs, DIAGNOSTICS_PERIOD_TICKS};
 use robot_snapshot::{Follower, Writer};

@@ -1,7 +1,11 @@
 //! 100 Hz: remote, PC or the user's own logic → command on the logic bus.
 
 use embassy_time::{Duration, Instant};
-use robot_app::logic::{LogicBus, LogicInputs, LogicStage, UserLogic};
+use robot_app::safety::ArmingState;
+use robot_app::{
+    domain::LogicBus,
+    logic::{LogicInputs, LogicStage, UserLogic},
+};
 use robot_snapshot::Writer;
 
 use crate::deadlines::Watched;
@@ -17,11 +21,15 @@ pub async fn run(exchange: &'static Exchange, mut output: Writer<'static, LogicB
     loop {
         ticker.next().await;
         Watched::Logic.check_in();
+        let diagnostics = exchange.diagnostics.latest();
         let inputs = LogicInputs {
             config: &exchange.config.latest().config.safety,
             remote: &exchange.remote.latest(),
             pc: None,
-            diagnostics: &exchange.diagnostics.latest(),
+            sensors: &diagnostics.sensors,
+            estimate: &diagnostics.estimate,
+            armed: diagnostics.arming.state == ArmingState::Armed,
+            battery_v: diagnostics.battery_v,
         };
         output.publish(&stage.step(&inputs, Instant::now().as_micros()));
     }

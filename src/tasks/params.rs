@@ -1,7 +1,7 @@
 //! Settings to flash, in small steps, each with the control tick's permission.
 
 use embassy_time::{Duration, Instant};
-use robot_app::params::{FlashRequest, ParamService};
+use robot_app::{domain::FlashRequest, params::ParamService};
 use robot_snapshot::{Follower, Writer};
 
 use crate::deadlines::Watched;

@@ -7,12 +7,15 @@ mod estimate;
 mod health;
 mod imu_status;
 mod last_words;
+mod logic_bus;
 mod mounting;
+mod param_store;
 mod remote;
 mod remote_mapping;
 mod sensors;
+mod tuning_status;
 
-pub use can::{BusId, CanFrame, StandardId};
+pub use can::{BusId, CanFrame, MotorBuses, StandardId};
 pub use command::{
     ChassisCommand, HighLevelCommand, JointCommand, JointMode, MotorCurrent, WheelCommand,
 };
@@ -29,12 +32,15 @@ pub use imu_status::{
     ImuStatus, Warmth,
 };
 pub use last_words::{LastWords, LateTasks};
+pub use logic_bus::LogicBus;
 pub use mounting::Orientation;
+pub use param_store::{FlashRequest, ParamError, ParamState, ParamStatus};
 pub use remote::{DriveMode, OperatorState, RemoteDiagnostics, RemoteState, RemoteUpdate};
 pub use remote_mapping::{NO_CHANNEL, RemoteChannel, RemoteMapping};
 pub use sensors::{
     ImuState, JointFeedback, JointState, MagState, MotorFeedback, SensorsSnapshot, WheelFeedback,
 };
+pub use tuning_status::TuningStatus;
 
 /// Microseconds from `then_us` to `now_us`, saturating at both ends; a `then_us` of 0 means never and gives `u32::MAX`.
 pub fn age_us(then_us: u64, now_us: u64) -> u32 {

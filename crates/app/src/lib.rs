@@ -5,6 +5,7 @@
 //!
 //! | folder | in → out |
 //! |---|---|
+//! | `math` | vectors, quaternions and what `core` lacks of `f32` |
 //! | [`domain`] | the types all stages share, plain `repr(C)` data in SI units unless the name says otherwise |
 //! | [`input`] | radio bytes → `RemoteUpdate` (stick and switch state, operator state, link diagnostics) |
 //! | [`sensing`] | sensor register bytes → calibrated `ImuState`, `MagState`, the heater's duty; the bring-up sequences as data |
@@ -13,12 +14,14 @@
 //! | [`control`] | `LogicBus` and estimate → `ChassisCommand`; `control/user_controller.rs` is where a user writes theirs |
 //! | [`safety`] | health → flags and verdict; arming; the permit without which no current leaves the board |
 //! | [`motor`] | CAN frames ↔ motors; which motor sits where; the frames that stop them all |
-//! | [`tuning`] | CAN requests → changed `RobotConfig`, replies |
-//! | [`params`] | `RobotConfig` ↔ flash; which sector, when, and what to do when it fails |
 //! | [`bring_up`] | radio or tuning request → the command that tries out new hardware |
 //! | [`diagnostics`] | one `DiagnosticsSnapshot` of all of the above |
+//! | [`tuning`] | CAN requests → changed `RobotConfig`, replies |
+//! | [`params`] | `RobotConfig` ↔ flash; which sector, when, and what to do when it fails |
 //! | [`indication`] | state → what LED and buzzer tell people |
 //! | [`tick`] | the 1 kHz tick: all stages from CAN frames in to CAN frames out |
+//!
+//! A folder uses only folders above it in this table.
 //!
 //! # How the firmware uses it
 //! - sbus task: `input::RemoteReceiver::feed(bytes, ts_us, |update| publish)`, or `reject` if the UART flagged one of

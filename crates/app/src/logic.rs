@@ -2,7 +2,6 @@
 //!
 //! Put your own logic into `user_logic.rs`.
 
-mod bus;
 mod custom_logic;
 mod decision;
 mod inputs;
@@ -11,7 +10,6 @@ mod pc_command;
 mod stage;
 mod user_logic;
 
-pub use bus::LogicBus;
 pub use custom_logic::CustomLogic;
 pub use decision::LogicDecision;
 pub use inputs::LogicInputs;

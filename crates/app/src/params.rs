@@ -6,10 +6,8 @@ mod saver;
 mod sector;
 mod service;
 mod slot;
-mod status;
 mod store;
 
 pub use service::ParamService;
 pub use slot::{MAX_VALUES, Record, RecordId};
-pub use status::{FlashRequest, ParamError, ParamState, ParamStatus};
 pub use store::{MAX_RECORDS, Progress, Store, StoreReport};

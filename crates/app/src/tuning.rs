@@ -11,10 +11,9 @@ mod parameters;
 mod protocol;
 mod recording;
 mod refusal;
-mod status;
 mod wheel_geometry;
 
-pub use channel::{REPLY_PERIOD_TICKS, TuningAccess, TuningChannel, TuningGate};
+pub use channel::{TuningAccess, TuningChannel, TuningGate};
 pub use live::{JOINTS, LIVE_PAGES, LiveField, LiveKind, LivePage, LiveSource, LiveValue, WHEELS};
 pub use parameter::{Parameter, ParameterGroup, ParameterKind, Scope};
 pub use parameters::PARAMETERS;
@@ -25,4 +24,3 @@ pub use recording::{
     MAX_RECORDING_S, RecordedSample, RecordedSensor, Recorder, RecordingState, RecordingStatus,
 };
 pub use refusal::Refusal;
-pub use status::TuningStatus;

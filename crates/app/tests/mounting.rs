@@ -3,11 +3,9 @@
 use robot_app::{
     control::UserController,
     domain::{
-        BusId, CanFrame, ImuState, MagState, Orientation, RemoteUpdate, RobotConfig, StandardId,
-        StateEstimate, SystemHealth,
+        BusId, CanFrame, FlashRequest, ImuState, LogicBus, MagState, Orientation, ParamStatus,
+        RemoteUpdate, RobotConfig, StandardId, StateEstimate, SystemHealth,
     },
-    logic::LogicBus,
-    params::{FlashRequest, ParamStatus},
     safety::WatchdogPeriod,
     tick::{ControlInputs, ControlLoop},
 };

@@ -4,12 +4,11 @@ use robot_app::{
     control::UserController,
     diagnostics::DiagnosticsSnapshot,
     domain::{
-        BusId, CanFrame, ChassisCommand, ImuState, MagState, RemoteUpdate, RobotConfig,
-        SafetyConfig, StandardId, SystemHealth,
+        BusId, CanFrame, ChassisCommand, FlashRequest, ImuState, LogicBus, MagState, ParamStatus,
+        RemoteUpdate, RobotConfig, SafetyConfig, StandardId, SystemHealth,
     },
     input::{RemoteFormat, RemoteMapping, RemoteReceiver},
-    logic::{LogicBus, LogicInputs, LogicStage, UserLogic},
-    params::{FlashRequest, ParamStatus},
+    logic::{LogicInputs, LogicStage, UserLogic},
     safety::{ArmingState, WatchdogPeriod},
     tick::{ControlInputs, ControlLoop},
 };
@@ -153,7 +152,10 @@ impl Robot {
                 config: &SafetyConfig::default(),
                 remote: &self.remote,
                 pc: None,
-                diagnostics: &self.diagnostics,
+                sensors: &self.diagnostics.sensors,
+                estimate: &self.diagnostics.estimate,
+                armed: self.armed(),
+                battery_v: self.diagnostics.battery_v,
             };
             self.logic = self.logic_stage.step(&inputs, self.now / US);
             if let Some(command) = self.direct {

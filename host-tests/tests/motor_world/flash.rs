@@ -1,8 +1,7 @@
 //! The parameter store asks to write while motors are about.
 
 use robot_app::{
-    domain::JointState,
-    params::FlashRequest,
+    domain::{FlashRequest, JointState},
     safety::{ArmingBlockers, FlashGrant},
 };
 use robot_plant::world::JointKind;

@@ -4,13 +4,11 @@ use robot_app::{
     control::UserController,
     diagnostics::DiagnosticsSnapshot,
     domain::{
-        BusId, CanFrame, ChassisCommand, DriveMode, ImuState, JointCommand, JointFeedback,
-        JointState, MagState, OperatorState, RemoteDiagnostics, RemoteState, RemoteUpdate,
-        RobotConfig, StandardId, SystemHealth,
+        BusId, CanFrame, ChassisCommand, DriveMode, FlashRequest, ImuState, JointCommand,
+        JointFeedback, JointState, LogicBus, MagState, OperatorState, ParamStatus,
+        RemoteDiagnostics, RemoteState, RemoteUpdate, RobotConfig, StandardId, SystemHealth,
     },
-    logic::LogicBus,
     motor::layout::{MotorLayout, ROBOT_LAYOUT, RS00_LAYOUT},
-    params::{FlashRequest, ParamStatus},
     safety::{ArmingState, FlashGrant, WatchdogPeriod},
     tick::{ControlInputs, ControlLoop},
 };

@@ -2,7 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use robot_app::params::{FlashRequest, ParamError, Progress, Record, RecordId, Store};
+use robot_app::{
+    domain::{FlashRequest, ParamError},
+    params::{Progress, Record, RecordId, Store},
+};
 use robot_plant::flash_chip::FlashChip;
 
 /// Far more than a save with a change of sector takes.

@@ -1,6 +1,9 @@
 //! Cells and sectors that do not work any more: errors that end, nothing lost, the rest goes on being used.
 
-use robot_app::params::{FlashRequest, ParamError, Progress, Store};
+use robot_app::{
+    domain::{FlashRequest, ParamError},
+    params::{Progress, Store},
+};
 use robot_plant::flash_chip::{EraseFault, FlashChip, PARAMETER_SECTORS, StuckBit, sector_range};
 
 use crate::{

@@ -1,9 +1,8 @@
 //! What a boot makes of what it finds.
 
 use robot_app::{
-    domain::RobotConfig,
+    domain::{FlashRequest, ParamState, RobotConfig},
     motor::layout::{ROBOT_LAYOUT, RS00_LAYOUT},
-    params::{FlashRequest, ParamState},
     tuning::PARAMETERS,
 };
 

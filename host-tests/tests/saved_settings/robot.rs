@@ -9,10 +9,10 @@ use embedded_storage::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
 use robot_app::{
-    domain::RobotConfig,
+    domain::{FlashRequest, ParamState, ParamStatus, RobotConfig, TuningStatus},
     motor::layout::{MotorLayout, ROBOT_LAYOUT},
-    params::{FlashRequest, ParamService, ParamState, ParamStatus},
-    tuning::{PARAMETERS, TuningStatus},
+    params::ParamService,
+    tuning::PARAMETERS,
 };
 use robot_plant::flash_chip::{FlashChip, PARAMETER_SECTORS};
 

@@ -1,9 +1,6 @@
 //! When a save begins, and what happens if it fails (ROBOT_CPP 5.2).
 
-use robot_app::{
-    domain::RobotConfig,
-    params::{FlashRequest, ParamError, ParamState},
-};
+use robot_app::domain::{FlashRequest, ParamError, ParamState, RobotConfig};
 use robot_plant::flash_chip::{EraseFault, StuckBit, sector_range};
 
 use crate::{

@@ -3,9 +3,9 @@
 use robot_app::{
     control::UserController,
     domain::{
-        BusId, CanFrame, ImuState, MagState, RemoteUpdate, RobotConfig, StandardId, SystemHealth,
+        BusId, CanFrame, ImuState, LogicBus, MagState, RemoteUpdate, RobotConfig, StandardId,
+        SystemHealth,
     },
-    logic::LogicBus,
     safety::WatchdogPeriod,
     tick::{ControlInputs, ControlLoop},
 };

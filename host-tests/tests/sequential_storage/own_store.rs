@@ -1,6 +1,9 @@
 //! The same settings kept by the robot's own store.
 
-use robot_app::params::{FlashRequest, Progress, Record, RecordId, Store};
+use robot_app::{
+    domain::FlashRequest,
+    params::{Progress, Record, RecordId, Store},
+};
 use robot_plant::flash_chip::FlashChip;
 
 use crate::settings::{Found, KEYS, Keeper, Save};

@@ -2,11 +2,10 @@
 
 use robot_app::{
     domain::{
-        ChassisCommand, HighLevelCommand, ImuState, MagState, OperatorState, RemoteDiagnostics,
-        RemoteState, RemoteUpdate, SystemHealth, WheelCommand,
+        ChassisCommand, FlashRequest, HighLevelCommand, ImuState, LogicBus, MagState,
+        OperatorState, ParamStatus, RemoteDiagnostics, RemoteState, RemoteUpdate, SystemHealth,
+        WheelCommand,
     },
-    logic::LogicBus,
-    params::{FlashRequest, ParamStatus},
     safety::WatchdogPeriod,
     tick::ControlInputs,
 };

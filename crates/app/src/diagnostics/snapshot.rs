@@ -4,14 +4,11 @@ use super::{Strangers, TickStats};
 use crate::{
     bring_up::BringUpStatus,
     domain::{
-        BusHealth, ChassisCommand, DebugProbe, ImuStatus, LastWords, LateTasks, OperatorState,
-        RadioLineHealth, RemoteDiagnostics, RemoteState, ResetCause, SensorHealth, SensorsSnapshot,
-        StateEstimate,
+        BusHealth, ChassisCommand, DebugProbe, ImuStatus, LastWords, LateTasks, LogicBus,
+        OperatorState, ParamStatus, RadioLineHealth, RemoteDiagnostics, RemoteState, ResetCause,
+        SensorHealth, SensorsSnapshot, StateEstimate, TuningStatus,
     },
-    logic::LogicBus,
-    params::ParamStatus,
     safety::{ArmingStatus, MotorFindings, SafetyStatus},
-    tuning::TuningStatus,
 };
 
 /// Plain data, so that a debugger or the emulator can read every field by its name.

@@ -13,6 +13,15 @@ impl BusId {
     pub const ALL: [Self; 2] = [Self::Can1, Self::Can2];
 }
 
+/// Which bus each motor is on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MotorBuses {
+    /// Both wheels share one.
+    pub wheels: BusId,
+    /// In the order of `ChassisCommand`.
+    pub joints: [BusId; 4],
+}
+
 /// An 11-bit identifier.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

@@ -1,7 +1,6 @@
 //! Values that fit this code to one robot.
 
 use super::{Orientation, RemoteMapping};
-use crate::motor::layout::{MotorLayout, ROBOT_LAYOUT};
 
 /// Wheel geometry (ROBOT_CPP 5.1).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -244,7 +243,8 @@ impl Default for HeaterConfig {
     }
 }
 
-/// Everything about one robot that can be changed while it stands: the tuning channel writes it.
+/// Everything about one robot that can be changed while it stands: the tuning channel writes it. Its defaults depend on
+/// the motors: `motor::layout::MotorLayout::default_config`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct RobotConfig {
@@ -258,28 +258,4 @@ pub struct RobotConfig {
     pub mag: MagCalibration,
     pub heater: HeaterConfig,
     pub radio: RemoteMapping,
-}
-
-impl Default for RobotConfig {
-    fn default() -> Self {
-        Self::for_layout(&ROBOT_LAYOUT)
-    }
-}
-
-impl RobotConfig {
-    /// The defaults of a robot with these motors.
-    pub fn for_layout(layout: &MotorLayout) -> Self {
-        Self {
-            wheel_odom: WheelOdomConfig::default(),
-            wheel_ctrl: WheelControllerConfig::default(),
-            joint_ctrl: JointControllerConfig::default(),
-            joints: layout.joint_configs(),
-            safety: SafetyConfig::default(),
-            mounting: MountingConfig::default(),
-            imu: ImuCalibration::default(),
-            mag: MagCalibration::default(),
-            heater: HeaterConfig::default(),
-            radio: RemoteMapping::default(),
-        }
-    }
 }

@@ -2,8 +2,7 @@
 
 use crate::{
     bring_up::BringUpStep,
-    domain::{CalibrationState, CalibrationStatus},
-    params::{ParamState, ParamStatus},
+    domain::{CalibrationState, CalibrationStatus, ParamState, ParamStatus},
     safety::{ArmingBlockers, ArmingState, ArmingStatus, SafetyFlags, SafetyStatus},
 };
 

@@ -1,12 +1,9 @@
 //! The inputs of a decision.
 
 use super::PcCommand;
-use crate::{
-    diagnostics::DiagnosticsSnapshot,
-    domain::{RemoteUpdate, SafetyConfig},
-};
+use crate::domain::{RemoteUpdate, SafetyConfig, SensorsSnapshot, StateEstimate};
 
-/// The newest value of each input.
+/// The newest value of each input. What the control tick gives is at most 10 ms old.
 #[derive(Clone, Copy, Debug)]
 pub struct LogicInputs<'a> {
     /// Limits of ages and sticks.
@@ -15,6 +12,12 @@ pub struct LogicInputs<'a> {
     pub remote: &'a RemoteUpdate,
     /// The PC's command, `None` without a PC link.
     pub pc: Option<&'a PcCommand>,
-    /// Sensors, estimate, health and safety state, at most 10 ms old.
-    pub diagnostics: &'a DiagnosticsSnapshot,
+    /// IMU, magnetometer and motors.
+    pub sensors: &'a SensorsSnapshot,
+    /// Attitude and motion.
+    pub estimate: &'a StateEstimate,
+    /// Whether the robot is armed, so that commands reach the motors as far as the safety policy allows.
+    pub armed: bool,
+    /// Battery voltage, 0 while it is not measured.
+    pub battery_v: f32,
 }

@@ -4,8 +4,8 @@
 //! The new source takes over in the next round, within 10 ms. Without a valid command from it the robot has no
 //! torque.
 
-use super::{CustomLogic, LogicBus, LogicDecision, LogicInputs, UserLogic, manual};
-use crate::domain::{DriveMode, age_us};
+use super::{CustomLogic, LogicDecision, LogicInputs, UserLogic, manual};
+use crate::domain::{DriveMode, LogicBus, age_us};
 
 /// Selects the command source and asks it for a command.
 ///
@@ -62,7 +62,7 @@ impl<L: CustomLogic> LogicStage<L> {
         } else {
             LogicDecision::Nothing
         };
-        LogicBus::from_decision(decision, now_us)
+        decision.on_bus(now_us)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Which motor sits where. A table that two motors could not share, or that loads a bus too much, does not compile.
 
 mod checks;
+mod default_config;
 mod robot;
 
 pub use robot::{ROBOT_LAYOUT, RS00_LAYOUT};
@@ -10,7 +11,11 @@ use super::{
     m3508::{self, EscId},
     rs00::Rs00,
 };
-use crate::domain::{BusId, CanFrame, JointConfig, StandardId};
+use crate::domain::{BusId, CanFrame, JointConfig, MotorBuses, StandardId};
+
+/// Ticks from one reply of the tuning channel on a bus to the next: 250 a second at most, which is what the load of the
+/// motors leaves room for.
+pub const REPLY_PERIOD_TICKS: u32 = 4;
 
 /// When a motor is commanded, in ticks of 1 ms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -181,15 +186,12 @@ impl MotorLayout {
         ]
     }
 
-    /// Of each joint until settings say otherwise.
-    pub const fn joint_configs(&self) -> [JointConfig; 4] {
-        let [left_front, left_rear, right_front, right_rear] = &self.joints;
-        [
-            left_front.config,
-            left_rear.config,
-            right_front.config,
-            right_rear.config,
-        ]
+    /// The bus of each motor.
+    pub fn buses(&self) -> MotorBuses {
+        MotorBuses {
+            wheels: self.wheels.bus,
+            joints: self.joints.each_ref().map(|slot| slot.bus),
+        }
     }
 }
 

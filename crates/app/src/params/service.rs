@@ -3,12 +3,12 @@
 use embedded_storage::nor_flash::NorFlash;
 
 use super::{
-    FlashRequest, ParamError, ParamState, ParamStatus, Progress, Store,
+    Progress, Store,
     record::{self, Verdict},
     saver::{BackOff, Position, Saver},
 };
 use crate::{
-    domain::RobotConfig,
+    domain::{FlashRequest, ParamError, ParamState, ParamStatus, RobotConfig},
     motor::layout::MotorLayout,
     tuning::{PARAMETERS, ParameterGroup, bit},
 };
@@ -46,7 +46,7 @@ impl<F: NorFlash> ParamService<F> {
         let mut service = Self {
             store: Store::open(flash),
             layout,
-            saver: Saver::new(RobotConfig::for_layout(layout)),
+            saver: Saver::new(layout.default_config()),
             program_pause: BackOff::default(),
             erase_pause: BackOff::default(),
             status: ParamStatus::default(),
@@ -82,7 +82,7 @@ impl<F: NorFlash> ParamService<F> {
             status,
             ..
         } = self;
-        let mut config = RobotConfig::for_layout(layout);
+        let mut config = layout.default_config();
         store.for_each(|found| {
             match record::load(found, &PARAMETERS, layout, &mut config) {
                 Verdict::Loaded(position) => status.loaded |= bit(position),

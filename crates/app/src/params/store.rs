@@ -8,9 +8,10 @@
 use embedded_storage::nor_flash::NorFlash;
 
 use super::{
-    FlashRequest, ParamError, Record,
+    Record,
     sector::{FIRST_SLOT, LAST_SLOT, SECTORS, SectorState},
 };
+use crate::domain::{FlashRequest, ParamError};
 
 mod erasing;
 mod programming;

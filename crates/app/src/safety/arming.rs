@@ -6,10 +6,7 @@
 //! being written to flash, and the attitude that settles anew when the chip has stood still for it.
 
 use super::{SafetyFlags, SafetyStatus, SafetyVerdict, motor_findings::MotorFindings};
-use crate::{
-    domain::{OperatorState, SafetyConfig},
-    params::ParamStatus,
-};
+use crate::domain::{OperatorState, ParamStatus, SafetyConfig};
 
 /// Settings count from the first frame that is this much younger than their change.
 const SETTINGS_LAG_US: u64 = 5_000;

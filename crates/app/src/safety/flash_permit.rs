@@ -4,11 +4,7 @@ mod rest;
 
 use self::rest::RestWatch;
 use super::ArmingState;
-use crate::{
-    domain::{BusHealth, MotorFeedback},
-    motor::layout::MotorLayout,
-    params::FlashRequest,
-};
+use crate::domain::{BusHealth, FlashRequest, MotorBuses, MotorFeedback};
 
 /// Motors that were let go slow down within this time. Words may be programmed then: each stops the chip for 0.1 ms at
 /// most, and the frames that keep motors off go on.
@@ -49,7 +45,7 @@ pub struct FlashPermitInputs<'a> {
     /// Bring-up is in a step in which motors are tried out.
     pub tries_motors: bool,
     pub motor: &'a MotorFeedback,
-    pub layout: &'a MotorLayout,
+    pub buses: &'a MotorBuses,
     /// Index = `BusId`.
     pub can: &'a [BusHealth; 2],
 }
@@ -125,7 +121,7 @@ impl FlashPermit {
             FlashRequest::Erase => self
                 .rest
                 .get_or_insert_with(|| RestWatch::from(now_us))
-                .lasts(inputs.motor, inputs.layout, inputs.can, now_us),
+                .lasts(inputs.motor, inputs.buses, inputs.can, now_us),
         };
         rests && now_us.saturating_sub(self.armed_us) >= LET_GO_US
     }

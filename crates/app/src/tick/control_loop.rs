@@ -9,22 +9,21 @@ use crate::{
     control::{ChassisController, ChassisControllerInput, ChassisControllerOutput, UserController},
     diagnostics::DiagnosticsSnapshot,
     domain::{
-        BusId, CanFrame, ChassisCommand, HighLevelCommand, ImuState, MagState, MountingConfig,
-        RemoteUpdate, RobotConfig, StateEstimate, SystemHealth, age_us,
+        BusId, CanFrame, ChassisCommand, FlashRequest, HighLevelCommand, ImuState, LogicBus,
+        MagState, MountingConfig, ParamStatus, RemoteUpdate, RobotConfig, StateEstimate,
+        SystemHealth, age_us,
     },
     estimation::{Field, InsEstimator},
-    logic::LogicBus,
     motor::{
         MotorManager, TickFrames,
-        layout::{MotorLayout, ROBOT_LAYOUT},
+        layout::{MotorLayout, REPLY_PERIOD_TICKS, ROBOT_LAYOUT},
     },
-    params::{FlashRequest, ParamStatus},
     safety::{
         Arming, ArmingInputs, ArmingState, AttitudeRest, FlashGrant, FlashPermit,
         FlashPermitInputs, MotorFindings, SafetyInputs, SafetyPolicy, StickRest, TorquePermit,
         WatchdogPeriod,
     },
-    tuning::{REPLY_PERIOD_TICKS, TuningAccess, TuningChannel, TuningGate, is_request},
+    tuning::{TuningAccess, TuningChannel, TuningGate, is_request},
 };
 
 /// Ticks between two looks at what changes slowly or interests only who watches: that part of the diagnostics is
@@ -315,7 +314,7 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
                 enabled: inputs.remote.operator.enabled,
                 tries_motors: self.bring_up.tries_motors(),
                 motor: &diagnostics.sensors.motor,
-                layout: self.motors.layout(),
+                buses: &self.motors.layout().buses(),
                 can: &inputs.health.can,
             },
             now_us,

@@ -1,15 +1,14 @@
 //! Requests in, at most one reply a slot and bus out.
 
 use super::{
-    LiveSource, PARAMETERS, ParameterGroup, Recorder, Refusal, TuningStatus, bit, consistency,
-    live, parameters,
+    LiveSource, PARAMETERS, ParameterGroup, Recorder, Refusal, bit, consistency, live, parameters,
     protocol::{self, Request, Restored},
     wheel_geometry::WheelGeometry,
 };
 use crate::{
     bring_up::BringUp,
     diagnostics::DiagnosticsSnapshot,
-    domain::{BusId, CanFrame, OperatorState, RobotConfig},
+    domain::{BusId, CanFrame, OperatorState, RobotConfig, TuningStatus},
     motor::{NotStanding, layout::MotorLayout},
     safety::ArmingState,
 };
@@ -31,9 +30,6 @@ impl TuningGate {
         }
     }
 }
-
-/// 250 replies a second and bus at most: what the layout's load leaves room for.
-pub const REPLY_PERIOD_TICKS: u32 = 4;
 
 /// Where the motor of a joint stands, in its own coordinates; `None` if there is no such joint.
 pub type StandingAngle<'a> = &'a dyn Fn(usize) -> Option<Result<f32, NotStanding>>;
@@ -66,7 +62,7 @@ impl TuningChannel {
         }
     }
 
-    /// Every [`REPLY_PERIOD_TICKS`], after the replies of the slot before went out.
+    /// Every `motor::layout::REPLY_PERIOD_TICKS`, after the replies of the slot before went out.
     pub fn begin_slot(&mut self) {
         self.replied = [false; 2];
     }
@@ -188,7 +184,7 @@ impl TuningChannel {
 
     #[inline(never)]
     fn restore(&mut self, config: &mut RobotConfig, wanted: Restored) -> Result<(), Refusal> {
-        let defaults = RobotConfig::for_layout(self.layout);
+        let defaults = self.layout.default_config();
         let mut candidate = *config;
         let mut restored = 0;
         for (position, group) in PARAMETERS.iter().enumerate() {

@@ -6,8 +6,7 @@ use super::{
 };
 use crate::{
     bring_up::BringUpRequest,
-    domain::{CanFrame, StandardId},
-    params::{ParamState, ParamStatus},
+    domain::{CanFrame, ParamState, ParamStatus, StandardId},
 };
 
 pub(super) const fn id(raw: u16) -> StandardId {

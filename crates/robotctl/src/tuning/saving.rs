@@ -2,7 +2,7 @@
 
 use std::{thread, time::Duration};
 
-use robot_app::params::ParamState;
+use robot_app::domain::ParamState;
 
 use super::{StoreReport, TuningClient, TuningError};
 

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use robot_app::params::{ParamError, ParamState};
+use robot_app::domain::{ParamError, ParamState};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StoreReport {

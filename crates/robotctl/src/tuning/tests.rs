@@ -4,9 +4,8 @@ use std::time::Duration;
 
 use nalgebra::Vector3;
 use robot_app::{
-    domain::{JointState, Orientation, RobotConfig},
+    domain::{JointState, Orientation, ParamError, ParamState, ParamStatus, RobotConfig},
     motor::NotStanding,
-    params::{ParamError, ParamState, ParamStatus},
     safety::SafetyFlags,
     tuning::{LIVE_PAGES, PARAMETERS, Refusal, TuningGate},
 };

@@ -1,9 +1,8 @@
 use super::*;
 use crate::{
-    diagnostics::DiagnosticsSnapshot,
     domain::{
         ChassisCommand, HighLevelCommand, OperatorState, RemoteDiagnostics, RemoteState,
-        RemoteUpdate, SafetyConfig,
+        RemoteUpdate, SafetyConfig, SensorsSnapshot, StateEstimate,
     },
     logic::PcCommand,
 };
@@ -39,7 +38,7 @@ impl CustomLogic for Counting {
     fn step(&mut self, inputs: &LogicInputs<'_>, _: u64) -> LogicDecision {
         self.0 += 1;
         if self.0 > 2 {
-            let vx = inputs.diagnostics.battery_v;
+            let vx = inputs.battery_v;
             return LogicDecision::Drive(HighLevelCommand { vx, wz: 0.0 });
         }
         let mut command = ChassisCommand::default();
@@ -58,15 +57,14 @@ fn step<L: CustomLogic>(
     pc: Option<&PcCommand>,
     now_us: u64,
 ) -> LogicBus {
-    let diagnostics = DiagnosticsSnapshot {
-        battery_v: 0.75,
-        ..DiagnosticsSnapshot::default()
-    };
     let inputs = LogicInputs {
         config: &SafetyConfig::default(),
         remote,
         pc,
-        diagnostics: &diagnostics,
+        sensors: &SensorsSnapshot::default(),
+        estimate: &StateEstimate::default(),
+        armed: true,
+        battery_v: 0.75,
     };
     stage.step(&inputs, now_us)
 }

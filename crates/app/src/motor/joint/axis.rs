@@ -31,12 +31,12 @@ pub fn motor_targets(joint: &JointCommand, config: &JointConfig) -> MitTargets {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::motor::layout::ROBOT_LAYOUT;
+    use crate::domain::RobotConfig;
 
     /// A mirrored motor that stands at 0.5 rad when its joint is at zero: joint 0.3 is motor 0.5 − 0.3.
     #[test]
     fn a_mirrored_and_displaced_motor_follows_its_joint() {
-        let [config, ..] = ROBOT_LAYOUT.joint_configs();
+        let [config, ..] = RobotConfig::default().joints;
         let config = JointConfig {
             direction: -1.0,
             zero_rad: 0.5,

@@ -6,11 +6,10 @@
     reason = "runs in the compiler, where overflow and bad indices are errors"
 )]
 
-use super::{JointMotor, JointSlot, Schedule, WheelGroup};
+use super::{JointMotor, JointSlot, REPLY_PERIOD_TICKS, Schedule, WheelGroup};
 use crate::{
     domain::BusId,
     motor::{dm4310, m3508},
-    tuning::REPLY_PERIOD_TICKS,
 };
 
 /// Standard frame of eight bytes with every possible stuff bit and the pause after it.

@@ -167,10 +167,10 @@ fn a_joint_s_record_belongs_to_one_make_of_motor() {
         record(18, variant, 1, &values)
     };
     for (layout, own, other) in [(&ROBOT_LAYOUT, 1, 2), (&RS00_LAYOUT, 2, 1)] {
-        let mut config = RobotConfig::for_layout(layout);
+        let mut config = layout.default_config();
         let verdict = load(&joint(other), &PARAMETERS, layout, &mut config);
         assert_eq!(verdict, Verdict::Foreign);
-        assert_eq!(config, RobotConfig::for_layout(layout));
+        assert_eq!(config, layout.default_config());
         let verdict = load(&joint(own), &PARAMETERS, layout, &mut config);
         assert_eq!(verdict, Verdict::Loaded(position(18)));
         assert_eq!(config.joints[2].zero_rad, 0.5);

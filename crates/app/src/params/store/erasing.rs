@@ -3,9 +3,9 @@
 use embedded_storage::nor_flash::NorFlash;
 
 use super::{SECTORS, Sector, Store};
-use crate::params::{
-    ParamError,
-    sector::{CLEAN, HEAD_BYTES, SECTOR_BYTES, SectorState, offset},
+use crate::{
+    domain::ParamError,
+    params::sector::{CLEAN, HEAD_BYTES, SECTOR_BYTES, SectorState, offset},
 };
 
 impl<F: NorFlash> Store<F> {

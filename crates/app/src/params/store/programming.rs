@@ -3,10 +3,13 @@
 use embedded_storage::nor_flash::NorFlash;
 
 use super::{LAST_SLOT, Store};
-use crate::params::{
-    ParamError, Record,
-    sector::{COPIES_AT, HEAD_PROOF_AT, commitment, offset},
-    slot::{BODY_AT, CRC_AT, PROOF_AT, SLOT_BYTES, Slot},
+use crate::{
+    domain::ParamError,
+    params::{
+        Record,
+        sector::{COPIES_AT, HEAD_PROOF_AT, commitment, offset},
+        slot::{BODY_AT, CRC_AT, PROOF_AT, SLOT_BYTES, Slot},
+    },
 };
 
 /// A word of a mark: only that it is not blank counts.

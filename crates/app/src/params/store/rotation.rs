@@ -3,9 +3,9 @@
 use embedded_storage::nor_flash::NorFlash;
 
 use super::{Active, FIRST_SLOT, InARow, LAST_SLOT, Store, Walk};
-use crate::params::{
-    ParamError,
-    sector::{OPENED_AT, SectorState},
+use crate::{
+    domain::ParamError,
+    params::sector::{OPENED_AT, SectorState},
 };
 
 #[derive(Debug)]

@@ -1,10 +1,8 @@
 //! Whether everything that can move is off and still: during an erase no motor is watched and none is told anything.
 
-use crate::{
-    domain::{
-        BusErrorState, BusHealth, BusId, JointFeedback, JointState, MotorFeedback, WheelFeedback,
-    },
-    motor::layout::MotorLayout,
+use crate::domain::{
+    BusErrorState, BusHealth, BusId, JointFeedback, JointState, MotorBuses, MotorFeedback,
+    WheelFeedback,
 };
 
 /// Rest must last without a break: a wheel that swings back passes zero.
@@ -41,7 +39,7 @@ impl RestWatch {
     pub fn lasts(
         &mut self,
         motor: &MotorFeedback,
-        layout: &MotorLayout,
+        buses: &MotorBuses,
         can: &[BusHealth; 2],
         now_us: u64,
     ) -> bool {
@@ -60,9 +58,9 @@ impl RestWatch {
             now_us.wrapping_sub(failed_us) >= TOLD_US
         };
         let mut wheels = motor.wheels.iter();
-        let mut joints = motor.joints.iter().zip(layout.joints());
-        let rests = wheels.all(|wheel| stands(wheel, told(layout.wheels().bus)))
-            && joints.all(|(joint, slot)| is_off(joint, told(slot.bus)));
+        let mut joints = motor.joints.iter().zip(buses.joints);
+        let rests = wheels.all(|wheel| stands(wheel, told(buses.wheels)))
+            && joints.all(|(joint, bus)| is_off(joint, told(bus)));
         if !rests {
             self.unrest_us = now_us;
         }

@@ -1,5 +1,10 @@
 use super::*;
-use crate::motor::layout::ROBOT_LAYOUT;
+use crate::domain::BusId;
+
+const BUSES: MotorBuses = MotorBuses {
+    wheels: BusId::Can1,
+    joints: [BusId::Can2; 4],
+};
 
 struct Bench {
     permit: FlashPermit,
@@ -38,7 +43,7 @@ impl Bench {
             enabled: self.enabled,
             tries_motors: self.tries_motors,
             motor: &self.motor,
-            layout: &ROBOT_LAYOUT,
+            buses: &BUSES,
             can: &self.can,
         };
         self.permit.step(&inputs, self.now_us);

@@ -3,9 +3,8 @@
 use super::*;
 use crate::{
     bring_up::BringUpStep,
-    domain::{StandardId, WheelOdomConfig},
+    domain::{ParamError, ParamState, ParamStatus, StandardId, WheelOdomConfig},
     motor::layout::ROBOT_LAYOUT,
-    params::{ParamError, ParamState, ParamStatus},
 };
 
 /// ROBOT_CPP 5.3: radius 75 mm, track 450 mm, ratio 36.00, left wheel reversed.

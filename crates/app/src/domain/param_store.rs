@@ -1,4 +1,4 @@
-//! The parameter store for diagnostics, and what it asks the control tick for.
+//! What the parameter store says about itself, and what it asks the control tick for.
 
 /// What the store is about.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

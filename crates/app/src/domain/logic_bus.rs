@@ -1,0 +1,20 @@
+//! The output of the logic stage (ROBOT_CPP section 3.3).
+
+use super::{ChassisCommand, HighLevelCommand};
+
+/// One command for the control tick. `cmd` goes straight to the actuators and has priority over `hl_cmd`, which goes
+/// through the controller. If neither is valid, every actuator gets zero.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct LogicBus {
+    /// Direct actuator command.
+    pub cmd: ChassisCommand,
+    /// Whether `cmd` is valid.
+    pub cmd_valid: bool,
+    /// Command for the controller.
+    pub hl_cmd: HighLevelCommand,
+    /// Whether `hl_cmd` is valid.
+    pub hl_valid: bool,
+    /// Time of the decision in µs since boot, 0 = never.
+    pub ts_us: u64,
+}
