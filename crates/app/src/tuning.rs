@@ -6,6 +6,7 @@
 mod channel;
 pub(crate) mod consistency;
 mod live;
+pub mod opcode;
 mod parameter;
 mod parameters;
 mod protocol;

@@ -1,8 +1,12 @@
-//! docs/tuning.md lists the settings and the live values that the firmware has, with their numbers, units and ranges.
+//! docs/tuning.md lists what the firmware has: commands, refusals, settings and live values, with their numbers, units
+//! and ranges.
 
 use robot_app::tuning::{
-    LIVE_PAGES, LiveField, LiveKind, LivePage, PARAMETERS, Parameter, ParameterGroup, ParameterKind,
+    LIVE_PAGES, LiveField, LiveKind, LivePage, PARAMETERS, Parameter, ParameterGroup,
+    ParameterKind, Refusal, opcode,
 };
+
+const DOCUMENT: &str = include_str!("../../../docs/tuning.md");
 
 const FIRST_JOINT: u8 = 16;
 const JOINTS: std::ops::RangeInclusive<u8> = FIRST_JOINT..=19;
@@ -38,7 +42,7 @@ fn the_table_has_every_setting_and_no_other() {
     let expected: Vec<String> = groups
         .flat_map(|group| group.parameters.iter().map(move |p| row(group, p)))
         .collect();
-    let documented: Vec<&str> = include_str!("../../../docs/tuning.md")
+    let documented: Vec<&str> = DOCUMENT
         .lines()
         .skip_while(|line| *line != "## Settings")
         .filter(|line| line.starts_with("| ") && line.contains('`'))
@@ -89,11 +93,45 @@ fn page_row(page: &LivePage) -> String {
 #[test]
 fn the_table_has_every_live_page_and_no_other() {
     let expected: Vec<String> = LIVE_PAGES.iter().map(page_row).collect();
-    let documented: Vec<&str> = include_str!("../../../docs/tuning.md")
+    let documented: Vec<&str> = DOCUMENT
         .lines()
         .skip_while(|line| *line != "| page | about | fields |")
         .take_while(|line| *line != "## Settings")
         .filter(|line| line.starts_with("| `"))
         .collect();
     assert_eq!(documented, expected, "expected:\n{}", expected.join("\n"));
+}
+
+/// The rows of a table of the document, without its head.
+fn rows_below(head: &str) -> Vec<&'static str> {
+    let lines = DOCUMENT.lines().skip_while(|line| !line.starts_with(head));
+    lines
+        .skip(2)
+        .take_while(|line| line.starts_with('|'))
+        .collect()
+}
+
+/// Each row begins with the identifier and then, in backticks, with the command.
+#[test]
+fn the_table_of_frames_has_every_command_and_no_other() {
+    let command = |row: &&str| u8::from_str_radix(row.split('`').nth(1)?.get(..2)?, 16).ok();
+    let mut documented: Vec<u8> = rows_below("| to | bytes |")
+        .iter()
+        .filter_map(command)
+        .collect();
+    documented.sort_unstable();
+    assert_eq!(documented, opcode::ALL);
+}
+
+#[test]
+fn the_table_of_refusals_has_every_reason_and_no_other() {
+    let code = |row: &&str| row.split('|').nth(1)?.trim().parse().ok();
+    let documented: Vec<u8> = rows_below("| reason | means |")
+        .iter()
+        .filter_map(code)
+        .collect();
+    let known: Vec<u8> = (0..=u8::MAX)
+        .filter(|code| Refusal::from_code(*code).is_some())
+        .collect();
+    assert_eq!(documented, known);
 }

@@ -3,11 +3,11 @@
 use robot_app::{
     control::UserController,
     domain::{
-        BusId, CanFrame, ImuState, LogicBus, MagState, RemoteUpdate, RobotConfig, StandardId,
-        SystemHealth,
+        BusId, CanFrame, ImuState, LogicBus, MagState, RemoteUpdate, RobotConfig, SystemHealth,
     },
     safety::WatchdogPeriod,
     tick::{ControlInputs, ControlLoop},
+    tuning::{WRITE_ID, opcode},
 };
 
 use crate::robot::{Chip, Robot};
@@ -39,13 +39,13 @@ fn what_is_set_over_can_is_saved_and_there_after_a_reboot() {
     let mut robot = Robot::ready(&chip);
     let mut control = ControlLoop::new(robot.config, UserController::default());
     for (payload, target_c) in [
-        ([0x20, 7, 0, 0, 0, 0, 0xF0, 0x41], 30.0),
+        ([opcode::WRITE_PARAMETER, 7, 0, 0, 0, 0, 0xF0, 0x41], 30.0),
         (
-            [0x30, 0, 0, 0, 0, 0, 0, 0],
+            [opcode::RESTORE_DEFAULTS, 0, 0, 0, 0, 0, 0, 0],
             RobotConfig::default().heater.target_c,
         ),
     ] {
-        let frame = CanFrame::new(StandardId::new(0x7A0).unwrap(), payload);
+        let frame = CanFrame::new(WRITE_ID, payload);
         control.on_can_frame(BusId::Can1, &frame, robot.now_us());
         let saved = robot.status().save_ok;
         for _ in 0..600 {

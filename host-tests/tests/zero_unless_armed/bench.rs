@@ -5,6 +5,7 @@ use robot_app::{
     domain::{BusId, CanFrame, RobotConfig, StandardId, StateEstimate},
     motor::layout::{ROBOT_LAYOUT, RS00_LAYOUT},
     tick::ControlLoop,
+    tuning::{READ_ID, WRITE_ID},
 };
 
 use crate::{
@@ -108,7 +109,7 @@ impl<C: ChassisController> Bench<C> {
     fn hear(&mut self, bus: BusId, id: u16, data: &[u8]) {
         let id = StandardId::new(id & 0x7FF).expect("11 bits");
         let frame = CanFrame::from_payload(id, data).expect("at most eight bytes");
-        self.tuned |= (0x7A0..=0x7A1).contains(&id.raw());
+        self.tuned |= [WRITE_ID, READ_ID].contains(&id);
         if bus == BusId::Can2 {
             self.replies.note(id.raw(), data);
         }

@@ -1,7 +1,10 @@
 //! What goes into the tick, stretch by stretch.
 
 use proptest::prelude::*;
-use robot_app::domain::{BusErrorState, DriveMode, JointCommand, JointMode};
+use robot_app::{
+    domain::{BusErrorState, DriveMode, JointCommand, JointMode},
+    tuning::{READ_ID, WRITE_ID, opcode},
+};
 
 use crate::motors::Behaviour;
 
@@ -95,8 +98,13 @@ fn frame() -> impl Strategy<Value = (u16, Vec<u8>)> {
     let bytes = || prop::collection::vec(any::<u8>(), 0..=8);
     let heard = prop_oneof![0x201u16..=0x204, 0x011u16..=0x014, Just(0x0FD), Just(0x7FF)];
     let requests = (
-        prop_oneof![Just(0x7A0u16), Just(0x7A1)],
-        prop_oneof![Just(0x10u8), Just(0x11), Just(0x20), Just(0x21)],
+        prop_oneof![Just(WRITE_ID.raw()), Just(READ_ID.raw())],
+        prop_oneof![
+            Just(opcode::WRITE_GEOMETRY),
+            Just(opcode::READ_GEOMETRY),
+            Just(opcode::WRITE_PARAMETER),
+            Just(opcode::READ_PARAMETER),
+        ],
         prop::collection::vec(any::<u8>(), 0..=7),
     );
     let bring_up = (0u8..5, 0u8..7, 0u8..3, any::<i16>());
@@ -106,7 +114,10 @@ fn frame() -> impl Strategy<Value = (u16, Vec<u8>)> {
         requests.prop_map(|(id, command, rest)| (id, [vec![command], rest].concat())),
         bring_up.prop_map(|(step, motor, action, value)| {
             let [low, high] = value.to_le_bytes();
-            (0x7A0, vec![0x40, step, motor, action, low, high, 0, 0])
+            (
+                WRITE_ID.raw(),
+                vec![opcode::BRING_UP, step, motor, action, low, high, 0, 0],
+            )
         }),
     ]
 }

@@ -1,5 +1,7 @@
 //! Requests over CAN: what tuning may change and when, and what bring-up lets through. docs/tuning.md, docs/bring-up.md.
 
+use robot_app::tuning::{WRITE_ID, opcode};
+
 use super::*;
 use crate::{
     bench::Tick,
@@ -24,7 +26,11 @@ fn with_frame(enabled: bool, id: u16, data: [u8; 8]) -> Phase {
 
 fn bring_up(step: u8, motor: u8, action: u8, value: i16) -> Phase {
     let [low, high] = value.to_le_bytes();
-    with_frame(false, 0x7A0, [0x40, step, motor, action, low, high, 0, 0])
+    with_frame(
+        false,
+        WRITE_ID.raw(),
+        [opcode::BRING_UP, step, motor, action, low, high, 0, 0],
+    )
 }
 
 /// Enabled, with the dead-man stick held or not.
@@ -127,7 +133,11 @@ fn a_joint_beyond_its_soft_limit_is_held_as_softly_as_any() {
     for make in [Make::Dm4310, Make::Rs00] {
         let phases = [
             good(1_500, false),
-            with_frame(false, 0x7A0, [0x20, 16, 3, 0, a, b, c, d]),
+            with_frame(
+                false,
+                WRITE_ID.raw(),
+                [opcode::WRITE_PARAMETER, 16, 3, 0, a, b, c, d],
+            ),
             // Sticks must rest for 0.2 s by the new settings.
             good(300, false),
             bring_up(3, 2, 1, 0),
@@ -136,7 +146,10 @@ fn a_joint_beyond_its_soft_limit_is_held_as_softly_as_any() {
         ];
         let ticks = run_all(make, &phases);
         let replies = ticks.iter().flat_map(|tick| &tick.replies);
-        assert_eq!(replies.filter(|reply| reply[0] == 0xEE).count(), 0);
+        assert_eq!(
+            replies.filter(|reply| reply[0] == opcode::REFUSED).count(),
+            0
+        );
         let held =
             |tick: &Tick| matches!(tick.joints[0], Some(JointFrame::Mit(mit)) if !mit.is_off(make));
         assert!(ticks.iter().any(held));
@@ -170,7 +183,7 @@ proptest! {
         let phases = [good(1_500, false), bring_up(step, motor, action, value)];
         let phases: Vec<Phase> = phases.into_iter().chain(drive).collect();
         let ticks = run_all(make, &phases);
-        prop_assume!(ticks.iter().any(|tick| tick.replies.iter().any(|reply| reply[0] == 0x40)));
+        prop_assume!(ticks.iter().any(|tick| tick.replies.iter().any(|reply| reply[0] == opcode::BRING_UP)));
         prop_assert!(most_counts(&ticks) <= BRING_UP_COUNTS);
         // Steps of the codes: 5/4095 · 33 rad/s and half a step of torque.
         prop_assert!(torques(&ticks, make).iter().all(|nm| *nm <= BRING_UP_NM + 0.05));
@@ -184,10 +197,10 @@ proptest! {
 /// ROBOT_CPP 5.3: 60 mm, 420 mm, ratio 19.20, right wheel reversed; the reply echoes the request.
 #[test]
 fn wheel_geometry_changes_only_while_disarmed() {
-    let request = [0x10, 60, 0, 0xA4, 0x01, 0x80, 0x07, 0x02];
+    let request = [opcode::WRITE_GEOMETRY, 60, 0, 0xA4, 0x01, 0x80, 0x07, 0x02];
     let disarmed = [
         good(1_500, false),
-        with_frame(false, 0x7A0, request),
+        with_frame(false, WRITE_ID.raw(), request),
         good(10, false),
     ];
     let ticks = run_all(Make::Dm4310, &disarmed);
@@ -197,14 +210,18 @@ fn wheel_geometry_changes_only_while_disarmed() {
     let armed = [
         good(1_500, false),
         good(300, true),
-        with_frame(true, 0x7A0, request),
+        with_frame(true, WRITE_ID.raw(), request),
         good(10, true),
     ];
     let ticks = run_all(Make::Dm4310, &armed);
     let replies: Vec<_> = ticks.iter().flat_map(|tick| &tick.replies).collect();
     assert_eq!(replies.len(), 2);
     for reply in replies {
-        assert_eq!(reply[..2], [0xEE, 0x10], "{reply:02X?}");
+        assert_eq!(
+            reply[..2],
+            [opcode::REFUSED, opcode::WRITE_GEOMETRY],
+            "{reply:02X?}"
+        );
     }
     assert!(ticks.last().is_some_and(Tick::drives), "the drive goes on");
 }
@@ -224,7 +241,11 @@ fn bring_up_does_not_start_while_armed() {
         let ticks = run_all(Make::Dm4310, &phases);
         assert!(ticks.last().is_some_and(Tick::drives), "step {step}");
         let refused = ticks.iter().flat_map(|tick| &tick.replies);
-        assert!(refused.clone().all(|reply| reply[..2] == [0xEE, 0x40]));
+        assert!(
+            refused
+                .clone()
+                .all(|reply| reply[..2] == [opcode::REFUSED, opcode::BRING_UP])
+        );
         assert_eq!(refused.count(), 2);
     }
 }

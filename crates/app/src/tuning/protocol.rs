@@ -1,7 +1,12 @@
 //! The bytes of requests and replies, all little-endian.
 
 use super::{
-    MAX_RECORDING_S, PARAMETERS, ParameterGroup, RecordingStatus, Refusal, bit, live::PAGE_BYTES,
+    MAX_RECORDING_S, PARAMETERS, ParameterGroup, RecordingStatus, Refusal, bit,
+    live::PAGE_BYTES,
+    opcode::{
+        BRING_UP, READ_FINDINGS, READ_GEOMETRY, READ_LIVE, READ_PARAMETER, READ_RECORDING,
+        READ_STORE, RECORD, REFUSED, RESTORE_DEFAULTS, WRITE_GEOMETRY, WRITE_PARAMETER, ZERO_JOINT,
+    },
     wheel_geometry::WheelGeometry,
 };
 use crate::{
@@ -21,21 +26,6 @@ pub const WRITE_ID: StandardId = id(0x7A0);
 /// Requests that only ask.
 pub const READ_ID: StandardId = id(0x7A1);
 pub const REPLY_ID: StandardId = id(0x7A2);
-
-const WRITE_GEOMETRY: u8 = 0x10;
-const READ_GEOMETRY: u8 = 0x11;
-const WRITE_PARAMETER: u8 = 0x20;
-const READ_PARAMETER: u8 = 0x21;
-const RESTORE_DEFAULTS: u8 = 0x30;
-const READ_STORE: u8 = 0x31;
-const READ_FINDINGS: u8 = 0x32;
-const READ_LIVE: u8 = 0x33;
-const BRING_UP: u8 = 0x40;
-const ZERO_JOINT: u8 = 0x41;
-const RECORD: u8 = 0x42;
-const READ_RECORDING: u8 = 0x43;
-/// No old client takes it for the answer to 0x10 or 0x11.
-const REFUSED: u8 = 0xEE;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Request {

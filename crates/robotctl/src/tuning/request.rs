@@ -2,22 +2,15 @@
 
 use robot_app::{
     domain::CanFrame,
-    tuning::{READ_ID, REPLY_ID, Refusal, WRITE_ID},
+    tuning::{
+        READ_ID, REPLY_ID, Refusal, WRITE_ID,
+        opcode::{
+            BRING_UP, READ_FINDINGS, READ_GEOMETRY, READ_LIVE, READ_PARAMETER, READ_RECORDING,
+            READ_STORE, RECORD, REFUSED, RESTORE_DEFAULTS, WRITE_GEOMETRY, WRITE_PARAMETER,
+            ZERO_JOINT,
+        },
+    },
 };
-
-const WRITE_GEOMETRY: u8 = 0x10;
-const READ_GEOMETRY: u8 = 0x11;
-const WRITE_PARAMETER: u8 = 0x20;
-const READ_PARAMETER: u8 = 0x21;
-const RESTORE_DEFAULTS: u8 = 0x30;
-const READ_STORE: u8 = 0x31;
-const READ_FINDINGS: u8 = 0x32;
-const READ_LIVE: u8 = 0x33;
-const BRING_UP: u8 = 0x40;
-const ZERO_JOINT: u8 = 0x41;
-const RECORD: u8 = 0x42;
-const READ_RECORDING: u8 = 0x43;
-const REFUSED: u8 = 0xEE;
 
 /// A request, and how to know its reply.
 #[derive(Clone, Copy, Debug, PartialEq)]

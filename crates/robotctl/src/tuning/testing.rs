@@ -12,7 +12,7 @@ use robot_app::{
     diagnostics::DiagnosticsSnapshot,
     domain::{BusId, CanFrame, RobotConfig, StandardId},
     motor::{NotStanding, layout::ROBOT_LAYOUT},
-    tuning::{TuningAccess, TuningChannel, TuningGate},
+    tuning::{REPLY_ID, Refusal, TuningAccess, TuningChannel, TuningGate, opcode},
 };
 
 use super::{Patience, TuningClient};
@@ -38,7 +38,7 @@ pub(crate) struct Robot {
 impl Robot {
     /// A store that needs some looks until it has saved.
     fn look(&mut self, frame: &CanFrame) {
-        if frame.payload().first() != Some(&0x31) {
+        if frame.payload().first() != Some(&opcode::READ_STORE) {
             return;
         }
         match &mut self.looks_to_save {
@@ -51,10 +51,14 @@ impl Robot {
     /// The firmware's own reply or, from an old one, that it does not know the command (docs/tuning.md).
     fn reply(&mut self, frame: &CanFrame) -> Option<CanFrame> {
         if self.is_old
-            && let Some(command @ (0x31..=0x33)) = frame.payload().first()
+            && let [
+                command @ (opcode::READ_STORE | opcode::READ_FINDINGS | opcode::READ_LIVE),
+                ..,
+            ] = frame.payload()
         {
-            let reply = StandardId::new(0x7A2).unwrap();
-            return Some(CanFrame::new(reply, [0xEE, *command, 2, 0, 0, 0, 0, 0]));
+            let reason = Refusal::UnknownCommand.code();
+            let data = [opcode::REFUSED, *command, reason, 0, 0, 0, 0, 0];
+            return Some(CanFrame::new(REPLY_ID, data));
         }
         self.channel.begin_slot();
         let access = TuningAccess {
