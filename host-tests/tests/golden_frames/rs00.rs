@@ -36,7 +36,7 @@ fn orders() {
     }
 }
 
-/// A vector of docs/hardware.md#test-vectors.
+/// hardware.md section 12.
 #[test]
 fn mit_command() {
     let targets = MitTargets {
