@@ -1,4 +1,4 @@
-//! Proportional control of each wheel's speed. The joints hold their pose.
+//! ROBOT_CPP's `chassis_controller_step`: proportional control of each wheel's speed. The joints hold their pose.
 
 use super::{
     ChassisController, ChassisControllerInput, ChassisControllerOutput, pose_hold::PoseHold,

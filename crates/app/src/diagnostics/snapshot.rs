@@ -1,4 +1,4 @@
-//! `DiagnosticsSnapshot`: everything about the robot, for a debugger that shows live values.
+//! `DiagnosticsSnapshot`, the LiveWatch structure of ROBOT_CPP 0.7.
 
 use super::{Strangers, TickStats};
 use crate::{

@@ -2,7 +2,7 @@
 
 use super::{Orientation, RemoteMapping};
 
-/// Wheel geometry.
+/// Wheel geometry (ROBOT_CPP 5.1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct WheelOdomConfig {
@@ -40,7 +40,7 @@ impl WheelOdomConfig {
     }
 }
 
-/// Wheel speed controller.
+/// Wheel speed controller (ROBOT_CPP 5.1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct WheelControllerConfig {

@@ -1,4 +1,4 @@
-//! The output of the logic stage.
+//! The output of the logic stage (ROBOT_CPP section 3.3).
 
 use super::{ChassisCommand, HighLevelCommand};
 
