@@ -1,5 +1,5 @@
 //! The RoboMaster Development Board C: clocks, pins, DMA streams and interrupts. The only file that names them
-//! (`hardware.md` sections 1 and 2).
+//! (docs/hardware.md#board-devices, docs/hardware.md#dma).
 
 use bxcan::{Rx0, Rx1};
 use embassy_stm32::adc::AdcChannel;

@@ -13,7 +13,7 @@ pub struct DebuggerView(UnsafeCell<DiagnosticsSnapshot>);
 // SAFETY: the only access on the chip is through the one reference that `take` hands out.
 unsafe impl Sync for DebuggerView {}
 
-/// `g_robotapp_diag` as in ROBOT_CPP 0.7.
+/// `g_robotapp_diag`, by which debuggers know it (docs/port.md#diagnostics).
 #[used]
 #[unsafe(no_mangle)]
 pub static g_robotapp_diag: DebuggerView = DebuggerView(UnsafeCell::new(

@@ -1,4 +1,4 @@
-//! The SBUS receiver on streams that no radio should send, judged from the specification (hardware.md section 6.1),
+//! The SBUS receiver on streams that no radio should send, judged from the specification (docs/hardware.md#sbus),
 //! written here without the parser's own code.
 
 use proptest::prelude::*;

@@ -203,7 +203,7 @@ impl RadioUart {
     }
 }
 
-/// SBUS is 8E2, DBUS 8E1 (`hardware.md` 6).
+/// SBUS is 8E2, DBUS 8E1 (docs/hardware.md#sbus, docs/hardware.md#dbus).
 fn configure(uart: Usart, clock_hz: u32, format: RemoteFormat) {
     // With 16-fold oversampling BRR is the divider in sixteenths: clock / baud (RM0090 30.3.4).
     uart.brr()

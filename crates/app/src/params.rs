@@ -1,4 +1,4 @@
-//! Settings that survive a power cut (ROBOT_CPP 5.2, docs/parameters.md).
+//! Settings that survive a power cut (docs/parameters.md).
 
 mod checksum;
 mod record;

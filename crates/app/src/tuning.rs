@@ -1,4 +1,4 @@
-//! Settings over CAN while the robot is disarmed (ROBOT_CPP 5.3, docs/tuning.md).
+//! Settings over CAN while the robot is disarmed (docs/tuning.md).
 //!
 //! A request comes on [`WRITE_ID`] or [`READ_ID`] of either bus and is answered on [`REPLY_ID`] of the same bus.
 //! [`PARAMETERS`] lists everything that can be changed.

@@ -1,4 +1,4 @@
-//! The budgets of time and buses (design.md, section 6) hold on the shipped image.
+//! The budgets of time and buses (docs/figures.md#the-image) hold on the shipped image.
 
 mod support;
 

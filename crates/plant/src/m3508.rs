@@ -1,4 +1,4 @@
-//! One wheel drive: M3508 geared motor with its C620 controller on CAN (hardware.md section 7).
+//! One wheel drive: M3508 geared motor with its C620 controller on CAN (docs/hardware.md#c620-and-m3508).
 
 mod c620;
 mod motor;

@@ -7,7 +7,7 @@ const LOW_V: f64 = 20.5;
 const EMPTY_V: f64 = 18.5;
 /// Pack and leads; assumed.
 const RESISTANCE_OHM: f64 = 0.05;
-/// 200 kΩ over 22 kΩ (hardware.md 1.2).
+/// 200 kΩ over 22 kΩ (docs/hardware.md#board-devices).
 const DIVIDER: f64 = 22.0 / 222.0;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

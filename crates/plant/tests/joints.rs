@@ -1,4 +1,5 @@
-//! The leg joints through CAN2 alone: frames as in hardware.md 8.1, 9 and 12, and what the world says of them.
+//! The leg joints through CAN2 alone: their frames, and what the world says of them. The frames are those of
+//! docs/hardware.md#mit-frames, docs/hardware.md#dm4310-frames and docs/hardware.md#test-vectors.
 
 use robot_plant::{
     time::{MS, Ps, US},

@@ -222,7 +222,7 @@ fn remote_moves_the_sticks_and_unset_fields_stay() {
 fn battery_reaches_the_converter_through_its_divider() {
     let mut world = world(PlantKind::Stand, RadioKind::Sbus);
     world.advance(MS);
-    // hardware.md 1.2: volts at the pin · 10.0909.
+    // docs/hardware.md#board-devices: volts at the pin · 10.0909.
     assert!((world.battery_adc_volts() * 10.0909 - 24.0).abs() < 0.01);
     world.set_fault("battery-low", true).expect("listed");
     world.advance(2 * MS);

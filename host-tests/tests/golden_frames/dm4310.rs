@@ -1,4 +1,4 @@
-//! DM4310 frames by the tables of hardware.md section 8.1; floats by IEEE 754, little-endian.
+//! DM4310 frames by the tables of docs/hardware.md#dm4310-frames; floats by IEEE 754, little-endian.
 
 use robot_app::{
     domain::{CanFrame, StandardId},
@@ -37,7 +37,7 @@ fn orders() {
     }
 }
 
-/// hardware.md section 12.
+/// A vector of docs/hardware.md#test-vectors.
 #[test]
 fn mit_command() {
     let targets = MitTargets {

@@ -1,5 +1,5 @@
-//! Frames of hardware.md section 12, computed there from the protocol tables, through the public interface; and the
-//! joint motors' frames as the makers' documents and C code give them.
+//! The frames of docs/hardware.md#test-vectors, computed there from the protocol tables, and the joint motors' frames as
+//! the makers' documents and C code give them, through the public interface.
 
 mod dm4310;
 mod mit_vectors;

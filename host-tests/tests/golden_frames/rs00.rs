@@ -36,7 +36,7 @@ fn orders() {
     }
 }
 
-/// hardware.md section 12.
+/// A vector of docs/hardware.md#test-vectors.
 #[test]
 fn mit_command() {
     let targets = MitTargets {

@@ -1,4 +1,4 @@
-//! When a save begins, and what happens if it fails (ROBOT_CPP 5.2).
+//! When a save begins, and what happens if it fails.
 
 use robot_app::domain::{FlashRequest, ParamError, ParamState, RobotConfig};
 use robot_plant::flash_chip::{EraseFault, StuckBit, sector_range};
@@ -55,7 +55,7 @@ fn a_burst_of_changes_is_one_save() {
     assert_eq!(Robot::boot(&robot.chip).config, robot.config);
 }
 
-/// ROBOT_CPP 5.2: 1, 10, 60, 300 s, and then each 300 s.
+/// docs/parameters.md: 1, 10, 60, 300 s, and then every 300 s.
 #[test]
 fn a_failing_save_is_repeated_after_growing_pauses() {
     let mut robot = Robot::boot(&Chip::blank());

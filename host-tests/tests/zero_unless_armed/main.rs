@@ -1,4 +1,4 @@
-//! Whatever comes in: no torque unless every condition of design.md section 3 holds, never more than the limits, no
+//! Whatever comes in: no torque unless every condition of docs/safety.md#the-rules holds, never more than the limits, no
 //! frame but those a motor or a tuner knows, no panic, no NaN in the estimate. The conditions are written here from the
 //! rules, from what goes into the tick alone.
 

@@ -194,7 +194,7 @@ proptest! {
     }
 }
 
-/// ROBOT_CPP 5.3: 60 mm, 420 mm, ratio 19.20, right wheel reversed; the reply echoes the request.
+/// docs/tuning.md#frames: 60 mm, 420 mm, ratio 19.20, right wheel reversed; the reply echoes the request.
 #[test]
 fn wheel_geometry_changes_only_while_disarmed() {
     let request = [opcode::WRITE_GEOMETRY, 60, 0, 0xA4, 0x01, 0x80, 0x07, 0x02];

@@ -1,4 +1,4 @@
-//! The rules of design.md section 3 and docs/safety.md, written from what goes into the tick alone: as far as they can
+//! The rules of docs/safety.md, written from what goes into the tick alone: as far as they can
 //! be told without knowing the estimator and the motors' set-up, so each is necessary, not sufficient.
 
 use robot_app::{domain::BusErrorState, tick::ControlInputs};

@@ -1,5 +1,5 @@
-//! What a motor understands of the frames on its bus: hardware.md sections 7 to 9. Written apart from the
-//! firmware's own codecs.
+//! What a motor understands of the frames on its bus: docs/hardware.md#c620-and-m3508, docs/hardware.md#dm4310 and
+//! docs/hardware.md#rs00. Written apart from the firmware's own codecs.
 
 use robot_app::domain::{BusId, CanFrame};
 

@@ -47,7 +47,7 @@ unsafe impl Instance for Can2 {
 }
 
 /// 1 Mb/s from the 42 MHz APB1 clock: prescaler 3, 1 + 10 + 3 quanta, sample point 78.6 %
-/// (`hardware.md` 1.4). Every field of CAN_BTR holds its value minus one; SJW is 1.
+/// (docs/hardware.md#can-bit-timing). Every field of CAN_BTR holds its value minus one; SJW is 1.
 const BTR_1_MBPS: u32 = (3 - 1) | (10 - 1) << 16 | (3 - 1) << 20;
 
 /// First filter bank of CAN2.

@@ -9,7 +9,7 @@ use object::{
     read::elf::{ElfFile32, ProgramHeader},
 };
 
-/// design.md, section 6.
+/// docs/figures.md#the-image.
 const FLASH_BUDGET_BYTES: u64 = 256 * 1024;
 const RAM_BUDGET_BYTES: u64 = 64 * 1024;
 

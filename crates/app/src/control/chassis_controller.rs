@@ -1,4 +1,4 @@
-//! The interface of a controller (ROBOT_CPP section 3.4).
+//! The interface of a controller.
 
 use crate::domain::{
     ChassisCommand, HighLevelCommand, JointControllerConfig, OperatorState, SensorsSnapshot,

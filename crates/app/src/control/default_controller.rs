@@ -1,4 +1,4 @@
-//! ROBOT_CPP's `chassis_controller_step`: proportional control of each wheel's speed. The joints hold their pose.
+//! Proportional control of each wheel's speed. The joints hold their pose.
 
 use super::{
     ChassisController, ChassisControllerInput, ChassisControllerOutput, pose_hold::PoseHold,

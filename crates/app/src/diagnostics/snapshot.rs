@@ -1,4 +1,4 @@
-//! `DiagnosticsSnapshot`, the LiveWatch structure of ROBOT_CPP 0.7.
+//! `DiagnosticsSnapshot`: everything about the robot, for a debugger that shows live values.
 
 use super::{Strangers, TickStats};
 use crate::{

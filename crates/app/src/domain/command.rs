@@ -2,7 +2,7 @@
 
 use crate::math::scalar;
 
-/// What the pilot or a planner wants, normalised (ROBOT_CPP 3.3).
+/// What the pilot or a planner wants, normalised.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct HighLevelCommand {

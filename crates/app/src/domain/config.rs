@@ -2,7 +2,7 @@
 
 use super::{Orientation, RemoteMapping};
 
-/// Wheel geometry (ROBOT_CPP 5.1).
+/// Wheel geometry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct WheelOdomConfig {
@@ -40,7 +40,7 @@ impl WheelOdomConfig {
     }
 }
 
-/// Wheel speed controller (ROBOT_CPP 5.1).
+/// Wheel speed controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct WheelControllerConfig {

@@ -1,6 +1,6 @@
 //! What the robot knows about its own motion.
 
-/// Output of the estimator (ROBOT_CPP 3.2). World frame: ENU (x east, y north, z up).
+/// Output of the estimator. World frame: ENU (x east, y north, z up).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct StateEstimate {

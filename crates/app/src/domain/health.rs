@@ -62,7 +62,7 @@ impl SensorHealth {
     }
 }
 
-/// What the receiver's UART saw, all since boot (ROBOT_CPP's `g_app_sbus_rx_events` and `g_app_sbus_rx_bytes` among it).
+/// What the receiver's UART saw since boot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(C)]
 pub struct RadioLineHealth {

@@ -1,4 +1,4 @@
-//! The output of the logic stage (ROBOT_CPP section 3.3).
+//! The output of the logic stage.
 
 use super::{ChassisCommand, HighLevelCommand};
 

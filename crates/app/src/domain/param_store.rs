@@ -76,7 +76,7 @@ pub struct ParamStatus {
     pub revision: u32,
     /// The `TuningStatus::revision` that `unsaved` and `state` know of: a younger change is not saved.
     pub seen: u32,
-    /// Records saved and read back (ROBOT_CPP's `g_app_params_save_ok`).
+    /// Records saved and read back.
     pub save_ok: u32,
     /// Attempts that failed, erases among them.
     pub save_failed: u32,

@@ -1,4 +1,4 @@
-//! Measurements in physical units (ROBOT_CPP 3.1).
+//! Measurements in physical units.
 
 /// One calibrated IMU sample in the body frame (x forward, y left, z up).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,4 +1,4 @@
-//! The estimator of the main chain (ROBOT_CPP 0.4).
+//! The estimator of the main chain.
 
 use super::{
     attitude::{AttitudeFilter, Clipped},

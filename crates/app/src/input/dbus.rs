@@ -1,4 +1,4 @@
-//! DJI DBUS (DT7/DR16): 18 bytes at 100 kbaud 8E1 every 14 ms, without header or checksum (hardware.md section 6.2).
+//! DJI DBUS (DT7/DR16): 18 bytes at 100 kbaud 8E1 every 14 ms, without header or checksum (docs/hardware.md#dbus).
 //!
 //! A frame is exactly 18 bytes after an idle line, with sticks, switches and mouse buttons in range. Anything else is
 //! dropped up to the next idle line.

@@ -206,7 +206,8 @@ mod tests {
         }
     }
 
-    /// Low end, centre and high end are 172, 992, 1811 for SBUS and 364, 1024, 1684 for DBUS (hardware.md section 6).
+    /// Low end, centre and high end are 172, 992, 1811 for SBUS and 364, 1024, 1684 for DBUS
+    /// (docs/hardware.md#sbus, docs/hardware.md#dbus).
     /// The threshold of 0.7 lies at 1566 and 1487.
     #[test]
     fn on_both_radios_the_left_stick_is_dead_man_and_selector() {

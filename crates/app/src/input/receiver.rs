@@ -236,12 +236,12 @@ mod tests {
     use super::*;
     use crate::domain::DriveMode;
 
-    /// All channels are 992 and no flag is set (hardware.md section 12).
+    /// All channels are 992 and no flag is set (docs/hardware.md#test-vectors).
     const SBUS_CENTRED: [u8; 25] = [
         0x0F, 0xE0, 0x03, 0x1F, 0xF8, 0xC0, 0x07, 0x3E, 0xF0, 0x81, 0x0F, 0x7C, 0xE0, 0x03, 0x1F,
         0xF8, 0xC0, 0x07, 0x3E, 0xF0, 0x81, 0x0F, 0x7C, 0x00, 0x00,
     ];
-    /// All sticks are 1024 and both switches in the middle (hardware.md section 12).
+    /// All sticks are 1024 and both switches in the middle (docs/hardware.md#test-vectors).
     const DBUS_CENTRED: [u8; 18] = [
         0x00, 0x04, 0x20, 0x00, 0x01, 0xF8, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0x00, 0x04,
     ];

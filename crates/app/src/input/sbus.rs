@@ -1,4 +1,4 @@
-//! SBUS: 25 bytes at 100 kbaud 8E2, header 0x0F, 16 × 11 bit, flags, footer (hardware.md section 6.1).
+//! SBUS: 25 bytes at 100 kbaud 8E2, header 0x0F, 16 × 11 bit, flags, footer (docs/hardware.md#sbus).
 //!
 //! A header byte may also appear inside a frame, so header and footer alone do not show where a frame starts. A
 //! candidate is delivered if it starts after an idle line, or right where the previous frame ended. Any other

@@ -1,4 +1,4 @@
-//! Decides at 100 Hz what the robot shall do (ROBOT_CPP section 2.2.5).
+//! Decides at 100 Hz what the robot shall do.
 //!
 //! The mode switch selects the source: the sticks, the PC, or your own logic. It may move while the robot is armed.
 //! The new source takes over in the next round, within 10 ms. Without a valid command from it the robot has no

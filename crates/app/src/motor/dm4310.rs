@@ -1,4 +1,4 @@
-//! Damiao DM4310 (hardware.md section 8): standard identifiers, one reply to each frame.
+//! Damiao DM4310 (docs/hardware.md#dm4310): standard identifiers, one reply to each frame.
 
 use super::{
     mit::{MitCommand, MitRanges, MitReport},

@@ -1,4 +1,4 @@
-//! DJI M3508 with C620 speed controller (hardware.md section 7): standard identifiers, big-endian.
+//! DJI M3508 with C620 speed controller (docs/hardware.md#c620-and-m3508): standard identifiers, big-endian.
 
 use crate::domain::{CanFrame, MotorCurrent, StandardId, WheelFeedback};
 
@@ -90,7 +90,7 @@ mod tests {
         MotorCurrent::clamped(counts * 20_000.0 / 16_384.0, f32::INFINITY)
     }
 
-    /// hardware.md section 12.
+    /// A vector of docs/hardware.md#test-vectors.
     #[test]
     fn currents_are_packed_as_the_datasheet_shows() {
         let frame = encode_currents([1_000.0, -1_000.0, 16_384.0, -16_384.0].map(current));

@@ -1,5 +1,5 @@
-//! The 64 bits that DM4310 and RS00 share: five numbers as unsigned codes over each motor's own ranges (hardware.md
-//! sections 8.1 and 9; C code of the RS00 MIT reference, section 3).
+//! The 64 bits that DM4310 and RS00 share: five numbers as unsigned codes over each motor's own ranges
+//! (docs/hardware.md#mit-frames, and the C code in RobStride's MIT reference).
 
 use crate::math::scalar;
 
@@ -115,7 +115,7 @@ mod tests {
         t_max_nm: 10.0,
     };
 
-    /// hardware.md section 12.
+    /// A vector of docs/hardware.md#test-vectors.
     #[test]
     fn zero_is_the_code_just_below_it() {
         let zero = MitCommand::clamped(&MitTargets::default(), &DM);

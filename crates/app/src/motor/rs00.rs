@@ -1,4 +1,4 @@
-//! RobStride RS00 in its MIT protocol (hardware.md section 9): standard identifiers, one reply to each frame,
+//! RobStride RS00 in its MIT protocol (docs/hardware.md#rs00): standard identifiers, one reply to each frame,
 //! under the host's identifier and with the motor's number in byte 0.
 
 use super::{

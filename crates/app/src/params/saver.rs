@@ -9,7 +9,7 @@ use crate::{
     tuning::{PARAMETERS, ParameterGroup, bit},
 };
 
-/// Nothing is saved before nothing has changed for this long (ROBOT_CPP 5.2).
+/// Nothing is saved before nothing has changed for this long.
 const QUIET_US: u64 = 500_000;
 
 /// A group's position in `PARAMETERS`.

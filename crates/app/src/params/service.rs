@@ -1,4 +1,4 @@
-//! Settings from flash at boot, and back to it whenever they changed (ROBOT_CPP 5.2, `App_Params_Service`).
+//! Settings from flash at boot, and back to it whenever they changed.
 
 use embedded_storage::nor_flash::NorFlash;
 

@@ -1,4 +1,4 @@
-//! Disarmed until the pilot flips the enable switch and nothing speaks against it (design.md section 3, rule 1).
+//! Disarmed until the pilot flips the enable switch and nothing speaks against it (docs/safety.md#the-rules, 1).
 //!
 //! The switch asks for arming when it goes from off to on, and is answered at once: the robot arms, or refuses. A refused
 //! request is used up, as is that of a robot that is disarmed for any reason: the switch must go off and on again, or

@@ -1,4 +1,4 @@
-//! The only place that decides whether outputs must stop (ROBOT_CPP 0.6, design.md section 3).
+//! The only place that decides whether outputs must stop (docs/safety.md#the-rules).
 
 use super::{
     SafetyFlags, SafetyStatus, battery::BatteryWatch, debounce::Debounce,

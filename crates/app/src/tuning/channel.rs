@@ -13,7 +13,7 @@ use crate::{
     safety::ArmingState,
 };
 
-/// Whether writes are done (ROBOT_CPP 5.3, design.md section 3, rule 6).
+/// Whether writes are done (docs/safety.md#the-rules, 6).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TuningGate {
     Open,

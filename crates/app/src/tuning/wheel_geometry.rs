@@ -1,4 +1,4 @@
-//! The wheel geometry frames of ROBOT_CPP 5.3, kept to the byte for its clients.
+//! The wheel geometry frames of ROBOT_CPP (docs/port.md#parameters-and-tuning), kept to the byte for its clients.
 
 use super::{Refusal, parameters};
 use crate::domain::{RobotConfig, WheelOdomConfig};

@@ -10,7 +10,7 @@ use crate::{
     settings::{GROUPS, Make, image},
 };
 
-/// design.md section 6: "zero torque ≤ 20 ms after reset".
+/// docs/safety.md#reaction-times: "zero torque ≤ 20 ms after reset".
 const ZERO_TORQUE: Ps = 20 * MS;
 
 struct Store {

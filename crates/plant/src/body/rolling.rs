@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{m3508::Friction, motion::Motion, physics::STANDARD_GRAVITY_MPS2};
 
-/// Robot with legs and wheels, kg (hardware.md 11).
+/// Robot with legs and wheels, kg (docs/hardware.md#robot-body).
 const MASS_KG: f64 = 9.0;
 /// About z: a 0.3 m square body of 7.5 kg and two wheels of 0.75 kg at half the track.
 const YAW_INERTIA_KGM2: f64 = 0.18;

@@ -19,7 +19,7 @@ fn sector_1(chip: &mut FlashChip) -> Vec<u8> {
     bytes
 }
 
-/// hardware.md 3.1.
+/// docs/hardware.md#flash.
 #[test]
 fn the_sectors_lie_where_the_reference_manual_puts_them() {
     let starts: Vec<u32> = (0..12).map(|n| sector_range(n).unwrap().start).collect();

@@ -1,4 +1,4 @@
-//! Damiao DM4310 geared motor with its driver (hardware.md section 8).
+//! Damiao DM4310 geared motor with its driver (docs/hardware.md#dm4310).
 
 mod receive;
 mod registers;

@@ -1,4 +1,4 @@
-//! The packing that Damiao and RobStride share (hardware.md 8.1 and 9): fields of 16 and 12 bits,
+//! The packing that Damiao and RobStride share (docs/hardware.md#mit-frames): fields of 16 and 12 bits,
 //! most significant first, each spread evenly over its range.
 
 /// Coding ranges, each from minus to plus; not what the motor can do.
@@ -111,7 +111,7 @@ mod tests {
         }
     }
 
-    // hardware.md section 12.
+    // A vector of docs/hardware.md#test-vectors.
     #[test]
     fn reference_commands_decode() {
         let one = [0x8A, 0x3C, 0x7F, 0xF0, 0xA3, 0x33, 0x38, 0x65];
@@ -120,7 +120,7 @@ mod tests {
         close(RS00.command(&same), [1.0, 0.0, 20.0, 1.0, 0.5]);
     }
 
-    // hardware.md section 12: p −1.9e-4, v −7.3e-3, t −2.4e-3.
+    // docs/hardware.md#test-vectors: p −1.9e-4, v −7.3e-3, t −2.4e-3.
     #[test]
     fn the_code_of_zero_is_slightly_below_zero() {
         let zero = DM4310.command(&[0x7F, 0xFF, 0x7F, 0xF0, 0, 0, 0x07, 0xFF]);

@@ -1,4 +1,4 @@
-//! RobStride RS00 set to its MIT protocol (hardware.md section 9).
+//! RobStride RS00 set to its MIT protocol (docs/hardware.md#rs00).
 
 mod receive;
 

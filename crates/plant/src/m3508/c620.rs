@@ -181,7 +181,7 @@ mod tests {
         C620::new(id, Random::new(1, Stream::LeftMotor))
     }
 
-    // hardware.md section 12: +1000, −1000, +16384, −16384.
+    // docs/hardware.md#test-vectors: +1000, −1000, +16384, −16384.
     #[test]
     fn takes_its_own_slot_of_the_reference_command() {
         let frame = CanFrame {

@@ -2,7 +2,7 @@
 
 /// Rotor turns per turn of the output shaft.
 pub(crate) const GEAR: f64 = 3591.0 / 187.0;
-/// N·m at the output shaft per ampere of torque current (hardware.md 7).
+/// N·m at the output shaft per ampere of torque current (docs/hardware.md#c620-and-m3508).
 const TORQUE_NM_PER_A: f64 = 0.3;
 /// Datasheet: 482 rpm and 0.78 A without load at 24 V.
 const NO_LOAD_RPS: f64 = 482.0 * std::f64::consts::TAU / 60.0;

@@ -1,4 +1,4 @@
-//! DJI DR16 receiver: 18 bytes at 100 kbaud 8E1 every 14 ms, no header, no checksum (hardware.md 6.2).
+//! DJI DR16 receiver: 18 bytes at 100 kbaud 8E1 every 14 ms, no header, no checksum (docs/hardware.md#dbus).
 
 use super::{faults::RadioFaults, pilot::Pilot};
 use crate::{
@@ -69,7 +69,7 @@ fn pack(sticks: [u16; 4], right_switch: u8, left_switch: u8) -> [u8; 18] {
 mod tests {
     use super::*;
 
-    // hardware.md section 12.
+    // A vector of docs/hardware.md#test-vectors.
     #[test]
     fn centred_sticks_and_middle_switches_give_the_reference_frame() {
         let expected = [

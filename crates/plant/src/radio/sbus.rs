@@ -1,4 +1,4 @@
-//! SBUS transmitter side of a receiver: 25 bytes at 100 kbaud 8E2 every 7 ms (hardware.md 6.1).
+//! SBUS transmitter side of a receiver: 25 bytes at 100 kbaud 8E2 every 7 ms (docs/hardware.md#sbus).
 //!
 //! The connector's inverter is on the board, so the MCU pin sees normal polarity.
 
@@ -75,7 +75,7 @@ fn pack(channels: &[u16; 16], flags: u8) -> [u8; 25] {
 mod tests {
     use super::*;
 
-    // hardware.md section 12.
+    // A vector of docs/hardware.md#test-vectors.
     #[test]
     fn centred_channels_give_the_reference_frame() {
         let expected = [

@@ -59,7 +59,7 @@ impl WheelGeometry {
 mod tests {
     use super::*;
 
-    // ROBOT_CPP's example: 19.2 is 1920 = 0x0780; 76 mm = 0x4C, 300 mm = 0x012C.
+    // ROBOT_CPP's example (docs/port.md#parameters-and-tuning): 19.2 is 1920 = 0x0780; 76 mm = 0x4C, 300 mm = 0x012C.
     #[test]
     fn bytes_are_little_endian_with_signs_last() {
         let geometry = WheelGeometry {

@@ -14,7 +14,7 @@ use crate::{
 
 /// Standard frame of eight bytes with every possible stuff bit and the pause after it.
 const FRAME_BITS: u32 = 135;
-/// 80 % of 1 Mb/s (design.md section 6).
+/// 80 % of 1 Mb/s (docs/figures.md#the-image).
 const MAX_BITS_PER_SECOND: u32 = 800_000;
 const TICKS_PER_SECOND: u32 = 1_000;
 /// Of the controller's three mailboxes one is left to a tuning reply.

@@ -38,7 +38,7 @@ const WHEELS: WheelGroup = WheelGroup {
 /// What an M3508 bears for long; half of what its speed controller can give.
 const MAX_WHEEL_MA: f32 = 10_000.0;
 
-/// As shipped from the factory (hardware.md section 8.2).
+/// As shipped from the factory (docs/hardware.md#dm4310-ranges).
 const DM4310_RANGES: MitRanges = MitRanges {
     p_max_rad: 12.5,
     v_max_rps: 30.0,

@@ -1,4 +1,4 @@
-//! Pauses after failures (ROBOT_CPP 5.2): 1, 10, 60, 300 s and then 300 s each time.
+//! Pauses after failures: 1, 10, 60, 300 s and then 300 s each time.
 
 const PAUSES_US: [u64; 4] = [1_000_000, 10_000_000, 60_000_000, 300_000_000];
 
@@ -49,7 +49,7 @@ mod tests {
         (0..10_000).filter(attempt_s).take(count).collect()
     }
 
-    /// ROBOT_CPP 5.2: 1 s, 10 s, 60 s, 300 s.
+    /// docs/parameters.md: 1 s, 10 s, 60 s, 300 s.
     #[test]
     fn pauses_grow_and_then_stay() {
         let mut back_off = BackOff::default();

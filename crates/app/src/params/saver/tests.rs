@@ -44,7 +44,7 @@ impl Bench {
     }
 }
 
-/// ROBOT_CPP 5.2: half a second in which nothing changes.
+/// docs/parameters.md: half a second in which nothing changes.
 #[test]
 fn a_save_waits_for_half_a_second_without_changes() {
     let mut bench = Bench::new();

@@ -1,4 +1,4 @@
-//! Bytes written by hand from ROBOT_CPP's section 5.3 and docs/tuning.md.
+//! Bytes written by hand from docs/tuning.md#frames.
 
 use super::*;
 use crate::{
@@ -7,7 +7,7 @@ use crate::{
     motor::layout::ROBOT_LAYOUT,
 };
 
-/// ROBOT_CPP 5.3: radius 75 mm, track 450 mm, ratio 36.00, left wheel reversed.
+/// docs/tuning.md#frames: radius 75 mm, track 450 mm, ratio 36.00, left wheel reversed.
 const GEOMETRY: [u8; 8] = [0x10, 75, 0, 0xC2, 0x01, 0x10, 0x0E, 0x01];
 
 struct Bench {

@@ -2,7 +2,7 @@
 
 use crate::tuning::parameter::{Parameter, ParameterKind, float, integer, sign};
 
-/// What an MIT frame can say (DM4310 and RS00 alike, hardware.md 8.2 and 9).
+/// What an MIT frame can say (DM4310 and RS00 alike, docs/hardware.md#mit-frames).
 const MAX_KP: f32 = 500.0;
 const MAX_KD: f32 = 5.0;
 /// The wider of the two motors' ranges (RS00: 4π rad, 33 rad/s, 14 N·m); a motor's own range still clamps.

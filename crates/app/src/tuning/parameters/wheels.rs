@@ -1,4 +1,4 @@
-//! Wheel geometry and the wheel speed controller (ROBOT_CPP 5.1).
+//! Wheel geometry and the wheel speed controller.
 
 use crate::{
     domain::MotorCurrent,

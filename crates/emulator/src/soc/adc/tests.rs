@@ -42,7 +42,7 @@ fn a_conversion_takes_sampling_and_twelve_cycles_and_reads_the_divider() {
     assert_eq!(bench.read(&mut adc, SR), 1 << 4);
     bench.run(&mut adc, start + time);
     assert_eq!(bench.read(&mut adc, SR), 1 << 4 | 1 << 1);
-    // hardware.md 1.2: 22 k of 222 k; the battery of the world stands near 24 V.
+    // docs/hardware.md#board-devices: 22 k of 222 k; the battery of the world stands near 24 V.
     let volts = f64::from(bench.read(&mut adc, DR)) / 4096.0 * 3.3 * 10.0909;
     assert!(
         (volts - bench.world.battery_adc_volts() * 10.0909).abs() < 0.02,

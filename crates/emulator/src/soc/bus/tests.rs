@@ -109,7 +109,7 @@ impl Bench {
         self.run_until(self.now + duration);
     }
 
-    /// HSE, PLL and prescalers of the C board (hardware sheet 1.1): 168, 42 and 84 MHz.
+    /// HSE, PLL and prescalers of the C board (docs/hardware.md#chip-and-clocks): 168, 42 and 84 MHz.
     fn clock_up(&mut self) {
         self.set_bits(RCC, 1 << 16);
         self.run_for(2 * robot_plant::time::MS);

@@ -108,7 +108,7 @@ mod tests {
 
     #[test]
     fn the_timings_of_the_c_board_fit_the_bus() {
-        // hardware.md 1.4: 42 MHz, prescaler 3, 10 + 3 quanta; prescaler 6, 5 + 1 quanta.
+        // docs/hardware.md#can-bit-timing: 42 MHz, prescaler 3, 10 + 3 quanta; prescaler 6, 5 + 1 quanta.
         for btr in [0x0029_0002, 0x0004_0005] {
             let timing = BitTiming(btr);
             assert_eq!(timing.doubt(), None);

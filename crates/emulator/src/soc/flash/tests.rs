@@ -1,4 +1,4 @@
-//! Against RM0090 3.6 (sequences, errors), the datasheet's times and hardware.md 3.1–3.3.
+//! Against RM0090 3.6 (sequences, errors), the datasheet's times and docs/hardware.md#flash.
 
 use robot_plant::{
     flash_chip::Phase,

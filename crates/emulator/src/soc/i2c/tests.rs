@@ -30,7 +30,7 @@ const RXNE: u32 = 1 << 6;
 const TXE: u32 = 1 << 7;
 const AF: u32 = 1 << 10;
 
-/// IST8310 (hardware.md 5): address, who-am-I register and its value.
+/// IST8310 (docs/hardware.md#ist8310): address, who-am-I register and its value.
 const MAG: u32 = 0x0E;
 const WAI: u32 = 0x00;
 const WAI_VALUE: u32 = 0x10;

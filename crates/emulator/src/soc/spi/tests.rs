@@ -42,7 +42,7 @@ fn the_gyroscope_tells_its_chip_id() {
     let now = bench.now;
     bench.world.spi_select(SpiSelect::Gyro, true, now);
     exchange(&mut bench, &mut spi, 0x80);
-    // hardware.md 4.1.
+    // docs/hardware.md#bmi088.
     assert_eq!(exchange(&mut bench, &mut spi, 0), 0x0F);
 }
 

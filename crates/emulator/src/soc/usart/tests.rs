@@ -151,7 +151,7 @@ fn the_radio_arrives_whole_where_the_framing_fits() {
             bytes.push(bench.read(&mut usart, DR) as u8);
         }
     }
-    // hardware.md 6.1: 25 bytes from 0x0F to 0x00.
+    // docs/hardware.md#sbus: 25 bytes from 0x0F to 0x00.
     assert_eq!(
         (bytes[0], bytes[24], bytes[25], bytes[49]),
         (0x0F, 0x00, 0x0F, 0x00)

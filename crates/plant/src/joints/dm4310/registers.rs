@@ -1,4 +1,5 @@
-//! The DM4310's registers, as far as a robot needs them (hardware.md 8.2 and 8.3).
+//! The DM4310's registers, as far as a robot needs them
+//! (docs/hardware.md#dm4310-ranges, docs/hardware.md#dm4310-behaviour).
 
 use super::super::mit_frame::Ranges;
 

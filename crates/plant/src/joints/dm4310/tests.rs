@@ -1,4 +1,4 @@
-//! Frames written by hand from hardware.md 8.1 and section 12.
+//! Frames written by hand from docs/hardware.md#dm4310-frames and docs/hardware.md#test-vectors.
 
 use super::*;
 use crate::{physics::physics_step_s, time::MS};

@@ -1,4 +1,4 @@
-//! Frames written by hand from the maker's MIT reference and hardware.md section 12.
+//! Frames written by hand from the maker's MIT reference and docs/hardware.md#test-vectors.
 
 use super::*;
 use crate::{

@@ -12,7 +12,8 @@ const RING: u32 = 0x2000_1000;
 const RECEIVE: u32 = 4 << 25 | 1 << 10 | 1 << 8 | 0b11100 | 1;
 const STREAM1_IRQ: u8 = 12;
 
-/// USART3 receives the radio's 100,000 baud 8E2 on PC11 (hardware sheet 1.3, 6.1), DMA requests on.
+/// USART3 receives the radio's 100,000 baud 8E2 on PC11, DMA requests on
+/// (docs/hardware.md#connectors, docs/hardware.md#sbus).
 fn radio() -> Bench {
     let mut bench = Bench::new();
     bench.clock_up();
