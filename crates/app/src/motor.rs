@@ -1,15 +1,15 @@
-//! Motors on the CAN buses.
+//! The motor stage: motors on the CAN buses.
 //!
-//! | file | what |
+//! | file | contents |
 //! |---|---|
-//! | `layout` | which motor sits where; load and identifiers checked by the compiler |
-//! | `m3508`, `dm4310`, `rs00`, `mit`, `set_point` | frames ↔ values |
-//! | `interface` | what every motor is to the manager |
+//! | `layout` | which motor sits where; the compiler checks bus load and identifiers |
+//! | `m3508`, `dm4310`, `rs00`, `mit`, `setpoint` | frames ↔ values |
+//! | `interface` | the trait by which the manager knows a motor |
 //! | `wheel`, `joint` | one motor each: set-up, enabling, faults, frozen reports |
-//! | `joint_limits` | what a joint may be asked for |
-//! | `manager` | all of them: feedback in, frames out |
+//! | `joint_limits` | limits of joint commands |
+//! | `manager` | all motors: feedback in, command frames out |
 
-mod angle_watch;
+mod angle_monitor;
 pub mod dm4310;
 mod interface;
 mod joint;
@@ -19,8 +19,8 @@ pub mod m3508;
 mod manager;
 pub mod mit;
 pub mod rs00;
-mod set_point;
+mod setpoint;
 mod wheel;
 
-pub use joint::NotStanding;
+pub use joint::NotStationary;
 pub(crate) use manager::{MotorManager, TickFrames};

@@ -12,7 +12,7 @@ pub enum LineDiagnosis {
     /// Frames arrive.
     #[default]
     Frames,
-    /// Almost no bytes arrive: there is no receiver, it has no supply, or it is idle without its transmitter.
+    /// Almost no bytes arrive: there is no receiver, it has no supply, or it is silent without its transmitter.
     Quiet,
     /// Most bursts have line errors: the baud rate differs, or the signal is inverted.
     Errors,

@@ -10,8 +10,7 @@ use crate::domain::{DriveMode, LogicBus, age_us};
 /// Selects the command source and asks it for a command.
 ///
 /// ```
-/// use robot_app::diagnostics::DiagnosticsSnapshot;
-/// use robot_app::domain::{RemoteUpdate, SafetyConfig};
+/// use robot_app::domain::{RemoteUpdate, SafetyConfig, SensorsSnapshot, StateEstimate};
 /// use robot_app::logic::{LogicInputs, LogicStage, UserLogic};
 ///
 /// let mut remote = RemoteUpdate::default();
@@ -23,7 +22,10 @@ use crate::domain::{DriveMode, LogicBus, age_us};
 ///     config: &SafetyConfig::default(),
 ///     remote: &remote,
 ///     pc: None,
-///     diagnostics: &DiagnosticsSnapshot::default(),
+///     sensors: &SensorsSnapshot::default(),
+///     estimate: &StateEstimate::default(),
+///     armed: true,
+///     battery_v: 24.0,
 /// };
 /// let mut stage = LogicStage::new(UserLogic);
 /// let bus = stage.step(&inputs, 1_010_000);

@@ -1,29 +1,31 @@
-//! What every motor is to the manager, whatever its make.
+//! The trait by which the manager knows a motor of any make.
 
 use crate::domain::CanFrame;
 
 /// One motor on a CAN bus.
 pub trait Motor {
-    /// What control asks for; it may be anything, even NaN.
+    /// The setpoint from the controller. It may hold any value, even NaN.
     type Command;
-    /// What fits the motor to its place in the robot.
+    /// Settings of this motor's place in the robot.
     type Config;
-    /// Last report, in the units and coordinates of control.
+    /// The last report, in the units and coordinates of the controller.
     type Feedback;
-    /// What leaves in one tick.
+    /// What is sent in one tick.
     type Output;
 
-    /// Takes a frame from the motor's bus; false, and no trace, if it is not from this motor.
+    /// Takes a frame from the motor's bus. Returns false, without any effect, if it is not from this motor.
     fn receive(&mut self, frame: &CanFrame, ts_us: u64) -> bool;
 
-    /// Once a tick: ages its reports. Silence beyond `timeout_us` means that the motor may have lost its settings.
-    fn watch(&mut self, timeout_us: u32, now_us: u64);
+    /// Updates the age of the last report; called once a tick. After a silence of more than `timeout_us` the motor
+    /// may have lost its settings.
+    fn update_age(&mut self, timeout_us: u32, now_us: u64);
 
-    /// Brings `feedback` up to the last report, as old as [`watch`](Self::watch) found it. Settings that have changed
-    /// count from the next report on.
+    /// Copies the last report to `feedback`, with the age that [`update_age`](Self::update_age) found. Changed
+    /// settings apply from the next report on.
     fn feedback(&self, config: &Self::Config, feedback: &mut Self::Feedback);
 
-    /// Once a tick, last. Exactly zero torque unless `permitted`.
+    /// Returns what to send in this tick; called once a tick, after the rest. The torque is exactly zero unless
+    /// `permitted`.
     fn drive(
         &mut self,
         command: &Self::Command,

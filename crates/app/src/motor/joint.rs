@@ -1,18 +1,18 @@
-//! One joint motor: set-up, enabling, commands, faults. What it is told is limited here, whoever asks.
+//! One joint motor: set-up, enabling, commands, faults. It limits each command, whoever sent it.
 
 mod axis;
-mod dialect;
-mod freeze_watch;
+mod freeze_detector;
+mod protocol;
 mod set_up;
 
 use self::{
-    dialect::{Expected, Reply, Report, Status},
-    freeze_watch::FreezeWatch,
+    freeze_detector::FreezeDetector,
+    protocol::{Expected, Reply, Report, Status},
     set_up::SetUp,
 };
 use super::{
     interface::Motor,
-    joint_limits::{MotorLimits, limited},
+    joint_limits::{MotorLimits, limit_command},
     layout::JointSlot,
     mit::MitTargets,
 };
@@ -21,27 +21,29 @@ use crate::{
     math::scalar,
 };
 
-/// An enable frame goes out in each slot for this long …
+/// Enable frames are sent in each slot for this long.
 const ENABLE_WINDOW_US: u64 = 10_000;
-/// … and if the motor has not followed, again after this long. Meanwhile it is told to stay off.
+/// If the motor has not followed, they are sent again after this time. In between the motor gets disable frames.
 const ENABLE_PERIOD_US: u64 = 250_000;
-/// Replies in a row that call an enabled motor disabled before that is believed: one may have been under way.
+/// Consecutive replies with state disabled after which an enabled motor counts as disabled. A single one may have
+/// been on its way.
 const DISABLED_REPLIES: u8 = 2;
-/// Slots between two looks at the fault word of a motor that does not show every fault by itself.
+/// Slots between two reads of the fault word of a motor whose replies do not show every fault.
 const FAULT_POLL_SLOTS: u8 = 64;
 
-/// Some steps of what a DM4310 reports as its speed: 0.015 rad/s each.
-const STANDING_RPS: f32 = 0.1;
+/// Six steps of the DM4310's speed codes of 0.015 rad/s each.
+const STATIONARY_RPS: f32 = 0.1;
 
-/// Why a joint stands at no known angle.
+/// Why no stationary angle is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NotStanding {
-    /// It does not report, repeats an old report, or its ranges are not known yet.
+pub enum NotStationary {
+    /// The motor does not report, repeats an old report, or its ranges are not yet confirmed.
     Unknown,
-    Turns,
+    /// The motor is turning.
+    Moving,
 }
 
-/// How far the motor has been brought.
+/// State of the motor's start-up sequence.
 #[derive(Clone, Debug)]
 enum Phase {
     SettingUp(SetUp),
@@ -51,9 +53,9 @@ enum Phase {
     Fault,
 }
 
-/// What the last frame was, as far as its reply is read differently.
+/// The last frame sent, as far as it affects how the reply is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Said {
+enum LastRequest {
     Enable,
     ReadFaults,
     Other,
@@ -64,22 +66,22 @@ pub struct Joint {
     slot: &'static JointSlot,
     tick: u8,
     phase: Phase,
-    /// What the motor is set to.
+    /// The control mode that the motor is set to.
     mode: JointMode,
     report: Option<Report>,
     report_ts_us: u64,
     age_us: u32,
     is_silent: bool,
     frozen: bool,
-    freeze_watch: FreezeWatch,
+    freeze_detector: FreezeDetector,
     fault_code: u32,
-    said: Said,
+    last_request: LastRequest,
     enable_began_us: Option<u64>,
-    clear_wanted: bool,
+    clear_requested: bool,
     slots_to_fault_poll: u8,
     sent: JointCommand,
-    /// The same in motor coordinates, while the motor is enabled and in MIT mode.
-    obeyed: Option<MitTargets>,
+    /// The same in motor coordinates, while the motor is enabled in MIT mode.
+    active_targets: Option<MitTargets>,
 }
 
 impl Joint {
@@ -94,38 +96,38 @@ impl Joint {
             age_us: u32::MAX,
             is_silent: true,
             frozen: false,
-            freeze_watch: FreezeWatch::default(),
+            freeze_detector: FreezeDetector::default(),
             fault_code: 0,
-            said: Said::Other,
+            last_request: LastRequest::Other,
             enable_began_us: None,
-            clear_wanted: false,
+            clear_requested: false,
             slots_to_fault_poll: FAULT_POLL_SLOTS,
             sent: JointCommand::default(),
-            obeyed: None,
+            active_targets: None,
         }
     }
 
-    /// A motor in fault is told to forget it and set up again.
+    /// Clears the fault of a motor in fault; the motor is then set up again.
     pub fn clear_fault(&mut self) {
-        self.clear_wanted = matches!(self.phase, Phase::Fault);
+        self.clear_requested = matches!(self.phase, Phase::Fault);
     }
 
-    /// The last report is as old as it would be without the stall.
+    /// Excludes a stall of the chip from the age of the last report.
     pub fn after_stall(&mut self, stall_us: u32, now_us: u64) {
         if self.report.is_some() {
             self.report_ts_us = self.report_ts_us.saturating_add(stall_us.into());
         }
-        self.freeze_watch.restart(now_us);
+        self.freeze_detector.restart(now_us);
     }
 
-    /// The command it obeys, as far as it is enabled.
+    /// The command that the motor follows, zero unless it is enabled.
     pub fn sent(&self) -> &JointCommand {
         &self.sent
     }
 
-    /// Where the motor stands, in its own coordinates: to call that place another angle. Of its newest report, whatever
-    /// the settings were when it came.
-    pub fn standing_angle_rad(&self) -> Result<f32, NotStanding> {
+    /// The angle of the stationary motor in motor coordinates, from its newest report. It serves to redefine the
+    /// joint's zero.
+    pub fn stationary_angle_rad(&self) -> Result<f32, NotStationary> {
         let is_ready = match self.state() {
             JointState::Silent | JointState::SettingUp => false,
             JointState::Disabled
@@ -134,11 +136,11 @@ impl Joint {
             | JointState::Fault => !self.frozen,
         };
         match &self.report {
-            Some(report) if is_ready && report.motion.vel_rps.abs() <= STANDING_RPS => {
+            Some(report) if is_ready && report.motion.vel_rps.abs() <= STATIONARY_RPS => {
                 Ok(report.motion.pos_rad)
             }
-            Some(_) if is_ready => Err(NotStanding::Turns),
-            _ => Err(NotStanding::Unknown),
+            Some(_) if is_ready => Err(NotStationary::Moving),
+            _ => Err(NotStationary::Unknown),
         }
     }
 
@@ -164,15 +166,17 @@ impl Joint {
     fn expected(&self) -> Expected {
         match &self.phase {
             Phase::SettingUp(set_up) => set_up.expected(),
-            _ if self.said == Said::ReadFaults => Expected::FaultWord,
+            _ if self.last_request == LastRequest::ReadFaults => Expected::FaultWord,
             _ => Expected::Report,
         }
     }
 
     fn on_report(&mut self, report: Report, ts_us: u64) {
         if let Some(last) = &self.report {
-            let obeyed = self.obeyed.as_ref();
-            self.frozen = self.freeze_watch.is_frozen(last, &report, obeyed, ts_us);
+            let active_targets = self.active_targets.as_ref();
+            self.frozen = self
+                .freeze_detector
+                .is_frozen(last, &report, active_targets, ts_us);
         }
         self.report = Some(report);
         if let Status::Fault(code) = report.status {
@@ -183,7 +187,7 @@ impl Joint {
             Phase::SettingUp(set_up) => set_up.on_report(report.status),
             Phase::Enabling => {
                 let followed = match report.status {
-                    Status::Working => self.said == Said::Enable,
+                    Status::Working => self.last_request == LastRequest::Enable,
                     status => status == Status::Enabled,
                 };
                 if followed {
@@ -199,7 +203,7 @@ impl Joint {
                     0
                 };
                 if *disabled_replies >= DISABLED_REPLIES {
-                    // Its supply may have failed for a moment, and taken the settings with it.
+                    // Its supply may have failed for a moment, which resets its settings.
                     self.set_up(self.mode);
                 }
             }
@@ -207,7 +211,7 @@ impl Joint {
         }
     }
 
-    /// `code` 0: a fault that the motor has not named yet.
+    /// Enters the fault state. `code` 0 means that the motor has not named the fault.
     fn on_fault(&mut self, code: u32) {
         if !matches!(self.phase, Phase::Fault) {
             self.phase = Phase::Fault;
@@ -227,34 +231,34 @@ impl Joint {
         }
     }
 
-    /// The frame of this slot. `None` as command: no torque, before anything else.
+    /// Returns the frame of this slot. Without a command the motor is disabled before anything else.
     fn next_frame(
         &mut self,
         command: Option<&JointCommand>,
         config: &JointConfig,
         now_us: u64,
     ) -> CanFrame {
-        self.said = Said::Other;
+        self.last_request = LastRequest::Other;
         self.sent = JointCommand::default();
-        self.obeyed = None;
+        self.active_targets = None;
         let has_torque = matches!(self.phase, Phase::Enabling | Phase::Enabled { .. });
         if command.is_none() && has_torque {
             self.phase = Phase::Disabled;
             return self.slot.motor.disable();
         }
-        if let Some(frame) = self.upkeep(now_us) {
+        if let Some(frame) = self.priority_frame(now_us) {
             return frame;
         }
         match command {
-            Some(command) => self.obey(command, config, now_us),
+            Some(command) => self.follow(command, config, now_us),
             None => self.slot.motor.disable(),
         }
     }
 
-    /// What comes before commands: clearing, set-up, a look at the fault word.
-    fn upkeep(&mut self, now_us: u64) -> Option<CanFrame> {
+    /// Returns the frame that has priority over commands: clearing a fault, set-up, reading the fault word.
+    fn priority_frame(&mut self, now_us: u64) -> Option<CanFrame> {
         let motor = &self.slot.motor;
-        if core::mem::take(&mut self.clear_wanted) {
+        if core::mem::take(&mut self.clear_requested) {
             self.set_up(JointMode::Mit);
             return Some(motor.clear_fault());
         }
@@ -267,12 +271,12 @@ impl Joint {
         }
         self.slots_to_fault_poll = FAULT_POLL_SLOTS;
         let frame = motor.read_faults()?;
-        self.said = Said::ReadFaults;
+        self.last_request = LastRequest::ReadFaults;
         Some(frame)
     }
 
-    fn obey(&mut self, command: &JointCommand, config: &JointConfig, now_us: u64) -> CanFrame {
-        if self.changes_mode(command.mode) {
+    fn follow(&mut self, command: &JointCommand, config: &JointConfig, now_us: u64) -> CanFrame {
+        if self.prepare_mode_change(command.mode) {
             return self.slot.motor.disable();
         }
         match self.phase {
@@ -282,9 +286,9 @@ impl Joint {
         }
     }
 
-    /// A motor obeys one mode at a time and changes it while disabled. `Off` in another mode than MIT, which alone can
-    /// carry a zero, is to be disabled.
-    fn changes_mode(&mut self, wanted: JointMode) -> bool {
+    /// Prepares a change of control mode and returns whether one is under way. A motor follows one mode at a time and
+    /// changes it while disabled. Only MIT mode can carry zero torque, so in any other mode `Off` disables the motor.
+    fn prepare_mode_change(&mut self, wanted: JointMode) -> bool {
         if matches!(self.phase, Phase::Fault) {
             return false;
         }
@@ -315,7 +319,7 @@ impl Joint {
             .enable_began_us
             .is_some_and(|began_us| since_us(began_us) < ENABLE_WINDOW_US)
         {
-            self.said = Said::Enable;
+            self.last_request = LastRequest::Enable;
             self.slot.motor.enable()
         } else {
             self.slot.motor.disable()
@@ -326,21 +330,21 @@ impl Joint {
         let period_s = self.slot.schedule.period_s();
         let limits = MotorLimits {
             max_torque_nm: self.slot.max_torque_nm,
-            // The report is up to one period old, or more after lost ones; the command is one when the next comes.
+            // The report is up to one period old, or older after lost ones, and the command lasts one period.
             horizon_s: period_s + scalar::max(period_s, self.age_us as f32 * 1e-6),
         };
         let allowed = match &self.report {
             Some(report) => {
                 let motion = axis::joint_motion(&report.motion, config);
-                limited(command, motion, config, limits)
+                limit_command(command, motion, config, limits)
             }
             None => JointCommand::default(),
         };
         self.sent = allowed;
         let targets = axis::motor_targets(&allowed, config);
-        self.obeyed = (allowed.mode == JointMode::Mit).then_some(targets);
+        self.active_targets = (allowed.mode == JointMode::Mit).then_some(targets);
         if allowed.mode == JointMode::Off && self.mode != JointMode::Mit {
-            // The command was no number: the same as Off.
+            // The command held NaN, which counts as `Off`.
             self.phase = Phase::Disabled;
             return self.slot.motor.disable();
         }
@@ -355,7 +359,7 @@ impl Motor for Joint {
     type Command = JointCommand;
     type Config = JointConfig;
     type Feedback = JointFeedback;
-    /// A frame, if the motor has its slot in this tick.
+    /// The frame, if the motor has its slot in this tick.
     type Output = Option<CanFrame>;
 
     fn receive(&mut self, frame: &CanFrame, ts_us: u64) -> bool {
@@ -374,13 +378,13 @@ impl Motor for Joint {
         true
     }
 
-    fn watch(&mut self, timeout_us: u32, now_us: u64) {
+    fn update_age(&mut self, timeout_us: u32, now_us: u64) {
         self.age_us = age_us(self.report_ts_us, now_us);
         self.is_silent = self.age_us > timeout_us;
         if !self.is_silent {
             return;
         }
-        self.freeze_watch.restart(now_us);
+        self.freeze_detector.restart(now_us);
         match &mut self.phase {
             Phase::SettingUp(set_up) => set_up.on_silence(now_us),
             _ => self.set_up(self.mode),
@@ -418,7 +422,7 @@ impl Motor for Joint {
         self.tick = self.tick.wrapping_add(1);
         if !permitted {
             self.sent = JointCommand::default();
-            self.obeyed = None;
+            self.active_targets = None;
         }
         due.then(|| self.next_frame(permitted.then_some(command), config, now_us))
     }

@@ -1,4 +1,4 @@
-//! What a joint may be asked for: soft limits, speed, gains and torque, all in joint coordinates.
+//! Limits of joint commands: soft limits, speed, gains and torque, all in joint coordinates.
 
 use super::mit::{KD_MAX, KP_MAX};
 use crate::{
@@ -6,7 +6,7 @@ use crate::{
     math::scalar,
 };
 
-/// Where the joint is and how fast it turns.
+/// Angle and speed of a joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointMotion {
     pub pos_rad: f32,
@@ -22,24 +22,26 @@ impl JointMotion {
     }
 }
 
-/// What the motor's place in the layout adds.
+/// Limits given by the motor's place in the layout.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotorLimits {
     pub max_torque_nm: f32,
-    /// How long the joint may move between the report that a command was made from and the command after it.
+    /// Longest time in s between the report that a command was computed from and the next command.
     pub horizon_s: f32,
 }
 
-/// The command that may leave the board instead of `command`. What is no number in a field that the mode uses makes it
-/// `Off`, as does a limit that is no number.
+/// Returns the command that may be sent instead of `command`. NaN in a field that the mode uses, or in a limit, makes
+/// it `Off`.
 ///
-/// In MIT mode the torque that the motor will give, `kp`·(p − q) + `kd`·(v − q̇) + τ, is kept within the torque limit by
-/// scaling `kp`, `kd` and τ alike, for where the joint is and where it will be at its present speed until the next
-/// command; and at or beyond a soft limit it never points outwards. The target stays inside the soft limits; of a joint
-/// that is beyond one already, no further out than the joint is, so that holding it there does not throw it back. In the
-/// other modes the motor limits torque itself; there the target stays inside the soft limits, and a speed outwards
-/// becomes zero at them, or where the joint would be at them before the next command.
-pub fn limited(
+/// In MIT mode the motor's torque is `kp`·(p − q) + `kd`·(v − q̇) + τ. The function scales `kp`, `kd` and τ alike
+/// until this torque is within its limit, both at the present position and at the position that the joint reaches by
+/// the next command at its present speed. At or beyond a soft limit the torque never points outwards. The target
+/// stays inside the soft limits. A joint that is already beyond one may keep its present angle as its target, so that
+/// holding it does not throw it back.
+///
+/// In the other modes the motor limits torque itself. The target angle stays inside the soft limits. A speed outwards
+/// becomes zero at a soft limit, or where the joint would reach it before the next command.
+pub fn limit_command(
     command: &JointCommand,
     motion: JointMotion,
     config: &JointConfig,
@@ -48,20 +50,20 @@ pub fn limited(
     if !is_usable(command, config) {
         return JointCommand::default();
     }
-    let vel_rps = within(command.vel_rps, config.max_speed_rps);
+    let vel_rps = clamp_magnitude(command.vel_rps, config.max_speed_rps);
     match command.mode {
         JointMode::Off => JointCommand::default(),
-        JointMode::Mit => limited_mit(command, vel_rps, motion, config, motor),
+        JointMode::Mit => limit_mit(command, vel_rps, motion, config, motor),
         JointMode::PositionSpeed => JointCommand {
             mode: JointMode::PositionSpeed,
-            pos_rad: inside(command.pos_rad, config),
+            pos_rad: within_soft_limits(command.pos_rad, config),
             vel_rps: vel_rps.abs(),
             ..JointCommand::default()
         },
         JointMode::Speed => JointCommand {
             mode: JointMode::Speed,
-            vel_rps: not_outwards(
-                not_outwards(vel_rps, motion, config),
+            vel_rps: zero_if_outwards(
+                zero_if_outwards(vel_rps, motion, config),
                 motion.after(motor.horizon_s),
                 config,
             ),
@@ -84,7 +86,7 @@ fn is_usable(command: &JointCommand, config: &JointConfig) -> bool {
     fields_ok && !limits.is_nan() && config.min_rad <= config.max_rad
 }
 
-fn limited_mit(
+fn limit_mit(
     command: &JointCommand,
     vel_rps: f32,
     motion: JointMotion,
@@ -94,16 +96,16 @@ fn limited_mit(
     let limit_nm = scalar::max(scalar::min(config.max_torque_nm, motor.max_torque_nm), 0.0);
     let allowed = JointCommand {
         mode: JointMode::Mit,
-        pos_rad: no_further_out(command.pos_rad, motion, config),
+        pos_rad: clamp_not_outwards(command.pos_rad, motion, config),
         vel_rps,
         kp: scalar::clamp(command.kp, 0.0, scalar::clamp(config.max_kp, 0.0, KP_MAX)),
         kd: scalar::clamp(command.kd, 0.0, scalar::clamp(config.max_kd, 0.0, KD_MAX)),
-        tau_nm: within(command.tau_nm, limit_nm),
+        tau_nm: clamp_magnitude(command.tau_nm, limit_nm),
     };
     let torque_nm = predicted_torque_nm(&allowed, motion);
     let later_nm = torque_nm - allowed.kp * motion.vel_rps * motor.horizon_s;
     let largest_nm = scalar::max(torque_nm.abs(), later_nm.abs());
-    let scale = if not_outwards(torque_nm, motion, config) != torque_nm {
+    let scale = if zero_if_outwards(torque_nm, motion, config) != torque_nm {
         0.0
     } else if largest_nm > limit_nm {
         limit_nm / largest_nm
@@ -118,15 +120,15 @@ fn limited_mit(
     }
 }
 
-/// What the motor makes of an MIT command.
+/// The torque in N·m that the motor computes from an MIT command.
 fn predicted_torque_nm(command: &JointCommand, motion: JointMotion) -> f32 {
     command.kp * (command.pos_rad - motion.pos_rad)
         + command.kd * (command.vel_rps - motion.vel_rps)
         + command.tau_nm
 }
 
-/// Zero instead of what would drive the joint past a soft limit that it has reached.
-fn not_outwards(value: f32, motion: JointMotion, config: &JointConfig) -> f32 {
+/// Returns `value`, or zero if it would drive the joint beyond a soft limit that it has reached.
+fn zero_if_outwards(value: f32, motion: JointMotion, config: &JointConfig) -> f32 {
     if motion.pos_rad >= config.max_rad {
         scalar::min(value, 0.0)
     } else if motion.pos_rad <= config.min_rad {
@@ -136,12 +138,12 @@ fn not_outwards(value: f32, motion: JointMotion, config: &JointConfig) -> f32 {
     }
 }
 
-fn inside(pos_rad: f32, config: &JointConfig) -> f32 {
+fn within_soft_limits(pos_rad: f32, config: &JointConfig) -> f32 {
     scalar::clamp(pos_rad, config.min_rad, config.max_rad)
 }
 
-/// Inside the soft limits or, beyond one, between the joint and its travel.
-fn no_further_out(pos_rad: f32, motion: JointMotion, config: &JointConfig) -> f32 {
+/// Clamps an angle to the soft limits, extended to the joint's present angle if that lies beyond one.
+fn clamp_not_outwards(pos_rad: f32, motion: JointMotion, config: &JointConfig) -> f32 {
     scalar::clamp(
         pos_rad,
         scalar::min(config.min_rad, motion.pos_rad),
@@ -149,7 +151,7 @@ fn no_further_out(pos_rad: f32, motion: JointMotion, config: &JointConfig) -> f3
     )
 }
 
-fn within(value: f32, limit: f32) -> f32 {
+fn clamp_magnitude(value: f32, limit: f32) -> f32 {
     let limit = scalar::max(limit, 0.0);
     scalar::clamp(value, -limit, limit)
 }

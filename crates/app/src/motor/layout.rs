@@ -1,4 +1,4 @@
-//! Which motor sits where. A table that two motors could not share, or that loads a bus too much, does not compile.
+//! Which motor sits where. A table in which motors conflict, or which overloads a bus, does not compile.
 
 mod checks;
 mod default_config;
@@ -17,7 +17,7 @@ use crate::domain::{BusId, CanFrame, JointConfig, MotorBuses, StandardId};
 /// motors leaves room for.
 pub const REPLY_PERIOD_TICKS: u32 = 4;
 
-/// When a motor is commanded, in ticks of 1 ms.
+/// The ticks of 1 ms in which a motor gets a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Schedule {
     every: u8,
@@ -25,7 +25,8 @@ pub struct Schedule {
 }
 
 impl Schedule {
-    /// Each `every` ticks, `phase` ticks after the first one. `None` unless `every` is 1, 2, 4 or 8 and `phase` smaller.
+    /// A command every `every` ticks, beginning `phase` ticks after the first one. Returns `None` unless `every` is
+    /// 1, 2, 4 or 8 and `phase` is smaller.
     pub const fn new(every: u8, phase: u8) -> Option<Self> {
         if matches!(every, 1 | 2 | 4 | 8) && phase < every {
             Some(Self { every, phase })
@@ -34,31 +35,34 @@ impl Schedule {
         }
     }
 
-    /// Time from one command to the next.
+    /// Time in s from one command to the next.
     pub fn period_s(self) -> f32 {
         f32::from(self.every) * 1e-3
     }
 
-    /// `every` is a power of two, so the remainder is a mask.
+    /// Whether the motor gets a command in this tick. `every` is a power of two, so the remainder is a mask.
     pub const fn is_due(self, tick: u8) -> bool {
         tick & self.every.wrapping_sub(1) == self.phase
     }
 }
 
-/// The wheels' M3508 with their C620, commanded in every tick by one frame.
+/// The wheels' M3508 motors with C620 speed controllers. One frame commands both in every tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WheelGroup {
+    /// The bus that they share.
     pub bus: BusId,
-    /// Left, right.
+    /// Numbers of the left and the right speed controller.
     pub escs: [EscId; 2],
-    /// What each motor may get whatever the settings say.
+    /// Upper limit of each motor's current in mA, whatever the settings say.
     pub max_current_ma: f32,
 }
 
-/// The makes of joint motors.
+/// A joint motor of either make.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum JointMotor {
+    /// Damiao DM4310.
     Dm4310(Dm4310),
+    /// RobStride RS00.
     Rs00(Rs00),
 }
 
@@ -70,7 +74,7 @@ impl JointMotor {
         }
     }
 
-    /// The make's number in stored settings (docs/parameters.md); never changes.
+    /// The make's number in stored settings (docs/parameters.md). It never changes.
     pub const fn make(&self) -> u8 {
         match self {
             Self::Dm4310(_) => 1,
@@ -79,22 +83,25 @@ impl JointMotor {
     }
 }
 
-/// One joint motor.
+/// One joint motor and its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointSlot {
+    /// The bus it is connected to.
     pub bus: BusId,
+    /// The motor.
     pub motor: JointMotor,
+    /// When it gets its commands.
     pub schedule: Schedule,
-    /// Until settings say otherwise.
+    /// Default settings of the joint.
     pub config: JointConfig,
-    /// What this motor may give whatever the settings say.
+    /// Upper limit of the motor's torque in N·m, whatever the settings say.
     pub max_torque_nm: f32,
 }
 
 /// All motors of a robot, in the order of `ChassisCommand`.
 ///
-/// A bus may be loaded to 80 %, and at most two frames for motors start on it in one tick, which leaves the third
-/// mailbox to a tuning reply. Four DM4310 in every tick are too much:
+/// The load of a bus is limited to 80 %. In one tick at most two motor frames start on a bus, which leaves the third
+/// mailbox for a tuning reply. Four DM4310 in every tick are too many:
 ///
 /// ```compile_fail,E0080
 /// # use robot_app::motor::layout::*;
@@ -127,8 +134,8 @@ pub struct JointSlot {
 /// const LAYOUT: MotorLayout = MotorLayout::new(*ROBOT_LAYOUT.wheels(), JOINTS);
 /// ```
 ///
-/// Nor may a frame that is not for a DM4310 have that motor's number in the low byte of its identifier: the motor
-/// compares no more of it. Here joint 2 would answer each report of joint 1:
+/// A DM4310 compares only the low byte of an identifier with its number, so no other frame on its bus may have that
+/// low byte. Here joint 2 would answer each report of joint 1:
 ///
 /// ```compile_fail,E0080
 /// # use robot_app::motor::{dm4310::Dm4310, layout::*};
@@ -147,10 +154,10 @@ pub struct MotorLayout {
 }
 
 impl MotorLayout {
-    /// For constants: what is wrong with the table is a compile error there.
+    /// Checks the table. Use it for constants, where an error in the table is a compile error.
     ///
-    /// # Panics
-    /// If a bus is overloaded, two motors use the same identifier, or a DM4310 would hear what is not for it.
+    /// # Panics Panics if a bus is overloaded, two motors use the same identifier, or a DM4310 would react to a frame
+    /// for another device.
     pub const fn new(wheels: WheelGroup, joints: [JointSlot; 4]) -> Self {
         checks::no_identifier_clashes(&wheels, &joints);
         checks::load_fits_bus(&wheels, &joints);
@@ -159,21 +166,24 @@ impl MotorLayout {
         Self { wheels, joints }
     }
 
+    /// The wheel motors.
     pub const fn wheels(&self) -> &WheelGroup {
         &self.wheels
     }
 
+    /// The joint motors: left front, left rear, right front, right rear.
     pub const fn joints(&self) -> &[JointSlot; 4] {
         &self.joints
     }
 
-    /// A joint's motor has a time-out that only people can set: RS00.
-    pub fn has_timeout_to_set_by_hand(&self) -> bool {
+    /// Whether a joint motor has a time-out that can only be set by hand (RS00).
+    pub fn needs_manual_timeout(&self) -> bool {
         let is_rs00 = |joint: &JointSlot| matches!(joint.motor, JointMotor::Rs00(_));
         self.joints.iter().any(is_rs00)
     }
 
-    /// What stops every motor: zero current for speed controllers 1 to 4, then the disable frame of each joint.
+    /// The frames that stop every motor: zero current for speed controllers 1 to 4, and a disable frame for each
+    /// joint.
     pub const fn safe_frames(&self) -> [(BusId, CanFrame); 5] {
         let zero = CanFrame::new(m3508::COMMAND_ID, [0; 8]);
         let [left_front, left_rear, right_front, right_rear] = &self.joints;

@@ -2,12 +2,12 @@
 
 use crate::domain::{CanFrame, MotorCurrent, StandardId, WheelFeedback};
 
-/// Number set at the speed controller, 1 to 4: those that listen to the first command group.
+/// Number set on a speed controller, 1…4, which are addressed by the first command group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EscId(u8);
 
 impl EscId {
-    /// `None` outside 1 … 4.
+    /// Returns `None` outside 1…4.
     pub const fn new(number: u8) -> Option<Self> {
         if number >= 1 && number <= 4 {
             Some(Self(number))
@@ -16,7 +16,7 @@ impl EscId {
         }
     }
 
-    /// Identifier of its feedback: 0x201 … 0x204.
+    /// Identifier of its feedback: 0x201…0x204.
     pub const fn feedback_id(self) -> StandardId {
         match StandardId::new(COMMAND_ID.raw() | self.0 as u16) {
             Some(id) => id,
@@ -24,13 +24,13 @@ impl EscId {
         }
     }
 
-    /// Its place in the command frame, 0 to 3.
-    pub const fn place(self) -> usize {
+    /// Its index in the command frame, 0…3.
+    pub const fn index(self) -> usize {
         self.0.saturating_sub(1) as usize
     }
 }
 
-/// Carries the currents of controllers 1 to 4.
+/// Identifier of the frame with the currents of controllers 1 to 4.
 pub const COMMAND_ID: StandardId = match StandardId::new(0x200) {
     Some(id) => id,
     None => unreachable!(),
@@ -41,7 +41,7 @@ const FULL_SCALE_COUNTS: f32 = 16_384.0;
 const COUNTS_PER_MA: f32 = FULL_SCALE_COUNTS / MotorCurrent::FULL_SCALE_MA;
 const LAST_ANGLE: u16 = 8_191;
 
-/// Currents of controllers 1 to 4, to the nearest count towards zero.
+/// Encodes the currents of controllers 1 to 4, rounded towards zero.
 pub fn encode_currents(currents: [MotorCurrent; 4]) -> CanFrame {
     let [one, two, three, four] = currents.map(counts);
     CanFrame::new(
@@ -52,12 +52,12 @@ pub fn encode_currents(currents: [MotorCurrent; 4]) -> CanFrame {
     )
 }
 
-/// A `MotorCurrent` is finite and inside ±20 A, so the conversion cannot overflow.
+/// A `MotorCurrent` is finite and within ±20 A, so the conversion cannot overflow.
 fn counts(current: MotorCurrent) -> [u8; 2] {
     ((current.ma() * COUNTS_PER_MA) as i16).to_be_bytes()
 }
 
-/// `None` unless the frame has eight bytes and an angle inside a turn.
+/// Decodes a feedback frame. Returns `None` unless it has eight bytes and an angle within one turn.
 pub fn decode_feedback(frame: &CanFrame, ts_us: u64) -> Option<WheelFeedback> {
     let [
         angle_h,
@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn an_impossible_angle_or_a_short_frame_is_refused() {
+    fn an_impossible_angle_or_a_short_frame_is_rejected() {
         let id = StandardId::new(0x201).unwrap();
         let angle = CanFrame::new(id, [0x20, 0x00, 0, 0, 0, 0, 0, 0]);
         let short = CanFrame::from_payload(id, &[0; 7]).unwrap();
@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn controllers_answer_at_0x200_plus_their_number() {
+    fn feedback_has_identifier_0x200_plus_the_controller_number() {
         let feedback_id = |number| EscId::new(number).map(|esc| esc.feedback_id().raw());
         assert_eq!(feedback_id(1), Some(0x201));
         assert_eq!(feedback_id(4), Some(0x204));

@@ -1,10 +1,10 @@
-//! All motors of the robot: routes feedback in, composes command frames out.
+//! All motors of the robot: distributes feedback and composes command frames.
 
 use heapless::Vec;
 
 use super::{
     interface::Motor,
-    joint::{Joint, NotStanding},
+    joint::{Joint, NotStationary},
     layout::MotorLayout,
     m3508,
     wheel::Wheel,
@@ -17,7 +17,7 @@ use crate::{
     safety::TorquePermit,
 };
 
-/// Frames of one tick: at most two a bus for motors (see [`MotorLayout`]) and one for a reply.
+/// Frames of one tick: on each bus at most two for motors (see [`MotorLayout`]) and one for a reply.
 pub type TickFrames = Vec<(BusId, CanFrame), 6>;
 
 /// The motors of one layout.
@@ -42,7 +42,7 @@ impl MotorManager {
         self.layout
     }
 
-    /// True if the frame was the feedback of a motor; any other leaves no trace.
+    /// Passes a frame to the motor it is from. Returns false, without any effect, if it is from none.
     pub fn route_frame(&mut self, bus: BusId, frame: &CanFrame, ts_us: u64) -> bool {
         if self.layout.wheels().bus == bus {
             for wheel in &mut self.wheels {
@@ -59,26 +59,26 @@ impl MotorManager {
         false
     }
 
-    /// Where a joint's motor stands, in its own coordinates. `None` if there is no such joint.
-    pub fn standing_angle_rad(&self, joint: usize) -> Option<Result<f32, NotStanding>> {
-        self.joints.get(joint).map(Joint::standing_angle_rad)
+    /// The angle of a stationary joint motor in motor coordinates. `None` if there is no such joint.
+    pub fn stationary_angle_rad(&self, joint: usize) -> Option<Result<f32, NotStationary>> {
+        self.joints.get(joint).map(Joint::stationary_angle_rad)
     }
 
-    /// Feedback with ages brought up to `now_us`; once a tick, before [`compose`](Self::compose).
+    /// Updates the feedback and its ages; called once a tick before [`compose`](Self::compose).
     pub fn feedback(&mut self, config: &RobotConfig, now_us: u64, feedback: &mut MotorFeedback) {
         for (wheel, out) in self.wheels.iter_mut().zip(&mut feedback.wheels) {
-            wheel.watch(config.wheel_ctrl.feedback_timeout_us, now_us);
+            wheel.update_age(config.wheel_ctrl.feedback_timeout_us, now_us);
             wheel.feedback(&config.wheel_ctrl, out);
         }
         let joints = self.joints.iter_mut().zip(&mut feedback.joints);
         for ((joint, out), joint_config) in joints.zip(&config.joints) {
-            joint.watch(config.safety.joint_timeout_us, now_us);
+            joint.update_age(config.safety.joint_timeout_us, now_us);
             joint.feedback(joint_config, out);
         }
         feedback.ts_us = now_us;
     }
 
-    /// The whole chip stood still for `stall_us`: no motor was silent because it received no answer.
+    /// Excludes a stall of the whole chip from all ages: no motor was silent meanwhile.
     pub fn after_stall(&mut self, stall_us: u32, now_us: u64) {
         for wheel in &mut self.wheels {
             wheel.after_stall(stall_us);
@@ -88,27 +88,27 @@ impl MotorManager {
         }
     }
 
-    /// Joint motors in fault are told to forget it in their next slot, and set up again.
+    /// Makes each joint motor in fault clear it in its next slot and be set up again.
     pub fn clear_faults(&mut self) {
         for joint in &mut self.joints {
             joint.clear_fault();
         }
     }
 
-    /// True if the permit lets the wheels push.
+    /// Whether the permit allows current on the wheels.
     pub fn wheels_may_move(&self, permit: Option<&TorquePermit>) -> bool {
         permit.is_some_and(|permit| permit.allows_wheels(self.layout.wheels().bus))
     }
 
-    /// True if the permit lets any joint be enabled.
+    /// Whether the permit allows any joint to be enabled.
     pub fn joints_may_move(&self, permit: Option<&TorquePermit>) -> bool {
         let mut joints = self.layout.joints().iter();
         permit.is_some_and(|permit| joints.any(|slot| permit.allows_joints(slot.bus)))
     }
 
-    /// Adds the frames of this tick and notes the commands that are in them. Without a permit for a motor they are exactly zero:
-    /// zero current for a wheel, the disable frame for a joint. They are sent all the same: a wheel's speed controller
-    /// may hold its last command, a joint's motor only replies when told something.
+    /// Adds the frames of this tick and returns the commands they carry in `sent`. A motor without a permit gets
+    /// exactly zero: zero current for a wheel, a disable frame for a joint. These frames are sent as well, as a speed
+    /// controller may hold its last command, and a joint motor reports only when addressed.
     pub fn compose(
         &mut self,
         command: &ChassisCommand,
@@ -138,11 +138,11 @@ impl MotorManager {
         for ((esc, wheel), (command, sent)) in wheels.zip(command.wheels.iter().zip(&mut sent)) {
             let current = wheel.drive(command, &config.wheel_ctrl, permitted, now_us);
             sent.current_ma = current.ma();
-            if let Some(place) = currents.get_mut(esc.place()) {
+            if let Some(place) = currents.get_mut(esc.index()) {
                 *place = current;
             }
         }
-        // The layout leaves room.
+        // The layout guarantees room.
         let _ = frames.push((bus, m3508::encode_currents(currents)));
         sent
     }
@@ -163,7 +163,7 @@ impl MotorManager {
             let frame = joint.drive(command, config, permitted, now_us);
             *sent = *joint.sent();
             if let Some(frame) = frame {
-                // The layout leaves room.
+                // The layout guarantees room.
                 let _ = frames.push((slot.bus, frame));
             }
         }

@@ -1,29 +1,35 @@
-//! The 64 bits that DM4310 and RS00 share: five numbers as unsigned codes over each motor's own ranges
+//! The command and reply fields that DM4310 and RS00 share: five numbers as unsigned codes over each motor's ranges
 //! (docs/hardware.md#mit-frames, and the C code in RobStride's MIT reference).
 
 use crate::math::scalar;
 
-/// Position and velocity the codes can tell, symmetric about zero, in the motor's own coordinates at the output shaft.
+/// Full scale of a motor's codes, symmetric about zero, in motor coordinates at the output shaft.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MitRanges {
+    /// Largest angle in rad.
     pub p_max_rad: f32,
+    /// Largest speed in rad/s.
     pub v_max_rps: f32,
+    /// Largest torque in N·m.
     pub t_max_nm: f32,
 }
 
-/// What a motor is asked for, motor coordinates; anything, even NaN.
+/// Setpoints in motor coordinates. They may hold any value, even NaN.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MitTargets {
+    /// Target angle in rad.
     pub pos_rad: f32,
+    /// Target speed in rad/s.
     pub vel_rps: f32,
-    /// N·m/rad.
+    /// Stiffness in N·m/rad.
     pub kp: f32,
-    /// N·m·s/rad.
+    /// Damping in N·m·s/rad.
     pub kd: f32,
+    /// Feed-forward torque in N·m.
     pub torque_nm: f32,
 }
 
-/// A command that a motor understands: every field is inside its range.
+/// An encodable command: every field is within its range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MitCommand {
     position: u16,
@@ -33,24 +39,29 @@ pub struct MitCommand {
     torque: u16,
 }
 
-/// What a motor reports besides temperature and state, motor coordinates.
+/// What a motor reports besides temperature and state, in motor coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MitReport {
-    /// As it came, to tell whether it changed at all.
+    /// The received code of the angle, to detect any change.
     pub position_code: u16,
+    /// Angle in rad.
     pub pos_rad: f32,
+    /// Speed in rad/s.
     pub vel_rps: f32,
+    /// Torque in N·m.
     pub torque_nm: f32,
 }
 
+/// Largest stiffness in N·m/rad.
 pub const KP_MAX: f32 = 500.0;
+/// Largest damping in N·m·s/rad.
 pub const KD_MAX: f32 = 5.0;
 const LAST_CODE_16: f32 = 65_535.0;
 const LAST_CODE_12: f32 = 4_095.0;
 
 impl MitCommand {
-    /// Clamps each field to its range; NaN becomes 0. The codes are cut off, not rounded, as in the reference code, so
-    /// that zero becomes the code half a step below it.
+    /// Clamps each field to its range; NaN becomes 0. The codes are truncated, as in the reference code, so zero
+    /// becomes the code half a step below it.
     pub fn clamped(targets: &MitTargets, ranges: &MitRanges) -> Self {
         let MitRanges {
             p_max_rad,
@@ -66,6 +77,7 @@ impl MitCommand {
         }
     }
 
+    /// The eight bytes of the frame.
     pub fn payload(self) -> [u8; 8] {
         let [p_high, p_low] = self.position.to_be_bytes();
         let velocity_kp = u32::from(self.velocity) << 12 | u32::from(self.kp);
@@ -79,7 +91,7 @@ impl MitCommand {
 }
 
 impl MitReport {
-    /// From bytes 1 to 5 of a reply.
+    /// Decodes bytes 1 to 5 of a reply.
     pub fn decode([p_high, p_low, v_high, v_t, t_low]: [u8; 5], ranges: &MitRanges) -> Self {
         let position_code = u16::from_be_bytes([p_high, p_low]);
         let velocity = u16::from(v_high) << 4 | u16::from(v_t >> 4);
@@ -117,7 +129,7 @@ mod tests {
 
     /// A vector of docs/hardware.md#test-vectors.
     #[test]
-    fn zero_is_the_code_just_below_it() {
+    fn zero_becomes_the_code_just_below_zero() {
         let zero = MitCommand::clamped(&MitTargets::default(), &DM);
         assert_eq!(
             zero.payload(),
@@ -126,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_asks_for_nothing() {
+    fn nan_becomes_zero() {
         let nan = MitTargets {
             pos_rad: f32::NAN,
             vel_rps: f32::NAN,
@@ -141,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn infinity_ends_at_the_range() {
+    fn infinity_is_clamped_to_the_range() {
         let up = MitTargets {
             pos_rad: f32::INFINITY,
             vel_rps: f32::INFINITY,

@@ -1,7 +1,7 @@
-//! One M3508. Its current goes out in a frame it shares with others, so its output is a current, not a frame.
+//! One M3508. All wheels share a frame, so its output is a current.
 
 use super::{
-    angle_watch::AngleWatch,
+    angle_monitor::AngleMonitor,
     interface::Motor,
     m3508::{self, EscId},
 };
@@ -9,13 +9,13 @@ use crate::domain::{
     CanFrame, MotorCurrent, WheelCommand, WheelControllerConfig, WheelFeedback, age_us,
 };
 
-/// A rotor that turns at least this fast …
+/// A rotor that reports at least this speed must also change its angle.
 const MOVING_RPM: u16 = 60;
-/// … must show it in its angle within this time.
+/// The angle must change within this time.
 const STUCK_ANGLE_US: u64 = 50_000;
-/// Reported and commanded current differ by more than this …
-const ODD_CURRENT_MA: f32 = 1_000.0;
-/// … for this long while nothing in the reports changes: they are not about this motor now.
+/// Tolerance between reported and commanded current.
+const CURRENT_TOLERANCE_MA: f32 = 1_000.0;
+/// Unchanging reports may exceed the tolerance for this long. Then they do not describe the motor's present state.
 const STUCK_REPORT_US: u64 = 100_000;
 
 #[derive(Clone, Debug)]
@@ -25,11 +25,11 @@ pub struct Wheel {
     feedback: WheelFeedback,
     sent: MotorCurrent,
     permitted: bool,
-    /// Works while the wheel may not move: what it finds forbids arming, and an armed robot has no time to spare.
-    angle_watch: AngleWatch,
-    /// Last report with another angle than the one before.
+    /// Runs only while the wheel may not move: its result forbids arming, and the armed tick has no time to spare.
+    angle_monitor: AngleMonitor,
+    /// Time of the last report whose angle differed from the previous one.
     angle_changed_us: u64,
-    /// Last report that differed at all, or agreed with the current sent.
+    /// Time of the last report that differed at all, or agreed with the current sent.
     plausible_us: u64,
 }
 
@@ -41,13 +41,13 @@ impl Wheel {
             feedback: WheelFeedback::default(),
             sent: MotorCurrent::ZERO,
             permitted: false,
-            angle_watch: AngleWatch::default(),
+            angle_monitor: AngleMonitor::default(),
             angle_changed_us: 0,
             plausible_us: 0,
         }
     }
 
-    /// Reports are as old as they would be without the stall.
+    /// Excludes a stall of the chip from the age of reports.
     pub fn after_stall(&mut self, stall_us: u32) {
         if self.feedback.ts_us == 0 {
             return;
@@ -61,7 +61,7 @@ impl Wheel {
         }
     }
 
-    /// `now` is a report, `self.feedback` the one before. Once frozen, only another report thaws it.
+    /// Takes the report `now`, which follows `self.feedback`. A frozen state ends only with a different report.
     fn is_frozen(&mut self, now: &WheelFeedback) -> bool {
         let last = &self.feedback;
         let same_angle = now.rotor_angle == last.rotor_angle;
@@ -69,11 +69,11 @@ impl Wheel {
             && now.rpm == last.rpm
             && now.current_ma == last.current_ma
             && now.temperature_c == last.temperature_c;
-        let odd_current = (now.current_ma - self.sent.ma()).abs() > ODD_CURRENT_MA;
+        let implausible_current = (now.current_ma - self.sent.ma()).abs() > CURRENT_TOLERANCE_MA;
         if !same_angle || last.ts_us == 0 {
             self.angle_changed_us = now.ts_us;
         }
-        if !same_report || !odd_current || last.ts_us == 0 {
+        if !same_report || !implausible_current || last.ts_us == 0 {
             self.plausible_us = now.ts_us;
         }
         let stuck_angle = now.rpm.unsigned_abs() >= MOVING_RPM
@@ -100,13 +100,13 @@ impl Motor for Wheel {
         feedback.doubtful = if self.permitted {
             self.feedback.doubtful
         } else {
-            self.angle_watch.is_doubtful(&self.feedback, &feedback)
+            self.angle_monitor.is_doubtful(&self.feedback, &feedback)
         };
         self.feedback = feedback;
         true
     }
 
-    fn watch(&mut self, _timeout_us: u32, now_us: u64) {
+    fn update_age(&mut self, _timeout_us: u32, now_us: u64) {
         self.feedback.age_us = age_us(self.feedback.ts_us, now_us);
     }
 
@@ -123,7 +123,7 @@ impl Motor for Wheel {
     ) -> MotorCurrent {
         self.permitted = permitted;
         self.sent = if permitted {
-            // A limit that is no number stays one, and allows nothing.
+            // A NaN limit stays NaN and allows no current.
             let limit_ma = if config.current_limit_ma > self.max_current_ma {
                 self.max_current_ma
             } else {
@@ -141,9 +141,9 @@ impl Motor for Wheel {
 mod tests {
     use super::*;
 
-    /// Of settings and layout the smaller limit counts; one that is no number allows nothing.
+    /// The smaller of the two limits applies. A NaN limit allows no current.
     #[test]
-    fn current_is_limited_by_settings_and_layout() {
+    fn the_current_is_limited_by_settings_and_layout() {
         for (setting_ma, expected_ma) in [
             (4_000.0, 4_000.0),
             (16_000.0, 10_000.0),
@@ -166,7 +166,7 @@ mod tests {
         }
     }
 
-    /// Angle, rpm, current in counts and temperature, as a report of the first wheel carries them.
+    /// Angle, rpm, current in counts and temperature of a report.
     type Fields = [i16; 4];
 
     fn report(wheel: &mut Wheel, [angle, rpm, current, temperature]: Fields, ms: u64) -> bool {
@@ -180,25 +180,26 @@ mod tests {
         wheel.feedback.frozen
     }
 
-    fn wheel_told(current_ma: f32) -> Wheel {
+    fn wheel_with_current(current_ma: f32) -> Wheel {
         let mut wheel = Wheel::new(EscId::new(1).unwrap(), 20_000.0);
-        tell(&mut wheel, current_ma);
+        send_current(&mut wheel, current_ma);
         wheel
     }
 
-    fn tell(wheel: &mut Wheel, current_ma: f32) {
+    fn send_current(wheel: &mut Wheel, current_ma: f32) {
         let command = WheelCommand { current_ma };
         wheel.drive(&command, &WheelControllerConfig::default(), true, 0);
     }
 
-    /// Reports each millisecond; when the first of them is taken for frozen, if any is within a second.
-    fn frozen_ms(told_ma: f32, fields: impl Fn(u64) -> Fields) -> Option<u64> {
-        let mut wheel = wheel_told(told_ma);
+    /// Sends a report each millisecond and returns when the first of them counts as frozen, if any does within a
+    /// second.
+    fn frozen_ms(commanded_ma: f32, fields: impl Fn(u64) -> Fields) -> Option<u64> {
+        let mut wheel = wheel_with_current(commanded_ma);
         (0..1_000).find(|ms| report(&mut wheel, fields(*ms), *ms))
     }
 
     #[test]
-    fn a_rotor_that_turns_must_show_it_within_50_ms() {
+    fn the_angle_of_a_turning_rotor_must_change_within_50_ms() {
         for (rpm, expected) in [(59, None), (60, Some(50)), (-60, Some(50)), (-59, None)] {
             assert_eq!(frozen_ms(0.0, |_| [7, rpm, 0, 30]), expected, "{rpm} rpm");
         }
@@ -208,18 +209,18 @@ mod tests {
 
     /// 2441 counts are 2980 mA.
     #[test]
-    fn a_report_that_never_changes_must_agree_with_the_current_sent() {
-        for (told_ma, counts, expected) in [
+    fn unchanging_reports_must_agree_with_the_current_sent() {
+        for (commanded_ma, counts, expected) in [
             (1_000.0, 0, None),
             (1_001.0, 0, Some(100)),
             (-1_001.0, 0, Some(100)),
             (2_980.0, 2_441, None),
             (-2_980.0, 2_441, Some(100)),
         ] {
-            let found = frozen_ms(told_ma, |_| [7, 0, counts, 30]);
-            assert_eq!(found, expected, "{told_ma} mA");
+            let found = frozen_ms(commanded_ma, |_| [7, 0, counts, 30]);
+            assert_eq!(found, expected, "{commanded_ma} mA");
         }
-        // Any field that changes in time shows that the report is of now.
+        // A change of any field shows that the report is a new one.
         for field in 0..4 {
             let changing = |every: u64| {
                 frozen_ms(5_000.0, |ms| {
@@ -234,28 +235,28 @@ mod tests {
     }
 
     #[test]
-    fn only_another_report_thaws_a_frozen_wheel() {
-        let mut wheel = wheel_told(5_000.0);
+    fn only_a_different_report_ends_a_frozen_wheel() {
+        let mut wheel = wheel_with_current(5_000.0);
         for ms in 0..=100 {
             assert_eq!(report(&mut wheel, [7, 0, 0, 30], ms), ms == 100);
         }
-        tell(&mut wheel, 0.0);
+        send_current(&mut wheel, 0.0);
         assert!(report(&mut wheel, [7, 0, 0, 30], 101));
         assert!(!report(&mut wheel, [7, 0, 0, 31], 102));
     }
 
     #[test]
-    fn a_stall_makes_no_report_older_and_no_wheel_frozen() {
+    fn a_stall_neither_ages_reports_nor_freezes_a_wheel() {
         for stall_us in [0, 250_000] {
-            let mut wheel = wheel_told(0.0);
+            let mut wheel = wheel_with_current(0.0);
             wheel.after_stall(stall_us);
-            wheel.watch(0, 1_000_000);
+            wheel.update_age(0, 1_000_000);
             assert_eq!(wheel.feedback.age_us, u32::MAX, "never heard");
             for ms in 0..=10 {
                 report(&mut wheel, [7, 60, 0, 30], ms);
             }
             wheel.after_stall(stall_us);
-            wheel.watch(0, 1_261_000);
+            wheel.update_age(0, 1_261_000);
             assert_eq!(wheel.feedback.age_us, 251_000 - stall_us);
             assert_eq!(report(&mut wheel, [7, 60, 0, 30], 261), stall_us == 0);
         }

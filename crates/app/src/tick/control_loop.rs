@@ -93,7 +93,7 @@ pub struct ControlLoop<
     config: RobotConfig,
     controller: C,
     motors: MotorManager,
-    /// See `MotorLayout::has_timeout_to_set_by_hand`.
+    /// See `MotorLayout::needs_manual_timeout`.
     timeout_by_hand: bool,
     estimator: InsEstimator,
     policy: SafetyPolicy,
@@ -137,7 +137,7 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
             config,
             controller,
             motors: MotorManager::new(layout),
-            timeout_by_hand: layout.has_timeout_to_set_by_hand(),
+            timeout_by_hand: layout.needs_manual_timeout(),
             estimator,
             policy: SafetyPolicy::default(),
             phase: 0,
@@ -182,7 +182,7 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
             config,
             bring_up,
             diagnostics,
-            standing_angle_rad: &|joint| motors.standing_angle_rad(joint),
+            stationary_angle_rad: &|joint| motors.stationary_angle_rad(joint),
         };
         let mounting = access.config.mounting;
         if let Some(reply) = tuning.on_frame(bus, frame, gate, access) {

@@ -9,7 +9,7 @@ use crate::{
     bring_up::BringUp,
     diagnostics::DiagnosticsSnapshot,
     domain::{BusId, CanFrame, OperatorState, RobotConfig, TuningStatus},
-    motor::{NotStanding, layout::MotorLayout},
+    motor::{NotStationary, layout::MotorLayout},
     safety::ArmingState,
 };
 
@@ -32,14 +32,14 @@ impl TuningGate {
 }
 
 /// Where the motor of a joint stands, in its own coordinates; `None` if there is no such joint.
-pub type StandingAngle<'a> = &'a dyn Fn(usize) -> Option<Result<f32, NotStanding>>;
+pub type StationaryAngle<'a> = &'a dyn Fn(usize) -> Option<Result<f32, NotStationary>>;
 
 /// What requests read and change.
 pub struct TuningAccess<'a> {
     pub config: &'a mut RobotConfig,
     pub bring_up: &'a mut BringUp,
     pub diagnostics: &'a DiagnosticsSnapshot,
-    pub standing_angle_rad: StandingAngle<'a>,
+    pub stationary_angle_rad: StationaryAngle<'a>,
 }
 
 #[derive(Clone, Debug)]
@@ -80,7 +80,7 @@ impl TuningChannel {
             config,
             bring_up,
             diagnostics,
-            standing_angle_rad,
+            stationary_angle_rad,
         } = access;
         let params = &diagnostics.params;
         let request = Request::decode(frame)?;
@@ -129,7 +129,7 @@ impl TuningChannel {
                 Ok(protocol::echo(frame))
             }
             Request::ZeroJoint { joint, angle_rad } => {
-                let standing = standing_angle_rad(joint.into());
+                let standing = stationary_angle_rad(joint.into());
                 let motor_rad = standing.ok_or(Refusal::UnknownParameter)??;
                 self.zero_joint(config, joint, motor_rad, angle_rad)
                     .map(|()| protocol::echo(frame))

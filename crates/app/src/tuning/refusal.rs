@@ -1,6 +1,6 @@
 //! Why a request changed nothing.
 
-use crate::motor::NotStanding;
+use crate::motor::NotStationary;
 
 /// The numbers are on the wire and never change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,11 +51,11 @@ impl Refusal {
     }
 }
 
-impl From<NotStanding> for Refusal {
-    fn from(reason: NotStanding) -> Self {
+impl From<NotStationary> for Refusal {
+    fn from(reason: NotStationary) -> Self {
         match reason {
-            NotStanding::Unknown => Self::JointNotReady,
-            NotStanding::Turns => Self::JointTurns,
+            NotStationary::Unknown => Self::JointNotReady,
+            NotStationary::Moving => Self::JointTurns,
         }
     }
 }

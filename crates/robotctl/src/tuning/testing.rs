@@ -11,7 +11,7 @@ use robot_app::{
     bring_up::BringUp,
     diagnostics::DiagnosticsSnapshot,
     domain::{BusId, CanFrame, RobotConfig, StandardId},
-    motor::{NotStanding, layout::ROBOT_LAYOUT},
+    motor::{NotStationary, layout::ROBOT_LAYOUT},
     tuning::{REPLY_ID, Refusal, TuningAccess, TuningChannel, TuningGate, opcode},
 };
 
@@ -24,7 +24,7 @@ pub(crate) struct Robot {
     pub gate: TuningGate,
     pub diagnostics: DiagnosticsSnapshot,
     /// Of every joint's motor.
-    pub standing: Result<f32, NotStanding>,
+    pub standing: Result<f32, NotStationary>,
     /// Looks at the store after which everything is saved.
     pub looks_to_save: Option<usize>,
     /// From before there was a store.
@@ -65,7 +65,7 @@ impl Robot {
             config: &mut self.config,
             bring_up: &mut BringUp::default(),
             diagnostics: &self.diagnostics,
-            standing_angle_rad: &|_| Some(self.standing),
+            stationary_angle_rad: &|_| Some(self.standing),
         };
         self.channel.on_frame(BusId::Can2, frame, self.gate, access)
     }

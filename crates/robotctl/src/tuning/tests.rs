@@ -5,7 +5,7 @@ use std::time::Duration;
 use nalgebra::Vector3;
 use robot_app::{
     domain::{JointState, Orientation, ParamError, ParamState, ParamStatus, RobotConfig},
-    motor::NotStanding,
+    motor::NotStationary,
     safety::SafetyFlags,
     tuning::{LIVE_PAGES, PARAMETERS, Refusal, TuningGate},
 };
@@ -417,10 +417,10 @@ fn a_joint_gets_its_zero_where_it_stands() {
     bus.0.borrow_mut().to_lose = 1;
     client.zero_joint(2, 0.25).unwrap();
     assert_eq!(bus.0.borrow().config.joints[2].zero_rad, 1.0);
-    bus.0.borrow_mut().standing = Err(NotStanding::Turns);
+    bus.0.borrow_mut().standing = Err(NotStationary::Moving);
     let error = client.zero_joint(2, 0.0).unwrap_err().to_string();
     assert!(error.contains("hold it still"), "{error}");
-    bus.0.borrow_mut().standing = Err(NotStanding::Unknown);
+    bus.0.borrow_mut().standing = Err(NotStationary::Unknown);
     let error = client.zero_joint(2, 0.0).unwrap_err().to_string();
     assert!(error.contains("is its motor powered"), "{error}");
     let error = client.zero_joint(2, 30.0).unwrap_err().to_string();

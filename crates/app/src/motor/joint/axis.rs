@@ -1,4 +1,4 @@
-//! Motor coordinates ↔ joint coordinates: joint angle = direction · (motor angle − zero).
+//! Conversion between motor and joint coordinates: joint angle = direction · (motor angle − zero).
 
 use super::super::{
     joint_limits::JointMotion,
@@ -17,7 +17,7 @@ pub fn joint_torque_nm(motor: &MitReport, config: &JointConfig) -> f32 {
     config.direction * motor.torque_nm
 }
 
-/// `direction` is +1 or −1, so that multiplying with it also undoes it.
+/// `direction` is +1 or −1, so multiplying by it also undoes it.
 pub fn motor_targets(joint: &JointCommand, config: &JointConfig) -> MitTargets {
     MitTargets {
         pos_rad: config.zero_rad + config.direction * joint.pos_rad,
@@ -33,9 +33,9 @@ mod tests {
     use super::*;
     use crate::domain::RobotConfig;
 
-    /// A mirrored motor that stands at 0.5 rad when its joint is at zero: joint 0.3 is motor 0.5 − 0.3.
+    /// A mirrored motor reads 0.5 rad when its joint is at zero, so joint angle 0.3 is motor angle 0.5 − 0.3.
     #[test]
-    fn a_mirrored_and_displaced_motor_follows_its_joint() {
+    fn a_mirrored_and_offset_motor_is_converted_both_ways() {
         let [config, ..] = RobotConfig::default().joints;
         let config = JointConfig {
             direction: -1.0,

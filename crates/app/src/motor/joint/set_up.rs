@@ -1,18 +1,18 @@
-//! What a motor must say and accept before it may be enabled.
+//! The dialogue that a motor must complete before it may be enabled.
 
 mod dm4310;
 mod rs00;
 
 use super::{
     super::layout::JointMotor,
-    dialect::{Expected, Status},
+    protocol::{Expected, Status},
 };
 use crate::domain::{CanFrame, JointMode};
 
-/// An unanswered question is asked again after this long.
-const PATIENCE_US: u64 = 10_000;
+/// An unanswered request is repeated after this time.
+const REPLY_TIMEOUT_US: u64 = 10_000;
 
-/// The conversation with one motor. Between its own frames the motor is told to stay off.
+/// The dialogue with one motor. Between its requests the motor gets disable frames.
 #[derive(Clone, Debug)]
 pub enum SetUp {
     Dm4310(dm4310::SetUp),
@@ -20,7 +20,7 @@ pub enum SetUp {
 }
 
 impl SetUp {
-    /// `mode` is what the motor shall obey afterwards; `Off` needs none of its own and counts as `Mit`.
+    /// `mode` is the control mode to set. `Off` needs none of its own and counts as `Mit`.
     pub fn new(motor: &'static JointMotor, mode: JointMode) -> Self {
         match motor {
             JointMotor::Dm4310(motor) => Self::Dm4310(dm4310::SetUp::new(motor, mode)),
@@ -28,7 +28,7 @@ impl SetUp {
         }
     }
 
-    /// The next question or order, if one is due.
+    /// Returns the next request, if one is due.
     pub fn request(&mut self, now_us: u64) -> Option<CanFrame> {
         match self {
             Self::Dm4310(set_up) => set_up.request(now_us),
@@ -69,7 +69,7 @@ impl SetUp {
         }
     }
 
-    /// Starts anew if the motor has no good reason to be silent.
+    /// Restarts the dialogue, unless the motor is expected to be silent.
     pub fn on_silence(&mut self, now_us: u64) {
         match self {
             Self::Dm4310(set_up) => set_up.on_silence(now_us),
@@ -78,9 +78,9 @@ impl SetUp {
     }
 }
 
-/// True if the question asked at `asked_us` may be put, for the first time or again.
-fn is_due(asked_us: Option<u64>, patience_us: u64, now_us: u64) -> bool {
-    asked_us.is_none_or(|asked_us| now_us.saturating_sub(asked_us) >= patience_us)
+/// Whether a request may be sent, for the first time or again.
+fn is_due(requested_us: Option<u64>, timeout_us: u64, now_us: u64) -> bool {
+    requested_us.is_none_or(|requested_us| now_us.saturating_sub(requested_us) >= timeout_us)
 }
 
 #[cfg(test)]

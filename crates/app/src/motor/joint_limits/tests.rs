@@ -32,7 +32,7 @@ fn mit(pos_rad: f32, vel_rps: f32, kp: f32, kd: f32, tau_nm: f32) -> JointComman
     }
 }
 
-/// In double precision, from the motor's formula, `ahead_s` from now.
+/// The torque by the motor's formula, in double precision, `ahead_s` from now.
 fn torque_nm(command: &JointCommand, motion: JointMotion, ahead_s: f64) -> f64 {
     let [pos, vel, kp, kd, tau] = [
         command.pos_rad,
@@ -47,20 +47,20 @@ fn torque_nm(command: &JointCommand, motion: JointMotion, ahead_s: f64) -> f64 {
 }
 
 #[test]
-fn a_modest_command_passes_as_it_is() {
+fn a_command_within_the_limits_is_unchanged() {
     let command = mit(0.1, 0.5, 20.0, 0.5, 0.25);
-    assert_eq!(limited(&command, AT_REST, &CONFIG, MOTOR), command);
+    assert_eq!(limit_command(&command, AT_REST, &CONFIG, MOTOR), command);
 }
 
-/// Infinity ends at the limits, beside zeros and other infinities too; only what is no number is refused.
+/// Infinity is clamped to the limits, also beside zeros and other infinities. Only NaN is rejected.
 #[test]
 fn infinite_fields_and_limits_are_clamped_not_refused() {
     const INF: f32 = f32::INFINITY;
-    // All of them infinite, and each of them zero among the others.
+    // All fields are infinite, and then each one is zero among the others.
     for zero in 0..=5 {
         let field = |index| if index == zero { 0.0 } else { INF };
         let command = mit(field(0), field(1), field(2), field(3), field(4));
-        let got = limited(&command, AT_REST, &CONFIG, MOTOR);
+        let got = limit_command(&command, AT_REST, &CONFIG, MOTOR);
         assert_eq!(got.mode, JointMode::Mit, "{command:?}");
         let config = JointConfig {
             max_torque_nm: field(0),
@@ -69,75 +69,76 @@ fn infinite_fields_and_limits_are_clamped_not_refused() {
             max_kd: field(3),
             ..CONFIG
         };
-        let got = limited(&mit(0.1, 0.0, 1.0, 0.0, 0.0), AT_REST, &config, MOTOR);
+        let got = limit_command(&mit(0.1, 0.0, 1.0, 0.0, 0.0), AT_REST, &config, MOTOR);
         assert_eq!(got.mode, JointMode::Mit, "{config:?}");
         let slide = JointCommand {
             mode: JointMode::PositionSpeed,
             ..command
         };
-        let got = limited(&slide, AT_REST, &CONFIG, MOTOR);
+        let got = limit_command(&slide, AT_REST, &CONFIG, MOTOR);
         assert_eq!(got.mode, JointMode::PositionSpeed, "{slide:?}");
     }
 }
 
-/// No torque is asked for and none allowed: nothing to scale.
+/// No torque is requested and none allowed, so nothing is scaled.
 #[test]
-fn a_joint_without_torque_keeps_its_gains_where_they_give_none() {
+fn gains_that_give_no_torque_are_not_scaled() {
     let config = JointConfig {
         max_torque_nm: 0.0,
         ..CONFIG
     };
     let command = mit(0.0, 0.0, 20.0, 0.5, 0.0);
-    assert_eq!(limited(&command, AT_REST, &config, MOTOR), command);
+    assert_eq!(limit_command(&command, AT_REST, &config, MOTOR), command);
 }
 
 /// 100 · 0.5 + 1 · 10 − 0 = 60 N·m is twenty times the limit.
 #[test]
-fn too_much_torque_is_scaled_down_as_a_whole() {
+fn excessive_torque_scales_all_gains_alike() {
     let command = mit(0.5, 10.0, 100.0, 1.0, 0.0);
-    let got = limited(&command, AT_REST, &CONFIG, MOTOR);
+    let got = limit_command(&command, AT_REST, &CONFIG, MOTOR);
     assert_eq!((got.pos_rad, got.vel_rps), (0.5, 10.0));
     assert!((got.kp - 5.0).abs() < 1e-5 && (got.kd - 0.05).abs() < 1e-6);
 }
 
-/// The stiff spring is at its target, but the joint flies past at 10 rad/s: 0.04 rad on, it would push 4 N·m.
+/// The stiff spring is at its target, but the joint passes at 10 rad/s. After 0.04 rad it would push with 4 N·m.
 #[test]
-fn torque_is_limited_for_where_the_joint_will_be() {
+fn the_torque_limit_covers_motion_until_the_next_command() {
     let motion = JointMotion {
         pos_rad: 0.5,
         vel_rps: 10.0,
     };
-    let got = limited(&mit(0.5, 0.0, 100.0, 0.0, 0.0), motion, &CONFIG, MOTOR);
+    let got = limit_command(&mit(0.5, 0.0, 100.0, 0.0, 0.0), motion, &CONFIG, MOTOR);
     assert!((got.kp - 75.0).abs() < 1e-4, "{got:?}");
 }
 
 #[test]
-fn the_weaker_of_settings_and_motor_decides() {
+fn the_lower_limit_of_settings_and_motor_applies() {
     let weak = MotorLimits {
         max_torque_nm: 0.5,
         ..MOTOR
     };
-    let got = limited(&mit(0.0, 0.0, 0.0, 0.0, 9.0), AT_REST, &CONFIG, weak);
+    let got = limit_command(&mit(0.0, 0.0, 0.0, 0.0, 9.0), AT_REST, &CONFIG, weak);
     assert_eq!(got.tau_nm, 0.5);
 }
 
 #[test]
-fn a_damper_does_not_push_a_joint_out_that_comes_back() {
+fn damping_does_not_push_a_returning_joint_outwards() {
     let coming_back = JointMotion {
         pos_rad: 1.1,
         vel_rps: -4.0,
     };
-    let got = limited(&mit(1.0, 0.0, 0.0, 2.0, 0.0), coming_back, &CONFIG, MOTOR);
+    let got = limit_command(&mit(1.0, 0.0, 0.0, 2.0, 0.0), coming_back, &CONFIG, MOTOR);
     assert_eq!((got.kp, got.kd, got.tau_nm), (0.0, 0.0, 0.0));
     let still_leaving = JointMotion {
         vel_rps: 1.0,
         ..coming_back
     };
-    let got = limited(&mit(1.0, 0.0, 0.0, 2.0, 0.0), still_leaving, &CONFIG, MOTOR);
+    let got = limit_command(&mit(1.0, 0.0, 0.0, 2.0, 0.0), still_leaving, &CONFIG, MOTOR);
     assert_eq!(got.kd, 2.0);
 }
 
-/// Its zero is wrong, or it rests on a stop out there: 20 · (1.0 − 4.0) N·m would throw it back at the torque limit.
+/// The joint's zero is wrong, or it rests on a stop out there. 20 · (1.0 − 4.0) N·m would throw it back at the torque
+/// limit.
 #[test]
 fn a_joint_held_beyond_its_soft_limit_is_not_thrown_back() {
     for (pos_rad, outwards) in [(4.0, 1.0), (-4.0, -1.0)] {
@@ -145,7 +146,7 @@ fn a_joint_held_beyond_its_soft_limit_is_not_thrown_back() {
             pos_rad,
             vel_rps: 0.0,
         };
-        let target = |command: &JointCommand| limited(command, there, &CONFIG, MOTOR);
+        let target = |command: &JointCommand| limit_command(command, there, &CONFIG, MOTOR);
         let held = mit(pos_rad, 0.0, 20.0, 1.0, 0.0);
         assert_eq!(target(&held), held);
         let further_out = mit(pos_rad + outwards, 0.0, 20.0, 1.0, 0.0);
@@ -160,7 +161,7 @@ fn a_joint_held_beyond_its_soft_limit_is_not_thrown_back() {
 }
 
 #[test]
-fn the_other_modes_keep_to_angle_and_speed() {
+fn the_other_modes_are_limited_in_angle_and_speed() {
     let command = JointCommand {
         mode: JointMode::PositionSpeed,
         ..mit(9.0, -99.0, 1.0, 1.0, 1.0)
@@ -169,7 +170,7 @@ fn the_other_modes_keep_to_angle_and_speed() {
         mode: JointMode::PositionSpeed,
         ..mit(1.0, 15.0, 0.0, 0.0, 0.0)
     };
-    assert_eq!(limited(&command, AT_REST, &CONFIG, MOTOR), expected);
+    assert_eq!(limit_command(&command, AT_REST, &CONFIG, MOTOR), expected);
     let at_end = JointMotion {
         pos_rad: 1.0,
         vel_rps: 0.0,
@@ -179,14 +180,23 @@ fn the_other_modes_keep_to_angle_and_speed() {
         vel_rps,
         ..JointCommand::default()
     };
-    assert_eq!(limited(&speed(2.0), at_end, &CONFIG, MOTOR), speed(0.0));
-    assert_eq!(limited(&speed(-2.0), at_end, &CONFIG, MOTOR), speed(-2.0));
-    assert_eq!(limited(&speed(-99.0), at_end, &CONFIG, MOTOR), speed(-15.0));
+    assert_eq!(
+        limit_command(&speed(2.0), at_end, &CONFIG, MOTOR),
+        speed(0.0)
+    );
+    assert_eq!(
+        limit_command(&speed(-2.0), at_end, &CONFIG, MOTOR),
+        speed(-2.0)
+    );
+    assert_eq!(
+        limit_command(&speed(-99.0), at_end, &CONFIG, MOTOR),
+        speed(-15.0)
+    );
 }
 
 /// 10 rad/s are 0.04 rad in the 4 ms until the next command, and 0.5 rad in 50 ms without reports.
 #[test]
-fn a_speed_outwards_ends_before_the_soft_limit_is_passed() {
+fn an_outward_speed_ends_before_the_soft_limit() {
     let speed_at = |pos_rad, horizon_s| {
         let command = JointCommand {
             mode: JointMode::Speed,
@@ -197,14 +207,14 @@ fn a_speed_outwards_ends_before_the_soft_limit_is_passed() {
             vel_rps: 10.0,
         };
         let motor = MotorLimits { horizon_s, ..MOTOR };
-        limited(&command, motion, &CONFIG, motor).vel_rps
+        limit_command(&command, motion, &CONFIG, motor).vel_rps
     };
     assert_eq!((speed_at(0.95, 0.004), speed_at(0.97, 0.004)), (10.0, 0.0));
     assert_eq!((speed_at(0.45, 0.05), speed_at(0.55, 0.05)), (10.0, 0.0));
 }
 
 #[test]
-fn limits_that_are_no_numbers_allow_nothing() {
+fn nan_limits_allow_nothing() {
     let nan = f32::NAN;
     for config in [
         JointConfig {
@@ -232,7 +242,7 @@ fn limits_that_are_no_numbers_allow_nothing() {
             ..CONFIG
         },
     ] {
-        let got = limited(&mit(0.1, 0.0, 20.0, 1.0, 1.0), AT_REST, &config, MOTOR);
+        let got = limit_command(&mit(0.1, 0.0, 20.0, 1.0, 1.0), AT_REST, &config, MOTOR);
         assert_eq!(got, JointCommand::default(), "{config:?}");
     }
 }
@@ -241,7 +251,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 2_000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn whatever_is_asked_the_torque_stays_inside(
+    fn the_torque_stays_within_its_limit_for_any_command(
         fields in [ANY; 5],
         scale in 0.1_f32..1e4,
         pos_rad in -3.0_f32..3.0,
@@ -250,7 +260,7 @@ proptest! {
         let bounded = fields.map(|field| if field.is_finite() { field % scale } else { field });
         let [pos, vel, kp, kd, tau] = bounded;
         let motion = JointMotion { pos_rad, vel_rps };
-        let got = limited(&mit(pos, vel, kp, kd, tau), motion, &CONFIG, MOTOR);
+        let got = limit_command(&mit(pos, vel, kp, kd, tau), motion, &CONFIG, MOTOR);
         prop_assert!([got.pos_rad, got.vel_rps, got.kp, got.kd, got.tau_nm].iter().all(|x| x.is_finite()));
         let (furthest_back, furthest_out) = (pos_rad.min(-1.5), pos_rad.max(1.0));
         prop_assert!((furthest_back..=furthest_out).contains(&got.pos_rad) && got.vel_rps.abs() <= 15.0);

@@ -1,4 +1,4 @@
-//! What a layout must hold; runs in the compiler.
+//! Checks of a layout, run by the compiler.
 
 #![expect(
     clippy::arithmetic_side_effects,
@@ -12,18 +12,18 @@ use crate::{
     motor::{dm4310, m3508},
 };
 
-/// Standard frame of eight bytes with every possible stuff bit and the pause after it.
+/// Bits of a standard frame with eight bytes, all possible stuff bits and the intermission.
 const FRAME_BITS: u32 = 135;
 /// 80 % of 1 Mb/s (docs/figures.md#the-image).
 const MAX_BITS_PER_SECOND: u32 = 800_000;
 const TICKS_PER_SECOND: u32 = 1_000;
-/// Of the controller's three mailboxes one is left to a tuning reply.
+/// One of the controller's three mailboxes stays free for a tuning reply.
 const MAX_FRAMES_PER_TICK: u32 = 2;
-/// The longest schedule.
+/// The longest period of a schedule, in ticks.
 const TICKS: u8 = 8;
-/// Identifiers of the tuning channel, first and last: requests, reply, recorded samples.
+/// First and last identifier of the tuning channel: requests, replies, recorded samples.
 const TUNING_IDS: [u16; 2] = [0x7A0, 0x7A5];
-/// All that DJI's speed controllers may use: commands and feedback.
+/// Identifiers that DJI's speed controllers may use, for commands and feedback.
 const FIRST_DJI_ID: u16 = m3508::COMMAND_ID.raw() - 1;
 const LAST_DJI_ID: u16 = m3508::COMMAND_ID.raw() + 8;
 
@@ -31,7 +31,7 @@ const LOW_BYTE: u16 = 0xFF;
 
 type Joints = [JointSlot; 4];
 
-const fn same(one: BusId, other: BusId) -> bool {
+const fn same_bus(one: BusId, other: BusId) -> bool {
     one as u8 == other as u8
 }
 
@@ -46,16 +46,17 @@ pub const fn load_fits_bus(wheels: &WheelGroup, joints: &Joints) {
     );
 }
 
-/// One command frame for all wheels, one feedback frame from each, at 1 kHz; a command and a reply for each joint in
-/// its slots; a request and a reply in each slot of the tuning channel, and in the ticks between them a recorded sample.
+/// The load of a bus. It counts one command frame for all wheels and one feedback frame from each at 1 kHz, a command
+/// and a reply for each joint in its slots, a request and a reply in each slot of the tuning channel, and a recorded
+/// sample in the ticks between them.
 const fn bits_per_second(wheels: &WheelGroup, joints: &Joints, bus: BusId) -> u32 {
     let mut frames = TICKS_PER_SECOND + TICKS_PER_SECOND / REPLY_PERIOD_TICKS;
-    if same(wheels.bus, bus) {
+    if same_bus(wheels.bus, bus) {
         frames += (1 + wheels.escs.len() as u32) * TICKS_PER_SECOND;
     }
     let mut index = 0;
     while index < joints.len() {
-        if same(joints[index].bus, bus) {
+        if same_bus(joints[index].bus, bus) {
             frames += 2 * TICKS_PER_SECOND / joints[index].schedule.every as u32;
         }
         index += 1;
@@ -79,11 +80,11 @@ pub const fn frames_fit_mailboxes(wheels: &WheelGroup, joints: &Joints) {
 }
 
 const fn frames_in_tick(wheels: &WheelGroup, joints: &Joints, bus: BusId, tick: u8) -> u32 {
-    let mut frames = same(wheels.bus, bus) as u32;
+    let mut frames = same_bus(wheels.bus, bus) as u32;
     let mut index = 0;
     while index < joints.len() {
         let joint = &joints[index];
-        frames += (same(joint.bus, bus) && Schedule::is_due(joint.schedule, tick)) as u32;
+        frames += (same_bus(joint.bus, bus) && Schedule::is_due(joint.schedule, tick)) as u32;
         index += 1;
     }
     frames
@@ -100,7 +101,7 @@ pub const fn no_identifier_clashes(wheels: &WheelGroup, joints: &Joints) {
         assert_own_ids_differ(&joints[one].motor);
         let mut other = one + 1;
         while other < joints.len() {
-            if same(joints[one].bus, joints[other].bus) {
+            if same_bus(joints[one].bus, joints[other].bus) {
                 assert_ids_differ(&joints[one].motor, &joints[other].motor);
             }
             other += 1;
@@ -110,40 +111,41 @@ pub const fn no_identifier_clashes(wheels: &WheelGroup, joints: &Joints) {
     let mut joint = 0;
     while joint < joints.len() {
         if let JointMotor::Dm4310(_) = joints[joint].motor {
-            assert_low_byte_is_its_own(wheels, joints, joint);
+            assert_low_byte_is_unique(wheels, joints, joint);
         }
         joint += 1;
     }
 }
 
-/// A DM4310 compares only the low byte of an identifier with its own number: it answers whatever it matches, and obeys
-/// that if it looks like a service frame (umeow0716/damiao_firmware, `can_protocol.c`). Register frames name the motor
-/// in their data.
-const fn assert_low_byte_is_its_own(wheels: &WheelGroup, joints: &Joints, joint: usize) {
+/// A DM4310 compares only the low byte of an identifier with its own number. It answers any frame that matches, and
+/// executes it if it looks like a service frame (umeow0716/damiao_firmware, `can_protocol.c`). Register frames name
+/// the motor in their data.
+const fn assert_low_byte_is_unique(wheels: &WheelGroup, joints: &Joints, joint: usize) {
     let number = joints[joint].motor.identifiers()[0].raw() & LOW_BYTE;
     let mut index = 0;
     while index < TUNING_IDS.len() {
-        assert_spares(number, TUNING_IDS[index]);
+        assert_not_addressed(number, TUNING_IDS[index]);
         index += 1;
     }
     let mut id = FIRST_DJI_ID;
-    while same(wheels.bus, joints[joint].bus) && id <= LAST_DJI_ID {
-        assert_spares(number, id);
+    while same_bus(wheels.bus, joints[joint].bus) && id <= LAST_DJI_ID {
+        assert_not_addressed(number, id);
         id += 1;
     }
     let mut other = 0;
     while other < joints.len() {
         let ids = joints[other].motor.identifiers();
         let mut index = 0;
-        while other != joint && same(joints[other].bus, joints[joint].bus) && index < ids.len() {
-            assert_spares(number, ids[index].raw());
+        while other != joint && same_bus(joints[other].bus, joints[joint].bus) && index < ids.len()
+        {
+            assert_not_addressed(number, ids[index].raw());
             index += 1;
         }
         other += 1;
     }
 }
 
-const fn assert_spares(number: u16, foreign_id: u16) {
+const fn assert_not_addressed(number: u16, foreign_id: u16) {
     assert!(
         foreign_id & LOW_BYTE != number,
         "a frame that is not for a DM4310 has its number in the low byte of the identifier"
@@ -156,7 +158,7 @@ const fn assert_reserved_ids_are_free(wheels: &WheelGroup, joint: &JointSlot) {
     while index < ids.len() {
         let id = ids[index].raw();
         assert!(
-            !same(wheels.bus, joint.bus) || id < FIRST_DJI_ID || id > LAST_DJI_ID,
+            !same_bus(wheels.bus, joint.bus) || id < FIRST_DJI_ID || id > LAST_DJI_ID,
             "a joint uses an identifier of the wheels' speed controllers"
         );
         assert!(
@@ -177,8 +179,8 @@ const fn assert_own_ids_differ(motor: &JointMotor) {
     );
 }
 
-/// Nor may RS00 share a host identifier, although byte 0 of a reply names the motor: two replies at a time would destroy
-/// each other on the bus.
+/// Two RS00 may not share a host identifier either, although byte 0 of a reply names the motor: simultaneous replies
+/// would destroy each other on the bus.
 const fn assert_ids_differ(one: &JointMotor, other: &JointMotor) {
     let (one_ids, other_ids) = (one.identifiers(), other.identifiers());
     let mut i = 0;

@@ -1,4 +1,4 @@
-//! The robot's own tables: two M3508 on CAN1, four joints on CAN2, two of them in each tick.
+//! The layouts of this robot: two M3508 on CAN1 and four joints on CAN2, two of them in each tick.
 
 use super::{JointMotor, JointSlot, MotorLayout, Schedule, WheelGroup};
 use crate::{
@@ -6,7 +6,7 @@ use crate::{
     motor::{dm4310::Dm4310, m3508::EscId, mit::MitRanges, rs00::Rs00},
 };
 
-/// With DM4310 joints: commands 0x001 … 0x004, replies 0x011 … 0x014.
+/// The layout with DM4310 joints: commands 0x001…0x004, replies 0x011…0x014.
 pub const ROBOT_LAYOUT: MotorLayout = MotorLayout::new(
     WHEELS,
     [
@@ -17,8 +17,8 @@ pub const ROBOT_LAYOUT: MotorLayout = MotorLayout::new(
     ],
 );
 
-/// With RS00 joints: commands 0x001 … 0x004, replies 0x0F1 … 0x0F4. Each motor gets a host identifier of its own: with one
-/// for all, replies that fall together collide and neither gets through.
+/// The layout with RS00 joints: commands 0x001…0x004, replies 0x0F1…0x0F4. Each motor has its own host identifier.
+/// With a shared one, simultaneous replies would collide and be lost.
 pub const RS00_LAYOUT: MotorLayout = MotorLayout::new(
     WHEELS,
     [
@@ -35,10 +35,10 @@ const WHEELS: WheelGroup = WheelGroup {
     max_current_ma: MAX_WHEEL_MA,
 };
 
-/// What an M3508 bears for long; half of what its speed controller can give.
+/// Continuous current of an M3508, half of what its speed controller can give.
 const MAX_WHEEL_MA: f32 = 10_000.0;
 
-/// As shipped from the factory (docs/hardware.md#dm4310-ranges).
+/// Factory setting (docs/hardware.md#dm4310-ranges).
 const DM4310_RANGES: MitRanges = MitRanges {
     p_max_rad: 12.5,
     v_max_rps: 30.0,
@@ -85,7 +85,7 @@ const fn rs00_joint(number: u8, config: JointConfig) -> JointSlot {
     }
 }
 
-/// Motors 1 and 2 (left) in even ticks, 3 and 4 (right) in odd ones.
+/// Motors 1 and 2 (left) have even ticks, 3 and 4 (right) odd ones.
 const fn joint(
     number: u8,
     motor: JointMotor,

@@ -15,7 +15,7 @@ fn rs00(number: u8, host: u8) -> JointMotor {
     JointMotor::Rs00(Rs00::new(number, host).unwrap())
 }
 
-/// The robot's joints with other motors and on other buses.
+/// The robot's layout with changed joints.
 fn joints(change: impl FnOnce(&mut [JointSlot; 4])) -> MotorLayout {
     let mut joints = *ROBOT_LAYOUT.joints();
     change(&mut joints);
@@ -23,7 +23,7 @@ fn joints(change: impl FnOnce(&mut [JointSlot; 4])) -> MotorLayout {
 }
 
 #[test]
-fn makes_may_be_mixed() {
+fn motor_makes_may_be_mixed() {
     let layout = joints(|joints| {
         joints[2].motor = rs00(3, 0xF3);
         joints[3].motor = rs00(4, 0xF4);
@@ -70,7 +70,7 @@ fn a_reply_that_is_the_motors_own_command() {
     joints(|joints| joints[1].motor = dm4310(2, 0x002));
 }
 
-/// Its speed commands would be 0x201: feedback of the left wheel.
+/// Its speed commands would have 0x201, the feedback of the left wheel.
 #[test]
 #[should_panic(expected = "identifier of the wheels' speed controllers")]
 fn a_joint_on_the_wheels_bus() {
@@ -83,14 +83,14 @@ fn a_reply_on_the_tuning_channel() {
     joints(|joints| joints[0].motor = dm4310(1, 0x7A0));
 }
 
-/// MST_ID 0x302: joint 2 would answer each report of joint 1.
+/// MST_ID is 0x302, so joint 2 would answer each report of joint 1.
 #[test]
 #[should_panic(expected = "has its number in the low byte of the identifier")]
 fn a_reply_with_another_dm4310s_number_in_its_low_byte() {
     joints(|joints| joints[0].motor = dm4310(1, 0x302));
 }
 
-/// An RS00 compares the whole identifier of what is no command of its own.
+/// An RS00 compares the whole identifier.
 #[test]
 fn a_reply_with_an_rs00s_number_in_its_low_byte() {
     joints(|joints| {
@@ -113,7 +113,7 @@ fn two_wheels_with_one_number() {
     MotorLayout::new(wheels, *ROBOT_LAYOUT.joints());
 }
 
-/// Four commands and four replies of 135 bits a millisecond are 108 %.
+/// Four commands and four replies of 135 bits each ms are a load of 108 %.
 #[test]
 #[should_panic(expected = "CAN2 would be loaded above 80 %")]
 fn four_joints_in_every_tick() {
@@ -130,7 +130,7 @@ fn three_joints_in_one_tick() {
     joints(|joints| joints[2].schedule = joints[0].schedule);
 }
 
-/// The wheels' three frames a tick are 40.5 %; two joints in every tick are 54 % more.
+/// The wheels' three frames in each tick are a load of 40.5 %, and two joints in every tick add 54 %.
 #[test]
 #[should_panic(expected = "CAN1 would be loaded above 80 %")]
 fn joints_in_every_tick_beside_the_wheels() {
@@ -150,7 +150,7 @@ fn more_torque_than_the_motor_has() {
 }
 
 #[test]
-fn schedules_are_short_powers_of_two() {
+fn schedule_periods_are_powers_of_two_up_to_eight() {
     for every in 0..=u8::MAX {
         let allowed = [1, 2, 4, 8].contains(&every);
         assert_eq!(Schedule::new(every, 0).is_some(), allowed, "{every}");
@@ -166,7 +166,7 @@ fn schedules_are_short_powers_of_two() {
 }
 
 #[test]
-fn a_schedule_s_period_is_that_many_ticks_of_a_millisecond() {
+fn a_schedule_s_period_is_in_ticks_of_a_millisecond() {
     for (every, period_s) in [(1, 0.001), (2, 0.002), (8, 0.008)] {
         let schedule = Schedule::new(every, 0).unwrap();
         assert!((schedule.period_s() - period_s).abs() < 1e-9);
@@ -174,6 +174,6 @@ fn a_schedule_s_period_is_that_many_ticks_of_a_millisecond() {
 }
 
 #[test]
-fn both_layouts_stop_alike() {
+fn both_layouts_have_the_same_stop_frames() {
     assert_eq!(RS00_LAYOUT.safe_frames(), ROBOT_LAYOUT.safe_frames());
 }

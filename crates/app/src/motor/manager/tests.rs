@@ -52,9 +52,9 @@ fn a_silent_motor_never_looks_fresh() {
     assert!(feedback.joints.iter().all(|joint| joint.age_us == u32::MAX));
 }
 
-/// Zero current for the wheels, the disable frame for joints 1 and 2, then for 3 and 4.
+/// The wheels get zero current, joints 1 and 2 a disable frame in one tick, joints 3 and 4 in the next.
 #[test]
-fn without_a_permit_nothing_has_torque() {
+fn without_a_permit_no_motor_has_torque() {
     let command = ChassisCommand {
         wheels: [WheelCommand {
             current_ma: 5_000.0,

@@ -16,7 +16,7 @@ struct Bench {
     bring_up: BringUp,
     diagnostics: DiagnosticsSnapshot,
     /// Of the motor of joint 1 … 4.
-    standing: [Result<f32, NotStanding>; 4],
+    standing: [Result<f32, NotStationary>; 4],
 }
 
 impl Default for Bench {
@@ -26,7 +26,7 @@ impl Default for Bench {
             config: RobotConfig::default(),
             bring_up: BringUp::default(),
             diagnostics: DiagnosticsSnapshot::default(),
-            standing: [Err(NotStanding::Unknown); 4],
+            standing: [Err(NotStationary::Unknown); 4],
         }
     }
 }
@@ -43,7 +43,7 @@ impl Bench {
             config: &mut self.config,
             bring_up: &mut self.bring_up,
             diagnostics: &self.diagnostics,
-            standing_angle_rad: &|joint| self.standing.get(joint).copied(),
+            stationary_angle_rad: &|joint| self.standing.get(joint).copied(),
         };
         self.channel.on_frame(bus, frame, gate, access)
     }
@@ -398,9 +398,9 @@ fn where_a_joint_stands_gets_the_angle_that_is_asked_for() {
     let mut bench = Bench {
         standing: [
             Ok(0.75),
-            Err(NotStanding::Unknown),
+            Err(NotStationary::Unknown),
             Ok(0.75),
-            Err(NotStanding::Turns),
+            Err(NotStationary::Moving),
         ],
         ..Bench::default()
     };
@@ -427,9 +427,9 @@ fn a_zero_is_refused_where_it_would_be_wrong() {
     let mut bench = Bench {
         standing: [
             Ok(12.5),
-            Err(NotStanding::Unknown),
+            Err(NotStationary::Unknown),
             Ok(0.0),
-            Err(NotStanding::Turns),
+            Err(NotStationary::Moving),
         ],
         ..Bench::default()
     };

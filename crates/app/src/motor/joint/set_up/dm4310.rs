@@ -1,28 +1,28 @@
-//! DM4310: disabled, ranges as in the layout, time-out 100 ms, the wanted control mode; each read, and what can be
-//! written is written if it is wrong and read again.
+//! Set-up of a DM4310: disable it, compare its ranges with the layout, set its time-out of 100 ms and its control
+//! mode. Each register is read; a writable one with a wrong value is written and read again.
 
 use super::{
-    super::dialect::{Expected, Status},
-    PATIENCE_US, is_due,
+    super::protocol::{Expected, Status},
+    REPLY_TIMEOUT_US, is_due,
 };
 use crate::{
     domain::{CanFrame, JointMode},
     motor::dm4310::{ControlMode, Dm4310, Register},
 };
 
-/// 100 ms in steps of 50 µs: silence of the board after which an enabled motor lets go.
+/// 100 ms in steps of 50 µs. An enabled motor releases torque when the board has been silent for this long.
 const TIMEOUT_COUNTS: u32 = 2_000;
-/// A motor may be silent for some 150 ms while it takes a value.
-const WRITE_US: u64 = 300_000;
-/// A motor with other ranges than the layout's is looked at again after this long.
-const WRONG_RANGE_US: u64 = 1_000_000;
+/// A motor may be silent for about 150 ms after a write.
+const WRITE_TIMEOUT_US: u64 = 300_000;
+/// A motor whose ranges differ from the layout is checked again after this time.
+const RANGE_RETRY_US: u64 = 1_000_000;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Step {
     Disable,
     Read(Register),
     Write(Register),
-    /// The codes would mean other values than the layout says: never to be enabled.
+    /// The motor's codes would mean other values than the layout says. It is never enabled.
     WrongRange,
     Done,
 }
@@ -32,7 +32,7 @@ pub struct SetUp {
     motor: &'static Dm4310,
     mode: ControlMode,
     step: Step,
-    asked_us: Option<u64>,
+    requested_us: Option<u64>,
 }
 
 impl SetUp {
@@ -45,35 +45,35 @@ impl SetUp {
                 JointMode::Speed => ControlMode::Speed,
             },
             step: Step::Disable,
-            asked_us: None,
+            requested_us: None,
         }
     }
 
     pub fn request(&mut self, now_us: u64) -> Option<CanFrame> {
-        if !is_due(self.asked_us, self.patience_us(), now_us) {
+        if !is_due(self.requested_us, self.timeout_us(), now_us) {
             return None;
         }
         self.step = match self.step {
             Step::WrongRange => Step::Disable,
-            // A write that was not answered in time may have been heard all the same.
-            Step::Write(register) if self.asked_us.is_some() => Step::Read(register),
+            // A write without a timely answer may have been executed, so the register is read.
+            Step::Write(register) if self.requested_us.is_some() => Step::Read(register),
             step => step,
         };
-        self.asked_us = Some(now_us);
+        self.requested_us = Some(now_us);
         match self.step {
             Step::Read(register) => Some(self.motor.read_register(register)),
             Step::Write(register) => self
-                .wanted(register)
+                .target_value(register)
                 .map(|value| self.motor.write_register(register, value)),
             Step::Disable | Step::WrongRange | Step::Done => None,
         }
     }
 
-    fn patience_us(&self) -> u64 {
+    fn timeout_us(&self) -> u64 {
         match self.step {
-            Step::Write(_) => WRITE_US,
-            Step::WrongRange => WRONG_RANGE_US,
-            Step::Disable | Step::Read(_) | Step::Done => PATIENCE_US,
+            Step::Write(_) => WRITE_TIMEOUT_US,
+            Step::WrongRange => RANGE_RETRY_US,
+            Step::Disable | Step::Read(_) | Step::Done => REPLY_TIMEOUT_US,
         }
     }
 
@@ -86,19 +86,19 @@ impl SetUp {
 
     pub fn on_report(&mut self, status: Status) {
         if self.step == Step::Disable && status == Status::Disabled {
-            self.go_to(Step::Read(Register::PositionRange));
+            self.enter(Step::Read(Register::PositionRange));
         }
     }
 
     pub fn on_register(&mut self, value: u32, now_us: u64) {
         match self.step {
-            Step::Read(register) => self.judge(register, value, now_us),
-            Step::Write(register) => self.go_to(Step::Read(register)),
+            Step::Read(register) => self.check(register, value, now_us),
+            Step::Write(register) => self.enter(Step::Read(register)),
             Step::Disable | Step::WrongRange | Step::Done => {}
         }
     }
 
-    fn judge(&mut self, register: Register, value: u32, now_us: u64) {
+    fn check(&mut self, register: Register, value: u32, now_us: u64) {
         let ranges = self.motor.ranges();
         let next = match register {
             Register::PositionRange if is_range(value, ranges.p_max_rad) => {
@@ -112,18 +112,18 @@ impl SetUp {
             }
             Register::PositionRange | Register::VelocityRange | Register::TorqueRange => {
                 self.step = Step::WrongRange;
-                self.asked_us = Some(now_us);
+                self.requested_us = Some(now_us);
                 return;
             }
-            setting if self.wanted(setting) != Some(value) => Step::Write(setting),
+            setting if self.target_value(setting) != Some(value) => Step::Write(setting),
             Register::Timeout => Step::Read(Register::ControlMode),
             Register::ControlMode => Step::Done,
         };
-        self.go_to(next);
+        self.enter(next);
     }
 
-    /// `None` for what must not be changed.
-    fn wanted(&self, register: Register) -> Option<u32> {
+    /// The value to write, or `None` for a register that must not be changed.
+    fn target_value(&self, register: Register) -> Option<u32> {
         match register {
             Register::Timeout => Some(TIMEOUT_COUNTS),
             Register::ControlMode => Some(self.mode as u32),
@@ -136,19 +136,21 @@ impl SetUp {
     }
 
     pub fn on_silence(&mut self, now_us: u64) {
-        let may_be_silent = match (self.step, self.asked_us) {
+        let silence_expected = match (self.step, self.requested_us) {
             (Step::Disable, _) => true,
-            (Step::Write(_), Some(asked_us)) => now_us.saturating_sub(asked_us) < WRITE_US,
+            (Step::Write(_), Some(requested_us)) => {
+                now_us.saturating_sub(requested_us) < WRITE_TIMEOUT_US
+            }
             _ => false,
         };
-        if !may_be_silent {
-            self.go_to(Step::Disable);
+        if !silence_expected {
+            self.enter(Step::Disable);
         }
     }
 
-    fn go_to(&mut self, step: Step) {
+    fn enter(&mut self, step: Step) {
         self.step = step;
-        self.asked_us = None;
+        self.requested_us = None;
     }
 }
 

@@ -1,6 +1,6 @@
-//! RS00: stopped, no fault, the wanted run mode. Nothing can be read back but the fault word.
+//! Set-up of an RS00: stop it, check that it has no fault, set its run mode. Only its fault word can be read back.
 
-use super::{super::dialect::Expected, PATIENCE_US, is_due};
+use super::{super::protocol::Expected, REPLY_TIMEOUT_US, is_due};
 use crate::{
     domain::{CanFrame, JointMode},
     motor::rs00::{Rs00, RunMode},
@@ -19,7 +19,7 @@ pub struct SetUp {
     motor: &'static Rs00,
     mode: RunMode,
     step: Step,
-    asked_us: Option<u64>,
+    requested_us: Option<u64>,
 }
 
 impl SetUp {
@@ -32,15 +32,15 @@ impl SetUp {
                 JointMode::Speed => RunMode::Speed,
             },
             step: Step::Stop,
-            asked_us: None,
+            requested_us: None,
         }
     }
 
     pub fn request(&mut self, now_us: u64) -> Option<CanFrame> {
-        if !is_due(self.asked_us, PATIENCE_US, now_us) {
+        if !is_due(self.requested_us, REPLY_TIMEOUT_US, now_us) {
             return None;
         }
-        self.asked_us = Some(now_us);
+        self.requested_us = Some(now_us);
         match self.step {
             Step::Stop => Some(self.motor.disable()),
             Step::ReadFaults => Some(self.motor.read_faults()),
@@ -56,21 +56,21 @@ impl SetUp {
         }
     }
 
-    /// The motor replies to each frame once, so a report after an order is the answer to it.
+    /// The motor replies once to each frame, so a report after a request is its answer.
     pub fn on_report(&mut self) {
-        if self.asked_us.is_none() {
+        if self.requested_us.is_none() {
             return;
         }
         match self.step {
-            Step::Stop => self.go_to(Step::ReadFaults),
-            Step::SetMode => self.go_to(Step::Done),
+            Step::Stop => self.enter(Step::ReadFaults),
+            Step::SetMode => self.enter(Step::Done),
             Step::ReadFaults | Step::Done => {}
         }
     }
 
     pub fn on_no_fault(&mut self) {
         if self.step == Step::ReadFaults {
-            self.go_to(Step::SetMode);
+            self.enter(Step::SetMode);
         }
     }
 
@@ -80,12 +80,12 @@ impl SetUp {
 
     pub fn on_silence(&mut self) {
         if self.step != Step::Stop {
-            self.go_to(Step::Stop);
+            self.enter(Step::Stop);
         }
     }
 
-    fn go_to(&mut self, step: Step) {
+    fn enter(&mut self, step: Step) {
         self.step = step;
-        self.asked_us = None;
+        self.requested_us = None;
     }
 }

@@ -4,7 +4,7 @@ use crate::motor::{
     layout::{ROBOT_LAYOUT, RS00_LAYOUT},
 };
 
-/// A motor with these registers answers each request 200 µs later, every other frame with a report.
+/// A motor with these registers. It answers each request after 200 µs and each other frame with a report.
 struct Bench {
     set_up: SetUp,
     now_us: u64,
@@ -35,7 +35,7 @@ impl Bench {
         }
     }
 
-    /// One slot; `answers` false: the answer is lost.
+    /// Runs one slot. If `answers` is false, the answer is lost.
     fn slot(&mut self, answers: bool) {
         self.now_us += 2_000;
         match self.set_up.request(self.now_us) {
@@ -80,7 +80,7 @@ impl Bench {
 }
 
 #[test]
-fn all_is_read_and_the_time_out_written_and_read_again() {
+fn all_registers_are_read_and_the_timeout_is_written_and_verified() {
     let mut bench = Bench::new(JointMode::Mit, &[]);
     bench.slots(9);
     assert!(bench.set_up.is_done());
@@ -102,7 +102,7 @@ fn all_is_read_and_the_time_out_written_and_read_again() {
 }
 
 #[test]
-fn a_motor_that_is_right_is_not_written() {
+fn a_correctly_set_motor_is_not_written() {
     let mut bench = Bench::new(JointMode::Mit, &[(Register::Timeout, 2_000)]);
     bench.slots(7);
     assert!(bench.set_up.is_done());
@@ -110,7 +110,7 @@ fn a_motor_that_is_right_is_not_written() {
 }
 
 #[test]
-fn the_mode_is_written_if_it_is_another() {
+fn a_different_mode_is_written() {
     for (mode, number) in [(JointMode::PositionSpeed, 2), (JointMode::Speed, 3)] {
         let mut bench = Bench::new(mode, &[]);
         bench.slots(12);
@@ -121,7 +121,7 @@ fn the_mode_is_written_if_it_is_another() {
 
 /// Its codes would mean other angles, speeds or torques than the layout says.
 #[test]
-fn a_motor_with_other_ranges_never_gets_ready() {
+fn a_motor_with_other_ranges_never_becomes_ready() {
     for (register, value) in [
         (Register::PositionRange, 12.57_f32),
         (Register::VelocityRange, 45.0),
@@ -132,13 +132,13 @@ fn a_motor_with_other_ranges_never_gets_ready() {
         bench.slots(3_000);
         assert!(!bench.set_up.is_done(), "{register:?}");
         assert!(bench.orders().iter().all(|(order, _)| *order == 0x33));
-        // Looked at again about once a second.
+        // It is checked again about once a second.
         assert!(bench.requests.len() < 25, "{}", bench.requests.len());
     }
 }
 
 #[test]
-fn lost_answers_only_cost_time() {
+fn lost_answers_only_delay_the_set_up() {
     let mut bench = Bench::new(JointMode::Mit, &[]);
     for slot in 0..2_000 {
         bench.slot(slot % 3 == 0);
@@ -148,7 +148,7 @@ fn lost_answers_only_cost_time() {
 }
 
 #[test]
-fn an_enabled_motor_is_not_asked_anything() {
+fn an_enabled_motor_gets_no_requests() {
     let JointMotor::Dm4310(motor) = &ROBOT_LAYOUT.joints()[0].motor else {
         panic!("the robot's joints are DM4310");
     };
@@ -161,7 +161,7 @@ fn an_enabled_motor_is_not_asked_anything() {
 }
 
 #[test]
-fn silence_starts_the_set_up_anew_except_after_a_write() {
+fn silence_restarts_the_set_up_except_after_a_write() {
     let mut bench = Bench::new(JointMode::Mit, &[]);
     bench.slots(5);
     bench.slot(false);
@@ -177,7 +177,7 @@ fn silence_starts_the_set_up_anew_except_after_a_write() {
 }
 
 #[test]
-fn an_rs00_is_stopped_asked_for_faults_and_told_its_mode() {
+fn an_rs00_is_stopped_checked_for_faults_and_set_to_its_mode() {
     let mut set_up = SetUp::new(&RS00_LAYOUT.joints()[0].motor, JointMode::Speed);
     let last_bytes = |set_up: &mut SetUp, now_us| {
         set_up.request(now_us).map(|frame| {
@@ -185,19 +185,19 @@ fn an_rs00_is_stopped_asked_for_faults_and_told_its_mode() {
             (detail, order)
         })
     };
-    // A report from before the order is no answer to it.
+    // A report from before the request is not its answer.
     set_up.on_report(Status::Working);
     assert_eq!(last_bytes(&mut set_up, 1_000), Some((0xFF, 0xFD)));
     set_up.on_report(Status::Working);
     assert_eq!(last_bytes(&mut set_up, 3_000), Some((0x00, 0xFB)));
     assert_eq!(set_up.expected(), Expected::FaultWord);
-    // The answer was lost: asked again 10 ms later.
+    // The answer was lost, so the request is repeated after 10 ms.
     assert_eq!(last_bytes(&mut set_up, 5_000), None);
     assert_eq!(last_bytes(&mut set_up, 13_000), Some((0x00, 0xFB)));
     set_up.on_no_fault();
     assert_eq!(last_bytes(&mut set_up, 15_000), Some((2, 0xFC)));
     assert!(!set_up.is_done());
-    // It fell silent: all over again. Silence while it is being stopped changes nothing.
+    // The motor fell silent, so the dialogue restarts. Silence while it is being stopped changes nothing.
     set_up.on_silence(17_000);
     assert_eq!(last_bytes(&mut set_up, 17_000), Some((0xFF, 0xFD)));
     set_up.on_silence(19_000);

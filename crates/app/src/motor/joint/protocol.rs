@@ -1,4 +1,4 @@
-//! What DM4310 and RS00 have in common, each said in its own frames.
+//! One interface to the protocols of DM4310 and RS00.
 
 use super::super::{
     dm4310::{self, Register},
@@ -8,27 +8,27 @@ use super::super::{
 };
 use crate::domain::{CanFrame, JointMode};
 
-/// What a motor says of itself.
+/// State of a motor as far as its replies show it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
     Disabled,
     Enabled,
-    /// An RS00 without fault: whether it is enabled is not in its replies.
+    /// An RS00 without fault. Its replies do not show whether it is enabled.
     Working,
-    /// Of its own coding; 0 = it does not say which.
+    /// A fault in the motor's own coding; 0 if the motor does not name it.
     Fault(u32),
 }
 
-/// The ordinary reply, motor coordinates.
+/// An ordinary reply, in motor coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Report {
     pub motion: MitReport,
-    /// The hotter of driver and winding, as far as the motor tells.
+    /// The higher of driver and winding temperature in °C, as far as the motor reports them.
     pub temperature_c: f32,
     pub status: Status,
 }
 
-/// What the next reply may carry besides a report: replies differ only in content.
+/// What the next reply may carry besides a report. Replies differ only in their content.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Expected {
     Report,
@@ -65,7 +65,7 @@ impl JointMotor {
         }
     }
 
-    /// `None` for a motor that shows every fault in its ordinary replies.
+    /// Requests the fault word. `None` for a motor whose ordinary replies show every fault.
     pub fn read_faults(&self) -> Option<CanFrame> {
         match self {
             Self::Dm4310(_) => None,
@@ -73,7 +73,8 @@ impl JointMotor {
         }
     }
 
-    /// `Off` is an MIT frame without gains and with the torque code nearest to zero, whatever the targets say.
+    /// Encodes a command. `Off` is an MIT frame without gains and with the torque code nearest to zero, whatever the
+    /// targets are.
     pub fn command(&self, mode: JointMode, targets: &MitTargets, max_torque_nm: f32) -> CanFrame {
         match mode {
             JointMode::Off => self.mit(&MitTargets::default()),
@@ -105,7 +106,7 @@ impl JointMotor {
         }
     }
 
-    /// `None` unless it is from this motor.
+    /// Decodes a reply of this motor.
     pub fn decode(&self, frame: &CanFrame, expected: Expected) -> Option<Reply> {
         match (self, expected) {
             (Self::Dm4310(motor), Expected::Register(register)) => motor

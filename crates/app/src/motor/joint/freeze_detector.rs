@@ -1,34 +1,34 @@
-//! Does a motor report what it does now, or repeat something old?
+//! Detects a motor that repeats an old report.
 
-use super::{super::mit::MitTargets, dialect::Report};
+use super::{super::mit::MitTargets, protocol::Report};
 
-/// A joint that turns at least this fast …
+/// A joint that reports at least this speed must also change its angle.
 const MOVING_RPS: f32 = 0.5;
-/// … must show it in its angle within this time.
+/// The angle must change within this time.
 const STUCK_POSITION_US: u64 = 50_000;
-/// Reported torque and the torque that the command asks for differ by more than this …
-const ODD_TORQUE_NM: f32 = 1.0;
-/// … for this long while nothing in the reports changes.
+/// Tolerance between reported torque and the torque that the command asks for.
+const TORQUE_TOLERANCE_NM: f32 = 1.0;
+/// Unchanging reports may exceed the tolerance for this long.
 const STUCK_REPORT_US: u64 = 100_000;
 
-/// Compares each report with the one before it.
+/// Compares each report with the previous one.
 #[derive(Clone, Debug, Default)]
-pub struct FreezeWatch {
+pub struct FreezeDetector {
     frozen: bool,
-    /// Last report with another angle than the one before.
+    /// Time of the last report whose angle differed from the previous one.
     position_changed_us: u64,
-    /// Last report that differed at all, or agreed with the command.
+    /// Time of the last report that differed at all, or agreed with the command.
     plausible_us: u64,
 }
 
-impl FreezeWatch {
-    /// True if `report`, which comes after `last`, belongs to a frozen series; once frozen, only another report thaws
-    /// it. `obeyed` is what an enabled motor was last told in MIT mode.
+impl FreezeDetector {
+    /// Takes `report`, which follows `last`, and returns whether it is frozen. A frozen state ends only with a
+    /// different report. `active_targets` are the targets that an enabled motor follows in MIT mode.
     pub fn is_frozen(
         &mut self,
         last: &Report,
         report: &Report,
-        obeyed: Option<&MitTargets>,
+        active_targets: Option<&MitTargets>,
         ts_us: u64,
     ) -> bool {
         let same_position = last.motion.position_code == report.motion.position_code;
@@ -36,7 +36,9 @@ impl FreezeWatch {
             self.position_changed_us = ts_us;
         }
         let same_report = same_position && last == report;
-        if !same_report || !obeyed.is_some_and(|targets| is_torque_odd(report, targets)) {
+        if !same_report
+            || !active_targets.is_some_and(|targets| is_torque_implausible(report, targets))
+        {
             self.plausible_us = ts_us;
         }
         let stuck_position = report.motion.vel_rps.abs() > MOVING_RPS
@@ -46,7 +48,7 @@ impl FreezeWatch {
         self.frozen
     }
 
-    /// What was reported up to now tells nothing of later reports.
+    /// Forgets all earlier reports.
     pub fn restart(&mut self, now_us: u64) {
         *self = Self {
             frozen: false,
@@ -56,18 +58,18 @@ impl FreezeWatch {
     }
 }
 
-fn is_torque_odd(report: &Report, targets: &MitTargets) -> bool {
+fn is_torque_implausible(report: &Report, targets: &MitTargets) -> bool {
     let motion = &report.motion;
     let asked_nm = targets.kp * (targets.pos_rad - motion.pos_rad)
         + targets.kd * (targets.vel_rps - motion.vel_rps)
         + targets.torque_nm;
-    (asked_nm - motion.torque_nm).abs() > ODD_TORQUE_NM
+    (asked_nm - motion.torque_nm).abs() > TORQUE_TOLERANCE_NM
 }
 
 #[cfg(test)]
 mod tests {
     use super::{
-        super::{super::mit::MitReport, dialect::Status},
+        super::{super::mit::MitReport, protocol::Status},
         *,
     };
 
@@ -91,18 +93,22 @@ mod tests {
         })
     }
 
-    /// A report each millisecond; when the first of them is taken for frozen, if any is within a second.
-    fn frozen_ms(obeyed: Option<MitTargets>, report: impl Fn(u64) -> Report) -> Option<u64> {
-        let mut watch = FreezeWatch::default();
+    /// Sends a report each millisecond and returns when the first of them counts as frozen, if any does within a
+    /// second.
+    fn frozen_ms(
+        active_targets: Option<MitTargets>,
+        report: impl Fn(u64) -> Report,
+    ) -> Option<u64> {
+        let mut watch = FreezeDetector::default();
         watch.restart(0);
         (1..1_000).find(|ms| {
             let (last, now) = (report(ms - 1), report(*ms));
-            watch.is_frozen(&last, &now, obeyed.as_ref(), ms * 1_000)
+            watch.is_frozen(&last, &now, active_targets.as_ref(), ms * 1_000)
         })
     }
 
     #[test]
-    fn a_joint_that_turns_must_show_it_within_50_ms() {
+    fn the_angle_of_a_turning_joint_must_change_within_50_ms() {
         for (vel_rps, expected) in [
             (0.5, None),
             (0.51, Some(50)),
@@ -119,15 +125,15 @@ mod tests {
     }
 
     #[test]
-    fn a_report_that_never_changes_must_agree_with_the_command() {
-        for (obeyed, expected) in [
+    fn unchanging_reports_must_agree_with_the_command() {
+        for (active_targets, expected) in [
             (None, None),
             (asks(1.0), None),
             (asks(1.01), Some(100)),
             (asks(-1.01), Some(100)),
         ] {
-            let found = frozen_ms(obeyed, |_| report(7, 0.0, 30.0));
-            assert_eq!(found, expected, "{obeyed:?}");
+            let found = frozen_ms(active_targets, |_| report(7, 0.0, 30.0));
+            assert_eq!(found, expected, "{active_targets:?}");
         }
         let warms = |ms: u64| report(7, 0.0, (ms / 99) as f32);
         assert_eq!(frozen_ms(asks(5.0), warms), None);
@@ -136,9 +142,9 @@ mod tests {
     }
 
     #[test]
-    fn only_another_report_or_silence_thaws_a_frozen_joint() {
+    fn only_a_different_report_or_a_restart_ends_a_frozen_joint() {
         let (old, new) = (report(7, 0.0, 30.0), report(7, 0.0, 31.0));
-        let mut watch = FreezeWatch::default();
+        let mut watch = FreezeDetector::default();
         let targets = asks(5.0);
         assert!(watch.is_frozen(&old, &old, targets.as_ref(), 100_000));
         assert!(watch.is_frozen(&old, &old, None, 101_000));
@@ -151,9 +157,9 @@ mod tests {
         assert!(!watch.is_frozen(&new, &new, None, 303_000));
     }
 
-    /// 10 · (0.3 − 0.1) + 2 · (0.5 − 1.0) + 0.25 = 1.25 N·m; 1 more or less is not odd.
+    /// 10 · (0.3 − 0.1) + 2 · (0.5 − 1.0) + 0.25 = 1.25 N·m. The tolerance is ±1 N·m.
     #[test]
-    fn the_torque_asked_for_is_the_motor_s_own_formula() {
+    fn the_expected_torque_follows_the_motor_s_formula() {
         let targets = MitTargets {
             pos_rad: 0.3,
             vel_rps: 0.5,
@@ -164,7 +170,7 @@ mod tests {
         for (torque_nm, odd) in [(0.2, true), (0.3, false), (2.2, false), (2.3, true)] {
             let mut report = report(7, 1.0, 30.0);
             report.motion.torque_nm = torque_nm;
-            assert_eq!(is_torque_odd(&report, &targets), odd, "{torque_nm}");
+            assert_eq!(is_torque_implausible(&report, &targets), odd, "{torque_nm}");
         }
     }
 }

@@ -1,10 +1,10 @@
-//! What DM4310 and RS00 take in position and speed mode: two plain floats, little-endian.
+//! The setpoints of DM4310 and RS00 in position and speed mode: two floats, little-endian.
 
 use super::mit::MitRanges;
 use crate::math::scalar;
 
-/// The payload of position mode. Both are clamped to the motor's ranges, the speed from below at 0; an angle that is no
-/// number does not move it.
+/// The payload of position mode. The angle is clamped to the motor's range and the speed limit to 0…`v_max_rps`. If
+/// the angle is NaN, the speed limit becomes 0.
 pub(super) fn position_speed(pos_rad: f32, max_speed_rps: f32, ranges: &MitRanges) -> [u8; 8] {
     let speed_rps = if pos_rad.is_nan() { 0.0 } else { max_speed_rps };
     two_floats(
