@@ -71,19 +71,15 @@ fn no_switch(site: &Site, pair: &Pair) -> Vec<String> {
         (&pair.english, &pair.chinese),
         (&pair.chinese, &pair.english),
     ];
-    let leads = |page: &Page, other: &Page| {
-        let switch = page.blocks.iter().take(3).find(|block| is_switch(block));
-        let targets = switch
-            .map(|block| spans(&block.text).targets)
-            .unwrap_or_default();
-        let other_page = format!("{}, the page in the other language", other.path);
-        targets
-            .iter()
-            .any(|target| site.place(page, target) == other_page)
+    let switch = format!("{}, in the other language", pair.english.path);
+    let leads = |page: &Page| {
+        let top = page.blocks.iter().take(3).filter(|block| is_switch(block));
+        let mut targets = top.flat_map(|block| spans(&block.text).targets);
+        targets.any(|target| site.place(page, &target) == switch)
     };
     pages
         .into_iter()
-        .filter(|(page, other)| !leads(page, other))
+        .filter(|(page, _)| !leads(page))
         .map(|(page, other)| format!("{}: no link to {} at its top", page.path, other.path))
         .collect()
 }

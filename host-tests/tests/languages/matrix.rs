@@ -1,6 +1,9 @@
 //! The fault matrix is written by a program and only in English; the Chinese page has a key to it.
 
-use crate::{site::root, spans::spans};
+use crate::{
+    site::{Site, root},
+    spans::spans,
+};
 use std::{collections::BTreeSet, fs};
 
 /// What is between the marks of the matrix on a page.
@@ -45,6 +48,25 @@ fn the_chinese_key_explains_what_the_matrix_says() {
     let phrases = phrases(&region("docs/safety.md"));
     assert!(phrases.len() > 10, "{phrases:?}");
     assert_eq!(explained(&region("docs/zh-CN/safety.md")), phrases);
+}
+
+#[test]
+fn the_chinese_key_leads_to_the_matrix() {
+    let site = Site::read();
+    let chinese = &site.0["docs/safety.md"].chinese;
+    let targets = spans(&region("docs/zh-CN/safety.md")).targets;
+    let places: Vec<String> = targets
+        .iter()
+        .map(|target| site.place(chinese, target))
+        .collect();
+    // The matrix is under the last heading of both pages.
+    let last = chinese.headings().count() - 1;
+    assert_eq!(
+        places,
+        [format!(
+            "docs/safety.md, heading {last}, in the other language"
+        )]
+    );
 }
 
 #[test]

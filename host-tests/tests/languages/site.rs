@@ -9,6 +9,8 @@ use std::{
 
 const CHINESE_README: &str = "README.zh-CN.md";
 const CHINESE_FOLDER: &str = "docs/zh-CN";
+/// What the words for a place end with if the link leads from one language to the other.
+const OTHER_LANGUAGE: &str = ", in the other language";
 
 pub struct Page {
     /// From the repository's root, with `/`.
@@ -21,6 +23,11 @@ impl Page {
         let path = path.to_owned();
         let blocks = blocks(text);
         Self { path, blocks }
+    }
+
+    pub fn headings(&self) -> impl Iterator<Item = &Block> {
+        let is_heading = |block: &&Block| matches!(block.kind, Kind::Heading(_));
+        self.blocks.iter().filter(is_heading)
     }
 }
 
@@ -75,30 +82,32 @@ impl Site {
         let Some(pair) = self.0.get(&english_path(&path)) else {
             return format!("{path}#{anchor}").trim_end_matches('#').to_owned();
         };
-        let from_chinese = page.path != english_path(&page.path);
-        let (there, other) = match from_chinese {
-            false => (&pair.english, &pair.chinese),
-            true => (&pair.chinese, &pair.english),
+        let from_english = page.path == english_path(&page.path);
+        let to_english = path == pair.english.path;
+        let there = if to_english {
+            &pair.english
+        } else {
+            &pair.chinese
         };
-        if path == other.path {
-            return format!("{path}, the page in the other language");
-        }
-        let heading = headings(there).position(|block| slug(&block.text) == anchor);
-        match (anchor, heading) {
-            ("", _) => pair.english.path.clone(),
-            (_, Some(number)) => format!("{}, heading {number}", pair.english.path),
-            _ => format!("{path}#{anchor}, which is no heading there"),
-        }
+        let mut headings = there.headings();
+        let heading = match anchor {
+            "" => String::new(),
+            anchor => match headings.position(|block| slug(&block.text) == anchor) {
+                Some(number) => format!(", heading {number}"),
+                None => return format!("{path}#{anchor}, which is no heading there"),
+            },
+        };
+        let language = if from_english == to_english {
+            ""
+        } else {
+            OTHER_LANGUAGE
+        };
+        format!("{}{heading}{language}", pair.english.path)
     }
 }
 
 pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
-}
-
-fn headings(page: &Page) -> impl Iterator<Item = &Block> {
-    let is_heading = |block: &&Block| matches!(block.kind, Kind::Heading(_));
-    page.blocks.iter().filter(is_heading)
 }
 
 /// The path of the English page; that of any other file is its own.
