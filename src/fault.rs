@@ -1,14 +1,15 @@
 //! The last resort: a panic or a CPU fault sends zero torque on both buses, logs, and waits for the watchdog.
 //!
-//! `panic-probe` is not used: it halts without touching the motors.
+//! `panic-probe` logs a panic with its place and then executes UDF, so a panic arrives here as a hard fault.
 
 use core::arch::global_asm;
-use core::panic::PanicInfo;
 use core::sync::atomic::{AtomicBool, Ordering};
 
+use cortex_m::peripheral::SCB;
 use cortex_m_rt::{ExceptionFrame, exception};
 use embassy_stm32::pac::can::Can;
 use embassy_stm32::pac::{CAN1, CAN2, RCC};
+use panic_probe as _;
 use robot_app::domain::{BusId, CanFrame, LastWords};
 
 use crate::board;
@@ -23,21 +24,6 @@ const MAILBOX_POLLS: u32 = 6_000;
 const ROUND_CYCLES: u32 = 168_000;
 /// Rounds after which the chip resets itself, in case the watchdog was not running yet.
 const ROUNDS: u32 = 100;
-
-#[panic_handler]
-fn panic(info: &PanicInfo) -> ! {
-    enter(LastWords::Panic);
-    if first_time() {
-        defmt::error!("{}", defmt::Display2Format(info));
-    }
-    stay_safe_until_reset()
-}
-
-#[defmt::panic_handler]
-fn defmt_panic() -> ! {
-    enter(LastWords::Panic);
-    stay_safe_until_reset()
-}
 
 // The vector of every CPU fault. After a stack overflow the stack pointer is below CCM, where the first push would
 // lock the core up; near the bottom there is no room for the handler either. Then the stack starts anew at the top.
@@ -67,11 +53,18 @@ global_asm!(
 /// More than the handlers below need to send and to log.
 const HANDLER_STACK_BYTES: u32 = 2_048;
 
-/// `frame` is the stack pointer at the fault: all code here runs on the main stack.
+/// Ends a CPU fault or a panic. `frame` is the stack pointer at the fault: all code here runs on the main stack.
 extern "C" fn hard_fault(frame: *const ExceptionFrame) -> ! {
-    enter(LastWords::HardFault);
-    if first_time() {
-        match stacked_frame(frame) {
+    stop_everything();
+    let frame = stacked_frame(frame);
+    let panicked = frame.is_some_and(is_panic);
+    let is_first = leave_last_words(if panicked {
+        LastWords::Panic
+    } else {
+        LastWords::HardFault
+    });
+    if is_first && !panicked {
+        match frame {
             Some(frame) => defmt::error!(
                 "hard fault at pc {=u32:#010x}, lr {=u32:#010x}",
                 frame.pc(),
@@ -83,8 +76,24 @@ extern "C" fn hard_fault(frame: *const ExceptionFrame) -> ! {
     stay_safe_until_reset()
 }
 
+/// Whether the fault is the UDF instruction with which `panic-probe` ends a panic.
+fn is_panic(frame: &ExceptionFrame) -> bool {
+    const UNDEFINSTR: u32 = 1 << 16;
+    const UDF_0: u16 = 0xDE00;
+    // SAFETY: the System Control Block of every Cortex-M4; all accesses are volatile.
+    let scb = unsafe { &*SCB::PTR };
+    if scb.cfsr.read() & UNDEFINSTR == 0 {
+        return false;
+    }
+    let instruction = frame.pc() as *const u16;
+    // SAFETY: the CPU fetched an instruction from there just now, so memory answers, and instructions are half-words.
+    let opcode = unsafe { instruction.read_volatile() };
+    opcode == UDF_0
+}
+
 /// `None` if the CPU found no stack to put its registers on.
 fn stacked_frame(frame: *const ExceptionFrame) -> Option<&'static ExceptionFrame> {
+    // SAFETY: `memory.x` defines both symbols. Only their addresses are taken.
     unsafe extern "C" {
         static _stack_start: u32;
         static _stack_end: u32;
@@ -94,39 +103,44 @@ fn stacked_frame(frame: *const ExceptionFrame) -> Option<&'static ExceptionFrame
         .addr()
         .checked_add(size_of::<ExceptionFrame>())?
         .checked_sub(1)?;
-    let whole = stack.contains(&frame.addr()) && stack.contains(&last_byte) && frame.is_aligned();
-    // SAFETY: lies in the stack, where the CPU has put a frame; the handler's own stack is below it or, started anew,
-    // far above. All bit patterns are valid.
-    whole.then(|| unsafe { &*frame })
+    let is_whole =
+        stack.contains(&frame.addr()) && stack.contains(&last_byte) && frame.is_aligned();
+    if !is_whole {
+        return None;
+    }
+    // SAFETY: the frame lies in the stack, where the CPU has put it; the handler's own stack is below it or, started
+    // anew, far above. All bit patterns are valid.
+    Some(unsafe { &*frame })
 }
 
 #[exception]
 unsafe fn DefaultHandler(irq: i16) -> ! {
-    enter(LastWords::UnexpectedInterrupt);
-    if first_time() {
+    stop_everything();
+    if leave_last_words(LastWords::UnexpectedInterrupt) {
         defmt::error!("unexpected exception or interrupt {=i16}", irq);
     }
     stay_safe_until_reset()
 }
 
-/// Stops everything else and sends the first zero frames. A fault on the way to the reset keeps the first words.
-fn enter(words: LastWords) {
+/// Stops everything else and sends the first zero frames.
+fn stop_everything() {
     cortex_m::interrupt::disable();
     send_zero_torque();
     board::force_heater_off();
     // A debugger may have come since the last tick: the reset at the end must not halt the core.
     debug_probe::undo();
-    static SPOKEN: AtomicBool = AtomicBool::new(false);
-    if !SPOKEN.swap(true, Ordering::Relaxed) {
-        // SAFETY: a fault handler, and interrupts are disabled until the reset.
-        unsafe { last_words::leave(words) };
-    }
 }
 
-/// False when logging itself failed and led back here.
-fn first_time() -> bool {
-    static LOGGED: AtomicBool = AtomicBool::new(false);
-    !LOGGED.swap(true, Ordering::Relaxed)
+/// Leaves `words` for the next run. False if this run has failed before: a fault on the way to the reset keeps the
+/// first words.
+fn leave_last_words(words: LastWords) -> bool {
+    static HAS_FAILED: AtomicBool = AtomicBool::new(false);
+    if HAS_FAILED.swap(true, Ordering::Relaxed) {
+        return false;
+    }
+    // SAFETY: a fault handler, and interrupts are disabled until the reset.
+    unsafe { last_words::leave(words) };
+    true
 }
 
 /// Motor controllers may keep their last command, so zero is repeated until the reset comes.
@@ -135,7 +149,7 @@ fn stay_safe_until_reset() -> ! {
         cortex_m::asm::delay(ROUND_CYCLES);
         send_zero_torque();
     }
-    cortex_m::peripheral::SCB::sys_reset()
+    SCB::sys_reset()
 }
 
 fn send_zero_torque() {
