@@ -6,7 +6,7 @@ use embassy_stm32::adc::AdcChannel;
 use embassy_stm32::dma::{self, Channel, Request};
 use embassy_stm32::gpio::{AfType, Flex, Level, Output, OutputType, Pin, Pull, Speed};
 use embassy_stm32::i2c::{self, I2c};
-use embassy_stm32::interrupt::typelevel::Interrupt as _;
+use embassy_stm32::interrupt::typelevel::Handler;
 use embassy_stm32::interrupt::{self, InterruptExt, Priority};
 use embassy_stm32::mode::Async;
 use embassy_stm32::spi::{self, Spi};
@@ -23,8 +23,9 @@ use crate::drivers::buzzer::Buzzer;
 use crate::drivers::can::{self, Can1, Can2, CanPort, FifoInterrupt};
 use crate::drivers::heater::Heater;
 use crate::drivers::ist8310::Ist8310;
-use crate::drivers::radio_uart::{RadioInterrupt, RadioUart};
+use crate::drivers::radio_uart::RadioUart;
 use crate::drivers::status_led::StatusLed;
+use crate::exchange::RADIO_LINE;
 use crate::executors::{ControlInterrupt, SensorInterrupt};
 
 bind_interrupts!(struct Irqs {
@@ -44,12 +45,21 @@ bind_interrupts!(struct Irqs {
     DMA2_STREAM3 => dma::InterruptHandler<peripherals::DMA2_CH3>;
 });
 
+/// Handler of the receiver's UART.
+struct RadioInterrupt;
+
+impl Handler<interrupt::typelevel::USART3> for RadioInterrupt {
+    unsafe fn on_interrupt() {
+        RADIO_LINE.on_interrupt(RADIO_UART);
+    }
+}
+
 /// Unused peripherals lend their interrupts to the executors.
 pub const CONTROL_EXECUTOR_IRQ: interrupt::Interrupt = interrupt::UART5;
 pub const SENSOR_EXECUTOR_IRQ: interrupt::Interrupt = interrupt::UART4;
 
 /// The receiver's UART.
-pub const RADIO_UART: pac::usart::Usart = pac::USART3;
+const RADIO_UART: pac::usart::Usart = pac::USART3;
 /// Channel of USART3_RX on DMA1 stream 1 (RM0090 table 42).
 const RADIO_DMA_REQUEST: Request = 4;
 /// Five SBUS frames.
@@ -333,13 +343,15 @@ fn start_can(pins: CanPins) -> (CanPort, CanPort) {
         );
     }
     let ports = can::start(Can1::new(pins.can1), Can2::new(pins.can2));
-    // SAFETY: no critical section or lock relies on these interrupts being masked, and `can::start` installed what
-    // their handlers need.
-    unsafe {
-        interrupt::typelevel::CAN1_RX0::enable();
-        interrupt::typelevel::CAN1_RX1::enable();
-        interrupt::typelevel::CAN2_RX0::enable();
-        interrupt::typelevel::CAN2_RX1::enable();
+    for irq in [
+        interrupt::CAN1_RX0,
+        interrupt::CAN1_RX1,
+        interrupt::CAN2_RX0,
+        interrupt::CAN2_RX1,
+    ] {
+        // SAFETY: no critical section or lock relies on this interrupt being masked, and `can::start` installed what
+        // its handler needs.
+        unsafe { irq.enable() };
     }
     ports
 }
@@ -354,9 +366,17 @@ fn start_radio(
     lend(Flex::new(rx), USART3_AF, AfType::input(Pull::Up));
     let clock = rcc::frequency::<peripherals::USART3>();
     let buffer = BUFFER.init([0; RADIO_BUFFER_LEN]);
-    let radio = RadioUart::start(RADIO_UART, clock.0, format, dma, RADIO_DMA_REQUEST, buffer);
+    let radio = RadioUart::start(
+        RADIO_UART,
+        &RADIO_LINE,
+        clock.0,
+        format,
+        dma,
+        RADIO_DMA_REQUEST,
+        buffer,
+    );
     // SAFETY: no critical section or lock relies on this interrupt being masked.
-    unsafe { interrupt::typelevel::USART3::enable() };
+    unsafe { interrupt::USART3.enable() };
     radio
 }
 

@@ -15,6 +15,7 @@ unsafe impl Sync for DebuggerView {}
 
 /// `g_robotapp_diag`, by which debuggers know it (docs/port.md#diagnostics).
 #[used]
+// SAFETY: no other symbol of the image has this name.
 #[unsafe(no_mangle)]
 pub static g_robotapp_diag: DebuggerView = DebuggerView(UnsafeCell::new(
     // SAFETY: numbers, bools and enums with a variant 0; the compiler checks the value of a static.

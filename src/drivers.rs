@@ -4,7 +4,6 @@ pub mod battery;
 pub mod bmi088;
 pub mod buzzer;
 pub mod can;
-pub mod clock_repair;
 pub mod cycle_jitter;
 pub mod debug_probe;
 pub mod heater;

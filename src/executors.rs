@@ -1,9 +1,8 @@
 //! Two interrupt executors: control preempts sensors, both preempt the thread executor.
 
 use embassy_executor::{InterruptExecutor, SendSpawner};
-use embassy_stm32::interrupt::typelevel::{Handler, Interrupt};
-
-use crate::board::{CONTROL_EXECUTOR_IRQ, SENSOR_EXECUTOR_IRQ};
+use embassy_stm32::interrupt::Interrupt;
+use embassy_stm32::interrupt::typelevel::{self, Handler};
 
 static CONTROL: InterruptExecutor = InterruptExecutor::new();
 static SENSOR: InterruptExecutor = InterruptExecutor::new();
@@ -14,27 +13,30 @@ pub struct ControlInterrupt;
 /// Handler of the sensor executor's interrupt.
 pub struct SensorInterrupt;
 
-impl<I: Interrupt> Handler<I> for ControlInterrupt {
+impl<I: typelevel::Interrupt> Handler<I> for ControlInterrupt {
     unsafe fn on_interrupt() {
-        // SAFETY: this is the handler of the interrupt that `start_control` gives to the executor, and `start`
-        // unmasks it after the executor exists.
+        // SAFETY: `board.rs` binds this handler to the interrupt that it gives to `start_control`, and `start` unmasks
+        // that interrupt after the executor exists.
         unsafe { CONTROL.on_interrupt() };
     }
 }
 
-impl<I: Interrupt> Handler<I> for SensorInterrupt {
+impl<I: typelevel::Interrupt> Handler<I> for SensorInterrupt {
     unsafe fn on_interrupt() {
-        // SAFETY: as above, for `start_sensor`.
+        // SAFETY: `board.rs` binds this handler to the interrupt that it gives to `start_sensor`, and `start` unmasks
+        // that interrupt after the executor exists.
         unsafe { SENSOR.on_interrupt() };
     }
 }
 
-/// Call once, after the board has set the priority.
-pub fn start_control() -> SendSpawner {
-    CONTROL.start(CONTROL_EXECUTOR_IRQ)
+/// Starts the control executor on the interrupt that [`ControlInterrupt`] serves. Call once, after the board has set
+/// the interrupt's priority.
+pub fn start_control(interrupt: Interrupt) -> SendSpawner {
+    CONTROL.start(interrupt)
 }
 
-/// Call once, after the board has set the priority.
-pub fn start_sensor() -> SendSpawner {
-    SENSOR.start(SENSOR_EXECUTOR_IRQ)
+/// Starts the sensor executor on the interrupt that [`SensorInterrupt`] serves. Call once, after the board has set the
+/// interrupt's priority.
+pub fn start_sensor(interrupt: Interrupt) -> SendSpawner {
+    SENSOR.start(interrupt)
 }

@@ -2,7 +2,14 @@
 
 use core::cell::UnsafeCell;
 
-use robot_app::domain::LastWords;
+use robot_app::domain::{LastWords, ResetCause};
+
+/// How the run before this one ended.
+#[derive(Clone, Copy)]
+pub struct LastRun {
+    pub reset_cause: ResetCause,
+    pub last_words: LastWords,
+}
 
 /// Written by the control tick and the fault handlers, read and cleared at boot.
 struct Slot(UnsafeCell<[u32; 2]>);
@@ -11,6 +18,7 @@ struct Slot(UnsafeCell<[u32; 2]>);
 unsafe impl Sync for Slot {}
 
 /// Start-up code leaves `.uninit` alone; after power-on it holds noise.
+// SAFETY: `memory.x` and cortex-m-rt place the section in SRAM, where any static may live.
 #[unsafe(link_section = ".uninit.last_words")]
 static SLOT: Slot = Slot(UnsafeCell::new([0; 2]));
 
@@ -33,7 +41,7 @@ pub unsafe fn take() -> LastWords {
     // SAFETY: a static; the contract forbids concurrent access. Volatile, because its initial value is not what the
     // memory holds.
     let [word, complement] = unsafe { SLOT.0.get().read_volatile() };
-    // SAFETY: as above.
+    // SAFETY: a static; the contract forbids concurrent access.
     unsafe { SLOT.0.get().write_volatile([0; 2]) };
     let [code, mark @ ..] = word.to_le_bytes();
     let [_, expected_mark @ ..] = MARK.to_le_bytes();

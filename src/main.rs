@@ -10,7 +10,9 @@
     clippy::expect_used,
     clippy::panic,
     clippy::indexing_slicing,
-    clippy::arithmetic_side_effects
+    clippy::arithmetic_side_effects,
+    clippy::undocumented_unsafe_blocks,
+    clippy::multiple_unsafe_ops_per_block
 )]
 
 mod board;
@@ -40,19 +42,13 @@ use drivers::param_flash::ParamFlash;
 use drivers::reset_cause;
 use drivers::watchdog::Watchdog;
 use exchange::Exchange;
+use last_words::LastRun;
 use tasks::control::ControlContext;
 
 /// A bus is idle for 11 bits within one frame time of at most 0.14 ms; a dead bus must not stop the boot.
 const CAN_JOIN_TIMEOUT: Duration = Duration::from_millis(1);
 /// Five frames of one bus take 0.7 ms.
 const SAFE_FRAMES_TIMEOUT: Duration = Duration::from_millis(3);
-
-/// How the run before this one ended.
-#[derive(Clone, Copy)]
-pub struct LastRun {
-    pub reset_cause: ResetCause,
-    pub last_words: LastWords,
-}
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
@@ -83,7 +79,7 @@ fn main() -> ! {
         defmt::unwrap!(debugger_view::take()),
     );
 
-    let sensor = executors::start_sensor();
+    let sensor = executors::start_sensor(board::SENSOR_EXECUTOR_IRQ);
     sensor.spawn(defmt::unwrap!(tasks::imu::run(
         board.imu,
         board.heater,
@@ -101,7 +97,8 @@ fn main() -> ! {
         exchange,
         writers.remote
     )));
-    executors::start_control().spawn(defmt::unwrap!(tasks::control::run(control)));
+    executors::start_control(board::CONTROL_EXECUTOR_IRQ)
+        .spawn(defmt::unwrap!(tasks::control::run(control)));
 
     static THREAD_EXECUTOR: StaticCell<Executor> = StaticCell::new();
     THREAD_EXECUTOR

@@ -1,19 +1,21 @@
-//! Erasing flash stops the whole chip for a quarter to half a second. Here everything learns of it that would otherwise
-//! blame somebody: the clock, the deadlines, and whoever asks a [`StallWatch`].
+//! Stalls: erasing a flash sector stops the whole chip for a quarter to half a second.
+//!
+//! The clock and the task deadlines are corrected at once. Everybody else who measures time asks a [`StallWatch`].
+
+pub mod clock_repair;
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
 use embassy_time::{Duration, Ticker};
 
 use crate::deadlines;
-use crate::drivers::clock_repair;
 
-/// Since boot. Written by `stand_still` while no task can run.
+/// Stalls since boot. `stand_still` writes it while no task can run.
 static STALLS: AtomicU32 = AtomicU32::new(0);
 static LAST_STALL_US: AtomicU32 = AtomicU32::new(0);
 
-/// Runs `work`, during which the chip stands still. Only for thread mode. `None`, and nothing done, if the clock would
-/// be wrong afterwards.
+/// Runs `work`, during which the chip stands still. Thread mode only. Returns `None` without running it if the clock could
+/// not be corrected afterwards.
 pub fn stand_still<R>(work: impl FnOnce() -> R) -> Option<R> {
     clock_repair::keep_time(work, |stall_us| {
         deadlines::start();
@@ -25,7 +27,7 @@ pub fn stand_still<R>(work: impl FnOnce() -> R) -> Option<R> {
     })
 }
 
-/// Notices stalls from its making on.
+/// Notices stalls that come after it was made.
 pub struct StallWatch {
     seen: u32,
 }
@@ -37,8 +39,8 @@ impl StallWatch {
         }
     }
 
-    /// How long the chip stood still last, if it did since the last call.
-    pub fn news(&mut self) -> Option<u32> {
+    /// Length of the last stall in µs, if there was one since the last call.
+    pub fn take(&mut self) -> Option<u32> {
         let stalls = STALLS.load(Ordering::Relaxed);
         if stalls == self.seen {
             return None;
@@ -48,7 +50,7 @@ impl StallWatch {
     }
 }
 
-/// A ticker that does not catch up on what a stall swallowed.
+/// A ticker that skips the ticks lost in a stall instead of catching up.
 pub struct SteadyTicker {
     ticker: Ticker,
     stalls: StallWatch,
@@ -64,7 +66,7 @@ impl SteadyTicker {
 
     pub async fn next(&mut self) {
         self.ticker.next().await;
-        if self.stalls.news().is_some() {
+        if self.stalls.take().is_some() {
             self.restart();
         }
     }

@@ -5,10 +5,12 @@
 
 mod bring_up;
 mod link;
+mod peripherals;
 mod port;
 mod receive;
 pub mod transmit;
 
-pub use bring_up::{Can1, Can2, start};
+pub use bring_up::start;
+pub use peripherals::{Can1, Can2};
 pub use port::CanPort;
 pub use receive::FifoInterrupt;

@@ -3,7 +3,7 @@
 
 use cortex_m::peripheral::DWT;
 
-use super::clock_repair;
+use crate::stall::clock_repair;
 
 /// The system clock.
 const CYCLES_A_MS: u32 = 168_000;

@@ -27,16 +27,20 @@ pub fn undo() -> DebugProbe {
 #[cold]
 #[inline(never)]
 fn undo_all() -> DebugProbe {
-    // SAFETY: these addresses are the core's own on every Cortex-M4; all accesses are volatile.
-    let (dcb, fpb, dwt) = unsafe { (&*DCB::PTR, &*FPB::PTR, &*DWT::PTR) };
-    // SAFETY: turns off what halts the core; nothing in the image relies on any of it. Whoever is interrupted between
-    // reading and writing DEMCR (`clock_repair.rs`) may put a catch back, until the next call.
-    unsafe {
-        dcb.demcr.modify(|demcr| demcr & DEMCR_TRCENA);
-        fpb.ctrl.write(FP_CTRL_KEY);
-        for watchpoint in dwt.c.iter().take(DWT::num_comp().into()) {
-            watchpoint.function.write(0);
-        }
+    // SAFETY: the address of these registers on every Cortex-M4; all accesses are volatile.
+    let dcb = unsafe { &*DCB::PTR };
+    // SAFETY: as for DCB: the core's own registers, with volatile accesses.
+    let fpb = unsafe { &*FPB::PTR };
+    // SAFETY: as for DCB: the core's own registers, with volatile accesses.
+    let dwt = unsafe { &*DWT::PTR };
+    // SAFETY: turns off vector catches, on which nothing in the image relies. Whoever is interrupted between reading and
+    // writing DEMCR (`clock_repair.rs`) may put a catch back, until the next call.
+    unsafe { dcb.demcr.modify(|demcr| demcr & DEMCR_TRCENA) };
+    // SAFETY: turns off breakpoints, on which nothing in the image relies.
+    unsafe { fpb.ctrl.write(FP_CTRL_KEY) };
+    for watchpoint in dwt.c.iter().take(DWT::num_comp().into()) {
+        // SAFETY: turns off a watchpoint; the image sets none.
+        unsafe { watchpoint.function.write(0) };
     }
     DBGMCU.apb1fzr().modify(|w| {
         w.set_iwdg(false);

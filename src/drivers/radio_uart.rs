@@ -8,13 +8,11 @@ use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use core::task::Poll;
 
 use embassy_stm32::dma::{Channel, ReadableRingBuffer, Request, TransferOptions};
-use embassy_stm32::interrupt::typelevel::{Handler, Interrupt};
 use embassy_stm32::pac::usart::{Usart, vals};
 use embassy_sync::waitqueue::AtomicWaker;
 use robot_app::domain::RadioLineHealth;
 use robot_app::input::RemoteFormat;
 
-use crate::exchange::RADIO_LINE;
 use crate::stall::StallWatch;
 
 /// SBUS and DBUS both run at 100 kBd.
@@ -57,6 +55,31 @@ impl RadioLine {
         }
     }
 
+    /// Serves the interrupt of `uart`: counts line errors, and wakes the reader when the line falls idle.
+    pub fn on_interrupt(&self, uart: Usart) {
+        let status = uart.sr().read();
+        if !(status.idle() || status.pe() || status.fe() || status.ne() || status.ore()) {
+            return;
+        }
+        // Reading DR after SR clears the flags (RM0090 30.6.1). DMA has taken the byte long before idle; after
+        // an error the byte is worthless.
+        let _ = uart.dr().read();
+        for (flag, counter) in [
+            (status.pe(), &self.parity),
+            (status.fe(), &self.framing),
+            (status.ne(), &self.noise),
+            (status.ore(), &self.overrun),
+        ] {
+            if flag {
+                increment(counter);
+            }
+        }
+        if status.idle() {
+            self.idle.store(true, Ordering::Release);
+            self.waker.wake();
+        }
+    }
+
     fn count_burst(&self, bytes: usize) {
         increment(&self.rx_events);
         // No more than the ring holds.
@@ -68,39 +91,9 @@ fn increment(counter: &AtomicU32) {
     counter.fetch_add(1, Ordering::Relaxed);
 }
 
-/// Interrupt handler of the receiver's UART.
-pub struct RadioInterrupt;
-
-impl<I: Interrupt> Handler<I> for RadioInterrupt {
-    unsafe fn on_interrupt() {
-        let uart = crate::board::RADIO_UART;
-        let status = uart.sr().read();
-        let line = &RADIO_LINE;
-        if !(status.idle() || status.pe() || status.fe() || status.ne() || status.ore()) {
-            return;
-        }
-        // Reading DR after SR clears the flags (RM0090 30.6.1). DMA has taken the byte long before idle; after
-        // an error the byte is worthless.
-        let _ = uart.dr().read();
-        for (flag, counter) in [
-            (status.pe(), &line.parity),
-            (status.fe(), &line.framing),
-            (status.ne(), &line.noise),
-            (status.ore(), &line.overrun),
-        ] {
-            if flag {
-                increment(counter);
-            }
-        }
-        if status.idle() {
-            line.idle.store(true, Ordering::Release);
-            line.waker.wake();
-        }
-    }
-}
-
 /// The receiver's byte stream.
 pub struct RadioUart {
+    line: &'static RadioLine,
     ring: ReadableRingBuffer<'static, u8>,
     /// Errors that spoilt a burst already.
     reported: u32,
@@ -117,9 +110,11 @@ pub enum Burst<'a> {
 }
 
 impl RadioUart {
-    /// Starts reception. The clock must run, the pin be muxed, and `uart` be the one [`RadioInterrupt`] serves.
+    /// Starts reception. The clock must run, the pin be muxed, and the interrupt of `uart` call
+    /// [`RadioLine::on_interrupt`] of `line`.
     pub fn start(
         uart: Usart,
+        line: &'static RadioLine,
         clock_hz: u32,
         format: RemoteFormat,
         dma: Channel<'static>,
@@ -142,8 +137,9 @@ impl RadioUart {
         ring.start();
         uart.cr1().modify(|w| w.set_re(true));
         Self {
+            line,
             ring,
-            reported: RADIO_LINE.health().errors(),
+            reported: line.health().errors(),
             stalls: StallWatch::new(),
         }
     }
@@ -152,14 +148,14 @@ impl RadioUart {
     pub async fn read<'a>(&mut self, bytes: &'a mut [u8]) -> Burst<'a> {
         loop {
             self.wait().await;
-            if self.stalls.news().is_some() {
+            if self.stalls.take().is_some() {
                 // Of what came meanwhile the ring holds the end, and not from the start of a frame.
                 self.ring.clear();
                 continue;
             }
             let (mut count, mut left) = self.read_ring(bytes);
             // Only after the bytes: the interrupt preempts this task, so the error of a byte in the ring is counted.
-            let errors = RADIO_LINE.health().errors();
+            let errors = self.line.health().errors();
             if errors != self.reported {
                 self.reported = errors;
                 // The flagged one may be among those that found no room.
@@ -168,11 +164,11 @@ impl RadioUart {
                     count = count.saturating_add(more);
                     left = rest;
                 }
-                RADIO_LINE.count_burst(count);
+                self.line.count_burst(count);
                 return Burst::Damaged { count };
             }
             if count > 0 {
-                RADIO_LINE.count_burst(count);
+                self.line.count_burst(count);
                 return Burst::Clean(bytes.get(..count).unwrap_or_default());
             }
         }
@@ -182,18 +178,18 @@ impl RadioUart {
     fn read_ring(&mut self, bytes: &mut [u8]) -> (usize, usize) {
         self.ring.read(bytes).unwrap_or_else(|_| {
             // Overwritten before it was read; the HAL has emptied the ring.
-            increment(&RADIO_LINE.overrun);
+            increment(&self.line.overrun);
             (0, 0)
         })
     }
 
     async fn wait(&mut self) {
         poll_fn(|cx| {
-            RADIO_LINE.waker.register(cx.waker());
+            self.line.waker.register(cx.waker());
             self.ring.set_waker(cx.waker());
             let half = self.ring.capacity() / 2;
             let filling = self.ring.len().is_ok_and(|len| len < half);
-            if RADIO_LINE.idle.swap(false, Ordering::Acquire) || !filling {
+            if self.line.idle.swap(false, Ordering::Acquire) || !filling {
                 Poll::Ready(())
             } else {
                 Poll::Pending

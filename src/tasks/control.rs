@@ -11,6 +11,7 @@ use robot_app::tick::{ControlInputs, ControlOutputs, DIAGNOSTICS_PERIOD_TICKS};
 use robot_snapshot::{Follower, Writer};
 
 use crate::config::LAYOUT;
+use crate::deadlines;
 use crate::drivers::can::CanPort;
 use crate::drivers::cycle_jitter::CycleJitter;
 use crate::drivers::debug_probe;
@@ -19,8 +20,8 @@ use crate::exchange::{
     ConfigUpdate, ControlWriters, Exchange, FlashPermission, ImuReport, MagReport, ParamsReport,
     RADIO_LINE,
 };
+use crate::last_words::{self, LastRun};
 use crate::stall::{StallWatch, SteadyTicker};
-use crate::{LastRun, deadlines, last_words};
 
 const PERIOD: Duration = Duration::from_hz(1_000);
 
@@ -37,15 +38,15 @@ struct Inputs {
 impl Inputs {
     /// Looks for newer values, and passes on what they say of the sensors' health.
     fn follow(&mut self, health: &mut SystemHealth) {
-        if let Some(imu) = self.imu.news() {
+        if let Some(imu) = self.imu.changed() {
             health.imu = imu.health;
             health.imu_status = imu.status;
             health.imu_calibrated = imu.status.calibration.state == CalibrationState::Done;
         }
-        if let Some(mag) = self.mag.news() {
+        if let Some(mag) = self.mag.changed() {
             health.mag = mag.health;
         }
-        if let Some(battery_v) = self.battery_v.news() {
+        if let Some(battery_v) = self.battery_v.changed() {
             health.battery_v = *battery_v;
         }
         self.remote.latest();
@@ -168,6 +169,7 @@ pub async fn run(mut context: ControlContext) -> ! {
 }
 
 /// One tick. A symbol of its own, so that tools can find its entry.
+// SAFETY: no other symbol of the image has this name.
 #[unsafe(no_mangle)]
 #[inline(never)]
 pub fn robotapp_control_tick(context: &mut ControlContext) {
@@ -183,7 +185,7 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
         output,
     } = context;
 
-    if let Some(stall_us) = stalls.news() {
+    if let Some(stall_us) = stalls.take() {
         jitter.restart();
         ports.iter_mut().for_each(CanPort::drop_backlog);
         control_loop.after_stall(stall_us, now_us);

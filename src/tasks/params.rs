@@ -67,7 +67,7 @@ impl ParamsTask {
         let wanted = self
             .service
             .step(config, *revision, *restored, granted, now_us);
-        if let Some(stall_us) = self.stalls.news() {
+        if let Some(stall_us) = self.stalls.take() {
             self.service.note_stall(stall_us);
             defmt::info!(
                 "flash sector erased, the chip stood still for {=u32} us",

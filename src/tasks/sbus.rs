@@ -27,7 +27,7 @@ pub async fn run(
             let ts_us = Instant::now().as_micros();
             match burst {
                 Burst::Clean(arrived) => {
-                    if let Some(update) = settings.news() {
+                    if let Some(update) = settings.changed() {
                         receiver.set_mapping(&update.config.radio);
                     }
                     receiver.feed(arrived, ts_us, |update| output.publish(&update));

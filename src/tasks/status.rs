@@ -61,8 +61,7 @@ pub async fn run(
         buzzer.sound(signal.buzzer);
         changes.report(&diagnostics);
         bring_up.report_changes(&diagnostics);
-        settings.news();
-        motors.report(&diagnostics, &settings.last().config.joints, &LAYOUT);
+        motors.report(&diagnostics, &settings.latest().config.joints, &LAYOUT);
         radio.report(&diagnostics);
         if round.is_multiple_of(SUMMARY_DIVIDER) {
             summary::log(&diagnostics);

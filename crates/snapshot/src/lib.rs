@@ -26,6 +26,11 @@
 //! The counters wrap after 2^32 publications: a reader would have to be suspended for exactly a
 //! multiple of that (seven weeks at 1 kHz) to be misled.
 #![cfg_attr(not(any(test, loom)), no_std)]
+#![deny(
+    missing_docs,
+    clippy::undocumented_unsafe_blocks,
+    clippy::multiple_unsafe_ops_per_block
+)]
 
 mod slot;
 
@@ -47,6 +52,29 @@ use loom::{
 ///
 /// `T` must be aligned to at least four bytes (checked when it is built): slots are copied in
 /// 32-bit words. Every message that carries a `ts_us` is.
+///
+/// ```
+/// use robot_snapshot::Snapshot;
+///
+/// #[derive(Clone, Copy, Debug, PartialEq)]
+/// struct Speed {
+///     ts_us: u64,
+///     mps: f32,
+/// }
+///
+/// static SPEED: Snapshot<Speed> = Snapshot::new(Speed { ts_us: 0, mps: 0.0 });
+///
+/// // There is one writer for the life of the snapshot.
+/// let mut writer = SPEED.writer().expect("nobody asked before");
+/// assert!(SPEED.writer().is_none());
+///
+/// // A follower copies a value only once.
+/// let mut follower = SPEED.follower();
+/// writer.publish(&Speed { ts_us: 1_000, mps: 0.4 });
+/// assert_eq!(follower.changed().map(|speed| speed.mps), Some(0.4));
+/// assert_eq!(follower.changed(), None);
+/// assert_eq!(SPEED.latest().ts_us, 1_000);
+/// ```
 pub struct Snapshot<T> {
     slots: [Slot<T>; 2],
     /// Number of the publication being written or written last; its slot is `begun % 2`.
@@ -84,7 +112,7 @@ impl<T: Copy> Snapshot<T> {
         }
     }
 
-    /// The writing end. `None` if it was handed out before: there is one for the life of the
+    /// The writing end, or `None` if it was handed out before: there is one for the life of the
     /// snapshot, so that two writers cannot exist.
     pub fn writer(&self) -> Option<Writer<'_, T>> {
         let taken_before = self.writer_taken.swap(true, Ordering::Relaxed);
@@ -94,8 +122,8 @@ impl<T: Copy> Snapshot<T> {
         })
     }
 
-    /// The newest published value, whole. Never waits for the writer; see the module text for
-    /// when a copy is repeated.
+    /// A copy of the newest published value. Never waits for the writer; the module text says when
+    /// a copy is repeated.
     pub fn latest(&self) -> T {
         let mut copy = MaybeUninit::uninit();
         self.read(&mut copy);
@@ -143,28 +171,28 @@ impl<T: Copy> Snapshot<T> {
     }
 }
 
-/// A reader for a rate higher than the writer's: copies only what it has not seen.
+/// A reader with a copy of its own. It suits a reader that runs more often than the writer.
 pub struct Follower<'a, T> {
     snapshot: &'a Snapshot<T>,
     /// Number of the publication that `copy` is of.
     seen: u32,
-    /// A whole value, except while `follow` fills it.
+    /// A complete value, except while `follow` fills it.
     copy: MaybeUninit<T>,
 }
 
 impl<T: Copy> Follower<'_, T> {
-    /// As [`Snapshot::latest`].
+    /// The newest published value, as [`Snapshot::latest`]; copies it only if it is new.
     pub fn latest(&mut self) -> &T {
         self.follow();
         self.last()
     }
 
-    /// The newest value, if it came since the last look.
-    pub fn news(&mut self) -> Option<&T> {
+    /// The newest value if it was published since the last call, otherwise `None`.
+    pub fn changed(&mut self) -> Option<&T> {
         self.follow().then_some(self.last())
     }
 
-    /// The value of the last look.
+    /// The value of the last call of [`latest`](Self::latest) or [`changed`](Self::changed).
     pub fn last(&self) -> &T {
         // SAFETY: whole since the follower was made (see the field).
         unsafe { self.copy.assume_init_ref() }
@@ -187,7 +215,7 @@ pub struct Writer<'a, T> {
 }
 
 impl<T: Copy> Writer<'_, T> {
-    /// Makes `value` the newest value. Takes the same time whatever the readers do.
+    /// Makes `value` the newest value. The time this takes does not depend on the readers.
     pub fn publish(&mut self, value: &T) {
         let number = self.last.wrapping_add(1);
         self.snapshot.begun.store(number, Ordering::Relaxed);

@@ -59,9 +59,11 @@ mod target {
             let to = copy.as_mut_ptr().cast::<MaybeUninit<u32>>();
             for_each_index(Self::WORDS, |index| {
                 let word = self.word(index).load(Ordering::Relaxed);
-                // SAFETY: `index < WORDS`, so the word lies inside `copy`, and `words` has shown
-                // that `T` is aligned for it.
-                unsafe { to.add(index).write(word) };
+                // SAFETY: `index < WORDS`, so the word lies inside `copy`.
+                let place = unsafe { to.add(index) };
+                // SAFETY: `place` lies inside `copy`, which is borrowed mutably, and `words` has
+                // shown that `T` is aligned for it.
+                unsafe { place.write(word) };
             });
         }
 
@@ -69,9 +71,11 @@ mod target {
         pub fn store(&self, value: &T) {
             let from = core::ptr::from_ref(value).cast::<MaybeUninit<u32>>();
             for_each_index(Self::WORDS, |index| {
-                // SAFETY: `index < WORDS`, so the word lies inside `value`, is aligned as above,
-                // and as `MaybeUninit` may be padding.
-                let word = unsafe { from.add(index).read() };
+                // SAFETY: `index < WORDS`, so the word lies inside `value`.
+                let place = unsafe { from.add(index) };
+                // SAFETY: `place` lies inside `value`, `words` has shown that it is aligned, and a
+                // `MaybeUninit` may be padding.
+                let word = unsafe { place.read() };
                 self.word(index).store(word, Ordering::Relaxed);
             });
         }
@@ -80,9 +84,11 @@ mod target {
         fn word(&self, index: usize) -> &AtomicMaybeUninit<u32> {
             debug_assert!(index < Self::WORDS);
             let words = self.0.get().cast::<MaybeUninit<u32>>();
-            // SAFETY: both callers count up to `WORDS`, so the word lies inside the cell, which
-            // lives as long as `self` and is only ever reached through these atomics.
-            unsafe { AtomicMaybeUninit::from_ptr(words.add(index)) }
+            // SAFETY: both callers count up to `WORDS`, so the word lies inside the cell.
+            let word = unsafe { words.add(index) };
+            // SAFETY: `word` is aligned (`words::<T>` checks), lives as long as `self` and is only
+            // ever reached through these atomics.
+            unsafe { AtomicMaybeUninit::from_ptr(word) }
         }
     }
 }
@@ -112,8 +118,10 @@ mod model {
         pub fn load(&self, copy: &mut MaybeUninit<T>) {
             let to = copy.as_mut_ptr().cast::<u32>();
             for (index, word) in self.words.iter().enumerate() {
-                // SAFETY: there are as many words as `T` has, and `words` has checked alignment.
-                unsafe { to.add(index).write(word.load(Ordering::Relaxed)) };
+                // SAFETY: there are as many words as `T` has.
+                let place = unsafe { to.add(index) };
+                // SAFETY: `place` lies inside `copy`, and `words` has checked its alignment.
+                unsafe { place.write(word.load(Ordering::Relaxed)) };
             }
         }
 
@@ -125,8 +133,12 @@ mod model {
 
         fn split(value: &T) -> impl Iterator<Item = u32> {
             let from = core::ptr::from_ref(value).cast::<u32>();
-            // SAFETY: inside `value`, aligned (`words` checks), and without padding (module text).
-            (0..words::<T>()).map(move |index| unsafe { from.add(index).read() })
+            (0..words::<T>()).map(move |index| {
+                // SAFETY: there are as many words as `T` has, so this one lies inside `value`.
+                let place = unsafe { from.add(index) };
+                // SAFETY: `place` is aligned (`words` checks), and a modelled `T` has no padding.
+                unsafe { place.read() }
+            })
         }
     }
 }

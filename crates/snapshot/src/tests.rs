@@ -49,16 +49,16 @@ fn a_follower_starts_with_the_value_there_is_and_keeps_up() {
 }
 
 #[test]
-fn news_is_told_once_and_the_last_look_stays() {
+fn a_change_is_reported_once_and_the_last_copy_stays() {
     let snapshot = Snapshot::new(message(3));
     let mut follower = snapshot.follower();
     let mut writer = snapshot.writer().expect("first request");
-    assert_eq!(follower.news(), None);
+    assert_eq!(follower.changed(), None);
     writer.publish(&message(4));
     writer.publish(&message(5));
     assert_eq!(*follower.last(), message(3));
-    assert_eq!(follower.news(), Some(&message(5)));
-    assert_eq!(follower.news(), None);
+    assert_eq!(follower.changed(), Some(&message(5)));
+    assert_eq!(follower.changed(), None);
     assert_eq!(*follower.last(), message(5));
 }
 

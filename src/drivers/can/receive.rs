@@ -10,7 +10,7 @@ use heapless::spsc::{Consumer, Producer, Queue};
 use robot_app::domain::{CanFrame, StandardId};
 use static_cell::StaticCell;
 
-use super::bring_up::{Can1, Can2};
+use super::peripherals::{Can1, Can2};
 use crate::isr_cell::IsrCell;
 
 /// Places in each queue, one of them unused: a 1 Mb/s bus carries at most some 20 frames a tick.

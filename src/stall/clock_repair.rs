@@ -51,7 +51,7 @@ pub fn keep_time<R>(work: impl FnOnce() -> R, repaired: impl FnOnce(u32)) -> Opt
 }
 
 /// A debugger stops the counter when it goes. False if the counter stands still all the same.
-pub(super) fn start_cycle_counter() -> bool {
+pub fn start_cycle_counter() -> bool {
     // SAFETY: nobody else owns these two, and all their writers run in thread mode: at boot, and for an erase.
     let mut core = unsafe { Peripherals::steal() };
     core.DCB.enable_trace();
