@@ -1,12 +1,16 @@
-//! Where is up, where is north, how fast: IMU, magnetometer and wheels → `StateEstimate`.
+//! Attitude, heading, velocity and position: IMU, magnetometer and wheels → `StateEstimate`.
 //!
-//! `docs/estimator.md` has the equations and where each comes from.
+//! [`InsEstimator`] is all that the other stages see. `docs/estimator.md` and `docs/motion-estimate.md` have the equations
+//! and their sources.
 
 mod attitude;
+mod attitude_variance;
 mod ins_estimator;
 mod magnetic;
+mod measurement;
 mod motion;
+mod strapdown;
 #[cfg(test)]
 pub(crate) mod testing;
 
-pub use ins_estimator::{Field, InsEstimator};
+pub use ins_estimator::{HeadingSource, InsEstimator};

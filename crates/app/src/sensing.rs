@@ -1,4 +1,4 @@
-//! Sensor registers → calibrated samples; how to bring the sensors up, as data that a driver walks.
+//! Sensor registers → calibrated samples, and how to bring the sensors up, as steps that a driver carries out.
 
 mod accel_delay;
 mod battery;
@@ -7,10 +7,12 @@ mod calibration;
 mod gyro_series;
 mod heater;
 mod imu_pipeline;
+mod imu_sample_error;
 pub mod ist8310;
 mod mag_pipeline;
 mod plausibility;
 
 pub use battery::BatteryMonitor;
-pub use imu_pipeline::{ImuPipeline, ImuSampleError};
+pub use imu_pipeline::ImuPipeline;
+pub use imu_sample_error::ImuSampleError;
 pub use mag_pipeline::{MagPipeline, MagSampleError};

@@ -1,7 +1,7 @@
-//! The estimator of the main chain.
+//! The estimator of the control tick.
 
 use super::{
-    attitude::{AttitudeFilter, Clipped},
+    attitude::{AttitudeFilter, Saturation},
     motion::{AccelSample, BodyPose, MotionEstimator},
 };
 use crate::{
@@ -9,57 +9,111 @@ use crate::{
     math::{Vector3, scalar, vector},
 };
 
-/// An IMU sample older than this says nothing about the attitude now.
+/// Oldest IMU sample from which the present attitude is extrapolated.
 const MAX_IMU_AGE_US: u32 = 25_000;
-/// Samples further apart than this leave a gap that cannot be bridged.
+/// Longest interval between samples that is bridged.
 const MAX_SAMPLE_GAP_US: u32 = 100_000;
-/// Samples in a row before the estimate counts.
-const SETTLING_SAMPLES: u16 = 100;
-/// A tick further from the last than this is a jump in time.
+/// Samples in a row before the estimate is valid.
+const MIN_CONSECUTIVE_SAMPLES: u16 = 100;
+/// Longest interval between two ticks. A longer one is a jump in time.
 const MAX_TICK_US: u32 = 20_000;
-/// Beyond what the BMI088 can measure at any setting (±2000 °/s, ±24 g) and the IST8310 at all (±2500 µT), with room
-/// for calibration. A larger value is no measurement, and its square would overflow into the filters' memories.
+/// Largest values that can be measurements: beyond the widest ranges of the BMI088 (±2000 °/s, ±24 g) and of the IST8310
+/// (±2500 µT), with room for calibration. The square of a larger value would overflow into the states of the filters.
 const MAX_RATE_DPS: f32 = 2_500.0;
 const MAX_ACCEL_MPS2: f32 = 300.0;
 const MAX_FIELD_UT: f32 = 5_000.0;
-/// A field sample older than this, or newer, is turned to the present as if it were only so old.
+/// Limit of the time between a field sample and the last IMU sample.
 const MAX_MAG_AGE_S: f32 = 0.03;
 
-/// A sample that was measured so long after the settings changed was turned by the new ones: the sensors' tasks look at the
-/// settings before each.
+/// After a restart with other axes, samples taken within this time may still have the old ones: the sensor tasks read the
+/// settings before each sample.
 const OLD_AXES_US: u64 = 25_000;
 
-/// Whether the magnetometer's samples are used.
+/// Where the heading comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Field {
-    ShowsNorth,
-    /// Nobody knows how the magnetometer sits: the heading is carried by the gyro alone and begins with 0 (east) where the
-    /// robot is switched on.
-    Unknown,
+pub enum HeadingSource {
+    /// Magnetometer and gyro. A heading of 0 is magnetic east.
+    Magnetometer,
+    /// The gyro alone, because the axes of the magnetometer are not known. A heading of 0 is where the robot pointed at
+    /// power-on.
+    GyroOnly,
 }
 
-/// Called at 1 kHz with the latest samples; uses each sample once and carries the attitude on between them.
+/// Estimates attitude, heading, velocity and position from IMU, magnetometer and wheels.
+///
+/// [`step`](Self::step) is called at 1 kHz with the newest samples. It uses each sample once and extrapolates between
+/// them.
+///
+/// ```
+/// use robot_app::{
+///     domain::{ImuState, MagState, MotorFeedback, StateEstimate, WheelOdomConfig},
+///     estimation::InsEstimator,
+/// };
+///
+/// let mut estimator = InsEstimator::new(WheelOdomConfig::default());
+/// let mut estimate = StateEstimate::default();
+/// // One second at rest with the nose up by 30°: half of gravity is along the body's x axis. No magnetometer, no wheels.
+/// let mut imu = ImuState { accel_mps2: [4.903, 0.0, 8.493], ..ImuState::default() };
+/// for now_us in (1_000..=1_000_000).step_by(1_000) {
+///     if now_us % 5_000 == 0 {
+///         imu.ts_us = now_us;
+///     }
+///     let (mag, motor) = (MagState::default(), MotorFeedback::default());
+///     estimator.step(&imu, &mag, &motor, now_us, &mut estimate);
+/// }
+/// assert!(estimate.valid);
+/// let [roll, pitch, _] = estimate.rpy_rad;
+/// assert!(roll.abs() < 1e-3);
+/// assert!((pitch.to_degrees() + 30.0).abs() < 0.1); // pitch is positive with the nose down
+/// ```
+///
+/// Wheels give velocity and position. Here the left rotor turns at +1834 rpm and the right, mirrored one at −1834 rpm,
+/// which is 0.6 m/s with the default wheels:
+///
+/// ```
+/// # use robot_app::{
+/// #     domain::{ImuState, MagState, MotorFeedback, StateEstimate, WheelOdomConfig},
+/// #     estimation::InsEstimator,
+/// # };
+/// let mut estimator = InsEstimator::new(WheelOdomConfig::default());
+/// let mut estimate = StateEstimate::default();
+/// let mut imu = ImuState { accel_mps2: [0.0, 0.0, 9.80665], ..ImuState::default() };
+/// let mut motor = MotorFeedback::default();
+/// for (wheel, rpm) in motor.wheels.iter_mut().zip([1_834, -1_834]) {
+///     wheel.rpm = rpm;
+///     wheel.age_us = 1_000;
+/// }
+/// for now_us in (1_000..=3_000_000).step_by(1_000) {
+///     if now_us % 5_000 == 0 {
+///         imu.ts_us = now_us;
+///     }
+///     estimator.step(&imu, &MagState::default(), &motor, now_us, &mut estimate);
+/// }
+/// let [east, north, up] = estimate.vel_mps;
+/// assert!((east - 0.6).abs() < 0.01 && north.abs() < 0.01 && up.abs() < 0.01);
+/// ```
 #[derive(Clone, Debug)]
 pub struct InsEstimator {
     attitude: AttitudeFilter,
     motion: MotionEstimator,
-    /// Last sample looked at.
+    /// Time of the last IMU sample that was looked at.
     imu_seen_us: u64,
-    /// Last sample used.
+    /// Time of the last IMU sample that was used.
     imu_ts_us: u64,
     mag_ts_us: u64,
     applied_bias_dps: Vector3,
-    settled_samples: u16,
-    /// As of the last sample: there were enough, and up is known.
+    consecutive_samples: u16,
+    /// At the last sample there were enough in a row, and the tilt was known.
     trusted: bool,
-    /// What was measured until then is not looked at.
-    deaf_until_us: u64,
-    field: Field,
-    /// Last tick, 0 = none yet.
+    /// Samples up to this time are ignored.
+    ignore_until_us: u64,
+    heading_source: HeadingSource,
+    /// Time of the last tick, 0 = none yet.
     ts_us: u64,
 }
 
 impl InsEstimator {
+    /// An estimator before its first tick, which uses the magnetometer.
     pub fn new(odometry: WheelOdomConfig) -> Self {
         Self {
             attitude: AttitudeFilter::new(),
@@ -68,38 +122,43 @@ impl InsEstimator {
             imu_ts_us: 0,
             mag_ts_us: 0,
             applied_bias_dps: [0.0; 3],
-            settled_samples: 0,
+            consecutive_samples: 0,
             trusted: false,
-            deaf_until_us: 0,
-            field: Field::ShowsNorth,
+            ignore_until_us: 0,
+            heading_source: HeadingSource::Magnetometer,
             ts_us: 0,
         }
     }
 
-    /// Counts from the next sample on.
-    pub fn set_field(&mut self, field: Field) {
-        self.field = field;
+    /// Takes effect with the next sample.
+    pub fn set_heading_source(&mut self, source: HeadingSource) {
+        self.heading_source = source;
     }
 
-    /// Other wheels from now on; everything known so far stays.
+    /// Changes the dimensions of the wheels. The estimate so far stays.
     pub fn set_odometry(&mut self, odometry: &WheelOdomConfig) {
         self.motion.set_config(odometry);
     }
 
-    /// The sensors' axes are others from now on: begins anew.
+    /// Starts anew, because the axes of the sensors have changed. Samples that may have the old axes are ignored.
     #[cold]
     #[inline(never)]
-    pub fn restart(&mut self, odometry: &WheelOdomConfig, field: Field, now_us: u64) {
+    pub fn restart(
+        &mut self,
+        odometry: &WheelOdomConfig,
+        heading_source: HeadingSource,
+        now_us: u64,
+    ) {
         *self = Self {
-            field,
-            deaf_until_us: now_us.saturating_add(OLD_AXES_US),
+            heading_source,
+            ignore_until_us: now_us.saturating_add(OLD_AXES_US),
             ts_us: now_us,
             ..Self::new(*odometry)
         };
     }
 
-    /// Renews `estimate`. `motor`: with ages as of `now_us`. What makes the estimate invalid is listed at
-    /// [`StateEstimate::valid`].
+    /// Updates `estimate` to `now_us`. The ages in `motor` refer to `now_us`. [`StateEstimate::valid`] lists what makes
+    /// the estimate invalid.
     pub fn step(
         &mut self,
         imu: &ImuState,
@@ -108,41 +167,41 @@ impl InsEstimator {
         now_us: u64,
         estimate: &mut StateEstimate,
     ) {
-        let passed_us = if self.ts_us == 0 {
+        let elapsed_us = if self.ts_us == 0 {
             0
         } else {
-            self.passed_us(now_us)
+            self.elapsed_us(now_us)
         };
         let mut sample = None;
         if imu.ts_us != self.imu_seen_us && imu.ts_us != 0 {
             self.imu_seen_us = imu.ts_us;
-            if imu.ts_us > self.deaf_until_us {
-                sample = self.take_imu(imu);
+            if imu.ts_us > self.ignore_until_us {
+                sample = self.process_imu(imu);
             }
         }
         if mag.ts_us != self.mag_ts_us && mag.ts_us != 0 {
             self.mag_ts_us = mag.ts_us;
-            self.take_mag(mag);
+            self.process_mag(mag);
         }
         self.ts_us = now_us;
-        self.publish(sample, motor, passed_us, now_us, estimate);
+        self.publish(sample, motor, elapsed_us, now_us, estimate);
     }
 
-    /// Since the last tick; 0 if time ran backwards, stood still or jumped.
-    fn passed_us(&mut self, now_us: u64) -> u32 {
-        let passed_us = now_us.wrapping_sub(self.ts_us);
-        if passed_us.wrapping_sub(1) < u64::from(MAX_TICK_US) {
-            return passed_us as u32;
+    /// Time since the last tick. If time ran backwards, stood still or jumped, it is 0, and the estimate is invalid.
+    fn elapsed_us(&mut self, now_us: u64) -> u32 {
+        let elapsed_us = now_us.wrapping_sub(self.ts_us);
+        if elapsed_us.wrapping_sub(1) < u64::from(MAX_TICK_US) {
+            return elapsed_us as u32;
         }
-        self.settled_samples = 0;
+        self.consecutive_samples = 0;
         self.trusted = false;
         self.motion.restart();
         0
     }
 
-    fn take_imu(&mut self, imu: &ImuState) -> Option<AccelSample> {
+    fn process_imu(&mut self, imu: &ImuState) -> Option<AccelSample> {
         if !is_measurement(imu) {
-            self.settled_samples = 0;
+            self.consecutive_samples = 0;
             self.trusted = false;
             return None;
         }
@@ -151,38 +210,40 @@ impl InsEstimator {
         self.imu_ts_us = imu.ts_us;
         if self.applied_bias_dps != imu.gyro_bias_dps {
             self.applied_bias_dps = imu.gyro_bias_dps;
-            self.attitude.restart_bias();
+            self.attitude.reset_bias();
         }
         if !continuous {
-            self.settled_samples = 0;
+            self.consecutive_samples = 0;
             self.attitude.restart_after_gap();
             self.motion.restart();
         }
         let dt_s = if continuous { seconds(gap_us) } else { 0.0 };
         let gyro_rps = imu.gyro_dps.map(f32::to_radians);
-        let clipped = Clipped {
-            accel: imu.saturated,
+        let saturation = Saturation {
+            any: imu.saturated,
             gyro_ms: imu.gyro_clipped_ms,
         };
-        // Without what the known motion adds, the force points up.
-        let standing_mps2 = vector::sub(imu.accel_mps2, self.motion.kinematic_mps2());
-        let kept = self
+        // Without the acceleration of the known motion the force points up.
+        let gravity_mps2 = vector::sub(imu.accel_mps2, self.motion.kinematic_mps2());
+        let converged = self
             .attitude
-            .feed_imu(gyro_rps, standing_mps2, clipped, dt_s);
-        self.settled_samples = if kept {
-            self.settled_samples.saturating_add(1)
+            .feed_imu(gyro_rps, gravity_mps2, saturation, dt_s);
+        self.consecutive_samples = if converged {
+            self.consecutive_samples.saturating_add(1)
         } else {
             0
         };
-        self.trusted = self.settled_samples >= SETTLING_SAMPLES && self.attitude.knows_up();
-        // What was cut off no longer averages out: the speed would never come back.
+        self.trusted =
+            self.consecutive_samples >= MIN_CONSECUTIVE_SAMPLES && self.attitude.knows_tilt();
+        // What saturation cuts off does not average out, so the velocity would be wrong for good.
         let accel_mps2 = (!imu.saturated).then_some(imu.accel_mps2);
         Some(AccelSample { accel_mps2, dt_s })
     }
 
-    fn take_mag(&mut self, mag: &MagState) {
-        let is_used = self.field == Field::ShowsNorth && mag.ts_us > self.deaf_until_us;
-        if is_used && self.settled_samples > 0 && vector::is_within(mag.mag_ut, MAX_FIELD_UT) {
+    fn process_mag(&mut self, mag: &MagState) {
+        let is_used =
+            self.heading_source == HeadingSource::Magnetometer && mag.ts_us > self.ignore_until_us;
+        if is_used && self.consecutive_samples > 0 && vector::is_within(mag.mag_ut, MAX_FIELD_UT) {
             let ahead_s = if mag.ts_us >= self.imu_ts_us {
                 seconds(age_us(self.imu_ts_us, mag.ts_us))
             } else {
@@ -197,7 +258,7 @@ impl InsEstimator {
         &mut self,
         sample: Option<AccelSample>,
         motor: &MotorFeedback,
-        passed_us: u32,
+        elapsed_us: u32,
         now_us: u64,
         estimate: &mut StateEstimate,
     ) {
@@ -212,11 +273,11 @@ impl InsEstimator {
             self.motion.feed(&sample, ahead_s, &pose, motor);
         }
         if imu_age_us > MAX_IMU_AGE_US {
-            self.motion.fade(seconds(passed_us));
+            self.motion.decay(seconds(elapsed_us));
         }
         estimate.q_wxyz = orientation.to_wxyz();
         estimate.rpy_rad = orientation.roll_pitch_yaw();
-        (estimate.vel_mps, estimate.pos_m) = self.motion.after(ahead_s);
+        (estimate.vel_mps, estimate.pos_m) = self.motion.extrapolate(ahead_s);
         estimate.gyro_bias_rps = self.attitude.bias_rps();
         estimate.accel_bias_mps2 = self.motion.accel_bias_mps2();
         estimate.ts_us = now_us;
@@ -224,6 +285,7 @@ impl InsEstimator {
     }
 }
 
+/// False for values that no sensor can measure, NaN among them.
 fn is_measurement(imu: &ImuState) -> bool {
     vector::is_within(imu.gyro_dps, MAX_RATE_DPS)
         && vector::is_within(imu.gyro_bias_dps, MAX_RATE_DPS)

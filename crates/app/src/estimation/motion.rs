@@ -1,7 +1,7 @@
-//! How fast and where: the accelerometer carries the velocity on, the wheels correct it.
+//! Velocity and position: the accelerometer predicts, the wheels correct.
 //!
-//! World frame: ENU. The point meant is the middle of the axle. That the IMU sits elsewhere is not modelled: what it
-//! feels for that reason counts as an offset of the accelerometer.
+//! World frame: ENU. The point described is the middle of the axle. The lever arm of the IMU is not modelled; what it adds
+//! to the specific force counts as accelerometer bias.
 
 mod axes;
 mod position;
@@ -10,60 +10,52 @@ mod standstill;
 #[cfg(test)]
 mod tests;
 mod velocity_filter;
+mod wheel_selection;
 mod wheel_speed;
-mod wheel_trust;
 mod zero_velocity;
 
+pub(super) use self::axes::BodyPose;
 use self::{
     axes::Axes,
     position::Position,
     standstill::Standstill,
     velocity_filter::VelocityFilter,
-    wheel_speed::{ForwardSpeeds, WheelSpeeds},
-    wheel_trust::{InertialSurplus, WheelTrust, Word},
-    zero_velocity::{WheelEvidence, ZeroVelocity},
+    wheel_selection::{InertialInnovation, WheelAiding, WheelSelection},
+    wheel_speed::{PerWheel, WheelSpeeds},
+    zero_velocity::{WheelEvidence, ZeroVelocityDetector},
 };
 use crate::{
     domain::{MotorFeedback, WheelOdomConfig},
-    math::{Quaternion, Vector3, vector},
+    math::{Vector3, vector},
 };
 
-/// With nothing left to go by the robot is taken to come to rest with this time constant.
-const LEAK_S: f32 = 0.5;
-/// Velocity and position are carried past the last sample for at most this long.
+/// Time constant with which the velocity decays while nothing measures it.
+const DECAY_S: f32 = 0.5;
+/// Velocity and position are extrapolated past the last sample for at most this long.
 const MAX_AHEAD_S: f32 = 0.01;
-
-/// Wheels that have stood for so long do not accelerate a robot: it stands too, or somebody carries it.
+/// Wheels that have stood for this long do not accelerate the robot: it stands, or somebody carries it.
 const STANDING_S: f32 = 1.0;
-
-/// How the body lies and turns now.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct BodyPose {
-    /// Body → world.
-    pub orientation: Quaternion,
-    /// In body axes, without offset.
-    pub rate_rps: Vector3,
-}
 
 /// One IMU sample.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct AccelSample {
-    /// Specific force in body axes, the mean over `dt_s`; none if it went beyond the sensor's range.
+    /// Specific force in body axes, the mean over `dt_s`. `None` if the sensor was saturated.
     pub accel_mps2: Option<Vector3>,
-    /// Since the sample before, 0 if that is too long ago.
+    /// Time since the sample before; 0 after a gap.
     pub dt_s: f32,
 }
 
+/// Estimates velocity, position and accelerometer bias.
 #[derive(Clone, Debug)]
 pub(super) struct MotionEstimator {
     wheels: WheelSpeeds,
-    trust: WheelTrust,
-    zero_velocity: ZeroVelocity,
+    selection: WheelSelection,
+    zero_velocity: ZeroVelocityDetector,
     standstill: Standstill,
     filter: VelocityFilter,
     position: Position,
     kinematic_mps2: Vector3,
-    /// Since a wheel turned.
+    /// Time since a wheel last turned.
     wheels_stood_s: f32,
 }
 
@@ -71,8 +63,8 @@ impl MotionEstimator {
     pub fn new(config: &WheelOdomConfig) -> Self {
         Self {
             wheels: WheelSpeeds::new(config),
-            trust: WheelTrust::new(),
-            zero_velocity: ZeroVelocity::new(),
+            selection: WheelSelection::new(),
+            zero_velocity: ZeroVelocityDetector::new(),
             standstill: Standstill::new(),
             filter: VelocityFilter::new(),
             position: Position::new(),
@@ -81,20 +73,19 @@ impl MotionEstimator {
         }
     }
 
-    /// Other wheels from now on; velocity and the way so far stay.
+    /// Changes the dimensions of the wheels. Velocity and position stay.
     pub fn set_config(&mut self, config: &WheelOdomConfig) {
         self.wheels = WheelSpeeds::new(config);
     }
 
-    /// After a gap in time: the next wheel is believed at once. Velocity and the way so far stay.
+    /// Goes on after a gap in time. Velocity and position stay, and the next wheel speed is used at once.
     pub fn restart(&mut self) {
-        self.trust = WheelTrust::new();
-        self.zero_velocity = ZeroVelocity::new();
+        self.selection = WheelSelection::new();
+        self.zero_velocity = ZeroVelocityDetector::new();
         self.standstill = Standstill::new();
     }
 
-    /// Takes a new sample, which ended `age_s` ago; `pose` and `motor` are those of now.
-    #[inline(never)]
+    /// Takes a sample that ended `age_s` ago. `pose` and `motor` are those of the present.
     pub fn feed(
         &mut self,
         sample: &AccelSample,
@@ -103,30 +94,29 @@ impl MotionEstimator {
         motor: &MotorFeedback,
     ) {
         let axes = Axes::new(pose);
-        let felt_mps2 = match sample.accel_mps2 {
+        let force_mps2 = match sample.accel_mps2 {
             Some(accel_mps2) => {
-                // The body has turned since the middle of the sample: the same force in the axes of now.
+                // The body has rotated since the middle of the sample: transform the force to its present axes.
                 let middle_s = age_s + 0.5 * sample.dt_s;
-                let turn = vector::cross(pose.rate_rps, accel_mps2);
-                vector::sub(accel_mps2, vector::scale(turn, middle_s))
+                let rotation = vector::cross(pose.rate_rps, accel_mps2);
+                vector::sub(accel_mps2, vector::scale(rotation, middle_s))
             }
             None => self.filter.force_at_constant_speed(&axes),
         };
-        let free_mps2 = self.filter.free_accel(felt_mps2, &axes);
+        let free_mps2 = self.filter.free_accel(force_mps2, &axes);
         let speeds = self.wheels.forward_speeds(motor, &axes);
-        let wheels = self.trust.evidence(speeds);
-        let felt = (felt_mps2, free_mps2);
-        let stood = self.standstill.lasts();
-        self.kinematic_mps2 =
-            if self
-                .zero_velocity
-                .feed(felt, pose.rate_rps, wheels, stood, sample.dt_s)
-            {
-                self.stand(free_mps2, speeds, wheels, &axes, sample.dt_s);
-                [0.0; 3]
-            } else {
-                self.carry_on(free_mps2, speeds, &axes, age_s, sample.dt_s)
-            };
+        let wheels = self.selection.standstill_evidence(speeds);
+        let forces = (force_mps2, free_mps2);
+        let stood = self.standstill.persists();
+        let stands = self
+            .zero_velocity
+            .detect(forces, pose.rate_rps, wheels, stood, sample.dt_s);
+        self.kinematic_mps2 = if stands {
+            self.apply_standstill(free_mps2, speeds, wheels, &axes, sample.dt_s);
+            [0.0; 3]
+        } else {
+            self.propagate(free_mps2, speeds, &axes, age_s, sample.dt_s)
+        };
         self.wheels_stood_s = if wheel_speed::any_turns(motor) {
             0.0
         } else {
@@ -135,109 +125,116 @@ impl MotionEstimator {
         if self.wheels_stood_s > STANDING_S {
             self.kinematic_mps2 = [0.0; 3];
         }
-        self.filter.stay_plausible();
+        self.filter.limit();
         let step_m = vector::scale(self.filter.velocity_after(-0.5 * sample.dt_s), sample.dt_s);
         self.position.add(step_m);
     }
 
-    fn stand(
+    /// The robot stands: zero-velocity update.
+    fn apply_standstill(
         &mut self,
         free_mps2: Vector3,
-        speeds: ForwardSpeeds,
+        speeds: PerWheel,
         wheels: WheelEvidence,
         axes: &Axes,
         dt_s: f32,
     ) {
         if wheels == WheelEvidence::Spinning {
             self.filter.stop(dt_s);
-            self.trust.spin(speeds, dt_s);
+            self.selection.spin(speeds, dt_s);
+            let quiet = self.zero_velocity.is_quiet();
             self.standstill
-                .go_on(axes.forward(free_mps2), self.zero_velocity.is_quiet(), dt_s);
+                .prolong(axes.forward(free_mps2), quiet, dt_s);
             return;
         }
-        self.filter.hold_still(free_mps2, dt_s);
+        self.filter.zero_velocity_update(free_mps2, dt_s);
         if wheels == WheelEvidence::Standing {
-            self.trust.confirm();
+            self.selection.confirm_standstill();
             self.standstill.begin();
         }
     }
 
-    /// What accelerated the robot, in body axes; nothing if the velocity was set anew.
-    fn carry_on(
+    /// The robot may move: prediction, and update with the wheels. Returns the robot's acceleration in body axes, or zero
+    /// if the velocity was reset.
+    fn propagate(
         &mut self,
         free_mps2: Vector3,
-        speeds: ForwardSpeeds,
+        speeds: PerWheel,
         axes: &Axes,
         age_s: f32,
         dt_s: f32,
     ) -> Vector3 {
-        let known = !self.trust.is_lost();
+        let known = !self.selection.is_lost();
         self.filter
             .predict(if known { free_mps2 } else { [0.0; 3] }, axes, dt_s);
-        let [forward_mps, left_mps, up_mps] = axes.flat(self.filter.velocity_after(age_s));
-        let surplus = speeds.map(|speed| speed.map(|speed_mps| speed_mps - forward_mps));
-        if self.standstill.counts() {
+        let [forward_mps, left_mps, up_mps] = axes.to_level(self.filter.velocity_after(age_s));
+        let innovation = speeds.map(|speed| speed.map(|speed_mps| speed_mps - forward_mps));
+        if self.standstill.is_recent() {
             let quiet = self.zero_velocity.is_quiet();
             self.standstill
                 .leave(axes.forward(free_mps2), axes.yaw_rps(), quiet, dt_s);
         }
-        let inertial = self.standstill.speed();
-        let inertial = inertial.map(|speed| InertialSurplus::new(speeds, &speed));
-        let word = self.trust.step(surplus, inertial, dt_s);
-        let (forward, left) = match word {
-            Word::Proven(surplus_mps) | Word::Believed(surplus_mps) => (surplus_mps, -left_mps),
-            Word::Unheard => (0.0, -left_mps),
-            Word::Sliding => (0.0, 0.0),
-            Word::Anew(surplus_mps) => {
-                let jump_mps = axes.flat_to_world([surplus_mps, -left_mps, 0.0]);
+        let inertial = self.standstill.inertial_speed();
+        let inertial = inertial.map(|speed| InertialInnovation::new(speeds, &speed));
+        let aiding = self.selection.step(innovation, inertial, dt_s);
+        let (forward, left) = match aiding {
+            WheelAiding::Trusted(innovation_mps) | WheelAiding::Provisional(innovation_mps) => {
+                (innovation_mps, -left_mps)
+            }
+            WheelAiding::Silent => (0.0, -left_mps),
+            WheelAiding::Slipping => (0.0, 0.0),
+            WheelAiding::Reset(innovation_mps) => {
+                let jump_mps = axes.level_to_world([innovation_mps, -left_mps, 0.0]);
                 self.filter.shift(jump_mps);
                 return [0.0; 3];
             }
-            Word::None => {
-                self.filter.leak(dt_s / LEAK_S);
+            WheelAiding::Lost => {
+                self.filter.decay(dt_s / DECAY_S);
                 return [0.0; 3];
             }
         };
-        // What a standstill has shown of the offset is better than anything in the next seconds.
-        let learning = matches!(word, Word::Proven(_)) && !self.standstill.counts();
+        // A standstill has shown the bias better than the next seconds can.
+        let update_bias = matches!(aiding, WheelAiding::Trusted(_)) && !self.standstill.is_recent();
         let innovation_mps = [forward, left, -up_mps];
-        let gained_mps2 = self.filter.correct(innovation_mps, axes, dt_s, learning);
-        match word {
-            Word::Proven(_) => vector::add(free_mps2, gained_mps2),
-            // The accelerometer is busy with the motion: all of the force but gravity as it is believed.
-            Word::Sliding | Word::Unheard => vector::add(free_mps2, self.filter.accel_bias_mps2()),
-            Word::Believed(_) | Word::Anew(_) | Word::None => [0.0; 3],
+        let correction_mps2 = self.filter.update(innovation_mps, axes, dt_s, update_bias);
+        match aiding {
+            WheelAiding::Trusted(_) => vector::add(free_mps2, correction_mps2),
+            // The accelerometer alone: all of the force but gravity is motion.
+            WheelAiding::Slipping | WheelAiding::Silent => {
+                vector::add(free_mps2, self.filter.accel_bias_mps2())
+            }
+            WheelAiding::Provisional(_) | WheelAiding::Reset(_) | WheelAiding::Lost => [0.0; 3],
         }
     }
 
-    /// `dt_s` more without a sample: the IMU is silent, and the velocity fades.
+    /// Lets the velocity decay for another `dt_s` without an IMU sample.
     #[cold]
-    pub fn fade(&mut self, dt_s: f32) {
+    pub fn decay(&mut self, dt_s: f32) {
         self.restart();
-        self.filter.leak(dt_s / LEAK_S);
+        self.filter.decay(dt_s / DECAY_S);
         let step_m = vector::scale(self.filter.velocity_after(0.0), dt_s);
         self.position.add(step_m);
     }
 
-    /// Velocity and position in the world frame, `ahead_s` after the last sample.
-    pub fn after(&self, ahead_s: f32) -> (Vector3, Vector3) {
+    /// Velocity and position in ENU, extrapolated to `ahead_s` after the last sample.
+    pub fn extrapolate(&self, ahead_s: f32) -> (Vector3, Vector3) {
         let ahead_s = if ahead_s < MAX_AHEAD_S {
             ahead_s
         } else {
             MAX_AHEAD_S
         };
         let velocity_mps = self.filter.velocity_after(ahead_s);
-        let way_m = vector::scale(velocity_mps, ahead_s);
-        (velocity_mps, vector::add(self.position.total_m(), way_m))
+        let step_m = vector::scale(velocity_mps, ahead_s);
+        (velocity_mps, vector::add(self.position.total_m(), step_m))
     }
 
-    /// What accelerated the robot over the last sample, in body axes: the part of a specific force that is not gravity.
+    /// The robot's acceleration over the last sample, in body axes: the part of the specific force that is not gravity.
     /// Zero while the velocity is not known or the wheels stand.
     pub const fn kinematic_mps2(&self) -> Vector3 {
         self.kinematic_mps2
     }
 
-    /// Body axes.
+    /// Accelerometer bias in body axes.
     pub const fn accel_bias_mps2(&self) -> Vector3 {
         self.filter.accel_bias_mps2()
     }

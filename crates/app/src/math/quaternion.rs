@@ -53,7 +53,7 @@ impl Quaternion {
     }
 
     /// The shortest rotation that turns the unit vector `v` to +z.
-    pub fn lifting([x, y, z]: Vector3) -> Self {
+    pub fn levelling([x, y, z]: Vector3) -> Self {
         let w = scalar::sqrt((z + 1.0) / 2.0);
         if w > 1e-3 {
             Self {

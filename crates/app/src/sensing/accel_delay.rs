@@ -34,8 +34,10 @@ impl AccelDelay {
         match last.filter(|last| age_us(last.read_us, read_us) <= MAX_GAP_US) {
             Some(last) => {
                 let back = vector::sub(last.accel_mps2, accel_mps2);
-                let mixed =
-                    vector::add(accel_mps2, vector::scale(back, bmi088::SHARE_OF_LAST_ACCEL));
+                let mixed = vector::add(
+                    accel_mps2,
+                    vector::scale(back, bmi088::PREVIOUS_ACCEL_WEIGHT),
+                );
                 (mixed, saturated || last.saturated)
             }
             None => (accel_mps2, saturated),

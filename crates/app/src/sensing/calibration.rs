@@ -4,7 +4,7 @@ mod startup;
 mod startup_gyro_bias;
 mod temperature_gate;
 
-pub(super) use startup::{Sample, StartupCalibration};
+pub(super) use startup::{CalibrationSample, StartupCalibration};
 
 use crate::math::{Vector3, vector};
 

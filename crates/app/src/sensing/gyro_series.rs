@@ -6,11 +6,11 @@
 //! nonsense.
 
 /// 488 °/s: a frame further than this from both of its neighbours, on the same side, is a mistake.
-const STANDS_OUT: u16 = 8_000;
+const OUTLIER_COUNTS: u16 = 8_000;
 /// 1,587 °/s in a millisecond: the largest step of a blow that changes the true rate by 4,800 °/s at once.
 const MAX_STEP: u16 = 26_000;
 /// Mistakes in one read beyond which none of it counts.
-const MAX_MISTAKES: u8 = 1;
+const MAX_OUTLIERS: u8 = 1;
 /// Full scale, and the code that no two's complement range has a twin of.
 const FULL_SCALE: u16 = 32_767;
 /// What a read stands for.
@@ -24,8 +24,8 @@ pub(super) struct GyroReading {
     pub mean_counts: [f32; 3],
     /// Of each axis at the end of its range.
     pub clipped_ms: [u8; 3],
-    /// Frames that were mistakes.
-    pub mistakes: u8,
+    /// Frames that were outliers.
+    pub outliers: u8,
     pub end: SeriesEnd,
 }
 
@@ -34,16 +34,16 @@ pub(super) struct GyroReading {
 pub(super) struct SeriesEnd {
     /// As it was measured.
     measured: Frame,
-    /// What has counted for it: the frame before, if it jumped so that only the next one can tell whether it was right.
-    counted: Frame,
+    /// What has used for it: the frame before, if it jumped so that only the next one can tell whether it was right.
+    used: Frame,
 }
 
 impl GyroReading {
     /// `before`: the end of the series that `frames` go on from, if there is one. None if no gyro turns like that.
-    pub fn of(frames: &[Frame], before: Option<SeriesEnd>) -> Option<Self> {
+    pub fn from_frames(frames: &[Frame], before: Option<SeriesEnd>) -> Option<Self> {
         let mut series = Series::default();
         if let (Some(end), Some(first)) = (before, frames.first()) {
-            series.go_on_from(end, *first)?;
+            series.resume(end, *first)?;
         }
         let mut measured = Frame::default();
         for (index, frame) in frames.iter().enumerate() {
@@ -56,10 +56,10 @@ impl GyroReading {
             clipped_ms: series
                 .clipped
                 .map(|clipped| clipped.saturating_mul(READ_MS).div_ceil(count)),
-            mistakes: series.mistakes,
+            outliers: series.outliers,
             end: SeriesEnd {
                 measured,
-                counted: series.last?,
+                used: series.last?,
             },
         })
     }
@@ -69,25 +69,25 @@ impl GyroReading {
 struct Series {
     sum: [f32; 3],
     clipped: [u8; 3],
-    mistakes: u8,
+    outliers: u8,
     last: Option<Frame>,
-    /// A frame has been counted.
-    begun: bool,
+    /// A frame has been used.
+    has_frames: bool,
 }
 
 impl Series {
-    /// A frame whose turn was not counted when it came, but was right, is counted now.
-    fn go_on_from(&mut self, end: SeriesEnd, first: Frame) -> Option<()> {
-        let SeriesEnd { measured, counted } = end;
-        self.last = Some(counted);
-        if measured == counted {
+    /// A frame whose turn was not used when it came, but was right, is used now.
+    fn resume(&mut self, end: SeriesEnd, first: Frame) -> Option<()> {
+        let SeriesEnd { measured, used } = end;
+        self.last = Some(used);
+        if measured == used {
             return Some(());
         }
-        if stands_out(counted, measured, first) {
-            return self.count_mistake();
+        if is_outlier(used, measured, first) {
+            return self.count_outlier();
         }
-        self.count(measured)?;
-        let held = counted.map(f32::from);
+        self.accept(measured)?;
+        let held = used.map(f32::from);
         for (sum, held) in self.sum.iter_mut().zip(held) {
             *sum -= held;
         }
@@ -96,24 +96,24 @@ impl Series {
 
     fn add(&mut self, frame: Frame, next: Option<Frame>) -> Option<()> {
         let Some(last) = self.last else {
-            return self.count(frame);
+            return self.accept(frame);
         };
         match next {
-            Some(next) if stands_out(last, frame, next) => {
-                self.count_mistake()?;
-                self.count(middle(last, next))
+            Some(next) if is_outlier(last, frame, next) => {
+                self.count_outlier()?;
+                self.accept(midpoint(last, next))
             }
-            None if self.begun && !is_near(last, frame, STANDS_OUT) => self.count(last),
-            _ => self.count(frame),
+            None if self.has_frames && !is_near(last, frame, OUTLIER_COUNTS) => self.accept(last),
+            _ => self.accept(frame),
         }
     }
 
-    fn count_mistake(&mut self) -> Option<()> {
-        self.mistakes = self.mistakes.saturating_add(1);
-        (self.mistakes <= MAX_MISTAKES).then_some(())
+    fn count_outlier(&mut self) -> Option<()> {
+        self.outliers = self.outliers.saturating_add(1);
+        (self.outliers <= MAX_OUTLIERS).then_some(())
     }
 
-    fn count(&mut self, frame: Frame) -> Option<()> {
+    fn accept(&mut self, frame: Frame) -> Option<()> {
         if self
             .last
             .is_some_and(|last| !is_near(last, frame, MAX_STEP))
@@ -125,7 +125,7 @@ impl Series {
             *clipped = clipped.saturating_add(u8::from(is_at_end(count)));
         }
         self.last = Some(frame);
-        self.begun = true;
+        self.has_frames = true;
         Some(())
     }
 }
@@ -135,7 +135,7 @@ pub(super) fn is_at_end(count: i16) -> bool {
 }
 
 /// Whether a rate may follow another that was measured up to some milliseconds before.
-pub(super) fn can_follow(now: Frame, before: Frame) -> bool {
+pub(super) fn is_possible_step(now: Frame, before: Frame) -> bool {
     is_near(now, before, MAX_STEP)
 }
 
@@ -144,19 +144,19 @@ fn is_near(a: Frame, b: Frame, limit: u16) -> bool {
 }
 
 /// On any axis beyond both neighbours.
-fn stands_out(before: Frame, frame: Frame, after: Frame) -> bool {
+fn is_outlier(before: Frame, frame: Frame, after: Frame) -> bool {
     before
         .iter()
         .zip(frame)
         .zip(after)
         .any(|((before, frame), after)| {
             let (low, high) = (after.min(*before), after.max(*before));
-            let beyond = |end: i16| frame.abs_diff(end) > STANDS_OUT;
+            let beyond = |end: i16| frame.abs_diff(end) > OUTLIER_COUNTS;
             (frame > high && beyond(high)) || (frame < low && beyond(low))
         })
 }
 
-fn middle(a: Frame, b: Frame) -> Frame {
+fn midpoint(a: Frame, b: Frame) -> Frame {
     let [[ax, ay, az], [bx, by, bz]] = [a, b];
     [ax.midpoint(bx), ay.midpoint(by), az.midpoint(bz)]
 }

@@ -23,7 +23,7 @@ const PROBATION: u8 = 4;
 
 /// What may be used of a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Judged {
+pub(super) struct PlausibleSample {
     pub gyro: GyroReading,
     /// An axis of either die is at the end of its range.
     pub saturated: bool,
@@ -37,7 +37,7 @@ struct GyroSample {
 
 /// The last sample that counted.
 #[derive(Clone, Copy, Debug)]
-struct Good {
+struct AcceptedSample {
     end: SeriesEnd,
     sample: GyroSample,
 }
@@ -46,24 +46,24 @@ struct Good {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Plausibility {
     last: Option<GyroSample>,
-    last_good: Option<Good>,
+    last_good: Option<AcceptedSample>,
     saturated_in_row: u8,
-    on_probation: u8,
+    probation_left: u8,
 }
 
 impl Plausibility {
-    pub fn judge(
+    pub fn check(
         &mut self,
         accel: &AccelRaw,
         gyro: &GyroRaw,
         ts_us: u64,
-    ) -> Result<Judged, ImuSampleError> {
+    ) -> Result<PlausibleSample, ImuSampleError> {
         let sample = GyroSample {
             counts: gyro.counts,
             ts_us,
         };
         let before = self.last.replace(sample);
-        let reading = self.read(gyro, ts_us);
+        let reading = self.read_gyro(gyro, ts_us);
         let saturated = reading.is_some_and(|reading| reading.clipped_ms != [0; 3])
             || accel.counts.into_iter().any(gyro_series::is_at_end);
         self.saturated_in_row = if saturated {
@@ -72,38 +72,38 @@ impl Plausibility {
             0
         };
         let Some(reading) = reading.filter(|_| self.is_sane(&sample, before)) else {
-            self.on_probation = PROBATION;
+            self.probation_left = PROBATION;
             return Err(ImuSampleError::Implausible);
         };
         if self.saturated_in_row > MAX_SATURATED {
-            self.on_probation = PROBATION;
+            self.probation_left = PROBATION;
             return Err(ImuSampleError::Saturated);
         }
-        if self.on_probation > 0 {
-            self.on_probation = if saturated {
+        if self.probation_left > 0 {
+            self.probation_left = if saturated {
                 PROBATION
             } else {
-                self.on_probation.saturating_sub(1)
+                self.probation_left.saturating_sub(1)
             };
             return Err(ImuSampleError::Implausible);
         }
-        self.last_good = Some(Good {
+        self.last_good = Some(AcceptedSample {
             end: reading.end,
             sample,
         });
-        Ok(Judged {
+        Ok(PlausibleSample {
             gyro: reading,
             saturated,
         })
     }
 
     /// None if no gyro turns like that.
-    fn read(&self, gyro: &GyroRaw, ts_us: u64) -> Option<GyroReading> {
+    fn read_gyro(&self, gyro: &GyroRaw, ts_us: u64) -> Option<GyroReading> {
         let end = self
             .last_good
             .filter(|good| age_us(good.sample.ts_us, ts_us) <= MAX_SERIES_GAP_US)
             .map(|good| good.end);
-        GyroReading::of(gyro.frames(), end)
+        GyroReading::from_frames(gyro.frames(), end)
     }
 
     fn is_sane(&mut self, sample: &GyroSample, before: Option<GyroSample>) -> bool {
@@ -114,14 +114,14 @@ impl Plausibility {
         {
             // Within a series each step has been judged already.
             let sane = near(&good.sample) <= MAX_SERIES_GAP_US
-                || gyro_series::can_follow(sample.counts, good.sample.counts);
+                || gyro_series::is_possible_step(sample.counts, good.sample.counts);
             if sane {
-                self.on_probation = 0;
+                self.probation_left = 0;
             }
             return sane;
         }
         match before.filter(|before| near(before) <= MAX_GAP_US) {
-            Some(before) => gyro_series::can_follow(sample.counts, before.counts),
+            Some(before) => gyro_series::is_possible_step(sample.counts, before.counts),
             None => !sample.counts.into_iter().any(gyro_series::is_at_end),
         }
     }

@@ -13,7 +13,7 @@ use crate::{
         MagState, MountingConfig, ParamStatus, RemoteUpdate, RobotConfig, StateEstimate,
         SystemHealth, age_us,
     },
-    estimation::{Field, InsEstimator},
+    estimation::{HeadingSource, InsEstimator},
     motor::{
         MotorManager, TickFrames,
         layout::{MotorLayout, REPLY_PERIOD_TICKS, ROBOT_LAYOUT},
@@ -69,10 +69,10 @@ enum Demand<'a> {
 }
 
 /// A magnetometer that sits nobody knows how shows nothing.
-fn field(mounting: &MountingConfig) -> Field {
+fn heading_source(mounting: &MountingConfig) -> HeadingSource {
     match mounting.mag {
-        Some(_) => Field::ShowsNorth,
-        None => Field::Unknown,
+        Some(_) => HeadingSource::Magnetometer,
+        None => HeadingSource::GyroOnly,
     }
 }
 
@@ -132,7 +132,7 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
         diagnostics: D,
     ) -> Self {
         let mut estimator = InsEstimator::new(config.wheel_odom);
-        estimator.set_field(field(&config.mounting));
+        estimator.set_heading_source(heading_source(&config.mounting));
         Self {
             config,
             controller,
@@ -195,7 +195,8 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
             ..
         } = &self.config;
         if *wanted != mounting {
-            self.estimator.restart(wheel_odom, field(wanted), now_us);
+            self.estimator
+                .restart(wheel_odom, heading_source(wanted), now_us);
         }
         self.take_config(now_us);
     }

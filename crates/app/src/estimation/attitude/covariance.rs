@@ -1,90 +1,82 @@
-//! How sure the filter is, and of what: the covariance of its seventeen errors.
+//! The covariance P of the seventeen error states.
 //!
-//! Three angles about ENU, two speeds, then the twelve of the gyro model. The symmetric matrix is stored in full, so that
-//! every operation runs along rows.
+//! The symmetric matrix is stored in full, so that every operation runs along rows.
 
 use core::ops::Range;
 
-use super::{
-    error_filter::Finding,
-    rows,
-    window::{PARAMETERS, Parameters},
-};
+use super::error_state::{self, BIAS, ErrorVector, GYRO_PARAMETERS, MISALIGNMENT, SPEED, STATES};
 use crate::{
-    estimation::magnetic::Certainty,
+    estimation::{attitude_variance::AttitudeVariance, measurement::Measurement},
     math::{Vector3, scalar, vector},
 };
 
-/// Angles about east, north and up in rad, speed east and north in m/s, gyro bias and misalignment.
-pub(super) const ERRORS: usize = 17;
-pub(super) type Row = [f32; ERRORS];
-pub(super) const UP: usize = 2;
-pub(super) const SPEED: usize = 3;
-pub(super) const BIAS: usize = 5;
-const MISALIGNMENT: usize = 8;
-
 #[derive(Clone, Debug)]
 pub(super) struct Covariance {
-    pub rows: [Row; ERRORS],
+    pub rows: [ErrorVector; STATES],
 }
 
-/// A measurement of one error that is being learnt from, in two pieces of work.
+/// The update with one scalar measurement, which is done in two steps.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Lesson {
-    /// What the measured error has to do with all others.
-    column: Row,
-    /// Of the innovation's variance.
-    inverse: f32,
+pub(super) struct ScalarUpdate {
+    /// P hᵀ, the column of the measured state before the update.
+    column: ErrorVector,
+    /// 1/S, where S is the innovation variance.
+    inverse_variance: f32,
 }
 
-/// Rows that the first piece of work covers.
-const FIRST_PIECE: usize = 8;
-/// An innovation beyond so many standard deviations counts as that many.
-const MAX_INNOVATION: f32 = 5.0;
+/// Rows of P that the first step of an update covers.
+const FIRST_ROWS: usize = 8;
+/// An innovation beyond this many standard deviations is clipped to that many.
+const MAX_INNOVATION_SIGMA: f32 = 5.0;
 
 const DEG: f32 = 1.0_f32.to_radians();
-/// Before anything is known: inclination and heading 10°, speed 1 m/s, bias 3 °/s, scale and axes 0.6 %.
-pub(super) const FIRST_ANGLE: f32 = (10.0 * DEG) * (10.0 * DEG);
-const FIRST_SPEED: f32 = 1.0;
-const FIRST_BIAS: f32 = (3.0 * DEG) * (3.0 * DEG);
-const FIRST_MISALIGNMENT: f32 = 0.006 * 0.006;
-/// Up as a rest of 0.6 s shows it: 0.5°, and 0.1 m/s of speed.
-const UP_AT_REST: f32 = (0.5 * DEG) * (0.5 * DEG);
+/// Initial variance of each angle, (10°)².
+pub(super) const INITIAL_ANGLE: f32 = (10.0 * DEG) * (10.0 * DEG);
+/// Initial variance of the velocity, (1 m/s)².
+const INITIAL_SPEED: f32 = 1.0;
+/// Initial variance of the gyro bias, (3 °/s)².
+const INITIAL_BIAS: f32 = (3.0 * DEG) * (3.0 * DEG);
+/// Initial variance of scale and misalignment, (0.6 %)².
+const INITIAL_MISALIGNMENT: f32 = 0.006 * 0.006;
+/// Variance of the tilt after levelling at a rest of 0.6 s, (0.5°)².
+const TILT_AT_REST: f32 = (0.5 * DEG) * (0.5 * DEG);
+/// Variance of the velocity after that, (0.1 m/s)².
 const SPEED_AT_REST: f32 = 0.1 * 0.1;
-/// Of a heading of which nothing is known.
-const HALF_TURN: f32 = (90.0 * DEG) * (90.0 * DEG);
+/// Variance of a heading of which nothing is known, (90°)².
+const UNKNOWN_HEADING: f32 = (90.0 * DEG) * (90.0 * DEG);
 /// Below this a variance has no meaning in single precision.
-const LEAST_VARIANCE: f32 = 1e-12;
+const MIN_VARIANCE: f32 = 1e-12;
 
 impl Covariance {
+    /// All zero; [`Self::reset`] gives it its initial values.
     pub const fn new() -> Self {
         Self {
-            rows: [[0.0; ERRORS]; ERRORS],
+            rows: [[0.0; STATES]; STATES],
         }
     }
 
-    /// Nothing is known.
+    /// Sets the initial variances and no correlation.
     #[inline(never)]
-    pub fn restart(&mut self) {
+    pub fn reset(&mut self) {
         for (index, row) in self.rows.iter_mut().enumerate() {
-            *row = [0.0; ERRORS];
+            *row = [0.0; STATES];
             if let Some(variance) = row.get_mut(index) {
                 *variance = match index {
-                    ..SPEED => FIRST_ANGLE,
-                    SPEED..BIAS => FIRST_SPEED,
-                    BIAS..MISALIGNMENT => FIRST_BIAS,
-                    MISALIGNMENT.. => FIRST_MISALIGNMENT,
+                    ..SPEED => INITIAL_ANGLE,
+                    SPEED..BIAS => INITIAL_SPEED,
+                    BIAS..MISALIGNMENT => INITIAL_BIAS,
+                    MISALIGNMENT.. => INITIAL_MISALIGNMENT,
                 };
             }
         }
     }
 
-    /// The errors from `first` on are larger by these variances than known so far; rounding must not make one vanish.
+    /// Adds variance to the states from `first` on. Afterwards none is below the least variance, whatever rounding did.
     #[inline(never)]
-    pub fn doubt(&mut self, first: usize, more: &[f32]) {
-        for (index, more) in (first..).zip(more) {
+    pub fn add_variances(&mut self, first: usize, added: &[f32]) {
+        for (index, added) in (first..).zip(added) {
             if let Some(variance) = self.variance_mut(index) {
-                *variance = scalar::max(*variance + more, LEAST_VARIANCE);
+                *variance = scalar::max(*variance + added, MIN_VARIANCE);
             }
         }
     }
@@ -93,56 +85,57 @@ impl Covariance {
         self.rows.get_mut(index)?.get_mut(index)
     }
 
-    /// The errors from `first` on are others from now on, with these variances and nothing to do with what was known.
+    /// Gives the states from `first` on these variances and removes their correlation with all others.
     #[cold]
     #[inline(never)]
-    pub fn replace(&mut self, first: usize, variances: &[f32]) {
-        let replaced = first..first.saturating_add(variances.len());
+    pub fn reset_states(&mut self, first: usize, variances: &[f32]) {
+        let states = first..first.saturating_add(variances.len());
         for (index, row) in self.rows.iter_mut().enumerate() {
-            if replaced.contains(&index) {
+            if states.contains(&index) {
                 row.fill(0.0);
-            } else if let Some(part) = row.get_mut(replaced.clone()) {
+            } else if let Some(part) = row.get_mut(states.clone()) {
                 part.fill(0.0);
             }
         }
-        self.doubt(first, variances);
+        self.add_variances(first, variances);
     }
 
-    /// The gyro bias is another one from now on, known as well as `variance` says.
-    pub fn replace_bias(&mut self, variance: f32) {
-        self.replace(BIAS, &[variance; 3]);
+    /// Resets the gyro bias to `variance`, (rad/s)².
+    pub fn reset_bias(&mut self, variance: f32) {
+        self.reset_states(BIAS, &[variance; 3]);
     }
 
-    /// The gyro did not see a part of the turn. `unseen_rad`: by each axis of ENU, what each of the body's may have
-    /// turned further. Nor was the acceleration seen as it was, so the speed felt begins anew.
+    /// Adds the rotation that may have been lost while the gyro was saturated. `lost_rad` has a row for each axis of ENU,
+    /// with what each body axis may have rotated beyond the measurement. The velocity is reset: the accelerometer does not
+    /// show an impact as it was.
     #[cold]
     #[inline(never)]
-    pub fn doubt_turn(&mut self, unseen_rad: &[Vector3; 3]) {
-        let sum: f32 = unseen_rad.iter().map(|row| vector::dot(*row, *row)).sum();
-        let share = if sum > HALF_TURN {
-            HALF_TURN / sum
+    pub fn add_lost_rotation(&mut self, lost_rad: &[Vector3; 3]) {
+        let sum: f32 = lost_rad.iter().map(|row| vector::dot(*row, *row)).sum();
+        let share = if sum > UNKNOWN_HEADING {
+            UNKNOWN_HEADING / sum
         } else {
             1.0
         };
-        for (row, one) in self.rows.iter_mut().zip(unseen_rad) {
-            for (part, other) in row.iter_mut().zip(unseen_rad) {
+        for (row, one) in self.rows.iter_mut().zip(lost_rad) {
+            for (part, other) in row.iter_mut().zip(lost_rad) {
                 *part += share * vector::dot(*one, *other);
             }
         }
-        self.replace(SPEED, &[FIRST_SPEED; 2]);
+        self.reset_states(SPEED, &[INITIAL_SPEED; 2]);
     }
 
-    /// Rest has shown where up is. The heading is what it was, give or take `turn_variance`.
+    /// Resets tilt and velocity after levelling at rest. The heading keeps its variance, plus `added_variance` (rad²).
     #[cold]
     #[inline(never)]
-    pub fn know_up(&mut self, turn_variance: f32) {
+    pub fn reset_tilt(&mut self, added_variance: f32) {
         let [_, _, heading] = self.variances(0);
-        let heading = scalar::min(heading + turn_variance, HALF_TURN);
-        self.replace(
+        let heading = scalar::min(heading + added_variance, UNKNOWN_HEADING);
+        self.reset_states(
             0,
             &[
-                UP_AT_REST,
-                UP_AT_REST,
+                TILT_AT_REST,
+                TILT_AT_REST,
                 heading,
                 SPEED_AT_REST,
                 SPEED_AT_REST,
@@ -150,15 +143,15 @@ impl Covariance {
         );
     }
 
-    pub fn certainty(&self) -> Certainty {
+    pub fn attitude_variance(&self) -> AttitudeVariance {
         let [x, y, heading] = self.variances(0);
-        Certainty {
+        AttitudeVariance {
             tilt: scalar::max(x, y),
             heading,
         }
     }
 
-    /// Of three errors from `first` on.
+    /// Variances of the three states from `first` on.
     pub fn variances(&self, first: usize) -> [f32; 3] {
         let mut found = [0.0; 3];
         for (index, to) in (first..).zip(&mut found) {
@@ -168,21 +161,22 @@ impl Covariance {
         found
     }
 
-    /// The bias is another one after a while, unless nothing is known of it anyway.
-    pub fn wander(&mut self, bias_noise: f32) {
-        let more = self.variances(BIAS).map(|variance| {
-            if variance < FIRST_BIAS {
+    /// Adds the random walk of the gyro bias, up to the initial variance. Also keeps the variances of the misalignment
+    /// above the least one.
+    pub fn add_bias_noise(&mut self, bias_noise: f32) {
+        let added = self.variances(BIAS).map(|variance| {
+            if variance < INITIAL_BIAS {
                 bias_noise
             } else {
                 0.0
             }
         });
-        self.doubt(BIAS, &more);
-        self.doubt(MISALIGNMENT, &[0.0; PARAMETERS - 3]);
+        self.add_variances(BIAS, &added);
+        self.add_variances(MISALIGNMENT, &[0.0; GYRO_PARAMETERS - 3]);
     }
 
-    /// The fast rows have changed: the rows of the gyro model have the same in their columns.
-    pub fn mirror(&mut self) {
+    /// Copies the rows of angles and velocity, which a prediction has changed, into the matching columns.
+    pub fn symmetrise(&mut self) {
         for done in 1..=BIAS {
             let Some((changed, others)) = self.rows.split_at_mut_checked(done) else {
                 return;
@@ -198,60 +192,56 @@ impl Covariance {
         }
     }
 
-    /// The first piece of learning from a measurement of the error `index`; `correction` is what was learnt so far. False
-    /// if the covariance has broken down.
+    /// First step of the update with a measurement of the state `index`: gain, correction, and the first rows of P.
+    /// `correction` is the error estimate so far. Returns false if the covariance is no longer valid.
     #[must_use]
     #[inline(never)]
-    pub fn begin_lesson(
+    pub fn begin_update(
         &mut self,
         index: usize,
-        finding: &Finding,
-        correction: &mut Row,
-        lesson: &mut Lesson,
+        measurement: &Measurement,
+        correction: &mut ErrorVector,
+        update: &mut ScalarUpdate,
     ) -> bool {
         let (Some(column), Some(so_far)) = (self.rows.get(index), correction.get(index)) else {
             return false;
         };
-        lesson.column = *column;
+        update.column = *column;
         let variance = column.get(index).copied().unwrap_or_default();
-        let innovation = finding.innovation - so_far;
-        let spread = variance + finding.noise;
+        let innovation = measurement.innovation - so_far;
+        let innovation_variance = variance + measurement.variance;
         // Also false for NaN.
-        let sound = variance >= 0.0 && spread.is_normal();
-        if !sound {
+        let valid = variance >= 0.0 && innovation_variance.is_normal();
+        if !valid {
             return false;
         }
-        lesson.inverse = 1.0 / spread;
-        let mut gain = innovation * lesson.inverse;
-        if innovation * gain > MAX_INNOVATION * MAX_INNOVATION {
-            let limit = MAX_INNOVATION * scalar::inverse_sqrt(spread);
-            gain = if gain > 0.0 { limit } else { -limit };
+        update.inverse_variance = 1.0 / innovation_variance;
+        // The gain K = P hᵀ / S times the innovation, without P hᵀ.
+        let mut weight = innovation * update.inverse_variance;
+        if innovation * weight > MAX_INNOVATION_SIGMA * MAX_INNOVATION_SIGMA {
+            let limit = MAX_INNOVATION_SIGMA * scalar::inverse_sqrt(innovation_variance);
+            weight = if weight > 0.0 { limit } else { -limit };
         }
-        rows::add(correction, gain, &lesson.column);
-        self.learn(lesson, 0..FIRST_PIECE);
+        error_state::add_scaled(correction, weight, &update.column);
+        self.reduce(update, 0..FIRST_ROWS);
         true
     }
 
-    /// The second piece.
-    pub fn end_lesson(&mut self, lesson: &Lesson) {
-        self.learn(lesson, FIRST_PIECE..ERRORS);
+    /// Second step: the other rows of P.
+    pub fn finish_update(&mut self, update: &ScalarUpdate) {
+        self.reduce(update, FIRST_ROWS..STATES);
     }
 
+    /// P ← P − P hᵀ h P / S, some of the rows.
     #[inline(never)]
-    fn learn(&mut self, lesson: &Lesson, piece: Range<usize>) {
-        let weights = lesson.column.get(piece.clone());
-        if let (Some(rows), Some(weights)) = (self.rows.get_mut(piece), weights) {
+    fn reduce(&mut self, update: &ScalarUpdate, rows: Range<usize>) {
+        let weights = update.column.get(rows.clone());
+        if let (Some(rows), Some(weights)) = (self.rows.get_mut(rows), weights) {
             for (row, weight) in rows.iter_mut().zip(weights) {
-                rows::add(row, -weight * lesson.inverse, &lesson.column);
+                error_state::add_scaled(row, -weight * update.inverse_variance, &update.column);
             }
         }
     }
-}
-
-/// The part of a row that belongs to the gyro model.
-pub(super) const fn parameters(row: &Row) -> &Parameters {
-    let [_, _, _, _, _, parameters @ ..] = row;
-    parameters
 }
 
 #[cfg(test)]

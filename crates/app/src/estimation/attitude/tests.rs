@@ -1,18 +1,14 @@
 //! The whole attitude filter in single precision over hours of rest and motion.
 
-use super::{
-    covariance::{Covariance, ERRORS},
-    *,
-};
+use super::{covariance::Covariance, error_state::STATES, *};
 use crate::estimation::testing::{Random, Rotation, to_f32};
 
 const DT_S: f64 = 0.005;
 const HOURS: u32 = 2;
 const MINUTES: u32 = HOURS * 60;
-const STATES: usize = ERRORS;
 const EARTH_UT: [f64; 3] = [0.0, 20.0, -45.0];
-const NEVER: Clipped = Clipped {
-    accel: false,
+const NEVER: Saturation = Saturation {
+    any: false,
     gyro_ms: [0; 3],
 };
 
@@ -204,9 +200,9 @@ fn a_corrected_heading_takes_the_remembered_field_along() {
         table.run(20.0);
         assert!(table.error_deg() < 0.5, "{}", table.error_deg());
         let drift = [0.0, 0.0, 0.2];
-        table.filter.strapdown.tilt(drift);
-        table.filter.magnetic.tilt(drift);
-        table.filter.filter.covariance.doubt(2, &[0.1]);
+        table.filter.strapdown.rotate_world(drift);
+        table.filter.magnetic.rotate_world(drift);
+        table.filter.filter.covariance.add_variances(2, &[0.1]);
         table.run(10.0);
         assert!(table.error_deg() < 1.0, "{}", table.error_deg());
         let late_ms = 1e3 * table.filter.magnetic.delay_s();

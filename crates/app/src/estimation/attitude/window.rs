@@ -1,45 +1,47 @@
-//! What a fifth of a second of samples adds up to.
+//! Sums over one filter window of 0.2 s.
 
-use super::strapdown::Carried;
-use crate::math::{Vector3, vector};
+use super::error_state::{GYRO_PARAMETERS, GyroParameters};
+use crate::{
+    estimation::strapdown::MidSample,
+    math::{Vector3, vector},
+};
 
-/// bias x, y, z, then misalignment row by row.
-pub(super) const PARAMETERS: usize = 12;
-pub(super) type Parameters = [f32; PARAMETERS];
-
-/// Samples in a window.
+/// IMU samples in a window.
 const SAMPLES: u8 = 40;
 
+/// What the filter needs of the samples of one window.
 #[derive(Clone, Debug)]
 pub(super) struct Window {
-    /// How an error of each gyro parameter turns the attitude: −∫R dt and −∫R ⊗ ω dt, one row for each axis of ENU.
-    pub turn_by_parameter: [Parameters; 3],
-    /// Of one sample that is not in those rows yet: measured turn in rad, duration.
-    turn_rad: Vector3,
-    turn_s: f32,
+    /// Φ = ∂θ/∂p, how an error of each gyro parameter has rotated the attitude: −∫R dt and −∫R ⊗ ω dt, one row for each
+    /// axis of ENU.
+    pub angle_jacobian: [GyroParameters; 3],
+    /// Measured rotation (rad) of a sample that is not in the Jacobian yet.
+    rotation_rad: Vector3,
+    /// Duration of that sample.
+    rotation_s: f32,
     accel_sum_mps2: Vector3,
     samples: u8,
     pub duration_s: f32,
-    /// ∫ω² dt.
-    pub turned_rad2_per_s: f32,
-    /// With the accelerometer at the end of its range.
-    pub blind_s: f32,
-    /// Square of the angle by which the attitude may be off because the gyro did not see it.
-    pub unseen_rad2: f32,
+    /// ∫ω² dt, rad²/s.
+    pub squared_rate_integral: f32,
+    /// Time with the accelerometer saturated.
+    pub accel_clipped_s: f32,
+    /// Variance of the angle that was interpolated across missing samples, rad².
+    pub gap_error_rad2: f32,
 }
 
 impl Window {
     pub const fn new() -> Self {
         Self {
-            turn_by_parameter: [[0.0; PARAMETERS]; 3],
-            turn_rad: [0.0; 3],
-            turn_s: 0.0,
+            angle_jacobian: [[0.0; GYRO_PARAMETERS]; 3],
+            rotation_rad: [0.0; 3],
+            rotation_s: 0.0,
             accel_sum_mps2: [0.0; 3],
             samples: 0,
             duration_s: 0.0,
-            turned_rad2_per_s: 0.0,
-            blind_s: 0.0,
-            unseen_rad2: 0.0,
+            squared_rate_integral: 0.0,
+            accel_clipped_s: 0.0,
+            gap_error_rad2: 0.0,
         }
     }
 
@@ -47,37 +49,46 @@ impl Window {
         self.samples >= SAMPLES
     }
 
-    /// One sample; [`Self::add_accel`] is its other half.
-    pub fn add_turn(&mut self, carried: &Carried, gyro_rps: Vector3, rate_rps: Vector3, dt_s: f32) {
+    /// Adds the gyro's half of a sample; [`Self::add_accel`] adds the other. `gyro_rps` is the measured rate, `rate_rps`
+    /// the corrected one.
+    pub fn add_rotation(
+        &mut self,
+        mid_sample: &MidSample,
+        gyro_rps: Vector3,
+        rate_rps: Vector3,
+        dt_s: f32,
+    ) {
         self.samples = self.samples.saturating_add(1);
         self.duration_s += dt_s;
-        self.turned_rad2_per_s += vector::dot(rate_rps, rate_rps) * dt_s;
-        self.unseen_rad2 += carried.unseen_rad2;
-        self.turn_s += dt_s;
-        self.turn_rad = vector::add(self.turn_rad, vector::scale(gyro_rps, dt_s));
-        // Two samples at a time: the filter needs it no finer, and it is half the work.
+        self.squared_rate_integral += vector::dot(rate_rps, rate_rps) * dt_s;
+        self.gap_error_rad2 += mid_sample.gap_error_rad2;
+        self.rotation_s += dt_s;
+        self.rotation_rad = vector::add(self.rotation_rad, vector::scale(gyro_rps, dt_s));
+        // The Jacobian takes two samples at a time: the filter needs it no finer, and it is half the work.
         if self.samples.is_multiple_of(2) {
-            for (row, axis) in self.turn_by_parameter.iter_mut().zip(carried.middle) {
-                add_row(row, axis, self.turn_rad, self.turn_s);
+            for (row, axis) in self.angle_jacobian.iter_mut().zip(mid_sample.rotation) {
+                add_to_row(row, axis, self.rotation_rad, self.rotation_s);
             }
-            self.turn_rad = [0.0; 3];
-            self.turn_s = 0.0;
+            self.rotation_rad = [0.0; 3];
+            self.rotation_s = 0.0;
         }
     }
 
+    /// Adds the specific force of a sample, in ENU.
     pub fn add_accel(&mut self, accel_enu_mps2: Vector3) {
         self.accel_sum_mps2 = vector::add(self.accel_sum_mps2, accel_enu_mps2);
     }
 
-    /// Mean specific force, ENU.
+    /// Mean specific force in ENU.
     pub fn accel_mps2(&self) -> Vector3 {
         let count = if self.samples == 0 { 1 } else { self.samples };
         vector::scale(self.accel_sum_mps2, 1.0 / f32::from(count))
     }
 }
 
+/// Adds one interval of `s` seconds to a row of the Jacobian: a row of R, and the rotation measured in the interval.
 #[inline(never)]
-fn add_row(row: &mut Parameters, [rx, ry, rz]: Vector3, [gx, gy, gz]: Vector3, s: f32) {
+fn add_to_row(row: &mut GyroParameters, [rx, ry, rz]: Vector3, [gx, gy, gz]: Vector3, s: f32) {
     let [bx, by, bz, xx, xy, xz, yx, yy, yz, zx, zy, zz] = row;
     *bx -= rx * s;
     *by -= ry * s;

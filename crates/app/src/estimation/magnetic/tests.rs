@@ -5,7 +5,7 @@ mod moving;
 use super::*;
 use crate::{
     estimation::{
-        attitude::Strapdown,
+        strapdown::Strapdown,
         testing::{Rotation, to_f32},
     },
     math::Quaternion,
@@ -15,14 +15,14 @@ const WINDOW_S: f32 = 0.2;
 const RAD: f64 = std::f64::consts::PI / 180.0;
 const EARTH_UT: [f64; 3] = [0.0, 20.0, -45.0];
 /// 0.5° of inclination, 1° of heading.
-const SURE: Certainty = Certainty {
+const SURE: AttitudeVariance = AttitudeVariance {
     tilt: (0.5 * DEG) * (0.5 * DEG),
     heading: DEG * DEG,
 };
 
 /// A robot that stands, and believes its heading as it is.
 struct Robot {
-    magnetic: Magnetic,
+    magnetic: MagneticHeading,
     strapdown: Strapdown,
     attitude: Rotation,
 }
@@ -34,7 +34,7 @@ impl Robot {
         Self {
             attitude: Rotation::of(strapdown.attitude),
             strapdown,
-            magnetic: Magnetic::new(),
+            magnetic: MagneticHeading::new(),
         }
     }
 
@@ -42,7 +42,7 @@ impl Robot {
     fn aligned(seconds: f32) -> Self {
         let mut robot = Self::new();
         let report = robot.window(0.0, SURE);
-        assert!(report.first_heading_rad.is_some());
+        assert!(report.initial_heading_rad.is_some());
         robot.believe(seconds);
         robot
     }
@@ -54,17 +54,17 @@ impl Robot {
     }
 
     /// Ten samples of a field whose north is turned to the left by `north_deg`.
-    fn window(&mut self, north_deg: f64, known: Certainty) -> FieldReport {
+    fn window(&mut self, north_deg: f64, known: AttitudeVariance) -> HeadingReport {
         let field = Rotation::by([0.0, 0.0, north_deg * RAD]).apply(EARTH_UT);
         self.window_of(field, known)
     }
 
-    fn window_of(&mut self, field_enu_ut: [f64; 3], known: Certainty) -> FieldReport {
+    fn window_of(&mut self, field_enu_ut: [f64; 3], known: AttitudeVariance) -> HeadingReport {
         for _ in 0..10 {
             let seen = self.attitude.seen_from_body(field_enu_ut);
             self.magnetic.feed(to_f32(seen), &self.strapdown, 0.0);
         }
-        self.magnetic.close(WINDOW_S, known)
+        self.magnetic.close_window(WINDOW_S, known)
     }
 
     /// Windows with north elsewhere until what was believed is doubted, s.
@@ -72,12 +72,12 @@ impl Robot {
         (1_u16..1_000).find_map(|window| {
             let report = self.window(north_deg, SURE);
             assert!(report.heading.is_none());
-            (report.doubt > 0.0).then(|| f32::from(window) * WINDOW_S)
+            (report.added_variance_rad2 > 0.0).then(|| f32::from(window) * WINDOW_S)
         })
     }
 }
 
-fn heading_deg(report: FieldReport) -> f32 {
+fn heading_deg(report: HeadingReport) -> f32 {
     report.heading.expect("a heading").innovation.to_degrees()
 }
 
@@ -91,32 +91,32 @@ fn the_first_sample_and_the_first_window_show_north_at_once() {
     let turn = robot.magnetic.feed(to_f32(seen), &robot.strapdown, 0.0);
     assert!((turn.expect("a turn").to_degrees() - 100.0).abs() < 0.01);
     let report = robot.window(-3.0, SURE);
-    let first = report.first_heading_rad.expect("a heading").to_degrees();
+    let first = report.initial_heading_rad.expect("a heading").to_degrees();
     assert!((first - 3.0).abs() < 0.01, "{first}");
     assert!(report.heading.is_none());
     // From then on it is corrected little by little.
     let report = robot.window(-3.0, SURE);
-    assert!(report.first_heading_rad.is_none());
+    assert!(report.initial_heading_rad.is_none());
     assert!((heading_deg(report) - 3.0).abs() < 0.01);
 }
 
 #[test]
 fn north_is_found_anew_until_the_inclination_is_sure() {
     let mut robot = Robot::new();
-    let unsure = Certainty {
+    let unsure = AttitudeVariance {
         tilt: (4.0 * DEG) * (4.0 * DEG),
         ..SURE
     };
     robot.window(0.0, unsure);
     for _ in 0..5 {
         let report = robot.window(0.0, unsure);
-        assert!(report.first_heading_rad.is_some() && report.heading.is_none());
+        assert!(report.initial_heading_rad.is_some() && report.heading.is_none());
     }
     robot.window(0.0, SURE);
     assert!(robot.window(0.0, SURE).heading.is_some());
     // Later the field waits until the inclination is sure again.
     let report = robot.window(0.0, unsure);
-    assert!(report.first_heading_rad.is_none() && report.heading.is_none());
+    assert!(report.initial_heading_rad.is_none() && report.heading.is_none());
     assert!(robot.window(0.0, SURE).heading.is_some());
 }
 
@@ -147,7 +147,7 @@ fn far_off_headings_count_less_or_not_at_all() {
             }
             None => assert!(report.heading.is_none(), "{north_deg}°"),
         }
-        assert_eq!(report.doubt, 0.0);
+        assert_eq!(report.added_variance_rad2, 0.0);
         assert!(report.body_ut.is_some());
     }
 }
@@ -157,8 +157,13 @@ fn an_unsure_heading_takes_the_field_more_seriously() {
     let mut robot = Robot::aligned(10.0);
     let noise = |robot: &mut Robot, heading_sd_deg: f32| {
         let heading = (heading_sd_deg * DEG) * (heading_sd_deg * DEG);
-        let report = robot.window(0.0, Certainty { heading, ..SURE });
-        report.heading.expect("a heading").noise.sqrt().to_degrees()
+        let report = robot.window(0.0, AttitudeVariance { heading, ..SURE });
+        report
+            .heading
+            .expect("a heading")
+            .variance
+            .sqrt()
+            .to_degrees()
     };
     // 20° for a second, so √5 of it for 0.2 s.
     assert!((noise(&mut robot, 4.0) - 44.72).abs() < 0.01);
@@ -167,16 +172,16 @@ fn an_unsure_heading_takes_the_field_more_seriously() {
 
 #[test]
 fn what_was_believed_is_doubted_after_as_long_again() {
-    for (believed_s, doubted_s) in [(2.0, 2.2), (20.0, 20.2), (300.0, 60.2)] {
-        let mut robot = Robot::aligned(believed_s);
+    for (accepted_s, doubted_s) in [(2.0, 2.2), (20.0, 20.2), (300.0, 60.2)] {
+        let mut robot = Robot::aligned(accepted_s);
         let after_s = robot.doubted_after_s(40.0).expect("doubt");
-        assert!((after_s - doubted_s).abs() < 0.3, "{believed_s}: {after_s}");
+        assert!((after_s - doubted_s).abs() < 0.3, "{accepted_s}: {after_s}");
         // From then on the new north is refused no longer: it is doubted each time.
         let report = robot.window(40.0, SURE);
-        assert!((report.doubt.sqrt().to_degrees() - 40.0).abs() < 0.01);
+        assert!((report.added_variance_rad2.sqrt().to_degrees() - 40.0).abs() < 0.01);
         // With that doubt it is within the gate.
         let heading = (40.0 * DEG) * (40.0 * DEG);
-        let report = robot.window(40.0, Certainty { heading, ..SURE });
+        let report = robot.window(40.0, AttitudeVariance { heading, ..SURE });
         assert!((heading_deg(report) + 40.0).abs() < 0.01);
     }
 }
@@ -186,7 +191,7 @@ fn short_disturbances_do_not_add_up() {
     let mut robot = Robot::aligned(10.0);
     for _ in 0..20 {
         for _ in 0..20 {
-            assert_eq!(robot.window(40.0, SURE).doubt, 0.0);
+            assert_eq!(robot.window(40.0, SURE).added_variance_rad2, 0.0);
         }
         robot.believe(4.0);
     }
@@ -199,7 +204,7 @@ fn a_magnet_that_points_north_is_not_believed_either() {
     robot.strapdown.rate_rps = [0.0, 1.0, 0.0];
     robot.believe(10.0);
     let report = robot.window_of(EARTH_UT.map(|part| 1.2 * part), SURE);
-    assert!(report.heading.is_none() && report.doubt == 0.0);
+    assert!(report.heading.is_none() && report.added_variance_rad2 == 0.0);
     assert!(robot.window(0.0, SURE).heading.is_none());
     robot.window(0.0, SURE);
     assert!(robot.window(0.0, SURE).heading.is_some());
@@ -209,7 +214,9 @@ fn a_magnet_that_points_north_is_not_believed_either() {
 fn a_steep_field_has_no_direction() {
     let mut robot = Robot::aligned(10.0);
     let report = robot.window_of([0.0, 4.9, -60.0], SURE);
-    assert!(report.heading.is_none() && report.body_ut.is_some() && report.doubt == 0.0);
+    assert!(
+        report.heading.is_none() && report.body_ut.is_some() && report.added_variance_rad2 == 0.0
+    );
 }
 
 /// Beside a loudspeaker, for as long as anyone likes, from the start or later.
@@ -220,13 +227,13 @@ fn a_field_that_the_earth_never_has_is_never_believed() {
     robot.strapdown.rate_rps = [1.0, 0.0, 0.0];
     for _ in 0..2_000 {
         let report = robot.window_of(loudspeaker, SURE);
-        assert!(report.first_heading_rad.is_none() && report.heading.is_none());
+        assert!(report.initial_heading_rad.is_none() && report.heading.is_none());
     }
-    assert!(robot.window(0.0, SURE).first_heading_rad.is_some());
+    assert!(robot.window(0.0, SURE).initial_heading_rad.is_some());
     robot.believe(60.0);
     for _ in 0..2_000 {
         let report = robot.window_of(loudspeaker, SURE);
-        assert!(report.heading.is_none() && report.doubt == 0.0);
+        assert!(report.heading.is_none() && report.added_variance_rad2 == 0.0);
     }
     // Back home nothing has been forgotten.
     assert!(robot.window(0.0, SURE).heading.is_some());
@@ -235,8 +242,10 @@ fn a_field_that_the_earth_never_has_is_never_believed() {
 #[test]
 fn a_window_without_a_sample_says_nothing() {
     let mut robot = Robot::aligned(10.0);
-    let report = robot.magnetic.close(WINDOW_S, SURE);
-    assert!(report.body_ut.is_none() && report.heading.is_none() && report.doubt == 0.0);
+    let report = robot.magnetic.close_window(WINDOW_S, SURE);
+    assert!(
+        report.body_ut.is_none() && report.heading.is_none() && report.added_variance_rad2 == 0.0
+    );
 }
 
 #[test]
@@ -258,12 +267,12 @@ fn a_tilt_of_the_world_takes_a_half_full_window_along() {
         robot.magnetic.feed(seen, &robot.strapdown, 0.0);
     }
     let tilt = [0.0, 0.0, 3.0 * DEG];
-    robot.magnetic.tilt(tilt);
-    robot.strapdown.tilt(tilt);
+    robot.magnetic.rotate_world(tilt);
+    robot.strapdown.rotate_world(tilt);
     for _ in 0..5 {
         robot.magnetic.feed(seen, &robot.strapdown, 0.0);
     }
-    let report = robot.magnetic.close(WINDOW_S, SURE);
+    let report = robot.magnetic.close_window(WINDOW_S, SURE);
     assert!((heading_deg(report) + 3.0).abs() < 0.02);
 }
 
@@ -284,7 +293,7 @@ fn an_old_sample_is_turned_to_the_present() {
             let seen = then.seen_from_body(EARTH_UT);
             robot.magnetic.feed(to_f32(seen), &robot.strapdown, ahead_s);
         }
-        let report = robot.magnetic.close(WINDOW_S, SURE);
+        let report = robot.magnetic.close_window(WINDOW_S, SURE);
         assert!(heading_deg(report).abs() < 0.01);
     }
 }

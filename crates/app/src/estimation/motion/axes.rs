@@ -1,17 +1,25 @@
-//! The directions in which a wheeled robot can and cannot move.
+//! Transformations between body, level and world axes.
 
-use super::BodyPose;
-use crate::math::{Vector3, scalar, vector};
+use crate::math::{Quaternion, Vector3, scalar, vector};
 
-/// Cosine of the tilt up to which the wheels are taken to touch the ground.
+/// Attitude and angular rate of the body.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::estimation) struct BodyPose {
+    /// Body → ENU.
+    pub orientation: Quaternion,
+    /// Body axes, without gyro bias.
+    pub rate_rps: Vector3,
+}
+
+/// Cosine of the largest tilt at which the wheels count as touching the ground.
 const MIN_UPRIGHT: f32 = 0.5;
 
-/// The body's axes, level ones that share its heading (forward, left, up), and how they turn.
+/// The body's attitude and angular rate, and the level axes forward, left and up that share its heading.
 #[derive(Debug)]
 pub(super) struct Axes {
-    /// Body → world.
+    /// Body → world, by rows.
     rotation: [Vector3; 3],
-    /// The body's x axis laid flat, east and north.
+    /// Unit vector of the level forward axis, east and north.
     forward: [f32; 2],
     yaw_rps: f32,
     pitch_rps: f32,
@@ -22,7 +30,7 @@ impl Axes {
         let rotation = pose.orientation.rotation_matrix();
         let [[x, ..], [y, ..], up_in_body] = rotation;
         let [_, pitch_rps, _] = pose.rate_rps;
-        // Zero when the robot stands on its nose: then it has no forward.
+        // Zero when the robot stands on its nose: then there is no forward axis.
         let inverse = scalar::inverse_sqrt(x * x + y * y);
         Self {
             rotation,
@@ -32,32 +40,34 @@ impl Axes {
         }
     }
 
-    /// Rate about the vertical.
+    /// Angular rate about the vertical.
     pub const fn yaw_rps(&self) -> f32 {
         self.yaw_rps
     }
 
-    /// Rate about the axle.
+    /// Angular rate about the axle.
     pub const fn pitch_rps(&self) -> f32 {
         self.pitch_rps
     }
 
-    /// Up in body axes.
+    /// The world's up axis in body axes.
     pub const fn up_in_body(&self) -> Vector3 {
         let [_, _, up] = self.rotation;
         up
     }
 
-    pub const fn upright(&self) -> bool {
+    /// True up to a tilt of 60°.
+    pub const fn is_upright(&self) -> bool {
         let [_, _, [_, _, up]] = self.rotation;
         up >= MIN_UPRIGHT
     }
 
+    /// Body → world.
     pub fn to_world(&self, body: Vector3) -> Vector3 {
         self.rotation.map(|row| vector::dot(row, body))
     }
 
-    /// The part of a body vector along the level forward axis.
+    /// The component of a body vector along the level forward axis.
     pub fn forward(&self, body: Vector3) -> f32 {
         let [east, north, _] = self.rotation;
         let [fx, fy] = self.forward;
@@ -65,13 +75,13 @@ impl Axes {
     }
 
     /// World → forward, left, up.
-    pub fn flat(&self, [x, y, z]: Vector3) -> Vector3 {
+    pub fn to_level(&self, [x, y, z]: Vector3) -> Vector3 {
         let [fx, fy] = self.forward;
         [fx * x + fy * y, fx * y - fy * x, z]
     }
 
     /// Forward, left, up → world.
-    pub fn flat_to_world(&self, [forward, left, up]: Vector3) -> Vector3 {
+    pub fn level_to_world(&self, [forward, left, up]: Vector3) -> Vector3 {
         let [fx, fy] = self.forward;
         [fx * forward - fy * left, fy * forward + fx * left, up]
     }

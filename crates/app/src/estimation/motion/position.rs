@@ -1,12 +1,15 @@
-//! Steps of a fraction of a millimetre, added up for hours.
+//! The position: a compensated sum of small steps.
 
 use crate::math::Vector3;
 
-/// Sum with the part that each addition rounds off carried along (W. Kahan, "Further remarks on reducing truncation
-/// errors", 1965): beyond 100 m a plain sum would lose up to 4 µm in each of a thousand steps a second.
+/// Sums up steps of a fraction of a millimetre for hours.
+///
+/// The rounding error of each addition is carried along (W. Kahan, "Further remarks on reducing truncation errors",
+/// 1965). Beyond 100 m a plain sum would lose up to 4 µm in each of a thousand steps a second.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Position {
     total_m: Vector3,
+    /// Part of the steps that rounding has added to the total beyond their sum.
     excess_m: Vector3,
 }
 

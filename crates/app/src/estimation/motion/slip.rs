@@ -1,39 +1,39 @@
-//! Does one wheel roll, or does it spin or slide?
+//! Slip detection for one wheel.
 //!
-//! The filter forgets what the wheels said with a time constant T (1/3.9 s), so a wheel that gains on the accelerometer
-//! by a m/s² for good is a·T ahead of it: comparing speeds against a limit compares accelerations against limit / T,
-//! 1.2 m/s², without taking the derivative of a speed.
+//! A wheel slips if its speed differs too much from the filter's. The filter follows the wheels with a time constant T of
+//! 1/3.9 s. A wheel that lastingly accelerates by a m/s² more than the accelerometer shows is therefore a·T ahead of the
+//! filter. So a limit on the speed is also one on the acceleration, limit / T = 1.2 m/s², without differentiating a speed.
 
-/// A wheel further than this from the speed known otherwise slips.
+/// Speed error beyond which a wheel slips.
 const SLIP_MPS: f32 = 0.3;
-/// It rolls again once it has stayed this close …
+/// Speed error within which it rolls again …
 const ROLL_MPS: f32 = 0.05;
-/// … or closer than the speed known otherwise may have drifted off meanwhile: a quarter of a degree of the horizon …
+/// … which grows with the time it has slipped, as the inertial speed drifts: a tilt error of 0.3° …
 const DRIFT_MPS2: f32 = 0.05;
-/// … for this long.
+/// … after it has stayed within that for this long.
 const AGREE_S: f32 = 0.1;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Grip {
+pub(super) enum SlipState {
     Rolling,
     Slipping {
-        /// Since it began to slip.
+        /// Time since it began to slip.
         since_s: f32,
-        /// Since it came close.
+        /// Time within the limit for rolling.
         agreed_s: f32,
     },
 }
 
-impl Grip {
-    /// `surplus_mps`: how much faster than the robot the wheel runs.
-    pub fn step(self, surplus_mps: f32, dt_s: f32) -> Self {
-        let off_mps = surplus_mps.abs();
+impl SlipState {
+    /// `slip_mps` is the wheel's speed less the robot's.
+    pub fn step(self, slip_mps: f32, dt_s: f32) -> Self {
+        let error_mps = slip_mps.abs();
         match self {
-            Self::Rolling if off_mps > SLIP_MPS => Self::SLIPPING,
+            Self::Rolling if error_mps > SLIP_MPS => Self::SLIPPING,
             Self::Rolling => Self::Rolling,
             Self::Slipping { since_s, agreed_s } => {
                 let drift_mps = DRIFT_MPS2 * since_s;
-                let close = off_mps <= ROLL_MPS + drift_mps && off_mps < SLIP_MPS;
+                let close = error_mps <= ROLL_MPS + drift_mps && error_mps < SLIP_MPS;
                 let agreed_s = if close { agreed_s + dt_s } else { 0.0 };
                 if agreed_s >= AGREE_S {
                     return Self::Rolling;
@@ -51,8 +51,8 @@ impl Grip {
         agreed_s: 0.0,
     };
 
-    /// As `step`, where what is known otherwise does not drift.
-    pub fn step_beside_rest(self, speed_mps: f32, dt_s: f32) -> Self {
+    /// As [`Self::step`], for a robot at a standstill: its speed does not drift.
+    pub fn step_at_standstill(self, speed_mps: f32, dt_s: f32) -> Self {
         match self.step(speed_mps, dt_s) {
             Self::Slipping { agreed_s, .. } => Self::Slipping {
                 since_s: 0.0,
@@ -62,7 +62,7 @@ impl Grip {
         }
     }
 
-    pub fn rolls(self) -> bool {
+    pub fn is_rolling(self) -> bool {
         self == Self::Rolling
     }
 }

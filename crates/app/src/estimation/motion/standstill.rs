@@ -1,31 +1,31 @@
-//! How fast a robot can be that stood a moment ago, by the accelerometer alone.
+//! Inertial speed since the last standstill.
 //!
-//! At a standstill horizon and offset of the accelerometer are taken out together, so for the next seconds its sum tells
-//! the speed as well as ever. Wheels that run away from that spin: on ice, or in the air.
+//! A standstill removes tilt error and accelerometer bias together. For the next seconds the integrated acceleration is
+//! therefore as good a speed as the accelerometer ever gives. Wheels that differ from it spin, on ice or in the air.
 
-/// The sum counts for so long after the standstill, …
-const COUNTS_S: f32 = 2.0;
-/// … or until the robot has turned so far: the offset turns with it, the horizon that it was taken out with does not.
-const COUNTS_RAD: f32 = 0.35;
-/// A wheel further off spins …
+/// Time after a standstill for which the inertial speed is used …
+const VALID_S: f32 = 2.0;
+/// … unless the robot yaws this far before: the bias turns with the body, the tilt error does not.
+const VALID_RAD: f32 = 0.35;
+/// Tolerance of a wheel's speed against the inertial one …
 const SPIN_MPS: f32 = 0.15;
-/// … and by so much more for each second, in which the horizon may tilt by 0.3°.
+/// … which grows with time: a tilt error of 0.3°.
 const DRIFT_MPS2: f32 = 0.05;
-/// A robot that still stands is this slow by the accelerometer, …
+/// Largest inertial speed of a robot that still stands …
 const STANDING_MPS: f32 = 0.15;
-/// … which forgets while it goes on standing beside its spinning wheels.
-const MEMORY_S: f32 = 2.0;
+/// … and the time constant with which that speed decays while the robot stands and its wheels spin.
+const DECAY_S: f32 = 2.0;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Standstill {
-    /// What is used up of the time that it counts.
+    /// Time since the standstill, plus an equivalent for the yaw angle.
     since_s: f32,
     forward_mps: f32,
-    /// Nothing has shaken or turned it since.
+    /// Gyro and accelerometer have been quiet since.
     quiet: bool,
 }
 
-/// Where the wheels should be.
+/// The speed that the wheels should show.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct InertialSpeed {
     pub forward_mps: f32,
@@ -35,13 +35,13 @@ pub(super) struct InertialSpeed {
 impl Standstill {
     pub const fn new() -> Self {
         Self {
-            since_s: COUNTS_S,
+            since_s: VALID_S,
             forward_mps: 0.0,
             quiet: false,
         }
     }
 
-    /// It stands, as wheels, gyro and accelerometer agree.
+    /// The robot stands by wheels, gyro and accelerometer.
     pub fn begin(&mut self) {
         *self = Self {
             since_s: 0.0,
@@ -50,33 +50,34 @@ impl Standstill {
         };
     }
 
-    /// It stands, but its wheels spin.
-    pub fn go_on(&mut self, forward_mps2: f32, quiet: bool, dt_s: f32) {
-        self.forward_mps += forward_mps2 * dt_s - self.forward_mps * dt_s / MEMORY_S;
+    /// The robot still stands, but its wheels spin.
+    pub fn prolong(&mut self, forward_mps2: f32, quiet: bool, dt_s: f32) {
+        self.forward_mps += forward_mps2 * dt_s - self.forward_mps * dt_s / DECAY_S;
         self.quiet &= quiet;
     }
 
-    /// It may be moving.
+    /// The robot may be moving.
     pub fn leave(&mut self, forward_mps2: f32, yaw_rps: f32, quiet: bool, dt_s: f32) {
-        self.since_s += dt_s + (COUNTS_S / COUNTS_RAD) * yaw_rps.abs() * dt_s;
+        self.since_s += dt_s + (VALID_S / VALID_RAD) * yaw_rps.abs() * dt_s;
         self.forward_mps += forward_mps2 * dt_s;
         self.quiet &= quiet;
     }
 
-    pub fn counts(&self) -> bool {
-        self.since_s < COUNTS_S
+    /// True while the inertial speed is good enough to be used.
+    pub fn is_recent(&self) -> bool {
+        self.since_s < VALID_S
     }
 
-    /// None if the last standstill is too long ago.
-    pub fn speed(&self) -> Option<InertialSpeed> {
-        self.counts().then_some(InertialSpeed {
+    /// `None` if the last standstill is too long ago.
+    pub fn inertial_speed(&self) -> Option<InertialSpeed> {
+        self.is_recent().then_some(InertialSpeed {
             forward_mps: self.forward_mps,
             tolerance_mps: SPIN_MPS + DRIFT_MPS2 * self.since_s,
         })
     }
 
-    /// Nothing but its wheels speaks against its standing still.
-    pub fn lasts(&self) -> bool {
-        self.counts() && self.quiet && self.forward_mps.abs() < STANDING_MPS
+    /// True while nothing but the wheels contradicts a standstill.
+    pub fn persists(&self) -> bool {
+        self.is_recent() && self.quiet && self.forward_mps.abs() < STANDING_MPS
     }
 }

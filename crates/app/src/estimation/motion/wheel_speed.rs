@@ -1,23 +1,23 @@
-//! What each wheel by itself says about the forward speed of the robot.
+//! Wheel odometry: the forward speed that each wheel shows by itself.
 
 use super::{axes::Axes, velocity_filter::MAX_SPEED_MPS};
 use crate::domain::{MotorFeedback, WheelFeedback, WheelOdomConfig};
 
-/// Feedback older than this says nothing about the speed now.
+/// Feedback older than this is not used.
 const MAX_AGE_US: u32 = 50_000;
-/// A rotor slower than this stands: noise and one unit of its report.
+/// A rotor slower than this stands. It covers noise and one unit of the report.
 const STANDING_RPM: u16 = 20;
 
-/// Of the middle of the axle in m/s, by the left and the right wheel; none from a wheel that is silent, repeats an old
-/// report or does not touch the ground.
-pub(super) type ForwardSpeeds = [Option<f32>; 2];
+/// A speed in m/s by the left and the right wheel. `None` for a wheel that is silent, repeats an old report or does not
+/// touch the ground.
+pub(super) type PerWheel = [Option<f32>; 2];
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WheelSpeeds {
-    /// Rim speed of one rotor revolution a minute, forward positive: left, right.
+    /// Ground speed at one rotor revolution a minute, forward positive: left, right.
     mps_per_rpm: [f32; 2],
     radius_m: f32,
-    /// From the middle of the axle to each contact point, left positive.
+    /// Distance from the middle of the axle to each contact point, left positive.
     lever_m: [f32; 2],
 }
 
@@ -32,10 +32,12 @@ impl WheelSpeeds {
         }
     }
 
-    /// Rolling without slip: the wheel's own turn is that of its rotor against the motor plus that of the motor, which
-    /// pitches with the body; a wheel at distance l to the left runs slower by yaw rate · l than the middle.
-    pub fn forward_speeds(&self, motor: &MotorFeedback, axes: &Axes) -> ForwardSpeeds {
-        if !axes.upright() {
+    /// The speed of the middle of the axle by each wheel, if it rolls without slip.
+    ///
+    /// The rotor's speed is measured against the motor, which pitches with the body. A wheel at a distance l to the left
+    /// runs slower than the middle by yaw rate · l.
+    pub fn forward_speeds(&self, motor: &MotorFeedback, axes: &Axes) -> PerWheel {
+        if !axes.is_upright() {
             return [None; 2];
         }
         let (yaw_rps, motor_mps) = (axes.yaw_rps(), axes.pitch_rps() * self.radius_m);
@@ -48,15 +50,15 @@ impl WheelSpeeds {
         ]
         .map(|(wheel, mps_per_rpm, lever_m)| {
             let speed_mps = f32::from(wheel.rpm) * mps_per_rpm + motor_mps + yaw_rps * lever_m;
-            // Settings that are no numbers end here.
-            let counts =
+            // Also false if a setting is not a number.
+            let valid =
                 wheel.age_us <= MAX_AGE_US && !wheel.frozen && speed_mps.abs() <= MAX_SPEED_MPS;
-            counts.then_some(speed_mps)
+            valid.then_some(speed_mps)
         })
     }
 }
 
-/// True if a rotor that is heard turns.
+/// True if a rotor turns whose feedback is not too old.
 pub(super) fn any_turns(motor: &MotorFeedback) -> bool {
     let turns = |wheel: &WheelFeedback| {
         wheel.age_us <= MAX_AGE_US && wheel.rpm.unsigned_abs() > STANDING_RPM
@@ -64,8 +66,8 @@ pub(super) fn any_turns(motor: &MotorFeedback) -> bool {
     motor.wheels.iter().any(turns)
 }
 
-/// Of those that say something.
-pub(super) fn mean(speeds: ForwardSpeeds) -> Option<f32> {
+/// Mean of the wheels that have a value.
+pub(super) fn mean(speeds: PerWheel) -> Option<f32> {
     match speeds {
         [Some(left), Some(right)] => Some(0.5 * (left + right)),
         [one, other] => one.or(other),

@@ -1,40 +1,43 @@
-//! Does the robot stand still?
+//! Detection of a standstill, for zero-velocity updates.
 
 use crate::math::{Vector3, scalar, vector};
 
-/// Quiet for this long while the wheels stand …
+/// Quiet time that is a standstill while the wheels stand.
 const STANDING_S: f32 = 0.3;
-/// … or, while no wheel is heard, for so long that the speed has faded already.
+/// The same while no wheel is heard. By then the velocity has decayed already.
 const UNHEARD_S: f32 = 4.0;
-/// Quiet: turns slower than this (5.7 °/s), so that an offset of the gyro that is not known yet does not matter, …
+/// Largest angular rate of a quiet sample (5.7 °/s). It leaves room for a gyro bias that is not known yet.
 const MAX_RATE_RPS: f32 = 0.1;
-/// … feels the same force within this as in the last moments …
+/// Largest difference of its specific force from the smoothed one.
 const MAX_CHANGE_MPS2: f32 = 0.3;
+/// Time constant of the smoothed specific force.
 const SMOOTHING_S: f32 = 0.2;
-/// … and none beyond gravity but what offset and tilt may explain. A robot that slides on locked wheels feels more.
+/// Largest free acceleration of a quiet sample, which bias and tilt error may explain. A robot that slides on locked
+/// wheels decelerates more.
 const MAX_FREE_MPS2: f32 = 1.0;
 
-/// What the wheels say about standing still.
+/// What the wheels show about a standstill.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum WheelEvidence {
-    /// All that are heard stand, and none slips.
+    /// All wheels heard stand, and none slips.
     Standing,
-    /// At least one rolls.
+    /// At least one wheel rolls.
     Turning,
-    /// All that turn slip.
+    /// All wheels that turn slip.
     Spinning,
+    /// No wheel is heard.
     Silent,
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct ZeroVelocity {
-    /// None before the first sample.
+pub(super) struct ZeroVelocityDetector {
+    /// Smoothed specific force in body axes; `None` before the first sample.
     smooth_mps2: Option<Vector3>,
     quiet: bool,
     quiet_s: f32,
 }
 
-impl ZeroVelocity {
+impl ZeroVelocityDetector {
     pub const fn new() -> Self {
         Self {
             smooth_mps2: None,
@@ -43,22 +46,22 @@ impl ZeroVelocity {
         }
     }
 
-    /// The last sample was.
+    /// True if the last sample was quiet.
     pub const fn is_quiet(&self) -> bool {
         self.quiet
     }
 
-    /// `accel_mps2`: specific force in body axes and what is left of it without gravity and offset. `stood`: nothing but
-    /// the wheels speaks against the robot's still standing. True while the robot stands still.
-    pub fn feed(
+    /// Takes a sample; returns true while the robot stands. `forces_mps2` are the specific force and the free acceleration
+    /// (without gravity and bias), both in body axes. `stood` means that nothing but the wheels contradicts a standstill.
+    pub fn detect(
         &mut self,
-        accel_mps2: (Vector3, Vector3),
+        forces_mps2: (Vector3, Vector3),
         rate_rps: Vector3,
         wheels: WheelEvidence,
         stood: bool,
         dt_s: f32,
     ) -> bool {
-        self.quiet = self.judge(accel_mps2, rate_rps, dt_s);
+        self.quiet = self.is_quiet_sample(forces_mps2, rate_rps, dt_s);
         let needed_s = match wheels {
             WheelEvidence::Standing => STANDING_S,
             WheelEvidence::Silent => UNHEARD_S,
@@ -72,14 +75,14 @@ impl ZeroVelocity {
         self.quiet_s >= needed_s
     }
 
-    fn judge(
+    fn is_quiet_sample(
         &mut self,
-        (felt_mps2, free_mps2): (Vector3, Vector3),
+        (force_mps2, free_mps2): (Vector3, Vector3),
         rate_rps: Vector3,
         dt_s: f32,
     ) -> bool {
-        let smooth_mps2 = self.smooth_mps2.unwrap_or(felt_mps2);
-        let change = vector::sub(felt_mps2, smooth_mps2);
+        let smooth_mps2 = self.smooth_mps2.unwrap_or(force_mps2);
+        let change = vector::sub(force_mps2, smooth_mps2);
         let share = scalar::min(dt_s / SMOOTHING_S, 1.0);
         self.smooth_mps2 = Some(vector::add(smooth_mps2, vector::scale(change, share)));
         is_shorter(rate_rps, MAX_RATE_RPS)

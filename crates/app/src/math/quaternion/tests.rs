@@ -77,7 +77,7 @@ fn rotations_up_to_one_radian_are_exact_and_up_to_two_nearly() {
 }
 
 #[test]
-fn lifting_brings_any_vector_upright() {
+fn levelling_turns_any_vector_upright() {
     let mut vectors = vec![
         [0.0, 0.0, 1.0],
         [1.0, 0.0, 0.0],
@@ -90,7 +90,7 @@ fn lifting_brings_any_vector_upright() {
         vectors.push([0.6 * tilt, -0.8 * tilt, -(1.0_f32 - tilt * tilt).sqrt()]);
     }
     for v in vectors {
-        let q = Quaternion::lifting(v);
+        let q = Quaternion::levelling(v);
         assert!((length(q) - 1.0).abs() < 1e-6, "{v:?}: {q:?}");
         let [x, y, z] = rotate(q, v);
         // Within 0.002 rad of upside down any half turn will do.

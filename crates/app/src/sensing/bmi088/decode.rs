@@ -94,12 +94,12 @@ pub struct GyroRaw {
     pub fresh: bool,
     /// Frames that were left out because no rate makes them.
     pub spikes: u8,
-    pub buffer: BufferVerdict,
+    pub buffer: BufferCheck,
 }
 
 /// What the data registers say of the buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum BufferVerdict {
+pub enum BufferCheck {
     /// Nothing to compare.
     Unknown,
     Agrees,
@@ -170,7 +170,7 @@ pub fn decode_gyro(answer: &[u8; GYRO_READ.len()], frames: &[u8]) -> Option<Gyro
     let mut raw = GyroRaw::of(registers);
     raw.fresh = status != 0;
     if gyro_buffer(answer) == GyroBuffer::Stale {
-        raw.buffer = BufferVerdict::Stale;
+        raw.buffer = BufferCheck::Stale;
     } else {
         raw.take_frames(registers, frames);
     }
@@ -207,7 +207,7 @@ impl GyroRaw {
             frame_count: 0,
             fresh: false,
             spikes: 0,
-            buffer: BufferVerdict::Unknown,
+            buffer: BufferCheck::Unknown,
         }
     }
 
@@ -242,9 +242,9 @@ impl GyroRaw {
         if registers == SPIKE {
             self.counts = last;
         } else if is_shown(last) || before.is_some_and(is_shown) {
-            self.buffer = BufferVerdict::Agrees;
+            self.buffer = BufferCheck::Agrees;
         } else {
-            self.buffer = BufferVerdict::Differs;
+            self.buffer = BufferCheck::Differs;
             return;
         }
         self.frame_count = count;
@@ -306,7 +306,7 @@ mod tests {
         assert_eq!(raw.counts, [100, -200, 300]);
         assert_eq!(raw.frames(), frames);
         assert!(raw.fresh);
-        assert_eq!((raw.buffer, raw.spikes), (BufferVerdict::Agrees, 0));
+        assert_eq!((raw.buffer, raw.spikes), (BufferCheck::Agrees, 0));
     }
 
     /// A sample that came between the registers and the buffer makes the last frame but one the registers' own.
@@ -314,7 +314,7 @@ mod tests {
     fn a_sample_in_between_is_no_difference() {
         let frames = [[0; 3], [100, -200, 300], [900, -900, 900]];
         let raw = decode_gyro(&answer(3), &bytes(frames)).unwrap();
-        assert_eq!(raw.buffer, BufferVerdict::Agrees);
+        assert_eq!(raw.buffer, BufferCheck::Agrees);
         assert_eq!(raw.frames(), frames);
     }
 
@@ -323,11 +323,11 @@ mod tests {
     fn frames_that_the_registers_do_not_show_are_not_used() {
         for off in [[300, 100, -200], [117, -200, 300], [100, -200, 283]] {
             let raw = decode_gyro(&answer(2), &bytes([off, off])).unwrap();
-            assert_eq!(raw.buffer, BufferVerdict::Differs, "{off:?}");
+            assert_eq!(raw.buffer, BufferCheck::Differs, "{off:?}");
             assert_eq!(raw.frames(), [[100, -200, 300]]);
         }
         let within = decode_gyro(&answer(1), &bytes([[116, -216, 284]])).unwrap();
-        assert_eq!(within.buffer, BufferVerdict::Agrees);
+        assert_eq!(within.buffer, BufferCheck::Agrees);
     }
 
     #[test]
@@ -336,14 +336,14 @@ mod tests {
         let good = [100, -200, 300];
         let raw = decode_gyro(&answer(4), &bytes([spike, good, spike, good])).unwrap();
         assert_eq!(raw.frames(), [good, good]);
-        assert_eq!((raw.buffer, raw.spikes), (BufferVerdict::Agrees, 2));
+        assert_eq!((raw.buffer, raw.spikes), (BufferCheck::Agrees, 2));
         // In the registers too.
         let mut registers = answer(2);
         registers[3..9].copy_from_slice(&bytes([spike]));
         let raw = decode_gyro(&registers, &bytes([[90, -190, 310], spike])).unwrap();
         assert_eq!(raw.counts, [90, -190, 310]);
         assert_eq!(raw.frames(), [[90, -190, 310]]);
-        assert_eq!((raw.buffer, raw.spikes), (BufferVerdict::Unknown, 1));
+        assert_eq!((raw.buffer, raw.spikes), (BufferCheck::Unknown, 1));
         // One axis at the end of the range is a rate, and nothing but spikes is nothing.
         let one = [i16::MIN, -200, 300];
         assert_eq!(decode_gyro(&answer(1), &bytes([one])).unwrap().spikes, 0);
@@ -355,7 +355,7 @@ mod tests {
     fn without_frames_the_newest_values_count() {
         let stale = decode_gyro(&answer(0xE4), &[]).unwrap();
         assert_eq!(stale.frames(), [[100, -200, 300]]);
-        assert_eq!(stale.buffer, BufferVerdict::Stale);
+        assert_eq!(stale.buffer, BufferCheck::Stale);
         assert!(stale.fresh);
         assert!(!decode_gyro(&answer(0), &[]).unwrap().fresh);
     }

@@ -19,10 +19,10 @@ const ACCEL_AGE_US: u64 = 625;
 const GYRO_MIDDLE_US: u64 = GYRO_FILTER_US + GYRO_AGE_US + INTERVAL_US / 2;
 
 /// Of the accelerometer's last sample in a mean that is as late as the gyro's.
-pub(in crate::sensing) const SHARE_OF_LAST_ACCEL: f32 =
+pub(in crate::sensing) const PREVIOUS_ACCEL_WEIGHT: f32 =
     (GYRO_MIDDLE_US - ACCEL_FILTER_US - ACCEL_AGE_US) as f32 / INTERVAL_US as f32;
 
 /// End of the interval whose mean rate a sample read at `read_us` shows.
-pub(in crate::sensing) const fn measured_until_us(read_us: u64) -> u64 {
+pub(in crate::sensing) const fn interval_end_us(read_us: u64) -> u64 {
     read_us.saturating_sub(GYRO_FILTER_US + GYRO_AGE_US)
 }

@@ -9,7 +9,7 @@ use crate::{
 
 /// One sample: the gyro with its offset still in it, the accelerometer calibrated.
 #[derive(Clone, Copy, Debug)]
-pub struct Sample {
+pub struct CalibrationSample {
     pub gyro_dps: Vector3,
     pub accel_mps2: Vector3,
     /// The offset that was stored as a setting.
@@ -37,7 +37,7 @@ impl StartupCalibration {
         self.gyro.bias_dps()
     }
 
-    pub fn feed(&mut self, sample: &Sample, heater: &Heater) {
+    pub fn feed(&mut self, sample: &CalibrationSample, heater: &Heater) {
         if self.status.state == CalibrationState::Done {
             return;
         }
@@ -95,7 +95,7 @@ mod tests {
                 let ripple = if index % 2 == 0 { 0.1 } else { -0.1 };
                 self.heater.step(Some(temperature_c), self.ts_us);
                 self.calibration.feed(
-                    &Sample {
+                    &CalibrationSample {
                         gyro_dps: [0.5 + ripple, 0.0, turning_dps],
                         stored_offset_dps: self.stored_offset_dps,
                         accel_mps2: [0.0, 0.0, 9.81],

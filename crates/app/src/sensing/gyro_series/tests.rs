@@ -1,4 +1,4 @@
-//! Blows through a low-pass of the test's own, and mistakes put among their frames.
+//! Blows through a low-pass of the test's own, and outliers put among their frames.
 
 use super::*;
 use std::f64::consts::{PI, SQRT_2};
@@ -23,22 +23,22 @@ fn frames(rate_dps: impl Fn(f64) -> [f64; 3], ms: usize) -> Vec<Frame> {
         .collect()
 }
 
-/// Sum of all that counted, in counts · ms, and the mistakes found. None once a read is nonsense.
+/// Sum of all that counted, in counts · ms, and the outliers found. None once a read is nonsense.
 fn counted(frames: &[Frame]) -> Option<([f64; 3], u8)> {
     let mut end = Some(SeriesEnd {
         measured: [0; 3],
-        counted: [0; 3],
+        used: [0; 3],
     });
-    let (mut sum, mut mistakes) = ([0.0; 3], 0);
+    let (mut sum, mut outliers) = ([0.0; 3], 0);
     for read in frames.chunks(READ) {
-        let reading = GyroReading::of(read, end)?;
+        let reading = GyroReading::from_frames(read, end)?;
         end = Some(reading.end);
-        mistakes += reading.mistakes;
+        outliers += reading.outliers;
         for (sum, mean) in sum.iter_mut().zip(reading.mean_counts) {
             *sum += f64::from(mean) * read.len() as f64;
         }
     }
-    Some((sum, mistakes))
+    Some((sum, outliers))
 }
 
 fn total(frames: &[Frame]) -> [f64; 3] {
@@ -75,9 +75,9 @@ fn every_frame_of_a_blow_counts() {
                 let at_s = 0.02 + 0.000_7 * case as f64;
                 let frames = frames(blow(case % 3, peak_dps, ms, abrupt, at_s), 150);
                 let name = format!("{peak_dps} °/s for {ms} ms, abrupt: {abrupt}");
-                let (sum, mistakes) =
+                let (sum, outliers) =
                     counted(&frames).unwrap_or_else(|| panic!("{name}: nonsense"));
-                assert_eq!(mistakes, 0, "{name}");
+                assert_eq!(outliers, 0, "{name}");
                 for (sum, total) in sum.into_iter().zip(total(&frames)) {
                     assert!((sum - total).abs() < 1.0, "{name}: {sum} of {total}");
                 }
@@ -95,8 +95,8 @@ fn a_blow_and_the_next_against_it_count() {
         _ => [0.0; 3],
     };
     let frames = frames(rate, 80);
-    let (sum, mistakes) = counted(&frames).expect("sane");
-    assert_eq!(mistakes, 0);
+    let (sum, outliers) = counted(&frames).expect("sane");
+    assert_eq!(outliers, 0);
     assert!((sum[1] - total(&frames)[1]).abs() < 1.0);
 }
 
@@ -117,14 +117,14 @@ fn a_single_wrong_frame_is_left_out_wherever_it_is() {
                 let before = frames[place];
                 frames[place] =
                     std::array::from_fn(|axis| before[axis].saturating_add(wrong[axis]));
-                let stands_out =
+                let is_outlier =
                     (0..3).any(|axis| frames[place][axis].abs_diff(before[axis]) > 12_000);
-                let Some((sum, mistakes)) = counted(&frames) else {
+                let Some((sum, outliers)) = counted(&frames) else {
                     panic!("{wrong:?} at {place} spoils all");
                 };
-                if stands_out {
+                if is_outlier {
                     assert_eq!(
-                        mistakes,
+                        outliers,
                         1,
                         "{wrong:?} at {place}: {:?}",
                         &frames[place - 2..place + 3]
@@ -145,24 +145,24 @@ fn a_single_wrong_frame_is_left_out_wherever_it_is() {
 fn what_jumps_or_errs_twice_in_a_read_is_nonsense() {
     let rest: SeriesEnd = SeriesEnd {
         measured: [0; 3],
-        counted: [0; 3],
+        used: [0; 3],
     };
-    let read = |frames: [[i16; 3]; 5]| GyroReading::of(&frames, Some(rest));
+    let read = |frames: [[i16; 3]; 5]| GyroReading::from_frames(&frames, Some(rest));
     let (quiet, wild) = ([1, 2, 3], [i16::MAX, 0, 0]);
     assert!(read([quiet; 5]).is_some());
     assert!(read([quiet, wild, wild, quiet, quiet]).is_none());
     assert!(read([wild; 5]).is_none());
     assert!(read([quiet, wild, quiet, wild, quiet]).is_none());
     assert!(read([quiet, wild, quiet, quiet, quiet]).is_some());
-    assert!(GyroReading::of(&[], None).is_none());
+    assert!(GyroReading::from_frames(&[], None).is_none());
 }
 
 /// 26,000 counts in a millisecond may be, 26,001 may not.
 #[test]
 fn a_step_has_a_limit() {
     let frames = |step: i16| [[0; 3], [0, step, 0], [0, step, 0]];
-    assert!(GyroReading::of(&frames(26_000), None).is_some());
-    assert!(GyroReading::of(&frames(26_001), None).is_none());
+    assert!(GyroReading::from_frames(&frames(26_000), None).is_some());
+    assert!(GyroReading::from_frames(&frames(26_001), None).is_none());
 }
 
 /// By hand: two of five frames at the end of y, one at that of z; alone a frame stands for 5 ms.
@@ -176,9 +176,9 @@ fn the_time_at_the_end_of_the_range_is_told_by_axis() {
         [0, 25_000, -28_000],
         [0, 18_000, -21_000],
     ];
-    let reading = GyroReading::of(&frames, None).expect("sane");
+    let reading = GyroReading::from_frames(&frames, None).expect("sane");
     assert_eq!(reading.clipped_ms, [0, 2, 1]);
     assert_eq!(reading.mean_counts[1], (2.0 * 32_767.0 + 53_000.0) / 5.0);
-    let alone = GyroReading::of(&[[0, -32_767, 0]], None).expect("sane");
+    let alone = GyroReading::from_frames(&[[0, -32_767, 0]], None).expect("sane");
     assert_eq!(alone.clipped_ms, [0, 5, 0]);
 }

@@ -26,14 +26,14 @@ impl Bench {
     /// Whether it is marked.
     fn feed(&mut self, accel: [i16; 3], gyro: [i16; 3]) -> Result<bool, ImuSampleError> {
         self.feed_frames(accel, [gyro; 5])
-            .map(|judged| judged.saturated)
+            .map(|sample| sample.saturated)
     }
 
     fn feed_frames(
         &mut self,
         accel_counts: [i16; 3],
         frames: [[i16; 3]; 5],
-    ) -> Result<Judged, ImuSampleError> {
+    ) -> Result<PlausibleSample, ImuSampleError> {
         self.ts_us += 5_000;
         let accel = AccelRaw {
             counts: accel_counts,
@@ -47,7 +47,7 @@ impl Bench {
         answer[15] = 5;
         let bytes = bytes.as_flattened().as_flattened();
         let gyro = decode_gyro(&answer, bytes).expect("the chip id is there");
-        self.plausibility.judge(&accel, &gyro, self.ts_us)
+        self.plausibility.check(&accel, &gyro, self.ts_us)
     }
 }
 
@@ -89,10 +89,10 @@ fn a_blow_is_used_as_it_is() {
         [frames[0], frames[1], frames[2], frames[3], frames[4]],
         [frames[5], frames[6], frames[7], frames[8], frames[9]],
     ] {
-        let judged = bench.feed_frames(REST, read).expect("a blow");
-        assert!(judged.saturated);
-        counts_ms += 5.0 * judged.gyro.mean_counts[1];
-        clipped_ms += judged.gyro.clipped_ms[1];
+        let sample = bench.feed_frames(REST, read).expect("a blow");
+        assert!(sample.saturated);
+        counts_ms += 5.0 * sample.gyro.mean_counts[1];
+        clipped_ms += sample.gyro.clipped_ms[1];
     }
     let sum: f32 = rates.into_iter().map(f32::from).sum();
     assert!((counts_ms - sum).abs() < 1.0, "{counts_ms} of {sum}");
@@ -180,16 +180,16 @@ fn a_wrong_frame_among_good_ones_costs_that_frame_alone() {
                 bench.feed_frames(REST, frames),
                 bench.feed_frames(REST, [[3, -2, 1]; 5]),
             ];
-            let mut mistakes = 0;
-            for judged in verdicts {
-                let judged = judged.expect("used");
+            let mut outliers = 0;
+            for sample in verdicts {
+                let sample = sample.expect("used");
                 assert!(
-                    (judged.gyro.mean_counts[1] + 2.0).abs() < 0.01,
-                    "bit {bit} at {place}: {judged:?}"
+                    (sample.gyro.mean_counts[1] + 2.0).abs() < 0.01,
+                    "bit {bit} at {place}: {sample:?}"
                 );
-                mistakes += judged.gyro.mistakes;
+                outliers += sample.gyro.outliers;
             }
-            assert_eq!(mistakes, 1, "bit {bit} at {place}");
+            assert_eq!(outliers, 1, "bit {bit} at {place}");
         }
     }
 }

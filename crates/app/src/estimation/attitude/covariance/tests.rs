@@ -5,7 +5,7 @@ use super::*;
 /// Everything depends on everything.
 fn full() -> Covariance {
     let mut covariance = Covariance::new();
-    covariance.restart();
+    covariance.reset();
     for (row, entries) in covariance.rows.iter_mut().enumerate() {
         for (column, entry) in entries.iter_mut().enumerate() {
             *entry += 1e-5 * (1 + row + column) as f32;
@@ -18,11 +18,11 @@ fn full() -> Covariance {
 fn a_new_bias_has_nothing_to_do_with_what_was_known() {
     let before = full();
     let mut after = before.clone();
-    after.replace_bias(0.25);
+    after.reset_bias(0.25);
     assert_eq!(after.variances(BIAS), [0.25; 3]);
     let is_bias = |index: usize| (5..8).contains(&index);
-    for row in 0..ERRORS {
-        for column in 0..ERRORS {
+    for row in 0..STATES {
+        for column in 0..STATES {
             let expected = match is_bias(row) || is_bias(column) {
                 false => before.rows[row][column],
                 true if row == column => 0.25,
@@ -38,9 +38,9 @@ fn doubt_adds_to_its_errors_alone() {
     for first in [0, 2, 14] {
         let before = full();
         let mut after = before.clone();
-        after.doubt(first, &[0.1, 0.2, 0.3]);
-        for row in 0..ERRORS {
-            for column in 0..ERRORS {
+        after.add_variances(first, &[0.1, 0.2, 0.3]);
+        for row in 0..STATES {
+            for column in 0..STATES {
                 let more = match (row, column) {
                     _ if row != column => 0.0,
                     (row, _) if row == first => 0.1,
@@ -58,7 +58,7 @@ fn doubt_adds_to_its_errors_alone() {
 #[test]
 fn rounding_leaves_a_variance() {
     let mut covariance = Covariance::new();
-    covariance.wander(0.0);
+    covariance.add_bias_noise(0.0);
     assert_eq!(covariance.variances(BIAS), [1e-12; 3]);
 }
 
@@ -66,14 +66,14 @@ fn rounding_leaves_a_variance() {
 fn columns_follow_the_rows_of_angles_and_speeds() {
     let mut covariance = full();
     for row in 0..BIAS {
-        for column in row..ERRORS {
+        for column in row..STATES {
             covariance.rows[row][column] = (100 * row + column) as f32;
         }
     }
     let before = covariance.clone();
-    covariance.mirror();
-    for row in 0..ERRORS {
-        for column in 0..ERRORS {
+    covariance.symmetrise();
+    for row in 0..STATES {
+        for column in 0..STATES {
             let (least, other) = (row.min(column), row.max(column));
             let expected = if least < BIAS {
                 (100 * least + other) as f32
@@ -91,8 +91,8 @@ fn the_less_sure_of_both_level_axes_counts() {
     covariance.rows[0][0] = 1e-4;
     covariance.rows[1][1] = 3e-4;
     covariance.rows[2][2] = 2e-2;
-    let Certainty { tilt, heading } = covariance.certainty();
+    let AttitudeVariance { tilt, heading } = covariance.attitude_variance();
     assert_eq!((tilt, heading), (3e-4, 2e-2));
     covariance.rows[0][0] = 5e-4;
-    assert_eq!(covariance.certainty().tilt, 5e-4);
+    assert_eq!(covariance.attitude_variance().tilt, 5e-4);
 }

@@ -25,7 +25,7 @@ fn first_rest(
             time_s += DT_S;
             detector.feed(gyro(time_s), accel(time_s));
         }
-        detector.close(field(middle_s)).is_some()
+        detector.close_window(field(middle_s)).is_some()
     })
 }
 
@@ -61,7 +61,7 @@ fn the_rate_at_rest_is_the_mean_of_the_window() {
             let wobble = if sample % 2 == 0 { 0.01 } else { -0.01 };
             detector.feed([0.03 + wobble, -0.02, 0.01 - wobble], GRAVITY);
         }
-        found = detector.close(None);
+        found = detector.close_window(None);
     }
     let [x, y, z] = found.expect("rest").rate_rps;
     assert!((x - 0.03).abs() < 1e-6 && (y + 0.02).abs() < 1e-6 && (z - 0.01).abs() < 1e-6);
@@ -106,7 +106,9 @@ fn a_turn_is_never_proven_to_be_an_offset_and_a_rest_is_in_seven_seconds() {
             }
             let angle = rate_rps * 0.2 * f32::from(*window);
             let field = [level_ut * angle.sin(), level_ut * angle.cos(), -45.0];
-            detector.close(Some(field)).is_some_and(|rest| rest.proven)
+            detector
+                .close_window(Some(field))
+                .is_some_and(|rest| rest.confirmed)
         })
     };
     for rate_dps in [0.5, -0.7, 1.0, -2.0, 4.0] {
@@ -186,7 +188,7 @@ fn a_slow_drift_of_the_force_ends_the_rest() {
         for _ in 0..SAMPLES {
             detector.feed([0.0; 3], tilting(0.2 * f32::from(window)));
         }
-        if detector.close(None).is_some() {
+        if detector.close_window(None).is_some() {
             rests += 1;
         }
     }
@@ -197,5 +199,5 @@ fn a_slow_drift_of_the_force_ends_the_rest() {
 #[test]
 fn without_samples_there_is_no_rest() {
     let mut detector = RestDetector::default();
-    assert!((0..50).all(|_| detector.close(Some(FIELD_UT)).is_none()));
+    assert!((0..50).all(|_| detector.close_window(Some(FIELD_UT)).is_none()));
 }

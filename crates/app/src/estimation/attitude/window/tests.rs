@@ -10,20 +10,20 @@ fn close(got: f32, expected: f32) -> bool {
 fn forty_samples_fill_a_window() {
     let mut window = Window::new();
     // Body x points north, y west, z up.
-    let carried = Carried {
-        middle: [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]],
-        unseen_rad2: 1e-4,
+    let mid_sample = MidSample {
+        rotation: [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]],
+        gap_error_rad2: 1e-4,
     };
     for sample in 0_u8..40 {
         assert!(!window.is_full());
-        window.add_turn(&carried, [1.0, 2.0, 3.0], [0.5, 2.0, 3.0], 0.005);
+        window.add_rotation(&mid_sample, [1.0, 2.0, 3.0], [0.5, 2.0, 3.0], 0.005);
         window.add_accel([f32::from(sample), 0.0, 9.0]);
     }
     assert!(window.is_full());
     assert!(close(window.duration_s, 0.2));
-    assert!(close(window.unseen_rad2, 0.004));
+    assert!(close(window.gap_error_rad2, 0.004));
     // (0.25 + 4 + 9) · 0.2
-    assert!(close(window.turned_rad2_per_s, 2.65));
+    assert!(close(window.squared_rate_integral, 2.65));
     let [east, north, up] = window.accel_mps2();
     assert!(close(east, 19.5) && close(north, 0.0) && close(up, 9.0));
     // A bias about y (west) turns about east by +, one about x about north by −, one about z about up by −.
@@ -72,7 +72,7 @@ fn forty_samples_fill_a_window() {
             -3.0 * t,
         ],
     ];
-    for (row, expected) in window.turn_by_parameter.iter().zip(expected) {
+    for (row, expected) in window.angle_jacobian.iter().zip(expected) {
         for (got, expected) in row.iter().zip(expected) {
             assert!(close(*got, expected), "{got}, not {expected}");
         }

@@ -16,7 +16,7 @@ fn moving(t: f64) -> Rotation {
 
 /// `late_s` beyond what the stamps say, for so long at 50 Hz. Delay found.
 fn found_s(late_s: f64, seconds: f64, noise_ut: f64, attitude: impl Fn(f64) -> Rotation) -> f64 {
-    let mut delay = Delay::new();
+    let mut delay = DelayFilter::new();
     let mut random = Random::new(21);
     let samples = (seconds * 50.0).round() as u32;
     for sample in 0..samples {
@@ -29,7 +29,7 @@ fn found_s(late_s: f64, seconds: f64, noise_ut: f64, attitude: impl Fn(f64) -> R
         let rate = believed
             .to(attitude(t - f64::from(delay.seconds()) + step))
             .map(|angle| angle / step);
-        delay.learn(to_f32(believed.apply(seen)), to_f32(rate));
+        delay.update(to_f32(believed.apply(seen)), to_f32(rate));
         assert!((0.0..=MAX_DELAY_S).contains(&delay.seconds()));
     }
     f64::from(delay.seconds())
@@ -65,13 +65,13 @@ fn a_delay_stays_within_its_limits() {
 /// A sample that is 40 µT off says nothing about the time.
 #[test]
 fn another_field_is_not_a_late_one() {
-    let mut delay = Delay::new();
+    let mut delay = DelayFilter::new();
     let rate_rps = [0.0, 0.0, 2.0];
     for _ in 0..500 {
-        delay.learn([0.0, 20.0, -45.0], rate_rps);
+        delay.update([0.0, 20.0, -45.0], rate_rps);
     }
     for _ in 0..100 {
-        delay.learn([-40.0, 20.0, -45.0], rate_rps);
+        delay.update([-40.0, 20.0, -45.0], rate_rps);
     }
     assert_eq!(delay.seconds(), 0.0);
 }
@@ -80,20 +80,20 @@ fn another_field_is_not_a_late_one() {
 #[test]
 fn the_sign_is_that_of_the_turn() {
     for (rate, east_ut) in [(2.0, -0.6), (-2.0, 0.6)] {
-        let mut delay = Delay::new();
+        let mut delay = DelayFilter::new();
         for _ in 0..200 {
-            delay.learn([0.0, 20.0, -45.0], [0.0; 3]);
+            delay.update([0.0, 20.0, -45.0], [0.0; 3]);
         }
         for _ in 0..50 {
-            delay.learn([east_ut, 20.0, -45.0], [0.0, 0.0, rate]);
+            delay.update([east_ut, 20.0, -45.0], [0.0, 0.0, rate]);
         }
         assert!(delay.seconds() > 0.000_5, "{}", delay.seconds());
-        let mut other = Delay::new();
+        let mut other = DelayFilter::new();
         for _ in 0..200 {
-            other.learn([0.0, 20.0, -45.0], [0.0; 3]);
+            other.update([0.0, 20.0, -45.0], [0.0; 3]);
         }
         for _ in 0..50 {
-            other.learn([-east_ut, 20.0, -45.0], [0.0, 0.0, rate]);
+            other.update([-east_ut, 20.0, -45.0], [0.0, 0.0, rate]);
         }
         assert_eq!(other.seconds(), 0.0);
     }
@@ -101,19 +101,19 @@ fn the_sign_is_that_of_the_turn() {
 
 #[test]
 fn a_tilt_of_the_world_takes_the_mean_along() {
-    let mut delay = Delay::new();
+    let mut delay = DelayFilter::new();
     for _ in 0..1_000 {
-        delay.learn([0.0, 20.0, -45.0], [0.0; 3]);
+        delay.update([0.0, 20.0, -45.0], [0.0; 3]);
     }
     // North was 0.1 rad further to the left: the same field now lies there.
-    delay.tilt([0.0, 0.0, 0.1]);
+    delay.rotate_world([0.0, 0.0, 0.1]);
     for _ in 0..200 {
-        delay.learn([-2.0, 20.0, -45.0], [0.0, 0.0, 5.0]);
+        delay.update([-2.0, 20.0, -45.0], [0.0, 0.0, 5.0]);
     }
     assert!(delay.seconds() < 1e-4, "{}", delay.seconds());
-    delay.forget_mean();
+    delay.reset_reference();
     for _ in 0..50 {
-        delay.learn([2.0, 20.0, -45.0], [0.0, 0.0, 5.0]);
+        delay.update([2.0, 20.0, -45.0], [0.0, 0.0, 5.0]);
     }
     assert!(delay.seconds() < 1e-4, "{}", delay.seconds());
 }

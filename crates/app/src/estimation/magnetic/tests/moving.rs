@@ -4,7 +4,7 @@ use super::*;
 use crate::estimation::testing::Random;
 
 struct Moving {
-    magnetic: Magnetic,
+    magnetic: MagneticHeading,
     random: Random,
     /// The magnetometer is this late, beyond what its stamps say.
     late_s: f64,
@@ -17,7 +17,7 @@ struct Moving {
 impl Moving {
     fn new(late_s: f64, carried_ut: [f64; 3]) -> Self {
         Self {
-            magnetic: Magnetic::new(),
+            magnetic: MagneticHeading::new(),
             random: Random::new(41),
             late_s,
             carried_ut,
@@ -40,7 +40,7 @@ impl Moving {
             for _ in 0..10 {
                 self.sample();
             }
-            if let Some(heading) = self.magnetic.close(WINDOW_S, SURE).heading {
+            if let Some(heading) = self.magnetic.close_window(WINDOW_S, SURE).heading {
                 worst_deg = scalar::max(worst_deg, heading.innovation.to_degrees().abs());
             }
         }
@@ -61,7 +61,7 @@ impl Moving {
         if let Some(turn_rad) = self.magnetic.feed(to_f32(seen), &strapdown, 0.0) {
             // As when north is found: from here on the truth.
             assert!(turn_rad.abs() < 0.5);
-            self.magnetic.forget_world();
+            self.magnetic.discard_world_frame();
         }
     }
 
@@ -100,7 +100,7 @@ fn a_magnet_on_the_robot_is_taken_out() {
     let mut robot = Moving::new(0.0, [6.0, -7.0, 5.0]);
     robot.run(200.0);
     let left_deg = robot.run(60.0);
-    let found = robot.magnetic.magnet.field_ut();
+    let found = robot.magnetic.hard_iron.compensation_ut();
     println!("{found:.1?} µT, headings within {left_deg:.2}°");
     let errors = [found[0] - 6.0, found[1] + 7.0, found[2] - 5.0];
     assert!(vector::norm(errors) < 2.5, "{found:?}");
@@ -115,9 +115,9 @@ fn another_north_is_no_delay() {
         let before_ms = robot.late_ms();
         robot.world_rad = turn_rad;
         if forgotten {
-            robot.magnetic.forget_world();
+            robot.magnetic.discard_world_frame();
         } else {
-            robot.magnetic.tilt([0.0, 0.0, turn_rad as f32]);
+            robot.magnetic.rotate_world([0.0, 0.0, turn_rad as f32]);
         }
         for _ in 0..40 {
             robot.run(0.2);

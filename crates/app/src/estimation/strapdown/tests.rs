@@ -18,7 +18,7 @@ fn angle_deg(strapdown: &Strapdown, truth: Rotation) -> f64 {
 fn a_quarter_turn_to_the_left_in_a_second() {
     let mut strapdown = Strapdown::new();
     for _ in 0..200 {
-        strapdown.turn([0.0, 0.0, FRAC_PI_2], 0.005);
+        strapdown.integrate_rate([0.0, 0.0, FRAC_PI_2], 0.005);
     }
     let left = Rotation::by([0.0, 0.0, std::f64::consts::FRAC_PI_2]);
     assert!(angle_deg(&strapdown, left) < 1e-3);
@@ -35,9 +35,9 @@ fn turns_are_about_the_axes_of_the_body() {
     let mut strapdown = Strapdown::new();
     for rate in [[FRAC_PI_2, 0.0, 0.0], [0.0, FRAC_PI_2, 0.0]] {
         // As long as the last turn about another axis counts, there is a bit of coning: begin from rest.
-        strapdown.turn([0.0; 3], 0.005);
+        strapdown.integrate_rate([0.0; 3], 0.005);
         for _ in 0..200 {
-            strapdown.turn(rate, 0.005);
+            strapdown.integrate_rate(rate, 0.005);
         }
     }
     // The second turn moves forward to what was down; the first had laid that to the left.
@@ -49,11 +49,11 @@ fn turns_are_about_the_axes_of_the_body() {
 #[test]
 fn the_middle_of_a_sample_is_half_way() {
     let mut strapdown = Strapdown::new();
-    let carried = strapdown.turn([0.0, 0.0, 20.0], 0.005);
+    let mid_sample = strapdown.integrate_rate([0.0, 0.0, 20.0], 0.005);
     // 0.1 rad in all.
-    let [[cos, minus_sin, _], ..] = carried.middle;
+    let [[cos, minus_sin, _], ..] = mid_sample.rotation;
     assert!((cos - 0.05_f32.cos()).abs() < 1e-6 && (minus_sin + 0.05_f32.sin()).abs() < 1e-6);
-    assert_eq!(carried.unseen_rad2, 0.0);
+    assert_eq!(mid_sample.gap_error_rad2, 0.0);
 }
 
 #[test]
@@ -66,7 +66,7 @@ fn the_true_rate_is_measured_less_bias_less_misalignment() {
     assert_near(gyro.corrected([1.0, 2.0, 3.0]), [0.85, 2.13, 2.6], 1e-6);
     let mut strapdown = Strapdown::new();
     strapdown.gyro = gyro;
-    strapdown.turn([1.0, 2.0, 3.0], 0.005);
+    strapdown.integrate_rate([1.0, 2.0, 3.0], 0.005);
     assert_near(strapdown.rate_rps, [0.85, 2.13, 2.6], 1e-6);
 }
 
@@ -89,7 +89,7 @@ fn cone_drift_deg(half_angle_deg: f64, frequency_hz: f64) -> f64 {
             a.sin() * ((w * to).sin() - (w * from).sin()) / dt,
             -w * (1.0 - a.cos()),
         ];
-        strapdown.turn(to_f32(mean_rps), 0.005);
+        strapdown.integrate_rate(to_f32(mean_rps), 0.005);
     }
     angle_deg(&strapdown, attitude(f64::from(samples) * dt))
 }
@@ -110,38 +110,38 @@ fn a_cone_does_not_drift() {
 fn a_gap_is_bridged_by_the_mean_of_both_rates() {
     let growth_rps2 = 10.0;
     let mut strapdown = Strapdown::new();
-    strapdown.turn([0.0, 0.0, 1.0], 0.005);
+    strapdown.integrate_rate([0.0, 0.0, 1.0], 0.005);
     let before = Rotation::of(strapdown.attitude);
-    let carried = strapdown.turn([0.0, 0.0, 1.0 + growth_rps2 * 0.040], 0.040);
+    let mid_sample = strapdown.integrate_rate([0.0, 0.0, 1.0 + growth_rps2 * 0.040], 0.040);
     // From the end of the first sample, 2.5 ms after its middle: 40 ms from 1.025 rad/s on.
     let turned = 1.025 * 0.040 + 0.5 * f64::from(growth_rps2) * 0.040 * 0.040;
     let [_, _, z] = before.to(Rotation::of(strapdown.attitude));
     assert!((z - turned).abs() < 1e-6, "{z}, not {turned}");
     // What was guessed: half the change of 0.4 rad/s for 35 ms, 7 mrad.
-    assert!((carried.unseen_rad2 - 0.007 * 0.007).abs() < 1e-8);
+    assert!((mid_sample.gap_error_rad2 - 0.007 * 0.007).abs() < 1e-8);
 }
 
 #[test]
 fn a_late_sample_is_no_gap() {
     let mut strapdown = Strapdown::new();
-    strapdown.turn([0.0, 0.0, 1.0], 0.005);
+    strapdown.integrate_rate([0.0, 0.0, 1.0], 0.005);
     let before = Rotation::of(strapdown.attitude);
-    let carried = strapdown.turn([0.0, 0.0, 2.0], 0.007);
+    let mid_sample = strapdown.integrate_rate([0.0, 0.0, 2.0], 0.007);
     let [_, _, z] = before.to(Rotation::of(strapdown.attitude));
-    assert!((z - 0.014).abs() < 1e-6 && carried.unseen_rad2 == 0.0);
+    assert!((z - 0.014).abs() < 1e-6 && mid_sample.gap_error_rad2 == 0.0);
 }
 
 #[test]
 fn a_speed_is_felt_and_forgotten() {
     let mut strapdown = Strapdown::new();
     for _ in 0..20 {
-        strapdown.accelerate([2.0, -1.0, 9.8], 0.005);
+        strapdown.integrate_force([2.0, -1.0, 9.8], 0.005);
     }
     // Forgetting takes 1.25 % of it in 0.1 s.
     let [east, north] = strapdown.speed_mps;
     assert!((east - 0.2).abs() < 0.004 && (north + 0.1).abs() < 0.002);
     for _ in 0..800 {
-        strapdown.accelerate([0.0, 0.0, 9.8], 0.005);
+        strapdown.integrate_force([0.0, 0.0, 9.8], 0.005);
     }
     // After the time given 1/e is left.
     let left = strapdown.speed_mps[0] / east;
@@ -153,7 +153,7 @@ fn the_world_is_tilted_about_its_own_axes() {
     let mut strapdown = Strapdown::new();
     // Nose to the north: forward is y of the world.
     strapdown.attitude = Quaternion::from_rotation([0.0, 0.0, FRAC_PI_2]);
-    strapdown.tilt([0.1, 0.0, 0.0]);
+    strapdown.rotate_world([0.1, 0.0, 0.0]);
     let forward = strapdown.attitude.rotation_matrix().map(|[x, _, _]| x);
     assert_near(forward, [0.0, 0.1_f32.cos(), 0.1_f32.sin()], 1e-5);
 }

@@ -10,19 +10,24 @@ const HOME: [f32; 2] = [20.0, -45.0];
 const STRONGER: [f32; 2] = [23.0, -51.75];
 
 /// Feeds a field, level and up, for a while. True if it was disturbed at the end.
-fn feed(monitor: &mut FieldMonitor, [level, up]: [f32; 2], rate_rps: f32, seconds: f32) -> bool {
+fn feed(
+    detector: &mut DisturbanceDetector,
+    [level, up]: [f32; 2],
+    rate_rps: f32,
+    seconds: f32,
+) -> bool {
     let norm_ut = level.hypot(up);
     let windows = (seconds / WINDOW_S).round() as u32;
     (0..windows)
-        .map(|_| monitor.disturbed(norm_ut, up, rate_rps, WINDOW_S))
+        .map(|_| detector.detect(norm_ut, up, rate_rps, WINDOW_S))
         .last()
         .expect("at least a window")
 }
 
-fn at_home() -> FieldMonitor {
-    let mut monitor = FieldMonitor::new();
-    assert!(!feed(&mut monitor, HOME, TURNING_RPS, 10.0));
-    monitor
+fn at_home() -> DisturbanceDetector {
+    let mut detector = DisturbanceDetector::new();
+    assert!(!feed(&mut detector, HOME, TURNING_RPS, 10.0));
+    detector
 }
 
 #[test]
@@ -34,10 +39,10 @@ fn the_first_field_is_adopted_after_five_seconds_of_motion() {
         (60.0, 15.0_f32.to_radians(), false),
         (5.6, 25.0_f32.to_radians(), true),
     ] {
-        let mut monitor = FieldMonitor::new();
-        assert!(!feed(&mut monitor, HOME, rate_rps, seconds));
+        let mut detector = DisturbanceDetector::new();
+        assert!(!feed(&mut detector, HOME, rate_rps, seconds));
         // Before there is a reference nothing contradicts it.
-        let disturbed = feed(&mut monitor, STRONGER, TURNING_RPS, WINDOW_S);
+        let disturbed = feed(&mut detector, STRONGER, TURNING_RPS, WINDOW_S);
         assert_eq!(disturbed, known, "{seconds} s at {rate_rps} rad/s");
     }
 }
@@ -48,53 +53,56 @@ fn a_magnet_is_noticed_at_once_and_forgotten_half_a_second_after_it_is_gone() {
     let flatter = [29.0, -40.0];
     let weaker = [17.0, -38.25];
     for magnet in [STRONGER, weaker, steeper, flatter] {
-        let mut monitor = at_home();
+        let mut detector = at_home();
         assert!(
-            feed(&mut monitor, magnet, TURNING_RPS, WINDOW_S),
+            feed(&mut detector, magnet, TURNING_RPS, WINDOW_S),
             "{magnet:?}"
         );
-        assert!(feed(&mut monitor, HOME, TURNING_RPS, 0.4));
-        assert!(!feed(&mut monitor, HOME, TURNING_RPS, 0.4));
+        assert!(feed(&mut detector, HOME, TURNING_RPS, 0.4));
+        assert!(!feed(&mut detector, HOME, TURNING_RPS, 0.4));
     }
 }
 
 #[test]
 fn small_differences_are_the_same_field() {
-    let mut monitor = at_home();
+    let mut detector = at_home();
     for near in [[21.5, -48.4], [18.5, -41.6], [24.0, -43.3], [16.0, -46.6]] {
-        assert!(!feed(&mut monitor, near, TURNING_RPS, WINDOW_S), "{near:?}");
-        feed(&mut monitor, HOME, TURNING_RPS, 5.0);
+        assert!(
+            !feed(&mut detector, near, TURNING_RPS, WINDOW_S),
+            "{near:?}"
+        );
+        feed(&mut detector, HOME, TURNING_RPS, 5.0);
     }
 }
 
 #[test]
 fn another_place_is_believed_after_a_minute_of_motion() {
-    let mut monitor = at_home();
-    assert!(feed(&mut monitor, STRONGER, TURNING_RPS, 59.0));
+    let mut detector = at_home();
+    assert!(feed(&mut detector, STRONGER, TURNING_RPS, 59.0));
     // At rest no time counts.
-    assert!(feed(&mut monitor, STRONGER, 0.0, 300.0));
-    assert!(!feed(&mut monitor, STRONGER, TURNING_RPS, 2.0));
+    assert!(feed(&mut detector, STRONGER, 0.0, 300.0));
+    assert!(!feed(&mut detector, STRONGER, TURNING_RPS, 2.0));
     // Now this is home.
-    assert!(feed(&mut monitor, HOME, TURNING_RPS, WINDOW_S));
+    assert!(feed(&mut detector, HOME, TURNING_RPS, WINDOW_S));
 }
 
 #[test]
 fn a_field_that_changes_is_not_another_place() {
-    let mut monitor = at_home();
+    let mut detector = at_home();
     for _ in 0..10 {
-        assert!(feed(&mut monitor, STRONGER, TURNING_RPS, 20.0));
-        assert!(feed(&mut monitor, [29.0, -40.0], TURNING_RPS, 20.0));
+        assert!(feed(&mut detector, STRONGER, TURNING_RPS, 20.0));
+        assert!(feed(&mut detector, [29.0, -40.0], TURNING_RPS, 20.0));
     }
 }
 
 #[test]
 fn the_reference_follows_a_slow_change() {
-    let mut monitor = at_home();
+    let mut detector = at_home();
     // 30 % in 5 minutes.
     for step in 0_u8..150 {
         let factor = 1.0 + 0.002 * f32::from(step);
         let field = HOME.map(|part| part * factor);
-        assert!(!feed(&mut monitor, field, 0.0, 2.0), "{step}");
+        assert!(!feed(&mut detector, field, 0.0, 2.0), "{step}");
     }
-    assert!(feed(&mut monitor, HOME, 0.0, WINDOW_S));
+    assert!(feed(&mut detector, HOME, 0.0, WINDOW_S));
 }

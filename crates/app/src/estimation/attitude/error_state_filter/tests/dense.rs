@@ -5,7 +5,7 @@ use super::*;
 use crate::estimation::testing::rotation::cross;
 
 const DEG: f64 = std::f64::consts::PI / 180.0;
-const FIRST_BIAS: f64 = (3.0 * DEG) * (3.0 * DEG);
+const INITIAL_BIAS: f64 = (3.0 * DEG) * (3.0 * DEG);
 
 type Matrix = Vec<Vec<f64>>;
 
@@ -18,12 +18,12 @@ struct Sample {
     attitude: Rotation,
     gyro_rps: [f64; 3],
     accel_enu_mps2: [f64; 3],
-    unseen_rad2: f64,
+    gap_error_rad2: f64,
 }
 
 struct Recording {
     samples: Vec<Sample>,
-    blind_s: f64,
+    accel_clipped_s: f64,
 }
 
 struct World {
@@ -53,28 +53,28 @@ impl World {
                     attitude: middle,
                     gyro_rps: self.rate_rps,
                     accel_enu_mps2: [x, y, z + GRAVITY_MPS2],
-                    unseen_rad2: if jerky { 1e-6 * random.share() } else { 0.0 },
+                    gap_error_rad2: if jerky { 1e-6 * random.share() } else { 0.0 },
                 }
             })
             .collect();
         let blind = random.share() < 0.05;
         Recording {
             samples,
-            blind_s: if blind { 0.01 } else { 0.0 },
+            accel_clipped_s: if blind { 0.01 } else { 0.0 },
         }
     }
 
     /// Innovations as large as they should be, some far larger.
-    fn finding(&mut self, variance: f64, noise: f64) -> Finding {
+    fn measurement(&mut self, variance: f64, noise: f64) -> Measurement {
         let outlier = if self.random.share() < 0.05 {
             20.0
         } else {
             1.0
         };
         let innovation = outlier * self.random.normal() * (variance + noise).sqrt();
-        Finding {
+        Measurement {
             innovation: innovation as f32,
-            noise: noise as f32,
+            variance: noise as f32,
         }
     }
 }
@@ -82,15 +82,15 @@ impl World {
 fn to_window(recording: &Recording) -> Window {
     let mut window = Window::new();
     for sample in &recording.samples {
-        let carried = Carried {
-            middle: sample.attitude.rows.map(to_f32),
-            unseen_rad2: sample.unseen_rad2 as f32,
+        let mid_sample = MidSample {
+            rotation: sample.attitude.rows.map(to_f32),
+            gap_error_rad2: sample.gap_error_rad2 as f32,
         };
         let gyro_rps = to_f32(sample.gyro_rps);
-        window.add_turn(&carried, gyro_rps, gyro_rps, DT_S);
+        window.add_rotation(&mid_sample, gyro_rps, gyro_rps, DT_S);
         window.add_accel(to_f32(sample.accel_enu_mps2));
     }
-    window.blind_s += recording.blind_s as f32;
+    window.accel_clipped_s += recording.accel_clipped_s as f32;
     assert!(window.is_full());
     window
 }
@@ -106,14 +106,14 @@ impl Dense {
             row[index] = match index {
                 0..3 => (10.0 * DEG) * (10.0 * DEG),
                 3..5 => 1.0,
-                5..8 => FIRST_BIAS,
+                5..8 => INITIAL_BIAS,
                 _ => 0.006 * 0.006,
             };
         }
         Self { covariance }
     }
 
-    fn forecast(&mut self, recording: &Recording) {
+    fn predict(&mut self, recording: &Recording) {
         let f = transition(recording);
         let p = product(&product(&f, &self.covariance), &transposed(&f));
         self.covariance = p;
@@ -121,19 +121,19 @@ impl Dense {
         for (index, noise) in noise.into_iter().enumerate() {
             let variance = &mut self.covariance[index][index];
             let is_bias = (5..8).contains(&index);
-            if !is_bias || *variance < FIRST_BIAS {
+            if !is_bias || *variance < INITIAL_BIAS {
                 *variance += noise;
             }
         }
     }
 
-    fn observe(&mut self, index: usize, finding: Finding, state: &mut [f64; STATES]) {
+    fn update(&mut self, index: usize, measurement: Measurement, state: &mut [f64; STATES]) {
         let column: Vec<f64> = self.covariance.iter().map(|row| row[index]).collect();
-        let spread = column[index] + f64::from(finding.noise);
-        let limit = 5.0 * spread.sqrt();
-        let innovation = (f64::from(finding.innovation) - state[index]).clamp(-limit, limit);
+        let innovation_variance = column[index] + f64::from(measurement.variance);
+        let limit = 5.0 * innovation_variance.sqrt();
+        let innovation = (f64::from(measurement.innovation) - state[index]).clamp(-limit, limit);
         for (i, row) in self.covariance.iter_mut().enumerate() {
-            let gain = column[i] / spread;
+            let gain = column[i] / innovation_variance;
             state[i] += gain * innovation;
             for (entry, other) in row.iter_mut().zip(&column) {
                 *entry -= gain * other;
@@ -151,7 +151,7 @@ fn transition(recording: &Recording) -> Matrix {
         row[index] = if is_speed { (-t / 4.0).exp() } else { 1.0 };
     }
     let force = mean_force(recording);
-    for (angle, by_parameter) in turn_by_parameter(recording).into_iter().enumerate() {
+    for (angle, by_parameter) in angle_jacobian(recording).into_iter().enumerate() {
         f[angle][5..].copy_from_slice(&by_parameter);
         let mut unit = [0.0; 3];
         unit[angle] = t;
@@ -167,9 +167,9 @@ fn transition(recording: &Recording) -> Matrix {
 }
 
 /// Φ.
-fn turn_by_parameter(recording: &Recording) -> [[f64; PARAMETERS]; 3] {
+fn angle_jacobian(recording: &Recording) -> [[f64; GYRO_PARAMETERS]; 3] {
     let dt_s = f64::from(DT_S);
-    let mut phi = [[0.0; PARAMETERS]; 3];
+    let mut phi = [[0.0; GYRO_PARAMETERS]; 3];
     for sample in &recording.samples {
         for (row, turned) in phi.iter_mut().zip(sample.attitude.rows) {
             for (axis, part) in turned.into_iter().enumerate() {
@@ -200,9 +200,9 @@ fn noises(recording: &Recording) -> [f64; STATES] {
     let mut turn = (0.15 * DEG) * (0.15 * DEG) * t;
     for sample in &recording.samples {
         let rate2: f64 = sample.gyro_rps.iter().map(|rate| rate * rate).sum();
-        turn += 0.0002 * 0.0002 * rate2 * dt_s + sample.unseen_rad2;
+        turn += 0.0002 * 0.0002 * rate2 * dt_s + sample.gap_error_rad2;
     }
-    let speed = (200.0 * recording.blind_s) * (200.0 * recording.blind_s);
+    let speed = (200.0 * recording.accel_clipped_s) * (200.0 * recording.accel_clipped_s);
     std::array::from_fn(|index| match index {
         0..3 => turn,
         3..5 => speed,
@@ -236,13 +236,13 @@ fn hundreds_of_windows_agree_with_the_textbook() {
         attitude: Rotation::by([0.3, -0.2, 1.0]),
         rate_rps: [0.0; 3],
     };
-    let mut filter = ErrorFilter::new();
+    let mut filter = ErrorStateFilter::new();
     let mut dense = Dense::new();
     let (mut worst_state, mut worst_covariance) = (0.0_f64, 0.0_f64);
     for number in 0..400 {
         let resting = (number / 20) % 3 == 1;
         let recording = world.window(resting);
-        dense.forecast(&recording);
+        dense.predict(&recording);
         let variance = |index: usize| dense.covariance[index][index];
         let speed_noise = if resting {
             0.0025
@@ -259,15 +259,15 @@ fn hundreds_of_windows_agree_with_the_textbook() {
             (6, (0.03 * DEG).powi(2) / 0.2, resting),
             (7, (0.03 * DEG).powi(2) / 0.2, resting),
         ];
-        let findings = measured
-            .map(|(index, noise, known)| known.then(|| world.finding(variance(index), noise)));
+        let measurements = measured
+            .map(|(index, noise, known)| known.then(|| world.measurement(variance(index), noise)));
         let before: Vec<f64> = (0..STATES).map(|index| variance(index).sqrt()).collect();
-        filter.begin(&to_window(&recording), findings);
+        filter.begin(&to_window(&recording), measurements);
         let got = state(&finish(&mut filter));
         let mut expected = [0.0; STATES];
-        for ((index, ..), finding) in measured.into_iter().zip(findings) {
-            if let Some(finding) = finding {
-                dense.observe(index, finding, &mut expected);
+        for ((index, ..), measurement) in measured.into_iter().zip(measurements) {
+            if let Some(measurement) = measurement {
+                dense.update(index, measurement, &mut expected);
             }
         }
         for i in 0..STATES {

@@ -1,44 +1,46 @@
-//! Whether the gyro's buffer can be believed, over several samples.
+//! Whether the gyro's buffer (its FIFO) agrees with the data registers, over several samples.
 
-use super::decode::{BufferVerdict, GyroRaw};
+use super::decode::{BufferCheck, GyroRaw};
 use crate::domain::GyroBufferStatus;
 
-/// Samples in a row, 20 ms, that differ from the data registers before the buffer is reset.
+/// Samples in a row (20 ms) that differ from the data registers before the buffer is reset.
 const MAX_DIFFERENT: u8 = 4;
 
-/// Call [`judge`](Self::judge) with every sample.
+/// Counts what the samples show of the buffer, and asks for a reset.
 #[derive(Clone, Debug, Default)]
-pub struct BufferWatch {
+pub struct BufferMonitor {
     status: GyroBufferStatus,
     different_in_row: u8,
     reset_wanted: bool,
 }
 
-impl BufferWatch {
+impl BufferMonitor {
+    /// The counters, for diagnostics.
     pub const fn status(&self) -> GyroBufferStatus {
         self.status
     }
 
-    pub fn judge(&mut self, gyro: &GyroRaw) {
+    /// Takes a sample. To be called with each.
+    pub fn update(&mut self, gyro: &GyroRaw) {
         let status = &mut self.status;
         status.spikes = status.spikes.wrapping_add(gyro.spikes.into());
         match gyro.buffer {
-            BufferVerdict::Unknown => {}
-            BufferVerdict::Agrees => self.different_in_row = 0,
-            BufferVerdict::Differs => {
+            BufferCheck::Unknown => {}
+            BufferCheck::Agrees => self.different_in_row = 0,
+            BufferCheck::Differs => {
                 status.differences = status.differences.wrapping_add(1);
                 self.different_in_row = self.different_in_row.saturating_add(1);
                 self.reset_wanted = self.different_in_row >= MAX_DIFFERENT;
             }
-            // The driver resets it before anybody asks.
-            BufferVerdict::Stale => {
+            // The driver has reset it already.
+            BufferCheck::Stale => {
                 status.overruns = status.overruns.wrapping_add(1);
                 self.different_in_row = 0;
             }
         }
     }
 
-    /// True once when the buffer must be reset.
+    /// True once if the buffer must be reset.
     pub fn take_reset(&mut self) -> bool {
         let wanted = core::mem::take(&mut self.reset_wanted);
         if wanted {
@@ -65,30 +67,30 @@ mod tests {
 
     #[test]
     fn four_different_samples_in_a_row_reset_the_buffer() {
-        let mut watch = BufferWatch::default();
+        let mut monitor = BufferMonitor::default();
         let mut resets = |differs: bool| {
-            watch.judge(&sample(if differs { 500 } else { 0 }, 1));
-            watch.take_reset()
+            monitor.update(&sample(if differs { 500 } else { 0 }, 1));
+            monitor.take_reset()
         };
         let different = [true, true, true, false, true, true, true, true, true];
         let seen = different.map(&mut resets);
         let expected = [false, false, false, false, false, false, false, true, false];
         assert_eq!(seen, expected);
-        let status = watch.status();
+        let status = monitor.status();
         assert_eq!((status.differences, status.resets), (8, 1));
     }
 
     #[test]
     fn an_overrun_is_a_reset_that_nobody_need_ask_for() {
-        let mut watch = BufferWatch::default();
+        let mut monitor = BufferMonitor::default();
         for overrun in [0x81, 0xE4, 9] {
-            watch.judge(&sample(0, overrun));
-            assert!(!watch.take_reset());
+            monitor.update(&sample(0, overrun));
+            assert!(!monitor.take_reset());
         }
         let expected = GyroBufferStatus {
             overruns: 3,
             ..GyroBufferStatus::default()
         };
-        assert_eq!(watch.status(), expected);
+        assert_eq!(monitor.status(), expected);
     }
 }

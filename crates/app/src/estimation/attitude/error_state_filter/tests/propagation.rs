@@ -1,7 +1,7 @@
 //! A correction that was found some samples ago, against two strapdown integrations that differ by it.
 
 use super::*;
-use crate::estimation::attitude::strapdown::Strapdown;
+use crate::estimation::strapdown::Strapdown;
 
 /// What the filter believes, and the truth: both see the same sensors.
 struct Twins {
@@ -19,9 +19,9 @@ impl Twins {
         believed.attitude = Quaternion::from_rotation([0.4, -0.3, 0.5]);
         let mut real = believed.clone();
         let [x, y, z, east, north, ..] = correction.errors;
-        real.tilt([x, y, z]);
+        real.rotate_world([x, y, z]);
         real.speed_mps = [east, north];
-        correction.add_to(&mut real.gyro);
+        correction.apply_to(&mut real.gyro);
         Self {
             believed,
             real,
@@ -35,19 +35,19 @@ impl Twins {
         let push = self.random.normals(0.2);
         self.rate_rps = std::array::from_fn(|axis| self.rate_rps[axis] + push[axis]);
         let gyro_rps = to_f32(self.rate_rps);
-        let before = self.real.turn(gyro_rps, DT_S);
+        let before = self.real.integrate_rate(gyro_rps, DT_S);
         // The body is pushed about, so that the force is not upright.
         let force_enu = [1.5, -2.0, 9.806_65];
-        let middle = before.middle;
+        let middle = before.rotation;
         let accel_mps2: Vector3 =
             std::array::from_fn(|axis| (0..3).map(|row| middle[row][axis] * force_enu[row]).sum());
-        let carried = self.believed.turn(gyro_rps, DT_S);
+        let mid_sample = self.believed.integrate_rate(gyro_rps, DT_S);
         self.window
-            .add_turn(&carried, gyro_rps, self.believed.rate_rps, DT_S);
-        let felt = carried.middle.map(|row| vector::dot(row, accel_mps2));
+            .add_rotation(&mid_sample, gyro_rps, self.believed.rate_rps, DT_S);
+        let felt = mid_sample.rotation.map(|row| vector::dot(row, accel_mps2));
         self.window.add_accel(felt);
-        self.believed.accelerate(felt, DT_S);
-        self.real.accelerate(force_enu, DT_S);
+        self.believed.integrate_force(felt, DT_S);
+        self.real.integrate_force(force_enu, DT_S);
     }
 }
 
@@ -58,7 +58,7 @@ fn compare(correction: &Correction, samples: usize, angle_limit: f64, speed_limi
         twins.sample();
     }
     let real = Rotation::of(twins.believed.attitude).to(Rotation::of(twins.real.attitude));
-    let (angle, speed) = correction.carried_through(&twins.window);
+    let (angle, speed) = correction.propagated_through(&twins.window);
     for axis in 0..3 {
         let off = f64::from(angle[axis]) - real[axis];
         assert!(off.abs() < angle_limit, "angle {angle:?}, really {real:?}");
@@ -91,7 +91,7 @@ fn a_speed_stays() {
 
 #[test]
 fn each_parameter_of_the_gyro_turns_the_attitude_its_own_way() {
-    for parameter in 0..PARAMETERS {
+    for parameter in 0..GYRO_PARAMETERS {
         let mut correction = Correction::default();
         correction.errors[BIAS + parameter] = 0.01;
         // 0.01 rad/s for 80 ms: 8e-4 rad; the speed that this adds by then is left out, 3 mm/s.

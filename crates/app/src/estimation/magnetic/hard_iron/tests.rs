@@ -7,7 +7,7 @@ const EARTH_UT: [f64; 3] = [0.0, 20.0, -45.0];
 const WINDOW_S: f32 = 0.2;
 
 struct Robot {
-    magnet: CarriedMagnet,
+    hard_iron: HardIron,
     carried_ut: [f64; 3],
     /// In the room, ENU.
     passing_ut: [f64; 3],
@@ -18,7 +18,7 @@ struct Robot {
 impl Robot {
     fn new(carried_ut: [f64; 3]) -> Self {
         Self {
-            magnet: CarriedMagnet::new(),
+            hard_iron: HardIron::new(),
             carried_ut,
             passing_ut: [0.0; 3],
             random: Random::new(11),
@@ -32,7 +32,7 @@ impl Robot {
         for _ in 0..windows {
             self.time_s += f64::from(WINDOW_S);
             let attitude = attitude(self.time_s);
-            let applied = self.magnet.field_ut().map(f64::from);
+            let applied = self.hard_iron.compensation_ut().map(f64::from);
             let left_in = std::array::from_fn(|axis| self.carried_ut[axis] - applied[axis]);
             let turned = attitude.apply(left_in);
             let noise = self.random.normals(0.2);
@@ -40,7 +40,7 @@ impl Robot {
                 EARTH_UT[axis] + self.passing_ut[axis] + turned[axis] + noise[axis]
             });
             let level = field[0].hypot(field[1]);
-            self.magnet.observe(
+            self.hard_iron.update(
                 to_f32(field),
                 level as f32,
                 attitude.rows.map(to_f32),
@@ -50,7 +50,7 @@ impl Robot {
     }
 
     fn found_ut(&self) -> [f64; 3] {
-        self.magnet.field_ut().map(f64::from)
+        self.hard_iron.compensation_ut().map(f64::from)
     }
 
     fn error_ut(&self) -> f64 {

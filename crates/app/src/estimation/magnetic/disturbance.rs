@@ -1,50 +1,58 @@
-//! Is this the earth's field? (VQF section 3.6 and its thresholds; a new field is believed later than there)
+//! Detection of magnetic disturbances by norm and dip of the field.
+//!
+//! Method and thresholds are those of VQF (Laidig and Seel, 2023, section 3.6), except that a new reference is adopted
+//! later.
 
 use crate::math::scalar;
 
-/// Share of the reference strength.
+/// Greatest difference from the reference norm, as a share of it.
 const MAX_NORM_ERROR: f32 = 0.1;
 const MAX_DIP_ERROR_RAD: f32 = 10.0_f32.to_radians();
+/// Time constant with which the reference follows an undisturbed field.
 const REFERENCE_S: f32 = 20.0;
+/// A field must match the reference for this long before a disturbance is over.
 const MIN_UNDISTURBED_S: f32 = 0.5;
-/// A new steady field is believed after this time in motion; the first one sooner.
+/// Time in motion after which another steady field becomes the reference.
 const ADOPT_S: f32 = 60.0;
+/// The same for the first reference.
 const ADOPT_FIRST_S: f32 = 5.0;
+/// Least angular rate that counts as motion.
 const MIN_MOTION_RPS: f32 = 20.0_f32.to_radians();
 
-/// Strength and dip of a field.
 #[derive(Clone, Copy, Debug, Default)]
-struct Field {
+struct NormAndDip {
     norm_ut: f32,
+    /// Angle below the horizon.
     dip_rad: f32,
 }
 
-impl Field {
-    fn resembles(self, reference: Self) -> bool {
+impl NormAndDip {
+    fn matches(self, reference: Self) -> bool {
         (self.norm_ut - reference.norm_ut).abs() < MAX_NORM_ERROR * reference.norm_ut
             && (self.dip_rad - reference.dip_rad).abs() < MAX_DIP_ERROR_RAD
     }
 
-    fn approach(&mut self, other: Self, share: f32) {
+    fn low_pass(&mut self, other: Self, share: f32) {
         self.norm_ut += share * (other.norm_ut - self.norm_ut);
         self.dip_rad += share * (other.dip_rad - self.dip_rad);
     }
 }
 
 #[derive(Clone, Debug)]
-pub(super) struct FieldMonitor {
-    reference: Option<Field>,
-    candidate: Field,
+pub(super) struct DisturbanceDetector {
+    reference: Option<NormAndDip>,
+    /// The field that may become the next reference.
+    candidate: NormAndDip,
     candidate_s: f32,
     undisturbed_s: f32,
     disturbed: bool,
 }
 
-impl FieldMonitor {
+impl DisturbanceDetector {
     pub const fn new() -> Self {
         Self {
             reference: None,
-            candidate: Field {
+            candidate: NormAndDip {
                 norm_ut: 0.0,
                 dip_rad: 0.0,
             },
@@ -54,24 +62,24 @@ impl FieldMonitor {
         }
     }
 
-    /// `norm_ut` of the sample, its vertical part `up_ut`, and how fast the robot turns. True while the field is not
-    /// that of the earth as known so far.
-    pub fn disturbed(&mut self, norm_ut: f32, up_ut: f32, rate_rps: f32, window_s: f32) -> bool {
+    /// Takes the field of a window: its norm, its vertical part `up_ut`, and the robot's angular rate. Returns true while
+    /// the field does not match the reference.
+    pub fn detect(&mut self, norm_ut: f32, up_ut: f32, rate_rps: f32, window_s: f32) -> bool {
         let dip_rad = -scalar::asin(up_ut / norm_ut);
-        let field = Field { norm_ut, dip_rad };
+        let field = NormAndDip { norm_ut, dip_rad };
         self.compare_with_reference(field, window_s);
-        self.follow_candidate(field, rate_rps, window_s);
+        self.update_candidate(field, rate_rps, window_s);
         self.disturbed
     }
 
-    fn compare_with_reference(&mut self, field: Field, window_s: f32) {
+    fn compare_with_reference(&mut self, field: NormAndDip, window_s: f32) {
         let share = window_s / REFERENCE_S;
         match &mut self.reference {
-            Some(reference) if field.resembles(*reference) => {
+            Some(reference) if field.matches(*reference) => {
                 self.undisturbed_s += window_s;
                 if self.undisturbed_s >= MIN_UNDISTURBED_S {
                     self.disturbed = false;
-                    reference.approach(field, share);
+                    reference.low_pass(field, share);
                 }
             }
             Some(_) => {
@@ -82,8 +90,8 @@ impl FieldMonitor {
         }
     }
 
-    fn follow_candidate(&mut self, field: Field, rate_rps: f32, window_s: f32) {
-        if !field.resembles(self.candidate) {
+    fn update_candidate(&mut self, field: NormAndDip, rate_rps: f32, window_s: f32) {
+        if !field.matches(self.candidate) {
             self.candidate_s = 0.0;
             self.candidate = field;
             return;
@@ -91,7 +99,7 @@ impl FieldMonitor {
         if rate_rps >= MIN_MOTION_RPS {
             self.candidate_s += window_s;
         }
-        self.candidate.approach(field, window_s / REFERENCE_S);
+        self.candidate.low_pass(field, window_s / REFERENCE_S);
         let needed_s = match self.reference {
             Some(_) => ADOPT_S,
             None => ADOPT_FIRST_S,

@@ -2,26 +2,26 @@
 //! to the strapdown integration.
 
 mod dense;
-mod growth;
+mod propagation;
 
 use super::*;
 use crate::{
     estimation::{
-        attitude::{covariance::ERRORS, strapdown::Carried, window::PARAMETERS},
+        attitude::error_state::{GYRO_PARAMETERS, STATES},
+        strapdown::MidSample,
         testing::{Random, Rotation, to_f32},
     },
     math::Quaternion,
 };
 
-const STATES: usize = ERRORS;
 const DT_S: f32 = 0.005;
 const GRAVITY_MPS2: f64 = 9.806_65;
 /// Nothing is learnt from a finding this unsure.
-const IGNORED: Finding = Finding {
+const IGNORED: Measurement = Measurement {
     innovation: 0.0,
-    noise: 1e12,
+    variance: 1e12,
 };
-const NO_FINDINGS: Findings = [Some(IGNORED), Some(IGNORED), None, None, None, None];
+const NO_MEASUREMENTS: Measurements = [Some(IGNORED), Some(IGNORED), None, None, None, None];
 
 /// Angles, speeds, bias, misalignment.
 fn state(correction: &Correction) -> [f64; STATES] {
@@ -29,25 +29,25 @@ fn state(correction: &Correction) -> [f64; STATES] {
 }
 
 fn matrix(covariance: &Covariance) -> Vec<Vec<f64>> {
-    let to_vec = |row: &Row| row.map(f64::from).to_vec();
+    let to_vec = |row: &ErrorVector| row.map(f64::from).to_vec();
     covariance.rows.iter().map(to_vec).collect()
 }
 
 /// All the work on one window. It must end before the next window is full.
-fn finish(filter: &mut ErrorFilter) -> Correction {
+fn finish(filter: &mut ErrorStateFilter) -> Correction {
     (0..40)
-        .find_map(|_| filter.continue_work().copied())
+        .find_map(|_| filter.step().copied())
         .expect("a correction within 40 samples")
 }
 
 #[test]
 fn a_broken_covariance_starts_anew_without_a_correction() {
     for broken in [-1.0, f32::NAN, f32::INFINITY] {
-        let mut filter = ErrorFilter::new();
+        let mut filter = ErrorStateFilter::new();
         filter.covariance.rows[3][3] = broken;
-        filter.begin(&Window::new(), NO_FINDINGS);
+        filter.begin(&Window::new(), NO_MEASUREMENTS);
         // Not a number is kept by no maximum; a negative variance may be lifted to the least one.
-        let corrections = (0..40).filter_map(|_| filter.continue_work().copied());
+        let corrections = (0..40).filter_map(|_| filter.step().copied());
         for correction in corrections {
             assert!(state(&correction).iter().all(|x| x.is_finite()), "{broken}");
         }
