@@ -6,11 +6,11 @@ mod tests;
 
 use self::freeze_check::FreezeCheck;
 use super::{
-    ImuSampleError,
     accel_delay::AccelDelay,
     bmi088::{self, ACCEL_READ, BufferMonitor, GYRO_READ, GyroRaw},
     calibration::{CalibrationSample, StartupCalibration, correct},
     heater::Heater,
+    imu_sample_error::ImuSampleError,
     plausibility::Plausibility,
 };
 use crate::{

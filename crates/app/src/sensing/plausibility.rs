@@ -6,9 +6,9 @@
 //! ones in a row.
 
 use super::{
-    ImuSampleError,
     bmi088::{AccelRaw, GyroRaw},
     gyro_series::{self, GyroReading, SeriesEnd},
+    imu_sample_error::ImuSampleError,
 };
 use crate::domain::age_us;
 
