@@ -16,7 +16,7 @@ const WITHOUT_IMAGE: [&str; 4] = ["--elf", "--help", "-h", "--list-faults"];
 /// Builds what is out of date and runs `program` on the image; its exit code becomes ours.
 pub fn run(program: &str, args: &PassedOn) -> anyhow::Result<ExitCode> {
     prerequisites::ensure(&EMULATOR)?;
-    let (build_emulator, path) = host_program::build("robot-emulator", program)?;
+    let (build_emulator, path) = host_program::build("robot-sim", program)?;
     let mut jobs = vec![build_emulator];
     let mut command = Command::new(path);
     command.args(&args.words);

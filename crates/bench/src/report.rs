@@ -10,7 +10,7 @@ use crate::{
     table::{Group, Row},
     work::{FilterResult, Results},
 };
-use robot_emulator::sim::{budgets, summary::Summary};
+use robot_sim::{budgets, summary::Summary};
 
 /// What the shipped image may take.
 const IMAGE_FLASH_BYTES: f64 = 256.0 * 1024.0;

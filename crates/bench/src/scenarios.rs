@@ -3,17 +3,15 @@
 use std::path::Path;
 
 use anyhow::{Context, ensure};
-use robot_emulator::{
-    machine::LogLine,
-    sim::{
-        job::Job,
-        runner::Observer,
-        scenario::Scenario,
-        signals::{SignalTable, Values},
-        summary::Summary,
-    },
-};
 use robot_plant::time::{MS, Ps};
+use robot_sim::{
+    job::Job,
+    machine::LogLine,
+    runner::Observer,
+    scenario::Scenario,
+    signals::{SignalTable, Values},
+    summary::Summary,
+};
 
 /// Scenarios that load the board: what a robot does all day, and everything on.
 pub const NAMES: [&str; 2] = ["drive", "full-traffic"];

@@ -8,7 +8,7 @@ use std::{
 
 use anyhow::Context;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use robot_emulator::sim::{scenario::Scenario, summary::Summary};
+use robot_sim::{scenario::Scenario, summary::Summary};
 
 use crate::{
     filters::{EMPTY, Filter, OURS, RIVALS},

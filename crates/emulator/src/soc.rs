@@ -1,8 +1,12 @@
 //! The STM32F407's peripherals: registers in, wires out. One file a peripheral.
+//!
+//! What the wires lead to is behind [`board::Board`].
 
 pub mod access;
 pub mod adc;
 pub mod blocks;
+pub mod board;
+pub mod board_errors;
 pub mod bus;
 pub mod can;
 pub mod can_bus;
@@ -11,6 +15,7 @@ pub mod dma;
 pub mod dma_request;
 pub mod exti;
 pub mod flash;
+pub mod flash_cells;
 pub mod gpio;
 pub mod guest_memory;
 pub mod i2c;
@@ -22,10 +27,15 @@ pub mod pins;
 pub mod pwr;
 pub mod rcc;
 pub mod reset;
+pub mod routing;
 pub mod scheduler;
+pub mod signals;
 pub mod spi;
 pub mod syscfg;
 #[cfg(test)]
 mod test_bench;
+#[cfg(test)]
+pub(crate) mod test_board;
 pub mod timer;
 pub mod usart;
+pub mod wave;

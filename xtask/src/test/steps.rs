@@ -12,8 +12,8 @@ use crate::{
 };
 
 const FIRMWARE: &str = "robot-firmware";
-/// Packages whose tests need images: the emulator, and what counts in it.
-const EMULATED: [&str; 2] = ["robot-emulator", "robot-bench"];
+/// Packages whose tests need images: the emulated board, and what counts in it.
+const EMULATED: [&str; 2] = ["robot-sim", "robot-bench"];
 
 pub struct Step {
     pub name: &'static str,

@@ -1,6 +1,6 @@
 //! CPU cycles as simulated time.
 
-use robot_plant::time::{Ps, SECOND};
+use crate::time::{Ps, SECOND};
 
 /// Counts processor cycles and converts them exactly, across changes of the core clock.
 #[derive(Clone, Copy, Debug)]
@@ -53,7 +53,7 @@ fn to_ps(cycles: u64, hz: u32) -> Ps {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use robot_plant::time::US;
+    use crate::time::US;
 
     #[test]
     fn time_stays_exact_over_a_clock_change() {

@@ -5,7 +5,6 @@
 //! Exceptions do not clear the exclusive monitor, which the engine keeps to itself: a STREX across a handler fails only
 //! if the handler changed the word.
 
-use robot_plant::time::Ps;
 use unicorn_engine::{Arch, ArmCpuModel, Mode, RegisterARM, Unicorn, uc_error};
 
 use crate::{
@@ -19,6 +18,7 @@ use crate::{
         system::System,
     },
     soc::{bus::Soc, peripheral::Unmodelled, reset::ResetCause},
+    time::Ps,
 };
 
 mod alignment;

@@ -2,11 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use robot_plant::time::{MS, Ps, US};
-
 use crate::{
     core::exception::{EXCEPTION_COUNT, Exception},
-    machine::Distribution,
+    time::{MS, Ps, US},
 };
 
 /// The 12,000 instructions that a tick may take, in as many cycles.
@@ -14,6 +12,15 @@ const TICK_LASTS: Ps = 72 * US;
 /// The control tick's period.
 const TICK: Ps = MS;
 const JITTER_BIN: Ps = US / 2;
+
+/// How a measured quantity is distributed.
+#[derive(Clone, Debug, Default, serde::Serialize)]
+pub struct Distribution {
+    pub mean: f64,
+    pub p50: f64,
+    pub p99: f64,
+    pub max: f64,
+}
 
 /// Counters that the engine's hooks feed.
 #[derive(Debug)]

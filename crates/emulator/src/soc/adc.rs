@@ -3,12 +3,13 @@
 
 mod converter;
 
-use robot_plant::time::{Ps, US};
-
-use crate::soc::{
-    access::Access,
-    dma_request::DmaRequest,
-    peripheral::{Ctx, Peripheral, Unmodelled},
+use crate::{
+    soc::{
+        access::Access,
+        dma_request::DmaRequest,
+        peripheral::{Ctx, Peripheral, Unmodelled},
+    },
+    time::{Ps, US},
 };
 use converter::Converter;
 

@@ -1,11 +1,10 @@
 //! Every modelled register block of the chip, and the wires between them that do not pass a bus.
 
-use robot_plant::time::Ps;
-
 use crate::{
-    board_errors::BoardErrors,
     soc::{
         adc::Adc,
+        board::{Outputs, Waves},
+        board_errors::BoardErrors,
         can::Can,
         can_bus::CanBusStats,
         dma::{Beat, Dma, request_map::RequestLine, unserved::Unserved},
@@ -24,8 +23,9 @@ use crate::{
         syscfg::Syscfg,
         timer::Timer,
         usart::Usart,
+        wave::Wave,
     },
-    wiring::{self, Outputs, PwmTimers},
+    time::Ps,
 };
 
 pub struct Blocks {
@@ -51,7 +51,6 @@ pub struct Blocks {
     can: Can,
     adc: Adc,
     iwdg: Iwdg,
-    outputs: Outputs,
 }
 
 impl Default for Blocks {
@@ -79,14 +78,13 @@ impl Default for Blocks {
             can: Can::new(),
             adc: Adc::new(),
             iwdg: Iwdg::new(),
-            outputs: Outputs::default(),
         }
     }
 }
 
 impl Blocks {
-    /// Blocks with a wire to the world that may change by itself.
-    pub const WATCHING_THE_WORLD: [Block; 2] = [Block::Usart(3), Block::Can];
+    /// Blocks with a wire to the board that may change by itself.
+    pub const WATCHING_THE_BOARD: [Block; 2] = [Block::Usart(3), Block::Can];
 
     pub fn get(&mut self, block: Block) -> &mut dyn Peripheral {
         match block {
@@ -163,19 +161,17 @@ impl Blocks {
 
     /// A device drives a pin differently, or may.
     pub fn inputs_changed(&mut self, ctx: &mut Ctx<'_>) {
-        wiring::drive_inputs(ctx.pins, ctx.world);
+        ctx.board.drive_pins(ctx.pins);
         self.exti.pins_changed(&self.syscfg, ctx);
     }
 
     /// A port or a timer drives a pin differently, or may.
     pub fn outputs_changed(&mut self, ctx: &mut Ctx<'_>) {
-        let timers = PwmTimers {
-            tim4: &self.tim4,
-            tim5: &self.tim5,
-            tim10: &self.tim10,
+        let outputs = Outputs {
+            pins: ctx.pins,
+            waves: &*self,
         };
-        self.outputs
-            .update(ctx.pins, &timers, ctx.world, ctx.errors, ctx.now);
+        ctx.board.outputs_changed(&outputs, ctx.errors, ctx.now);
         self.exti.pins_changed(&self.syscfg, ctx);
     }
 
@@ -198,5 +194,16 @@ impl Blocks {
                 format!("PWR: HCLK {hclk_hz} Hz at regulator scale 2 (VOS = 0), which allows {max_hz} Hz"),
             );
         }
+    }
+}
+
+impl Waves for Blocks {
+    fn wave(&self, timer: u8, channel: u8) -> Option<Wave> {
+        let timer = match timer {
+            4 => &self.tim4,
+            5 => &self.tim5,
+            _ => &self.tim10,
+        };
+        timer.wave(usize::from(channel) - 1)
     }
 }

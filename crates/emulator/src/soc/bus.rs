@@ -1,12 +1,12 @@
 //! The chip's peripherals behind one address decoder, with their clocks gated, their events run and DMA served.
 
-use robot_plant::{time::Ps, world::World};
+use std::any::Any;
 
 use crate::{
-    board_errors::BoardErrors,
-    machine::RegisterPatch,
     soc::{
         blocks::Blocks,
+        board::Board,
+        board_errors::BoardErrors,
         can_bus::CanBusStats,
         clocks::ClockTree,
         dma_request::DmaRequests,
@@ -19,15 +19,23 @@ use crate::{
         reset::ResetCause,
         scheduler::{Scheduler, Target},
     },
-    wiring,
+    time::Ps,
 };
 
-/// Everything of the board but the CPU, its private peripherals and the memories.
+/// Overrides bits in every write the image makes to one register: one wrong line of the image, for tests.
+#[derive(Clone, Copy, Debug)]
+pub struct RegisterPatch {
+    pub address: u32,
+    pub mask: u32,
+    pub value: u32,
+}
+
+/// Everything of the chip but the CPU, its private peripherals and the memories, with the board around it.
 pub struct Soc {
     pub irq: IrqLines,
     pub clocks: ClockTree,
     pub errors: BoardErrors,
-    pub world: World,
+    board: Box<dyn Board>,
     pub pins: PinBank,
     scheduler: Scheduler,
     dma_requests: DmaRequests,
@@ -47,7 +55,7 @@ macro_rules! split {
                 dma: &mut $soc.dma_requests,
                 clocks: &mut $soc.clocks,
                 pins: &mut $soc.pins,
-                world: &mut $soc.world,
+                board: &mut *$soc.board,
                 errors: &mut $soc.errors,
             },
         )
@@ -58,21 +66,27 @@ mod dma_service;
 
 impl Soc {
     /// The board at power-on, time 0.
-    pub fn new(world: World) -> Self {
+    pub fn new(board: Box<dyn Board>) -> Self {
         let mut soc = Self {
             irq: IrqLines::default(),
             clocks: ClockTree::default(),
             errors: BoardErrors::default(),
-            world,
+            board,
             pins: PinBank::default(),
             scheduler: Scheduler::default(),
             dma_requests: DmaRequests::default(),
             blocks: Blocks::default(),
             patches: Vec::new(),
         };
-        wiring::connect(&mut soc.pins);
+        soc.board.connect(&mut soc.pins);
         soc.reset(ResetCause::PowerOn, 0);
         soc
+    }
+
+    /// The board as what it is; `None` where it is another.
+    pub fn board_as<B: Board>(&mut self) -> Option<&mut B> {
+        let board: &mut dyn Any = &mut *self.board;
+        board.downcast_mut()
     }
 
     /// From now on every write of the image to the patch's address has the masked bits replaced.
@@ -120,7 +134,8 @@ impl Soc {
         mem: &mut dyn GuestMemory,
     ) -> Result<u32, Unmodelled> {
         self.run_due(now, mem)?;
-        Ok(self.blocks.flash.load(addr, size))
+        let (blocks, mut ctx) = split!(self, now);
+        Ok(blocks.flash.load(addr, size, &mut ctx))
     }
 
     /// A store of the core to them.
@@ -186,17 +201,17 @@ impl Soc {
         blocks.freeze_watchdog(frozen, &mut ctx);
     }
 
-    /// When something happens next without the CPU's doing, the world included.
+    /// When something happens next without the CPU's doing, the board included.
     pub fn next_event(&self) -> Ps {
-        self.scheduler.next().min(self.world.next_event())
+        self.scheduler.next().min(self.board.next_event())
     }
 
     /// Carries out everything due at or before `now`, in order of time.
     pub fn run_due(&mut self, now: Ps, mem: &mut dyn GuestMemory) -> Result<(), Unmodelled> {
         loop {
-            let world_at = self.world.next_event();
-            if world_at <= now && world_at <= self.scheduler.next() {
-                self.advance_world(world_at, mem)?;
+            let board_at = self.board.next_event();
+            if board_at <= now && board_at <= self.scheduler.next() {
+                self.advance_board(board_at, mem)?;
             } else if let Some(event) = self.scheduler.pop_due(now) {
                 self.route(event.target, event.tag, event.at, mem)?;
             } else {
@@ -205,12 +220,12 @@ impl Soc {
         }
     }
 
-    fn advance_world(&mut self, now: Ps, mem: &mut dyn GuestMemory) -> Result<(), Unmodelled> {
-        self.world.advance(now);
+    fn advance_board(&mut self, now: Ps, mem: &mut dyn GuestMemory) -> Result<(), Unmodelled> {
+        self.board.advance(now);
         let (blocks, mut ctx) = split!(self, now);
         blocks.inputs_changed(&mut ctx);
-        for block in Blocks::WATCHING_THE_WORLD {
-            blocks.get(block).world_advanced(&mut ctx);
+        for block in Blocks::WATCHING_THE_BOARD {
+            blocks.get(block).board_advanced(&mut ctx);
         }
         self.serve_dma(now, mem)
     }
@@ -255,9 +270,9 @@ impl Soc {
             Block::I2c3 => {
                 let (blocks, mut ctx) = split!(self, now);
                 blocks.inputs_changed(&mut ctx);
-                self.hear_complaints(now);
+                self.board.file_errors(&mut self.errors, now);
             }
-            Block::Spi1 => self.hear_complaints(now),
+            Block::Spi1 => self.board.file_errors(&mut self.errors, now),
             Block::Exti => {
                 let (blocks, mut ctx) = split!(self, now);
                 blocks.exti_lines_changed(&mut ctx);
@@ -269,12 +284,6 @@ impl Soc {
             _ => {}
         }
         self.serve_dma(now, mem)
-    }
-
-    fn hear_complaints(&mut self, now: Ps) {
-        for complaint in self.world.take_complaints() {
-            self.errors.file(now, complaint);
-        }
     }
 
     fn rcc_changed(&mut self, now: Ps) {

@@ -1,17 +1,19 @@
 //! CAN1 and CAN2 (bxCAN, RM0090 chapter 32): one block at CAN1's base, CAN2 at 0x400, with the bus of each.
 
-use robot_plant::{time::Ps, world::CanBusId};
-
 use self::{
     bit_timing::BitTiming,
     controller::{Controller, Mode, ier, mcr, msr},
     filter::Filters,
 };
-use crate::soc::{
-    access::Access,
-    can_bus::{CanBus, CanBusStats},
-    peripheral::{Ctx, Peripheral, Unmodelled},
-    scheduler::Target,
+use crate::{
+    soc::{
+        access::Access,
+        can_bus::{CanBus, CanBusStats},
+        peripheral::{Ctx, Peripheral, Unmodelled},
+        scheduler::Target,
+    },
+    time::Ps,
+    wire::CanPort,
 };
 
 mod bit_timing;
@@ -47,7 +49,7 @@ impl Can {
         Self {
             controllers: [Controller::new(0), Controller::new(1)],
             filters: Filters::new(),
-            buses: [CanBus::new(CanBusId::Can1), CanBus::new(CanBusId::Can2)],
+            buses: [CanBus::new(CanPort::Can1), CanBus::new(CanPort::Can2)],
         }
     }
 
@@ -247,7 +249,7 @@ impl Peripheral for Can {
         }
     }
 
-    fn world_advanced(&mut self, ctx: &mut Ctx<'_>) {
+    fn board_advanced(&mut self, ctx: &mut Ctx<'_>) {
         for index in 0..2 {
             self.settle(index, ctx);
         }

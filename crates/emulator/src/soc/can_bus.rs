@@ -1,18 +1,16 @@
-//! One CAN bus: arbitration among the board's controller and the world's nodes, frame times, acknowledges, errors.
+//! One CAN bus: arbitration among the board's controller and the nodes on it, frame times, acknowledges, errors.
 
-use robot_plant::{
-    time::{Ps, US},
-    wire::CanFrame,
-    world::CanBusId,
-};
-
-use crate::soc::{
-    can::{
-        controller::{Controller, Mode, mcr, msr},
-        errors::ErrorCode,
-        filter::Filters,
+use crate::{
+    soc::{
+        can::{
+            controller::{Controller, Mode, mcr, msr},
+            errors::ErrorCode,
+            filter::Filters,
+        },
+        peripheral::Ctx,
     },
-    peripheral::Ctx,
+    time::{Ps, US},
+    wire::{CanFrame, CanPort},
 };
 
 pub mod frame_bits;
@@ -77,7 +75,7 @@ enum Phase {
 /// The bus of one controller.
 #[derive(Debug)]
 pub struct CanBus {
-    id: CanBusId,
+    id: CanPort,
     phase: Phase,
     phase_ends_at: Ps,
     /// The board, having failed as a passive transmitter, waits until then.
@@ -86,7 +84,7 @@ pub struct CanBus {
 }
 
 impl CanBus {
-    pub fn new(id: CanBusId) -> Self {
+    pub fn new(id: CanPort) -> Self {
         Self {
             id,
             phase: Phase::Idle,
@@ -194,12 +192,12 @@ impl CanBus {
             board.pending()
         };
         let board_sender = from_board.map(|(mailbox, frame)| (Sender::Board { mailbox }, frame));
-        if ctx.world.can_broken(self.id) {
+        if ctx.board.can_broken(self.id) {
             return board_sender;
         }
         let mut best = board_sender;
-        for node in 0..ctx.world.can_nodes(self.id) {
-            let Some(frame) = ctx.world.can_pending(self.id, node, ctx.now) else {
+        for node in 0..ctx.board.can_nodes(self.id) {
+            let Some(frame) = ctx.board.can_pending(self.id, node, ctx.now) else {
                 continue;
             };
             let key = frame_bits::arbitration_key(&frame);
@@ -223,8 +221,8 @@ impl CanBus {
     }
 
     fn present_nodes(&self, ctx: &Ctx<'_>) -> Vec<usize> {
-        (0..ctx.world.can_nodes(self.id))
-            .filter(|n| ctx.world.can_present(self.id, *n))
+        (0..ctx.board.can_nodes(self.id))
+            .filter(|n| ctx.board.can_present(self.id, *n))
             .collect()
     }
 
@@ -237,7 +235,7 @@ impl CanBus {
     ) -> Outcome {
         let nodes = self.present_nodes(ctx);
         match sender {
-            Sender::Board { .. } if ctx.world.can_broken(self.id) || !board.drives_bus(ctx) => {
+            Sender::Board { .. } if ctx.board.can_broken(self.id) || !board.drives_bus(ctx) => {
                 Outcome::Unheard
             }
             Sender::Board { .. } if nodes.is_empty() => Outcome::NotAcknowledged,
@@ -261,9 +259,9 @@ impl CanBus {
     fn apply_faults_meanwhile(&self, transmission: &mut Transmission, ctx: &Ctx<'_>) {
         let sender_gone = match transmission.sender {
             Sender::Board { .. } => false,
-            Sender::Node(node) => !ctx.world.can_present(self.id, node),
+            Sender::Node(node) => !ctx.board.can_present(self.id, node),
         };
-        if ctx.world.can_broken(self.id) || sender_gone {
+        if ctx.board.can_broken(self.id) || sender_gone {
             transmission.outcome = Outcome::Unheard;
         }
     }
@@ -284,7 +282,7 @@ impl CanBus {
                 board.reception_failed(ctx)
             }
             Sender::Node(node) if transmission.outcome == Outcome::Delivered => {
-                ctx.world.can_sent(self.id, node, ctx.now);
+                ctx.board.can_sent(self.id, node, ctx.now);
                 self.deliver_to_nodes(Some(node), &transmission.frame, ctx);
                 if board.on_bus() && board.timing.misfit(ctx.clocks.pclk1_hz).is_none() {
                     self.stats.rx += 1;
@@ -321,9 +319,9 @@ impl CanBus {
     }
 
     fn deliver_to_nodes(&self, sender: Option<usize>, frame: &CanFrame, ctx: &mut Ctx<'_>) {
-        for node in 0..ctx.world.can_nodes(self.id) {
-            if Some(node) != sender && ctx.world.can_hears(self.id, node) {
-                ctx.world.can_received(self.id, node, frame, ctx.now);
+        for node in 0..ctx.board.can_nodes(self.id) {
+            if Some(node) != sender && ctx.board.can_hears(self.id, node) {
+                ctx.board.can_received(self.id, node, frame, ctx.now);
             }
         }
     }

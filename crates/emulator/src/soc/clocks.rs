@@ -1,6 +1,6 @@
 //! The clock tree as programmed, and which peripherals it feeds. Written by RCC, read by everybody.
 
-use robot_plant::time::{Ps, SECOND};
+use crate::time::{Ps, SECOND};
 
 /// Frequencies in hertz and the clock-enable registers as they stand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,14 +1,11 @@
 //! EXTI: edges of pins to interrupts, lines 0–15 (RM0090 12.3). Lines 16–22 (PVD, RTC, USB, ETH) are not modelled.
 
-use crate::{
-    soc::{
-        access::Access,
-        irq::Irq,
-        peripheral::{Ctx, Peripheral, Unmodelled},
-        pins::PinMode,
-        syscfg::Syscfg,
-    },
-    wiring,
+use crate::soc::{
+    access::Access,
+    irq::Irq,
+    peripheral::{Ctx, Peripheral, Unmodelled},
+    pins::PinMode,
+    syscfg::Syscfg,
 };
 
 const PIN_LINES: u32 = 0xFFFF;
@@ -44,7 +41,7 @@ impl Exti {
         let unmasked = self.imr & (self.rtsr | self.ftsr);
         for line in (0..16).filter(|line| unmasked >> line & 1 == 1) {
             let pin = syscfg.exti_source(line);
-            if ctx.pins.mode(pin) != PinMode::Output && !wiring::drives_input(pin) {
+            if ctx.pins.mode(pin) != PinMode::Output && !ctx.board.drives(pin) {
                 let message =
                     format!("EXTI{line}: nothing modelled drives {pin}: no edge ever comes");
                 ctx.errors.report(ctx.now, message);

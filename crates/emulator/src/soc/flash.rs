@@ -7,32 +7,32 @@ mod data_cache;
 mod history;
 mod operations;
 mod registers;
+mod sectors;
 mod times;
 mod work;
 
 #[cfg(test)]
 mod tests;
 
-use robot_plant::{
-    flash_chip::{FlashChip, PARAMETER_SECTORS, Phase},
+use crate::{
+    soc::{
+        access::Access,
+        irq::Irq,
+        peripheral::{Ctx, Peripheral, Unmodelled},
+        scheduler::Target,
+    },
     time::{MS, Ps},
-};
-
-use crate::soc::{
-    access::Access,
-    irq::Irq,
-    peripheral::{Ctx, Peripheral, Unmodelled},
-    scheduler::Target,
 };
 use data_cache::DataCache;
 use history::History;
 use registers::{acr, cr, sr};
+use sectors::WRITABLE_SECTORS;
 use times::Parallelism;
 use work::{UnderWay, Work};
 
 pub use history::{FlashStep, FlashStepKind};
 pub use times::FlashTimes;
-pub use work::PlannedCut;
+pub use work::{CutPhase, PlannedCut};
 
 /// One wait state each 30 MHz at 2.7–3.6 V (RM0090 table 10).
 const HZ_PER_WAIT_STATE: u32 = 30_000_000;
@@ -57,8 +57,6 @@ pub struct Flash {
     lock: Lock,
     cr: u32,
     sr: u32,
-    /// Sectors 1–3.
-    chip: FlashChip,
     cache: DataCache,
     times: FlashTimes,
     under_way: Option<UnderWay>,
@@ -84,7 +82,6 @@ impl Default for Flash {
             lock: Lock::default(),
             cr: 0,
             sr: 0,
-            chip: FlashChip::parameters(0),
             cache: DataCache::default(),
             times: FlashTimes::default(),
             under_way: None,
@@ -100,11 +97,6 @@ impl Default for Flash {
 impl Flash {
     pub fn history(&self) -> &History {
         &self.history
-    }
-
-    /// The cells, to be looked at or harmed from outside.
-    pub fn chip(&mut self) -> &mut FlashChip {
-        &mut self.chip
     }
 
     pub fn set_times(&mut self, times: FlashTimes) {
@@ -163,7 +155,7 @@ impl Flash {
 
     fn begin_erase(&mut self, control: u32, ctx: &mut Ctx<'_>) -> Result<(), Unmodelled> {
         let sector = cr::sector(control);
-        if control & cr::MER != 0 || !PARAMETER_SECTORS.contains(&sector) {
+        if control & cr::MER != 0 || !WRITABLE_SECTORS.contains(&sector) {
             let what = format!("erase of what the image runs from ({control:#010x})");
             return Err(unmodelled(0x10, &what));
         }
@@ -295,11 +287,11 @@ impl Peripheral for Flash {
             return;
         }
         let cut = self.under_way.as_ref().and_then(|w| w.cut);
-        if cut.is_none_or(|cut| cut.phase == Phase::After) {
+        if cut.is_none_or(|cut| cut.phase == CutPhase::After) {
             self.end_work(ctx);
         }
         if let Some(cut) = cut {
-            self.chip.reseed(cut.seed);
+            ctx.board.flash_cells().reseed(cut.seed);
             self.power_fails = true;
         }
     }
@@ -307,7 +299,7 @@ impl Peripheral for Flash {
     /// The contents stay; what was under way is torn.
     fn reset(&mut self, ctx: &mut Ctx<'_>) {
         if let Some(work) = self.under_way.take().and_then(|w| w.work) {
-            work.tear(&mut self.chip);
+            work.tear(ctx.board.flash_cells());
         }
         self.acr = 0;
         self.lock = Lock::default();

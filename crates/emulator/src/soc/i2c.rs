@@ -40,7 +40,7 @@ impl I2c {
     fn read_sr2(&mut self, ctx: &mut Ctx<'_>) -> u32 {
         let master = self.master.owns_bus();
         let value = if master { sr2::MSL } else { 0 }
-            | if master || ctx.world.i2c_bus_held() {
+            | if master || ctx.board.i2c_bus_held() {
                 sr2::BUSY
             } else {
                 0

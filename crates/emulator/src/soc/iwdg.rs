@@ -1,12 +1,13 @@
 //! The independent watchdog (RM0090 chapter 21), on its own 32 kHz oscillator.
 
-use robot_plant::time::Ps;
-
-use crate::soc::{
-    access::Access,
-    clocks::cycles_to_ps,
-    peripheral::{Ctx, Peripheral, Unmodelled},
-    scheduler::Target,
+use crate::{
+    soc::{
+        access::Access,
+        clocks::cycles_to_ps,
+        peripheral::{Ctx, Peripheral, Unmodelled},
+        scheduler::Target,
+    },
+    time::Ps,
 };
 
 const LSI_HZ: u32 = 32_000;

@@ -1,13 +1,11 @@
 //! What every register block is to the bus, and what it may reach while it works.
 
-use robot_plant::{time::Ps, world::World};
-
 use crate::{
-    board_errors::BoardErrors,
     soc::{
-        clocks::ClockTree, dma_request::DmaRequests, irq::IrqLines, pins::PinBank,
-        scheduler::Scheduler,
+        board::Board, board_errors::BoardErrors, clocks::ClockTree, dma_request::DmaRequests,
+        irq::IrqLines, pins::PinBank, scheduler::Scheduler,
     },
+    time::Ps,
 };
 
 /// An access the model does not implement: it stops the run, with this text and the PC's function.
@@ -28,7 +26,7 @@ pub struct Ctx<'a> {
     pub dma: &'a mut DmaRequests,
     pub clocks: &'a mut ClockTree,
     pub pins: &'a mut PinBank,
-    pub world: &'a mut World,
+    pub board: &'a mut dyn Board,
     pub errors: &'a mut BoardErrors,
 }
 
@@ -49,6 +47,6 @@ pub trait Peripheral {
     fn reset(&mut self, ctx: &mut Ctx<'_>);
     /// RCC changed a frequency; `ctx.clocks` is the new tree. What ran until `ctx.now` ran at the old one.
     fn clocks_changed(&mut self, _ctx: &mut Ctx<'_>) {}
-    /// The world was brought up to `ctx.now`: a wire into this block may have changed.
-    fn world_advanced(&mut self, _ctx: &mut Ctx<'_>) {}
+    /// The board was brought up to `ctx.now`: a wire into this block may have changed.
+    fn board_advanced(&mut self, _ctx: &mut Ctx<'_>) {}
 }

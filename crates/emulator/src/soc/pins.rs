@@ -31,6 +31,17 @@ pub enum PinMode {
     Analog,
 }
 
+impl std::fmt::Display for PinMode {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Input => f.write_str("an input"),
+            Self::Output => f.write_str("an output"),
+            Self::Alternate(number) => write!(f, "AF{number}"),
+            Self::Analog => f.write_str("analog"),
+        }
+    }
+}
+
 /// The chip's own resistor of some 40 kΩ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pull {

@@ -2,7 +2,7 @@
 
 use std::{cmp::Reverse, collections::BinaryHeap};
 
-use robot_plant::time::Ps;
+use crate::time::Ps;
 
 /// Who is woken. One variant for each thing that acts by itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -1,16 +1,16 @@
 //! SPI1 as a full-duplex master (RM0090 chapter 28); the BMI088 hangs on it.
 
-use robot_plant::time::Ps;
-
 use crate::{
     soc::{
         access::Access,
         clocks::cycles_to_ps,
         dma_request::DmaRequest,
         peripheral::{Ctx, Peripheral, Unmodelled},
+        routing,
         scheduler::Target,
+        signals::Signal,
     },
-    wiring::{self, Signal},
+    time::Ps,
 };
 
 const IRQ: u8 = 35;
@@ -150,9 +150,9 @@ impl Spi {
 
     /// One byte over the wires, as far as they are connected.
     fn exchange(&self, byte: u8, ctx: &mut Ctx<'_>) -> u8 {
-        let clocked = wiring::check(Signal::Spi1Sck, ctx);
-        let sends = wiring::check(Signal::Spi1Mosi, ctx);
-        let hears = wiring::check(Signal::Spi1Miso, ctx);
+        let clocked = routing::check(Signal::Spi1Sck, ctx);
+        let sends = routing::check(Signal::Spi1Mosi, ctx);
+        let hears = routing::check(Signal::Spi1Miso, ctx);
         let in_order = |b: u8| {
             if self.cr1 & cr1::LSBFIRST != 0 {
                 b.reverse_bits()
@@ -163,11 +163,11 @@ impl Spi {
         if !clocked {
             return 0;
         }
-        wiring::check_speed(Signal::Spi1Sck, self.sck_hz(ctx), ctx);
+        routing::check_speed(Signal::Spi1Sck, self.sck_hz(ctx), ctx);
         let mosi = if sends { in_order(byte) } else { 0 };
         let mode = ((self.cr1 >> 1 & 1) << 1 | self.cr1 & 1) as u8;
         let miso = ctx
-            .world
+            .board
             .spi_transfer(mosi, self.sck_hz(ctx), mode, ctx.now);
         if hears { in_order(miso) } else { 0 }
     }

@@ -1,22 +1,17 @@
-//! A chip of one peripheral for unit tests: clocks of the C board, a world around it, time passing.
-
-use robot_plant::{
-    time::Ps,
-    world::{PlantKind, RadioKind, World, WorldConfig},
-};
+//! A chip of one peripheral for unit tests: running clocks, a board around it, time passing.
 
 use super::{
+    board::Board,
+    board_errors::{BoardError, BoardErrors},
     clocks::ClockTree,
     dma_request::DmaRequests,
     irq::IrqLines,
     peripheral::{Ctx, Peripheral},
     pins::{Pin, PinBank, PinMode, PinSettings},
     scheduler::Scheduler,
+    test_board::TestBoard,
 };
-use crate::{
-    board_errors::{BoardError, BoardErrors},
-    wiring,
-};
+use crate::time::Ps;
 
 pub struct Bench {
     pub now: Ps,
@@ -25,20 +20,13 @@ pub struct Bench {
     pub dma: DmaRequests,
     pub clocks: ClockTree,
     pub pins: PinBank,
-    pub world: World,
+    pub board: TestBoard,
     pub errors: BoardErrors,
 }
 
 impl Bench {
-    /// 168 MHz, APB1 at 42 MHz, APB2 at 84 MHz; every wire of the board muxed.
+    /// 168 MHz, APB1 at 42 MHz, APB2 at 84 MHz; every signal of the board muxed.
     pub fn new() -> Self {
-        let config = WorldConfig {
-            plant: PlantKind::Stand,
-            radio: RadioKind::Sbus,
-            seed: 1,
-            imu_trial: None,
-            ..WorldConfig::default()
-        };
         let mut bench = Self {
             now: 0,
             scheduler: Scheduler::default(),
@@ -51,7 +39,7 @@ impl Bench {
                 ..ClockTree::default()
             },
             pins: PinBank::default(),
-            world: World::new(config).expect("no recording is asked for"),
+            board: TestBoard::default(),
             errors: BoardErrors::default(),
         };
         for (port, number, af) in [
@@ -79,7 +67,7 @@ impl Bench {
             pin.mode = PinMode::Output;
             pin.high = true;
         });
-        wiring::connect(&mut bench.pins);
+        bench.board.connect(&mut bench.pins);
         bench
     }
 
@@ -97,7 +85,7 @@ impl Bench {
             dma: &mut self.dma,
             clocks: &mut self.clocks,
             pins: &mut self.pins,
-            world: &mut self.world,
+            board: &mut self.board,
             errors: &mut self.errors,
         }
     }
@@ -114,7 +102,7 @@ impl Bench {
             .expect("a modelled register");
     }
 
-    /// Lets world and peripheral live until `until`.
+    /// Lets board and peripheral live until `until`.
     pub fn run(&mut self, block: &mut dyn Peripheral, until: Ps) {
         self.run_while(block, until, |_| true);
     }
@@ -127,11 +115,11 @@ impl Bench {
         go_on: impl Fn(&mut Self) -> bool,
     ) {
         while go_on(self) {
-            let world_at = self.world.next_event();
-            if world_at <= until && world_at <= self.scheduler.next() {
-                self.now = world_at;
-                self.world.advance(world_at);
-                block.world_advanced(&mut self.ctx());
+            let board_at = self.board.next_event();
+            if board_at <= until && board_at <= self.scheduler.next() {
+                self.now = board_at;
+                self.board.advance(board_at);
+                block.board_advanced(&mut self.ctx());
             } else if let Some(event) = self.scheduler.pop_due(until) {
                 self.now = event.at;
                 block.event(event.tag, &mut self.ctx());

@@ -5,17 +5,18 @@
 pub mod counter;
 pub mod output;
 
-use counter::{Counter, UIF};
-use output::Wave;
-use robot_plant::time::Ps;
-
-use crate::soc::{
-    access::Access,
-    clocks::{ClockTree, cycles_to_ps, ps_to_cycles},
-    irq::Irq,
-    peripheral::{Ctx, Peripheral, Unmodelled},
-    scheduler::Target,
+use crate::{
+    soc::{
+        access::Access,
+        clocks::{ClockTree, cycles_to_ps, ps_to_cycles},
+        irq::Irq,
+        peripheral::{Ctx, Peripheral, Unmodelled},
+        scheduler::Target,
+        wave::Wave,
+    },
+    time::Ps,
 };
+use counter::{Counter, UIF};
 
 const CEN: u32 = 1;
 const UDIS: u32 = 1 << 1;

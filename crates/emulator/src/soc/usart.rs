@@ -1,10 +1,5 @@
 //! USART1, USART3 and USART6 as asynchronous UARTs (RM0090 chapter 30).
 
-use robot_plant::{
-    time::Ps,
-    wire::{Parity, UartChar},
-};
-
 use self::receiver::{Framing, Receiver};
 use crate::{
     soc::{
@@ -13,9 +8,12 @@ use crate::{
         dma_request::DmaRequest,
         irq::Irq,
         peripheral::{Ctx, Peripheral, Unmodelled},
+        routing,
         scheduler::Target,
+        signals::Signal,
     },
-    wiring::{self, Signal},
+    time::Ps,
+    wire::{Parity, UartChar},
 };
 
 mod receiver;
@@ -179,7 +177,7 @@ impl Usart {
         let Some(sent) = self.receiver.last_char() else {
             return;
         };
-        let baud = (robot_plant::time::SECOND + framing.bit / 2) / framing.bit;
+        let baud = (crate::time::SECOND + framing.bit / 2) / framing.bit;
         let data_bits = framing.word_bits - u8::from(framing.parity != Parity::None);
         let same_word = data_bits == sent.format.data_bits && framing.parity == sent.format.parity;
         let off_by = baud.abs_diff(u64::from(sent.format.baud)) * 100;
@@ -215,7 +213,7 @@ impl Usart {
             return;
         };
         if let Some(signal) = self.tx_signal() {
-            wiring::check(signal, ctx);
+            routing::check(signal, ctx);
         }
         self.waiting_to_send = false;
         self.sr |= sr::TXE;
@@ -374,12 +372,12 @@ impl Peripheral for Usart {
         self.receiver.restart(ctx.now);
     }
 
-    fn world_advanced(&mut self, ctx: &mut Ctx<'_>) {
-        // Of the three lines, only the radio's has somebody at its other end.
+    fn board_advanced(&mut self, ctx: &mut Ctx<'_>) {
+        // Of the three receivers this is the one with a line.
         if self.number != 3 {
             return;
         }
-        while let Some(c) = ctx.world.radio_char(ctx.now) {
+        while let Some(c) = ctx.board.usart3_character(ctx.now) {
             self.line_character(c, ctx);
         }
         self.plan_reception(ctx);
@@ -389,7 +387,7 @@ impl Peripheral for Usart {
 
 impl Usart {
     fn line_character(&mut self, c: UartChar, ctx: &mut Ctx<'_>) {
-        if self.receiving() && wiring::check(Signal::Usart3Rx, ctx) {
+        if self.receiving() && routing::check(Signal::Usart3Rx, ctx) {
             self.receiver.push(c);
         }
     }

@@ -1,9 +1,7 @@
 //! A debug probe on the core (ARMv7-M ARM C1): it halts it, and what it has set does so when nobody looks.
 
-use robot_plant::time::Ps;
-
 use super::Cpu;
-use crate::core::system::debug_registers::Debug;
+use crate::{core::system::debug_registers::Debug, time::Ps};
 
 impl Cpu {
     /// What a probe may change while the core runs.

@@ -1,6 +1,5 @@
 //! What the engine calls back: block boundaries, register accesses, faults and engine-internal exceptions.
 
-use robot_plant::time::Ps;
 use unicorn_engine::{HookType, MemType, Prot, RegisterARM, TlbEntry, TlbType, Unicorn, uc_error};
 
 use super::{Block, State, Stop, alignment, context, it_state, sabotage};
@@ -11,6 +10,7 @@ use crate::{
         system::{Surroundings, System},
     },
     soc::{bus::Soc, guest_memory::GuestMemory, peripheral::Unmodelled, reset::ResetCause},
+    time::Ps,
 };
 
 const PERIPHERALS: (u64, u64) = (0x4000_0000, 0x2000_0000);

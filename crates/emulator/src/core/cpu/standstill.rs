@@ -1,12 +1,13 @@
 //! Time in which the core runs nothing: the flash works and serves no fetch, a debug probe halts it, or the board has
 //! no power.
 
-use robot_plant::time::Ps;
-
 use super::{Cpu, Halt, Pause, State, hooks};
-use crate::core::{
-    memory::{CCM, SRAM, power_on_noise},
-    system::System,
+use crate::{
+    core::{
+        memory::{CCM, SRAM, power_on_noise},
+        system::System,
+    },
+    time::Ps,
 };
 
 /// Why no instruction is fetched.

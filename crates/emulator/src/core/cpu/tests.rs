@@ -1,11 +1,7 @@
 //! Exceptions and sleep, on hand-assembled programs that leave a trace in SRAM.
 
-use robot_plant::{
-    time::{Ps, US},
-    world::{PlantKind, RadioKind, World, WorldConfig},
-};
-
 use super::*;
+use crate::{soc::test_board::NoBoard, time::US};
 
 mod debug;
 mod refused;
@@ -67,15 +63,8 @@ fn board(thread: &[u16], handlers: &[(Exception, Vec<u16>)]) -> Cpu {
         address: FLASH.base,
         data: table,
     });
-    let config = WorldConfig {
-        plant: PlantKind::Stand,
-        radio: RadioKind::Sbus,
-        seed: 1,
-        imu_trial: None,
-        ..WorldConfig::default()
-    };
-    let world = World::new(config).expect("a world without a recording");
-    let mut cpu = Cpu::new(&segments, None, Soc::new(world)).expect("the engine starts");
+    let mut cpu = Cpu::new(&segments, None, Soc::new(Box::new(NoBoard::default())))
+        .expect("the engine starts");
     for (exception, _) in handlers {
         cpu.state_mut().system.nvic.set_enabled(*exception, true);
     }

@@ -1,25 +1,27 @@
 //! One converter: single conversions of one input, started by software.
 
-use robot_plant::time::{NS, Ps, US};
-
 use super::{Common, MAX_ADC_HZ, VREFINT_V, unmodelled};
 use crate::{
     soc::{
         access::Access,
         clocks::cycles_to_ps,
         peripheral::{Ctx, Unmodelled},
+        routing,
         scheduler::Target,
+        signals::Signal,
     },
-    wiring::{self, Signal},
+    time::{NS, Ps, SECOND, US},
 };
 
 /// tSTAB after ADON (DS8626, ADC characteristics).
 const STABLE_AFTER: Ps = 3 * US;
 /// Least sampling time of the internal reference (DS8626, embedded reference voltage).
 const VREFINT_SAMPLING: Ps = 10 * US;
-/// The battery's divider (20 kΩ) and the switch (6 kΩ) charge 7 pF to half a count of 12 bits in 9.7 time constants
-/// (DS8626, ADC characteristics, equation for the external input impedance).
-const BATTERY_SAMPLING: Ps = 1_750 * NS;
+/// Resistance of the sampling switch, Ω, the capacitor it charges, F, and the time constants until 12 bits are right to
+/// half a count (DS8626, ADC characteristics, equation for the external input impedance).
+const SWITCH_OHMS: f64 = 6_000.0;
+const SAMPLING_FARADS: f64 = 7e-12;
+const TIME_CONSTANTS: f64 = 9.7;
 
 mod sr {
     pub const EOC: u32 = 1 << 1;
@@ -49,8 +51,8 @@ mod cr2 {
 /// What a channel leads to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Input {
-    /// ADC3_IN8, PF10 on the C board.
-    Battery,
+    /// ADC3_IN8.
+    In8,
     /// ADC1_IN17.
     Vrefint,
 }
@@ -92,7 +94,7 @@ impl Converter {
 
     fn input(&self) -> Option<Input> {
         match (self.index, self.channel()) {
-            (2, 8) => Some(Input::Battery),
+            (2, 8) => Some(Input::In8),
             (0, 17) => Some(Input::Vrefint),
             _ => None,
         }
@@ -143,12 +145,16 @@ impl Converter {
                 format!("{name}: VREFINT is sampled for less than 10 us: the result is too low");
             ctx.errors.suspect(ctx.now, what);
         }
-        if input == Input::Battery && sampling < BATTERY_SAMPLING {
-            let ns = sampling / NS;
-            let what = format!(
-                "{name}: the battery's divider is sampled for {ns} ns: the result is too low"
-            );
-            ctx.errors.suspect(ctx.now, what);
+        if input == Input::In8 {
+            let source = ctx.board.analog(Signal::Adc3In8);
+            let needed = TIME_CONSTANTS * (source.ohms + SWITCH_OHMS) * SAMPLING_FARADS;
+            if sampling < (needed * SECOND as f64) as Ps {
+                let (ns, ohms) = (sampling / NS, source.ohms);
+                let what = format!(
+                    "{name}: a source of {ohms:.0} ohms is sampled for {ns} ns: the result is too low"
+                );
+                ctx.errors.suspect(ctx.now, what);
+            }
         }
         let at = ctx.now + sampling + cycles_to_ps(self.resolution_bits().into(), clock_hz);
         self.sr |= sr::STRT;
@@ -160,14 +166,14 @@ impl Converter {
     fn convert(&self, common: &Common, ctx: &mut Ctx<'_>) -> u32 {
         let bits = self.resolution_bits();
         let volts = match self.input() {
-            Some(Input::Battery) if wiring::check(Signal::Adc3In8, ctx) => {
-                ctx.world.battery_adc_volts()
+            Some(Input::In8) if routing::check(Signal::Adc3In8, ctx) => {
+                ctx.board.analog(Signal::Adc3In8).volts
             }
             Some(Input::Vrefint) if common.reference_is_on(ctx) => VREFINT_V,
             _ => 0.0,
         };
         let top = f64::from((1u32 << bits) - 1);
-        let code = (volts / ctx.world.vdda_v() * f64::from(1u32 << bits))
+        let code = (volts / ctx.board.vdda_v() * f64::from(1u32 << bits))
             .floor()
             .clamp(0.0, top) as u32;
         match (self.cr2 & cr2::ALIGN != 0, bits) {

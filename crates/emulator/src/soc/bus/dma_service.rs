@@ -1,15 +1,16 @@
 //! Moves what the DMA streams ask for between peripherals and memory.
 
-use robot_plant::time::Ps;
-
 use super::Soc;
-use crate::soc::{
-    dma::{
-        Beat,
-        stream::{Direction, Item},
+use crate::{
+    soc::{
+        dma::{
+            Beat,
+            stream::{Direction, Item},
+        },
+        guest_memory::GuestMemory,
+        peripheral::{Ctx, Unmodelled},
     },
-    guest_memory::GuestMemory,
-    peripheral::{Ctx, Unmodelled},
+    time::Ps,
 };
 
 /// More items than any peripheral takes at one instant: the request never falls.

@@ -2,17 +2,14 @@
 
 mod clocks;
 mod dma;
-mod outputs;
 mod pins;
 mod timers;
 
-use robot_plant::{
-    time::Ps,
-    world::{PlantKind, RadioKind, World, WorldConfig},
-};
-
 use super::Soc;
-use crate::soc::guest_memory::GuestMemory;
+use crate::{
+    soc::{guest_memory::GuestMemory, test_board::TestBoard},
+    time::Ps,
+};
 
 const RCC: u32 = 0x4002_3800;
 const AHB1ENR: u32 = RCC + 0x30;
@@ -67,19 +64,12 @@ struct Bench {
 
 impl Bench {
     fn new() -> Self {
-        let config = WorldConfig {
-            plant: PlantKind::Stand,
-            radio: RadioKind::Sbus,
-            seed: 1,
-            imu_trial: None,
-            ..WorldConfig::default()
-        };
         let ram = Ram {
             sram: vec![0; 0x2_0000],
             ccm: vec![0; 0x1_0000],
         };
         Self {
-            soc: Soc::new(World::new(config).unwrap()),
+            soc: Soc::new(Box::new(TestBoard::default())),
             ram,
             now: 0,
         }
@@ -109,13 +99,13 @@ impl Bench {
         self.run_until(self.now + duration);
     }
 
-    /// HSE, PLL and prescalers of the C board (docs/hardware.md#chip-and-clocks): 168, 42 and 84 MHz.
+    /// A 12 MHz crystal, PLL and prescalers: 168, 42 and 84 MHz.
     fn clock_up(&mut self) {
         self.set_bits(RCC, 1 << 16);
-        self.run_for(2 * robot_plant::time::MS);
+        self.run_for(2 * crate::time::MS);
         self.write(RCC + 0x04, 6 | 168 << 6 | 1 << 22 | 7 << 24);
         self.set_bits(RCC, 1 << 24);
-        self.run_for(robot_plant::time::MS);
+        self.run_for(crate::time::MS);
         self.write(FLASH_ACR, 5);
         self.write(RCC + 0x08, 0b10 | 0b101 << 10 | 0b100 << 13);
     }

@@ -2,9 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use robot_plant::time::Ps;
-
-use crate::soc::clocks::cycles_to_ps;
+use crate::{soc::clocks::cycles_to_ps, time::Ps};
 
 /// Rate of every device on the board's buses.
 pub const BUS_HZ: u32 = 1_000_000;
@@ -102,7 +100,7 @@ fn sample_text(permille: u32) -> String {
 
 #[cfg(test)]
 mod tests {
-    use robot_plant::time::US;
+    use crate::time::US;
 
     use super::*;
 

@@ -1,7 +1,5 @@
 //! One bxCAN controller: modes, interrupts, and what the bus tells it (RM0090 32.4 to 32.9).
 
-use robot_plant::{time::Ps, wire::CanFrame};
-
 use super::{
     bit_timing::BitTiming,
     errors::{ErrorCode, ErrorCounters},
@@ -10,8 +8,9 @@ use super::{
     mailboxes::{Attempt, Mailboxes},
 };
 use crate::{
-    soc::{irq::Irq, peripheral::Ctx},
-    wiring::{self, Signal},
+    soc::{irq::Irq, peripheral::Ctx, routing, signals::Signal},
+    time::Ps,
+    wire::CanFrame,
 };
 
 pub mod mcr {
@@ -136,11 +135,11 @@ impl Controller {
     /// Whether its dominant bits reach the bus.
     pub fn drives_bus(&self, ctx: &mut Ctx<'_>) -> bool {
         let signal = [Signal::Can1Tx, Signal::Can2Tx][self.index];
-        !self.timing.silent() && wiring::check(signal, ctx)
+        !self.timing.silent() && routing::check(signal, ctx)
     }
 
     fn hears_bus(&self, ctx: &mut Ctx<'_>) -> bool {
-        wiring::check([Signal::Can1Rx, Signal::Can2Rx][self.index], ctx)
+        routing::check([Signal::Can1Rx, Signal::Can2Rx][self.index], ctx)
     }
 
     /// Moves towards the mode INRQ and SLEEP ask for; a frame it takes part in goes on to its end first.

@@ -2,9 +2,7 @@
 
 use std::ops::Range;
 
-use robot_plant::wire::CanFrame;
-
-use crate::soc::peripheral::Ctx;
+use crate::{soc::peripheral::Ctx, wire::CanFrame};
 
 const BANKS: usize = 28;
 const FMR_RESERVED: u32 = 0x2A1C_0000;

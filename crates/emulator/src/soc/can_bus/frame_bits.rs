@@ -1,6 +1,6 @@
 //! The bits of a CAN 2.0 frame on the wire: fields, CRC-15, stuffing (Bosch CAN 2.0, part B).
 
-use robot_plant::wire::CanFrame;
+use crate::wire::CanFrame;
 
 /// CRC delimiter, ACK slot, ACK delimiter and the seven bits of end of frame: never stuffed.
 const TAIL_BITS: u32 = 10;

@@ -1,12 +1,13 @@
-//! Both buses through the controllers' registers, against the nodes of the world.
+//! Both buses through the controllers' registers, against the nodes of the test board.
 
-use robot_plant::time::{MS, Ps, US};
-
-use crate::soc::{
-    can::Can,
-    peripheral::Peripheral,
-    pins::{Pin, PinMode},
-    test_bench::Bench,
+use crate::{
+    soc::{
+        can::Can,
+        peripheral::Peripheral,
+        pins::{Pin, PinMode},
+        test_bench::Bench,
+    },
+    time::{MS, Ps, US},
 };
 
 const CAN1: u32 = 0;
@@ -131,19 +132,13 @@ fn feedback_fills_the_fifo_and_overruns_it() {
 #[test]
 fn alone_on_the_bus_it_repeats_until_somebody_acknowledges() {
     let (mut bench, mut can) = ready(CAN2);
-    bench
-        .world
-        .set_fault("can2-empty", true)
-        .expect("a known fault");
+    bench.board.can[1].empty = true;
     request_wheel_command(&mut bench, &mut can, CAN2);
     run_for(&mut bench, &mut can, 10 * MS);
     // TEC stands at 128: error warning and passive, acknowledgement error, never bus-off.
     assert_eq!(bench.read(&mut can, CAN2 + ESR), 128 << 16 | 3 << 4 | 0b011);
     assert_eq!(bench.read(&mut can, CAN2 + TSR) & 0xFF, 0);
-    bench
-        .world
-        .set_fault("can2-empty", false)
-        .expect("a known fault");
+    bench.board.can[1].empty = false;
     run_for(&mut bench, &mut can, MS);
     assert_eq!(bench.read(&mut can, CAN2 + TSR) & 0xFF, 3);
     assert_eq!(bench.read(&mut can, CAN2 + ESR) >> 16, 127);
@@ -152,17 +147,11 @@ fn alone_on_the_bus_it_repeats_until_somebody_acknowledges() {
 #[test]
 fn a_shorted_bus_leads_to_bus_off_and_back_after_128_times_11_bits() {
     let (mut bench, mut can) = ready(CAN2);
-    bench
-        .world
-        .set_fault("can2-broken", true)
-        .expect("a known fault");
+    bench.board.can[1].broken = true;
     request_wheel_command(&mut bench, &mut can, CAN2);
     run_for(&mut bench, &mut can, 2 * MS);
     assert_eq!(bench.read(&mut can, CAN2 + ESR) & 7, 7);
-    bench
-        .world
-        .set_fault("can2-broken", false)
-        .expect("a known fault");
+    bench.board.can[1].broken = false;
     // ABOM is 0: without software's request it stays off.
     run_for(&mut bench, &mut can, 5 * MS);
     assert_eq!(bench.read(&mut can, CAN2 + ESR) & 7, 7);
@@ -195,18 +184,12 @@ fn half_the_bit_rate_destroys_the_traffic_and_is_said_aloud() {
 #[test]
 fn a_node_with_a_lower_identifier_keeps_the_bus() {
     let (mut bench, mut can) = ready(CAN2);
-    bench
-        .world
-        .set_fault("rogue-node-can2", true)
-        .expect("a known fault");
+    bench.board.can[1].flooded = true;
     run_for(&mut bench, &mut can, MS);
     request_wheel_command(&mut bench, &mut can, CAN2);
     run_for(&mut bench, &mut can, 5 * MS);
     assert_eq!(bench.read(&mut can, CAN2 + TSR) & 0xFF, 0);
-    bench
-        .world
-        .set_fault("rogue-node-can2", false)
-        .expect("a known fault");
+    bench.board.can[1].flooded = false;
     run_for(&mut bench, &mut can, MS);
     assert_eq!(bench.read(&mut can, CAN2 + TSR) & 0xFF, 3);
 }
@@ -246,10 +229,7 @@ fn a_short_in_the_middle_of_a_frame_spoils_it() {
     let (mut bench, mut can) = ready(CAN2);
     request_wheel_command(&mut bench, &mut can, CAN2);
     run_for(&mut bench, &mut can, 50 * US);
-    bench
-        .world
-        .set_fault("can2-broken", true)
-        .expect("a known fault");
+    bench.board.can[1].broken = true;
     run_for(&mut bench, &mut can, 80 * US);
     assert_eq!(can.stats(1).tx, 0);
     // Bit dominant error, TEC = 8.
@@ -260,10 +240,7 @@ fn a_short_in_the_middle_of_a_frame_spoils_it() {
 fn without_automatic_retransmission_one_failure_ends_the_request() {
     let (mut bench, mut can) = ready(CAN2);
     bench.write(&mut can, CAN2 + MCR, 1 << 4);
-    bench
-        .world
-        .set_fault("can2-empty", true)
-        .expect("a known fault");
+    bench.board.can[1].empty = true;
     request_wheel_command(&mut bench, &mut can, CAN2);
     run_for(&mut bench, &mut can, MS);
     // RQCP0 and TERR0, no TXOK0; mailbox 0 is empty again.
@@ -295,19 +272,13 @@ fn bus_off_recovers_by_itself_where_abom_is_set_and_tells_by_interrupt() {
     bench.write(&mut can, CAN2 + MCR, 1 << 6);
     // ERRIE, BOFIE.
     bench.write(&mut can, CAN2 + IER, 1 << 15 | 1 << 10);
-    bench
-        .world
-        .set_fault("can2-broken", true)
-        .expect("a known fault");
+    bench.board.can[1].broken = true;
     request_wheel_command(&mut bench, &mut can, CAN2);
     let until = bench.now + 2 * MS;
     bench.run_while(&mut can, until, |b| !b.irq.level(66));
     assert!(bench.irq.level(66));
     assert_eq!(bench.read(&mut can, CAN2 + ESR) & 4, 4);
-    bench
-        .world
-        .set_fault("can2-broken", false)
-        .expect("a known fault");
+    bench.board.can[1].broken = false;
     // 1408 bits of silence, then the frame that waited.
     run_for(&mut bench, &mut can, 1400 * US);
     assert_eq!(bench.read(&mut can, CAN2 + ESR) & 4, 4);

@@ -1,12 +1,13 @@
 //! Notices request lines that wait for a stream which was never set up for them.
 
-use robot_plant::time::{MS, Ps};
-
 use super::{
     Dma,
     request_map::{LINES, RequestLine},
 };
-use crate::{board_errors::BoardErrors, soc::dma_request::DmaRequests};
+use crate::{
+    soc::{board_errors::BoardErrors, dma_request::DmaRequests},
+    time::{MS, Ps},
+};
 
 /// Drivers raise a request shortly before they enable its stream; waiting longer is a mistake.
 const PATIENCE: Ps = MS;

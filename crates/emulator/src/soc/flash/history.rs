@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use robot_plant::time::Ps;
+use crate::time::Ps;
 
 /// A program or an erase that the image asked for, cut short or not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

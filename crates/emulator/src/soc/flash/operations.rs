@@ -1,28 +1,27 @@
 //! Loads and stores of the core, and what programming and erasing do to cells and cache.
 
-use robot_plant::{
-    flash_chip::{FlashChip, Phase, sector_range},
-    time::Ps,
-};
-
 use super::{
     Flash, FlashStep, Lock,
     registers::{cr, sr},
+    sectors,
     times::Parallelism,
-    work::{UnderWay, Work},
+    work::{CutPhase, UnderWay, Work},
 };
-use crate::soc::{access::Access, peripheral::Ctx, scheduler::Target};
+use crate::{
+    soc::{access::Access, peripheral::Ctx, scheduler::Target},
+    time::Ps,
+};
 
 impl Flash {
     /// A load from sectors 1–3, of 1, 2 or 4 bytes.
-    pub fn load(&mut self, address: u32, size: u8) -> u32 {
+    pub fn load(&mut self, address: u32, size: u8, ctx: &mut Ctx<'_>) -> u32 {
         if self.under_way.as_ref().is_some_and(|w| w.cut.is_none()) {
             // The bus holds the load until the cells have it.
-            self.reach_the_cells();
+            self.reach_the_cells(ctx);
         }
         let access = Access::new(address, size);
         let cached = self.cache.word(access.register);
-        access.read_of(cached.unwrap_or_else(|| read_cells(&mut self.chip, access.register)))
+        access.read_of(cached.unwrap_or_else(|| ctx.board.flash_cells().read_word(access.register)))
     }
 
     /// A store to sectors 1–3.
@@ -75,7 +74,7 @@ impl Flash {
             None if self.power_fails => return,
             None => ctx.now,
         };
-        self.reach_the_cells();
+        self.reach_the_cells(ctx);
         let step = self.history.steps().len();
         let cut = self.planned_cut.take_if(|cut| cut.step == step);
         let time = start..start + duration;
@@ -85,7 +84,7 @@ impl Flash {
             address: work.address(),
         };
         self.history.begun(begun, &time);
-        if cut.is_some_and(|cut| cut.phase == Phase::Before) {
+        if cut.is_some_and(|cut| cut.phase == CutPhase::Before) {
             self.under_way = None;
             self.power_fails = true;
             return;
@@ -102,10 +101,11 @@ impl Flash {
     }
 
     /// The work under way is done, as far as the contents go.
-    fn reach_the_cells(&mut self) {
+    fn reach_the_cells(&mut self, ctx: &mut Ctx<'_>) {
         let Some(work) = self.under_way.as_mut().and_then(|w| w.work.take()) else {
             return;
         };
+        let cells = ctx.board.flash_cells();
         match work {
             Work::Program {
                 address,
@@ -113,23 +113,21 @@ impl Flash {
                 stored,
             } => {
                 let visible = self.cache.word(address);
-                let before = visible.unwrap_or_else(|| read_cells(&mut self.chip, address));
+                let before = visible.unwrap_or_else(|| cells.read_word(address));
                 self.cache
                     .programmed(address, word & stored | before & !stored);
             }
             Work::Erase { sector } => {
-                let words = sector_range(sector).into_iter().flat_map(|s| s.step_by(4));
-                let chip = &mut self.chip;
+                let words = sectors::addresses(sector).step_by(4);
                 self.cache
-                    .erased(words.map(|address| (address, read_cells(chip, address))));
+                    .erased(words.map(|address| (address, cells.read_word(address))));
             }
         }
-        work.perform(&mut self.chip)
-            .expect("a word or a sector of the powered chip");
+        work.perform(cells);
     }
 
     pub(super) fn end_work(&mut self, ctx: &mut Ctx<'_>) {
-        self.reach_the_cells();
+        self.reach_the_cells(ctx);
         self.under_way = None;
         // Without its interrupt the end is not shown (RM0090 3.9.4).
         if self.cr & cr::EOPIE != 0 {
@@ -137,11 +135,4 @@ impl Flash {
         }
         self.update_interrupt(ctx);
     }
-}
-
-fn read_cells(chip: &mut FlashChip, address: u32) -> u32 {
-    let mut bytes = [0; 4];
-    chip.read(address, &mut bytes)
-        .expect("a word of the powered chip");
-    u32::from_le_bytes(bytes)
 }

@@ -1,12 +1,10 @@
 //! Against RM0090 3.6 (sequences, errors), the datasheet's times and docs/hardware.md#flash.
 
-use robot_plant::{
-    flash_chip::Phase,
+use super::{history::FlashStats, *};
+use crate::{
+    soc::test_bench::Bench,
     time::{MS, US},
 };
-
-use super::{history::FlashStats, *};
-use crate::soc::test_bench::Bench;
 
 const ACR: u32 = 0x00;
 const KEYR: u32 = 0x04;
@@ -60,15 +58,18 @@ fn erase_sector_1(bench: &mut Bench, flash: &mut Flash) -> Ps {
 #[test]
 fn a_word_is_programmed_in_16_us_and_clears_bits_only() {
     let (mut bench, mut flash) = unlocked();
-    assert_eq!(flash.load(WORD, 4), 0xFFFF_FFFF);
+    assert_eq!(flash.load(WORD, 4, &mut bench.ctx()), 0xFFFF_FFFF);
     assert_eq!(program(&mut bench, &mut flash, WORD, 0x1234_FF00), 16 * US);
-    assert_eq!(flash.load(WORD, 4), 0x1234_FF00);
+    assert_eq!(flash.load(WORD, 4, &mut bench.ctx()), 0x1234_FF00);
     assert_eq!(
-        (flash.load(WORD + 1, 1), flash.load(WORD + 2, 2)),
+        (
+            flash.load(WORD + 1, 1, &mut bench.ctx()),
+            flash.load(WORD + 2, 2, &mut bench.ctx())
+        ),
         (0xFF, 0x1234)
     );
     program(&mut bench, &mut flash, WORD, 0x00FF_FFFF);
-    assert_eq!(flash.load(WORD, 4), 0x0034_FF00);
+    assert_eq!(flash.load(WORD, 4, &mut bench.ctx()), 0x0034_FF00);
     flash.set_times(FlashTimes::Max);
     assert_eq!(program(&mut bench, &mut flash, WORD + 4, 0), 100 * US);
     assert!(bench.error_texts().is_empty());
@@ -96,9 +97,13 @@ fn an_erase_takes_what_the_parallelism_says() {
         assert_eq!(wait(&mut bench, &mut flash), time);
         assert_eq!(bench.read(&mut flash, SR), 0);
         assert_eq!(bench.read(&mut flash, CR), psize | ERASE_SECTOR_1);
-        assert_eq!(flash.load(WORD, 4), 0xFFFF_FFFF);
-        assert_eq!(flash.load(WORD + 0x4000, 4), 0, "sector 2");
-        assert_eq!(flash.chip().erases(1), 1);
+        assert_eq!(flash.load(WORD, 4, &mut bench.ctx()), 0xFFFF_FFFF);
+        assert_eq!(
+            flash.load(WORD + 0x4000, 4, &mut bench.ctx()),
+            0,
+            "sector 2"
+        );
+        assert_eq!(bench.board.cells.erases[0], 1);
     }
 }
 
@@ -120,7 +125,7 @@ fn what_was_done_is_listed_and_survives_a_reset_with_the_contents() {
         step(250 * MS, FlashStepKind::Program, WORD + 8),
     ];
     assert_eq!(flash.history().steps(), steps);
-    assert_eq!(flash.load(WORD + 8, 4), 7);
+    assert_eq!(flash.load(WORD + 8, 4, &mut bench.ctx()), 7);
     assert_eq!(bench.read(&mut flash, CR), 1 << 31, "locked again");
 }
 
@@ -152,7 +157,7 @@ fn a_wrong_store_sets_its_error_flag_and_changes_nothing() {
         bench.write(&mut flash, CR, control);
         flash.store(WORD, size, 0, &mut bench.ctx());
         assert_eq!(flash.stalled_until(), None);
-        assert_eq!(flash.load(WORD, 4), 0xFFFF_FFFF);
+        assert_eq!(flash.load(WORD, 4, &mut bench.ctx()), 0xFFFF_FFFF);
         assert_eq!(bench.read(&mut flash, SR), flag, "{control:#x}");
         assert_eq!(bench.error_texts().len(), 1);
         bench.write(&mut flash, SR, PGPERR | PGSERR);
@@ -161,7 +166,11 @@ fn a_wrong_store_sets_its_error_flag_and_changes_nothing() {
     let (mut bench, mut flash) = unlocked();
     bench.write(&mut flash, CR, PSIZE_X16 | 1);
     flash.store(WORD + 2, 2, 0xABCD, &mut bench.ctx());
-    assert_eq!(flash.load(WORD, 4), 0xABCD_FFFF, "two bytes at once");
+    assert_eq!(
+        flash.load(WORD, 4, &mut bench.ctx()),
+        0xABCD_FFFF,
+        "two bytes at once"
+    );
 }
 
 #[test]
@@ -196,7 +205,13 @@ fn a_second_store_waits_for_the_first() {
     store(&mut bench, &mut flash, WORD, 1);
     store(&mut bench, &mut flash, WORD + 4, 2);
     assert_eq!(wait(&mut bench, &mut flash), 32 * US);
-    assert_eq!((flash.load(WORD, 4), flash.load(WORD + 4, 4)), (1, 2));
+    assert_eq!(
+        (
+            flash.load(WORD, 4, &mut bench.ctx()),
+            flash.load(WORD + 4, 4, &mut bench.ctx())
+        ),
+        (1, 2)
+    );
 }
 
 #[test]
@@ -205,20 +220,28 @@ fn the_data_cache_shows_an_erased_sector_as_it_was_until_it_is_reset() {
     program(&mut bench, &mut flash, WORD, 5);
     bench.write(&mut flash, ACR, CACHES_ON);
     erase_sector_1(&mut bench, &mut flash);
-    assert_eq!(flash.load(WORD, 4), 5);
+    assert_eq!(flash.load(WORD, 4, &mut bench.ctx()), 5);
     bench.write(&mut flash, ACR, DATA_CACHE_OFF);
-    assert_eq!(flash.load(WORD, 4), 0xFFFF_FFFF, "past the cache");
+    assert_eq!(
+        flash.load(WORD, 4, &mut bench.ctx()),
+        0xFFFF_FFFF,
+        "past the cache"
+    );
     bench.write(&mut flash, ACR, CACHES_ON);
-    assert_eq!(flash.load(WORD, 4), 5, "switching it off empties nothing");
+    assert_eq!(
+        flash.load(WORD, 4, &mut bench.ctx()),
+        5,
+        "switching it off empties nothing"
+    );
     assert!(bench.error_texts().is_empty());
     bench.write(&mut flash, ACR, DATA_CACHE_RESET);
     assert_eq!(bench.error_texts().len(), 1, "reset while still on");
     bench.write(&mut flash, ACR, CACHES_ON);
-    assert_eq!(flash.load(WORD, 4), 5);
+    assert_eq!(flash.load(WORD, 4, &mut bench.ctx()), 5);
     bench.write(&mut flash, ACR, DATA_CACHE_OFF);
     bench.write(&mut flash, ACR, DATA_CACHE_RESET);
     bench.write(&mut flash, ACR, CACHES_ON);
-    assert_eq!(flash.load(WORD, 4), 0xFFFF_FFFF);
+    assert_eq!(flash.load(WORD, 4, &mut bench.ctx()), 0xFFFF_FFFF);
 }
 
 #[test]
@@ -227,17 +250,17 @@ fn the_data_cache_shows_the_word_meant_and_not_the_one_the_cells_took() {
     program(&mut bench, &mut flash, WORD, 0xF0);
     bench.write(&mut flash, ACR, CACHES_ON);
     program(&mut bench, &mut flash, WORD, 0x0F);
-    assert_eq!(flash.load(WORD, 4), 0x0F);
+    assert_eq!(flash.load(WORD, 4, &mut bench.ctx()), 0x0F);
     bench.write(&mut flash, ACR, DATA_CACHE_OFF);
     bench.write(&mut flash, ACR, DATA_CACHE_RESET);
     bench.write(&mut flash, ACR, CACHES_ON);
-    assert_eq!(flash.load(WORD, 4), 0);
+    assert_eq!(flash.load(WORD, 4, &mut bench.ctx()), 0);
 }
 
 #[test]
 fn a_power_cut_comes_at_its_step_and_nothing_after_it() {
     // Before: nothing; after: all of it.
-    for (phase, left) in [(Phase::Before, 0xFFFF_FFFF), (Phase::After, 2)] {
+    for (phase, left) in [(CutPhase::Before, 0xFFFF_FFFF), (CutPhase::After, 2)] {
         let (mut bench, mut flash) = unlocked();
         let cut = PlannedCut {
             step: 1,
@@ -249,12 +272,12 @@ fn a_power_cut_comes_at_its_step_and_nothing_after_it() {
         assert!(!flash.take_power_failure());
         store(&mut bench, &mut flash, WORD + 4, 2);
         store(&mut bench, &mut flash, WORD + 8, 3);
-        if phase == Phase::After {
+        if phase == CutPhase::After {
             assert_eq!(wait(&mut bench, &mut flash), 16 * US);
         }
         assert!(flash.take_power_failure());
         flash.reset(&mut bench.ctx());
-        let words = [0, 4, 8].map(|offset| flash.load(WORD + offset, 4));
+        let words = [0, 4, 8].map(|offset| flash.load(WORD + offset, 4, &mut bench.ctx()));
         assert_eq!(words, [1, left, 0xFFFF_FFFF], "{phase:?}");
         assert_eq!(flash.history().steps().len(), 2);
     }
@@ -266,7 +289,7 @@ fn in_the_middle_of_an_erase_the_power_goes_half_way_and_leaves_no_clean_sector(
     let torn = (0..8).filter(|&seed| {
         let (mut bench, mut flash) = unlocked();
         program(&mut bench, &mut flash, WORD, 0);
-        let phase = Phase::Middle;
+        let phase = CutPhase::Middle;
         flash.plan_cut(PlannedCut {
             step: 1,
             phase,
@@ -280,7 +303,7 @@ fn in_the_middle_of_an_erase_the_power_goes_half_way_and_leaves_no_clean_sector(
         flash.reset(&mut bench.ctx());
         (WORD..WORD + 0x4000)
             .step_by(4)
-            .any(|address| flash.load(address, 4) != 0xFFFF_FFFF)
+            .any(|address| flash.load(address, 4, &mut bench.ctx()) != 0xFFFF_FFFF)
     });
     assert!(torn.count() >= 6);
 }
@@ -292,14 +315,17 @@ fn a_reset_tears_what_is_under_way() {
     bench.run(&mut flash, 100 * MS);
     flash.reset(&mut bench.ctx());
     assert_eq!(flash.stalled_until(), None);
-    let changed = |flash: &mut Flash| {
+    let changed = |bench: &mut Bench, flash: &mut Flash| {
         (WORD..WORD + 0x4000)
             .step_by(4)
-            .filter(|address| flash.load(*address, 4) != 0xFFFF_FFFF)
+            .filter(|address| flash.load(*address, 4, &mut bench.ctx()) != 0xFFFF_FFFF)
             .count()
     };
     // It was blank before: a sector that is no longer is the tear's work.
-    assert!(changed(&mut flash) > 0);
+    assert!(changed(&mut bench, &mut flash) > 0);
     bench.run(&mut flash, 300 * MS);
-    assert!(changed(&mut flash) > 0, "the erase does not end by itself");
+    assert!(
+        changed(&mut bench, &mut flash) > 0,
+        "the erase does not end by itself"
+    );
 }

@@ -1,6 +1,6 @@
 //! How long the flash works (STM32F407 datasheet, flash memory programming at 2.7–3.6 V).
 
-use robot_plant::time::{MS, Ps, US};
+use crate::time::{MS, Ps, US};
 
 /// Which column of the datasheet the chip takes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

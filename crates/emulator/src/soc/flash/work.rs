@@ -2,12 +2,8 @@
 
 use std::ops::Range;
 
-use robot_plant::{
-    flash_chip::{FlashChip, FlashError, Phase, sector_range},
-    time::Ps,
-};
-
-use super::history::FlashStepKind;
+use super::{history::FlashStepKind, sectors};
+use crate::{soc::flash_cells::FlashCells, time::Ps};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Work {
@@ -33,24 +29,35 @@ impl Work {
     pub fn address(self) -> u32 {
         match self {
             Self::Program { address, .. } => address,
-            Self::Erase { sector } => sector_range(sector).map_or(0, |range| range.start),
+            Self::Erase { sector } => sectors::addresses(sector).start,
         }
     }
 
-    pub fn perform(self, chip: &mut FlashChip) -> Result<(), FlashError> {
+    pub fn perform(self, cells: &mut dyn FlashCells) {
         match self {
-            Self::Program { address, word, .. } => chip.program_word(address, word),
-            Self::Erase { sector } => chip.erase(sector),
+            Self::Program { address, word, .. } => cells.program_word(address, word),
+            Self::Erase { sector } => cells.erase(sector),
         }
     }
 
     /// What a reset or the loss of power in the middle of it leaves.
-    pub fn tear(self, chip: &mut FlashChip) {
-        chip.cut_at(chip.steps(), Phase::Middle);
-        // The cut is what it fails with.
-        let _ = self.perform(chip);
-        chip.power_up();
+    pub fn tear(self, cells: &mut dyn FlashCells) {
+        match self {
+            Self::Program { address, word, .. } => cells.tear_word(address, word),
+            Self::Erase { sector } => cells.tear_sector(sector),
+        }
     }
+}
+
+/// Where within a step of the flash the power goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CutPhase {
+    /// Nothing has happened yet.
+    Before,
+    /// The word or the sector is torn.
+    Middle,
+    /// All is done, but the image has not seen it.
+    After,
 }
 
 /// The power goes at a step of the flash.
@@ -58,7 +65,7 @@ impl Work {
 pub struct PlannedCut {
     /// Counted from 0 at power-on, as in the history.
     pub step: usize,
-    pub phase: Phase,
+    pub phase: CutPhase,
     /// What a torn word or sector looks like.
     pub seed: u64,
 }
@@ -75,7 +82,7 @@ impl UnderWay {
     /// When something happens to it.
     pub fn next_event(&self) -> Ps {
         match self.cut.map(|cut| cut.phase) {
-            Some(Phase::Middle) => self.time.start + (self.time.end - self.time.start) / 2,
+            Some(CutPhase::Middle) => self.time.start + (self.time.end - self.time.start) / 2,
             _ => self.time.end,
         }
     }

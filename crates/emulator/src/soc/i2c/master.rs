@@ -1,11 +1,12 @@
 //! The transfer sequence of a master (RM0090 figures 242 and 243), one bus action after another.
 
-use robot_plant::time::Ps;
-
 use super::registers::{cr1, cr2, sr1};
 use crate::{
-    soc::{clocks::cycles_to_ps, dma_request::DmaRequest, peripheral::Ctx, scheduler::Target},
-    wiring::{self, Signal},
+    soc::{
+        clocks::cycles_to_ps, dma_request::DmaRequest, peripheral::Ctx, routing, scheduler::Target,
+        signals::Signal,
+    },
+    time::Ps,
 };
 
 /// Bits of one byte with its acknowledge.
@@ -173,7 +174,7 @@ impl Master {
         if self.ends_at.is_none_or(|at| at > ctx.now) {
             return;
         }
-        if ctx.world.i2c_bus_held() {
+        if ctx.board.i2c_bus_held() {
             self.wait_bits(HELD_BUS_LOOKS, ctx);
             return;
         }
@@ -190,7 +191,7 @@ impl Master {
             Phase::Transmitting => self.byte_sent(ctx),
             Phase::Receiving => self.byte_received(ctx),
             Phase::Stopping => {
-                ctx.world.i2c_stop(ctx.now);
+                ctx.board.i2c_stop(ctx.now);
                 self.phase = Phase::Idle;
                 self.cr1 &= !cr1::STOP;
                 self.act_on_requests(ctx);
@@ -200,14 +201,14 @@ impl Master {
     }
 
     fn address_sent(&mut self, byte: u8, ctx: &mut Ctx<'_>) {
-        wiring::check_mag_reset(ctx);
-        let scl = wiring::check(Signal::I2c3Scl, ctx);
-        let sda = wiring::check(Signal::I2c3Sda, ctx);
+        ctx.board.i2c_started(ctx.pins, ctx.errors, ctx.now);
+        let scl = routing::check(Signal::I2c3Scl, ctx);
+        let sda = routing::check(Signal::I2c3Sda, ctx);
         let scl_hz = self.scl_hz(ctx);
         if scl
             && sda
             && ctx
-                .world
+                .board
                 .i2c_address(byte >> 1, byte & 1 == 1, scl_hz, ctx.now)
         {
             self.sr1 |= sr1::ADDR;
@@ -224,7 +225,7 @@ impl Master {
     }
 
     fn byte_sent(&mut self, ctx: &mut Ctx<'_>) {
-        if !ctx.world.i2c_write(self.shift, ctx.now) {
+        if !ctx.board.i2c_write(self.shift, ctx.now) {
             self.not_acknowledged(ctx);
         } else if !self.act_on_requests(ctx) {
             if self.dr_waits {
@@ -239,7 +240,7 @@ impl Master {
         let last_of_dma = cr2::LAST | cr2::DMAEN;
         let acknowledge = self.cr1 & cr1::ACK != 0
             && !(self.cr2 & last_of_dma == last_of_dma && ctx.dma.last(DmaRequest::I2c3Rx));
-        let byte = ctx.world.i2c_read(acknowledge, ctx.now);
+        let byte = ctx.board.i2c_read(acknowledge, ctx.now);
         if self.sr1 & sr1::RXNE != 0 {
             self.shift = byte;
             self.sr1 |= sr1::BTF;
@@ -258,7 +259,7 @@ impl Master {
     /// Lets go of both lines: to a device, SCL and then SDA rising look like a STOP.
     pub fn release_bus(&mut self, ctx: &mut Ctx<'_>) {
         if self.owns_bus() {
-            ctx.world.i2c_stop(ctx.now);
+            ctx.board.i2c_stop(ctx.now);
         }
         self.phase = Phase::Idle;
         self.sr1 = 0;

@@ -1,13 +1,15 @@
-//! Transfer sequences of RM0090 figures 242 and 243 with the IST8310 of the world.
-
-use robot_plant::time::{MS, Ps, US};
+//! Transfer sequences of RM0090 figures 242 and 243 with a device on the bus.
 
 use super::I2c;
-use crate::soc::{
-    dma_request::DmaRequest,
-    peripheral::Peripheral,
-    pins::{Pin, PinMode},
-    test_bench::Bench,
+use crate::{
+    soc::{
+        dma_request::DmaRequest,
+        peripheral::Peripheral,
+        pins::{Pin, PinMode},
+        test_bench::Bench,
+        test_board::{I2C_DEVICE, I2C_IDENTITY},
+    },
+    time::{MS, Ps, US},
 };
 
 const CR1: u32 = 0x00;
@@ -30,16 +32,14 @@ const RXNE: u32 = 1 << 6;
 const TXE: u32 = 1 << 7;
 const AF: u32 = 1 << 10;
 
-/// IST8310 (docs/hardware.md#ist8310): address, who-am-I register and its value.
-const MAG: u32 = 0x0E;
-const WAI: u32 = 0x00;
-const WAI_VALUE: u32 = 0x10;
+/// The device of the test board, and the register that holds its identity.
+const DEVICE: u32 = I2C_DEVICE as u32;
+const IDENTITY: u32 = 0x00;
+const IDENTITY_VALUE: u32 = I2C_IDENTITY as u32;
 
 /// Fast mode, 42 MHz / (3 × 35) = 400 kHz: a byte with its acknowledge is 22.5 µs.
 fn ready() -> (Bench, I2c) {
     let (mut bench, mut i2c) = (Bench::new(), I2c::new());
-    bench.world.set_mag_reset_pin(true, 0);
-    bench.run(&mut i2c, 100 * MS);
     bench.write(&mut i2c, CR2, 42);
     bench.write(&mut i2c, CCR, 1 << 15 | 35);
     // 300 ns at 42 MHz are 12 cycles, plus 1.
@@ -72,7 +72,7 @@ fn address(bench: &mut Bench, i2c: &mut I2c, byte: u32, cr1: u32) {
 }
 
 fn point_at(bench: &mut Bench, i2c: &mut I2c, register: u32) {
-    address(bench, i2c, MAG << 1, 0);
+    address(bench, i2c, DEVICE << 1, 0);
     // MSL, BUSY, TRA.
     assert_eq!(bench.read(i2c, SR2), 7);
     assert_eq!(bench.read(i2c, SR1), TXE);
@@ -83,14 +83,14 @@ fn point_at(bench: &mut Bench, i2c: &mut I2c, register: u32) {
 #[test]
 fn who_am_i_by_write_repeated_start_and_a_single_byte_read() {
     let (mut bench, mut i2c) = ready();
-    point_at(&mut bench, &mut i2c, WAI);
-    address(&mut bench, &mut i2c, MAG << 1 | 1, ACK);
+    point_at(&mut bench, &mut i2c, IDENTITY);
+    address(&mut bench, &mut i2c, DEVICE << 1 | 1, ACK);
     // A single byte: ACK = 0 before ADDR is cleared, STOP after.
     bench.write(&mut i2c, CR1, PE);
     assert_eq!(bench.read(&mut i2c, SR2), 3);
     bench.write(&mut i2c, CR1, PE | STOP);
     wait_for(&mut bench, &mut i2c, RXNE);
-    assert_eq!(bench.read(&mut i2c, DR), WAI_VALUE);
+    assert_eq!(bench.read(&mut i2c, DR), IDENTITY_VALUE);
     let until = bench.now + 5 * US;
     bench.run(&mut i2c, until);
     // The bus is free, STOP has cleared itself.
@@ -122,7 +122,7 @@ fn dma_reads_six_bytes_and_refuses_the_last_one() {
     point_at(&mut bench, &mut i2c, 0x03);
     // DMAEN, LAST.
     bench.write(&mut i2c, CR2, 42 | 1 << 11 | 1 << 12);
-    address(&mut bench, &mut i2c, MAG << 1 | 1, ACK);
+    address(&mut bench, &mut i2c, DEVICE << 1 | 1, ACK);
     bench.read(&mut i2c, SR2);
     for left in (1..=6).rev() {
         bench.dma.set_last(DmaRequest::I2c3Rx, left == 1);
@@ -145,32 +145,26 @@ fn dma_reads_six_bytes_and_refuses_the_last_one() {
 #[test]
 fn two_bytes_nobody_fetches_stretch_the_clock() {
     let (mut bench, mut i2c) = ready();
-    point_at(&mut bench, &mut i2c, WAI);
-    address(&mut bench, &mut i2c, MAG << 1 | 1, ACK);
+    point_at(&mut bench, &mut i2c, IDENTITY);
+    address(&mut bench, &mut i2c, DEVICE << 1 | 1, ACK);
     bench.read(&mut i2c, SR2);
     let until = bench.now + MS;
     bench.run(&mut i2c, until);
     assert_eq!(bench.read(&mut i2c, SR1), RXNE | BTF);
-    assert_eq!(bench.read(&mut i2c, DR), WAI_VALUE);
+    assert_eq!(bench.read(&mut i2c, DR), IDENTITY_VALUE);
     assert_eq!(bench.read(&mut i2c, SR1), RXNE);
 }
 
 #[test]
 fn a_held_bus_stays_busy_and_start_waits_for_it() {
     let (mut bench, mut i2c) = ready();
-    bench
-        .world
-        .set_fault("i2c-held", true)
-        .expect("a known fault");
+    bench.board.i2c_held = true;
     assert_eq!(bench.read(&mut i2c, SR2), 2);
     bench.write(&mut i2c, CR1, PE | START);
     let until = bench.now + 10 * MS;
     bench.run(&mut i2c, until);
     assert_eq!(bench.read(&mut i2c, SR1), 0);
-    bench
-        .world
-        .set_fault("i2c-held", false)
-        .expect("a known fault");
+    bench.board.i2c_held = false;
     wait_for(&mut bench, &mut i2c, SB);
 }
 
@@ -183,7 +177,7 @@ fn the_event_interrupt_follows_its_flags() {
     bench.run(&mut i2c, until);
     assert!(bench.irq.level(72));
     bench.read(&mut i2c, SR1);
-    bench.write(&mut i2c, DR, MAG << 1);
+    bench.write(&mut i2c, DR, DEVICE << 1);
     assert!(!bench.irq.level(72));
 }
 
@@ -192,7 +186,7 @@ fn wrong_wiring_and_a_wrong_clock_are_said_aloud() {
     let (mut bench, mut i2c) = ready();
     bench.write(&mut i2c, CR2, 16);
     bench.change_pin(Pin::new('C', 9), |pin| pin.mode = PinMode::Input);
-    address(&mut bench, &mut i2c, MAG << 1, 0);
+    address(&mut bench, &mut i2c, DEVICE << 1, 0);
     assert_eq!(bench.read(&mut i2c, SR1) & (ADDR | AF), AF);
     let texts = bench.error_texts();
     assert!(texts.iter().any(|e| e.starts_with("I2C3_SDA")));
@@ -203,9 +197,9 @@ fn wrong_wiring_and_a_wrong_clock_are_said_aloud() {
 fn a_push_pull_stage_on_the_bus_is_said_aloud() {
     let (mut bench, mut i2c) = ready();
     bench.change_pin(Pin::new('A', 8), |pin| pin.open_drain = false);
-    address(&mut bench, &mut i2c, MAG << 1, 0);
+    address(&mut bench, &mut i2c, DEVICE << 1, 0);
     assert_eq!(bench.read(&mut i2c, SR1) & (ADDR | AF), AF);
-    let expected = "I2C3_SCL: PA8 is push-pull, needs open-drain: the IST8310 gets no clock";
+    let expected = "I2C3_SCL: PA8 is push-pull, needs open-drain: the device is not connected";
     assert_eq!(bench.error_texts(), [expected]);
 }
 
@@ -230,7 +224,7 @@ fn wrong_timing_is_said_aloud() {
 #[test]
 fn a_start_written_while_stop_is_pending_hangs_the_bus_until_a_reset() {
     let (mut bench, mut i2c) = ready();
-    point_at(&mut bench, &mut i2c, WAI);
+    point_at(&mut bench, &mut i2c, IDENTITY);
     bench.write(&mut i2c, CR1, PE | STOP);
     let until = bench.now + 1_000_000;
     bench.run(&mut i2c, until);
@@ -264,7 +258,7 @@ fn cr1_is_left_alone_until_start_and_stop_are_out() {
 #[test]
 fn a_software_reset_frees_the_bus() {
     let (mut bench, mut i2c) = ready();
-    address(&mut bench, &mut i2c, MAG << 1, 0);
+    address(&mut bench, &mut i2c, DEVICE << 1, 0);
     bench.write(&mut i2c, CR1, 1 << 15);
     bench.write(&mut i2c, CR1, 0);
     assert_eq!(bench.read(&mut i2c, SR2), 0);

@@ -1,9 +1,10 @@
 //! Times from RM0090 table 107 (LSI at 32 kHz) and the update delay of PR and RLR.
 
-use robot_plant::time::{MS, US};
-
 use super::Iwdg;
-use crate::soc::test_bench::Bench;
+use crate::{
+    soc::test_bench::Bench,
+    time::{MS, US},
+};
 
 const KR: u32 = 0;
 const PR: u32 = 4;
@@ -35,7 +36,7 @@ fn the_shortest_and_longest_times_of_the_table() {
         bench.write(&mut iwdg, KR, 0xCCCC);
         bench.write(&mut iwdg, KR, 0xAAAA);
         let start = bench.now;
-        // The world has nothing to do with it: only the watchdog's own events.
+        // The board has nothing to do with it: only the watchdog's own events.
         while bench.scheduler.next() < start + time {
             step(&mut bench, &mut iwdg);
         }

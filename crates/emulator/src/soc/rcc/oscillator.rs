@@ -1,6 +1,6 @@
 //! What starts up and becomes ready by itself: the oscillators and the PLL.
 
-use robot_plant::time::{MS, Ps, US};
+use crate::time::{MS, Ps, US};
 
 use super::registers::{cr, csr};
 

@@ -1,17 +1,16 @@
-//! SPI1 through its registers, with the BMI088 of the world behind it.
-
-use robot_plant::{
-    time::{MS, NS},
-    world::SpiSelect,
-};
+//! SPI1 through its registers, with a device behind it.
 
 use super::Spi;
-use crate::soc::{
-    clocks::cycles_to_ps,
-    dma_request::DmaRequest,
-    peripheral::Peripheral,
-    pins::{Pin, PinMode},
-    test_bench::Bench,
+use crate::{
+    soc::{
+        clocks::cycles_to_ps,
+        dma_request::DmaRequest,
+        peripheral::Peripheral,
+        pins::{Pin, PinMode},
+        test_bench::Bench,
+        test_board::{SPI_IDENTIFY, SPI_IDENTITY},
+    },
+    time::NS,
 };
 
 const CR1: u32 = 0x00;
@@ -23,8 +22,6 @@ const MODE_3_MASTER: u32 = 1 << 9 | 1 << 8 | 1 << 6 | 3 << 3 | 1 << 2 | 3;
 
 fn ready() -> (Bench, Spi) {
     let (mut bench, mut spi) = (Bench::new(), Spi::new());
-    // The gyroscope answers 30 ms after power-on.
-    bench.run(&mut spi, 50 * MS);
     bench.write(&mut spi, CR1, MODE_3_MASTER);
     (bench, spi)
 }
@@ -37,13 +34,11 @@ fn exchange(bench: &mut Bench, spi: &mut Spi, byte: u8) -> u8 {
 }
 
 #[test]
-fn the_gyroscope_tells_its_chip_id() {
+fn a_selected_device_answers_the_byte_after_its_command() {
     let (mut bench, mut spi) = ready();
-    let now = bench.now;
-    bench.world.spi_select(SpiSelect::Gyro, true, now);
-    exchange(&mut bench, &mut spi, 0x80);
-    // docs/hardware.md#bmi088.
-    assert_eq!(exchange(&mut bench, &mut spi, 0), 0x0F);
+    bench.board.spi_selected = true;
+    exchange(&mut bench, &mut spi, SPI_IDENTIFY);
+    assert_eq!(exchange(&mut bench, &mut spi, 0), SPI_IDENTITY);
 }
 
 #[test]
@@ -106,10 +101,9 @@ fn a_new_rate_in_the_middle_of_a_frame_is_said_aloud() {
 fn an_unmuxed_clock_pin_leaves_the_sensor_silent() {
     let (mut bench, mut spi) = ready();
     bench.change_pin(Pin::new('B', 3), |pin| pin.mode = PinMode::Alternate(0));
-    let now = bench.now;
-    bench.world.spi_select(SpiSelect::Gyro, true, now);
-    exchange(&mut bench, &mut spi, 0x80);
-    assert_ne!(exchange(&mut bench, &mut spi, 0), 0x0F);
+    bench.board.spi_selected = true;
+    exchange(&mut bench, &mut spi, SPI_IDENTIFY);
+    assert_ne!(exchange(&mut bench, &mut spi, 0), SPI_IDENTITY);
     assert!(
         bench
             .error_texts()
@@ -139,11 +133,10 @@ fn sixteen_bit_frames_carry_the_high_byte_first() {
     let (mut bench, mut spi) = ready();
     bench.write(&mut spi, CR1, 0);
     bench.write(&mut spi, CR1, MODE_3_MASTER | 1 << 11);
-    let now = bench.now;
-    bench.world.spi_select(SpiSelect::Gyro, true, now);
-    bench.write(&mut spi, DR, 0x8000);
+    bench.board.spi_selected = true;
+    bench.write(&mut spi, DR, u32::from(SPI_IDENTIFY) << 8);
     let until = bench.now + 4_000 * NS;
     bench.run(&mut spi, until);
-    // The chip id answers the second byte.
-    assert_eq!(bench.read(&mut spi, DR) & 0xFF, 0x0F);
+    // The identity answers the second byte.
+    assert_eq!(bench.read(&mut spi, DR) & 0xFF, SPI_IDENTITY.into());
 }

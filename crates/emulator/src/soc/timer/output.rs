@@ -1,14 +1,7 @@
 //! What a channel's output stage drives onto its pin (RM0090 18.3.9, 18.4.7–18.4.9).
 
 use super::counter::Counter;
-
-/// The wave on a channel's pin: `duty` is its mean on-fraction.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wave {
-    pub hz: f64,
-    /// 0 … 1.
-    pub duty: f64,
-}
+use crate::soc::wave::Wave;
 
 /// OCxM of a compare channel.
 const FORCE_INACTIVE: u32 = 0b100;

@@ -1,6 +1,6 @@
 //! The receive half: oversampling of the line, as RM0090 30.3.3 describes it.
 
-use robot_plant::{
+use crate::{
     time::Ps,
     wire::{Parity, UartChar},
 };
@@ -140,7 +140,7 @@ impl Receiver {
 
 #[cfg(test)]
 mod tests {
-    use robot_plant::{time::US, wire::LineFormat};
+    use crate::{time::US, wire::LineFormat};
 
     use super::*;
 

@@ -1,12 +1,11 @@
-//! USART3 through its registers, with the radio of the world on its line.
+//! USART3 through its registers, with a sender on its line.
 
-use robot_plant::{
+use super::Usart;
+use crate::{
+    soc::{dma_request::DmaRequest, peripheral::Peripheral, test_bench::Bench},
     time::{MS, Ps, US},
     wire::{LineFormat, Parity, UartChar},
 };
-
-use super::Usart;
-use crate::soc::{dma_request::DmaRequest, peripheral::Peripheral, test_bench::Bench};
 
 const SR: u32 = 0x00;
 const DR: u32 = 0x04;
@@ -37,7 +36,7 @@ fn configured(cr1: u32, cr2: u32) -> (Bench, Usart) {
     (bench, usart)
 }
 
-/// A character of a sender other than the world's radio, whose times the test chooses.
+/// A character of another sender, whose times the test chooses.
 fn send(bench: &mut Bench, usart: &mut Usart, start: Ps, byte: u8) {
     bench.now = start;
     let character = UartChar {
@@ -49,7 +48,7 @@ fn send(bench: &mut Bench, usart: &mut Usart, start: Ps, byte: u8) {
     usart.plan_reception(&mut bench.ctx());
 }
 
-/// Only the peripheral's own events: the world's radio stays out of it.
+/// Only the peripheral's own events: the board's sender stays out of it.
 fn run_alone(bench: &mut Bench, usart: &mut Usart, until: Ps) {
     while let Some(event) = bench.scheduler.pop_due(until) {
         bench.now = event.at;
@@ -110,7 +109,7 @@ fn a_character_not_fetched_in_time_keeps_dr_and_loses_the_next_one() {
 }
 
 #[test]
-fn the_radio_at_8e2_gives_framing_errors_at_8n1_and_says_why() {
+fn a_sender_at_8e2_gives_framing_errors_at_8n1_and_says_why() {
     let (mut bench, mut usart) = configured(UE_RE, 0);
     bench.run(&mut usart, 100 * MS);
     assert_ne!(bench.read(&mut usart, SR) & 1 << 1, 0, "FE");
@@ -119,7 +118,7 @@ fn the_radio_at_8e2_gives_framing_errors_at_8n1_and_says_why() {
 }
 
 #[test]
-fn the_radio_at_even_parity_gives_parity_errors_at_odd_parity_and_says_why() {
+fn a_sender_at_even_parity_gives_parity_errors_at_odd_parity_and_says_why() {
     // PS.
     let (mut bench, mut usart) = configured(UE_RE | NINE_BITS_EVEN | 1 << 9, TWO_STOP);
     bench.run(&mut usart, 10 * MS);
@@ -141,7 +140,7 @@ fn a_character_written_over_another_is_said_aloud() {
 }
 
 #[test]
-fn the_radio_arrives_whole_where_the_framing_fits() {
+fn a_burst_arrives_whole_where_the_framing_fits() {
     let (mut bench, mut usart) = configured(UE_RE | NINE_BITS_EVEN, TWO_STOP);
     let mut bytes = Vec::new();
     while bytes.len() < 50 && bench.now < 100 * MS {
@@ -151,7 +150,7 @@ fn the_radio_arrives_whole_where_the_framing_fits() {
             bytes.push(bench.read(&mut usart, DR) as u8);
         }
     }
-    // docs/hardware.md#sbus: 25 bytes from 0x0F to 0x00.
+    // 25 bytes from 0x0F to 0x00.
     assert_eq!(
         (bytes[0], bytes[24], bytes[25], bytes[49]),
         (0x0F, 0x00, 0x0F, 0x00)

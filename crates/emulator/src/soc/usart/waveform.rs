@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use robot_plant::{
+use crate::{
     time::{Ps, SECOND},
     wire::{Parity, UartChar},
 };
@@ -75,7 +75,7 @@ fn parity_bit(c: &UartChar) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use robot_plant::{time::US, wire::LineFormat};
+    use crate::{time::US, wire::LineFormat};
 
     use super::*;
 

@@ -1,7 +1,9 @@
-use robot_plant::time::{MS, US};
-
 use super::*;
-use crate::{machine::RegisterPatch, soc::reset::ResetCause};
+use crate::{
+    soc::bus::RegisterPatch,
+    soc::reset::ResetCause,
+    time::{MS, US},
+};
 
 #[test]
 fn the_pll_brings_the_board_to_168_mhz() {

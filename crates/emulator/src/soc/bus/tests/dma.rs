@@ -1,4 +1,4 @@
-use robot_plant::time::MS;
+use crate::time::MS;
 
 use super::*;
 
@@ -12,9 +12,8 @@ const RING: u32 = 0x2000_1000;
 const RECEIVE: u32 = 4 << 25 | 1 << 10 | 1 << 8 | 0b11100 | 1;
 const STREAM1_IRQ: u8 = 12;
 
-/// USART3 receives the radio's 100,000 baud 8E2 on PC11, DMA requests on
-/// (docs/hardware.md#connectors, docs/hardware.md#sbus).
-fn radio() -> Bench {
+/// USART3 receives 100,000 baud 8E2 on PC11, DMA requests on.
+fn receiving() -> Bench {
     let mut bench = Bench::new();
     bench.clock_up();
     bench.set_bits(AHB1ENR, 1 << 2 | 1 << 21);
@@ -36,12 +35,12 @@ fn start_stream(bench: &mut Bench, memory: u32, items: u32, cr: u32) {
 }
 
 #[test]
-fn a_circular_stream_keeps_the_last_bytes_of_the_radio() {
-    let mut bench = radio();
+fn a_circular_stream_keeps_the_last_bytes() {
+    let mut bench = receiving();
     start_stream(&mut bench, RING, 50, RECEIVE);
     bench.run_for(40 * MS);
     let ring = bench.ram.at(RING, 50).unwrap().to_vec();
-    // Frames of 25 bytes, two to a ring: header 0x0F and footer 0x00 repeat at the same distance.
+    // Bursts of 25 bytes, two to a ring: 0x0F at the front and 0x00 at the end repeat at the same distance.
     let header = (0..25)
         .find(|n| ring[*n] == 0x0F && ring[n + 25] == 0x0F)
         .expect("header");
@@ -56,7 +55,7 @@ fn a_circular_stream_keeps_the_last_bytes_of_the_radio() {
 
 #[test]
 fn a_normal_stream_ends_and_disables_itself() {
-    let mut bench = radio();
+    let mut bench = receiving();
     start_stream(&mut bench, RING, 10, RECEIVE & !(1 << 8));
     bench.run_for(20 * MS);
     assert_eq!(bench.read(S1CR) & 1, 0);
@@ -76,7 +75,7 @@ fn a_normal_stream_ends_and_disables_itself() {
 
 #[test]
 fn stopping_a_stream_reports_completion_and_keeps_the_count() {
-    let mut bench = radio();
+    let mut bench = receiving();
     start_stream(&mut bench, RING, 50, RECEIVE);
     bench.run_for(8 * MS);
     let left = bench.read(S1CR + 0x04);
@@ -94,7 +93,7 @@ fn stopping_a_stream_reports_completion_and_keeps_the_count() {
 
 #[test]
 fn ccm_is_out_of_reach() {
-    let mut bench = radio();
+    let mut bench = receiving();
     start_stream(&mut bench, 0x1000_0100, 50, RECEIVE);
     bench.run_for(20 * MS);
     assert!(bench.has_error("DMA1 stream 1 (USART3_RX): memory address 0x10000100 is in CCM"));
@@ -105,7 +104,7 @@ fn ccm_is_out_of_reach() {
 
 #[test]
 fn the_wrong_channel_is_named() {
-    let mut bench = radio();
+    let mut bench = receiving();
     start_stream(&mut bench, RING, 50, RECEIVE & !(7 << 25) | 5 << 25);
     bench.run_for(20 * MS);
     assert!(
@@ -116,7 +115,7 @@ fn the_wrong_channel_is_named() {
 
 #[test]
 fn fifo_mode_is_refused() {
-    let mut bench = radio();
+    let mut bench = receiving();
     // FCR.DMDIS.
     bench.write(S1CR + 0x14, 1 << 2);
     let now = bench.now;
@@ -129,14 +128,14 @@ fn fifo_mode_is_refused() {
 
 #[test]
 fn a_stream_that_was_never_enabled_is_named() {
-    let mut bench = radio();
+    let mut bench = receiving();
     bench.run_for(20 * MS);
     assert!(bench.has_error("USART3_RX requests on DMA1 stream 1 channel 4, which is not enabled"));
 }
 
 #[test]
 fn settings_are_locked_while_a_stream_runs() {
-    let mut bench = radio();
+    let mut bench = receiving();
     start_stream(&mut bench, RING, 50, RECEIVE);
     bench.write(S1CR + 0x0C, RING + 0x100);
     bench.write(S1CR, RECEIVE & !(1 << 10));

@@ -1,7 +1,8 @@
 use super::*;
-use robot_plant::time::US;
-
-use crate::soc::pins::{Outside, Pin, PinMode};
+use crate::{
+    soc::pins::{Outside, Pin, PinMode},
+    time::US,
+};
 
 const GPIOA: u32 = 0x4002_0000;
 const GPIOB: u32 = 0x4002_0400;
@@ -64,7 +65,7 @@ fn a_pin_nobody_drives_reads_noise_and_a_pulled_one_its_resistor() {
     assert!((16..48).contains(&floating), "{floating} of 64");
     assert_eq!(read_pe2(&mut bench, 0b01), 64);
     assert_eq!(read_pe2(&mut bench, 0b10), 0);
-    // The key's 10 kΩ win over the chip's 40 kΩ.
+    // The board's pull-up wins over the chip's 40 kΩ.
     bench.write(GPIOA + 0x0C, 0b10);
     assert_eq!(bench.read(GPIOA + 0x10) & 1, 1);
 }
@@ -109,7 +110,7 @@ fn an_edge_on_the_selected_port_raises_exti3() {
 fn waiting_for_an_edge_nobody_makes_is_named() {
     let mut bench = ports_on();
     bench.set_bits(APB2ENR, 1 << 14);
-    // EXTI5 from port C (2): the BMI088's INT3, which is not modelled.
+    // EXTI5 from port C (2), where the board has nothing.
     bench.write(SYSCFG + 0x0C, 2 << 4);
     bench.write(EXTI + 0x0C, 1 << 5);
     bench.write(EXTI, 1 << 5);

@@ -1,4 +1,4 @@
-use robot_plant::time::{MS, NS, US};
+use crate::time::{MS, NS, US};
 
 use super::*;
 

@@ -1,0 +1,151 @@
+//! What the chip's pins and buses lead to.
+
+use std::any::Any;
+
+use crate::{
+    soc::{
+        board_errors::BoardErrors,
+        flash_cells::FlashCells,
+        pins::{Pin, PinBank},
+        signals::{Route, Signal},
+        wave::Wave,
+    },
+    time::Ps,
+    wire::{CanFrame, CanPort, UartChar},
+};
+
+/// A board with the chip on it. Every default is that of a pin or bus to which nothing is connected.
+pub trait Board: Any {
+    /// The cells of flash sectors 1–3.
+    fn flash_cells(&mut self) -> &mut dyn FlashCells;
+
+    /// When something happens on the board next without the chip's doing.
+    fn next_event(&self) -> Ps {
+        Ps::MAX
+    }
+
+    /// Brings the board up to `now`.
+    fn advance(&mut self, _now: Ps) {}
+
+    /// Files what the chip has asked of the board's devices beyond their limits since the last call.
+    fn file_errors(&mut self, _errors: &mut BoardErrors, _now: Ps) {}
+
+    /// Gives the pins what the board has on them at power-on.
+    fn connect(&self, _pins: &mut PinBank) {}
+
+    /// Gives the pins the levels that the board's devices drive now.
+    fn drive_pins(&self, _pins: &mut PinBank) {}
+
+    /// Whether a device on the board ever drives the pin.
+    fn drives(&self, _pin: Pin) -> bool {
+        false
+    }
+
+    /// The chip may drive its pins differently.
+    fn outputs_changed(&mut self, _outputs: &Outputs<'_>, _errors: &mut BoardErrors, _now: Ps) {}
+
+    /// The pin to which the board routes a peripheral's signal; `None` where it leads nowhere.
+    fn route(&self, _signal: Signal) -> Option<Route> {
+        None
+    }
+
+    /// What an analogue input sees.
+    fn analog(&self, _signal: Signal) -> AnalogSource {
+        AnalogSource::default()
+    }
+
+    /// Supply and reference of the converters, V.
+    fn vdda_v(&self) -> f64 {
+        3.3
+    }
+
+    /// Exchanges one byte on SPI1 in the SPI mode 0 … 3; 0xFF where no device is selected.
+    fn spi_transfer(&mut self, _mosi: u8, _sck_hz: u32, _mode: u8, _now: Ps) -> u8 {
+        0xFF
+    }
+
+    /// A transfer on I2C3 is about to address a device.
+    fn i2c_started(&mut self, _pins: &PinBank, _errors: &mut BoardErrors, _now: Ps) {}
+
+    /// START and address byte on I2C3; true where a device acknowledges.
+    fn i2c_address(&mut self, _address: u8, _read: bool, _scl_hz: u32, _now: Ps) -> bool {
+        false
+    }
+
+    /// Data byte to the device; true where it acknowledges.
+    fn i2c_write(&mut self, _byte: u8, _now: Ps) -> bool {
+        false
+    }
+
+    /// Data byte from the device, which the chip acknowledges or not.
+    fn i2c_read(&mut self, _acknowledge: bool, _now: Ps) -> u8 {
+        0xFF
+    }
+
+    /// STOP, or the chip lets go of both lines.
+    fn i2c_stop(&mut self, _now: Ps) {}
+
+    /// Whether a device holds SDA or SCL low.
+    fn i2c_bus_held(&self) -> bool {
+        false
+    }
+
+    /// The next character on the line into USART3 whose start bit falls at or before `now`.
+    fn usart3_character(&mut self, _now: Ps) -> Option<UartChar> {
+        None
+    }
+
+    /// How many nodes the bus has beside the chip; they are numbered from 0.
+    fn can_nodes(&self, _port: CanPort) -> usize {
+        0
+    }
+
+    /// Whether the bus is cut or shorted for everybody.
+    fn can_broken(&self, _port: CanPort) -> bool {
+        false
+    }
+
+    /// Whether the node is powered and plugged in: otherwise it neither sends nor acknowledges.
+    fn can_present(&self, _port: CanPort, _node: usize) -> bool {
+        false
+    }
+
+    /// Whether the node hears frames: a present one, or one that only listens.
+    fn can_hears(&self, port: CanPort, node: usize) -> bool {
+        self.can_present(port, node)
+    }
+
+    /// The frame the node wants on the bus now.
+    fn can_pending(&self, _port: CanPort, _node: usize, _now: Ps) -> Option<CanFrame> {
+        None
+    }
+
+    /// The node's pending frame went out and was acknowledged.
+    fn can_sent(&mut self, _port: CanPort, _node: usize, _now: Ps) {}
+
+    /// A frame of another node ended without error; called for each node that hears.
+    fn can_received(&mut self, _port: CanPort, _node: usize, _frame: &CanFrame, _now: Ps) {}
+}
+
+/// What the chip drives onto its pins.
+pub struct Outputs<'a> {
+    /// Modes and levels as the ports have them.
+    pub pins: &'a PinBank,
+    /// The waves of the timers' channels.
+    pub waves: &'a dyn Waves,
+}
+
+/// The waves that timers drive onto pins of an alternate function.
+pub trait Waves {
+    /// The wave of channel 1 … 4 of TIM4, TIM5 or TIM10; `None` while its output is off.
+    fn wave(&self, timer: u8, channel: u8) -> Option<Wave>;
+}
+
+/// A voltage behind a resistance.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct AnalogSource {
+    /// Open-circuit voltage, V.
+    pub volts: f64,
+    /// Source resistance, Ω.
+    pub ohms: f64,
+}

@@ -1,0 +1,10 @@
+//! A rectangular wave on a pin.
+
+/// What a timer channel drives onto its pin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wave {
+    /// Frequency, Hz.
+    pub hz: f64,
+    /// Mean on-fraction, 0 … 1.
+    pub duty: f64,
+}

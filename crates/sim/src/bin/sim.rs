@@ -1,0 +1,179 @@
+//! Boots a firmware image in the emulated C board and runs a scenario (`cargo xtask sim`).
+
+use std::{path::PathBuf, process::ExitCode};
+
+use anyhow::{Context, bail};
+use clap::Parser;
+use robot_plant::{recording, time, world::CanBusId};
+use robot_sim::{
+    faults,
+    job::Job,
+    machine::RegisterPatch,
+    run_signals::RunSignals,
+    scenario::Scenario,
+    signals::SignalTable,
+    simulation::Simulation,
+    terminal::{LogLevel, Terminal},
+};
+
+/// Boot the firmware in an emulated RoboMaster C board wired to a simulated robot.
+#[derive(Parser)]
+#[command(name = "sim")]
+struct Args {
+    /// Scenario to run; default: a 10 s drive, or a quiet stand with --imu.
+    scenario: Option<PathBuf>,
+    /// Firmware image to boot.
+    #[arg(long, required_unless_present = "list_faults")]
+    elf: Option<PathBuf>,
+    /// Run for so long, instead of the scenario's own length.
+    #[arg(long, value_name = "N")]
+    seconds: Option<f64>,
+    /// Folder for report.html, summary.json and run.mcap.
+    #[arg(long, default_value = "target/sim")]
+    out: PathBuf,
+    /// Play a recorded trial (.json beside its .f32.gz) through the sensor models.
+    #[arg(long, value_name = "TRIAL.json")]
+    imu: Option<PathBuf>,
+    /// Keep the robot's settings in FILE from run to run: its parameter flash, read if it exists, written at the end.
+    #[arg(long, value_name = "FILE")]
+    flash: Option<PathBuf>,
+    /// CAN1 as a LAWICEL (slcan) adapter on a pseudo-terminal; implies --realtime, and the run is not reproducible.
+    #[arg(long, value_enum, value_name = "pty")]
+    can1: Option<CanOutside>,
+    /// CAN2 likewise.
+    #[arg(long, value_enum, value_name = "pty")]
+    can2: Option<CanOutside>,
+    /// Start as `probe-rs run` does by default, with reset and hard fault caught; the robot must do all it does without.
+    #[arg(long)]
+    probe: bool,
+    /// Not faster than real time.
+    #[arg(long)]
+    realtime: bool,
+    /// Least severe firmware log shown.
+    #[arg(long, value_enum, default_value = "debug")]
+    log: LogLevel,
+    /// Seed of all simulated noise, instead of the scenario's own.
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+    /// Print the faults a scenario can start and end.
+    #[arg(long)]
+    list_faults: bool,
+    /// Print the signals a scenario can expect something of.
+    #[arg(long)]
+    list_signals: bool,
+    /// Override bits in every write to a register: one wrong line of board.rs (hexadecimal; for tests).
+    #[arg(long, value_name = "ADDR:MASK:VALUE", value_parser = parse_patch)]
+    patch: Vec<RegisterPatch>,
+}
+
+/// Where the frames of a bus go beside the simulated robot.
+#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum CanOutside {
+    /// A pseudo-terminal.
+    Pty,
+}
+
+const DRIVE: &str = include_str!("../../../../scenarios/drive.toml");
+
+/// What `--imu` runs without a scenario: nobody touches the radio, and the robot has saved that the magnetometer sits as
+/// the IMU does (docs/mounting.md).
+const REPLAY: &str = "name = \"replay\"\nseconds = 10\nplant = \"stand\"\n[[flash.record]]\ngroup = 8\nvalues = [0, 0]\n";
+
+fn main() -> anyhow::Result<ExitCode> {
+    let args = Args::parse();
+    if args.list_faults {
+        for fault in faults::all() {
+            println!("{:<20} {}", fault.name, fault.what);
+        }
+        return Ok(ExitCode::SUCCESS);
+    }
+    let job = job(&args)?;
+    if args.list_signals {
+        return list_signals(&job);
+    }
+    let realtime = args.realtime || !job.can_on_pty.is_empty();
+    if realtime && !args.realtime {
+        println!("a PC takes part: real time, and not reproducible");
+    }
+    let mut terminal = Terminal::new(job.scenario.length, args.log, realtime);
+    let outcome = job.run_into(&args.out, &mut terminal)?;
+    terminal.conclude(&outcome);
+    Ok(if outcome.summary.ok {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    })
+}
+
+impl Args {
+    fn can_on_pty(&self) -> Vec<CanBusId> {
+        let buses = [(self.can1, CanBusId::Can1), (self.can2, CanBusId::Can2)];
+        let outside = buses.into_iter().filter(|(place, _)| place.is_some());
+        outside.map(|(_, bus)| bus).collect()
+    }
+}
+
+fn job(args: &Args) -> anyhow::Result<Job> {
+    let elf = args.elf.clone().context("--elf names no image")?;
+    if !elf.is_file() {
+        bail!(
+            "there is no image at {}; `cargo xtask sim` builds it",
+            elf.display()
+        );
+    }
+    let mut scenario = match (&args.scenario, &args.imu) {
+        (Some(path), _) => Scenario::read(path)?,
+        (None, None) => Scenario::parse(DRIVE, "scenarios/drive.toml")?,
+        (None, Some(trial)) => {
+            let mut scenario = Scenario::parse(REPLAY, "replay")?;
+            scenario.length = recording::run_length(trial)?;
+            scenario
+        }
+    };
+    if let Some(seconds) = args.seconds {
+        if !(seconds > 0.0 && seconds.is_finite()) {
+            bail!("--seconds {seconds}: write a length above 0");
+        }
+        let left_out = scenario.cut_to(time::from_seconds(seconds));
+        if left_out > 0 {
+            println!(
+                "--seconds {seconds}: {left_out} expectations look past that and are not judged"
+            );
+        }
+    }
+    scenario.seed = args.seed.unwrap_or(scenario.seed);
+    Ok(Job {
+        elf,
+        scenario,
+        imu_trial: args.imu.clone(),
+        patches: args.patch.clone(),
+        probe: args.probe,
+        can_on_pty: args.can_on_pty(),
+        flash_file: args.flash.clone(),
+    })
+}
+
+fn list_signals(job: &Job) -> anyhow::Result<ExitCode> {
+    let mut machine = job.machine()?;
+    let world = machine.world_names();
+    let table = SignalTable::new(&world, machine.diag_names(), RunSignals::names());
+    for name in table.names() {
+        println!("{name}");
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn parse_patch(text: &str) -> Result<RegisterPatch, String> {
+    let number = |part: &str| {
+        let digits = part.trim_start_matches("0x").replace('_', "");
+        u32::from_str_radix(&digits, 16).map_err(|e| format!("{part}: {e}"))
+    };
+    match text.split(':').collect::<Vec<_>>()[..] {
+        [address, mask, value] => Ok(RegisterPatch {
+            address: number(address)?,
+            mask: number(mask)?,
+            value: number(value)?,
+        }),
+        _ => Err("write ADDR:MASK:VALUE in hexadecimal".into()),
+    }
+}

@@ -1,0 +1,45 @@
+//! What gives the chip's pins a level from outside.
+
+use robot_emulator::soc::pins::{Outside, Pin, PinBank};
+use robot_plant::world::World;
+
+const MAG_DRDY: Pin = Pin::new('G', 3);
+const USER_KEY: Pin = Pin::new('A', 0);
+
+/// I2C3 (4.7 kΩ), the key (10 kΩ), and both lines of the 3-pin UART (4.7 kΩ).
+const PULLED_UP: [Pin; 5] = [
+    Pin::new('A', 8),
+    Pin::new('C', 9),
+    USER_KEY,
+    Pin::new('G', 14),
+    Pin::new('G', 9),
+];
+
+/// The radio's inverter (4.7 kΩ to 3.3 V) and both CAN transceivers: high while their lines rest.
+const RESTING_HIGH: [Pin; 3] = [Pin::new('C', 11), Pin::new('D', 0), Pin::new('B', 5)];
+
+/// Solders the board.
+pub fn connect(pins: &mut PinBank) {
+    for pin in PULLED_UP {
+        pins.set_outside(pin, Outside::PullUp);
+    }
+    for pin in RESTING_HIGH {
+        pins.set_outside(pin, Outside::Drives(true));
+    }
+}
+
+/// True where a device of the model drives the pin. The BMI088's interrupt pins (PC4, PC5) are not modelled.
+pub fn drives_input(pin: Pin) -> bool {
+    matches!(pin, MAG_DRDY | USER_KEY)
+}
+
+/// Levels that devices drive onto the chip's pins.
+pub fn drive_inputs(pins: &mut PinBank, world: &World) {
+    pins.set_outside(MAG_DRDY, Outside::Drives(world.mag_drdy_pin()));
+    let key = if world.user_key_pin() {
+        Outside::PullUp
+    } else {
+        Outside::Drives(false)
+    };
+    pins.set_outside(USER_KEY, key);
+}

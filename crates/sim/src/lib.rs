@@ -1,0 +1,26 @@
+//! The emulated C board in a simulated world: scenarios on the shipped firmware image, judged, recorded and reported.
+//!
+//! `c_board` is the board around the chip of `robot-emulator`, `machine` joins both to a firmware image, `pty` offers
+//! the CAN buses to tools on this computer, `runner` plays a scenario on the machine, `soak` keeps it busy for hours.
+
+pub mod attitude_score;
+pub mod budgets;
+mod c_board;
+pub mod expectation;
+pub mod faults;
+pub mod job;
+pub mod machine;
+pub mod parameter_sectors;
+mod pty;
+mod recording;
+mod report;
+pub mod run_signals;
+pub mod runner;
+pub mod scenario;
+pub mod signals;
+pub mod simulation;
+pub mod soak;
+pub mod summary;
+pub mod terminal;
+mod trace;
+mod tree;

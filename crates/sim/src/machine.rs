@@ -1,0 +1,325 @@
+//! CPU, chip, board and world as one deterministic machine.
+
+use std::{collections::BTreeMap, path::Path};
+
+use robot_emulator::{
+    core::{
+        cpu::{Cpu, Halt, Pause},
+        image::Image,
+    },
+    soc::{board_errors::BoardError, bus::Soc, reset::ResetCause},
+};
+use robot_plant::{
+    time::{MS, Ps, US, to_seconds},
+    world::World,
+};
+
+use crate::c_board::CBoard;
+
+pub mod diagnostics;
+pub mod faults;
+pub mod flash;
+mod log;
+mod power;
+mod probe;
+mod rtt;
+mod stack;
+
+use diagnostics::{Diagnostics, meaning::Meaning};
+use log::DefmtLog;
+use rtt::Rtt;
+use stack::StackWatch;
+
+pub use robot_emulator::{core::stats::Distribution, soc::bus::RegisterPatch};
+
+/// Symbols of the image that the machine looks for.
+const CONTROL_TICK: &str = "robotapp_control_tick";
+const RTT_CONTROL_BLOCK: &str = "_SEGGER_RTT";
+
+#[derive(Debug, thiserror::Error)]
+pub enum MachineError {
+    #[error("cannot load the image: {0}")]
+    Image(String),
+    /// Unmodelled register, bus fault outside the map, lock-up: the text names register, PC and function.
+    #[error("{0}")]
+    Stopped(String),
+}
+
+/// One line of the firmware's own log.
+#[derive(Clone, Debug)]
+pub struct LogLine {
+    pub at: Ps,
+    pub level: String,
+    pub text: String,
+}
+
+/// Measured on the run itself.
+#[derive(Clone, Debug, Default, serde::Serialize)]
+pub struct Stats {
+    pub ticks: u64,
+    pub missed: u64,
+    pub longest_gap_us: LongestGapUs,
+    pub tick_instructions: Distribution,
+    pub release_jitter_us: Distribution,
+    /// Counts of release jitter in 0.5 µs bins, for the histogram.
+    pub jitter_bins: Vec<u64>,
+    /// Busy share of the CPU since the main clock came up, 0 … 1.
+    pub cpu_load: f64,
+    /// Share of all instructions by context: interrupt name, `thread`.
+    pub executors: BTreeMap<String, f64>,
+    pub stack_peak_bytes: u64,
+    pub resets: Vec<String>,
+    pub can: Vec<CanStats>,
+    pub flash: FlashUse,
+}
+
+/// Longest time from one control tick to the next, by what the firmware last said of itself before it.
+#[derive(Clone, Copy, Debug, Default, serde::Serialize)]
+pub struct LongestGapUs {
+    pub armed: f64,
+    pub disarmed: f64,
+}
+
+#[derive(Clone, Debug, Default, serde::Serialize)]
+pub struct FlashUse {
+    pub erases: u64,
+    pub programs: u64,
+    /// Longest time without a fetch.
+    pub longest_stall_us: u64,
+}
+
+#[derive(Clone, Debug, Default, serde::Serialize)]
+pub struct CanStats {
+    /// Frames the board sent.
+    pub tx: u64,
+    /// Frames the board received.
+    pub rx: u64,
+    /// Share of time the bus was busy.
+    pub load: f64,
+    pub errors: u64,
+}
+
+/// How the run goes, cheap to ask for at any time.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Progress {
+    /// Control ticks.
+    pub missed: u64,
+    /// How many control ticks there were, and when the last one was entered.
+    pub ticks: Option<(u64, Ps)>,
+    /// As in `Stats`.
+    pub cpu_load: f64,
+    /// How long each CAN bus was busy since power-on.
+    pub can_busy: [Ps; 2],
+    /// Different ones that fail on silicon.
+    pub board_errors: usize,
+    pub flash_erases: u64,
+    pub flash_programs: u64,
+}
+
+/// CPU, chip, board and world, and what is known of the image that runs on them.
+pub struct Machine {
+    cpu: Cpu,
+    image: Image,
+    rtt: Option<Rtt>,
+    log: Option<DefmtLog>,
+    /// False once the probe that read it is pulled.
+    log_is_read: bool,
+    diagnostics: Diagnostics,
+    stack: StackWatch,
+    /// Deepest stack before the last loss of power.
+    stack_peak: u64,
+    resets: Vec<String>,
+    /// How long a power cut at a step of the flash lasts.
+    off_time: Ps,
+}
+
+/// The log ring is emptied at least this often.
+const LOG_POLL: Ps = MS;
+
+impl Machine {
+    /// Powers the board on at time 0 with `elf` in flash.
+    pub fn new(elf: &Path, world: World) -> Result<Self, MachineError> {
+        let bytes = std::fs::read(elf)
+            .map_err(|e| MachineError::Image(format!("{}: {e}", elf.display())))?;
+        let image = Image::parse(&bytes).map_err(|e| MachineError::Image(e.to_string()))?;
+        let cpu = Cpu::new(
+            &image.segments,
+            image.symbol(CONTROL_TICK),
+            Soc::new(Box::new(CBoard::new(world))),
+        )
+        .map_err(|e| MachineError::Image(format!("the engine refuses: {e:?}")))?;
+        Ok(Self {
+            rtt: image.symbol(RTT_CONTROL_BLOCK).map(Rtt::new),
+            log: DefmtLog::new(&bytes)?,
+            log_is_read: true,
+            diagnostics: Diagnostics::find(&bytes, &image).map_err(MachineError::Image)?,
+            stack: StackWatch::of(&image),
+            stack_peak: 0,
+            resets: Vec::new(),
+            off_time: power::OFF_TIME,
+            cpu,
+            image,
+        })
+    }
+
+    pub fn patch_register(&mut self, patch: RegisterPatch) {
+        self.cpu.with_soc(|soc, _| soc.add_patch(patch));
+    }
+
+    /// When a fault of the machine last struck.
+    pub fn fault_struck_at(&self) -> Option<Ps> {
+        self.cpu.struck_at()
+    }
+
+    /// Runs on until `until`; a block of code may carry it a fraction of a microsecond past it.
+    pub fn run_until(&mut self, until: Ps) -> Result<(), MachineError> {
+        while self.cpu.now() < until {
+            let step = until.min((self.cpu.now() / LOG_POLL + 1) * LOG_POLL);
+            match self.cpu.run(step).map_err(|halt| self.stopped(halt))? {
+                Pause::Limit => self.poll_log(),
+                Pause::Asleep { thread } => {
+                    self.poll_log();
+                    if thread {
+                        self.diagnostics.copy_from(&self.cpu);
+                        self.cpu.set_armed(self.diagnostics.armed());
+                    }
+                }
+                Pause::Reset(ResetCause::PowerOn) => {
+                    self.power_off(self.cpu.now() + self.off_time);
+                }
+                Pause::Reset(cause) => self.reset(cause),
+                Pause::PowerReturns => self.power_up(),
+            }
+        }
+        Ok(())
+    }
+
+    fn stopped(&self, halt: Halt) -> MachineError {
+        let seconds = to_seconds(self.cpu.now());
+        let place = self.image.describe(halt.pc);
+        MachineError::Stopped(format!("{} at {place}, {seconds:.6} s", halt.what))
+    }
+
+    fn reset(&mut self, cause: ResetCause) {
+        self.poll_log();
+        self.resets.push(format!("{cause:?}"));
+        self.diagnostics.forget();
+        self.cpu.with_soc(|soc, now| soc.reset(cause, now));
+        self.cpu.reset();
+    }
+
+    fn poll_log(&mut self) {
+        let (Some(rtt), Some(log), true) = (&self.rtt, &mut self.log, self.log_is_read) else {
+            return;
+        };
+        let mut bytes = Vec::new();
+        rtt.drain(&mut self.cpu, &mut bytes);
+        log.received(&bytes, self.cpu.now());
+    }
+
+    /// Lets the caller look at the world or change it; the chip notices what changed.
+    pub fn with_world<R>(&mut self, f: impl FnOnce(&mut World) -> R) -> R {
+        self.with_board(|board| f(&mut board.world))
+    }
+
+    fn with_board<R>(&mut self, f: impl FnOnce(&mut CBoard) -> R) -> R {
+        self.cpu.with_soc(|soc, _| {
+            f(soc
+                .board_as()
+                .expect("the machine is built around a C board"))
+        })
+    }
+
+    /// Lines since the last call.
+    pub fn take_log(&mut self) -> Vec<LogLine> {
+        self.log.as_mut().map(DefmtLog::take).unwrap_or_default()
+    }
+
+    /// Names of the firmware's diagnostics, `diag.*`, read from the image's debug information.
+    pub fn diag_names(&self) -> &[String] {
+        self.diagnostics.names()
+    }
+
+    /// What the values of each of `diag_names` stand for, where the image says so.
+    pub fn diag_meanings(&self) -> Vec<Option<Meaning>> {
+        self.diagnostics.meanings()
+    }
+
+    /// Values in the order of `diag_names` as they stood when the thread executor last went to sleep; false while it
+    /// has not since boot.
+    pub fn sample_diag(&mut self, out: &mut Vec<f64>) -> bool {
+        self.diagnostics.sample(out)
+    }
+
+    pub fn stats(&self) -> Stats {
+        let run = self.cpu.stats();
+        Stats {
+            ticks: run.tick_count(),
+            missed: run.missed_ticks(),
+            longest_gap_us: LongestGapUs {
+                armed: run.longest_gap().armed as f64 / US as f64,
+                disarmed: run.longest_gap().disarmed as f64 / US as f64,
+            },
+            tick_instructions: run.tick_instructions(),
+            release_jitter_us: run.release_jitter_us(),
+            jitter_bins: run.jitter_bins(),
+            cpu_load: run.cpu_load(),
+            executors: run.shares(),
+            stack_peak_bytes: self.stack_peak.max(self.stack.peak(&self.cpu)),
+            resets: self.resets.clone(),
+            can: [0, 1].map(|bus| self.can_stats(bus)).to_vec(),
+            flash: self.flash_use(),
+        }
+    }
+
+    pub fn progress(&self) -> Progress {
+        let (run, soc) = (self.cpu.stats(), self.cpu.soc());
+        let flash = soc.flash().history().stats();
+        Progress {
+            missed: run.missed_ticks(),
+            ticks: run.ticks_so_far(),
+            cpu_load: run.cpu_load(),
+            can_busy: [0, 1].map(|bus| soc.can_stats(bus).busy),
+            board_errors: soc.errors.list().len(),
+            flash_erases: flash.erases,
+            flash_programs: flash.programs,
+        }
+    }
+
+    /// When the last control tick that is over was entered.
+    pub fn last_tick(&self) -> Option<Ps> {
+        self.cpu.stats().last_tick(self.cpu.now())
+    }
+
+    pub fn resets(&self) -> usize {
+        self.resets.len()
+    }
+
+    fn flash_use(&self) -> FlashUse {
+        let counted = self.cpu.soc().flash().history().stats();
+        FlashUse {
+            erases: counted.erases,
+            programs: counted.programs,
+            longest_stall_us: counted.longest_stall / US,
+        }
+    }
+
+    fn can_stats(&self, bus: usize) -> CanStats {
+        let counted = self.cpu.soc().can_stats(bus);
+        CanStats {
+            tx: counted.tx,
+            rx: counted.rx,
+            load: counted.busy as f64 / self.cpu.now().max(1) as f64,
+            errors: counted.errors,
+        }
+    }
+
+    /// What fails on silicon.
+    pub fn board_errors(&self) -> Vec<BoardError> {
+        self.cpu.soc().errors.list().to_vec()
+    }
+
+    pub fn suspicions(&self) -> Vec<BoardError> {
+        self.cpu.soc().errors.suspicions().to_vec()
+    }
+}

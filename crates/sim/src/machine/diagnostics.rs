@@ -1,0 +1,85 @@
+//! The firmware's diagnostics record, read out of guest memory by the layout in the image's debug information.
+
+use robot_emulator::core::{cpu::Cpu, image::Image};
+
+mod layout;
+pub mod meaning;
+
+use layout::Leaf;
+use meaning::Meaning;
+
+/// The static that holds the record, and the record's type.
+const STATIC: &str = "g_robotapp_diag";
+const RECORD: &str = "DiagnosticsSnapshot";
+/// What the record says of arming, and its value while armed.
+const ARMING_STATE: &str = "arming.state";
+const ARMED: f64 = 1.0;
+
+/// Names, layout and the last whole copy of the record. Empty for an image that has none.
+#[derive(Debug, Default)]
+pub struct Diagnostics {
+    address: u32,
+    leaves: Vec<Leaf>,
+    /// Place of `ARMING_STATE`.
+    arming: Option<usize>,
+    names: Vec<String>,
+    copy: Vec<u8>,
+    copied: bool,
+}
+
+impl Diagnostics {
+    pub fn find(elf: &[u8], image: &Image) -> Result<Self, String> {
+        let Some(base) = image.symbol(STATIC) else {
+            return Ok(Self::default());
+        };
+        let record = layout::of_static(elf, STATIC, RECORD)?;
+        Ok(Self {
+            address: base + record.offset,
+            names: record
+                .leaves
+                .iter()
+                .map(|leaf| format!("diag.{}", leaf.name))
+                .collect(),
+            copy: vec![0; record.size as usize],
+            arming: record.leaves.iter().position(|l| l.name == ARMING_STATE),
+            leaves: record.leaves,
+            copied: false,
+        })
+    }
+
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// In the order of `names`.
+    pub fn meanings(&self) -> Vec<Option<Meaning>> {
+        self.leaves
+            .iter()
+            .map(|leaf| leaf.meaning.clone())
+            .collect()
+    }
+
+    /// Called where the record cannot be half-written.
+    pub fn copy_from(&mut self, cpu: &Cpu) {
+        self.copied = !self.copy.is_empty() && cpu.read_memory(self.address, &mut self.copy);
+    }
+
+    /// What the last copy says of arming; false for an image that does not say.
+    pub fn armed(&self) -> bool {
+        let arming = self.arming.and_then(|place| self.leaves.get(place));
+        self.copied && arming.is_some_and(|leaf| leaf.read(&self.copy) == ARMED)
+    }
+
+    /// After a reset the record is not the new boot's.
+    pub fn forget(&mut self) {
+        self.copied = false;
+    }
+
+    pub fn sample(&self, out: &mut Vec<f64>) -> bool {
+        out.clear();
+        if self.copied {
+            out.extend(self.leaves.iter().map(|leaf| leaf.read(&self.copy)));
+        }
+        self.copied
+    }
+}

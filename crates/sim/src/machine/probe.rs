@@ -1,0 +1,50 @@
+//! A debug probe at the board's SWD connector, and what it leaves behind when it is pulled.
+
+use robot_plant::time::Ps;
+
+use super::Machine;
+use robot_emulator::core::system::debug_registers::{DEMCR_VC_CORERESET, DEMCR_VC_HARDERR};
+
+/// What `probe-rs run` and `attach` 0.28 to 0.32 catch unless told not to (`rpc/utils/run_loop.rs`).
+const CAUGHT_BY_DEFAULT: u32 = DEMCR_VC_CORERESET | DEMCR_VC_HARDERR;
+/// Where debuggers are told to stop: `openocd.gdb` of the Cortex-M quickstart of Rust, and who panics here.
+const BROKEN_AT: [&str; 4] = ["HardFault", "DefaultHandler", "main", "_defmt_panic"];
+
+impl Machine {
+    /// As `probe-rs run` leaves the core when it lets it go on, with the log to be waited for.
+    pub fn attach_probe(&mut self) {
+        self.cpu.debug().attach(CAUGHT_BY_DEFAULT);
+        self.log_is_read = true;
+        if let Some(rtt) = &self.rtt {
+            rtt.ask_to_block(&mut self.cpu);
+        }
+    }
+
+    /// Nothing is taken back: on the STM32F4 probe-rs does not (`vendor/st/sequences/stm32_armv7.rs`), and only power-on
+    /// clears what it has set in the core. Nobody reads the log any more.
+    pub(super) fn pull_probe(&mut self) {
+        self.log_is_read = false;
+    }
+
+    /// As a session of OpenOCD and gdb that was killed: breakpoints, and watchdogs that stand in every halt.
+    pub(super) fn leave_breakpoints(&mut self) {
+        let addresses = BROKEN_AT.map(|name| self.image.symbol(name));
+        let addresses: Vec<u32> = addresses.into_iter().flatten().collect();
+        let debug = self.cpu.debug();
+        debug.attach(0);
+        debug.breakpoints.set(&addresses);
+        debug.freeze_watchdogs();
+    }
+
+    /// A debugger that sets its catch bits again as soon as they are cleared, until it is gone.
+    pub(super) fn insist_on_catches(&mut self, insists: bool) {
+        let debug = self.cpu.debug();
+        debug.attach(0);
+        debug.insist(if insists { CAUGHT_BY_DEFAULT } else { 0 });
+    }
+
+    /// Attaching and detaching halt the core for many SWD transactions.
+    pub(super) fn halt_core(&mut self, time: Ps) {
+        self.cpu.halt_for(time);
+    }
+}

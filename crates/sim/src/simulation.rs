@@ -1,0 +1,129 @@
+//! What the runner needs of an emulated board.
+
+use std::io;
+
+use robot_plant::{can_adapter::AdapterMode, time::Ps, world::WireEvent};
+
+use super::{
+    faults::{self, DeedError},
+    scenario::Deed,
+};
+use crate::{
+    machine::{LogLine, Machine, MachineError, Progress, Stats, diagnostics::meaning::Meaning},
+    pty::CanPort,
+};
+use robot_emulator::soc::board_errors::BoardError;
+
+/// A board with a world around it that advances in simulated time.
+pub trait Simulation {
+    fn run_until(&mut self, until: Ps) -> Result<(), MachineError>;
+    fn act(&mut self, deed: &Deed) -> Result<(), DeedError>;
+    /// Lets the PCs on `ports` send to the world and hear from it.
+    fn serve(&mut self, ports: &mut [CanPort]) -> io::Result<()>;
+    fn world_names(&mut self) -> Vec<String>;
+    fn sample_world(&mut self, out: &mut Vec<f64>);
+    fn drain_wire_events(&mut self, out: &mut Vec<WireEvent>);
+    fn diag_names(&mut self) -> Vec<String>;
+    /// What the values of each of them stand for, where the firmware says so.
+    fn diag_meanings(&mut self) -> Vec<Option<Meaning>>;
+    /// False while the firmware's diagnostics cannot be read whole.
+    fn sample_diag(&mut self, out: &mut Vec<f64>) -> bool;
+    /// Total, heading and inclination error of the last tick's estimate in degrees; `None` in a gap of the reference.
+    fn attitude_error_deg(&mut self, q_wxyz: [f64; 4]) -> Option<[f64; 3]>;
+    fn take_log(&mut self) -> Vec<LogLine>;
+    /// All that was measured; takes its time in a long run.
+    fn stats(&mut self) -> Stats;
+    fn progress(&mut self) -> Progress;
+    /// Resets since power-on.
+    fn resets(&mut self) -> usize;
+    /// What fails on silicon.
+    fn board_errors(&mut self) -> Vec<BoardError>;
+    fn suspicions(&mut self) -> Vec<BoardError>;
+}
+
+impl Simulation for Machine {
+    fn run_until(&mut self, until: Ps) -> Result<(), MachineError> {
+        Machine::run_until(self, until)
+    }
+
+    fn act(&mut self, deed: &Deed) -> Result<(), DeedError> {
+        match deed {
+            Deed::Remote(input) => {
+                self.with_world(|world| world.set_remote(*input));
+                Ok(())
+            }
+            Deed::Can(bus, frame) => {
+                let taken = self.with_world(|world| {
+                    let adapter = world.can_adapter(*bus);
+                    if adapter.mode() != AdapterMode::Active {
+                        adapter.set_mode(AdapterMode::Active);
+                    }
+                    adapter.send(*frame)
+                });
+                taken.then_some(()).ok_or(DeedError::AdapterFull)
+            }
+            Deed::StartFault(name) => faults::set(self, name, true),
+            Deed::EndFault(name) => faults::set(self, name, false),
+        }
+    }
+
+    fn serve(&mut self, ports: &mut [CanPort]) -> io::Result<()> {
+        if ports.is_empty() {
+            return Ok(());
+        }
+        self.with_world(|world| ports.iter_mut().try_for_each(|port| port.serve(world)))
+    }
+
+    fn world_names(&mut self) -> Vec<String> {
+        self.with_world(|world| world.signal_names().to_vec())
+    }
+
+    fn sample_world(&mut self, out: &mut Vec<f64>) {
+        self.with_world(|world| world.sample(out));
+    }
+
+    fn drain_wire_events(&mut self, out: &mut Vec<WireEvent>) {
+        self.with_world(|world| world.drain_wire_events(out));
+    }
+
+    fn diag_names(&mut self) -> Vec<String> {
+        Machine::diag_names(self).to_vec()
+    }
+
+    fn diag_meanings(&mut self) -> Vec<Option<Meaning>> {
+        Machine::diag_meanings(self)
+    }
+
+    fn sample_diag(&mut self, out: &mut Vec<f64>) -> bool {
+        Machine::sample_diag(self, out)
+    }
+
+    fn attitude_error_deg(&mut self, q_wxyz: [f64; 4]) -> Option<[f64; 3]> {
+        let estimated_at = self.last_tick()?;
+        self.with_world(|world| world.past_attitude_error_deg(q_wxyz, estimated_at))
+    }
+
+    fn take_log(&mut self) -> Vec<LogLine> {
+        Machine::take_log(self)
+    }
+
+    fn stats(&mut self) -> Stats {
+        Machine::stats(self)
+    }
+
+    fn progress(&mut self) -> Progress {
+        Machine::progress(self)
+    }
+
+    fn resets(&mut self) -> usize {
+        Machine::resets(self)
+    }
+
+    fn board_errors(&mut self) -> Vec<BoardError> {
+        Machine::board_errors(self)
+    }
+
+    fn suspicions(&mut self) -> Vec<BoardError> {
+        Machine::suspicions(self)
+    }
+}

@@ -1,0 +1,96 @@
+//! Every fault in every phase of a drive, on the shipped image: what stops, how soon, under which flags, and what
+//! happens when the fault is gone.
+//!
+//! What must happen is written down in `matrix/expected.rs`; `docs/safety.md` shows it, with the times measured when
+//! it was written (`ROBOT_WRITE_MATRIX=1` writes it again). `ROBOT_MATRIX=motor-3` runs the faults whose name holds
+//! that only.
+
+mod support;
+
+#[path = "matrix/document.rs"]
+mod document;
+#[path = "matrix/drive.rs"]
+mod drive;
+#[path = "matrix/expected.rs"]
+mod expected;
+#[path = "matrix/judge.rs"]
+mod judge;
+#[path = "matrix/observed.rs"]
+mod observed;
+
+use std::{
+    collections::BTreeMap,
+    sync::{Mutex, PoisonError},
+    thread,
+};
+
+use expected::Row;
+use observed::{Observed, Phase};
+use robot_sim::faults;
+
+/// What was seen, by the place of the row and the phase.
+type Cells = BTreeMap<(usize, Phase), Observed>;
+
+/// Every cell of the rows, on all cores.
+fn run_all(rows: &[Row]) -> Cells {
+    let all = (0..rows.len()).flat_map(|row| Phase::ALL.map(|phase| (row, phase)));
+    let queue = Mutex::new(all);
+    let next = || queue.lock().unwrap_or_else(PoisonError::into_inner).next();
+    let work = || {
+        let mut cells = Vec::new();
+        while let Some((row, phase)) = next() {
+            cells.push(((row, phase), drive::run(&rows[row], phase)));
+        }
+        cells
+    };
+    let cores = thread::available_parallelism().map_or(1, |n| n.get());
+    thread::scope(|scope| {
+        let threads: Vec<_> = (0..cores).map(|_| scope.spawn(work)).collect();
+        let joined = threads.into_iter().map(|thread| thread.join());
+        joined
+            .flat_map(|cells| cells.expect("no run failed"))
+            .collect()
+    })
+}
+
+fn chosen() -> Vec<Row> {
+    let part = std::env::var("ROBOT_MATRIX").unwrap_or_default();
+    let rows = expected::rows().into_iter();
+    rows.filter(|row| row.fault.contains(&part)).collect()
+}
+
+#[test]
+fn every_fault_in_every_phase_ends_as_it_must() {
+    support::image();
+    let rows = chosen();
+    let cells = run_all(&rows);
+    let mut wrong = Vec::new();
+    for (index, row) in rows.iter().enumerate() {
+        for phase in Phase::ALL {
+            let seen = &cells[&(index, phase)];
+            println!("{}", document::line(row, phase, seen));
+            let complaints = judge::complaints(row, phase, seen).into_iter();
+            let fault = row.fault;
+            wrong.extend(complaints.map(|what| format!("{fault}, {phase}: {what}")));
+        }
+    }
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+    if std::env::var_os("ROBOT_WRITE_MATRIX").is_some() && rows.len() == expected::rows().len() {
+        document::write(&rows, &cells);
+    }
+}
+
+#[test]
+fn every_fault_there_is_has_a_row() {
+    let rows = expected::rows();
+    let missing: Vec<_> = faults::all()
+        .map(|fault| fault.name)
+        .filter(|name| !rows.iter().any(|row| row.fault == *name))
+        .collect();
+    assert!(missing.is_empty(), "no row for {missing:?}");
+}
+
+#[test]
+fn the_document_shows_the_matrix() {
+    document::check(&expected::rows());
+}

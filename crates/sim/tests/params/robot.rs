@@ -1,0 +1,306 @@
+//! A board that runs the shipped image, with a PC's adapter on both buses and a pilot.
+
+use std::collections::HashMap;
+
+use robot_plant::{
+    can_adapter::AdapterMode,
+    time::{MS, Ps},
+    wire::CanFrame,
+    world::{CanBusId, RemoteInput, WireEvent},
+};
+use robot_sim::{
+    faults,
+    machine::{Machine, diagnostics::meaning::Meaning},
+    scenario::{Deed, Scenario},
+    simulation::Simulation,
+};
+
+use crate::{
+    flash_image::{Image, SectorState, states},
+    settings::{COUNT, Make, Setting, Settings, calibrated},
+    support,
+};
+
+const WRITE_ID: u32 = 0x7A0;
+const READ_ID: u32 = 0x7A1;
+const REPLY_ID: u32 = 0x7A2;
+const WRITE_SETTING: u8 = 0x20;
+const READ_SETTING: u8 = 0x21;
+const READ_STORE: u8 = 0x31;
+const REFUSED: u8 = 0xEE;
+
+const BUSES: [CanBusId; 2] = [CanBusId::Can1, CanBusId::Can2];
+/// The robot answers within six milliseconds.
+const REPLY_WITHIN: Ps = 50 * MS;
+/// It may stand still for half a second.
+const TRIES: usize = 14;
+
+/// A request to a board without power is lost.
+const ASK_AGAIN: Ps = 25 * MS;
+
+/// `diag.params.state`.
+pub mod state {
+    pub const WAITING_FOR_REST: f64 = 2.0;
+    pub const BACKING_OFF: f64 = 5.0;
+}
+
+pub struct Robot {
+    pub machine: Machine,
+    now: Ps,
+    places: HashMap<String, usize>,
+    meanings: Vec<Option<Meaning>>,
+    diag: Vec<f64>,
+    /// When `diag` was read, and whether there was something to read.
+    sampled_at: Ps,
+    known: bool,
+    /// On CAN1, CAN2; taken by whoever waits for them.
+    replies: [Vec<[u8; 8]>; 2],
+    pub events: Vec<WireEvent>,
+}
+
+/// The image with motors of this make, if the tests were given one.
+pub fn has_image_for(make: Make) -> bool {
+    make == Make::Dm4310 || std::env::var_os("ROBOT_ELF_DBUS_RS00").is_some()
+}
+
+fn to_set((group, index): Setting, value: f32) -> [u8; 8] {
+    let [a, b, c, d] = value.to_le_bytes();
+    [WRITE_SETTING, group, index, 0, a, b, c, d]
+}
+
+impl Robot {
+    /// At power-on, with these contents of the parameter sectors.
+    pub fn with_flash(make: Make, flash: &Image) -> Self {
+        let parts = match make {
+            Make::Dm4310 => "",
+            Make::Rs00 => "radio = \"dbus\"\njoints = \"rs00\"\n",
+        };
+        let text = format!("name = \"parameters\"\nseconds = 1.0\nplant = \"stand\"\n{parts}");
+        let mut job = support::job(Scenario::parse(&text, "params").expect("it parses"));
+        if make == Make::Rs00 {
+            let elf = std::env::var_os("ROBOT_ELF_DBUS_RS00");
+            job.elf = elf.expect("asked for before").into();
+        }
+        let mut machine = job.machine().expect("the machine starts");
+        machine.set_parameter_flash(flash.bytes());
+        machine.with_world(|world| {
+            for bus in BUSES {
+                world.can_adapter(bus).set_mode(AdapterMode::Active);
+            }
+        });
+        let names = machine.diag_names().iter().cloned();
+        Self {
+            meanings: machine.diag_meanings(),
+            places: names.zip(0..).collect(),
+            machine,
+            now: 0,
+            diag: Vec::new(),
+            sampled_at: 0,
+            known: false,
+            replies: Default::default(),
+            events: Vec::new(),
+        }
+    }
+
+    pub fn now(&self) -> Ps {
+        self.now
+    }
+
+    /// Runs on to the next whole millisecond.
+    pub fn step(&mut self) {
+        self.now = (self.now / MS + 1) * MS;
+        self.machine.run_until(self.now).expect("the run goes on");
+        let Self {
+            replies, events, ..
+        } = self;
+        self.machine.with_world(|world| {
+            for (bus, replies) in BUSES.into_iter().zip(replies) {
+                while let Some((_, frame)) = world.can_adapter(bus).take() {
+                    if frame.id == REPLY_ID {
+                        replies.push(frame.data);
+                    }
+                }
+            }
+            world.drain_wire_events(events);
+        });
+    }
+
+    pub fn until(&mut self, at: Ps) {
+        while self.now < at {
+            self.step();
+        }
+    }
+
+    pub fn run_for(&mut self, time: Ps) {
+        self.until(self.now + time);
+    }
+
+    /// How long it took until `seen`; `None` if it took longer than `limit`.
+    pub fn wait(&mut self, limit: Ps, mut seen: impl FnMut(&mut Self) -> bool) -> Option<Ps> {
+        let from = self.now;
+        while !seen(self) {
+            if self.now >= from + limit {
+                return None;
+            }
+            self.step();
+        }
+        Some(self.now - from)
+    }
+
+    /// A value of the firmware's diagnostics; `None` before they can be read.
+    pub fn diag(&mut self, name: &str) -> Option<f64> {
+        let place = self.places[&format!("diag.{name}")];
+        if self.sampled_at != self.now {
+            self.sampled_at = self.now;
+            self.known = self.machine.sample_diag(&mut self.diag);
+        }
+        self.known.then(|| self.diag[place])
+    }
+
+    /// Names of the flags that are set in a diagnostic.
+    pub fn names_in(&mut self, name: &str) -> Vec<String> {
+        let Some(bits) = self.diag(name) else {
+            return Vec::new();
+        };
+        let place = self.places[&format!("diag.{name}")];
+        let meaning = self.meanings[place].as_ref().expect("the image names them");
+        let set = (0..32).filter(|bit| bits as u32 >> bit & 1 == 1);
+        set.map(|bit| meaning.bit(bit).unwrap_or("unnamed").to_owned())
+            .collect()
+    }
+
+    /// A value of the world.
+    pub fn world(&mut self, name: &str) -> f64 {
+        let mut values = Vec::new();
+        self.machine.with_world(|world| {
+            let place = world.signal_names().iter().position(|n| n == name);
+            world.sample(&mut values);
+            values[place.expect(name)]
+        })
+    }
+
+    /// Both wheels turn forward.
+    pub fn drives(&mut self) -> bool {
+        (0..2).all(|wheel| self.world(&format!("truth.wheel.{wheel}.speed_mps")) > 0.1)
+    }
+
+    /// The robot knows of this many changes since it booted and has saved all it has to.
+    pub fn is_saved(&mut self, changes: usize) -> bool {
+        let seen = self.diag("params.seen");
+        seen.is_some_and(|seen| seen >= changes as f64) && self.diag("params.unsaved") == Some(0.0)
+    }
+
+    /// A sector is ready to be begun.
+    pub fn is_tidy(&mut self) -> bool {
+        states(&self.machine.parameter_flash()).contains(&SectorState::Clean)
+    }
+
+    /// What the board complained of.
+    pub fn board_errors(&self) -> Vec<String> {
+        let errors = Machine::board_errors(&self.machine).into_iter();
+        errors.map(|error| error.message).collect()
+    }
+
+    pub fn armed(&mut self) -> bool {
+        self.diag("arming.state") == Some(1.0)
+    }
+
+    pub fn pilot(&mut self, input: RemoteInput) {
+        Simulation::act(&mut self.machine, &Deed::Remote(input)).expect("a pilot can always act");
+    }
+
+    pub fn enable(&mut self, on: bool) {
+        self.pilot(RemoteInput {
+            enable: Some(on),
+            ..RemoteInput::default()
+        });
+    }
+
+    pub fn stick(&mut self, vx: f64) {
+        self.pilot(RemoteInput {
+            vx: Some(vx),
+            ..RemoteInput::default()
+        });
+    }
+
+    pub fn fault(&mut self, name: &str, on: bool) {
+        faults::set(&mut self.machine, name, on).expect("the fault exists");
+    }
+
+    /// Asks for a change and does not wait for the answer.
+    pub fn ask_to_set(&mut self, setting: Setting, value: f32) {
+        self.send(0, WRITE_ID, to_set(setting, value));
+    }
+
+    /// Changes a setting of a robot that must take it.
+    pub fn set(&mut self, setting: Setting, value: f32) {
+        let reply = self.exchange(WRITE_ID, to_set(setting, value));
+        assert_eq!(
+            reply[..3],
+            [WRITE_SETTING, setting.0, setting.1],
+            "{reply:?}"
+        );
+    }
+
+    /// The robot's answer to the question whether everything is saved: state, error, unsaved groups.
+    pub fn store_state(&mut self) -> [u8; 3] {
+        let question = [READ_STORE, 0, 0, 0, 0, 0, 0, 0];
+        let [_, state, error, unsaved, ..] = self.exchange(READ_ID, question);
+        [state, error, unsaved]
+    }
+
+    /// All settings as the robot has them in use, over both buses.
+    pub fn settings(&mut self) -> Settings {
+        let mut read = Settings::new();
+        let mut left: Vec<Setting> = calibrated().into_keys().collect();
+        self.replies = Default::default();
+        let mut asked = [None; 2];
+        let deadline = self.now + 2_000 * MS;
+        while read.len() < COUNT {
+            assert!(self.now < deadline, "{read:?}");
+            for (bus, asked) in asked.iter_mut().enumerate() {
+                for reply in std::mem::take(&mut self.replies[bus]) {
+                    let [command, group, index, _, a, b, c, d] = reply;
+                    assert_ne!(command, REFUSED, "{reply:?}");
+                    read.insert((group, index), u32::from_le_bytes([a, b, c, d]));
+                    *asked = None;
+                }
+                let waits = asked.is_some_and(|(_, at)| self.now < at + ASK_AGAIN);
+                let next = asked.map(|(setting, _)| setting).or_else(|| left.pop());
+                if let Some((group, index)) = next.filter(|_| !waits) {
+                    self.send(bus, READ_ID, [READ_SETTING, group, index, 0, 0, 0, 0, 0]);
+                    *asked = Some(((group, index), self.now));
+                }
+            }
+            self.step();
+        }
+        read
+    }
+
+    fn send(&mut self, bus: usize, id: u32, data: [u8; 8]) {
+        let frame = CanFrame {
+            id,
+            extended: false,
+            remote: false,
+            dlc: 8,
+            data,
+        };
+        let taken = self
+            .machine
+            .with_world(|world| world.can_adapter(BUSES[bus]).send(frame));
+        assert!(taken, "the adapter has room");
+    }
+
+    /// The answer on CAN1. What a robot hears while it stands still for an erase it forgets, so it is asked again.
+    fn exchange(&mut self, id: u32, data: [u8; 8]) -> [u8; 8] {
+        self.replies[0].clear();
+        for _ in 0..TRIES {
+            self.send(0, id, data);
+            let came = self.wait(REPLY_WITHIN, |robot| !robot.replies[0].is_empty());
+            if came.is_some() {
+                return self.replies[0].remove(0);
+            }
+        }
+        panic!("no reply");
+    }
+}

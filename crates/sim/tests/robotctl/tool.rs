@@ -1,0 +1,74 @@
+//! `robotctl` in a thread of its own, on the pseudo-terminal of a running board.
+
+use std::{path::Path, thread, time::Duration};
+
+use robot_plant::{
+    time::{MS, Ps},
+    world::CanBusId,
+};
+use robot_sim::{
+    machine::LogLine,
+    runner::Observer,
+    signals::{SignalTable, Values},
+};
+use robotctl::{
+    can_link::CanDevice,
+    tuning::{Patience, TuningClient},
+};
+
+/// The board has booted and hears the bus by then.
+const START: Ps = 200 * MS;
+/// The board runs faster than real time: it waits this long each millisecond while the tool works, so that the tool is
+/// done long before the run ends.
+const LET_THE_TOOL_WORK: Duration = Duration::from_micros(500);
+/// On a busy computer a thread may rest for long.
+const PATIENCE: Patience = Patience {
+    each_try: Duration::from_secs(20),
+    tries: 2,
+};
+
+type Work<T> = Box<dyn FnOnce(&mut TuningClient) -> anyhow::Result<T> + Send>;
+
+/// What a user does with the tool, once.
+pub struct Tool<T> {
+    work: Option<Work<T>>,
+    device: Option<CanDevice>,
+    running: Option<thread::JoinHandle<anyhow::Result<T>>>,
+}
+
+impl<T: Send + 'static> Tool<T> {
+    pub fn new(work: impl FnOnce(&mut TuningClient) -> anyhow::Result<T> + Send + 'static) -> Self {
+        Self {
+            work: Some(Box::new(work)),
+            device: None,
+            running: None,
+        }
+    }
+
+    /// Of the work, which must have ended before the run did.
+    pub fn result(self) -> anyhow::Result<T> {
+        let running = self.running.expect("the run was long enough to start it");
+        assert!(running.is_finished(), "the run ended before the tool");
+        running.join().expect("the tool does not panic")
+    }
+}
+
+impl<T: Send + 'static> Observer for Tool<T> {
+    fn sample(&mut self, at: Ps, _: &SignalTable, _: &Values) {
+        if let Some(device) = self.device.take_if(|_| at >= START) {
+            let work = self.work.take().expect("there is one device");
+            self.running = Some(thread::spawn(move || {
+                work(&mut TuningClient::new(device.open()?, PATIENCE))
+            }));
+        }
+        if self.running.as_ref().is_some_and(|r| !r.is_finished()) {
+            thread::sleep(LET_THE_TOOL_WORK);
+        }
+    }
+
+    fn log(&mut self, _: &LogLine) {}
+
+    fn can_port(&mut self, _: CanBusId, device: &Path) {
+        self.device = Some(CanDevice::Slcan(device.to_owned()));
+    }
+}

@@ -1,0 +1,34 @@
+//! Where the tests find the image and the scenarios.
+
+use std::path::{Path, PathBuf};
+
+use robot_sim::{job::Job, scenario::Scenario};
+
+pub fn repository() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// The release image: `ROBOT_ELF`, or where `cargo xtask` builds it.
+pub fn image() -> PathBuf {
+    let built = "target/firmware/thumbv7em-none-eabihf/release/robot-firmware";
+    let path =
+        std::env::var_os("ROBOT_ELF").map_or_else(|| repository().join(built), PathBuf::from);
+    assert!(
+        path.is_file(),
+        "there is no firmware image at {}: run `cargo xtask test`, which builds it, or set ROBOT_ELF",
+        path.display()
+    );
+    path
+}
+
+pub fn job(scenario: Scenario) -> Job {
+    Job {
+        elf: image(),
+        scenario,
+        imu_trial: None,
+        patches: Vec::new(),
+        probe: false,
+        can_on_pty: Vec::new(),
+        flash_file: None,
+    }
+}
