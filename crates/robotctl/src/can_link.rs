@@ -1,4 +1,4 @@
-//! Ways from this computer to a CAN bus.
+//! CAN buses as this computer reaches them: through an slcan adapter or SocketCAN.
 
 mod device;
 mod lawicel;
@@ -12,11 +12,11 @@ use robot_app::domain::CanFrame;
 
 pub use device::CanDevice;
 
-/// A bus on which data frames with 11-bit identifiers are sent and heard; other frames are passed over.
+/// A CAN bus. It carries data frames with 11-bit identifiers; frames of other kinds are ignored.
 pub trait CanLink {
     fn send(&mut self, frame: &CanFrame) -> Result<(), CanLinkError>;
 
-    /// The next frame heard; `None` if there is none until `deadline`.
+    /// Returns the next frame received, or `None` if there is none before `deadline`.
     fn receive(&mut self, deadline: Instant) -> Result<Option<CanFrame>, CanLinkError>;
 }
 
@@ -24,6 +24,15 @@ pub trait CanLink {
 pub enum CanLinkError {
     #[error("cannot open {device}: {why}")]
     Open { device: String, why: String },
+    #[cfg(not(target_os = "linux"))]
+    #[error(
+        "cannot open {device}: CAN interfaces exist on Linux only; name the serial port of an slcan adapter, such as \
+         {example}"
+    )]
+    OnlyOnLinux {
+        device: String,
+        example: &'static str,
+    },
     #[error(
         "the adapter refuses `{command}`: is another program using it, or does it not know 1 Mbit/s?"
     )]

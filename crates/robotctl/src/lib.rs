@@ -7,6 +7,7 @@
 //! | [`report`] | a correction → an HTML page |
 //! | [`mounting`] | a robot tilted by hand → how its sensors sit |
 //! | [`radio`] | a transmitter's controls, moved one by one → which channel is which |
+//! | [`settings`] | the robot's settings by name, and their values in words |
 //! | [`parameter_file`] | parameters by name, in TOML |
 //! | [`can_link`] | a CAN bus through an slcan adapter or SocketCAN |
 //! | [`tuning`] | the settings of the robot on a bus, and its live values |
@@ -23,5 +24,7 @@ pub mod radio;
 pub mod recorder;
 pub mod recording;
 pub mod report;
+pub mod settings;
+mod statistics;
 pub mod status;
 pub mod tuning;

@@ -9,7 +9,7 @@ use std::{
 
 use toml::{Table, Value};
 
-use crate::tuning;
+use crate::settings;
 
 const HEADING: &str =
     "# Parameters of the robot: `robotctl tune --can … apply FILE` writes them.\n";
@@ -94,7 +94,7 @@ impl ParameterFile {
                 }
                 Value::Integer(number) => self.set(&name, *number as f32),
                 Value::String(word) => {
-                    let named = tuning::find(&name).map_err(|error| error.to_string())?;
+                    let named = settings::find(&name).map_err(|error| error.to_string())?;
                     let value = named
                         .parse(word)
                         .map_err(|error| format!("{name}: {error}"))?;
@@ -110,7 +110,7 @@ impl ParameterFile {
         let mut tables: BTreeMap<&str, String> = BTreeMap::new();
         for (name, value) in self.iter() {
             let (table, key) = name.rsplit_once('.').unwrap_or(("", name));
-            let words = tuning::find(name).map(|named| named.in_words(value));
+            let words = settings::find(name).map(|named| named.in_words(value));
             let word = words.ok().filter(|words| words.parse::<f32>().is_err());
             let line = match word {
                 Some(word) => format!("{key} = {word:?}\n"),

@@ -11,7 +11,8 @@ pub use samples::Samples;
 use crate::{
     calibration::{accel::AccelCorrection, mag::MagCorrection},
     parameter_file::ParameterFile,
-    tuning::{self, TuningClient, TuningError},
+    settings,
+    tuning::{TuningClient, TuningError},
 };
 
 /// Groups of settings that change what is recorded.
@@ -117,7 +118,7 @@ pub fn record(
 
 fn corrections(client: &mut TuningClient) -> Result<(AccelCorrection, MagCorrection), TuningError> {
     let mut file = ParameterFile::default();
-    for named in tuning::all().filter(|named| CORRECTIONS.contains(&named.group.name)) {
+    for named in settings::all().filter(|named| CORRECTIONS.contains(&named.group.name)) {
         file.set(&named.full_name(), client.read(named)?);
     }
     Ok((AccelCorrection::read(&file), MagCorrection::read(&file)))

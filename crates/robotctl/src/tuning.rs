@@ -5,12 +5,10 @@ mod boot_findings;
 mod bring_up;
 mod client;
 mod live;
-mod name;
 mod recording_report;
 mod request;
 mod saving;
 mod store_report;
-mod value;
 mod wheel_geometry;
 
 #[cfg(test)]
@@ -23,9 +21,7 @@ pub use boot_findings::BootFindings;
 pub use bring_up::{BringUpStep, Joint, Motor, Trial};
 pub use client::{Patience, TuningClient, TuningError};
 pub use live::{LiveReading, live_page};
-pub use name::{Named, UnknownName, all, find, find_group};
 pub use recording_report::RecordingReport;
 pub use saving::{SaveError, SavePatience, wait_until_saved};
 pub use store_report::StoreReport;
-pub use value::ValueError;
 pub use wheel_geometry::{GeometryError, WheelGeometry};

@@ -15,8 +15,7 @@ use nalgebra::Vector3;
 pub use face::Face;
 pub use still::StillWindow;
 
-use super::statistics::rms;
-use crate::recording::Sample;
+use crate::{recording::Sample, statistics::rms};
 
 /// Standard gravity, which the firmware counts with.
 pub const GRAVITY_MPS2: f64 = 9.806_65;

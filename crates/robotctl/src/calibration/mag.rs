@@ -14,8 +14,7 @@ use nalgebra::{Matrix3, Vector3};
 
 pub use coverage::Coverage;
 
-use super::statistics::rms;
-use crate::recording::Sample;
+use crate::{recording::Sample, statistics::rms};
 
 /// The magnetometer gives 0.3 µT a count and 0.8 µT of noise; some of it remains whatever the correction.
 const MAX_RESIDUAL_SHARE: f64 = 0.05;

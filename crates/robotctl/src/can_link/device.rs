@@ -1,53 +1,57 @@
 //! Which bus, as the user names it.
 
-use std::{convert::Infallible, fmt, path::PathBuf, str::FromStr};
+use std::{convert::Infallible, fmt, str::FromStr};
 
 use super::{CanLink, CanLinkError, slcan::Slcan};
 
 /// Where the CAN bus is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum CanDevice {
-    /// A LAWICEL (slcan) adapter on a serial device, or a pseudo-terminal of the emulated board.
-    Slcan(PathBuf),
-    /// A network interface of Linux, already up at 1 Mbit/s.
+    /// The serial port of a LAWICEL (slcan) adapter, or a pseudo-terminal of the emulated board.
+    Slcan(String),
+    /// A CAN interface of Linux, already up at 1 Mbit/s.
     SocketCan(String),
 }
 
 impl FromStr for CanDevice {
     type Err = Infallible;
 
-    /// A path or a COM port is a serial device; anything else the name of an interface.
+    /// A path (`/dev/ttyACM0`) or a COM port (`COM3`) is a serial port, anything else the name of an interface.
     fn from_str(text: &str) -> Result<Self, Infallible> {
-        let is_serial = text.contains(['/', '\\']) || text.to_ascii_uppercase().starts_with("COM");
-        Ok(if is_serial {
-            Self::Slcan(text.into())
+        let is_serial = text.contains(['/', '\\']) || is_com_port(text);
+        let device = if is_serial {
+            Self::Slcan
         } else {
-            Self::SocketCan(text.to_owned())
-        })
+            Self::SocketCan
+        };
+        Ok(device(text.to_owned()))
     }
+}
+
+fn is_com_port(text: &str) -> bool {
+    let number = text.get(3..).filter(|number| !number.is_empty());
+    let is_number = number.is_some_and(|number| number.bytes().all(|byte| byte.is_ascii_digit()));
+    is_number && text.to_ascii_uppercase().starts_with("COM")
 }
 
 impl fmt::Display for CanDevice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Slcan(path) => path.display().fmt(f),
-            Self::SocketCan(name) => name.fmt(f),
-        }
+        let (Self::Slcan(name) | Self::SocketCan(name)) = self;
+        name.fmt(f)
     }
 }
 
 impl CanDevice {
-    /// Opens the bus for sending and hearing.
+    /// Opens the bus to send and receive.
     pub fn open(&self) -> Result<Box<dyn CanLink>, CanLinkError> {
         match self {
-            Self::Slcan(path) => Ok(Box::new(Slcan::open(path)?)),
+            Self::Slcan(port) => Ok(Box::new(Slcan::open(port)?)),
             #[cfg(target_os = "linux")]
             Self::SocketCan(name) => Ok(Box::new(super::socketcan::Interface::open(name)?)),
             #[cfg(not(target_os = "linux"))]
-            Self::SocketCan(name) => Err(CanLinkError::Open {
+            Self::SocketCan(name) => Err(CanLinkError::OnlyOnLinux {
                 device: name.clone(),
-                why: "network interfaces for CAN exist on Linux only; name the serial port of an slcan adapter, such as COM3"
-                    .into(),
+                example: super::slcan::EXAMPLE_PORT,
             }),
         }
     }
@@ -60,8 +64,18 @@ mod tests {
     #[test]
     fn paths_and_com_ports_are_serial_devices() {
         let device = |text: &str| text.parse::<CanDevice>().unwrap();
-        assert_eq!(device("/dev/pts/3"), CanDevice::Slcan("/dev/pts/3".into()));
-        assert_eq!(device("com7"), CanDevice::Slcan("com7".into()));
-        assert_eq!(device("can0"), CanDevice::SocketCan("can0".into()));
+        let names = [
+            "/dev/ttyACM0",
+            "/dev/cu.usbmodem1101",
+            "COM3",
+            "com17",
+            r"\\.\COM17",
+        ];
+        for name in names {
+            assert_eq!(device(name), CanDevice::Slcan(name.into()));
+        }
+        for name in ["can0", "com", "company0"] {
+            assert_eq!(device(name), CanDevice::SocketCan(name.into()));
+        }
     }
 }

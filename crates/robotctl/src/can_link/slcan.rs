@@ -3,7 +3,6 @@
 use std::{
     collections::VecDeque,
     io::{ErrorKind, Read, Write},
-    path::Path,
     time::{Duration, Instant},
 };
 
@@ -24,6 +23,15 @@ const SETTLE_TIME: Duration = Duration::from_millis(100);
 const BIT_RATE_1M: &str = "S8\r";
 const OPEN: &str = "O\r";
 const CLOSE: &str = "C\r";
+/// A serial port as this system names it.
+#[cfg(not(target_os = "linux"))]
+pub(super) const EXAMPLE_PORT: &str = if cfg!(windows) {
+    "COM3"
+} else {
+    "/dev/cu.usbmodem1101"
+};
+/// The shortest wait that a port is asked for: Windows refuses zero milliseconds.
+const SHORTEST_WAIT: Duration = Duration::from_millis(1);
 
 pub(super) struct Slcan {
     port: Box<dyn SerialPort>,
@@ -33,13 +41,12 @@ pub(super) struct Slcan {
 
 impl Slcan {
     /// Opens the adapter's channel at 1 Mbit/s, after closing it should it be open.
-    pub fn open(device: &Path) -> Result<Self, CanLinkError> {
-        let name = device.to_string_lossy();
-        let port = serialport::new(name.as_ref(), LINE_BPS)
+    pub fn open(name: &str) -> Result<Self, CanLinkError> {
+        let port = serialport::new(name, LINE_BPS)
             .open()
-            .map_err(|e| CanLinkError::Open {
-                device: name.into_owned(),
-                why: format!("{e}; {}", cure(&e)),
+            .map_err(|error| CanLinkError::Open {
+                device: name.to_owned(),
+                why: format!("{error}; {}", advice(error.kind(), name, &port_names())),
             })?;
         let mut link = Self {
             port,
@@ -87,7 +94,7 @@ impl Slcan {
     fn read(&mut self, at_most: Duration) -> Result<(), CanLinkError> {
         let mut bytes = [0; 4096];
         self.port
-            .set_timeout(at_most)
+            .set_timeout(at_most.max(SHORTEST_WAIT))
             .map_err(std::io::Error::from)?;
         match self.port.read(&mut bytes) {
             Ok(count) => {
@@ -102,22 +109,23 @@ impl Slcan {
     }
 }
 
-/// What to do about a port that cannot be opened.
-fn cure(error: &serialport::Error) -> String {
-    if error.kind() == serialport::ErrorKind::Io(ErrorKind::PermissionDenied) {
-        return if cfg!(windows) {
-            "another program has it open".to_owned()
-        } else {
-            "add yourself to its group, often `sudo usermod -aG dialout $USER`, and log in again"
-                .to_owned()
-        };
-    }
+fn port_names() -> Vec<String> {
     let ports = serialport::available_ports().unwrap_or_default();
-    let names: Vec<String> = ports.into_iter().map(|port| port.port_name).collect();
-    if names.is_empty() {
+    ports.into_iter().map(|port| port.port_name).collect()
+}
+
+/// What to do about a port that cannot be opened, given those that this computer has.
+fn advice(error: serialport::ErrorKind, name: &str, ports: &[String]) -> String {
+    let is_denied = error == serialport::ErrorKind::Io(ErrorKind::PermissionDenied);
+    if is_denied && cfg!(target_os = "linux") {
+        "add yourself to its group, often `sudo usermod -aG dialout $USER`, and log in again"
+            .to_owned()
+    } else if is_denied || ports.iter().any(|port| port.eq_ignore_ascii_case(name)) {
+        "another program may have it open".to_owned()
+    } else if ports.is_empty() {
         "this computer has no serial port: is the adapter plugged in?".to_owned()
     } else {
-        format!("serial ports here: {}", names.join(", "))
+        format!("serial ports here: {}", ports.join(", "))
     }
 }
 
@@ -142,5 +150,23 @@ impl Drop for Slcan {
     fn drop(&mut self) {
         // The adapter may be gone; then there is nothing to close.
         let _ = self.port.write_all(CLOSE.as_bytes());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serialport::ErrorKind::NoDevice;
+
+    use super::*;
+
+    /// Windows reports a port that is in use as missing.
+    #[test]
+    fn a_port_that_cannot_be_opened_is_in_use_or_another_one_is_named() {
+        let ports = ["COM3".to_owned(), "COM12".to_owned()];
+        let said = advice(NoDevice, "com3", &ports);
+        assert!(said.contains("another program"), "{said}");
+        let said = advice(NoDevice, "COM4", &ports);
+        assert!(said.contains("COM3, COM12"), "{said}");
+        assert!(advice(NoDevice, "COM4", &[]).contains("plugged in"));
     }
 }

@@ -1,4 +1,4 @@
-//! Where the robot is.
+//! The option that names the CAN bus.
 
 use anyhow::{Context, Result};
 use robotctl::{
@@ -8,8 +8,8 @@ use robotctl::{
 
 #[derive(clap::Args)]
 pub struct Connection {
-    /// Serial device of an slcan adapter (/dev/ttyACM0, COM3; of the emulated board: /dev/pts/N) or, on Linux, a CAN
-    /// interface (can0)
+    /// Serial port of an slcan adapter (Windows: COM3, macOS: /dev/cu.usbmodem1101, Linux: /dev/ttyACM0, emulated board:
+    /// /dev/pts/N) or, on Linux, a CAN interface (can0)
     #[arg(long, value_name = "DEVICE", global = true)]
     can: Option<CanDevice>,
 }

@@ -2,7 +2,10 @@
 
 use anyhow::{Context, Result, ensure};
 use clap::ValueEnum;
-use robotctl::tuning::{self, Joint, TuningClient};
+use robotctl::{
+    settings,
+    tuning::{self, Joint, TuningClient},
+};
 
 use super::{connection::Connection, output::say, tune::confirm_saved};
 
@@ -46,9 +49,9 @@ fn zero(client: &mut TuningClient, joint: Joint, angle_rad: f32) -> Result<()> {
         .to_possible_value()
         .context("every joint has a name")?;
     let name = name.get_name();
-    let setting = tuning::find(&format!("joint-{name}.zero-rad"))?;
-    let min_rad = client.read(tuning::find(&format!("joint-{name}.min-rad"))?)?;
-    let max_rad = client.read(tuning::find(&format!("joint-{name}.max-rad"))?)?;
+    let setting = settings::find(&format!("joint-{name}.zero-rad"))?;
+    let min_rad = client.read(settings::find(&format!("joint-{name}.min-rad"))?)?;
+    let max_rad = client.read(settings::find(&format!("joint-{name}.max-rad"))?)?;
     let angle = |client: &mut TuningClient| -> Result<Option<f64>> {
         let reading = client.live(tuning::live_page("joint"), joint as usize)?;
         Ok(reading.and_then(|reading| reading.number("angle-rad")))

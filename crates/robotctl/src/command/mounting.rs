@@ -7,7 +7,8 @@ use robot_app::domain::Orientation;
 use robotctl::{
     can_link::CanDevice,
     mounting::{self, BoardFound, FieldSample, MagFound, Poses, Watch, WatchError},
-    tuning::{self, Patience, TuningClient},
+    settings,
+    tuning::{Patience, TuningClient},
 };
 
 use super::{answer::ask, output::say, tune::confirm_saved};
@@ -19,7 +20,7 @@ const SETTLING: Duration = Duration::from_secs(30);
 
 #[derive(clap::Args)]
 pub struct Mounting {
-    /// Serial device of an slcan adapter or, on Linux, a CAN interface (can0)
+    /// Serial port of an slcan adapter (COM3, /dev/ttyACM0) or, on Linux, a CAN interface (can0)
     #[arg(long, value_name = "DEVICE")]
     can: CanDevice,
     /// Write what was found to the robot; without it the robot's settings are only checked
@@ -56,13 +57,13 @@ impl Mounting {
         if !self.write {
             bail!("mounting.mag is set, so the heading follows it; add --write to find it anew");
         }
-        let named = tuning::find("mounting.mag")?;
+        let named = settings::find("mounting.mag")?;
         client.write(named, named.parse("unset")?)?;
         Ok(())
     }
 
     fn conclude(&self, client: &mut TuningClient, name: &str, found: Orientation) -> Result<()> {
-        let named = tuning::find(name)?;
+        let named = settings::find(name)?;
         let (is, found_name) = (client.read(named)?, found.name());
         let wanted = named.parse(found_name)?;
         if is == wanted {

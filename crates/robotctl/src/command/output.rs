@@ -23,6 +23,13 @@ pub fn write(text: fmt::Arguments<'_>) -> Result<(), OutputError> {
     written.map_err(OutputError)
 }
 
+/// Clears the terminal and moves the cursor to its first place.
+pub fn clear() -> Result<(), OutputError> {
+    // A console of Windows takes control sequences only when told to; other systems have nothing to do here.
+    anstyle_query::windows::enable_ansi_colors();
+    write(format_args!("\x1b[2J\x1b[H"))
+}
+
 /// As `println!`, but an error is one of the command.
 macro_rules! say {
     ($($text:tt)*) => {

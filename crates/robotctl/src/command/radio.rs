@@ -7,7 +7,8 @@ use robot_app::{domain::NO_CHANNEL, tuning::Refusal};
 use robotctl::{
     can_link::CanDevice,
     radio::{self, Control, Found, Moved, Still, Watch, WatchError},
-    tuning::{self, BringUpStep, Patience, TuningClient, TuningError},
+    settings,
+    tuning::{BringUpStep, Patience, TuningClient, TuningError},
 };
 
 use super::{answer::ask, output::say, tune::confirm_saved};
@@ -17,7 +18,7 @@ const ROUND: Duration = Duration::from_secs(8);
 
 #[derive(clap::Args)]
 pub struct Radio {
-    /// Serial device of an slcan adapter or, on Linux, a CAN interface (can0)
+    /// Serial port of an slcan adapter (COM3, /dev/ttyACM0) or, on Linux, a CAN interface (can0)
     #[arg(long, value_name = "DEVICE")]
     can: CanDevice,
     /// Write what was found to the robot; without it the robot's settings are only compared
@@ -32,7 +33,7 @@ impl Radio {
             "For SBUS; DBUS needs no settings. Robot disarmed, wheels off the ground, transmitter on."
         )?;
         Watch::new(&mut client).check_disarmed()?;
-        let enable = tuning::find(radio::ENABLE_CHANNEL)?;
+        let enable = settings::find(radio::ENABLE_CHANNEL)?;
         let enable_was = client.read(enable)?;
         bring_up(&mut client, BringUpStep::ReadOnly, enable_was)?;
         say!(

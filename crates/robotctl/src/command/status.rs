@@ -7,11 +7,8 @@ use robotctl::{status::Status as RobotStatus, tuning::TuningClient};
 
 use super::{
     connection::Connection,
-    output::{begin, say},
+    output::{self, begin, say},
 };
-
-/// Clears the terminal and goes to its first place.
-const CLEAR: &str = "\x1b[2J\x1b[H";
 
 #[derive(clap::Args)]
 pub struct Status {
@@ -51,7 +48,7 @@ impl Status {
             return Ok(());
         }
         if self.watch {
-            begin!("{CLEAR}")?;
+            output::clear()?;
         }
         begin!("{status}")?;
         Ok(())

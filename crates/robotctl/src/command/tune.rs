@@ -5,9 +5,9 @@ use std::{num::NonZeroI16, path::PathBuf};
 use anyhow::{Context, Result, bail};
 use robotctl::{
     parameter_file::ParameterFile,
+    settings::{self, Named},
     tuning::{
-        self, BringUpStep, Motor, Named, SaveError, SavePatience, Trial, TuningClient,
-        WheelGeometry,
+        self, BringUpStep, Motor, SaveError, SavePatience, Trial, TuningClient, WheelGeometry,
     },
 };
 
@@ -153,7 +153,7 @@ impl Tune {
             false => None,
         };
         say!("{:<40} {:>12} {:<10} range", "setting", "value", "unit")?;
-        for named in tuning::all().filter(|n| n.full_name().contains(filter)) {
+        for named in settings::all().filter(|n| n.full_name().contains(filter)) {
             let value = match &mut client {
                 Some(client) => named.in_words(client.read(named)?),
                 None => String::new(),
@@ -169,14 +169,14 @@ impl Tune {
     }
 
     fn get(&self, name: &str) -> Result<()> {
-        let named = tuning::find(name)?;
+        let named = settings::find(name)?;
         let value = self.connection.open()?.read(named)?;
         say!("{}", shown(named, value))?;
         Ok(())
     }
 
     fn set(&self, name: &str, value: &str) -> Result<()> {
-        let named = tuning::find(name)?;
+        let named = settings::find(name)?;
         let value = named.parse(value)?;
         let mut client = self.connection.open()?;
         let before = client.read(named)?;
@@ -202,7 +202,7 @@ impl Tune {
     fn save(&self, path: &std::path::Path) -> Result<()> {
         let mut client = self.connection.open()?;
         let mut file = ParameterFile::default();
-        for named in tuning::all() {
+        for named in settings::all() {
             file.set(&named.full_name(), client.read(named)?);
         }
         file.save(path)?;
@@ -211,7 +211,7 @@ impl Tune {
     }
 
     fn defaults(&self, group: Option<&str>, yes: bool) -> Result<()> {
-        let group = group.map(tuning::find_group).transpose()?;
+        let group = group.map(settings::find_group).transpose()?;
         let whose = group.map_or("all groups", |group| group.name);
         if !yes {
             bail!(

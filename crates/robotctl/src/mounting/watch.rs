@@ -4,7 +4,10 @@ use nalgebra::{Rotation3, Vector3};
 use robot_app::domain::Orientation;
 
 use super::FieldSample;
-use crate::tuning::{self, LiveReading, TuningClient, TuningError, live_page};
+use crate::{
+    settings,
+    tuning::{LiveReading, TuningClient, TuningError, live_page},
+};
 
 /// Readings of a pose.
 const READINGS: usize = 40;
@@ -35,7 +38,7 @@ pub struct Watch<'c> {
 impl<'c> Watch<'c> {
     pub fn new(client: &'c mut TuningClient) -> Result<Self, WatchError> {
         let setting = |client: &mut TuningClient, name| -> Result<_, WatchError> {
-            let named = tuning::find(name).map_err(|_| WatchError::TooOld)?;
+            let named = settings::find(name).map_err(|_| WatchError::TooOld)?;
             Ok(Orientation::from_number(client.read(named)? as u32))
         };
         let board = setting(client, "mounting.board")?.ok_or(WatchError::TooOld)?;

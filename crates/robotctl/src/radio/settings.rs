@@ -5,7 +5,8 @@ use robot_app::domain::{NO_CHANNEL, RemoteChannel};
 use super::{Control, Moved, ends};
 use crate::{
     parameter_file::ParameterFile,
-    tuning::{self, ApplyError, Named, TuningClient, TuningError, UnknownName},
+    settings::{self, Named, UnknownName},
+    tuning::{self, ApplyError, TuningClient, TuningError},
 };
 
 /// Without this one the robot cannot be armed.
@@ -79,7 +80,7 @@ pub fn differing(
 ) -> Result<Vec<(Named, f32, f32)>, WriteError> {
     let mut differing = Vec::new();
     for (name, wanted) in found.iter().flat_map(Found::settings) {
-        let named = tuning::find(&name)?;
+        let named = settings::find(&name)?;
         let is = match name.as_str() {
             ENABLE_CHANNEL => enable_was,
             _ => client.read(named)?,
@@ -106,7 +107,7 @@ pub enum WriteError {
 /// The robot has no enable switch while its channels change: half a mapping could read it as on, and it would neither take
 /// further settings nor be safe. A break leaves a robot that cannot be armed.
 pub fn write(client: &mut TuningClient, found: &[Found]) -> Result<(), WriteError> {
-    let enable = tuning::find(ENABLE_CHANNEL)?;
+    let enable = settings::find(ENABLE_CHANNEL)?;
     let mut enable_index = client.read(enable)?;
     let mut file = ParameterFile::default();
     for (name, value) in found.iter().flat_map(Found::settings) {

@@ -1,7 +1,7 @@
 //! Units of a table's columns: as the header names them, else as the numbers themselves tell.
 
 use super::Sensor;
-use crate::calibration::statistics::median;
+use crate::statistics::median;
 
 const GRAVITY_MPS2: f64 = 9.806_65;
 /// With fewer rows nothing is guessed.

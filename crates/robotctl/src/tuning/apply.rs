@@ -5,8 +5,11 @@ use robot_app::{
     tuning::{Parameter, ParameterKind},
 };
 
-use super::{Named, TuningClient, TuningError, UnknownName, find};
-use crate::parameter_file::ParameterFile;
+use super::{TuningClient, TuningError};
+use crate::{
+    parameter_file::ParameterFile,
+    settings::{Named, UnknownName, find},
+};
 
 const MOUNTING: &str = "mounting";
 

@@ -7,10 +7,13 @@ use robot_app::tuning::{
 };
 
 use super::{
-    BootFindings, BringUpStep, LiveReading, Named, RecordingReport, StoreReport, WheelGeometry,
+    BootFindings, BringUpStep, LiveReading, RecordingReport, StoreReport, WheelGeometry,
     request::{self, Reply, Request},
 };
-use crate::can_link::{CanLink, CanLinkError};
+use crate::{
+    can_link::{CanLink, CanLinkError},
+    settings::Named,
+};
 
 /// How long replies are waited for.
 #[derive(Clone, Copy, Debug)]

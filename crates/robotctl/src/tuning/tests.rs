@@ -17,6 +17,7 @@ use super::{
 use crate::{
     mounting::{Watch, WatchError},
     parameter_file::ParameterFile,
+    settings::{all, find, find_group},
 };
 
 fn file(values: &[(&str, f32)]) -> ParameterFile {

@@ -21,6 +21,7 @@ use robotctl::{
     parameter_file::ParameterFile,
     recorder::{self, RecordPatience},
     recording::{self, Sample, Sensor},
+    settings,
     tuning::{self, TuningClient},
 };
 use tool::Tool;
@@ -44,12 +45,12 @@ fn job() -> Job {
 #[test]
 fn settings_of_the_running_image_are_read_and_changed() {
     let mut tool = Tool::new(|client| {
-        for named in tuning::all() {
+        for named in settings::all() {
             let value = client.read(named)?;
             let allowed = named.parameter.min..=named.parameter.max;
             assert!(allowed.contains(&value), "{} = {value}", named.full_name());
         }
-        client.write(tuning::find("wheel-geometry.track-m")?, 0.37)?;
+        client.write(settings::find("wheel-geometry.track-m")?, 0.37)?;
         let arming = client.live(tuning::live_page("arming"), 0)?;
         let joint = client.live(tuning::live_page("joint"), 3)?;
         // One of each side: they turn in opposite directions.

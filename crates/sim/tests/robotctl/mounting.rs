@@ -11,7 +11,8 @@ use robot_plant::{
 use robot_sim::scenario::Scenario;
 use robotctl::{
     mounting::{Poses, Watch, WatchError, enough_turned, find_board, find_mag},
-    tuning::{self, TuningClient},
+    settings,
+    tuning::TuningClient,
 };
 
 use crate::{
@@ -72,7 +73,7 @@ fn find_out(client: &mut TuningClient) -> anyhow::Result<[&'static str; 2]> {
         nose_up,
         left_up,
     })?;
-    let setting = tuning::find("mounting.board")?;
+    let setting = settings::find("mounting.board")?;
     client.write(setting, setting.parse(board.orientation.name())?)?;
     let mut watch = Watch::new(client)?;
     while watch.check_attitude().is_err() {}

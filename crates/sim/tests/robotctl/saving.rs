@@ -7,6 +7,7 @@ use robot_plant::world::CanBusId;
 use robot_sim::scenario::Scenario;
 use robotctl::{
     parameter_file::ParameterFile,
+    settings,
     tuning::{self, SavePatience, StoreReport, TuningClient},
 };
 
@@ -20,7 +21,7 @@ const PATIENCE: SavePatience = SavePatience {
 const TRACK: &str = "wheel-geometry.track-m";
 
 fn track(client: &mut TuningClient) -> anyhow::Result<f32> {
-    Ok(client.read(tuning::find(TRACK)?)?)
+    Ok(client.read(settings::find(TRACK)?)?)
 }
 
 fn saved(client: &mut TuningClient) -> anyhow::Result<StoreReport> {
@@ -58,7 +59,7 @@ fn saved_means_that_the_robot_may_be_switched_off() {
 
     let default = robot.on(|client| {
         let default = track(client)?;
-        client.write(tuning::find(TRACK)?, 0.37)?;
+        client.write(settings::find(TRACK)?, 0.37)?;
         let report = client.store()?.context("this firmware saves")?;
         anyhow::ensure!(!report.is_saved(), "not at once: {report}");
         let report = saved(client)?;
@@ -83,8 +84,8 @@ fn saved_means_that_the_robot_may_be_switched_off() {
     let values = robot.on(|client| {
         let values = (
             track(client)?,
-            client.read(tuning::find("heater.target-c")?)?,
-            client.read(tuning::find("safety.battery-low-v")?)?,
+            client.read(settings::find("heater.target-c")?)?,
+            client.read(settings::find("safety.battery-low-v")?)?,
         );
         client.restore_defaults(None)?;
         saved(client)?;

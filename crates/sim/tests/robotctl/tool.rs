@@ -69,6 +69,6 @@ impl<T: Send + 'static> Observer for Tool<T> {
     fn log(&mut self, _: &LogLine) {}
 
     fn can_port(&mut self, _: CanBusId, device: &Path) {
-        self.device = Some(CanDevice::Slcan(device.to_owned()));
+        self.device = Some(CanDevice::Slcan(device.display().to_string()));
     }
 }

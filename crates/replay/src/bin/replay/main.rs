@@ -47,7 +47,7 @@ struct Args {
 const EXAMPLES: &str = "\
 Examples:
   cargo xtask replay
-  cargo xtask replay --data broad/hz200 --out /tmp/6d --mode 6d
+  cargo xtask replay --data broad/hz200 --out target/6d --mode 6d
   cargo xtask replay --trial fast_rotation --gyro-offset-dps 2.5,-2.5,2.5
   python3 broad/score.py broad/hz200 target/replay --at est    # the same figures from the data's own script";
 

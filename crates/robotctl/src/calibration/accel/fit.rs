@@ -3,7 +3,7 @@
 use nalgebra::{SVector, Vector3};
 
 use super::{AccelCorrection, GRAVITY_MPS2, StillWindow, face};
-use crate::calibration::{least_squares, statistics::median};
+use crate::{calibration::least_squares, statistics::median};
 
 /// A position further off than this, and than four times what is usual here, is left out.
 const OUTLIER_MPS2: f64 = 0.1;

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::{calibration::statistics::mean, recording::Sample};
+use crate::{recording::Sample, statistics::mean};
 
 /// Shortest still position that counts, without the piece cut off at each end.
 pub(super) const MIN_WINDOW_S: f64 = 1.0;

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, SVector, Vector3};
 
 use super::{MagCorrection, ellipsoid::Ellipsoid};
-use crate::calibration::{least_squares, statistics::median};
+use crate::{calibration::least_squares, statistics::median};
 
 /// Further from the middle of all samples than this many times the usual distance: a glitch that would pull the start.
 const FAR_FACTOR: f64 = 3.0;

@@ -48,7 +48,7 @@ impl Named {
 
 #[cfg(test)]
 mod tests {
-    use crate::tuning::find;
+    use crate::settings::find;
 
     /// By docs/tuning.md.
     #[test]
