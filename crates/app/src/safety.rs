@@ -1,28 +1,28 @@
-//! Who may move: flags, verdict, arming, permit.
+//! The safety stage decides what may move: flags, verdict, arming, and the torque permit.
 
 mod arming;
-mod attitude_rest;
-mod battery;
+mod attitude_settling;
+mod battery_limits;
+mod centred_sticks;
 mod debounce;
-mod error_account;
+mod fall_detector;
 mod flags;
 mod flash_permit;
-mod heat;
 mod latch;
-mod motor_findings;
+mod leaky_bucket;
+mod motor_readiness;
 mod permit;
 mod policy;
-mod resume;
+mod resume_interlock;
 mod status;
-mod stick_rest;
-mod tilt;
+mod temperature_limits;
 
 pub use arming::{ArmedToken, Arming, ArmingBlockers, ArmingInputs, ArmingState, ArmingStatus};
-pub use attitude_rest::AttitudeRest;
+pub use attitude_settling::AttitudeSettling;
+pub use centred_sticks::CentredSticks;
 pub use flags::SafetyFlags;
 pub use flash_permit::{FlashGrant, FlashPermit, FlashPermitInputs, WatchdogPeriod};
-pub use motor_findings::MotorFindings;
+pub use motor_readiness::MotorReadiness;
 pub use permit::TorquePermit;
 pub use policy::{SafetyInputs, SafetyPolicy};
 pub use status::{SafetyStatus, SafetyVerdict};
-pub use stick_rest::StickRest;

@@ -3,7 +3,7 @@
 use robot_app::diagnostics::{BusStrangers, ChangeNotice, DiagnosticsSnapshot};
 use robot_app::domain::{BusId, JointConfig};
 use robot_app::motor::layout::MotorLayout;
-use robot_app::safety::{ArmingState, MotorFindings};
+use robot_app::safety::{ArmingState, MotorReadiness};
 
 /// In the order of `ChassisCommand`.
 const WHEEL_NAMES: [&str; 2] = ["left", "right"];
@@ -14,7 +14,7 @@ const SETTLED_US: u64 = 1_000_000;
 /// What was logged last.
 #[derive(Default)]
 pub struct MotorLog {
-    findings: ChangeNotice<MotorFindings>,
+    findings: ChangeNotice<MotorReadiness>,
     /// Of each bus: the identifier last told, and that of a speed controller.
     strangers: [ChangeNotice<(u16, u16)>; 2],
 }
@@ -34,7 +34,7 @@ impl MotorLog {
             log_wheels(found, d, layout);
             log_joints(found, d, joints);
         }
-        if d.motors == MotorFindings::default() {
+        if d.motors == MotorReadiness::default() {
             return;
         }
         let buses = BusId::ALL.into_iter().zip(&mut self.strangers);
@@ -56,7 +56,7 @@ impl MotorLog {
     }
 }
 
-fn log_wheels(found: MotorFindings, d: &DiagnosticsSnapshot, layout: &MotorLayout) {
+fn log_wheels(found: MotorReadiness, d: &DiagnosticsSnapshot, layout: &MotorLayout) {
     let wheels = layout.wheels();
     let [can1, can2] = &d.strangers.buses;
     let heard = match wheels.bus {
@@ -96,7 +96,7 @@ fn log_wheels(found: MotorFindings, d: &DiagnosticsSnapshot, layout: &MotorLayou
     }
 }
 
-fn log_joints(found: MotorFindings, d: &DiagnosticsSnapshot, configs: &[JointConfig; 4]) {
+fn log_joints(found: MotorReadiness, d: &DiagnosticsSnapshot, configs: &[JointConfig; 4]) {
     let joints = d.sensors.motor.joints.iter().zip(configs);
     for (bit, (name, (joint, config))) in [1, 2, 4, 8]
         .into_iter()

@@ -8,7 +8,7 @@ use crate::{
         OperatorState, ParamStatus, RadioLineHealth, RemoteDiagnostics, RemoteState, ResetCause,
         SensorHealth, SensorsSnapshot, StateEstimate, TuningStatus,
     },
-    safety::{ArmingStatus, MotorFindings, SafetyStatus},
+    safety::{ArmingStatus, MotorReadiness, SafetyStatus},
 };
 
 /// Plain data, so that a debugger or the emulator can read every field by its name.
@@ -45,7 +45,7 @@ pub struct DiagnosticsSnapshot {
     pub imu_calibrated: bool,
     pub debug_probe: DebugProbe,
     /// Which motors keep the robot from being armed.
-    pub motors: MotorFindings,
+    pub motors: MotorReadiness,
     /// Frames on the buses that nobody here knows.
     pub strangers: Strangers,
     /// See `RemoteUpdate`.

@@ -1,31 +1,36 @@
-//! Disarmed until the pilot flips the enable switch and nothing speaks against it (docs/safety.md#the-rules, 1).
+//! The arming state machine. The robot stays disarmed until the pilot flips the enable switch while nothing blocks
+//! arming (docs/safety.md#the-rules, 1).
 //!
-//! The switch asks for arming when it goes from off to on, and is answered at once: the robot arms, or refuses. A refused
-//! request is used up, as is that of a robot that is disarmed for any reason: the switch must go off and on again, or
-//! the robot would start when nobody expects it any more. Only one thing ends by itself and is waited for: settings
-//! being written to flash, and the attitude that settles anew when the chip has stood still for it.
+//! The switch requests arming when it goes from off to on. The request is answered at once: the robot arms, or
+//! refuses. A refused request is used up, and disarming for any reason uses up the request as well. The switch must
+//! then go off and on again; otherwise the robot could start when nobody expects it. A request waits in one case
+//! only: while settings are written to flash, and while the attitude settles after the chip has stood still for that.
 
-use super::{SafetyFlags, SafetyStatus, SafetyVerdict, motor_findings::MotorFindings};
+use super::{SafetyFlags, SafetyStatus, SafetyVerdict, motor_readiness::MotorReadiness};
 use crate::domain::{OperatorState, ParamStatus, SafetyConfig};
 
-/// Settings count from the first frame that is this much younger than their change.
+/// A frame counts under new settings if it is at least this much younger than their change.
 const SETTINGS_LAG_US: u64 = 5_000;
 
+/// Whether the robot is armed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
 pub enum ArmingState {
     #[default]
+    /// No torque leaves the board.
     Disarmed = 0,
+    /// Torque may leave the board as far as the safety policy allows.
     Armed = 1,
 }
 
-/// What speaks against being armed, as bits whose positions never change.
+/// The reasons that block arming, as bits whose positions never change.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(transparent)]
 pub struct ArmingBlockers(u32);
 
 impl ArmingBlockers {
+    /// The empty set.
     pub const NONE: Self = Self(0);
     /// No fresh remote frame.
     pub const REMOTE_NOT_FRESH: Self = Self(1 << 0);
@@ -35,44 +40,49 @@ impl ArmingBlockers {
     pub const ENABLE_NOT_CYCLED: Self = Self(1 << 2);
     /// A stick is off centre, or was within the last 0.2 s.
     pub const STICKS_NOT_CENTRED: Self = Self(1 << 3);
+    /// The attitude estimate is not valid.
     pub const ESTIMATE_INVALID: Self = Self(1 << 4);
+    /// The start-up calibration has not finished.
     pub const CALIBRATION_PENDING: Self = Self(1 << 5);
-    /// `SafetyPolicy` wants a stop, be it of a part only; see its flags.
+    /// `SafetyPolicy` demands a stop, even a partial one; see its flags.
     pub const SAFETY_STOP: Self = Self(1 << 6);
     /// A joint does not answer, is not set up, or reports a fault.
     pub const JOINTS_NOT_READY: Self = Self(1 << 7);
-    /// Bring-up is in the step in which nothing may move.
+    /// Bring-up is in its read-only step, in which nothing may move.
     pub const BRING_UP_READ_ONLY: Self = Self(1 << 8);
-    /// Low, or not measured.
+    /// The battery is low, or not measured.
     pub const BATTERY_LOW: Self = Self(1 << 9);
-    /// Settings are being written to flash, or room is made for them. A request waits for the end.
+    /// Settings are being written to flash, or a sector is erased for them. A request waits until this ends.
     pub const FLASH_BUSY: Self = Self(1 << 10);
-    /// A saved setting was refused at boot; its default need not fit this robot.
+    /// A saved setting was refused at boot, and its default may not fit this robot.
     pub const SETTINGS_REFUSED: Self = Self(1 << 11);
-    /// A debugger halts the core where it should send zero frames, and does not let that be undone.
+    /// A debugger would halt the core where it has to send zero frames, and this cannot be undone.
     pub const DEBUGGER_CATCHES: Self = Self(1 << 12);
-    /// A wheel has not been heard since boot.
+    /// A wheel has not reported since boot.
     pub const WHEEL_NEVER_HEARD: Self = Self(1 << 13);
-    /// A wheel's angle does not move as its speed says: two speed controllers have one number, or its sensor is broken.
+    /// A wheel's angle contradicts its speed: two speed controllers have the same number, or the sensor is broken.
     pub const WHEEL_DOUBTFUL: Self = Self(1 << 14);
-    /// A joint reads an angle beyond its soft limits: its zero is not set, or it is wrong by a turn. Not while bring-up
-    /// tries out motors, which gives one of them little torque.
+    /// A joint reads an angle beyond its soft limits: its zero is not set, or it is off by a turn. This does not
+    /// block arming while bring-up tests motors, which limits the torque.
     pub const JOINT_OUT_OF_LIMITS: Self = Self(1 << 15);
-    /// Samples of the IMU were rejected within the last half second.
+    /// IMU samples were rejected within the last half second.
     pub const ATTITUDE_UNSETTLED: Self = Self(1 << 16);
 
-    /// A joint motor keeps its last command for ever when the bus falls silent, unless somebody has set its time-out, and
-    /// nobody says so.
+    /// A joint motor would keep its last command when the bus falls silent, unless its time-out has been set by hand.
+    /// No setting confirms that it has.
     pub const JOINT_TIMEOUT_UNSET: Self = Self(1 << 17);
 
+    /// The bits of the set.
     pub const fn bits(self) -> u32 {
         self.0
     }
 
+    /// Whether the set is empty.
     pub const fn is_empty(self) -> bool {
         self.0 == 0
     }
 
+    /// Whether the set contains `blocker`.
     pub const fn contains(self, blocker: Self) -> bool {
         self.0 & blocker.0 != 0
     }
@@ -85,15 +95,15 @@ impl ArmingBlockers {
             .map(|(_, name)| *name)
     }
 
-    /// `None` for a bit that stands for nothing.
+    /// Name of a bit, or `None` for an unused one.
     pub fn name_of_bit(bit: u8) -> Option<&'static str> {
         let mut names = BLOCKER_NAMES.iter();
         let found = names.find(|(blocker, _)| blocker.0.trailing_zeros() == u32::from(bit));
         found.map(|(_, name)| *name)
     }
 
-    /// True if the set has nothing that `other` has not.
-    const fn is_within(self, other: Self) -> bool {
+    /// Whether every blocker of the set is also in `other`.
+    const fn is_subset_of(self, other: Self) -> bool {
         self.0 & !other.0 == 0
     }
 
@@ -108,7 +118,7 @@ impl ArmingBlockers {
     }
 }
 
-/// Not a constant: tools read the names of the bits out of the image.
+/// A static rather than a constant, as tools read the names of the bits from the image.
 static BLOCKER_NAMES: [(ArmingBlockers, &str); 18] = [
     (ArmingBlockers::REMOTE_NOT_FRESH, "remote-not-fresh"),
     (ArmingBlockers::ENABLE_OFF, "enable-off"),
@@ -142,65 +152,73 @@ impl defmt::Format for ArmingBlockers {
     }
 }
 
-/// For diagnostics.
+/// State of arming, for diagnostics.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(C)]
 pub struct ArmingStatus {
+    /// Armed or disarmed.
     pub state: ArmingState,
-    /// The pilot has asked, and will be armed when what blocks arming has ended by itself.
+    /// The pilot has requested arming. The robot arms when the blockers end by themselves.
     pub waiting: bool,
-    /// Empty while armed.
+    /// What blocks arming, empty while armed.
     pub blockers: ArmingBlockers,
-    /// Why the last request was refused; empty since the robot was armed.
+    /// Why the last request was refused, empty since the robot was last armed.
     pub refused: ArmingBlockers,
 }
 
-/// Exists only while armed; cannot be made anywhere else, copied or kept for the next tick's permit by accident.
+/// Proof that the robot is armed in this tick. It can be made only here, and cannot be copied.
 #[derive(Debug)]
 pub struct ArmedToken(());
 
-/// All arming looks at.
+/// Inputs of the arming state machine.
 #[derive(Clone, Copy, Debug)]
 pub struct ArmingInputs<'a> {
+    /// Limits and times.
     pub config: &'a SafetyConfig,
-    /// See `StickRest`.
-    pub sticks_rest: bool,
-    /// Age of the last frame that came over the air.
+    /// The pilot's sticks are centred; see `CentredSticks`.
+    pub sticks_centred: bool,
+    /// Age of the last frame received over the air, in µs.
     pub remote_age_us: u32,
+    /// The pilot's switches.
     pub operator: &'a OperatorState,
+    /// The attitude estimate is valid.
     pub estimate_valid: bool,
-    /// See `AttitudeRest`.
+    /// See `AttitudeSettling`.
     pub attitude_settled: bool,
+    /// The start-up calibration has finished.
     pub calibrated: bool,
-    pub motor: &'a MotorFindings,
-    /// Bring-up is in the step in which nothing may move.
+    /// Motors that block arming.
+    pub motor: &'a MotorReadiness,
+    /// Bring-up is in its read-only step.
     pub read_only: bool,
-    /// Bring-up is in a step in which motors are tried out.
+    /// Bring-up is in a step that tests motors.
     pub tries_motors: bool,
     /// See `FlashPermit`, which grants nothing to an armed robot.
     pub flash_busy: bool,
+    /// State of the parameter store.
     pub params: &'a ParamStatus,
     /// See `DebugProbe::catches`.
     pub debugger_catches: bool,
     /// See [`ArmingBlockers::JOINT_TIMEOUT_UNSET`].
     pub joint_timeout_unset: bool,
+    /// Flags and stops of this tick.
     pub safety: &'a SafetyStatus,
 }
 
-/// The enable switch as seen since boot or since the last disarming.
+/// The request made by the enable switch, since boot or since the last disarming.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Request {
-    /// Not yet seen off.
+    /// The switch has not yet been seen off.
     #[default]
-    MustGoOff,
-    /// Off: the next time it goes on is a request.
+    SwitchMustGoOff,
+    /// The switch is off. Switching it on makes a request.
     Ready,
-    Asked {
+    Pending {
         since_us: u64,
     },
 }
 
-/// Starts disarmed.
+/// Holds the arming state and the pilot's request. It starts disarmed.
 #[derive(Clone, Debug, Default)]
 pub struct Arming {
     state: ArmingState,
@@ -208,18 +226,19 @@ pub struct Arming {
     refused: ArmingBlockers,
     /// Flash was being written, and the attitude has not settled since.
     unsettled: bool,
-    /// The switch as older frames had it does not count.
+    /// Frames older than this do not move the switch.
     trusted_from_us: u64,
 }
 
 impl Arming {
-    /// A channel may be the enable switch now that was not before: it must be seen off by frames that came after.
+    /// Restarts after a change of settings. Another channel may have become the enable switch, so it must be seen off
+    /// in frames that came after the change.
     pub fn settings_changed(&mut self, now_us: u64) {
-        self.request = Request::MustGoOff;
+        self.request = Request::SwitchMustGoOff;
         self.trusted_from_us = now_us.saturating_add(SETTINGS_LAG_US);
     }
 
-    /// A token for this tick if the robot is armed.
+    /// Advances by one tick. Returns a token if the robot is armed.
     pub fn step(
         &mut self,
         inputs: &ArmingInputs<'_>,
@@ -228,59 +247,62 @@ impl Arming {
         let fresh = inputs.remote_age_us <= inputs.config.remote_timeout_us;
         let settled = inputs.estimate_valid && inputs.attitude_settled;
         self.unsettled = inputs.flash_busy || self.unsettled && !settled;
-        self.follow_switch(fresh, inputs, now_us);
-        let mut blockers = self.disarming(fresh, inputs);
+        self.update_request(fresh, inputs, now_us);
+        let mut blockers = self.disarming_blockers(fresh, inputs);
         match self.state {
-            ArmingState::Disarmed => blockers = self.answer(blockers, fresh, inputs, now_us),
+            ArmingState::Disarmed => {
+                blockers = self.handle_request(blockers, fresh, inputs, now_us)
+            }
             ArmingState::Armed => {
                 if !blockers.is_empty() {
                     self.disarm();
-                    blockers = self.disarming(fresh, inputs);
+                    blockers = self.disarming_blockers(fresh, inputs);
                 }
             }
         }
         let armed = self.state == ArmingState::Armed;
         let status = ArmingStatus {
             state: self.state,
-            waiting: !armed && matches!(self.request, Request::Asked { .. }),
+            waiting: !armed && matches!(self.request, Request::Pending { .. }),
             blockers,
             refused: self.refused,
         };
         (status, armed.then_some(ArmedToken(())))
     }
 
-    /// Arms, waits or refuses, if the pilot asks. `disarming` blocks it at least; all that blocks comes back.
+    /// Handles the pilot's request: arms, waits or refuses. `disarming_blockers` are the blockers that also disarm. Returns
+    /// all blockers.
     #[inline(never)]
-    fn answer(
+    fn handle_request(
         &mut self,
-        disarming: ArmingBlockers,
+        disarming_blockers: ArmingBlockers,
         fresh: bool,
         inputs: &ArmingInputs<'_>,
         now_us: u64,
     ) -> ArmingBlockers {
-        let blockers = disarming.union(only_forbidding(inputs));
+        let blockers = disarming_blockers.union(arming_only_blockers(inputs));
         if blockers.is_empty() {
             self.state = ArmingState::Armed;
             self.refused = ArmingBlockers::NONE;
-        } else if let Request::Asked { since_us } = self.request
+        } else if let Request::Pending { since_us } = self.request
             && !self.may_wait(since_us, blockers, inputs, now_us)
         {
-            self.request = Request::MustGoOff;
+            self.request = Request::SwitchMustGoOff;
             self.refused = blockers;
-            return blockers.union(self.disarming(fresh, inputs));
+            return blockers.union(self.disarming_blockers(fresh, inputs));
         }
         blockers
     }
 
     fn disarm(&mut self) {
         self.state = ArmingState::Disarmed;
-        if matches!(self.request, Request::Asked { .. }) {
-            self.request = Request::MustGoOff;
+        if matches!(self.request, Request::Pending { .. }) {
+            self.request = Request::SwitchMustGoOff;
         }
     }
 
-    /// Only a fresh remote moves the switch: old values are no sign of the pilot's will.
-    fn follow_switch(&mut self, fresh: bool, inputs: &ArmingInputs<'_>, now_us: u64) {
+    /// Moves the switch only while the remote is fresh, as old values do not show the pilot's intent.
+    fn update_request(&mut self, fresh: bool, inputs: &ArmingInputs<'_>, now_us: u64) {
         let operator = inputs.operator;
         if !fresh || operator.ts_us < self.trusted_from_us {
             return;
@@ -290,13 +312,13 @@ impl Arming {
             return;
         }
         self.request = match (self.request, operator.enabled) {
-            (Request::Ready, true) => Request::Asked { since_us: now_us },
-            (Request::Asked { .. }, false) => Request::MustGoOff,
+            (Request::Ready, true) => Request::Pending { since_us: now_us },
+            (Request::Pending { .. }, false) => Request::SwitchMustGoOff,
             (request, _) => request,
         };
     }
 
-    /// True if all that blocks arming comes of the writing to flash, and not for too long yet.
+    /// Whether all blockers result from writing to flash, and the request has not waited too long.
     #[cold]
     fn may_wait(
         &self,
@@ -305,26 +327,26 @@ impl Arming {
         inputs: &ArmingInputs<'_>,
         now_us: u64,
     ) -> bool {
-        let by_flash = ArmingBlockers::FLASH_BUSY
+        let caused_by_flash = ArmingBlockers::FLASH_BUSY
             .union(ArmingBlockers::ESTIMATE_INVALID)
             .union(ArmingBlockers::ATTITUDE_UNSETTLED)
             .union(ArmingBlockers::SAFETY_STOP);
         let unsettled = SafetyFlags::ESTIMATE_INVALID.union(SafetyFlags::IMU_STALE);
         let waited_us = now_us.saturating_sub(since_us);
         self.unsettled
-            && blockers.is_within(by_flash)
+            && blockers.is_subset_of(caused_by_flash)
             && inputs.safety.would_run_without(unsettled)
             && waited_us <= u64::from(inputs.config.arm_request_us)
     }
 
-    /// What forbids arming and ends it.
-    fn disarming(&self, fresh: bool, inputs: &ArmingInputs<'_>) -> ArmingBlockers {
+    /// Blockers that also disarm.
+    fn disarming_blockers(&self, fresh: bool, inputs: &ArmingInputs<'_>) -> ArmingBlockers {
         let mut blockers = ArmingBlockers::NONE;
         blockers.add_if(ArmingBlockers::REMOTE_NOT_FRESH, !fresh);
         blockers.add_if(ArmingBlockers::ENABLE_OFF, !inputs.operator.enabled);
         blockers.add_if(
             ArmingBlockers::ENABLE_NOT_CYCLED,
-            inputs.operator.enabled && !matches!(self.request, Request::Asked { .. }),
+            inputs.operator.enabled && !matches!(self.request, Request::Pending { .. }),
         );
         blockers.add_if(ArmingBlockers::ESTIMATE_INVALID, !inputs.estimate_valid);
         blockers.add_if(ArmingBlockers::CALIBRATION_PENDING, !inputs.calibrated);
@@ -334,11 +356,11 @@ impl Arming {
     }
 }
 
-/// What forbids arming, but does not end it: a stop of a part stops only that part, and a robot that stands on its
+/// Blockers that do not disarm an armed robot. A partial stop affects only its part, and a robot that stands on its
 /// legs should not fall because its battery gets low.
-fn only_forbidding(inputs: &ArmingInputs<'_>) -> ArmingBlockers {
+fn arming_only_blockers(inputs: &ArmingInputs<'_>) -> ArmingBlockers {
     let mut blockers = ArmingBlockers::NONE;
-    blockers.add_if(ArmingBlockers::STICKS_NOT_CENTRED, !inputs.sticks_rest);
+    blockers.add_if(ArmingBlockers::STICKS_NOT_CENTRED, !inputs.sticks_centred);
     blockers.add_if(ArmingBlockers::ATTITUDE_UNSETTLED, !inputs.attitude_settled);
     blockers.add_if(
         ArmingBlockers::SAFETY_STOP,

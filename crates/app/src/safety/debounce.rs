@@ -1,13 +1,13 @@
-//! A condition that counts only when it has held for a while.
+//! Debouncing of conditions and limits.
 
-/// How long a condition has held.
+/// Counts how long a condition has held.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Debounce {
     held_us: u32,
 }
 
 impl Debounce {
-    /// True once `active` held for `hold_us` without a break; `dt_us` has passed since the last call.
+    /// Returns true once `active` has held for `hold_us` without a break. `dt_us` is the time since the last call.
     pub fn held(&mut self, active: bool, dt_us: u32, hold_us: u32) -> bool {
         self.held_us = if active {
             self.held_us.saturating_add(dt_us)
@@ -22,16 +22,16 @@ impl Debounce {
     }
 }
 
-/// A value beyond its limit for a while; back only when it is well inside again.
+/// A limit with debouncing and hysteresis.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Excess {
+pub(super) struct DebouncedLimit {
     debounce: Debounce,
     exceeded: bool,
 }
 
-impl Excess {
-    /// `inside` tells whether the value is inside a limit that is tightened by the given margin. Anything it does not
-    /// confirm, such as NaN, is outside.
+impl DebouncedLimit {
+    /// Returns whether the limit is exceeded. `inside` tells whether the value is inside the limit tightened by the
+    /// given margin; it must return false for NaN.
     pub fn step(
         &mut self,
         inside: impl Fn(f32) -> bool,

@@ -1,4 +1,4 @@
-//! What is wrong, as bits whose positions never change: recordings and the PC link carry them.
+//! Fault conditions, as bits whose positions never change: recordings and the PC link carry them.
 
 /// A set of conditions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -6,52 +6,65 @@
 pub struct SafetyFlags(u32);
 
 impl SafetyFlags {
+    /// The empty set.
     pub const NONE: Self = Self(0);
-    /// No frame over the air within the time limit.
+    /// No frame came over the air within the time limit.
     pub const REMOTE_LOST: Self = Self(1 << 0);
     /// The receiver reports the loss of the radio.
     pub const REMOTE_FAILSAFE: Self = Self(1 << 1);
-    /// Too many of the last frames were lost.
+    /// Too many of the last 64 frames were lost.
     pub const REMOTE_QUALITY: Self = Self(1 << 2);
+    /// The pilot has thrown the e-stop.
     pub const E_STOP: Self = Self(1 << 3);
+    /// The attitude estimate is not valid.
     pub const ESTIMATE_INVALID: Self = Self(1 << 4);
+    /// The last IMU sample is too old.
     pub const IMU_STALE: Self = Self(1 << 5);
-    /// Too many bus errors or rejected samples (SPI).
+    /// Too many SPI errors or rejected samples of the IMU.
     pub const IMU_ERRORS: Self = Self(1 << 6);
-    /// Too many bus errors or rejected samples (I2C).
+    /// Too many I2C errors or rejected samples of the magnetometer.
     pub const MAG_ERRORS: Self = Self(1 << 7);
+    /// CAN1 is bus-off.
     pub const CAN1_FAULT: Self = Self(1 << 8);
+    /// CAN2 is bus-off.
     pub const CAN2_FAULT: Self = Self(1 << 9);
+    /// Too many consecutive frames could not be sent on CAN1.
     pub const CAN1_CONGESTED: Self = Self(1 << 10);
+    /// Too many consecutive frames could not be sent on CAN2.
     pub const CAN2_CONGESTED: Self = Self(1 << 11);
-    /// No feedback of the left wheel within the time limit; control falls back to open loop.
+    /// No feedback of the left wheel came within the time limit. Its control falls back to open loop.
     pub const WHEEL_LEFT_SILENT: Self = Self(1 << 12);
+    /// As [`WHEEL_LEFT_SILENT`](Self::WHEEL_LEFT_SILENT) for the right wheel.
     pub const WHEEL_RIGHT_SILENT: Self = Self(1 << 13);
-    /// Neither kind of command on the logic bus is fresh.
+    /// No command on the logic bus is fresh.
     pub const COMMAND_STALE: Self = Self(1 << 14);
-    /// A task below the control tick missed its deadline; the watchdog will reset the chip unless it comes back.
+    /// A task other than the control tick missed its deadline. Unless it recovers, the watchdog resets the chip.
     pub const TASK_LATE: Self = Self(1 << 15);
-    /// Fallen over.
+    /// The robot has fallen over.
     pub const TILT: Self = Self(1 << 16);
+    /// A wheel motor is too hot.
     pub const WHEEL_HOT: Self = Self(1 << 17);
+    /// A joint motor is too hot.
     pub const JOINT_HOT: Self = Self(1 << 18);
-    /// Also while the battery is not measured. Stops nothing, but blocks arming.
+    /// The battery is low, or not measured. This stops nothing but blocks arming.
     pub const BATTERY_LOW: Self = Self(1 << 19);
+    /// The battery is empty.
     pub const BATTERY_EMPTY: Self = Self(1 << 20);
     /// A joint motor reports a fault and gives no torque.
     pub const JOINT_FAULT: Self = Self(1 << 21);
-    /// No reply of a joint within the time limit.
+    /// No reply of a joint came within the time limit.
     pub const JOINT_SILENT: Self = Self(1 << 22);
     /// A wheel motor repeats an old report.
     pub const WHEEL_FROZEN: Self = Self(1 << 23);
     /// A joint motor repeats an old position.
     pub const JOINT_FROZEN: Self = Self(1 << 24);
-    /// A joint motor replies, but could not be set up or enabled for a second: other settings, another motor.
+    /// A joint motor replies, but could not be set up or enabled within a second. Its settings differ, or it is
+    /// another motor.
     pub const JOINT_NOT_READY: Self = Self(1 << 25);
-    /// What stopped a part is over, but the part waits until the sticks have been centred.
+    /// The cause of a partial stop has ended, but the part waits until the sticks have been centred.
     pub const STICKS_AWAITED: Self = Self(1 << 26);
 
-    /// Any of these stops every actuator.
+    /// Each of these stops every actuator.
     pub const GLOBAL_STOP: Self = Self(
         Self::REMOTE_LOST.0
             | Self::REMOTE_FAILSAFE.0
@@ -65,9 +78,9 @@ impl SafetyFlags {
             | Self::TILT.0
             | Self::BATTERY_EMPTY.0,
     );
-    /// Any of these stops both wheels.
+    /// Each of these stops both wheels.
     pub const WHEELS_STOP: Self = Self(Self::WHEEL_HOT.0 | Self::WHEEL_FROZEN.0);
-    /// Any of these stops all joints: legs with a dead joint cannot stand on the others.
+    /// Each of these stops all joints: the robot cannot stand on its legs with one joint dead.
     pub const JOINTS_STOP: Self = Self(
         Self::JOINT_HOT.0
             | Self::JOINT_FAULT.0
@@ -75,12 +88,12 @@ impl SafetyFlags {
             | Self::JOINT_FROZEN.0
             | Self::JOINT_NOT_READY.0,
     );
-    /// Any of these stops what is on the bus. Index = `BusId`.
+    /// Each of these stops everything on its bus. Index = `BusId`.
     pub const BUS_STOP: [Self; 2] = [
         Self(Self::CAN1_FAULT.0 | Self::CAN1_CONGESTED.0),
         Self(Self::CAN2_FAULT.0 | Self::CAN2_CONGESTED.0),
     ];
-    /// These stay when their cause is gone, until the pilot clears them: a human must look first.
+    /// These are latched until the pilot clears them, so that a person looks first.
     pub const LATCHING: Self = Self(
         Self::IMU_ERRORS.0
             | Self::MAG_ERRORS.0
@@ -92,25 +105,28 @@ impl SafetyFlags {
             | Self::JOINT_NOT_READY.0,
     );
 
+    /// The bits of the set.
     pub const fn bits(self) -> u32 {
         self.0
     }
 
+    /// Whether the set is empty.
     pub const fn is_empty(self) -> bool {
         self.0 == 0
     }
 
-    /// True if the two sets share a condition.
+    /// Whether the two sets share a condition.
     pub const fn intersects(self, other: Self) -> bool {
         self.0 & other.0 != 0
     }
 
+    /// The conditions of either set.
     #[must_use]
     pub const fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    /// What both sets have.
+    /// The conditions that both sets have.
     #[must_use]
     pub(super) const fn intersection(self, other: Self) -> Self {
         Self(self.0 & other.0)
@@ -135,7 +151,7 @@ impl SafetyFlags {
             .map(|(_, name)| *name)
     }
 
-    /// `None` for a bit that stands for nothing.
+    /// Name of a bit, or `None` for an unused one.
     pub fn name_of_bit(bit: u8) -> Option<&'static str> {
         let mut names = FLAG_NAMES.iter();
         let found = names.find(|(flag, _)| flag.0.trailing_zeros() == u32::from(bit));
@@ -143,7 +159,7 @@ impl SafetyFlags {
     }
 }
 
-/// Not a constant: tools read the names of the bits out of the image.
+/// A static rather than a constant, as tools read the names of the bits from the image.
 static FLAG_NAMES: [(SafetyFlags, &str); 27] = [
     (SafetyFlags::REMOTE_LOST, "remote-lost"),
     (SafetyFlags::REMOTE_FAILSAFE, "remote-failsafe"),
@@ -191,7 +207,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_flag_has_the_bit_of_its_place_in_the_table() {
+    fn each_flag_has_the_bit_of_its_table_index() {
         for (place, (flag, name)) in (0..).zip(FLAG_NAMES) {
             assert_eq!(flag.bits(), 1 << place, "{name}");
             assert_eq!(SafetyFlags::name_of_bit(place), Some(name));
@@ -199,9 +215,9 @@ mod tests {
         assert_eq!(SafetyFlags::name_of_bit(31), None);
     }
 
-    /// As docs/safety.md has them.
+    /// The sets of docs/safety.md.
     #[test]
-    fn the_sets_hold_what_is_documented() {
+    fn the_sets_hold_the_documented_flags() {
         let [can1, can2] = SafetyFlags::BUS_STOP;
         let sets: [(SafetyFlags, &[&str]); 6] = [
             (

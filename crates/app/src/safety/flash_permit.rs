@@ -1,66 +1,71 @@
-//! When flash may be written or erased: never while a motor has torque or is about to get it (docs/parameters.md).
+//! Grants writing and erasing flash: never while a motor has torque or is about to get it (docs/parameters.md).
 
-mod rest;
+mod standstill;
 
-use self::rest::RestWatch;
+use self::standstill::StandstillMonitor;
 use super::ArmingState;
 use crate::domain::{BusHealth, FlashRequest, MotorBuses, MotorFeedback};
 
-/// Motors that were let go slow down within this time. Words may be programmed then: each stops the chip for 0.1 ms at
-/// most, and the frames that keep motors off go on.
-const LET_GO_US: u64 = 500_000;
+/// Disabled motors run down within this time. Words may be programmed meanwhile: each stalls the chip for at most 0.1
+/// ms, and the frames that keep motors disabled continue.
+const COAST_DOWN_US: u64 = 500_000;
 
-/// How long the watchdog waits now.
+/// The present period of the watchdog.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WatchdogPeriod {
-    /// As long as a hang may last.
+    /// The usual period, which limits the duration of a hang.
     #[default]
     Short,
-    /// On the way from one to the other: it may be either.
+    /// The period is being changed and may have either value.
     Changing,
     /// Longer than any erase.
     Long,
 }
 
-/// What the tick allows.
+/// What the tick grants.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FlashGrant {
-    /// What may begin now. Stays until the request is taken back, and arming waits for that.
+    /// The operation that may begin now. It stays granted until the request is withdrawn, and arming waits for that.
     pub granted: FlashRequest,
-    /// An erase outlasts the watchdog's usual period.
+    /// An erase has been requested, which outlasts the watchdog's usual period.
     pub needs_long_watchdog: bool,
     /// Something is granted or about to be.
     pub blocks_arming: bool,
 }
 
-/// All the permit looks at.
+/// Inputs of the permit.
 #[derive(Clone, Copy, Debug)]
 pub struct FlashPermitInputs<'a> {
+    /// What the parameter task requests.
     pub request: FlashRequest,
+    /// The present period of the watchdog.
     pub watchdog: WatchdogPeriod,
-    /// Of the last tick.
+    /// Arming state of the last tick.
     pub arming: ArmingState,
-    /// The pilot's enable switch.
+    /// The pilot's enable switch is on.
     pub enabled: bool,
-    /// Bring-up is in a step in which motors are tried out.
+    /// Bring-up is in a step that tests motors.
     pub tries_motors: bool,
+    /// Feedback of all motors.
     pub motor: &'a MotorFeedback,
+    /// The bus of each motor.
     pub buses: &'a MotorBuses,
-    /// Index = `BusId`.
+    /// State of each bus. Index = `BusId`.
     pub can: &'a [BusHealth; 2],
 }
 
-/// One request at a time: between two of them the parameter task asks for nothing, so that arming gets its chance.
+/// Grants one request at a time. The parameter task withdraws each request before the next, so arming can come in
+/// between.
 #[derive(Clone, Debug, Default)]
 pub struct FlashPermit {
     grant: FlashGrant,
     armed_us: u64,
-    /// While an erase is asked for and the robot is disarmed.
-    rest: Option<RestWatch>,
+    /// Exists while an erase is requested and the robot is disarmed.
+    rest: Option<StandstillMonitor>,
 }
 
 impl FlashPermit {
-    /// In place of [`step`](Self::step) in a tick in which nothing is asked for, which nearly every one is.
+    /// Takes the place of [`step`](Self::step) in a tick without a request, which is the usual case.
     pub fn idle(&mut self, arming: ArmingState, watchdog: WatchdogPeriod, now_us: u64) {
         self.note_arming(arming, now_us);
         self.rest = None;
@@ -70,18 +75,18 @@ impl FlashPermit {
         };
     }
 
-    /// Once a tick, before `Arming`.
+    /// Decides on the request; called once a tick before `Arming`.
     pub fn step(&mut self, inputs: &FlashPermitInputs<'_>, now_us: u64) {
         if inputs.request == FlashRequest::None {
             return self.idle(inputs.arming, inputs.watchdog, now_us);
         }
         self.note_arming(inputs.arming, now_us);
         if self.grant.granted != inputs.request {
-            self.grant = self.consider(inputs, now_us);
+            self.grant = self.decide(inputs, now_us);
         }
     }
 
-    /// As of the last of both.
+    /// The grant of the last [`step`](Self::step) or [`idle`](Self::idle).
     pub fn grant(&self) -> FlashGrant {
         self.grant
     }
@@ -92,7 +97,7 @@ impl FlashPermit {
         }
     }
 
-    fn consider(&mut self, inputs: &FlashPermitInputs<'_>, now_us: u64) -> FlashGrant {
+    fn decide(&mut self, inputs: &FlashPermitInputs<'_>, now_us: u64) -> FlashGrant {
         let allowed = self.is_allowed(inputs, now_us);
         let erases = inputs.request == FlashRequest::Erase;
         let waits = erases && inputs.watchdog != WatchdogPeriod::Long;
@@ -120,10 +125,10 @@ impl FlashPermit {
             }
             FlashRequest::Erase => self
                 .rest
-                .get_or_insert_with(|| RestWatch::from(now_us))
-                .lasts(inputs.motor, inputs.buses, inputs.can, now_us),
+                .get_or_insert_with(|| StandstillMonitor::from(now_us))
+                .is_at_standstill(inputs.motor, inputs.buses, inputs.can, now_us),
         };
-        rests && now_us.saturating_sub(self.armed_us) >= LET_GO_US
+        rests && now_us.saturating_sub(self.armed_us) >= COAST_DOWN_US
     }
 }
 

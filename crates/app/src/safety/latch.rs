@@ -1,21 +1,21 @@
-//! Stops that stay until a human has looked.
+//! Stops that stay until a person has looked.
 
 use super::{SafetyFlags, debounce::Debounce};
 
-/// Remembers latching flags and watches for the pilot's gesture: enable switch off and e-stop thrown together.
+/// Latches flags and detects the pilot's clearing gesture: enable switch off and e-stop thrown together.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Latches {
     latched: SafetyFlags,
     gesture: Debounce,
-    /// The gesture was held long enough and still is.
+    /// The gesture has been held long enough and continues.
     clearing: bool,
 }
 
 impl Latches {
-    /// Takes the flags present in this tick; gives those that are latched, and whether joints shall clear their faults.
+    /// Takes the flags present in this tick. Returns the latched ones, and whether joints shall clear their faults.
     ///
-    /// As long as the gesture goes on after `hold_us`, latches go as soon as their cause is gone: a joint's fault needs
-    /// a few ticks for that. Joints are told once every `hold_us`.
+    /// After `hold_us` of the gesture, a latch is released as soon as its cause has ended; a joint's fault needs a
+    /// few ticks for that. Joints get the order once every `hold_us`.
     pub fn step(
         &mut self,
         present: SafetyFlags,

@@ -3,23 +3,24 @@
 use super::{ArmedToken, SafetyStatus};
 use crate::domain::BusId;
 
-/// Needs the token that only `Arming` hands out; made anew each tick.
+/// Permits torque in one tick. It takes the token that only `Arming` hands out.
 #[derive(Debug)]
 pub struct TorquePermit {
     status: SafetyStatus,
 }
 
 impl TorquePermit {
+    /// A permit limited by the stops of `status`.
     pub fn new(_armed: ArmedToken, status: &SafetyStatus) -> Self {
         Self { status: *status }
     }
 
-    /// True if wheels on this bus may push.
+    /// Whether wheels on this bus may get current.
     pub const fn allows_wheels(&self, bus: BusId) -> bool {
         !self.status.stops_wheels(bus)
     }
 
-    /// True if joints on this bus may be enabled.
+    /// Whether joints on this bus may be enabled.
     pub const fn allows_joints(&self, bus: BusId) -> bool {
         !self.status.stops_joints(bus)
     }

@@ -1,70 +1,99 @@
 //! The only place that decides whether outputs must stop (docs/safety.md#the-rules).
 
 use super::{
-    SafetyFlags, SafetyStatus, battery::BatteryWatch, debounce::Debounce,
-    error_account::ErrorAccount, heat::HeatWatch, latch::Latches, resume::ResumeWatch,
-    tilt::TiltWatch,
+    SafetyFlags, SafetyStatus, battery_limits::BatteryLimits, debounce::Debounce,
+    fall_detector::FallDetector, latch::Latches, leaky_bucket::LeakyBucket,
+    resume_interlock::ResumeInterlock, temperature_limits::TemperatureLimits,
 };
 use crate::domain::{
     BusErrorState, BusHealth, JointState, MotorFeedback, OperatorState, RemoteDiagnostics,
     SafetyConfig, StateEstimate, SystemHealth, age_us,
 };
 
-/// Longest step of time that counts for anything that must last: a jump of the clock is no duration.
+/// Longest time step that counts towards a duration, so that a jump of the clock does not.
 const MAX_DT_US: u32 = 20_000;
-/// Set-up and enabling take a tenth of it; a DM4310 that writes a register is silent meanwhile, which starts it anew.
+/// Time within which a joint must become ready. Set-up and enabling take a tenth of it. A DM4310 that writes a
+/// register is silent meanwhile, which restarts the time.
 const JOINT_READY_US: u32 = 1_000_000;
 
-/// All the policy looks at.
+/// Inputs of the policy.
 #[derive(Clone, Copy, Debug)]
 pub struct SafetyInputs<'a> {
+    /// Limits.
     pub config: &'a SafetyConfig,
-    /// As of now: see `RemoteDiagnostics::at`.
+    /// The link as of now: see `RemoteDiagnostics::at`.
     pub remote: &'a RemoteDiagnostics,
+    /// The pilot's switches.
     pub operator: &'a OperatorState,
-    /// The robot is disarmed, or the pilot's sticks rest in the centre: nothing sets off at full stick.
+    /// The robot is disarmed, or the sticks are centred, so that no part starts at full stick.
     pub may_resume: bool,
-    /// Last IMU sample, 0 = none yet.
+    /// Time of the last IMU sample, 0 = none yet.
     pub imu_ts_us: u64,
+    /// Attitude and motion.
     pub estimate: &'a StateEstimate,
+    /// Feedback of all motors.
     pub motor: &'a MotorFeedback,
-    /// Of the wheels.
+    /// Maximum age of wheel feedback.
     pub motor_timeout_us: u32,
-    /// Last decision on the logic bus, 0 = none yet.
+    /// Time of the last decision on the logic bus, 0 = none yet.
     pub command_ts_us: u64,
+    /// State of buses, sensors, battery and tasks.
     pub health: &'a SystemHealth,
 }
 
-/// Keeps what must last before it counts, and what stays until it is cleared.
+/// Evaluates all stop conditions, with debouncing and latches.
+///
+/// ```
+/// use robot_app::domain::*;
+/// use robot_app::safety::{SafetyFlags, SafetyInputs, SafetyPolicy, SafetyVerdict};
+///
+/// let config = SafetyConfig::default();
+/// let inputs = SafetyInputs {
+///     config: &config,
+///     remote: &RemoteDiagnostics { age_us: config.remote_timeout_us + 1, ..Default::default() },
+///     operator: &OperatorState::default(),
+///     may_resume: true,
+///     imu_ts_us: 1_000_000,
+///     estimate: &StateEstimate::default(),
+///     motor: &MotorFeedback::default(),
+///     motor_timeout_us: 50_000,
+///     command_ts_us: 0,
+///     health: &SystemHealth::default(),
+/// };
+/// let status = SafetyPolicy::default().evaluate(&inputs, 1_000_000);
+/// assert!(status.flags.intersects(SafetyFlags::REMOTE_LOST));
+/// assert_eq!(status.verdict, SafetyVerdict::GlobalStop);
+/// assert!(status.stops_wheels(BusId::Can1));
+/// ```
 #[derive(Clone, Debug, Default)]
 pub struct SafetyPolicy {
-    imu_errors: ErrorAccount,
-    mag_errors: ErrorAccount,
-    tilt: TiltWatch,
-    heat: HeatWatch,
-    battery: BatteryWatch,
+    imu_errors: LeakyBucket,
+    mag_errors: LeakyBucket,
+    tilt: FallDetector,
+    heat: TemperatureLimits,
+    battery: BatteryLimits,
     joint_unready: Debounce,
     latches: Latches,
-    resume: ResumeWatch,
+    resume: ResumeInterlock,
     flags_seen: SafetyFlags,
     ts_us: u64,
 }
 
 impl SafetyPolicy {
-    /// Once a tick.
+    /// Evaluates all conditions; called once a tick.
     pub fn evaluate(&mut self, inputs: &SafetyInputs<'_>, now_us: u64) -> SafetyStatus {
         let dt_us = self.dt_us(now_us);
         let mut flags = SafetyFlags::NONE;
-        judge_remote(inputs, &mut flags);
-        self.judge_sensors(inputs, now_us, &mut flags);
-        judge_buses(inputs, &mut flags);
-        judge_wheels(inputs, &mut flags);
-        self.judge_joints(inputs, dt_us, &mut flags);
+        check_remote(inputs, &mut flags);
+        self.check_sensors(inputs, now_us, &mut flags);
+        check_buses(inputs, &mut flags);
+        check_wheels(inputs, &mut flags);
+        self.check_joints(inputs, dt_us, &mut flags);
         self.heat
-            .judge(inputs.motor, inputs.config, dt_us, &mut flags);
+            .check(inputs.motor, inputs.config, dt_us, &mut flags);
         let battery_v = inputs.health.battery_v;
         self.battery
-            .judge(battery_v, inputs.config, dt_us, &mut flags);
+            .check(battery_v, inputs.config, dt_us, &mut flags);
         let fallen = self.tilt.fallen(inputs.estimate, inputs.config, dt_us);
         flags.add_if(SafetyFlags::TILT, fallen);
         let command_age_us = age_us(inputs.command_ts_us, now_us);
@@ -73,10 +102,10 @@ impl SafetyPolicy {
             command_age_us > inputs.config.command_timeout_us,
         );
         flags.add_if(SafetyFlags::TASK_LATE, inputs.health.late_tasks.any());
-        self.conclude(flags, inputs, dt_us)
+        self.summarise(flags, inputs, dt_us)
     }
 
-    /// Since the last tick; 0 in the first.
+    /// Time since the last tick, 0 in the first one.
     fn dt_us(&mut self, now_us: u64) -> u32 {
         let last_us = core::mem::replace(&mut self.ts_us, now_us);
         if last_us == 0 {
@@ -85,7 +114,7 @@ impl SafetyPolicy {
         age_us(last_us, now_us).min(MAX_DT_US)
     }
 
-    fn judge_sensors(&mut self, inputs: &SafetyInputs<'_>, now_us: u64, flags: &mut SafetyFlags) {
+    fn check_sensors(&mut self, inputs: &SafetyInputs<'_>, now_us: u64, flags: &mut SafetyFlags) {
         let (health, config) = (inputs.health, inputs.config);
         flags.add_if(SafetyFlags::ESTIMATE_INVALID, !inputs.estimate.valid);
         flags.add_if(
@@ -102,7 +131,7 @@ impl SafetyPolicy {
         );
     }
 
-    fn judge_joints(&mut self, inputs: &SafetyInputs<'_>, dt_us: u32, flags: &mut SafetyFlags) {
+    fn check_joints(&mut self, inputs: &SafetyInputs<'_>, dt_us: u32, flags: &mut SafetyFlags) {
         let mut unready = false;
         for joint in &inputs.motor.joints {
             let silent =
@@ -116,8 +145,8 @@ impl SafetyPolicy {
         flags.add_if(SafetyFlags::JOINT_NOT_READY, unready);
     }
 
-    /// Adds what is latched to what is `present`.
-    fn conclude(
+    /// Adds the latched conditions to those that are `present`, and derives what stops.
+    fn summarise(
         &mut self,
         present: SafetyFlags,
         inputs: &SafetyInputs<'_>,
@@ -141,12 +170,12 @@ impl SafetyPolicy {
             latched,
             clear_faults,
             flags_seen: self.flags_seen,
-            ..SafetyStatus::of(stopping)
+            ..SafetyStatus::from_flags(stopping)
         }
     }
 }
 
-fn judge_remote(inputs: &SafetyInputs<'_>, flags: &mut SafetyFlags) {
+fn check_remote(inputs: &SafetyInputs<'_>, flags: &mut SafetyFlags) {
     let (remote, config) = (inputs.remote, inputs.config);
     flags.add_if(
         SafetyFlags::REMOTE_LOST,
@@ -161,7 +190,7 @@ fn judge_remote(inputs: &SafetyInputs<'_>, flags: &mut SafetyFlags) {
     flags.add_if(SafetyFlags::E_STOP, inputs.operator.e_stop);
 }
 
-fn judge_buses(inputs: &SafetyInputs<'_>, flags: &mut SafetyFlags) {
+fn check_buses(inputs: &SafetyInputs<'_>, flags: &mut SafetyFlags) {
     let [can1, can2] = &inputs.health.can;
     let faulty = |bus: &BusHealth| bus.state == BusErrorState::BusOff;
     let congested = |bus: &BusHealth| bus.tx_failures_in_row > inputs.config.max_tx_failures;
@@ -171,7 +200,7 @@ fn judge_buses(inputs: &SafetyInputs<'_>, flags: &mut SafetyFlags) {
     flags.add_if(SafetyFlags::CAN2_CONGESTED, congested(can2));
 }
 
-fn judge_wheels(inputs: &SafetyInputs<'_>, flags: &mut SafetyFlags) {
+fn check_wheels(inputs: &SafetyInputs<'_>, flags: &mut SafetyFlags) {
     let [left, right] = &inputs.motor.wheels;
     let timeout_us = inputs.motor_timeout_us;
     flags.add_if(SafetyFlags::WHEEL_LEFT_SILENT, left.age_us > timeout_us);

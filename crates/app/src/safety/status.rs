@@ -1,35 +1,41 @@
-//! What the policy found in one tick.
+//! The policy's result in one tick.
 
 use super::SafetyFlags;
 use crate::domain::BusId;
 
-/// How far outputs are cut.
+/// How far outputs are stopped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
 pub enum SafetyVerdict {
+    /// Nothing is stopped.
     Run = 0,
-    /// Only wheels, joints, or what is on one bus; see `SafetyStatus`.
+    /// Only the wheels, the joints, or the actuators of one bus are stopped; see `SafetyStatus`.
     PartialStop = 1,
     #[default]
+    /// Every actuator is stopped.
     GlobalStop = 2,
 }
 
-/// Flags and what they stop. Until the policy looked: everything stopped.
+/// Flags and the stops they cause. Everything is stopped until the policy has run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct SafetyStatus {
-    /// Present or latched.
+    /// The conditions that are present or latched.
     pub flags: SafetyFlags,
-    /// Those of `flags` that stay until the pilot clears them.
+    /// The conditions that stay until the pilot clears them.
     pub latched: SafetyFlags,
+    /// How far outputs are stopped.
     pub verdict: SafetyVerdict,
+    /// Every actuator is stopped.
     pub global_stop: bool,
+    /// Both wheels are stopped.
     pub wheels_stop: bool,
+    /// All joints are stopped.
     pub joints_stop: bool,
-    /// Index = `BusId`.
+    /// All actuators of the bus are stopped. Index = `BusId`.
     pub bus_stop: [bool; 2],
-    /// In this tick the pilot clears latched stops: joints are told to clear their faults.
+    /// The pilot clears latched stops in this tick, and joints get the order to clear their faults.
     pub clear_faults: bool,
     /// Every flag raised since boot.
     pub flags_seen: SafetyFlags,
@@ -52,8 +58,8 @@ impl Default for SafetyStatus {
 }
 
 impl SafetyStatus {
-    /// What these flags stop. `latched`, `clear_faults` and `flags_seen` are left empty.
-    pub(super) fn of(flags: SafetyFlags) -> Self {
+    /// The stops caused by `flags`. `latched`, `clear_faults` and `flags_seen` stay empty.
+    pub(super) fn from_flags(flags: SafetyFlags) -> Self {
         let global_stop = flags.intersects(SafetyFlags::GLOBAL_STOP);
         let wheels_stop = flags.intersects(SafetyFlags::WHEELS_STOP);
         let joints_stop = flags.intersects(SafetyFlags::JOINTS_STOP);
@@ -76,15 +82,17 @@ impl SafetyStatus {
         }
     }
 
-    /// True if nothing else than these conditions stops any part.
+    /// Whether only these conditions stop anything.
     pub(super) fn would_run_without(&self, conditions: SafetyFlags) -> bool {
-        Self::of(self.flags.without(conditions)).verdict == SafetyVerdict::Run
+        Self::from_flags(self.flags.without(conditions)).verdict == SafetyVerdict::Run
     }
 
+    /// Whether wheels on this bus are stopped.
     pub const fn stops_wheels(&self, bus: BusId) -> bool {
         self.global_stop || self.wheels_stop || self.stops_bus(bus)
     }
 
+    /// Whether joints on this bus are stopped.
     pub const fn stops_joints(&self, bus: BusId) -> bool {
         self.global_stop || self.joints_stop || self.stops_bus(bus)
     }

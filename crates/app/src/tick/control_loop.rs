@@ -19,8 +19,8 @@ use crate::{
         layout::{MotorLayout, REPLY_PERIOD_TICKS, ROBOT_LAYOUT},
     },
     safety::{
-        Arming, ArmingInputs, ArmingState, AttitudeRest, FlashGrant, FlashPermit,
-        FlashPermitInputs, MotorFindings, SafetyInputs, SafetyPolicy, StickRest, TorquePermit,
+        Arming, ArmingInputs, ArmingState, AttitudeSettling, CentredSticks, FlashGrant,
+        FlashPermit, FlashPermitInputs, MotorReadiness, SafetyInputs, SafetyPolicy, TorquePermit,
         WatchdogPeriod,
     },
     tuning::{TuningAccess, TuningChannel, TuningGate, is_request},
@@ -99,9 +99,9 @@ pub struct ControlLoop<
     policy: SafetyPolicy,
     /// Of the period in which diagnostics are renewed.
     phase: u32,
-    stick_rest: StickRest,
-    sticks_rest: bool,
-    attitude_rest: AttitudeRest,
+    centred_sticks: CentredSticks,
+    sticks_centred: bool,
+    attitude_settling: AttitudeSettling,
     attitude_settled: bool,
     arming: Arming,
     flash: FlashPermit,
@@ -141,9 +141,9 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
             estimator,
             policy: SafetyPolicy::default(),
             phase: 0,
-            stick_rest: StickRest::default(),
-            sticks_rest: false,
-            attitude_rest: AttitudeRest::default(),
+            centred_sticks: CentredSticks::default(),
+            sticks_centred: false,
+            attitude_settling: AttitudeSettling::default(),
             attitude_settled: false,
             arming: Arming::default(),
             flash: FlashPermit::default(),
@@ -208,7 +208,7 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
     pub fn after_stall(&mut self, stall_us: u32, now_us: u64) {
         self.diagnostics.borrow_mut().tick.stalled(stall_us);
         self.motors.after_stall(stall_us, now_us);
-        self.stick_rest.after_stall(now_us);
+        self.centred_sticks.after_stall(now_us);
     }
 
     /// One tick; `now_us` is when it began.
@@ -242,7 +242,7 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
         let status = *self.tuning.status();
         if status.revision != diagnostics.tuning.revision {
             self.estimator.set_odometry(&self.config.wheel_odom);
-            self.stick_rest.restart();
+            self.centred_sticks.restart();
             self.arming.settings_changed(now_us);
         }
         diagnostics.tuning = status;
@@ -328,13 +328,13 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
         let diagnostics = self.diagnostics.borrow_mut();
         let config = &self.config;
         let fresh = diagnostics.remote_diag.age_us <= config.safety.remote_timeout_us;
-        self.sticks_rest =
-            self.stick_rest
+        self.sticks_centred =
+            self.centred_sticks
                 .step(&inputs.remote.state, fresh, &config.safety, now_us);
         let rejects = &inputs.health.imu_status.rejects;
-        self.attitude_settled = self.attitude_rest.step(rejects, now_us);
+        self.attitude_settled = self.attitude_settling.step(rejects, now_us);
         if diagnostics.arming.state == ArmingState::Disarmed {
-            diagnostics.motors = MotorFindings::of(&diagnostics.sensors.motor, &config.joints);
+            diagnostics.motors = MotorReadiness::assess(&diagnostics.sensors.motor, &config.joints);
         }
     }
 
@@ -345,7 +345,8 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
                 config: &self.config.safety,
                 remote: &diagnostics.remote_diag,
                 operator: &inputs.remote.operator,
-                may_resume: self.sticks_rest || diagnostics.arming.state == ArmingState::Disarmed,
+                may_resume: self.sticks_centred
+                    || diagnostics.arming.state == ArmingState::Disarmed,
                 imu_ts_us: inputs.imu.ts_us,
                 estimate: &diagnostics.estimate,
                 motor: &diagnostics.sensors.motor,
@@ -358,7 +359,7 @@ impl<C: ChassisController, D: BorrowMut<DiagnosticsSnapshot>> ControlLoop<C, D> 
         let (status, token) = self.arming.step(
             &ArmingInputs {
                 config: &self.config.safety,
-                sticks_rest: self.sticks_rest,
+                sticks_centred: self.sticks_centred,
                 attitude_settled: self.attitude_settled,
                 remote_age_us: diagnostics.remote_diag.age_us,
                 operator: &inputs.remote.operator,

@@ -14,7 +14,7 @@ struct Bench {
     params: ParamStatus,
     debugger_catches: bool,
     joint_timeout_unset: bool,
-    sticks_rest: bool,
+    sticks_centred: bool,
     estimate_valid: bool,
     attitude_settled: bool,
     remote_age_us: u32,
@@ -45,12 +45,12 @@ impl Bench {
             params: ParamStatus::default(),
             debugger_catches: false,
             joint_timeout_unset: false,
-            sticks_rest: true,
+            sticks_centred: true,
             estimate_valid: true,
             attitude_settled: true,
             remote_age_us: 5_000,
             motor,
-            safety: SafetyStatus::of(SafetyFlags::NONE),
+            safety: SafetyStatus::from_flags(SafetyFlags::NONE),
         }
     }
 
@@ -68,7 +68,7 @@ impl Bench {
             self.now_us += 1_000;
             let inputs = ArmingInputs {
                 config: &self.config,
-                sticks_rest: self.sticks_rest,
+                sticks_centred: self.sticks_centred,
                 remote_age_us: self.remote_age_us,
                 operator: &OperatorState {
                     enabled: self.enabled,
@@ -80,7 +80,7 @@ impl Bench {
                 estimate_valid: self.estimate_valid,
                 attitude_settled: self.attitude_settled,
                 calibrated: self.calibrated,
-                motor: &MotorFindings::of(&self.motor, &RobotConfig::default().joints),
+                motor: &MotorReadiness::assess(&self.motor, &RobotConfig::default().joints),
                 read_only: self.read_only,
                 tries_motors: self.tries_motors,
                 flash_busy: self.flash_busy,
@@ -98,24 +98,24 @@ impl Bench {
 }
 
 #[test]
-fn off_then_on_arms_at_once() {
+fn switching_off_and_on_arms_at_once() {
     let mut bench = Bench::new();
     assert_eq!(bench.run(1).blockers, ArmingBlockers::ENABLE_OFF);
     bench.flip_on();
     assert_eq!(bench.run(1).state, ArmingState::Armed);
 }
 
-/// Flips the switch with one thing wrong, then mends it.
-fn refused_by(spoil: impl Fn(&mut Bench), mend: impl Fn(&mut Bench), blocker: ArmingBlockers) {
+/// Flips the switch while one thing is wrong, then corrects it.
+fn refused_by(inject: impl Fn(&mut Bench), correct: impl Fn(&mut Bench), blocker: ArmingBlockers) {
     let mut bench = Bench::new();
-    spoil(&mut bench);
+    inject(&mut bench);
     bench.run(1);
     bench.flip_on();
     let status = bench.run(1);
     assert!(status.blockers.contains(blocker), "{:?}", status.blockers);
     assert!(status.blockers.contains(ArmingBlockers::ENABLE_NOT_CYCLED));
     assert!(status.refused.contains(blocker), "{:?}", status.refused);
-    mend(&mut bench);
+    correct(&mut bench);
     let later = bench.run(5_000);
     assert_eq!(later.blockers, ArmingBlockers::ENABLE_NOT_CYCLED);
     assert_eq!(later.refused, status.refused);
@@ -128,7 +128,7 @@ fn refused_by(spoil: impl Fn(&mut Bench), mend: impl Fn(&mut Bench), blocker: Ar
 }
 
 #[test]
-fn a_refused_request_is_used_up() {
+fn a_refused_request_must_be_repeated() {
     use ArmingBlockers as B;
     refused_by(
         |b| b.calibrated = false,
@@ -136,8 +136,8 @@ fn a_refused_request_is_used_up() {
         B::CALIBRATION_PENDING,
     );
     refused_by(
-        |b| b.sticks_rest = false,
-        |b| b.sticks_rest = true,
+        |b| b.sticks_centred = false,
+        |b| b.sticks_centred = true,
         B::STICKS_NOT_CENTRED,
     );
     refused_by(
@@ -151,8 +151,8 @@ fn a_refused_request_is_used_up() {
         B::BRING_UP_READ_ONLY,
     );
     refused_by(
-        |b| b.safety = SafetyStatus::of(SafetyFlags::CAN1_CONGESTED),
-        |b| b.safety = SafetyStatus::of(SafetyFlags::NONE),
+        |b| b.safety = SafetyStatus::from_flags(SafetyFlags::CAN1_CONGESTED),
+        |b| b.safety = SafetyStatus::from_flags(SafetyFlags::NONE),
         B::SAFETY_STOP,
     );
     // Motors that get their power later.
@@ -168,9 +168,9 @@ fn a_refused_request_is_used_up() {
     );
 }
 
-/// Settings may give another channel to the enable switch, one that is on.
+/// New settings may assign the enable switch to another channel, which is on.
 #[test]
-fn a_switch_that_is_on_when_settings_change_must_be_seen_off_first() {
+fn after_a_settings_change_the_switch_must_be_seen_off() {
     let mut bench = Bench::new();
     bench.run(10);
     bench.arming.settings_changed(bench.now_us);
@@ -184,13 +184,13 @@ fn a_switch_that_is_on_when_settings_change_must_be_seen_off_first() {
     assert_eq!(bench.run(1).state, ArmingState::Armed);
 }
 
-/// Blockers when the switch is flipped with this one thing wrong, and whether the robot stays armed when it goes
-/// wrong later.
-fn with_wrong(spoil: impl Fn(&mut Bench)) -> (ArmingBlockers, ArmingState) {
+/// Returns the blockers when the switch is flipped with this one fault, and whether the robot stays armed if the
+/// fault occurs later.
+fn with_wrong(inject: impl Fn(&mut Bench)) -> (ArmingBlockers, ArmingState) {
     let mut before = Bench::new();
     before.run(1);
     before.flip_on();
-    spoil(&mut before);
+    inject(&mut before);
     let status = before.run(1);
     assert_eq!(
         status.waiting,
@@ -206,12 +206,12 @@ fn with_wrong(spoil: impl Fn(&mut Bench)) -> (ArmingBlockers, ArmingState) {
     later.run(1);
     later.flip_on();
     assert_eq!(later.run(1).state, ArmingState::Armed);
-    spoil(&mut later);
+    inject(&mut later);
     (blockers, later.run(10).state)
 }
 
 #[test]
-fn stops_of_a_part_forbid_arming_but_do_not_disarm() {
+fn partial_stops_block_arming_but_do_not_disarm() {
     let flags = [
         SafetyFlags::CAN1_FAULT,
         SafetyFlags::CAN2_CONGESTED,
@@ -220,7 +220,7 @@ fn stops_of_a_part_forbid_arming_but_do_not_disarm() {
         SafetyFlags::JOINT_FROZEN,
     ];
     for flag in flags {
-        let result = with_wrong(|bench| bench.safety = SafetyStatus::of(flag));
+        let result = with_wrong(|bench| bench.safety = SafetyStatus::from_flags(flag));
         assert_eq!(result, (ArmingBlockers::SAFETY_STOP, ArmingState::Armed));
     }
 }
@@ -232,19 +232,20 @@ fn global_stops_disarm() {
         SafetyFlags::TILT,
         SafetyFlags::BATTERY_EMPTY,
     ] {
-        let result = with_wrong(|bench| bench.safety = SafetyStatus::of(flag));
+        let result = with_wrong(|bench| bench.safety = SafetyStatus::from_flags(flag));
         assert_eq!(result, (ArmingBlockers::SAFETY_STOP, ArmingState::Disarmed));
     }
 }
 
 #[test]
-fn a_low_battery_forbids_arming_but_does_not_disarm() {
-    let result = with_wrong(|bench| bench.safety = SafetyStatus::of(SafetyFlags::BATTERY_LOW));
+fn a_low_battery_blocks_arming_but_does_not_disarm() {
+    let result =
+        with_wrong(|bench| bench.safety = SafetyStatus::from_flags(SafetyFlags::BATTERY_LOW));
     assert_eq!(result, (ArmingBlockers::BATTERY_LOW, ArmingState::Armed));
 }
 
 #[test]
-fn every_joint_must_be_set_up_and_without_a_fault() {
+fn arming_needs_every_joint_set_up_and_without_a_fault() {
     for joint in 0..4 {
         for state in [JointState::Silent, JointState::SettingUp, JointState::Fault] {
             let result = with_wrong(|bench| bench.motor.joints[joint].state = state);
@@ -261,7 +262,7 @@ fn every_joint_must_be_set_up_and_without_a_fault() {
 }
 
 #[test]
-fn reading_only_forbids_arming_and_disarms() {
+fn the_read_only_step_blocks_arming_and_disarms() {
     let result = with_wrong(|bench| bench.read_only = true);
     assert_eq!(
         result,
@@ -269,8 +270,8 @@ fn reading_only_forbids_arming_and_disarms() {
     );
 }
 
-/// A robot whose pilot has asked while flash was being written.
-fn asked_while_flash_is_busy() -> Bench {
+/// A robot whose pilot requested arming while flash was being written.
+fn requested_while_flash_is_busy() -> Bench {
     let mut bench = Bench::new();
     bench.flash_busy = true;
     bench.run(1);
@@ -279,10 +280,10 @@ fn asked_while_flash_is_busy() -> Bench {
 }
 
 #[test]
-fn a_flip_while_flash_is_busy_arms_when_it_is_done() {
+fn a_request_while_flash_is_busy_arms_when_flash_is_done() {
     let result = with_wrong(|bench| bench.flash_busy = true);
     assert_eq!(result, (ArmingBlockers::FLASH_BUSY, ArmingState::Armed));
-    let mut bench = asked_while_flash_is_busy();
+    let mut bench = requested_while_flash_is_busy();
     let status = bench.run(600);
     assert_eq!(status.blockers, ArmingBlockers::FLASH_BUSY);
     assert!(status.waiting);
@@ -293,20 +294,21 @@ fn a_flip_while_flash_is_busy_arms_when_it_is_done() {
     assert!(!status.waiting);
 }
 
-/// Samples have a gap where the chip stood still.
+/// The samples have a gap where the chip stood still.
 #[test]
-fn it_waits_for_the_attitude_that_settles_anew_after_an_erase() {
-    let mut bench = asked_while_flash_is_busy();
+fn a_request_waits_for_the_attitude_to_settle_after_an_erase() {
+    let mut bench = requested_while_flash_is_busy();
     bench.run(10);
     bench.estimate_valid = false;
-    bench.safety = SafetyStatus::of(SafetyFlags::ESTIMATE_INVALID.union(SafetyFlags::IMU_STALE));
+    bench.safety =
+        SafetyStatus::from_flags(SafetyFlags::ESTIMATE_INVALID.union(SafetyFlags::IMU_STALE));
     assert!(bench.run(100).waiting);
     bench.flash_busy = false;
     assert!(bench.run(500).waiting);
     bench.estimate_valid = true;
-    bench.safety = SafetyStatus::of(SafetyFlags::NONE);
+    bench.safety = SafetyStatus::from_flags(SafetyFlags::NONE);
     assert_eq!(bench.run(1).state, ArmingState::Armed);
-    // The next time there is nothing to wait for.
+    // The next request has nothing to wait for.
     bench.flip_off();
     bench.run(1);
     bench.estimate_valid = false;
@@ -315,28 +317,28 @@ fn it_waits_for_the_attitude_that_settles_anew_after_an_erase() {
 }
 
 #[test]
-fn a_request_does_not_wait_for_ever() {
+fn a_request_does_not_wait_forever() {
     for (waited_ms, waiting) in [(2_999, true), (3_002, false)] {
-        let mut bench = asked_while_flash_is_busy();
+        let mut bench = requested_while_flash_is_busy();
         assert_eq!(bench.run(waited_ms).waiting, waiting);
     }
 }
 
 #[test]
-fn a_waiting_request_is_refused_by_whatever_else_goes_wrong() {
+fn any_other_fault_refuses_a_waiting_request() {
     let spoils: [fn(&mut Bench); 7] = [
-        |bench| bench.sticks_rest = false,
+        |bench| bench.sticks_centred = false,
         |bench| bench.calibrated = false,
         |bench| bench.remote_age_us = 100_001,
         |bench| bench.read_only = true,
         |bench| bench.motor.joints[0].state = JointState::Fault,
-        |bench| bench.safety = SafetyStatus::of(SafetyFlags::E_STOP),
-        |bench| bench.safety = SafetyStatus::of(SafetyFlags::JOINT_SILENT),
+        |bench| bench.safety = SafetyStatus::from_flags(SafetyFlags::E_STOP),
+        |bench| bench.safety = SafetyStatus::from_flags(SafetyFlags::JOINT_SILENT),
     ];
-    for spoil in spoils {
-        let mut bench = asked_while_flash_is_busy();
+    for inject in spoils {
+        let mut bench = requested_while_flash_is_busy();
         assert!(bench.run(10).waiting);
-        spoil(&mut bench);
+        inject(&mut bench);
         assert!(!bench.run(1).waiting);
         bench.flash_busy = false;
         assert_eq!(bench.run(10).state, ArmingState::Disarmed);
@@ -344,7 +346,7 @@ fn a_waiting_request_is_refused_by_whatever_else_goes_wrong() {
 }
 
 #[test]
-fn wheels_that_are_not_what_they_should_be_forbid_arming_but_do_not_disarm() {
+fn faulty_wheels_block_arming_but_do_not_disarm() {
     for wheel in 0..2 {
         let result = with_wrong(|bench| bench.motor.wheels[wheel].ts_us = 0);
         assert_eq!(
@@ -357,7 +359,7 @@ fn wheels_that_are_not_what_they_should_be_forbid_arming_but_do_not_disarm() {
 }
 
 #[test]
-fn a_joint_beyond_its_limits_forbids_arming_but_does_not_disarm() {
+fn a_joint_beyond_its_limits_blocks_arming_but_does_not_disarm() {
     for joint in 0..4 {
         let result = with_wrong(|bench| bench.motor.joints[joint].pos_rad = -6.3);
         assert_eq!(
@@ -367,9 +369,9 @@ fn a_joint_beyond_its_limits_forbids_arming_but_does_not_disarm() {
     }
 }
 
-/// A new robot finds out which way its joints turn before their zeros are set.
+/// A new robot tests the directions of its joints before their zeros are set.
 #[test]
-fn a_joint_beyond_its_limits_may_be_tried_out() {
+fn a_joint_beyond_its_limits_may_be_tested_in_bring_up() {
     let result = with_wrong(|bench| {
         bench.motor.joints[1].pos_rad = 6.3;
         bench.tries_motors = true;
@@ -378,42 +380,42 @@ fn a_joint_beyond_its_limits_may_be_tried_out() {
 }
 
 #[test]
-fn refused_settings_forbid_arming() {
+fn refused_settings_block_arming() {
     let result = with_wrong(|bench| bench.params.refused = 1);
     let expected = (ArmingBlockers::SETTINGS_REFUSED, ArmingState::Armed);
     assert_eq!(result, expected);
 }
 
 #[test]
-fn an_attitude_that_has_not_settled_forbids_arming_but_lets_no_robot_fall() {
+fn an_unsettled_attitude_blocks_arming_but_does_not_disarm() {
     let result = with_wrong(|bench| bench.attitude_settled = false);
     let expected = (ArmingBlockers::ATTITUDE_UNSETTLED, ArmingState::Armed);
     assert_eq!(result, expected);
 }
 
 #[test]
-fn a_debugger_that_catches_forbids_arming_but_lets_no_robot_fall() {
+fn a_debugger_with_vector_catch_blocks_arming_but_does_not_disarm() {
     let result = with_wrong(|bench| bench.debugger_catches = true);
     let expected = (ArmingBlockers::DEBUGGER_CATCHES, ArmingState::Armed);
     assert_eq!(result, expected);
 }
 
 #[test]
-fn joint_motors_without_a_time_out_forbid_arming() {
+fn joint_motors_without_a_timeout_block_arming() {
     let result = with_wrong(|bench| bench.joint_timeout_unset = true);
     let expected = (ArmingBlockers::JOINT_TIMEOUT_UNSET, ArmingState::Armed);
     assert_eq!(result, expected);
 }
 
 #[test]
-fn a_stick_that_does_not_rest_forbids_arming_but_does_not_disarm() {
-    let result = with_wrong(|bench| bench.sticks_rest = false);
+fn a_deflected_stick_blocks_arming_but_does_not_disarm() {
+    let result = with_wrong(|bench| bench.sticks_centred = false);
     let expected = (ArmingBlockers::STICKS_NOT_CENTRED, ArmingState::Armed);
     assert_eq!(result, expected);
 }
 
 #[test]
-fn a_moment_of_doubt_disarms_and_is_no_flip_of_the_switch() {
+fn a_moment_without_a_clear_switch_position_disarms_and_is_no_request() {
     let mut bench = Bench::new();
     bench.run(1);
     bench.flip_on();
@@ -429,7 +431,7 @@ fn a_moment_of_doubt_disarms_and_is_no_flip_of_the_switch() {
 }
 
 #[test]
-fn each_blocker_has_a_bit_of_its_own_and_the_table_is_in_their_order() {
+fn blockers_have_distinct_bits_in_table_order() {
     let bits = BLOCKER_NAMES.map(|(blocker, _)| blocker.bits());
     assert!(bits.iter().all(|bits| bits.count_ones() == 1), "{bits:x?}");
     assert!(

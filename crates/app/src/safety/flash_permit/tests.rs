@@ -19,7 +19,7 @@ struct Bench {
 }
 
 impl Bench {
-    /// A second after boot, no motor heard yet.
+    /// One second after boot, without any report of a motor.
     fn new(request: FlashRequest) -> Self {
         Self {
             permit: FlashPermit::default(),
@@ -59,14 +59,14 @@ impl Bench {
         (wheel.rpm, wheel.age_us, wheel.ts_us) = (500, 0, self.now_us);
     }
 
-    /// How many ticks it takes until the request is granted; `None` if it is not within three seconds.
+    /// Number of ticks until the request is granted, or `None` if that takes more than three seconds.
     fn ticks_to_grant(&mut self) -> Option<u32> {
         (1..=3_000).find(|_| self.granted() != FlashRequest::None)
     }
 }
 
 #[test]
-fn a_robot_at_rest_may_write_at_once_and_arming_waits() {
+fn a_robot_at_rest_gets_its_write_at_once_and_arming_waits() {
     let mut bench = Bench::new(FlashRequest::Program);
     let expected = FlashGrant {
         granted: FlashRequest::Program,
@@ -79,7 +79,7 @@ fn a_robot_at_rest_may_write_at_once_and_arming_waits() {
 }
 
 #[test]
-fn an_erase_waits_for_the_long_watchdog_and_arming_until_it_is_short_again() {
+fn an_erase_waits_for_the_long_watchdog_and_arming_for_the_short_one() {
     let mut bench = Bench::new(FlashRequest::Erase);
     for _ in 0..500 {
         assert_eq!(bench.tick(), FlashGrant::default());
@@ -107,7 +107,7 @@ fn an_erase_waits_for_the_long_watchdog_and_arming_until_it_is_short_again() {
 }
 
 #[test]
-fn armed_until_half_a_second_ago_is_too_early() {
+fn nothing_is_granted_until_half_a_second_after_disarming() {
     let mut bench = Bench::new(FlashRequest::Program);
     bench.arming = ArmingState::Armed;
     assert_eq!(bench.tick(), FlashGrant::default());
@@ -119,7 +119,7 @@ fn armed_until_half_a_second_ago_is_too_early() {
 }
 
 #[test]
-fn just_after_boot_is_too_early() {
+fn nothing_is_granted_just_after_boot() {
     let mut bench = Bench::new(FlashRequest::Program);
     bench.now_us = 498_000;
     assert_eq!(bench.granted(), FlashRequest::None);
@@ -127,7 +127,7 @@ fn just_after_boot_is_too_early() {
 }
 
 #[test]
-fn a_pilot_who_is_about_to_arm_comes_first() {
+fn the_enable_switch_has_priority_over_requests() {
     for request in [FlashRequest::Program, FlashRequest::Erase] {
         let mut bench = Bench::new(request);
         bench.watchdog = WatchdogPeriod::Long;
@@ -135,16 +135,16 @@ fn a_pilot_who_is_about_to_arm_comes_first() {
         let grant = bench.tick();
         assert_eq!(grant.granted, FlashRequest::None);
         assert!(!grant.needs_long_watchdog);
-        // The watchdog is long still; a robot is never armed with that.
+        // The watchdog still has its long period, with which a robot is never armed.
         assert!(grant.blocks_arming);
         bench.watchdog = WatchdogPeriod::Short;
         assert!(!bench.tick().blocks_arming);
     }
 }
 
-/// The work may have begun: what was granted stays granted, and arming stays blocked.
+/// The work may have begun, so the grant stays and arming remains blocked.
 #[test]
-fn a_grant_outlasts_its_reasons_until_the_request_is_taken_back() {
+fn a_grant_stays_until_the_request_is_withdrawn() {
     let mut bench = Bench::new(FlashRequest::Program);
     bench.tick();
     bench.enabled = true;
@@ -152,20 +152,20 @@ fn a_grant_outlasts_its_reasons_until_the_request_is_taken_back() {
     let grant = bench.tick();
     assert_eq!(grant.granted, FlashRequest::Program);
     assert!(grant.blocks_arming);
-    // Another request is another question.
+    // Another request is decided anew.
     bench.request = FlashRequest::Erase;
     assert_eq!(bench.tick(), FlashGrant::default());
 }
 
 #[test]
-fn words_may_be_programmed_while_a_wheel_runs_down() {
+fn words_may_be_programmed_while_a_wheel_coasts_down() {
     let mut bench = Bench::new(FlashRequest::Program);
     bench.turn();
     assert_eq!(bench.granted(), FlashRequest::Program);
 }
 
 #[test]
-fn motors_that_are_tried_out_forbid_both() {
+fn motor_tests_block_programming_and_erasing() {
     for (request, ticks) in [(FlashRequest::Program, 1), (FlashRequest::Erase, 501)] {
         let mut bench = Bench::new(request);
         bench.watchdog = WatchdogPeriod::Long;
@@ -177,12 +177,12 @@ fn motors_that_are_tried_out_forbid_both() {
 }
 
 #[test]
-fn an_erase_needs_half_a_second_of_rest_without_a_break() {
+fn an_erase_needs_half_a_second_of_uninterrupted_rest() {
     let mut bench = Bench::new(FlashRequest::Erase);
     bench.watchdog = WatchdogPeriod::Long;
     bench.turn();
     assert_eq!(bench.ticks_to_grant(), None);
-    // It swings through zero, and comes to rest.
+    // The wheel swings through zero and comes to rest.
     bench.motor.wheels[0].rpm = 0;
     for _ in 0..499 {
         assert_eq!(bench.granted(), FlashRequest::None);
@@ -198,7 +198,7 @@ fn instead_of_erase(on: bool, other: FlashRequest) -> FlashRequest {
 }
 
 #[test]
-fn rest_before_a_flip_of_the_switch_or_another_request_does_not_count_after_it() {
+fn rest_counts_anew_after_enabling_or_another_request() {
     for disturb in [
         |bench: &mut Bench, on: bool| bench.enabled = on,
         |bench: &mut Bench, on: bool| bench.tries_motors = on,

@@ -1,7 +1,7 @@
 use super::*;
 use crate::{domain::BusId, safety::SafetyVerdict};
 
-/// A policy and what it looks at; as made, nothing is wrong, and one tick has seen it.
+/// A policy and its inputs. Initially nothing is wrong, and one tick has run.
 struct Bench {
     policy: SafetyPolicy,
     config: SafetyConfig,
@@ -58,7 +58,7 @@ impl Bench {
         bench
     }
 
-    /// One tick; time does not move by itself.
+    /// Runs one tick without advancing the time.
     fn tick(&mut self) -> SafetyStatus {
         self.policy.evaluate(
             &SafetyInputs {
@@ -77,7 +77,7 @@ impl Bench {
         )
     }
 
-    /// Ticks of 1 ms; the last one's status.
+    /// Runs ticks of 1 ms and returns the last status.
     fn run(&mut self, milliseconds: u32) -> SafetyStatus {
         let mut status = self.tick();
         for _ in 0..milliseconds {
@@ -87,7 +87,7 @@ impl Bench {
         status
     }
 
-    /// Milliseconds until the flag shows, if within three seconds.
+    /// Milliseconds until the flag is set, or `None` if that takes more than three seconds.
     fn ms_until(&mut self, flag: SafetyFlags) -> Option<u32> {
         (1..=3_000).find(|_| {
             self.now_us += 1_000;
@@ -102,8 +102,8 @@ impl Bench {
     }
 }
 
-/// After nothing was wrong: the first tick with one change.
-fn judge(change: impl FnOnce(&mut Bench)) -> SafetyStatus {
+/// The first tick after one change to a healthy robot.
+fn with_change(change: impl FnOnce(&mut Bench)) -> SafetyStatus {
     let mut bench = Bench::new();
     change(&mut bench);
     bench.tick()
@@ -120,7 +120,7 @@ fn stops(status: &SafetyStatus) -> [bool; 4] {
 }
 
 #[test]
-fn with_nothing_wrong_it_runs() {
+fn without_faults_nothing_is_stopped() {
     let status = Bench::new().run(3_000);
     assert_eq!(status.flags, SafetyFlags::NONE);
     assert_eq!(status.verdict, SafetyVerdict::Run);
@@ -128,14 +128,14 @@ fn with_nothing_wrong_it_runs() {
 }
 
 #[test]
-fn a_bad_bus_stops_only_its_own_actuators() {
+fn a_faulty_bus_stops_only_its_own_actuators() {
     let cases = [
         (0, SafetyFlags::CAN1_FAULT, SafetyFlags::CAN1_CONGESTED),
         (1, SafetyFlags::CAN2_FAULT, SafetyFlags::CAN2_CONGESTED),
     ];
     for (bus, fault, congestion) in cases {
-        let off = judge(|bench| bench.health.can[bus].state = BusErrorState::BusOff);
-        let congested = judge(|bench| bench.health.can[bus].tx_failures_in_row = 21);
+        let off = with_change(|bench| bench.health.can[bus].state = BusErrorState::BusOff);
+        let congested = with_change(|bench| bench.health.can[bus].tx_failures_in_row = 21);
         assert_eq!((off.flags, congested.flags), (fault, congestion));
         for status in [off, congested] {
             assert_eq!(status.verdict, SafetyVerdict::PartialStop);
@@ -147,16 +147,16 @@ fn a_bad_bus_stops_only_its_own_actuators() {
 /// The limit is 20.
 #[test]
 fn accumulated_sensor_errors_stop_everything_until_cleared() {
-    type Spoil = fn(&mut Bench);
-    let imu: Spoil = |bench| bench.health.imu.errors = 21;
-    let mag: Spoil = |bench| bench.health.mag.errors = 21;
+    type Fault = fn(&mut Bench);
+    let imu: Fault = |bench| bench.health.imu.errors = 21;
+    let mag: Fault = |bench| bench.health.mag.errors = 21;
     let cases = [
         (imu, SafetyFlags::IMU_ERRORS),
         (mag, SafetyFlags::MAG_ERRORS),
     ];
-    for (spoil, flag) in cases {
+    for (inject, flag) in cases {
         let mut bench = Bench::new();
-        spoil(&mut bench);
+        inject(&mut bench);
         assert_eq!(bench.tick().flags, flag);
         let later = bench.run(10_000);
         assert_eq!((later.flags, later.latched), (flag, flag));
@@ -168,9 +168,9 @@ fn accumulated_sensor_errors_stop_everything_until_cleared() {
     }
 }
 
-/// As shipped: what is exactly at its limit is allowed, one more is not.
+/// With default settings a value at its limit is allowed, and the next one is not.
 #[test]
-fn limits_are_the_last_that_is_allowed() {
+fn values_at_their_limits_are_allowed() {
     type Set = fn(&mut Bench, u32);
     let cases: [(Set, SafetyFlags); 7] = [
         (
@@ -203,30 +203,30 @@ fn limits_are_the_last_that_is_allowed() {
         ),
     ];
     for (set, flag) in cases {
-        assert_eq!(judge(|bench| set(bench, 0)).flags, SafetyFlags::NONE);
-        assert_eq!(judge(|bench| set(bench, 1)).flags, flag);
+        assert_eq!(with_change(|bench| set(bench, 0)).flags, SafetyFlags::NONE);
+        assert_eq!(with_change(|bench| set(bench, 1)).flags, flag);
     }
 }
 
 #[test]
-fn before_the_first_frame_a_link_has_no_quality() {
-    let silent = judge(|bench| (bench.remote.frames, bench.remote.quality) = (0, 0.0));
+fn quality_is_not_judged_before_the_first_frame() {
+    let silent = with_change(|bench| (bench.remote.frames, bench.remote.quality) = (0, 0.0));
     assert_eq!(silent.flags, SafetyFlags::NONE);
 }
 
 #[test]
 fn a_late_task_stops_everything() {
-    let late = judge(|bench| bench.health.late_tasks.status = true);
+    let late = with_change(|bench| bench.health.late_tasks.status = true);
     assert_eq!(late.flags, SafetyFlags::TASK_LATE);
     assert_eq!(late.verdict, SafetyVerdict::GlobalStop);
 }
 
 #[test]
 fn a_bad_link_stops_everything() {
-    let lossy = judge(|bench| bench.remote.quality = 0.49);
-    let unknown = judge(|bench| bench.remote.quality = f32::NAN);
-    let silent = judge(|bench| bench.remote.age_us = 100_001);
-    let failsafe = judge(|bench| bench.remote.failsafe = true);
+    let lossy = with_change(|bench| bench.remote.quality = 0.49);
+    let unknown = with_change(|bench| bench.remote.quality = f32::NAN);
+    let silent = with_change(|bench| bench.remote.age_us = 100_001);
+    let failsafe = with_change(|bench| bench.remote.failsafe = true);
     assert_eq!(lossy.flags, SafetyFlags::REMOTE_QUALITY);
     assert_eq!(unknown.flags, SafetyFlags::REMOTE_QUALITY);
     assert_eq!(silent.flags, SafetyFlags::REMOTE_LOST);
@@ -238,18 +238,18 @@ fn a_bad_link_stops_everything() {
 }
 
 #[test]
-fn each_silent_wheel_is_named_and_stops_nothing() {
-    let left = judge(|bench| bench.motor.wheels[0].age_us = 50_001);
-    let right = judge(|bench| bench.motor.wheels[1].age_us = 50_001);
+fn each_silent_wheel_has_a_flag_and_stops_nothing() {
+    let left = with_change(|bench| bench.motor.wheels[0].age_us = 50_001);
+    let right = with_change(|bench| bench.motor.wheels[1].age_us = 50_001);
     assert_eq!(left.flags, SafetyFlags::WHEEL_LEFT_SILENT);
     assert_eq!(right.flags, SafetyFlags::WHEEL_RIGHT_SILENT);
     assert_eq!(stops(&left), [false; 4]);
 }
 
 #[test]
-fn a_bad_joint_stops_all_joints_and_no_wheel() {
-    type Spoil = fn(&mut Bench, usize);
-    let cases: [(Spoil, SafetyFlags, bool); 4] = [
+fn a_faulty_joint_stops_all_joints_and_no_wheel() {
+    type Fault = fn(&mut Bench, usize);
+    let cases: [(Fault, SafetyFlags, bool); 4] = [
         (
             |bench, joint| bench.motor.joints[joint].state = JointState::Silent,
             SafetyFlags::JOINT_SILENT,
@@ -271,11 +271,11 @@ fn a_bad_joint_stops_all_joints_and_no_wheel() {
             true,
         ),
     ];
-    for (spoil, flag, latches) in cases {
+    for (inject, flag, latches) in cases {
         for joint in 0..4 {
             let mut bench = Bench::new();
             let healthy = bench.motor;
-            spoil(&mut bench, joint);
+            inject(&mut bench, joint);
             let bad = bench.tick();
             assert_eq!(bad.flags, flag, "joint {joint}");
             assert_eq!(bad.verdict, SafetyVerdict::PartialStop);
@@ -286,9 +286,9 @@ fn a_bad_joint_stops_all_joints_and_no_wheel() {
     }
 }
 
-/// A second; a moment of silence, as a motor takes a new setting, starts it anew.
+/// The limit is one second. A short silence, as when a motor takes a new setting, restarts it.
 #[test]
-fn a_joint_that_never_gets_ready_stops_all_joints_for_good() {
+fn a_joint_that_does_not_become_ready_stops_all_joints_until_cleared() {
     for state in [JointState::SettingUp, JointState::Enabling] {
         let mut bench = Bench::new();
         bench.motor.joints[2].state = state;
@@ -305,7 +305,7 @@ fn a_joint_that_never_gets_ready_stops_all_joints_for_good() {
 }
 
 #[test]
-fn a_frozen_wheel_stops_both_wheels_for_good_and_no_joint() {
+fn a_frozen_wheel_stops_both_wheels_until_cleared_and_no_joint() {
     for wheel in 0..2 {
         let mut bench = Bench::new();
         bench.motor.wheels[wheel].frozen = true;
@@ -317,9 +317,9 @@ fn a_frozen_wheel_stops_both_wheels_for_good_and_no_joint() {
     }
 }
 
-/// Half a second above 90 °C; back below 80 °C.
+/// The stop comes after half a second above 90 °C and ends below 80 °C.
 #[test]
-fn hot_motors_stop_their_own_kind_until_they_are_cool() {
+fn hot_motors_stop_all_motors_of_their_kind_until_cool() {
     for wheel in 0..2 {
         let mut bench = Bench::new();
         bench.motor.wheels[wheel].temperature_c = 90;
@@ -347,7 +347,7 @@ fn hot_motors_stop_their_own_kind_until_they_are_cool() {
 }
 
 #[test]
-fn one_wrong_temperature_is_no_heat() {
+fn a_single_wrong_temperature_stops_nothing() {
     let mut bench = Bench::new();
     for _ in 0..10 {
         bench.motor.wheels[0].temperature_c = 255;
@@ -357,9 +357,9 @@ fn one_wrong_temperature_is_no_heat() {
     }
 }
 
-/// Below 21 V for a second: no arming. Back at 21.5 V.
+/// Arming is blocked after a second below 21 V and allowed again at 21.5 V.
 #[test]
-fn a_low_battery_warns_and_recovers() {
+fn a_low_battery_warns_and_recovers_with_hysteresis() {
     let mut bench = Bench::new();
     bench.health.battery_v = 20.9;
     assert_eq!(bench.ms_until(SafetyFlags::BATTERY_LOW), Some(1_000));
@@ -375,7 +375,7 @@ fn a_low_battery_warns_and_recovers() {
 }
 
 #[test]
-fn an_empty_battery_stops_everything_for_good_and_a_sag_does_not() {
+fn an_empty_battery_stops_everything_until_cleared_and_a_sag_does_not() {
     let mut bench = Bench::new();
     for _ in 0..10 {
         bench.health.battery_v = 15.0;
@@ -406,7 +406,7 @@ fn an_unmeasured_battery_is_low_and_nan_is_empty() {
     }
 }
 
-/// Twice the arc tangent of 0.6 is 1.08 rad; the limit is 0.9.
+/// Twice the arc tangent of 0.6 is 1.08 rad; the limit is 0.9 rad.
 #[test]
 fn a_fallen_robot_stops_until_it_is_upright_and_cleared() {
     let mut bench = Bench::new();
@@ -433,15 +433,15 @@ fn a_fallen_robot_stops_until_it_is_upright_and_cleared() {
 
 #[test]
 fn clearing_needs_the_whole_gesture_for_a_second_over_a_good_link() {
-    type Spoil = fn(&mut Bench);
-    let spoils: [Spoil; 5] = [
+    type Fault = fn(&mut Bench);
+    let faults: [Fault; 5] = [
         |bench| bench.operator.disabled = false,
         |bench| bench.operator.e_stop = false,
         |bench| bench.remote.failsafe = true,
         |bench| bench.remote.age_us = 100_001,
         |bench| bench.remote.quality = 0.2,
     ];
-    for spoil in spoils {
+    for inject in faults {
         let mut bench = Bench::new();
         bench.motor.wheels[0].frozen = true;
         bench.tick();
@@ -449,7 +449,7 @@ fn clearing_needs_the_whole_gesture_for_a_second_over_a_good_link() {
         bench.gesture(true);
         bench.run(999);
         let good = bench.remote;
-        spoil(&mut bench);
+        inject(&mut bench);
         bench.run(1);
         bench.remote = good;
         bench.gesture(true);
@@ -458,9 +458,9 @@ fn clearing_needs_the_whole_gesture_for_a_second_over_a_good_link() {
     }
 }
 
-/// The joint needs some ticks to forget its fault; meanwhile the pilot keeps the switches as they are.
+/// The joint needs some ticks to clear its fault, and the pilot keeps the switches in place.
 #[test]
-fn a_joint_is_told_once_a_second_to_clear_and_the_latch_goes_with_the_fault() {
+fn joints_get_a_clear_order_each_second_and_the_latch_ends_with_the_fault() {
     let mut bench = Bench::new();
     bench.motor.joints[2].state = JointState::Fault;
     assert!(!bench.run(100).clear_faults);
@@ -478,9 +478,9 @@ fn a_joint_is_told_once_a_second_to_clear_and_the_latch_goes_with_the_fault() {
     assert_eq!(bench.tick().latched, SafetyFlags::NONE);
 }
 
-/// Time that jumps, stands still or runs backwards is no duration.
+/// Time that jumps, stands still or runs backwards is not a duration.
 #[test]
-fn a_jump_of_the_clock_neither_clears_nor_stops() {
+fn a_clock_jump_neither_clears_nor_stops() {
     let mut bench = Bench::new();
     bench.motor.wheels[0].frozen = true;
     bench.tick();
@@ -496,8 +496,8 @@ fn a_jump_of_the_clock_neither_clears_nor_stops() {
     assert_eq!(bench.tick().latched, SafetyFlags::WHEEL_FROZEN);
 }
 
-/// Something stops a part, and ends: what is stopped while it lasts, after it with the sticks pushed, and after the
-/// sticks have been centred. Wheels, joints.
+/// Returns whether wheels and joints are stopped during a partial stop, after it with the sticks deflected, and after
+/// the sticks have been centred.
 fn stops_around(begin: fn(&mut Bench), end: fn(&mut Bench)) -> [(bool, bool); 3] {
     let mut bench = Bench::new();
     let stops = |bench: &mut Bench| {
@@ -521,7 +521,7 @@ fn stops_around(begin: fn(&mut Bench), end: fn(&mut Bench)) -> [(bool, bool); 3]
 }
 
 #[test]
-fn what_was_stopped_in_part_waits_until_the_sticks_are_centred() {
+fn after_a_partial_stop_the_part_waits_for_centred_sticks() {
     let joints = [(false, true), (false, true), (false, false)];
     let wheels = [(true, false), (true, false), (false, false)];
     let silent_joint = stops_around(
@@ -541,9 +541,9 @@ fn what_was_stopped_in_part_waits_until_the_sticks_are_centred() {
     assert_eq!(congested, wheels);
 }
 
-/// While it is silent its current goes on, open loop; what gets its supply back does not set off.
+/// During the silence its current continues open loop. A wheel that regains its supply must not start by itself.
 #[test]
-fn a_wheel_that_was_silent_waits_when_it_is_back() {
+fn a_wheel_that_was_silent_waits_for_centred_sticks() {
     let open_loop = [(false, false), (true, false), (false, false)];
     for wheel in [
         stops_around(
@@ -560,7 +560,7 @@ fn a_wheel_that_was_silent_waits_when_it_is_back() {
 }
 
 #[test]
-fn a_setting_lets_it_go_on_at_once() {
+fn a_setting_allows_immediate_resumption() {
     let at_once = stops_around(
         |b| {
             b.config.resume_centred = 0;
@@ -571,9 +571,9 @@ fn a_setting_lets_it_go_on_at_once() {
     assert_eq!(at_once, [(false, true), (false, false), (false, false)]);
 }
 
-/// A second cause that begins while the first one's stop lasts is not forgotten either.
+/// A second cause that begins during the first one's stop is remembered as well.
 #[test]
-fn all_causes_must_be_over_before_centred_sticks_count() {
+fn centred_sticks_count_only_after_all_causes_have_ended() {
     let mut bench = Bench::new();
     bench.may_resume = false;
     bench.motor.joints[1].age_us = 60_000;

@@ -4,12 +4,12 @@ const MOTORS: MotorBuses = MotorBuses {
     wheels: BusId::Can1,
     joints: [BusId::Can2; 4],
 };
-/// Of the wheels, and of the joints.
+/// Bus of the wheels, bus of the joints.
 const BUSES: [usize; 2] = [0, 1];
 
 /// A robot whose motors report and are at rest.
 struct Bench {
-    watch: RestWatch,
+    watch: StandstillMonitor,
     now_us: u64,
     motor: MotorFeedback,
     can: [BusHealth; 2],
@@ -26,14 +26,14 @@ impl Bench {
             joint.state = JointState::Disabled;
         }
         Self {
-            watch: RestWatch::from(1_000_000),
+            watch: StandstillMonitor::from(1_000_000),
             now_us: 1_000_000,
             motor,
             can: Default::default(),
         }
     }
 
-    fn lasts(&mut self) -> bool {
+    fn is_at_standstill(&mut self) -> bool {
         self.now_us += 1_000;
         let Self {
             watch,
@@ -41,22 +41,22 @@ impl Bench {
             motor,
             can,
         } = self;
-        watch.lasts(motor, &MOTORS, can, *now_us)
+        watch.is_at_standstill(motor, &MOTORS, can, *now_us)
     }
 
-    /// Milliseconds until it has lasted long enough; `None` if that is more than three seconds.
-    fn ms_to_rest(&mut self) -> Option<u32> {
-        (1..=3_000).find(|_| self.lasts())
+    /// Milliseconds until rest has lasted long enough, or `None` if that takes more than three seconds.
+    fn ms_to_standstill(&mut self) -> Option<u32> {
+        (1..=3_000).find(|_| self.is_at_standstill())
     }
 }
 
 #[test]
-fn rest_must_last_half_a_second() {
-    assert_eq!(Bench::new().ms_to_rest(), Some(500));
+fn standstill_must_last_half_a_second() {
+    assert_eq!(Bench::new().ms_to_standstill(), Some(500));
 }
 
 #[test]
-fn a_wheel_that_reports_must_stand_and_have_no_current() {
+fn a_reporting_wheel_must_be_at_rest_without_current() {
     for (rpm, current_ma, age_us, rests) in [
         (60, 0.0, 1_000, true),
         (-60, -500.0, 999_999, true),
@@ -75,7 +75,7 @@ fn a_wheel_that_reports_must_stand_and_have_no_current() {
             (wheel.rpm, wheel.current_ma, wheel.age_us) = (rpm, current_ma, age_us);
             let expected = rests.then_some(500);
             assert_eq!(
-                bench.ms_to_rest(),
+                bench.ms_to_standstill(),
                 expected,
                 "{rpm} rpm, {current_ma} mA, {age_us} us"
             );
@@ -84,7 +84,7 @@ fn a_wheel_that_reports_must_stand_and_have_no_current() {
 }
 
 #[test]
-fn a_joint_that_reports_must_be_off_and_say_so() {
+fn a_reporting_joint_must_report_disabled() {
     for (state, reports_enabled, rests) in [
         (JointState::Disabled, false, true),
         (JointState::SettingUp, false, true),
@@ -102,12 +102,16 @@ fn a_joint_that_reports_must_be_off_and_say_so() {
             let joint = &mut bench.motor.joints[place];
             (joint.state, joint.reports_enabled) = (state, reports_enabled);
             let expected = rests.then_some(500);
-            assert_eq!(bench.ms_to_rest(), expected, "{state:?} {reports_enabled}");
+            assert_eq!(
+                bench.ms_to_standstill(),
+                expected,
+                "{state:?} {reports_enabled}"
+            );
         }
     }
 }
 
-/// Of a motor that fell silent while it ran, as far as anybody knows.
+/// Makes a wheel fall silent while it may be running.
 fn silence_wheel(bench: &mut Bench) {
     let wheel = &mut bench.motor.wheels[1];
     (wheel.rpm, wheel.current_ma, wheel.age_us) = (3_000, 5_000.0, 1_000_000);
@@ -119,7 +123,7 @@ fn silence_joint(bench: &mut Bench) {
 }
 
 #[test]
-fn a_motor_that_fell_silent_is_off_once_its_bus_has_told_it_so_for_a_second() {
+fn a_silent_motor_counts_as_off_after_a_second_of_disable_frames() {
     let no_ack: fn(&mut BusHealth) = |bus| bus.state = BusErrorState::Passive;
     let bus_off: fn(&mut BusHealth) = |bus| bus.state = BusErrorState::BusOff;
     let stuck: fn(&mut BusHealth) = |bus| bus.tx_failures_in_row = 1;
@@ -129,29 +133,29 @@ fn a_motor_that_fell_silent_is_off_once_its_bus_has_told_it_so_for_a_second() {
     ] {
         let mut bench = Bench::new();
         silence(&mut bench);
-        assert_eq!(bench.ms_to_rest(), Some(1_499));
+        assert_eq!(bench.ms_to_standstill(), Some(1_499));
         for harm in [no_ack, bus_off, stuck] {
             let mut bench = Bench::new();
             silence(&mut bench);
             harm(&mut bench.can[bus]);
-            assert_eq!(bench.ms_to_rest(), None);
+            assert_eq!(bench.ms_to_standstill(), None);
             bench.can[bus] = BusHealth::default();
-            assert_eq!(bench.ms_to_rest(), Some(1_499));
-            // The other bus has no say.
+            assert_eq!(bench.ms_to_standstill(), Some(1_499));
+            // The other bus does not matter.
             let mut bench = Bench::new();
             silence(&mut bench);
             harm(&mut bench.can[1 - bus]);
-            assert_eq!(bench.ms_to_rest(), Some(1_499));
+            assert_eq!(bench.ms_to_standstill(), Some(1_499));
         }
     }
 }
 
 #[test]
-fn motors_never_heard_and_dead_buses_are_at_rest() {
+fn motors_that_never_reported_count_as_at_rest() {
     let mut bench = Bench::new();
     bench.motor = MotorFeedback::default();
     for bus in &mut bench.can {
         bus.state = BusErrorState::BusOff;
     }
-    assert_eq!(bench.ms_to_rest(), Some(500));
+    assert_eq!(bench.ms_to_standstill(), Some(500));
 }

@@ -1,9 +1,9 @@
-//! What was stopped in part goes on by itself only while the pilot's hands are off the sticks: legs and wheels that get
-//! their supply back must not set off at full stick.
+//! A partially stopped robot resumes only when the pilot has released the sticks. Legs and wheels that regain their
+//! supply must not start at full stick.
 
 use super::SafetyFlags;
 
-/// A silent wheel is driven open loop; when it is back, both wheels wait.
+/// A silent wheel is driven open loop. When its feedback returns, both wheels wait.
 const SILENT_WHEELS: SafetyFlags =
     SafetyFlags::WHEEL_LEFT_SILENT.union(SafetyFlags::WHEEL_RIGHT_SILENT);
 const WATCHED: SafetyFlags = SafetyFlags::WHEELS_STOP
@@ -12,23 +12,23 @@ const WATCHED: SafetyFlags = SafetyFlags::WHEELS_STOP
     .union(SafetyFlags::BUS_STOP[1])
     .union(SILENT_WHEELS);
 
-/// Remembers conditions that stopped a part.
+/// Remembers the conditions that stopped a part.
 #[derive(Clone, Debug, Default)]
-pub(super) struct ResumeWatch {
-    kept: SafetyFlags,
+pub(super) struct ResumeInterlock {
+    held: SafetyFlags,
 }
 
-impl ResumeWatch {
-    /// Takes the conditions there are; gives those whose stop lasts although they are over. `may_resume`: nothing has
-    /// to wait now.
+impl ResumeInterlock {
+    /// Takes the present conditions. Returns the ended ones whose stop continues. If `may_resume` is true, none
+    /// continues.
     pub fn step(&mut self, present: SafetyFlags, may_resume: bool) -> SafetyFlags {
         let watched = present.intersection(WATCHED);
-        self.kept = if may_resume {
+        self.held = if may_resume {
             watched
         } else {
-            self.kept.union(watched)
+            self.held.union(watched)
         };
-        let over = self.kept.without(watched);
+        let over = self.held.without(watched);
         if over.intersects(SILENT_WHEELS) {
             over.union(SafetyFlags::WHEELS_STOP)
         } else {

@@ -1,33 +1,33 @@
-//! Whether the pilot's hands are off the sticks: a stick on its way through the centre is no rest.
+//! Detects that the pilot has released the sticks. A stick that passes through the centre does not count.
 
 use crate::domain::{RemoteState, SafetyConfig};
 
-/// Both sticks have been centred for this long before they count as at rest.
+/// Both sticks must be centred for this long.
 const REST_US: u64 = 200_000;
-/// After a stall of the chip the radio needs this long to be heard again; that it was not heard meanwhile is nobody's
-/// doing.
+/// After a stall of the chip the radio gets this much time to be received again, as it was not the radio that paused.
 const CATCH_UP_US: u64 = 50_000;
 
-/// Starts as not at rest.
+/// Debounces the centre position of both sticks. It starts as not centred.
 #[derive(Clone, Debug, Default)]
-pub struct StickRest {
-    /// Last time the sticks were off centre, or nobody knew where they were.
+pub struct CentredSticks {
+    /// The last time that the sticks were off centre or their position unknown.
     moved_us: Option<u64>,
     stalled_us: u64,
 }
 
-impl StickRest {
-    /// The whole chip stood still until `now_us`.
+impl CentredSticks {
+    /// Takes note that the whole chip stood still until `now_us`.
     pub fn after_stall(&mut self, now_us: u64) {
         self.stalled_us = now_us;
     }
 
-    /// What the sticks were said to be before does not count any more.
+    /// Discards all earlier positions.
     pub fn restart(&mut self) {
         self.moved_us = None;
     }
 
-    /// Once a tick. `fresh`: the remote has been heard of late.
+    /// Returns whether the sticks are centred; called once a tick. `fresh` means that the remote was received
+    /// recently.
     pub fn step(
         &mut self,
         remote: &RemoteState,
@@ -51,7 +51,7 @@ mod tests {
     use super::*;
 
     struct Bench {
-        rest: StickRest,
+        rest: CentredSticks,
         remote: RemoteState,
         fresh: bool,
         now_us: u64,
@@ -60,14 +60,14 @@ mod tests {
     impl Bench {
         fn new() -> Self {
             Self {
-                rest: StickRest::default(),
+                rest: CentredSticks::default(),
                 remote: RemoteState::default(),
                 fresh: true,
                 now_us: 5_000_000,
             }
         }
 
-        /// Ticks of 1 ms; the last answer.
+        /// Runs ticks of 1 ms and returns the last result.
         fn run(&mut self, milliseconds: u32) -> bool {
             let mut rests = false;
             for _ in 0..milliseconds {
@@ -82,14 +82,14 @@ mod tests {
     }
 
     #[test]
-    fn centred_sticks_rest_after_a_fifth_of_a_second() {
+    fn sticks_count_as_centred_after_a_fifth_of_a_second() {
         let mut bench = Bench::new();
         assert!(!bench.run(200));
         assert!(bench.run(1));
     }
 
     #[test]
-    fn a_stick_in_passing_is_no_rest() {
+    fn a_stick_passing_the_centre_does_not_count_as_centred() {
         for (vx, wz) in [
             (0.06, 0.0),
             (-0.06, 0.0),
@@ -108,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn sticks_that_nobody_hears_do_not_rest() {
+    fn sticks_without_a_radio_link_do_not_count_as_centred() {
         let mut bench = Bench::new();
         assert!(bench.run(300));
         bench.fresh = false;
@@ -119,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stall_is_forgiven_but_not_a_radio_that_stays_away() {
+    fn a_stall_is_tolerated_but_a_lost_radio_is_not() {
         let mut bench = Bench::new();
         assert!(bench.run(300));
         bench.now_us += 250_000;
@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn new_settings_start_anew() {
+    fn a_restart_discards_earlier_positions() {
         let mut bench = Bench::new();
         assert!(bench.run(300));
         bench.rest.restart();

@@ -1,19 +1,20 @@
-//! Whether the attitude has had time to settle since samples of the IMU were rejected: what it did meanwhile, nobody saw.
+//! Requires a pause after rejected IMU samples, as the motion between them was not measured.
 
 use crate::domain::ImuRejects;
 
-/// Whole samples without one rejected for this long.
+/// The attitude counts as settled after this long without a rejected sample.
 const SETTLED_US: u64 = 500_000;
 
-/// Starts as not settled.
+/// Watches the counters of rejected samples. It starts as not settled.
 #[derive(Clone, Debug, Default)]
-pub struct AttitudeRest {
+pub struct AttitudeSettling {
     rejected: u32,
     since_us: Option<u64>,
 }
 
-impl AttitudeRest {
-    /// Some times a second. Frames of the gyro that were left out do not count: the rest of their sample was used.
+impl AttitudeSettling {
+    /// Returns whether the attitude has settled; called a few times a second. Skipped gyro frames do not count, as
+    /// the rest of their sample was used.
     pub fn step(&mut self, rejects: &ImuRejects, now_us: u64) -> bool {
         let reasons = [
             rejects.absent,
@@ -36,8 +37,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn half_a_second_without_a_rejected_sample_settles_it() {
-        let mut rest = AttitudeRest::default();
+    fn half_a_second_without_rejected_samples_settles_the_attitude() {
+        let mut rest = AttitudeSettling::default();
         let mut rejects = ImuRejects::default();
         assert!(!rest.step(&rejects, 1_000));
         assert!(!rest.step(&rejects, 500_999));

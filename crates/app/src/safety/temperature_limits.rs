@@ -1,21 +1,21 @@
-//! Judges the motors' temperatures.
+//! Checks the motors' temperatures.
 
-use super::{SafetyFlags, debounce::Excess};
+use super::{SafetyFlags, debounce::DebouncedLimit};
 use crate::domain::{MotorFeedback, SafetyConfig};
 
-/// One report with a wrong byte is no heat.
+/// A single report with a wrong byte must not count.
 const HOLD_US: u32 = 500_000;
-/// So much cooler before the motors run again.
+/// The motors must cool by this much before they run again.
 const MARGIN_C: f32 = 10.0;
 
 #[derive(Clone, Debug, Default)]
-pub(super) struct HeatWatch {
-    wheels: Excess,
-    joints: Excess,
+pub(super) struct TemperatureLimits {
+    wheels: DebouncedLimit,
+    joints: DebouncedLimit,
 }
 
-impl HeatWatch {
-    pub fn judge(
+impl TemperatureLimits {
+    pub fn check(
         &mut self,
         motor: &MotorFeedback,
         config: &SafetyConfig,

@@ -1,23 +1,23 @@
-//! Judges the battery voltage: sags under load are short, an empty battery is not.
+//! Checks the battery voltage. Sags under load are short; an empty battery stays low.
 
-use super::{SafetyFlags, debounce::Excess};
+use super::{SafetyFlags, debounce::DebouncedLimit};
 use crate::domain::SafetyConfig;
 
 const HOLD_US: u32 = 1_000_000;
-/// A battery recovers by some tenths of a volt when the load goes.
+/// A battery recovers by some tenths of a volt when the load ends.
 const MARGIN_V: f32 = 0.5;
-/// The C board itself does not run on less (8 V): the divider sees no battery.
+/// Below this the divider measures no battery: the C board itself needs 8 V.
 const LEAST_PLAUSIBLE_V: f32 = 6.0;
 
 #[derive(Clone, Debug, Default)]
-pub(super) struct BatteryWatch {
-    low: Excess,
-    empty: Excess,
+pub(super) struct BatteryLimits {
+    low: DebouncedLimit,
+    empty: DebouncedLimit,
 }
 
-impl BatteryWatch {
-    /// Not measured: low, but not empty. NaN: both.
-    pub fn judge(
+impl BatteryLimits {
+    /// Sets the battery flags. An unmeasured battery is low but not empty; NaN is both.
+    pub fn check(
         &mut self,
         battery_v: f32,
         config: &SafetyConfig,

@@ -1,4 +1,4 @@
-//! Judges whether the robot has fallen over.
+//! Detects that the robot has fallen over.
 
 use super::debounce::Debounce;
 use crate::{
@@ -10,22 +10,23 @@ use crate::{
 const HOLD_US: u32 = 50_000;
 
 #[derive(Clone, Debug, Default)]
-pub(super) struct TiltWatch {
+pub(super) struct FallDetector {
     tilted: Debounce,
 }
 
-impl TiltWatch {
-    /// Only a valid estimate can tell.
+impl FallDetector {
+    /// Returns whether the robot has fallen. An invalid estimate never says so.
     pub fn fallen(&mut self, estimate: &StateEstimate, config: &SafetyConfig, dt_us: u32) -> bool {
         let upright = within(estimate, config.max_tilt_rad);
         self.tilted.held(estimate.valid && !upright, dt_us, HOLD_US)
     }
 }
 
-/// x² + y² of a rotation's quaternion is sin² of half the angle by which it tilts the z axis. False for NaN.
+/// Whether the body's z axis is within `max_tilt_rad` of vertical: x² + y² of the quaternion is sin² of half that
+/// angle. False for NaN.
 fn within(estimate: &StateEstimate, max_tilt_rad: f32) -> bool {
     let [_, x, y, _] = estimate.q_wxyz;
-    // Half the limit as twice a quarter, which keeps the series in its range up to a limit of π.
+    // Half the limit is computed as twice a quarter, so the series stays in its range up to a limit of π.
     let (sin, cos) = sin_cos_small(max_tilt_rad / 4.0);
     let sin_half = 2.0 * sin * cos;
     x * x + y * y <= sin_half * sin_half
@@ -37,7 +38,7 @@ mod tests {
 
     fn tilted_by(tilt_rad: f32, heading_rad: f32) -> StateEstimate {
         let (half_tilt, half_heading) = (tilt_rad / 2.0, heading_rad / 2.0);
-        // Heading about z after a tilt about y.
+        // A heading about z follows a tilt about y.
         let (tilt_sin, tilt_cos) = half_tilt.sin_cos();
         let (heading_sin, heading_cos) = half_heading.sin_cos();
         StateEstimate {
@@ -52,20 +53,20 @@ mod tests {
         }
     }
 
-    /// 10 ms a call.
+    /// Calls the detector every 10 ms.
     fn falls_after_ms(estimate: &StateEstimate, max_tilt_rad: f32) -> Option<u32> {
         let config = SafetyConfig {
             max_tilt_rad,
             ..SafetyConfig::default()
         };
-        let mut watch = TiltWatch::default();
+        let mut watch = FallDetector::default();
         (10..1_000)
             .step_by(10)
             .find(|_| watch.fallen(estimate, &config, 10_000))
     }
 
     #[test]
-    fn the_angle_to_the_vertical_decides_whatever_the_heading() {
+    fn the_tilt_limit_is_independent_of_heading() {
         for heading_rad in [-3.0, -1.0, 0.0, 0.5, 2.0] {
             for limit_rad in [0.2, 0.9, 1.6, 3.0] {
                 let at = |tilt_rad| falls_after_ms(&tilted_by(tilt_rad, heading_rad), limit_rad);
@@ -77,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn nan_counts_as_fallen_and_an_invalid_estimate_tells_nothing() {
+    fn nan_counts_as_fallen_and_an_invalid_estimate_does_not() {
         let mut estimate = tilted_by(2.0, 0.0);
         estimate.valid = false;
         assert_eq!(falls_after_ms(&estimate, 0.9), None);
@@ -90,8 +91,8 @@ mod tests {
     }
 
     #[test]
-    fn a_knock_is_no_fall() {
-        let (config, mut watch) = (SafetyConfig::default(), TiltWatch::default());
+    fn a_knock_does_not_count_as_a_fall() {
+        let (config, mut watch) = (SafetyConfig::default(), FallDetector::default());
         for _ in 0..20 {
             let knock = tilted_by(2.0, 0.0);
             assert!((0..4).all(|_| !watch.fallen(&knock, &config, 10_000)));
