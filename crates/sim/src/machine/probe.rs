@@ -5,7 +5,7 @@ use robot_plant::time::Ps;
 use super::Machine;
 use robot_emulator::core::system::debug_registers::{DEMCR_VC_CORERESET, DEMCR_VC_HARDERR};
 
-/// What `probe-rs run` and `attach` 0.28 to 0.32 catch unless told not to (`rpc/utils/run_loop.rs`).
+/// What `probe-rs run` and `attach` 0.28 to 0.32 catch unless told not to (docs/hardware.md#debug-probes).
 const CAUGHT_BY_DEFAULT: u32 = DEMCR_VC_CORERESET | DEMCR_VC_HARDERR;
 /// Where debuggers are told to stop: `openocd.gdb` of the Cortex-M quickstart of Rust, and who panics here.
 const BROKEN_AT: [&str; 4] = ["HardFault", "DefaultHandler", "main", "_defmt_panic"];
@@ -20,7 +20,7 @@ impl Machine {
         }
     }
 
-    /// Nothing is taken back: on the STM32F4 probe-rs does not (`vendor/st/sequences/stm32_armv7.rs`), and only power-on
+    /// Nothing is taken back: on the STM32F4 probe-rs does not (docs/hardware.md#debug-probes), and only power-on
     /// clears what it has set in the core. Nobody reads the log any more.
     pub(super) fn pull_probe(&mut self) {
         self.log_is_read = false;
