@@ -13,8 +13,8 @@ use crate::{
     tool,
 };
 
-/// Oldest minor version that compiles this workspace.
-const OLDEST_MINOR: u32 = 88;
+/// Minor version of `rust-version` in the workspace's `Cargo.toml`.
+const OLDEST_MINOR: u32 = 95;
 
 const COMPILER: [Prerequisite; 2] = [
     Prerequisite {
@@ -92,7 +92,7 @@ mod tests {
     #[test]
     fn compiler_version_is_read() {
         assert!(is_new_enough("rustc 1.96.0 (ac68faa20 2026-05-25)"));
-        assert!(is_new_enough("rustc 1.88.0"));
+        assert!(is_new_enough("rustc 1.95.0"));
         assert!(!is_new_enough("rustc 1.63.0 (4b91a6ea7 2022-08-08)"));
         assert!(!is_new_enough("nonsense"));
     }

@@ -30,6 +30,7 @@ pub fn all() -> anyhow::Result<Vec<Step>> {
     let (checked, booted) = (elf.clone(), elf);
     let mut steps = vec![
         of_command("format", cargo(&["fmt", "--all", "--check"])),
+        step("dependencies", check_dependencies),
         of_command("clippy, host", clippy_host(&host)),
         step("build the images", move || {
             job::run_all(vec![build, build_other, build_filters]).map(|()| Totals::PASSED)
@@ -71,6 +72,22 @@ fn cargo(arguments: &[&str]) -> Command {
     let mut command = tool::cargo();
     command.args(arguments);
     command
+}
+
+/// Against `deny.toml`. Without cargo-deny, `host-tests/tests/dependencies.rs` alone looks at licences and sources.
+fn check_dependencies() -> anyhow::Result<Totals> {
+    if !prerequisites::runs("cargo-deny") {
+        println!("skipped: no cargo-deny here (cargo install cargo-deny --locked)");
+        return Ok(Totals::SKIPPED);
+    }
+    totals::of_command(cargo(&[
+        "deny",
+        "--workspace",
+        "check",
+        "licenses",
+        "bans",
+        "sources",
+    ]))
 }
 
 fn clippy_host(host: &str) -> Command {

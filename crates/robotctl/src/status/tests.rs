@@ -27,7 +27,7 @@ fn what_speaks_against_arming_is_told_with_what_to_do() {
     })
     .to_string();
     for line in [
-        "firmware    0.1.0, joints dm4310, up 1:01:01 h",
+        "firmware    0.2.0, joints dm4310, up 1:01:01 h",
         "last reset  watchdog, before it: task imu was late",
         "state       disarmed",
         "stopped     everything",

@@ -224,10 +224,10 @@ fn what_is_too_large_stays_at_the_end() {
     assert_eq!(bytes, [0x00, 0xF0, 0xFF, 0x01, 0x00, 0x00]);
 }
 
-/// Version 0.1.0 of the workspace; make 1 of DM4310, 2 of RS00 (docs/parameters.md); 3,661 s = 0x0E4D.
+/// Version 0.2.0 of the workspace; make 1 of DM4310, 2 of RS00 (docs/parameters.md); 3,661 s = 0x0E4D.
 #[test]
 fn the_firmware_says_what_it_is_and_how_long_it_runs() {
-    assert_eq!(read_of(0x00, |_| {}), [0, 1, 0, 1, 0, 0]);
+    assert_eq!(read_of(0x00, |_| {}), [0, 2, 0, 1, 0, 0]);
     let diagnostics = DiagnosticsSnapshot::default();
     let rs00 = LiveSource {
         diagnostics: &diagnostics,
