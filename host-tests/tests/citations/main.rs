@@ -1,0 +1,39 @@
+//! Documents and comments cite only what is in the tree: documents, their sections, files, folders and tests.
+
+mod document;
+mod port_table;
+mod slug;
+mod source;
+mod tree;
+
+use tree::Tree;
+
+/// Tests of citations: their examples cite what is not there.
+const EXAMPLES: [&str; 2] = ["host-tests/tests/citations/", "host-tests/tests/languages/"];
+
+#[test]
+fn documents_cite_what_is_there() {
+    let tree = Tree::read();
+    let documents: Vec<&String> = tree.files_ending_in(&[".md"]).collect();
+    assert!(documents.len() > 15, "{documents:?}");
+    let missing: Vec<String> = documents
+        .into_iter()
+        .flat_map(|path| document::missing(&tree, path, &tree.text(path)))
+        .collect();
+    assert!(missing.is_empty(), "{}", missing.join("\n"));
+}
+
+#[test]
+fn comments_cite_what_is_there() {
+    let tree = Tree::read();
+    let kinds = [".rs", ".toml", ".yml", ".py", ".c", ".h", ".x", ".ci/run"];
+    let sources = tree.files_ending_in(&kinds);
+    let sources = sources.filter(|path| !EXAMPLES.iter().any(|folder| path.starts_with(folder)));
+    let sources: Vec<&String> = sources.collect();
+    assert!(sources.len() > 300, "{} sources", sources.len());
+    let missing: Vec<String> = sources
+        .into_iter()
+        .flat_map(|path| source::missing(&tree, path, &tree.text(path)))
+        .collect();
+    assert!(missing.is_empty(), "{}", missing.join("\n"));
+}
