@@ -1,4 +1,4 @@
-//! Brings the acceleration to the instant the turn rate stands for.
+//! Delays the acceleration by as much as the angular rate is delayed.
 
 use super::bmi088;
 use crate::{
@@ -6,7 +6,7 @@ use crate::{
     math::{Vector3, vector},
 };
 
-/// Samples further apart than this are not mixed.
+/// A sample that comes later than this after the last one is not interpolated.
 const MAX_GAP_US: u32 = 7_500;
 
 #[derive(Clone, Copy, Debug)]
@@ -16,15 +16,15 @@ struct Sample {
     read_us: u64,
 }
 
-/// Mixes each sample with the one before, so that it is as late as the gyro's.
+/// Interpolates between each sample and the one before, so that both stand for the same instant as the gyro's.
 #[derive(Clone, Debug, Default)]
 pub(super) struct AccelDelay {
     last: Option<Sample>,
 }
 
 impl AccelDelay {
-    /// The acceleration that belongs to the turn rate read at `read_us`, and whether a part of it was at the end of the
-    /// range. As it is where there is no sample 5 ms before.
+    /// The acceleration at the instant that the rate read at `read_us` stands for, and whether either sample was
+    /// saturated. Without a sample 5 ms before, the new one is returned as it is.
     pub fn delay(&mut self, accel_mps2: Vector3, saturated: bool, read_us: u64) -> (Vector3, bool) {
         let last = self.last.replace(Sample {
             accel_mps2,
@@ -49,10 +49,10 @@ impl AccelDelay {
 mod tests {
     use super::*;
 
-    /// An acceleration that grows by 1 m/s² in 5 ms, read 3.435 ms after the middle of what it shows, is brought to
-    /// 4.94 ms: 0.301 of 5 ms earlier.
+    /// The acceleration grows by 1 m/s² in 5 ms. The accelerometer is read 3.435 ms after the middle of its interval,
+    /// the gyro 4.94 ms after it. The difference is 0.301 of 5 ms.
     #[test]
-    fn a_steady_change_is_shown_as_late_as_the_gyro_shows_it() {
+    fn a_steady_change_is_delayed_as_the_gyro_is() {
         let mut delay = AccelDelay::default();
         let (first, _) = delay.delay([10.0, 0.0, 0.0], false, 5_000);
         assert_eq!(first, [10.0, 0.0, 0.0]);
@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pause_is_not_mixed_and_a_cut_off_sample_marks_the_next() {
+    fn a_pause_is_not_interpolated_and_a_saturated_sample_marks_the_next() {
         let mut delay = AccelDelay::default();
         delay.delay([118.0, 0.0, 0.0], true, 5_000);
         let (_, saturated) = delay.delay([11.0, 0.0, 0.0], false, 10_000);

@@ -1,26 +1,39 @@
-//! Converter counts → battery voltage: median over a tenth of a second, against the chip's own reference.
+//! ADC counts → battery voltage: a median over 100 ms, compared to the chip's own reference.
 //!
-//! A load that switches makes the voltage sag for some milliseconds, in a rhythm of its own. A single reading taken now
-//! and then can meet every sag and nothing else; the median of readings every 5 ms shows what the battery has most of
-//! the time, 50 ms late.
+//! A switching load makes the voltage sag for some milliseconds, again and again. A single reading now and then can
+//! meet every sag and nothing else. The median of readings every 5 ms shows what the battery has most of the time, 50
+//! ms late.
 
-/// The battery stands behind 200 kΩ over 22 kΩ.
+/// The voltage divider: 200 kΩ over 22 kΩ.
 const DIVIDER: f32 = (200.0 + 22.0) / 22.0;
 const FULL_SCALE: f32 = 4_095.0;
-/// The supply at which the reference was calibrated, and what the board's regulator should give.
+/// The supply voltage at which the reference was calibrated, and the nominal one of the board.
 const NOMINAL_SUPPLY_V: f32 = 3.3;
-/// Typical reference (STM32F405/407 datasheet, embedded reference voltage: 1.18 to 1.24 V) at 3.3 V, in counts.
+/// Typical reference at that supply, in counts (STM32F405/407 datasheet, embedded reference voltage: 1.18 to 1.24 V).
 const NOMINAL_REFERENCE: f32 = 1.21 / NOMINAL_SUPPLY_V * FULL_SCALE;
-/// A calibration word that no chip within the datasheet has, with a little to spare.
+/// Calibration words within the datasheet's limits, with a small margin.
 const PLAUSIBLE_CALIBRATION: core::ops::RangeInclusive<u16> = 1_440..=1_560;
-/// What the chip works at. A supply outside is a reference that was not measured.
+/// Supply voltages at which the chip works. A value outside means that the reference was not measured.
 const PLAUSIBLE_SUPPLY_V: core::ops::RangeInclusive<f32> = 2.7..=3.7;
-/// Readings in the median, odd so that one is in the middle: 100 ms from the first to the last.
+/// Readings in the median, 100 ms from the first to the last. The number is odd, so that one is in the middle.
 const WINDOW: usize = 21;
-/// Share of a new reading in what counts as the reference.
+/// Weight of a new reading in the smoothed reference.
 const REFERENCE_SHARE: f32 = 1.0 / 16.0;
 
-/// Feed every 5 ms.
+/// Measures the battery voltage from ADC readings every 5 ms.
+///
+/// ```
+/// use robot_app::sensing::BatteryMonitor;
+///
+/// // This chip's VREFIN_CAL, its reference in counts at 3.3 V.
+/// let mut monitor = BatteryMonitor::new(1_510);
+/// for _ in 0..21 {
+///     assert_eq!(monitor.volts(), 0.0, "not measured yet");
+///     // 2951 counts are 2.378 V at the pin.
+///     monitor.feed(Some(2_951), Some(1_510));
+/// }
+/// assert!((monitor.volts() - 24.0).abs() < 0.02);
+/// ```
 #[derive(Clone, Debug)]
 pub struct BatteryMonitor {
     /// Counts of the reference at 3.3 V.
@@ -33,7 +46,7 @@ pub struct BatteryMonitor {
 }
 
 impl BatteryMonitor {
-    /// `calibration`: the maker's word VREFIN_CAL; the typical value stands in for one that cannot be true.
+    /// `calibration` is the factory's word VREFIN_CAL. If it is not plausible, the typical value replaces it.
     pub fn new(calibration: u16) -> Self {
         Self {
             calibration: if PLAUSIBLE_CALIBRATION.contains(&calibration) {
@@ -49,7 +62,7 @@ impl BatteryMonitor {
         }
     }
 
-    /// Counts of battery and reference at 12 bits; `None` where a conversion brought nothing.
+    /// Takes 12-bit counts of battery and reference. `None` means that a conversion brought nothing.
     pub fn feed(&mut self, battery: Option<u16>, reference: Option<u16>) {
         if let Some(counts) = reference.map(f32::from) {
             let before = self.reference.unwrap_or(counts);
@@ -70,7 +83,7 @@ impl BatteryMonitor {
         self.filled = self.filled.saturating_add(1).min(WINDOW);
     }
 
-    /// V at the battery; 0 while it is not measured.
+    /// Battery voltage in V. It is 0 until 21 readings are there, and again after 21 readings in a row are missing.
     pub fn volts(&self) -> f32 {
         if self.filled < WINDOW {
             return 0.0;
@@ -78,7 +91,7 @@ impl BatteryMonitor {
         f32::from(median(&self.window)) / FULL_SCALE * self.supply_v() * DIVIDER
     }
 
-    /// What full scale of the converters means now.
+    /// Supply voltage of the ADC, which is its full scale.
     fn supply_v(&self) -> f32 {
         let measured = self
             .reference
@@ -105,7 +118,7 @@ fn median(window: &[u16; WINDOW]) -> u16 {
 mod tests {
     use super::*;
 
-    /// 24 V are 2.378 V at the pin, at 3.3 V 2951 counts.
+    /// 24 V are 2.378 V at the pin, 2951 counts at 3.3 V.
     const FULL: u16 = 2_951;
     /// 18.5 V.
     const EMPTY: u16 = 2_275;
@@ -124,15 +137,15 @@ mod tests {
 
     #[test]
     fn the_reference_corrects_the_supply() {
-        // A chip of 1.217 V was calibrated to 1510.
+        // A reference of 1.217 V was calibrated to 1510.
         assert!((steady(1_510, FULL, 1_510) - 24.0).abs() < 0.02);
-        // At 3.4 V everything reads 3 % less, at 3.2 V 3 % more.
+        // At 3.4 V all counts are 3 % lower, at 3.2 V 3 % higher.
         assert!((steady(1_510, 2_864, 1_466) - 24.0).abs() < 0.02);
         assert!((steady(1_510, 3_043, 1_557) - 24.0).abs() < 0.02);
     }
 
     #[test]
-    fn what_cannot_be_true_is_replaced_by_the_typical_value() {
+    fn implausible_values_are_replaced_by_the_typical_one() {
         // 1.21 V are 1501.5 counts.
         for calibration in [0, 1_439, 1_561, u16::MAX] {
             assert!((steady(calibration, FULL, 1_501) - 24.0).abs() < 0.05);
@@ -144,7 +157,7 @@ mod tests {
         assert!((fed(1_510, [(Some(FULL), None); 21]) - 24.0).abs() < 0.02);
     }
 
-    /// 15 ms of every 250 ms at 18.5 V, whatever the moment one looks at.
+    /// 15 ms of every 250 ms are at 18.5 V.
     #[test]
     fn short_sags_do_not_show() {
         let mut monitor = BatteryMonitor::new(1_510);
@@ -156,7 +169,7 @@ mod tests {
         }
     }
 
-    /// Down and up again half a window late, so that a sag counts as long as it lasts.
+    /// The voltage falls and rises half a window late, so that a sag shows for as long as it lasts.
     #[test]
     fn a_sag_shows_for_as_long_as_it_lasts() {
         let mut monitor = BatteryMonitor::new(1_510);
@@ -175,7 +188,7 @@ mod tests {
         assert_eq!((low.first(), low.len()), (Some(&110), 100));
     }
 
-    /// Against sorting, with equal values among them.
+    /// Compared to sorting, with equal values among the readings.
     #[test]
     fn the_median_is_the_middle_one() {
         let mut state = 1u32;
@@ -191,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn a_battery_is_unmeasured_until_the_window_is_full_and_when_conversions_fail() {
+    fn the_voltage_is_zero_until_the_window_is_full_and_when_conversions_fail() {
         assert_eq!(fed(1_510, [(Some(FULL), Some(1_510)); 20]), 0.0);
         let good = [(Some(FULL), Some(1_510)); 21];
         let gone = |times| good.into_iter().chain(vec![(None, Some(1_510)); times]);

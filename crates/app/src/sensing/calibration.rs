@@ -1,4 +1,4 @@
-//! Sensor offsets and scales.
+//! Calibration: offsets and scales, and the start-up measurement of the gyro bias.
 
 mod startup;
 mod startup_gyro_bias;
@@ -23,9 +23,9 @@ pub(super) fn correct_by_matrix(raw: Vector3, bias: Vector3, matrix: [Vector3; 3
 mod tests {
     use super::*;
 
-    /// By hand: raw − bias is (1, 2, −3); rows (2, 1, 0), (1, 3, −1), (0, −1, 4) of it are 4, 10 and −14.
+    /// By hand: raw − bias is (1, 2, −3). The rows (2, 1, 0), (1, 3, −1) and (0, −1, 4) make 4, 10 and −14 of it.
     #[test]
-    fn the_matrix_takes_the_field_without_its_offset() {
+    fn the_matrix_is_applied_after_the_offset() {
         let matrix = [[2.0, 1.0, 0.0], [1.0, 3.0, -1.0], [0.0, -1.0, 4.0]];
         let corrected = correct_by_matrix([11.0, -18.0, 27.0], [10.0, -20.0, 30.0], matrix);
         assert_eq!(corrected, [4.0, 10.0, -14.0]);

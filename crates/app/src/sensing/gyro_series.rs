@@ -1,45 +1,47 @@
-//! What the gyro measured since the last read, judged frame by frame.
+//! The gyro's frames since the last read, checked one by one.
 //!
-//! One frame a millisecond leaves a low-pass of 116 Hz, so even a blow takes several frames to show: a step of the true
-//! rate reaches a third of its height in the first millisecond at most, and nothing that is real goes there and back
-//! within one frame. What does so is a mistake on the way, and its neighbours stand for it; what jumps further is
-//! nonsense.
+//! Frames come every millisecond from a low-pass of 116 Hz. A step of the true rate therefore reaches a third of its
+//! height at most in the first millisecond, and no real motion goes there and back within one frame. A frame that does
+//! is an outlier and is replaced by the mean of its neighbours. A larger jump makes the whole read implausible.
 
-/// 488 °/s: a frame further than this from both of its neighbours, on the same side, is a mistake.
+/// A frame that differs from both neighbours by more than this (488 °/s), to the same side, is an outlier.
 const OUTLIER_COUNTS: u16 = 8_000;
-/// 1,587 °/s in a millisecond: the largest step of a blow that changes the true rate by 4,800 °/s at once.
+/// Largest step in a millisecond (1,587 °/s): an impact that changes the true rate by 4,800 °/s at once.
 const MAX_STEP: u16 = 26_000;
-/// Mistakes in one read beyond which none of it counts.
+/// Most outliers in a read that is used.
 const MAX_OUTLIERS: u8 = 1;
-/// Full scale, and the code that no two's complement range has a twin of.
+/// Full scale. The code −32,768 lies beyond it.
 const FULL_SCALE: u16 = 32_767;
-/// What a read stands for.
+/// Interval of a read.
 const READ_MS: u8 = 5;
 
+/// One gyro frame in counts, sensor axes.
 pub(super) type Frame = [i16; 3];
 
-/// Turn rate since the last read.
+/// The angular rate since the last read, sensor axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct GyroReading {
     pub mean_counts: [f32; 3],
-    /// Of each axis at the end of its range.
+    /// Time for which each axis was at the end of its range, ms.
     pub clipped_ms: [u8; 3],
-    /// Frames that were outliers.
+    /// Number of frames that were outliers.
     pub outliers: u8,
     pub end: SeriesEnd,
 }
 
-/// The newest frame of a series.
+/// The newest frame of a read, which the next read continues from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct SeriesEnd {
-    /// As it was measured.
+    /// The frame as it was measured.
     measured: Frame,
-    /// What has used for it: the frame before, if it jumped so that only the next one can tell whether it was right.
+    /// The frame that was used for it. After a jump this is the frame before, because only the next frame tells whether
+    /// the jump was an outlier.
     used: Frame,
 }
 
 impl GyroReading {
-    /// `before`: the end of the series that `frames` go on from, if there is one. None if no gyro turns like that.
+    /// Evaluates the frames of one read. `before` is the end of the read that they continue. Returns `None` if they are
+    /// not plausible.
     pub fn from_frames(frames: &[Frame], before: Option<SeriesEnd>) -> Option<Self> {
         let mut series = Series::default();
         if let (Some(end), Some(first)) = (before, frames.first()) {
@@ -71,12 +73,12 @@ struct Series {
     clipped: [u8; 3],
     outliers: u8,
     last: Option<Frame>,
-    /// A frame has been used.
+    /// A frame of this read has been used.
     has_frames: bool,
 }
 
 impl Series {
-    /// A frame whose turn was not used when it came, but was right, is used now.
+    /// If the last frame of the previous read was held back and was no outlier after all, its rotation is added now.
     fn resume(&mut self, end: SeriesEnd, first: Frame) -> Option<()> {
         let SeriesEnd { measured, used } = end;
         self.last = Some(used);
@@ -130,11 +132,12 @@ impl Series {
     }
 }
 
+/// True if an axis is at the end of its range.
 pub(super) fn is_at_end(count: i16) -> bool {
     count.unsigned_abs() >= FULL_SCALE
 }
 
-/// Whether a rate may follow another that was measured up to some milliseconds before.
+/// True if `now` may follow `before` within some milliseconds.
 pub(super) fn is_possible_step(now: Frame, before: Frame) -> bool {
     is_near(now, before, MAX_STEP)
 }
@@ -143,7 +146,7 @@ fn is_near(a: Frame, b: Frame, limit: u16) -> bool {
     a.iter().zip(b).all(|(a, b)| a.abs_diff(b) <= limit)
 }
 
-/// On any axis beyond both neighbours.
+/// True if the frame lies beyond both neighbours on any axis.
 fn is_outlier(before: Frame, frame: Frame, after: Frame) -> bool {
     before
         .iter()

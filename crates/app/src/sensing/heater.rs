@@ -1,29 +1,29 @@
-//! PI control of the IMU's heater: a warm package at a steady temperature keeps the gyro's offset steady.
+//! PI control of the IMU's heater. A steady temperature keeps the gyro bias steady.
 //!
-//! Held off whenever the temperature is not known or too high; what it does in each case is in `docs/sensors.md`.
+//! The heater is off while the temperature is not known or too high. `docs/sensors.md` lists all cases.
 
 use crate::{
     domain::{HeaterConfig, HeaterState, HeaterStatus, age_us},
     math::scalar,
 };
 
-/// Away from the target by at most this: warm.
+/// Largest distance from the target at which the package is warm.
 pub(super) const NEAR_TARGET_K: f32 = 3.0;
 /// A target below this switches the heater off.
 const MIN_TARGET_C: f32 = 20.0;
-/// Too hot: this far above the target, or beyond the limit. The heater stays off until the target is reached from above.
+/// The heater is cut off this far above the target, or above `MAX_C`, until the temperature has fallen to the target.
 const MAX_ABOVE_TARGET_K: f32 = 10.0;
 const MAX_C: f32 = 65.0;
-/// Operating range of the BMI088 (datasheet table 1); a value outside is no temperature.
+/// Operating range of the BMI088 (datasheet, table 1). A value outside is not valid.
 const VALID_C: core::ops::RangeInclusive<f32> = -40.0..=85.0;
-/// Longest time for which one reading counts.
+/// Longest time step of the integral.
 const MAX_STEP_US: u32 = 20_000;
 
-/// Call [`step`](Self::step) with every sample, and without a temperature whenever there is none.
+/// The heater's controller. It is stepped with every sample, with or without a temperature.
 #[derive(Clone, Debug)]
 pub struct Heater {
     config: HeaterConfig,
-    /// Duty that the past has asked for.
+    /// Integral part of the duty.
     integral: f32,
     too_hot: bool,
     stepped_us: u64,
@@ -41,24 +41,28 @@ impl Heater {
         }
     }
 
+    /// Changes the settings from the next step on.
     pub fn set_config(&mut self, config: &HeaterConfig) {
         self.config = *config;
     }
 
+    /// State, temperature and duty after the last step.
     pub const fn status(&self) -> &HeaterStatus {
         &self.status
     }
 
+    /// The temperature to hold.
     pub const fn target_c(&self) -> f32 {
         self.config.target_c
     }
 
-    /// True while more or less heat than now cannot be given.
+    /// True while the duty is at a limit, so that the heater cannot give more or less.
     pub fn at_limit(&self) -> bool {
         self.status.duty <= 0.0 || self.status.duty >= self.max_duty()
     }
 
-    /// `temperature_c`: as read with this sample; `None` if it was not read or the sensor marks it invalid.
+    /// Computes the duty for the next interval. `temperature_c` is `None` if it was not read or the sensor marks it
+    /// invalid.
     pub fn step(&mut self, temperature_c: Option<f32>, ts_us: u64) {
         let dt_us = age_us(self.stepped_us, ts_us).min(MAX_STEP_US);
         self.stepped_us = ts_us;
@@ -110,7 +114,7 @@ impl Heater {
         scalar::clamp(wanted, 0.0, max_duty)
     }
 
-    /// 0 for NaN.
+    /// The largest duty; 0 if the setting is NaN.
     fn max_duty(&self) -> f32 {
         if self.config.max_duty > 0.0 {
             self.config.max_duty.min(1.0)

@@ -1,4 +1,4 @@
-//! Why an IMU sample was rejected.
+//! The reasons for which an IMU sample is rejected.
 
 /// Why an IMU sample was rejected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

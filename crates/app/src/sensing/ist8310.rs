@@ -1,6 +1,19 @@
-//! Isentek IST8310 magnetometer: I2C address 0x0E, at most 400 kHz, reset on its own pin.
+//! Isentek IST8310 magnetometer: I2C at 400 kHz at most, with a reset pin of its own.
+//!
+//! A driver carries out [`INIT`]. Every 20 ms it writes [`START_SINGLE_SHOT`], waits [`MEASUREMENT_US`] and reads
+//! [`READ_LEN`] bytes from [`READ_FROM`] for [`MagPipeline`](super::MagPipeline):
+//!
+//! ```
+//! use robot_app::sensing::ist8310::{self, InitStep};
+//!
+//! let waits_us = ist8310::INIT.iter().map(|step| match step {
+//!     InitStep::Wait { us } => *us,
+//!     _ => 0,
+//! });
+//! assert_eq!(waits_us.sum::<u32>(), 100_000);
+//! ```
 
-/// Seven-bit address.
+/// Seven-bit I2C address.
 pub const ADDRESS: u8 = 0x0E;
 
 const WHO_AM_I: u8 = 0x00;
@@ -10,41 +23,44 @@ const DATA_READY: u8 = 0x01;
 const CONTROL_1: u8 = 0x0A;
 const SINGLE_SHOT: u8 = 0x01;
 const AVERAGE: u8 = 0x41;
-/// 16 × on all axes.
+/// 16 averages on all axes.
 const AVERAGE_16: u8 = 0x24;
 const PULSE_DURATION: u8 = 0x42;
 const PULSE_NORMAL: u8 = 0xC0;
 
 /// Bytes to write to start one measurement.
 pub const START_SINGLE_SHOT: [u8; 2] = [CONTROL_1, SINGLE_SHOT];
-/// Time to leave for one measurement.
+/// Time to wait for one measurement.
 pub const MEASUREMENT_US: u32 = 7_000;
-/// Time over which 16 × averaging measures: the shortest wait that PX4 and ArduPilot get away with.
+/// Time over which 16 averages measure: the shortest wait in use by PX4 and ArduPilot.
 const AVERAGING_US: u64 = 6_000;
-/// [`START_SINGLE_SHOT`] on the wire: start, three bytes with their acknowledges, stop, at 400 kHz.
+/// Duration of [`START_SINGLE_SHOT`] on the bus: start, three bytes with acknowledge, stop, at 400 kHz.
 const ORDER_US: u64 = 73;
-/// First register of a sample; read [`READ_LEN`] bytes from it.
+/// First register of a sample.
 pub const READ_FROM: u8 = STATUS_1;
-/// Status and three axes.
+/// Bytes of a sample: status and three axes.
 pub const READ_LEN: usize = 7;
 
-/// What a failed check says about the sensor.
+/// What a failed check of the bring-up found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum InitCheck {
+    /// The sensor does not answer with its id.
     Missing,
+    /// The number of averages does not read back.
     AverageNotKept,
+    /// The pulse duration does not read back.
     PulseNotKept,
 }
 
-/// One step of the bring-up, to be carried out in order.
+/// One step of the bring-up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum InitStep {
-    /// Level of the RSTN pin; low holds the sensor in reset.
+    /// Set the level of the RSTN pin. Low holds the sensor in reset.
     ResetPin { high: bool },
     /// Write one register.
     Write { register: u8, value: u8 },
-    /// Read one register, which must hold `expected` or the bring-up has failed.
+    /// Read one register. If it does not hold `expected`, the bring-up has failed.
     Check {
         register: u8,
         expected: u8,
@@ -54,7 +70,7 @@ pub enum InitStep {
     Wait { us: u32 },
 }
 
-/// Takes about 100 ms, nearly all of it waiting.
+/// The bring-up, to be carried out in order. It takes about 100 ms, nearly all of it waiting.
 pub const INIT: &[InitStep] = &[
     InitStep::ResetPin { high: false },
     InitStep::Wait { us: 50_000 },
@@ -85,18 +101,18 @@ pub const INIT: &[InitStep] = &[
     },
 ];
 
-/// Middle of the measurement whose order was begun at `started_us`.
+/// Middle of the measurement whose start was written at `started_us`.
 pub(super) const fn measured_at_us(started_us: u64) -> u64 {
     started_us.saturating_add(ORDER_US + AVERAGING_US / 2)
 }
 
-/// Counts as read, in the sensor's own left-handed frame.
+/// A sample in counts, in the sensor's left-handed axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct MagRaw {
     counts: [i16; 3],
 }
 
-/// `None` if the status says that nothing new was measured, or the answer has all bits alike.
+/// Returns `None` if there is no new measurement, or if all bits of the answer are alike.
 pub(super) fn decode(answer: &[u8; READ_LEN]) -> Option<MagRaw> {
     let [status, x0, x1, y0, y1, z0, z1] = *answer;
     if status & DATA_READY == 0 || status == 0xFF {
@@ -114,12 +130,12 @@ pub(super) fn decode(answer: &[u8; READ_LEN]) -> Option<MagRaw> {
 impl MagRaw {
     /// 14-bit resolution, the reset value of CNTL3.
     const UT_PER_COUNT: f32 = 0.3;
-    /// Datasheet range: ±1600 µT on x and y, ±2500 µT on z.
+    /// Range by the datasheet: ±1600 µT on x and y, ±2500 µT on z.
     const RANGE_UT: [f32; 3] = [1_600.0, 1_600.0, 2_500.0];
 
-    /// The field, µT, in right-handed axes: those of the sensor with y turned round (PX4 and ArduPilot agree that they are
-    /// left-handed; which one is turned round makes no difference to the 24 ways it may sit). `None` beyond the range of
-    /// the sensor.
+    /// The field in µT, with y inverted to make the axes right-handed. PX4 and ArduPilot agree that the sensor's are
+    /// left-handed; which axis is inverted makes no difference to the 24 possible mountings. Returns `None` beyond the
+    /// range.
     pub fn right_handed_ut(&self) -> Option<[f32; 3]> {
         let field_ut = self
             .counts
@@ -137,9 +153,9 @@ impl MagRaw {
 mod tests {
     use super::*;
 
-    /// Datasheet: 0.3 µT a count; y is turned round.
+    /// 0.3 µT per count by the datasheet, with y inverted.
     #[test]
-    fn a_ready_sample_is_made_right_handed() {
+    fn a_sample_is_made_right_handed() {
         let raw = decode(&[0x01, 0x64, 0x00, 0x38, 0xFF, 0xC8, 0x00]).unwrap();
         assert_eq!(raw.counts, [100, -200, 200]);
         let field = raw.right_handed_ut().unwrap();
@@ -149,13 +165,13 @@ mod tests {
     }
 
     #[test]
-    fn nothing_new_and_a_dead_bus_give_nothing() {
+    fn an_old_sample_and_a_dead_bus_give_none() {
         assert_eq!(decode(&[0; READ_LEN]), None);
         assert_eq!(decode(&[0xFF; READ_LEN]), None);
     }
 
     #[test]
-    fn a_field_beyond_the_range_is_refused() {
+    fn a_field_beyond_the_range_is_rejected() {
         let raw = MagRaw {
             counts: [5_400, 0, 0],
         };

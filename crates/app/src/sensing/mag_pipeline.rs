@@ -6,17 +6,38 @@ use super::{
 };
 use crate::domain::{MagCalibration, MagState, MountingConfig, Orientation};
 
-/// Why a sample was rejected.
+/// Why a magnetometer sample was rejected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum MagSampleError {
     /// The sensor has no new measurement.
     NotReady,
-    /// Beyond the range of the sensor.
+    /// The field is beyond the range of the sensor.
     OutOfRange,
 }
 
-/// Checks, turns into the robot's axes and calibrates each sample.
+/// Turns the answers of the IST8310 into calibrated samples in the robot's axes.
+///
+/// ```
+/// use robot_app::{
+///     domain::{MagCalibration, MountingConfig, Orientation},
+///     sensing::{MagPipeline, MagSampleError},
+/// };
+///
+/// let mut pipeline = MagPipeline::new(MagCalibration::default());
+/// pipeline.set_mounting(&MountingConfig {
+///     board: Orientation::XForwardZUp,
+///     mag: Some(Orientation::XForwardZUp),
+/// });
+/// // Status "ready", then 100, −200 and 200 counts of 0.3 µT. The sensor's y axis is inverted.
+/// let mag = pipeline.process(&[0x01, 0x64, 0x00, 0x38, 0xFF, 0xC8, 0x00], 20_000)?;
+/// for (got, expected) in mag.mag_ut.iter().zip([30.0, 60.0, 60.0]) {
+///     assert!((got - expected).abs() < 1e-3);
+/// }
+/// // The middle of the measurement: 73 µs to order it and half of 6 ms.
+/// assert_eq!(mag.ts_us, 23_073);
+/// # Ok::<(), MagSampleError>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct MagPipeline {
     mounting: MountingConfig,
@@ -24,6 +45,7 @@ pub struct MagPipeline {
 }
 
 impl MagPipeline {
+    /// A pipeline for a magnetometer whose axes are those of the robot.
     pub const fn new(calibration: MagCalibration) -> Self {
         Self {
             mounting: MountingConfig {
@@ -34,18 +56,19 @@ impl MagPipeline {
         }
     }
 
-    /// Counts from the next sample on.
+    /// Changes the calibration from the next sample on.
     pub fn set_calibration(&mut self, calibration: &MagCalibration) {
         self.calibration = *calibration;
     }
 
-    /// Counts from the next sample on. Where nobody knows how the magnetometer sits beside the IMU, its axes are taken to be
-    /// the IMU's.
+    /// Changes the mounting from the next sample on. A magnetometer whose mounting is unknown gets the axes of the IMU.
     pub fn set_mounting(&mut self, mounting: &MountingConfig) {
         self.mounting = *mounting;
     }
 
-    /// Takes the bytes read from `ist8310::READ_FROM`, whose measurement was started at `started_us`.
+    /// Processes the bytes read from [`ist8310::READ_FROM`]. The measurement was started at `started_us`.
+    ///
+    /// # Errors Without a new measurement, or with a field beyond the range of the sensor.
     pub fn process(
         &mut self,
         answer: &[u8; READ_LEN],
@@ -70,7 +93,7 @@ impl MagPipeline {
 mod tests {
     use super::*;
 
-    /// By hand: 100, −200, 200 counts of 0.3 µT, y turned round, are 30, 60, 60 µT.
+    /// By hand: 100, −200, 200 counts of 0.3 µT with y inverted are 30, 60, 60 µT.
     #[test]
     fn the_field_is_calibrated_in_the_body_frame() {
         let mut pipeline = MagPipeline::new(MagCalibration {
@@ -82,14 +105,14 @@ mod tests {
         for (got, expected) in state.mag_ut.iter().zip([20.0, 80.0, 50.0]) {
             assert!((got - expected).abs() < 1e-4, "{:?}", state.mag_ut);
         }
-        // Half of 6 ms, and the order to measure takes 73 µs.
+        // 73 µs to order the measurement, and half of 6 ms.
         assert_eq!(state.ts_us, 7 + 3_073);
     }
 
-    /// 30, 60, 60 µT. Up is where the magnetometer's x points and forward where its z does, so its y points right: 60, −60,
-    /// 30 on the IMU, whose x points left, y up and z forward.
+    /// The sensor measures 30, 60, 60 µT. Its x points up on the IMU, its z forward, and so its y to the right: 60,
+    /// −60, 30 on the IMU, whose own x points left, y up and z forward.
     #[test]
-    fn the_field_is_turned_by_both_mountings() {
+    fn the_field_is_rotated_by_both_mountings() {
         let mut pipeline = MagPipeline::new(MagCalibration::default());
         pipeline.set_mounting(&MountingConfig {
             board: Orientation::XLeftZForward,
@@ -103,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rejected_sample_is_named() {
+    fn the_reason_of_a_rejection_is_reported() {
         let mut pipeline = MagPipeline::new(MagCalibration::default());
         let stale = [0x00, 0x64, 0x00, 0x38, 0xFF, 0xC8, 0x00];
         let far = [0x01, 0xFF, 0x7F, 0x00, 0x00, 0x00, 0x00];

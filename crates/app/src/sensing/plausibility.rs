@@ -1,9 +1,9 @@
-//! Tells a sensor at its limits from one that talks nonsense.
+//! Plausibility of IMU samples: saturation is accepted for a while, impossible jumps are not.
 //!
-//! A robot can be hit so that it turns beyond ±2000 °/s or is pushed beyond ±12 g for a moment: such a sample is used and
-//! marked. It cannot jump as no low-pass lets it, nor stay beyond the range, nor wake up there. Single wrong frames of the
-//! gyro among good ones are left out; when there has been no good sample for a while, nothing counts until a few quiet
-//! ones in a row.
+//! An impact can turn the robot faster than ±2000 °/s or accelerate it beyond ±12 g for a moment. Such a sample is used
+//! and marked. A sensor may not jump further than its low-pass allows, stay saturated, or be saturated in its first
+//! sample. A single outlier among the gyro's frames is replaced. After a time without a good sample the sensor is on
+//! probation: only after some quiet samples in a row is it used again.
 
 use super::{
     bmi088::{AccelRaw, GyroRaw},
@@ -12,20 +12,20 @@ use super::{
 };
 use crate::domain::age_us;
 
-/// Samples further apart than this have frames missing between them.
+/// Samples further apart than this have frames missing in between.
 const MAX_SERIES_GAP_US: u32 = 7_500;
 /// Samples further apart than this are not compared.
 const MAX_GAP_US: u32 = 20_000;
-/// Samples in a row at the end of the range, 200 ms: more than a blow or a spin may take.
+/// Most saturated samples in a row, 200 ms: longer than an impact or a spin takes.
 const MAX_SATURATED: u8 = 40;
-/// Plausible samples inside the range before a sensor that talked nonsense counts again.
+/// Plausible, unsaturated samples in a row that end the probation.
 const PROBATION: u8 = 4;
 
-/// What may be used of a sample.
+/// A sample that has passed the checks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PlausibleSample {
     pub gyro: GyroReading,
-    /// An axis of either die is at the end of its range.
+    /// An axis of accelerometer or gyro is at the end of its range.
     pub saturated: bool,
 }
 
@@ -35,14 +35,14 @@ struct GyroSample {
     ts_us: u64,
 }
 
-/// The last sample that counted.
+/// The last sample that passed.
 #[derive(Clone, Copy, Debug)]
 struct AcceptedSample {
     end: SeriesEnd,
     sample: GyroSample,
 }
 
-/// Call [`judge`](Self::judge) with every sample that was read.
+/// The checks, with what they remember. To be called with every sample.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Plausibility {
     last: Option<GyroSample>,
@@ -52,6 +52,7 @@ pub(super) struct Plausibility {
 }
 
 impl Plausibility {
+    /// Checks a sample that was read at `ts_us`.
     pub fn check(
         &mut self,
         accel: &AccelRaw,
@@ -97,7 +98,7 @@ impl Plausibility {
         })
     }
 
-    /// None if no gyro turns like that.
+    /// `None` if the frames are not plausible.
     fn read_gyro(&self, gyro: &GyroRaw, ts_us: u64) -> Option<GyroReading> {
         let end = self
             .last_good
@@ -112,7 +113,7 @@ impl Plausibility {
             .last_good
             .filter(|good| near(&good.sample) <= MAX_GAP_US)
         {
-            // Within a series each step has been judged already.
+            // Within a series of frames each step has been checked already.
             let sane = near(&good.sample) <= MAX_SERIES_GAP_US
                 || gyro_series::is_possible_step(sample.counts, good.sample.counts);
             if sane {

@@ -1,33 +1,43 @@
-//! The bring-up sequence, in the order of Bosch's own driver.
+//! The bring-up sequence, in the order of Bosch's driver.
 
 use super::registers::{READ, SOFT_RESET_COMMAND, accel, gyro};
 
-/// Which chip select.
+/// The die that a transfer is for, by its chip select.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum SpiTarget {
+    /// The accelerometer's die.
     Accel,
+    /// The gyro's die.
     Gyro,
 }
 
-/// What a failed check says about the sensor.
+/// What a failed check of the bring-up found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum InitCheck {
+    /// The accelerometer does not answer with its chip id.
     AccelMissing,
+    /// The accelerometer's register PWR_CTRL does not read back.
     AccelPowerNotKept,
+    /// The accelerometer's register CONF does not read back.
     AccelFilterNotKept,
+    /// The accelerometer's range does not read back.
     AccelRangeNotKept,
+    /// The gyro does not answer with its chip id.
     GyroMissing,
+    /// The gyro's range does not read back.
     GyroRangeNotKept,
+    /// The gyro's bandwidth does not read back.
     GyroBandwidthNotKept,
+    /// The mode of the gyro's buffer does not read back.
     GyroBufferNotKept,
 }
 
-/// One step of the sequence, to be carried out in order.
+/// One step of the bring-up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum InitStep {
-    /// Read a register and ignore it: the rising chip select switches the accelerometer from I2C to SPI.
+    /// Read a register and ignore the value. The rising chip select switches the accelerometer from I2C to SPI.
     DummyRead { target: SpiTarget, register: u8 },
     /// Send [`write_command`].
     Write {
@@ -35,7 +45,7 @@ pub enum InitStep {
         register: u8,
         value: u8,
     },
-    /// Send [`read_command`]; the last byte received must be `expected` or the bring-up has failed.
+    /// Send [`read_command`]. If the last byte received is not `expected`, the bring-up has failed.
     Check {
         target: SpiTarget,
         register: u8,
@@ -51,8 +61,8 @@ pub const fn write_command(register: u8, value: u8) -> [u8; 2] {
     [register & !READ, value]
 }
 
-/// Bytes to send for a one-byte register read, and how many of the three to send: the accelerometer answers one
-/// byte later than the gyro. The value is the last byte received.
+/// Bytes to send for a one-byte register read, and how many of the three to send. The value is the last byte received:
+/// the accelerometer answers one byte later than the gyro.
 pub const fn read_command(target: SpiTarget, register: u8) -> ([u8; 3], usize) {
     let len = match target {
         SpiTarget::Accel => 3,
@@ -100,7 +110,8 @@ const SELECT_SPI: InitStep = InitStep::DummyRead {
     register: accel::CHIP_ID,
 };
 
-/// Takes about 130 ms, nearly all of it waiting. Also right for a sensor that is already running.
+/// The bring-up, to be carried out in order. It takes about 130 ms, nearly all of it waiting, and also works on a
+/// sensor that is already running.
 pub const INIT: &[InitStep] = &[
     // Accelerometer: start-up after reset takes 1 ms.
     SELECT_SPI,
@@ -113,7 +124,7 @@ pub const INIT: &[InitStep] = &[
         accel::CHIP_ID_VALUE,
         InitCheck::AccelMissing,
     ),
-    // Out of suspend: 450 µs between writes until active, 5 ms as Bosch's driver waits.
+    // Out of suspend. The datasheet asks for 450 µs between writes until then; Bosch's driver waits 5 ms.
     accel_write(accel::PWR_CONF, accel::PWR_CONF_ACTIVE),
     InitStep::Wait { us: 5_000 },
     accel_write(accel::PWR_CTRL, accel::PWR_CTRL_ON),
@@ -164,6 +175,6 @@ pub const INIT: &[InitStep] = &[
         gyro::FIFO_MODE,
         InitCheck::GyroBufferNotKept,
     ),
-    // First filtered samples.
+    // Time until the first filtered samples.
     InitStep::Wait { us: 5_000 },
 ];

@@ -6,7 +6,7 @@ use crate::domain::GyroBufferStatus;
 /// Samples in a row (20 ms) that differ from the data registers before the buffer is reset.
 const MAX_DIFFERENT: u8 = 4;
 
-/// Counts what the samples show of the buffer, and asks for a reset.
+/// Counts what each sample shows of the buffer, and asks for a reset after several differences.
 #[derive(Clone, Debug, Default)]
 pub struct BufferMonitor {
     status: GyroBufferStatus,
@@ -20,7 +20,7 @@ impl BufferMonitor {
         self.status
     }
 
-    /// Takes a sample. To be called with each.
+    /// Takes a sample.
     pub fn update(&mut self, gyro: &GyroRaw) {
         let status = &mut self.status;
         status.spikes = status.spikes.wrapping_add(gyro.spikes.into());
@@ -40,7 +40,7 @@ impl BufferMonitor {
         }
     }
 
-    /// True once if the buffer must be reset.
+    /// True once after the buffer has differed too often: it must be reset.
     pub fn take_reset(&mut self) -> bool {
         let wanted = core::mem::take(&mut self.reset_wanted);
         if wanted {
@@ -55,7 +55,7 @@ impl BufferMonitor {
 mod tests {
     use super::{super::decode::decode_gyro, *};
 
-    /// Registers 0, 0, 1000; `x` of the only frame.
+    /// The registers are 0, 0, 1000. The only frame is `x`, 0, 1000.
     fn sample(x: i16, status: u8) -> GyroRaw {
         let mut answer = [0; 16];
         answer[1] = 0x0F;
@@ -81,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn an_overrun_is_a_reset_that_nobody_need_ask_for() {
+    fn an_overrun_asks_for_no_further_reset() {
         let mut monitor = BufferMonitor::default();
         for overrun in [0x81, 0xE4, 9] {
             monitor.update(&sample(0, overrun));

@@ -1,62 +1,62 @@
-//! Burst reads → counts → physical units, for the ranges that `INIT` sets.
+//! Burst reads → counts → physical units, for the ranges that [`INIT`](super::INIT) sets.
 
 use super::{
     bring_up::write_command,
     registers::{READ, accel, gyro},
 };
 
-/// Bytes to exchange for one accelerometer sample: acceleration, sensor time and temperature in one burst.
-/// Answer: address echo, dummy byte, then registers 0x12 to 0x23.
+/// Bytes to exchange for one accelerometer sample: acceleration, sensor time and temperature in one burst. The answer
+/// is an echo of the address, a dummy byte, then the registers 0x12 to 0x23.
 pub const ACCEL_READ: [u8; 20] = {
     let mut bytes = [0; 20];
     bytes[0] = accel::DATA | READ;
     bytes
 };
 
-/// Bytes to exchange for the gyro's newest values and the fill of its buffer. It starts at the chip id: six zero data
-/// bytes are a legal sample at rest, so the data alone cannot tell a dead bus. Answer: address echo, then registers
-/// 0x00 to 0x0E.
+/// Bytes to exchange for the gyro's newest values and the number of frames in its buffer. The answer is an echo of the
+/// address, then the registers 0x00 to 0x0E. It starts at the chip id, because six zero data bytes are a legal sample
+/// and do not tell a dead bus.
 pub const GYRO_READ: [u8; 16] = {
     let mut bytes = [0; 16];
     bytes[0] = gyro::CHIP_ID | READ;
     bytes
 };
 
-/// Five come in 5 ms. More than these have piled up only if the reader has slept.
+/// Most frames that are read. Five come in 5 ms; more than these have piled up only if nobody has read the buffer.
 const MAX_FRAMES: usize = 8;
 const FRAME_LEN: usize = 6;
 
-/// Bytes to exchange for all frames a buffer may hold that is read at all: the first [`GyroBuffer::Frames`] of them.
+/// Bytes to exchange for a full read of the buffer. [`GyroBuffer::Frames`] says how many of them to exchange.
 pub const BUFFER_READ: [u8; 1 + MAX_FRAMES * FRAME_LEN] = {
     let mut bytes = [0; 1 + MAX_FRAMES * FRAME_LEN];
     bytes[0] = gyro::FIFO_DATA | READ;
     bytes
 };
 
-/// What to send, one after the other and 2 µs apart at least, to empty the gyro's buffer after it ran over or got out of
-/// step, as PX4 does.
+/// Writes that empty the gyro's buffer after it ran over or got out of step, in the order of PX4. They must be at least
+/// 2 µs apart.
 pub const BUFFER_RESET: [[u8; 2]; 3] = [
     write_command(gyro::FIFO_CONFIG_0, 0),
     write_command(gyro::FIFO_CONFIG_1, gyro::FIFO_BYPASS),
     write_command(gyro::FIFO_CONFIG_1, gyro::FIFO_MODE),
 ];
 
-/// A frame that no rate makes: some BMI088 send one now and then (ArduPilot issues 22710 and 25178).
+/// A frame that some BMI088 send now and then, and no rate gives (ArduPilot issues 22710 and 25178).
 const SPIKE: [i16; 3] = [i16::MIN; 3];
-/// 1 °/s: how far the newest frame may be from the data registers. They show the same sample, or, where one came in
-/// between, that before it.
+/// Largest difference of the newest frame from the data registers, 1 °/s. The registers show the same sample, or the
+/// one before it if a sample came in between.
 const MAX_DIFFERENCE: u16 = 16;
 
-/// What to do about the gyro's buffer.
+/// What to do with the gyro's buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GyroBuffer {
-    /// Exchange so many bytes of [`BUFFER_READ`].
+    /// Exchange the first `bytes` of [`BUFFER_READ`].
     Frames { bytes: usize },
-    /// Too old to be of use: send [`BUFFER_RESET`].
+    /// Its frames are too old. Send [`BUFFER_RESET`].
     Stale,
 }
 
-/// By the answer to [`GYRO_READ`].
+/// Decides by the answer to [`GYRO_READ`].
 pub fn gyro_buffer(answer: &[u8; GYRO_READ.len()]) -> GyroBuffer {
     let [.., status] = *answer;
     let frames = usize::from(status & !gyro::FIFO_OVERRUN);
@@ -69,47 +69,47 @@ pub fn gyro_buffer(answer: &[u8; GYRO_READ.len()]) -> GyroBuffer {
     }
 }
 
-/// Accelerometer counts as read.
+/// Accelerometer sample in counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AccelRaw {
     pub counts: [i16; 3],
-    /// 24 bit, 39.0625 µs a count.
+    /// 24-bit counter, 39.0625 µs per count.
     pub sensor_time: u32,
     /// `None` while the sensor marks it invalid.
     pub temperature: Option<TemperatureRaw>,
 }
 
-/// 0.125 °C a count, 0 = 23 °C.
+/// Temperature: 0.125 °C per count, 0 is 23 °C.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TemperatureRaw(i16);
 
-/// Gyro counts as read.
+/// Gyro sample in counts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GyroRaw {
-    /// The newest.
+    /// The newest values.
     pub counts: [i16; 3],
     frames: [[i16; 3]; MAX_FRAMES],
     frame_count: usize,
     /// Something was measured since the last read.
     pub fresh: bool,
-    /// Frames that were left out because no rate makes them.
+    /// Number of frames dropped as spikes.
     pub spikes: u8,
     pub buffer: BufferCheck,
 }
 
-/// What the data registers say of the buffer.
+/// How the buffer compares with the data registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BufferCheck {
-    /// Nothing to compare.
+    /// There was nothing to compare.
     Unknown,
     Agrees,
-    /// Its frames are not used.
+    /// The newest frame differs, so the frames are not used.
     Differs,
-    /// It had run over, or nobody had read it for long.
+    /// It had run over, or had not been read for too long.
     Stale,
 }
 
-/// `None` for an answer that only an absent or unpowered sensor gives: all bits alike.
+/// Returns `None` if all bits are alike, as an absent or unpowered sensor answers.
 pub fn decode_accel(answer: &[u8; ACCEL_READ.len()]) -> Option<AccelRaw> {
     let [_address, _dummy, registers @ ..] = answer;
     if registers.iter().all(|&byte| byte == 0x00) || registers.iter().all(|&byte| byte == 0xFF) {
@@ -146,8 +146,8 @@ pub fn decode_accel(answer: &[u8; ACCEL_READ.len()]) -> Option<AccelRaw> {
     })
 }
 
-/// `answer`: to [`GYRO_READ`]; `frames`: what [`BUFFER_READ`] brought, without the echo of the address. `None` unless the
-/// answer carries the gyro's chip id.
+/// Decodes the answer to [`GYRO_READ`] and the frames that [`BUFFER_READ`] brought, without the echo of the address.
+/// Returns `None` if the answer lacks the gyro's chip id.
 pub fn decode_gyro(answer: &[u8; GYRO_READ.len()], frames: &[u8]) -> Option<GyroRaw> {
     let [
         _address,
@@ -186,9 +186,10 @@ fn frame([x0, x1, y0, y1, z0, z1]: [u8; FRAME_LEN]) -> [i16; 3] {
 }
 
 impl AccelRaw {
-    /// m/s² a count at ±12 g.
+    /// m/s² per count at ±12 g.
     const MPS2_PER_COUNT: f32 = 12.0 * 9.806_65 / 32_768.0;
 
+    /// Specific force in m/s², sensor axes.
     pub fn mps2(&self) -> [f32; 3] {
         self.counts
             .map(|count| f32::from(count) * Self::MPS2_PER_COUNT)
@@ -196,10 +197,10 @@ impl AccelRaw {
 }
 
 impl GyroRaw {
-    /// °/s a count at ±2000 °/s.
+    /// °/s per count at ±2000 °/s.
     pub const DPS_PER_COUNT: f32 = 1.0 / 16.384;
 
-    /// Nothing but what the data registers show.
+    /// A sample of the data registers alone.
     fn of(counts: [i16; 3]) -> Self {
         Self {
             counts,
@@ -211,8 +212,8 @@ impl GyroRaw {
         }
     }
 
-    /// All that was measured since the last read, one a millisecond, the newest last; the newest alone where the buffer
-    /// was of no use.
+    /// What was measured since the last read, one frame a millisecond, the newest last. If the buffer is not usable, it
+    /// is the newest value alone.
     pub fn frames(&self) -> &[[i16; 3]] {
         match self.frames.get(..self.frame_count) {
             Some(frames) if !frames.is_empty() => frames,
@@ -220,8 +221,8 @@ impl GyroRaw {
         }
     }
 
-    /// The buffer's frames count if the newest of them is what the registers show, or cannot be compared because the
-    /// registers show a spike.
+    /// Uses the frames of the buffer if the newest of them is what the registers show, or if the registers show a spike
+    /// and cannot be compared.
     fn take_frames(&mut self, registers: [i16; 3], frames: &[[u8; FRAME_LEN]]) {
         let mut newest = [None; 2];
         let mut count = 0usize;
@@ -258,7 +259,7 @@ fn is_near(one: [i16; 3], other: [i16; 3]) -> bool {
 }
 
 impl TemperatureRaw {
-    /// 11 bit two's complement, upper eight bits first; 0x80 0x00 means invalid.
+    /// 11-bit two's complement, upper eight bits first. 0x80 0x00 means invalid.
     fn parse(msb: u8, lsb: u8) -> Option<Self> {
         if msb == 0x80 {
             return None;
@@ -266,6 +267,7 @@ impl TemperatureRaw {
         Some(Self(i16::from_be_bytes([msb, lsb]) >> 5))
     }
 
+    /// Temperature in °C.
     pub fn celsius(self) -> f32 {
         23.0 + 0.125 * f32::from(self.0)
     }
@@ -275,7 +277,7 @@ impl TemperatureRaw {
 mod tests {
     use super::*;
 
-    /// Chip id, newest values 100, −200, 300, and `status`.
+    /// Chip id, the newest values 100, −200, 300, and `status`.
     fn answer(status: u8) -> [u8; 16] {
         let mut answer = [0; 16];
         answer[1] = 0x0F;
@@ -285,7 +287,7 @@ mod tests {
     }
 
     #[test]
-    fn as_many_frames_are_read_as_there_are() {
+    fn all_frames_in_the_buffer_are_read() {
         assert_eq!(gyro_buffer(&answer(0)), GyroBuffer::Frames { bytes: 1 });
         assert_eq!(gyro_buffer(&answer(5)), GyroBuffer::Frames { bytes: 31 });
         assert_eq!(gyro_buffer(&answer(8)), GyroBuffer::Frames { bytes: 49 });
@@ -300,7 +302,7 @@ mod tests {
     }
 
     #[test]
-    fn frames_come_as_they_were_measured() {
+    fn frames_are_decoded_in_order() {
         let frames = [[90, -300, 296], [100, -200, 300]];
         let raw = decode_gyro(&answer(2), &bytes(frames)).unwrap();
         assert_eq!(raw.counts, [100, -200, 300]);
@@ -309,7 +311,7 @@ mod tests {
         assert_eq!((raw.buffer, raw.spikes), (BufferCheck::Agrees, 0));
     }
 
-    /// A sample that came between the registers and the buffer makes the last frame but one the registers' own.
+    /// If a sample comes between the reads, the registers show the last frame but one.
     #[test]
     fn a_sample_in_between_is_no_difference() {
         let frames = [[0; 3], [100, -200, 300], [900, -900, 900]];
@@ -318,9 +320,9 @@ mod tests {
         assert_eq!(raw.frames(), frames);
     }
 
-    /// X shows Z, Y shows X, Z shows Y; or an axis is a little more than 1 °/s off.
+    /// X shows Z, Y shows X, Z shows Y; or one axis is a little more than 1 °/s off.
     #[test]
-    fn frames_that_the_registers_do_not_show_are_not_used() {
+    fn frames_that_differ_from_the_registers_are_not_used() {
         for off in [[300, 100, -200], [117, -200, 300], [100, -200, 283]] {
             let raw = decode_gyro(&answer(2), &bytes([off, off])).unwrap();
             assert_eq!(raw.buffer, BufferCheck::Differs, "{off:?}");
@@ -331,20 +333,20 @@ mod tests {
     }
 
     #[test]
-    fn spikes_are_left_out_wherever_they_are() {
+    fn spikes_are_dropped_anywhere_in_the_buffer() {
         let spike = [i16::MIN; 3];
         let good = [100, -200, 300];
         let raw = decode_gyro(&answer(4), &bytes([spike, good, spike, good])).unwrap();
         assert_eq!(raw.frames(), [good, good]);
         assert_eq!((raw.buffer, raw.spikes), (BufferCheck::Agrees, 2));
-        // In the registers too.
+        // A spike in the registers.
         let mut registers = answer(2);
         registers[3..9].copy_from_slice(&bytes([spike]));
         let raw = decode_gyro(&registers, &bytes([[90, -190, 310], spike])).unwrap();
         assert_eq!(raw.counts, [90, -190, 310]);
         assert_eq!(raw.frames(), [[90, -190, 310]]);
         assert_eq!((raw.buffer, raw.spikes), (BufferCheck::Unknown, 1));
-        // One axis at the end of the range is a rate, and nothing but spikes is nothing.
+        // One axis at the end of its range is no spike. A buffer of nothing but spikes gives no frame.
         let one = [i16::MIN, -200, 300];
         assert_eq!(decode_gyro(&answer(1), &bytes([one])).unwrap().spikes, 0);
         let all = decode_gyro(&registers, &bytes([spike, spike])).unwrap();
@@ -352,7 +354,7 @@ mod tests {
     }
 
     #[test]
-    fn without_frames_the_newest_values_count() {
+    fn without_frames_the_newest_values_are_used() {
         let stale = decode_gyro(&answer(0xE4), &[]).unwrap();
         assert_eq!(stale.frames(), [[100, -200, 300]]);
         assert_eq!(stale.buffer, BufferCheck::Stale);

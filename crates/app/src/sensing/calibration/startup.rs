@@ -1,4 +1,4 @@
-//! The calibration after power-on: waits until the package is warm and the robot still, then measures the gyro's offset.
+//! The calibration after power-on. It waits until the package is warm and the robot still, then measures the gyro bias.
 
 use super::{startup_gyro_bias::StartupGyroBias, temperature_gate::TemperatureGate};
 use crate::{
@@ -7,19 +7,19 @@ use crate::{
     sensing::heater::Heater,
 };
 
-/// One sample: the gyro with its offset still in it, the accelerometer calibrated.
+/// One IMU sample in the robot's axes: the gyro with its bias, the accelerometer calibrated.
 #[derive(Clone, Copy, Debug)]
 pub struct CalibrationSample {
     pub gyro_dps: Vector3,
     pub accel_mps2: Vector3,
-    /// The offset that was stored as a setting.
+    /// The gyro bias in the settings.
     pub stored_offset_dps: Vector3,
     /// `None` while the sensor marks it invalid.
     pub temperature_c: Option<f32>,
     pub ts_us: u64,
 }
 
-/// Feed it every good sample; it is done once and for all.
+/// The start-up calibration. It is fed with every good sample; once done, it stays done.
 #[derive(Clone, Debug, Default)]
 pub struct StartupCalibration {
     gate: TemperatureGate,
@@ -28,15 +28,17 @@ pub struct StartupCalibration {
 }
 
 impl StartupCalibration {
+    /// State, warmth and progress, for diagnostics.
     pub const fn status(&self) -> &CalibrationStatus {
         &self.status
     }
 
-    /// °/s, once known.
+    /// The gyro bias in °/s, once measured.
     pub const fn gyro_bias_dps(&self) -> Option<Vector3> {
         self.gyro.bias_dps()
     }
 
+    /// Takes a sample, with the heater as of that sample.
     pub fn feed(&mut self, sample: &CalibrationSample, heater: &Heater) {
         if self.status.state == CalibrationState::Done {
             return;
@@ -88,7 +90,7 @@ mod tests {
             }
         }
 
-        /// Samples at 200 Hz with an offset of 0.5 °/s on x that ripples by 0.1 °/s.
+        /// Samples at 200 Hz with a bias of 0.5 °/s on x that ripples by 0.1 °/s.
         fn run(&mut self, samples: u32, temperature_c: f32, turning_dps: f32) -> CalibrationStatus {
             for index in 0..samples {
                 self.ts_us += 5_000;
@@ -133,9 +135,9 @@ mod tests {
         assert!((x - 0.5).abs() < 2e-3 && y.abs() < 1e-6 && z.abs() < 1e-6);
     }
 
-    /// Measured at another temperature the first half would not fit the second.
+    /// The bias changes with temperature, so the first half would not fit the second.
     #[test]
-    fn a_second_that_began_warm_and_went_cold_starts_anew() {
+    fn a_second_that_turns_cold_starts_again() {
         let mut bench = Bench::new();
         bench.run(150, 40.0, 0.0);
         let cold = bench.run(1, 36.0, 0.0);
@@ -145,7 +147,7 @@ mod tests {
         assert_eq!(again.state, CalibrationState::Measuring);
     }
 
-    /// A robot that turns slowly and evenly, or a gyro that is far off: only its owner knows.
+    /// A slow, even rotation and a large bias look alike. Only the owner can tell.
     #[test]
     fn an_offset_beyond_two_degrees_a_second_is_refused_unless_it_is_stored() {
         let mut bench = Bench::new();
@@ -175,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn once_done_neither_cold_nor_motion_undoes_it() {
+    fn cold_and_motion_do_not_undo_it() {
         let mut bench = Bench::new();
         bench.run(210, 40.0, 0.0);
         let after = bench.run(500, 20.0, 90.0);

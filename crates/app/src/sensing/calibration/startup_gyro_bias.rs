@@ -1,4 +1,4 @@
-//! The gyro offset, averaged over the first second in which the robot stands still.
+//! The gyro bias as the mean over the first second in which the robot stands still.
 
 use crate::{
     domain::age_us,
@@ -6,22 +6,23 @@ use crate::{
 };
 
 const MIN_SAMPLES: u16 = 200;
-/// Samples alike after which the robot is taken to stand, 50 ms.
+/// Matching samples after which the robot counts as still, 50 ms.
 const SETTLING_SAMPLES: u16 = 10;
 const MIN_SPAN_US: u32 = 1_000_000;
-/// A pause in the samples longer than this starts the second anew.
+/// A longer pause in the samples starts the second again.
 const MAX_PAUSE_US: u32 = 50_000;
-/// Standing still: the BMI088 shows 0.014 °/s/√Hz, which is 0.14 °/s rms in means over 5 ms.
+/// Largest standard deviation of a still robot. The noise of the BMI088, 0.014 °/s/√Hz, is 0.14 °/s RMS in means over 5
+/// ms.
 const MAX_GYRO_STD_DPS: f32 = 0.4;
 const MAX_GYRO_EXCURSION_DPS: f32 = 3.0;
-/// Furthest from the stored offset that is taken for an offset (datasheet: ±1 °/s typical). Beyond, a robot that turns
-/// slowly and evenly is more likely.
+/// Largest difference from the stored bias (datasheet: ±1 °/s typical). A larger one is more likely a slow, even
+/// rotation.
 const MAX_OFFSET_DPS: f32 = 2.0;
 const GRAVITY_MPS2: f32 = 9.806_65;
 const MAX_GRAVITY_ERROR_MPS2: f32 = 1.0;
 const MAX_ACCEL_EXCURSION_MPS2: f32 = 0.7;
 
-/// Feed it every sample; the first still second whose offset can be one fixes it for good.
+/// Measures the bias. It is fed with every sample until the first still second with a plausible bias.
 #[derive(Clone, Debug, Default)]
 pub struct StartupGyroBias {
     window: Option<Window>,
@@ -29,7 +30,7 @@ pub struct StartupGyroBias {
     refused: bool,
 }
 
-/// Sums relative to the first sample, so that single precision is enough.
+/// Sums over the still second, relative to its first sample so that single precision is enough.
 #[derive(Clone, Debug)]
 struct Window {
     start_us: u64,
@@ -42,23 +43,23 @@ struct Window {
 }
 
 impl StartupGyroBias {
-    /// The still second starts anew, unless the offset is known.
+    /// Starts the second again, unless the bias is known.
     pub fn restart(&mut self) {
         self.window = None;
         self.refused = false;
     }
 
-    /// The robot has stood still since a second whose rate was too large for an offset.
+    /// True if the last still second showed a rate too large for a bias and the robot has stood still since.
     pub const fn refused(&self) -> bool {
         self.refused
     }
 
-    /// True once the robot has stood still for a moment.
+    /// True once the robot has stood still for 50 ms.
     pub fn is_measuring(&self) -> bool {
         self.samples() > SETTLING_SAMPLES
     }
 
-    /// Part of the still second that is over, 0 … 1.
+    /// Elapsed part of the still second, 0 … 1.
     pub fn progress(&self) -> f32 {
         if self.bias_dps.is_some() {
             1.0
@@ -71,12 +72,12 @@ impl StartupGyroBias {
         self.window.as_ref().map_or(0, |window| window.samples)
     }
 
-    /// °/s, once known.
+    /// The bias in °/s, once known.
     pub const fn bias_dps(&self) -> Option<Vector3> {
         self.bias_dps
     }
 
-    /// `gyro_dps` with its offset still in it.
+    /// Takes a sample. `gyro_dps` still has its bias.
     pub fn feed(
         &mut self,
         gyro_dps: Vector3,
@@ -143,7 +144,7 @@ impl Window {
         self
     }
 
-    /// The mean rate, if its spread says that the robot stood still, or turned evenly.
+    /// The mean rate, or `None` if its variance is too large for a robot that stands still or rotates evenly.
     fn still_mean_dps(&self) -> Option<Vector3> {
         let inverse = 1.0 / f32::from(self.samples);
         let mean_offset = vector::scale(self.sum_dps, inverse);
@@ -190,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bump_starts_the_second_anew() {
+    fn a_bump_starts_the_second_again() {
         let mut bias = StartupGyroBias::default();
         feed_still(&mut bias, 150, 1, [0.0; 3]);
         bias.feed([10.0, 0.0, 0.0], LEVEL, [0.0; 3], 1 + 150 * 5_000);

@@ -1,15 +1,15 @@
-//! Whether the package is as warm as it will get, so that a gyro offset measured now stays true.
+//! Whether the package is as warm as it will get, so that a gyro bias measured now stays valid.
 
 use super::super::heater::{Heater, NEAR_TARGET_K};
 use crate::domain::{HeaterState, Warmth, age_us};
 
-/// A heater that has given all or nothing for this long cannot bring the target.
+/// A heater that has been at a limit for this long cannot reach the target.
 const AT_LIMIT_US: u32 = 15_000_000;
-/// Steady: changes of less than this …
+/// A temperature is steady if it changes by less than this …
 const STEADY_K: f32 = 0.3;
-/// … for this long.
+/// … within this time.
 const STEADY_US: u32 = 5_000_000;
-/// After this long without any temperature it is not waited for.
+/// Time without any valid temperature after which the calibration goes on without one.
 const UNKNOWN_AFTER_US: u32 = 20_000_000;
 
 #[derive(Clone, Copy, Debug)]
@@ -18,18 +18,18 @@ struct Reading {
     ts_us: u64,
 }
 
-/// Call [`step`](Self::step) with every sample.
+/// Decides the warmth of the package. To be stepped with every sample.
 #[derive(Clone, Debug, Default)]
 pub struct TemperatureGate {
-    /// When the last temperature was read, or the first sample if there was none.
+    /// Time of the last valid temperature, or of the first sample if there was none.
     known_us: Option<u64>,
-    /// From which the temperature has not moved.
+    /// The reading since which the temperature has been steady.
     steady_from: Option<Reading>,
     at_limit_since_us: Option<u64>,
 }
 
 impl TemperatureGate {
-    /// `temperature_c` and `heater` as of this sample.
+    /// `temperature_c` and `heater` are those of this sample.
     pub fn step(&mut self, temperature_c: Option<f32>, heater: &Heater, ts_us: u64) -> Warmth {
         let known_us = *self.known_us.get_or_insert(ts_us);
         let Some(celsius) = temperature_c else {
@@ -82,7 +82,7 @@ mod tests {
     use super::*;
     use crate::domain::HeaterConfig;
 
-    /// Warmth after each whole second, at 50 Hz, of a temperature that follows `celsius` of the time in s.
+    /// The warmth after each whole second, at 50 Hz. `celsius` gives the temperature at a time in s.
     fn warmth(config: HeaterConfig, celsius: impl Fn(f32) -> Option<f32>) -> Vec<Warmth> {
         let mut gate = TemperatureGate::default();
         let mut heater = Heater::new(config);
@@ -103,19 +103,19 @@ mod tests {
         warmths.iter().position(|warmth| *warmth == wanted)
     }
 
-    /// One kelvin a second from 22 °C is within 3 K of 40 °C at 15 s.
+    /// At one kelvin per second, 22 °C come within 3 K of 40 °C after 15 s.
     #[test]
-    fn near_the_target_counts_at_once() {
+    fn a_temperature_near_the_target_is_accepted_at_once() {
         let warmths = warmth(HeaterConfig::default(), |t| Some((22.0 + t).min(40.0)));
         assert_eq!(first(&warmths, Warmth::AtTarget), Some(15));
         let warm = warmth(HeaterConfig::default(), |_| Some(38.0));
         assert_eq!(first(&warm, Warmth::AtTarget), Some(0));
     }
 
-    /// On USB the heater ends at 34 °C: with a lag of 4 s from 24 °C it moves less than 0.3 K in any 5 s from 13 s on
-    /// (10 K · e^(−13/4) = 0.39 K are left, 0.11 K at 18 s).
+    /// On USB the heater ends at 34 °C. With a time constant of 4 s from 24 °C, the temperature moves by less than 0.3
+    /// K in 5 s from 13 s on: 10 K · e^(−13/4) = 0.39 K are left then, 0.11 K at 18 s.
     #[test]
-    fn a_heater_that_cannot_reach_the_target_counts_once_steady() {
+    fn a_heater_that_cannot_reach_the_target_is_accepted_once_steady() {
         let usb = |t: f32| Some(34.0 - 10.0 * (-t / 4.0).exp());
         let warmths = warmth(HeaterConfig::default(), usb);
         let settled = first(&warmths, Warmth::Settled).unwrap();
@@ -124,21 +124,22 @@ mod tests {
     }
 
     #[test]
-    fn a_temperature_that_still_moves_does_not_count() {
+    fn a_moving_temperature_is_not_accepted() {
         let drifting = warmth(HeaterConfig::default(), |t| Some(10.0 + 0.1 * t));
         assert!(drifting.iter().all(|warmth| *warmth == Warmth::Unsettled));
     }
 
-    /// 3.5 K below the target it gives 0.7, and 0.035 more each second: all it has after 9 s. Fifteen more must pass.
+    /// 3.5 K below the target the duty is 0.7, and grows by 0.035 a second. It reaches its limit after 9 s; the gate
+    /// waits for 15 s more.
     #[test]
-    fn a_heater_that_still_has_something_to_give_is_waited_for() {
+    fn a_heater_below_its_limit_is_waited_for() {
         let warmths = warmth(HeaterConfig::default(), |_| Some(36.5));
         let settled = first(&warmths, Warmth::Settled).unwrap();
         assert!((23..=26).contains(&settled), "{settled}");
     }
 
     #[test]
-    fn without_heater_steady_is_enough() {
+    fn without_heater_a_steady_temperature_is_enough() {
         let off = HeaterConfig {
             target_c: 0.0,
             ..HeaterConfig::default()
@@ -148,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn without_temperature_it_is_given_up_after_twenty_seconds() {
+    fn without_temperature_it_goes_on_after_twenty_seconds() {
         let warmths = warmth(HeaterConfig::default(), |_| None);
         assert_eq!(first(&warmths, Warmth::Unknown), Some(20));
         let back = warmth(HeaterConfig::default(), |t| (t > 30.0).then_some(22.0));

@@ -1,4 +1,4 @@
-//! Blows through a low-pass of the test's own, and outliers put among their frames.
+//! Impacts through a Butterworth low-pass, and outliers put among their frames.
 
 use super::*;
 use std::f64::consts::{PI, SQRT_2};
@@ -6,7 +6,7 @@ use std::f64::consts::{PI, SQRT_2};
 const COUNTS_PER_DPS: f64 = 16.384;
 const READ: usize = 5;
 
-/// Butterworth, second order, 116 Hz, in steps of 0.05 ms; one frame a millisecond, cut off at the end of the range.
+/// Second-order Butterworth low-pass of 116 Hz in steps of 0.05 ms. Frames are taken every millisecond and saturate.
 fn frames(rate_dps: impl Fn(f64) -> [f64; 3], ms: usize) -> Vec<Frame> {
     let (dt, omega) = (5e-5, 2.0 * PI * 116.0);
     let (mut y, mut slope) = ([0.0; 3], [0.0; 3]);
@@ -23,8 +23,8 @@ fn frames(rate_dps: impl Fn(f64) -> [f64; 3], ms: usize) -> Vec<Frame> {
         .collect()
 }
 
-/// Sum of all that counted, in counts · ms, and the outliers found. None once a read is nonsense.
-fn counted(frames: &[Frame]) -> Option<([f64; 3], u8)> {
+/// Sum of all rotation that was used, in counts · ms, and the number of outliers. `None` once a read is not plausible.
+fn used_rotation(frames: &[Frame]) -> Option<([f64; 3], u8)> {
     let mut end = Some(SeriesEnd {
         measured: [0; 3],
         used: [0; 3],
@@ -47,8 +47,14 @@ fn total(frames: &[Frame]) -> [f64; 3] {
     })
 }
 
-/// A shove of `peak_dps` that begins at `at_s`: at once, or as half a sine.
-fn blow(axis: usize, peak_dps: f64, ms: f64, abrupt: bool, at_s: f64) -> impl Fn(f64) -> [f64; 3] {
+/// An impact of `peak_dps` that begins at `at_s`, as a step or half a sine.
+fn impact(
+    axis: usize,
+    peak_dps: f64,
+    ms: f64,
+    abrupt: bool,
+    at_s: f64,
+) -> impl Fn(f64) -> [f64; 3] {
     move |t| {
         let share = (t - at_s) / (ms * 1e-3);
         let mut rate = [3.0, -2.0, 1.0];
@@ -64,19 +70,19 @@ fn blow(axis: usize, peak_dps: f64, ms: f64, abrupt: bool, at_s: f64) -> impl Fn
 }
 
 #[test]
-fn every_frame_of_a_blow_counts() {
+fn every_frame_of_an_impact_is_used() {
     for (case, peak_dps) in [400.0, 1_000.0, 1_900.0, -2_500.0, 3_500.0, -4_500.0]
         .into_iter()
         .enumerate()
     {
         for ms in [3.0, 10.0, 20.0, 60.0, 100.0] {
             for abrupt in [false, true] {
-                // Anywhere within a read.
+                // The impact begins anywhere within a read.
                 let at_s = 0.02 + 0.000_7 * case as f64;
-                let frames = frames(blow(case % 3, peak_dps, ms, abrupt, at_s), 150);
+                let frames = frames(impact(case % 3, peak_dps, ms, abrupt, at_s), 150);
                 let name = format!("{peak_dps} °/s for {ms} ms, abrupt: {abrupt}");
                 let (sum, outliers) =
-                    counted(&frames).unwrap_or_else(|| panic!("{name}: nonsense"));
+                    used_rotation(&frames).unwrap_or_else(|| panic!("{name}: implausible"));
                 assert_eq!(outliers, 0, "{name}");
                 for (sum, total) in sum.into_iter().zip(total(&frames)) {
                     assert!((sum - total).abs() < 1.0, "{name}: {sum} of {total}");
@@ -86,26 +92,26 @@ fn every_frame_of_a_blow_counts() {
     }
 }
 
-/// To and fro at once, as no robot is hit: 3,200 °/s within 20 ms.
+/// 3,200 °/s within 20 ms, more than any impact on a robot.
 #[test]
-fn a_blow_and_the_next_against_it_count() {
+fn two_opposite_impacts_are_used() {
     let rate = |t: f64| match (t * 1e3) as u32 {
         20..30 => [0.0, 1_600.0, 0.0],
         30..40 => [0.0, -1_600.0, 0.0],
         _ => [0.0; 3],
     };
     let frames = frames(rate, 80);
-    let (sum, outliers) = counted(&frames).expect("sane");
+    let (sum, outliers) = used_rotation(&frames).expect("sane");
     assert_eq!(outliers, 0);
     assert!((sum[1] - total(&frames)[1]).abs() < 1.0);
 }
 
-/// Wherever in a read it is, at rest and within a blow. The neighbours' mean stands for it: within a blow that is off by
-/// less than 0.4 °.
+/// At rest and during an impact, anywhere in a read. During the impact the mean of the neighbours is off by less than
+/// 0.4°.
 #[test]
-fn a_single_wrong_frame_is_left_out_wherever_it_is() {
+fn a_single_outlier_is_replaced_anywhere_in_a_read() {
     for peak_dps in [0.0, 1_500.0] {
-        let good = frames(blow(1, peak_dps, 20.0, false, 0.02), 60);
+        let good = frames(impact(1, peak_dps, 20.0, false, 0.02), 60);
         for place in 2..58 {
             for wrong in [
                 [i16::MIN; 3],
@@ -119,7 +125,7 @@ fn a_single_wrong_frame_is_left_out_wherever_it_is() {
                     std::array::from_fn(|axis| before[axis].saturating_add(wrong[axis]));
                 let is_outlier =
                     (0..3).any(|axis| frames[place][axis].abs_diff(before[axis]) > 12_000);
-                let Some((sum, outliers)) = counted(&frames) else {
+                let Some((sum, outliers)) = used_rotation(&frames) else {
                     panic!("{wrong:?} at {place} spoils all");
                 };
                 if is_outlier {
@@ -142,7 +148,7 @@ fn a_single_wrong_frame_is_left_out_wherever_it_is() {
 }
 
 #[test]
-fn what_jumps_or_errs_twice_in_a_read_is_nonsense() {
+fn jumps_and_two_outliers_make_a_read_implausible() {
     let rest: SeriesEnd = SeriesEnd {
         measured: [0; 3],
         used: [0; 3],
@@ -157,7 +163,7 @@ fn what_jumps_or_errs_twice_in_a_read_is_nonsense() {
     assert!(GyroReading::from_frames(&[], None).is_none());
 }
 
-/// 26,000 counts in a millisecond may be, 26,001 may not.
+/// 26,000 counts in a millisecond are accepted, 26,001 are not.
 #[test]
 fn a_step_has_a_limit() {
     let frames = |step: i16| [[0; 3], [0, step, 0], [0, step, 0]];
@@ -165,9 +171,9 @@ fn a_step_has_a_limit() {
     assert!(GyroReading::from_frames(&frames(26_001), None).is_none());
 }
 
-/// By hand: two of five frames at the end of y, one at that of z; alone a frame stands for 5 ms.
+/// By hand: two of five frames are at the end of y, one at that of z. A single frame stands for 5 ms.
 #[test]
-fn the_time_at_the_end_of_the_range_is_told_by_axis() {
+fn the_time_of_saturation_is_counted_by_axis() {
     let end = i16::MAX;
     let frames = [
         [0, 10_000, 0],

@@ -1,6 +1,6 @@
 use super::*;
 
-/// A copper island as a first-order lag, seen through the BMI088: eighths of a kelvin, renewed every 1.28 s.
+/// A copper island as a first-order lag. The BMI088 shows it in eighths of a kelvin, renewed every 1.28 s.
 struct Island {
     celsius: f32,
     ambient_c: f32,
@@ -22,7 +22,7 @@ impl Island {
         }
     }
 
-    /// Runs at 200 Hz and hands out the temperature after each sample.
+    /// Runs at 200 Hz and passes on temperature and duty after each sample.
     fn heat(&mut self, heater: &mut Heater, seconds: u64, mut each: impl FnMut(f32, f32)) {
         for _ in 0..seconds * 200 {
             self.now_us += 5_000;
@@ -42,9 +42,10 @@ fn heater() -> Heater {
     Heater::new(HeaterConfig::default())
 }
 
-/// 40 °C from 22 °C with 33 K of heat in hand: there within half a minute, less than 2 K too far, then within 0.5 K.
+/// From 22 °C to 40 °C with a heater that can add 33 K: it arrives within half a minute, overshoots by less than 2 K
+/// and then stays within 0.5 K.
 #[test]
-fn a_cold_package_is_warmed_and_held() {
+fn a_cold_package_is_heated_and_held() {
     let mut heater = heater();
     let mut island = Island::at(22.0, 33.0);
     let mut hottest_c: f32 = 0.0;
@@ -64,8 +65,8 @@ fn a_cold_package_is_warmed_and_held() {
     assert!(hottest_c < 42.0, "{hottest_c}");
 }
 
-/// Ten minutes at full heat that cannot reach the target must not be stored up: with five times the heat all at once
-/// it still goes less than 1 K too far. (Stored up, it would go 3 K too far.)
+/// After ten minutes at full duty below the target, the heater becomes five times as strong. It overshoots by less than
+/// 1 K. With a wound-up integral it would be 3 K.
 #[test]
 fn a_supply_too_weak_for_the_target_does_not_wind_up() {
     let mut heater = heater();
@@ -82,7 +83,7 @@ fn a_supply_too_weak_for_the_target_does_not_wind_up() {
 }
 
 #[test]
-fn without_a_valid_temperature_it_is_off_at_once() {
+fn without_a_valid_temperature_it_is_off() {
     for unknown in [None, Some(f32::NAN), Some(-41.0), Some(86.0)] {
         let mut heater = heater();
         heater.step(Some(25.0), 5_000);
@@ -96,7 +97,7 @@ fn without_a_valid_temperature_it_is_off_at_once() {
 }
 
 #[test]
-fn too_hot_it_stays_off_until_the_target_is_reached_from_above() {
+fn after_overheating_it_stays_off_until_the_target_is_reached() {
     let mut heater = heater();
     let mut state_at = |celsius| {
         heater.step(Some(celsius), 5_000);
@@ -116,7 +117,7 @@ fn too_hot_it_stays_off_until_the_target_is_reached_from_above() {
 }
 
 #[test]
-fn the_configuration_can_switch_it_off_but_not_break_it() {
+fn settings_can_switch_it_off_but_not_break_it() {
     let at = |celsius, change: fn(&mut HeaterConfig)| {
         let mut config = HeaterConfig::default();
         change(&mut config);

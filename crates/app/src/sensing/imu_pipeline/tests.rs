@@ -6,7 +6,7 @@ fn new_pipeline() -> ImuPipeline {
     ImuPipeline::new(ImuCalibration::default(), HeaterConfig::default())
 }
 
-/// A sample whose buffer brings these, the newest being in the registers too.
+/// A sample whose buffer holds `frames`. The registers show the newest of them.
 fn process_frames<const N: usize>(
     pipeline: &mut ImuPipeline,
     index: u32,
@@ -20,7 +20,8 @@ fn process_frames<const N: usize>(
     pipeline.process(&accel, &gyro, bytes, u64::from(index) * 5_000)
 }
 
-/// BMI088 answers at rest, level, the gyro's buffer overrun, by the datasheet: 1 g is 2730 counts at ±12 g, temperature 0x1020 shifted = 39.125 °C.
+/// Answers of a level BMI088 at rest with an overrun gyro buffer, by the datasheet: 1 g is 2730 counts at ±12 g, and
+/// the temperature bytes 0x10 0x20 are 39.125 °C.
 fn answers(index: u32) -> ([u8; 20], [u8; 16]) {
     let mut accel = [0; 20];
     let ripple = (index % 3) as u8;
@@ -43,11 +44,11 @@ fn counts_become_physical_units() {
     assert!((state.accel_mps2[2] - 9.806_65).abs() < 0.01);
     assert!((state.gyro_dps[2] - 10.01).abs() < 0.01);
     assert_eq!(state.temperature_c, 39.125);
-    // 1.94 ms of filter, 0.5 ms until it was read.
+    // The low-pass takes 1.94 ms, the reading 0.5 ms.
     assert_eq!(state.ts_us, 5_000 - 2_440);
 }
 
-/// By hand: (9.806 − 0.306) · 2 = 19 m/s²; until the offset is measured the stored one counts, (10.01 − 1.01) · 0.5.
+/// By hand: (9.806 − 0.306) · 2 = 19 m/s². Until the bias is measured, the stored one is used: (10.01 − 1.01) · 0.5.
 #[test]
 fn stored_offsets_and_scales_are_applied() {
     let mut pipeline = new_pipeline();
@@ -65,9 +66,9 @@ fn stored_offsets_and_scales_are_applied() {
     assert_eq!(state.gyro_bias_dps[2], 1.01);
 }
 
-/// z points forward: the 10.01 °/s and 1 g that it measures are about and along the robot's x.
+/// The sensor's z axis points forward, so its 10.01 °/s and 1 g are about and along the robot's x axis.
 #[test]
-fn samples_are_turned_before_they_are_calibrated() {
+fn samples_are_rotated_before_they_are_calibrated() {
     let mut pipeline = new_pipeline();
     pipeline.set_mounting(Orientation::XRightZForward);
     let calibration = ImuCalibration {
@@ -82,14 +83,14 @@ fn samples_are_turned_before_they_are_calibrated() {
     assert!((forward - 9.306_65).abs() < 0.01 && left.abs() + up.abs() < 0.01);
     let [forward, left, up] = state.gyro_dps;
     assert!((forward - 5.005).abs() < 0.01 && left.abs() + up.abs() < 0.01);
-    // And so is what was cut off: x points to the right.
+    // The times of saturation are rotated too: the sensor's x axis points to the right.
     let rates = [20_000, i16::MAX, i16::MAX, i16::MAX].map(|x| [x, 0, 0]);
     let state = process_frames(&mut pipeline, 2, rates).unwrap();
     assert_eq!(state.gyro_clipped_ms, [0, 4, 0]);
 }
 
 #[test]
-fn another_mounting_finds_the_offset_anew() {
+fn another_mounting_measures_the_bias_again() {
     let mut pipeline = new_pipeline();
     let still = |pipeline: &mut ImuPipeline, samples: std::ops::Range<u32>| {
         for index in samples {
@@ -110,7 +111,7 @@ fn another_mounting_finds_the_offset_anew() {
 }
 
 #[test]
-fn a_still_second_takes_the_offset_out() {
+fn a_still_second_removes_the_bias() {
     let mut pipeline = new_pipeline();
     let mut last = ImuState::default();
     for index in 1..=210u32 {
@@ -126,7 +127,7 @@ fn a_still_second_takes_the_offset_out() {
 }
 
 #[test]
-fn an_absent_sensor_is_named() {
+fn an_absent_sensor_is_reported() {
     let mut pipeline = new_pipeline();
     let (accel, gyro) = answers(1);
     let mut process = |accel: &[u8; 20], gyro: &[u8; 16]| pipeline.process(accel, gyro, &[], 5_000);
@@ -149,7 +150,7 @@ fn an_absent_sensor_is_named() {
 }
 
 #[test]
-fn a_frozen_sensor_is_noticed() {
+fn a_frozen_sensor_is_detected() {
     let mut pipeline = new_pipeline();
     let (accel, gyro) = answers(1);
     assert!(pipeline.process(&accel, &gyro, &[], 5_000).is_ok());
@@ -175,7 +176,7 @@ fn a_frozen_sensor_is_noticed() {
     assert!(!results[19]);
 }
 
-/// By hand from the datasheet: 0x00 0x00 is 23 °C, 17 K below the target; 0x80 0x00 is no temperature.
+/// By hand from the datasheet: 0x00 0x00 is 23 °C, 17 K below the target. 0x80 0x00 is invalid.
 #[test]
 fn the_heater_follows_the_temperature_and_stops_without() {
     let mut pipeline = new_pipeline();
@@ -214,7 +215,7 @@ fn a_cold_package_is_not_calibrated() {
 }
 
 #[test]
-fn the_end_of_the_range_is_marked_and_nonsense_rejected() {
+fn saturation_is_marked_and_implausible_samples_rejected() {
     let mut pipeline = new_pipeline();
     let (accel, gyro) = answers(1);
     assert!(
@@ -231,14 +232,14 @@ fn the_end_of_the_range_is_marked_and_nonsense_rejected() {
             .unwrap()
             .saturated
     );
-    // Two frames: the first, and its like.
-    let nonsense = process_frames(&mut pipeline, 3, [[i16::MIN, 0, 164]; 2]);
-    assert_eq!(nonsense, Err(ImuSampleError::Implausible));
+    // Two frames: the first jumps, and the second confirms it.
+    let jumped = process_frames(&mut pipeline, 3, [[i16::MIN, 0, 164]; 2]);
+    assert_eq!(jumped, Err(ImuSampleError::Implausible));
     assert_eq!(pipeline.status().rejects.implausible, 1);
 }
 
 #[test]
-fn a_wrong_frame_is_counted_and_its_sample_used() {
+fn an_outlier_is_counted_and_its_sample_used() {
     let mut pipeline = new_pipeline();
     let (good, wrong) = ([0, 0, 164], [i16::MIN, 0, 164]);
     let state = process_frames(&mut pipeline, 1, [good, good, wrong, good, good]).unwrap();
@@ -249,7 +250,7 @@ fn a_wrong_frame_is_counted_and_its_sample_used() {
 
 /// By hand: 1000 °/s in one frame of two, then two frames at the end of the range.
 #[test]
-fn a_blow_is_averaged_and_its_end_of_the_range_told() {
+fn an_impact_is_averaged_and_its_saturation_reported() {
     let mut pipeline = new_pipeline();
     let mut process = |index: u32, frames: [i16; 2]| {
         process_frames(&mut pipeline, index, frames.map(|y| [0, y, 164]))
@@ -258,7 +259,7 @@ fn a_blow_is_averaged_and_its_end_of_the_range_told() {
     let beyond = process(2, [i16::MAX; 2]).unwrap();
     assert!(!rising.saturated && beyond.saturated);
     assert_eq!(beyond.gyro_clipped_ms, [0, 5, 0]);
-    // What the jump kept back is made up for: 500 and 2000 °/s in the mean.
+    // The rotation that was held back after the jump is added later: 500 and 2000 °/s in the mean.
     let sum = rising.gyro_dps[1] + beyond.gyro_dps[1];
     assert!((sum - 2_500.0).abs() < 0.1, "{sum}");
 }

@@ -1,4 +1,4 @@
-//! Samples of five frames that are all alike, unless a test says otherwise.
+//! Unless a test says otherwise, all five frames of a sample are alike.
 
 use super::*;
 use crate::sensing::bmi088::decode_gyro;
@@ -11,7 +11,7 @@ struct Bench {
 }
 
 impl Bench {
-    /// At rest for a while.
+    /// After some samples at rest.
     fn new() -> Self {
         let mut bench = Self {
             plausibility: Plausibility::default(),
@@ -23,7 +23,7 @@ impl Bench {
         bench
     }
 
-    /// Whether it is marked.
+    /// Feeds a sample; returns whether it is marked as saturated.
     fn feed(&mut self, accel: [i16; 3], gyro: [i16; 3]) -> Result<bool, ImuSampleError> {
         self.feed_frames(accel, [gyro; 5])
             .map(|sample| sample.saturated)
@@ -51,7 +51,8 @@ impl Bench {
     }
 }
 
-/// Full scale of ±2000 °/s is 32,767 counts: a spin-up at 500 °/s a sample that stays out of range for 50 ms.
+/// The full scale of ±2000 °/s is 32,767 counts. The robot spins up by 500 °/s a sample, stays out of range for 50 ms
+/// and slows down again.
 #[test]
 fn a_spin_beyond_the_range_for_a_moment_is_used_and_marked() {
     let mut bench = Bench::new();
@@ -66,9 +67,9 @@ fn a_spin_beyond_the_range_for_a_moment_is_used_and_marked() {
     }
 }
 
-/// To the end of the range and back within two samples: no frame of it is lost.
+/// The rate reaches the end of its range and returns within two samples. No frame is lost.
 #[test]
-fn a_blow_is_used_as_it_is() {
+fn all_frames_of_an_impact_are_used() {
     let mut bench = Bench::new();
     let rates: [i16; 10] = [
         2_000,
@@ -89,7 +90,7 @@ fn a_blow_is_used_as_it_is() {
         [frames[0], frames[1], frames[2], frames[3], frames[4]],
         [frames[5], frames[6], frames[7], frames[8], frames[9]],
     ] {
-        let sample = bench.feed_frames(REST, read).expect("a blow");
+        let sample = bench.feed_frames(REST, read).expect("an impact");
         assert!(sample.saturated);
         counts_ms += 5.0 * sample.gyro.mean_counts[1];
         clipped_ms += sample.gyro.clipped_ms[1];
@@ -100,7 +101,7 @@ fn a_blow_is_used_as_it_is() {
 }
 
 #[test]
-fn a_blow_beyond_12_g_is_used_and_marked() {
+fn an_impact_beyond_12_g_is_used_and_marked() {
     let mut bench = Bench::new();
     let samples = [[i16::MAX, 0, 9_000], [i16::MIN, 500, 2_000], REST];
     let verdicts = samples.map(|accel| bench.feed(accel, [200, 50, 10]));
@@ -108,7 +109,7 @@ fn a_blow_beyond_12_g_is_used_and_marked() {
 }
 
 #[test]
-fn whoever_stays_out_of_range_is_not_believed() {
+fn a_sensor_that_stays_out_of_range_is_rejected() {
     for axis in [
         ([i16::MIN, 0, 0], [0; 3]),
         (REST, [0, i16::MAX, 0]),
@@ -116,7 +117,7 @@ fn whoever_stays_out_of_range_is_not_believed() {
     ] {
         let mut bench = Bench::new();
         let (accel, gyro) = axis;
-        // Up to the range in steps that a robot can make.
+        // The rate rises in steps that a robot can make.
         for thirds in [1, 2] {
             let passed = bench.feed(REST, gyro.map(|count| count / 3 * thirds));
             assert_eq!(passed, Ok(false));
@@ -130,9 +131,9 @@ fn whoever_stays_out_of_range_is_not_believed() {
     }
 }
 
-/// Registers that jump among the ends of the range, by a generator of the test's own.
+/// Counts that jump between the ends of the range at random.
 #[test]
-fn of_nonsense_no_sample_passes() {
+fn no_random_sample_passes() {
     let mut bench = Bench::new();
     let mut state = 1u32;
     let mut extreme = || {
@@ -157,7 +158,7 @@ fn of_nonsense_no_sample_passes() {
 }
 
 #[test]
-fn after_nonsense_only_samples_inside_the_range_count() {
+fn after_implausible_samples_only_unsaturated_ones_are_used() {
     let mut bench = Bench::new();
     for rate in [i16::MAX, i16::MIN, i16::MAX, i16::MIN, i16::MAX] {
         bench.feed(REST, [rate; 3]).unwrap_err();
@@ -168,9 +169,9 @@ fn after_nonsense_only_samples_inside_the_range_count() {
     }
 }
 
-/// A bit that flips on the wire: 500 °/s and more.
+/// One bit flips on the bus: 500 °/s and more.
 #[test]
-fn a_wrong_frame_among_good_ones_costs_that_frame_alone() {
+fn an_outlier_costs_one_frame() {
     for bit in [13, 14, 15] {
         for place in 0..5 {
             let mut bench = Bench::new();
@@ -194,9 +195,9 @@ fn a_wrong_frame_among_good_ones_costs_that_frame_alone() {
     }
 }
 
-/// A whole sample that is wrong, and three in a row: good ones count again at once.
+/// One or three samples in a row are wrong. The next good one is used at once.
 #[test]
-fn a_wrong_sample_among_good_ones_costs_that_sample_alone() {
+fn a_wrong_sample_costs_only_itself() {
     for times in [1, 3] {
         let mut bench = Bench::new();
         for _ in 0..times {
@@ -208,7 +209,7 @@ fn a_wrong_sample_among_good_ones_costs_that_sample_alone() {
 }
 
 #[test]
-fn nobody_wakes_up_at_full_turn_rate() {
+fn a_sensor_cannot_start_saturated() {
     let mut bench = Bench::new();
     bench.ts_us += 500_000;
     let woken = bench.feed(REST, [0, 0, i16::MIN]);
