@@ -1,4 +1,4 @@
-//! The estimator on motions whose answer is known by hand or by double-precision kinematics.
+//! The estimator on motions known by hand or by double-precision kinematics.
 
 use robot_app::{
     domain::{ImuState, MagState, MotorFeedback, StateEstimate, WheelOdomConfig},
@@ -7,15 +7,15 @@ use robot_app::{
 
 const GRAVITY_MPS2: f32 = 9.806_65;
 const LEVEL: [f32; 3] = [0.0, 0.0, GRAVITY_MPS2];
-/// Middle Europe: 20 µT to the north, 45 µT down.
+/// Central Europe: 20 µT to the north, 45 µT down.
 const FACING_EAST_UT: [f32; 3] = [0.0, 20.0, -45.0];
 const FACING_NORTH_UT: [f32; 3] = [20.0, 0.0, -45.0];
 
-/// An estimator with sensors.
+/// An estimator with made-up sensors.
 struct Bench {
     estimator: InsEstimator,
     now_us: u64,
-    /// What a sample would show if it were taken now.
+    /// The sample that would be measured now.
     imu: ImuState,
     mag: MagState,
     imu_sends: bool,
@@ -26,7 +26,7 @@ struct Bench {
 }
 
 impl Bench {
-    /// Level, at rest, no magnetometer, wheels silent.
+    /// Level, at rest, without magnetometer and wheel feedback.
     fn new() -> Self {
         Self {
             estimator: InsEstimator::new(WheelOdomConfig::default()),
@@ -44,7 +44,7 @@ impl Bench {
         }
     }
 
-    /// At rest for a second, so that the estimate is valid.
+    /// After a second at rest, when the estimate is valid.
     fn settled() -> Self {
         let mut bench = Self::new();
         bench.run(1.0);
@@ -52,7 +52,7 @@ impl Bench {
         bench
     }
 
-    /// One tick; samples every 5 ms and 20 ms.
+    /// One tick. IMU samples come every 5 ms, field samples every 20 ms.
     fn tick(&mut self) {
         self.now_us += 1_000;
         if self.imu_sends && self.now_us.is_multiple_of(5_000) {
@@ -82,13 +82,13 @@ impl Bench {
         self.estimate.rpy_rad[2]
     }
 
-    /// Of a robot that should stand level; NaN fails every comparison with it.
+    /// Tilt of a robot that should stand level. NaN fails every comparison.
     fn tilt_rad(&self) -> f32 {
         let [_, x, y, _] = self.estimate.q_wxyz;
         2.0 * x.hypot(y)
     }
 
-    /// Rotor speeds in the motors' own sense, left and right.
+    /// Sets the rotor speeds (left, right), each in its motor's own sense.
     fn wheels_turn(&mut self, rpm: [i16; 2]) {
         for (wheel, rpm) in self.motor.wheels.iter_mut().zip(rpm) {
             wheel.rpm = rpm;
@@ -96,7 +96,7 @@ impl Bench {
         }
     }
 
-    /// For 0.3 s along the nose, from this speed of the left rotor.
+    /// Accelerates along the nose for 0.3 s, from this speed of the left rotor.
     fn accelerate(&mut self, accel_mps2: f32, from_rpm: i16) {
         const RPM_PER_MPS: f32 = 1_834.0 / 0.6;
         self.imu.accel_mps2 = [accel_mps2, 0.0, GRAVITY_MPS2];
@@ -117,7 +117,7 @@ fn assert_close(got: [f32; 3], expected: [f32; 3], tolerance: f32) {
     }
 }
 
-/// East-north-up: yaw is the angle from east to the nose, counter-clockwise.
+/// In ENU axes, yaw is the counter-clockwise angle from east to the nose.
 #[test]
 fn the_field_shows_where_the_nose_points() {
     let cases = [
@@ -154,7 +154,7 @@ fn gravity_shows_roll_and_pitch() {
     }
 }
 
-/// Without the steps between samples the yaw would lag by up to 4 mrad.
+/// Without extrapolation between samples the yaw would lag by up to 4 mrad.
 #[test]
 fn a_steady_turn_is_followed_between_samples() {
     let mut bench = Bench::settled();
@@ -169,7 +169,7 @@ fn a_steady_turn_is_followed_between_samples() {
     assert!(bench.estimate.valid);
 }
 
-/// Body vector of a world vector for the attitude `q` (body → world, w first), in double precision.
+/// A world vector in the body axes of the attitude `q` (body → world, w first), in double precision.
 fn seen_from_body([w, x, y, z]: [f64; 4], [vx, vy, vz]: [f64; 3]) -> [f32; 3] {
     let body = [
         (1.0 - 2.0 * (y * y + z * z)) * vx
@@ -185,10 +185,10 @@ fn seen_from_body([w, x, y, z]: [f64; 4], [vx, vy, vz]: [f64; 3]) -> [f32; 3] {
     body.map(|part| part as f32)
 }
 
-/// A body that tumbles about a fixed axis: attitude (cos, axis · sin) of half the angle. The part of the gyro's offset
-/// along that axis, 0.3 °/s · 5/7, would alone lead 13° astray in this minute.
+/// The body rotates about a fixed axis. Its attitude is (cos, axis · sin) of half the angle. The part of the gyro bias
+/// along that axis, 0.3 °/s · 5/7, would alone make 13° in this minute.
 #[test]
-fn a_tumbling_body_is_followed_in_spite_of_the_gyro_offset() {
+fn a_tumbling_body_is_followed_despite_the_gyro_bias() {
     let (rate_rps, axis) = (1.2f64, [2.0 / 7.0, -3.0 / 7.0, 6.0 / 7.0]);
     let mut bench = Bench::new();
     let mut worst_deg = 0.0f64;
@@ -223,9 +223,9 @@ fn at_rest_the_gyro_offset_is_found_and_the_heading_stays() {
     assert!((bench.yaw_rad() - before).abs() < 2e-3);
 }
 
-/// When the sensor stage takes the offset out, the estimator must not take it out again.
+/// Once the sensor stage subtracts the bias, the estimator must not subtract it again.
 #[test]
-fn an_offset_taken_out_of_the_samples_is_forgotten() {
+fn a_bias_removed_from_the_samples_is_not_removed_twice() {
     let mut bench = Bench::new();
     bench.imu.gyro_dps = [0.5, -0.4, 0.3];
     bench.run(20.0);
@@ -238,7 +238,7 @@ fn an_offset_taken_out_of_the_samples_is_forgotten() {
     assert!((bench.yaw_rad() - before).abs() < 2e-3);
 }
 
-/// Half a second is 100 samples; after a gap the quiet of 120 shows where up is.
+/// Half a second is 100 samples. After a gap it takes 120 quiet samples to level the attitude.
 fn assert_invalid_for_half_a_second(bench: &mut Bench, gap: bool, cause: &str) {
     bench.run(0.49);
     assert!(!bench.estimate.valid, "{cause}");
@@ -248,7 +248,7 @@ fn assert_invalid_for_half_a_second(bench: &mut Bench, gap: bool, cause: &str) {
 }
 
 #[test]
-fn a_sample_that_no_sensor_measures_is_not_used() {
+fn an_impossible_imu_sample_is_not_used() {
     for bad in [f32::NAN, f32::INFINITY, f32::MAX, -3_000.0] {
         for place in 0..3 {
             let mut bench = Bench::settled();
@@ -269,7 +269,7 @@ fn a_sample_that_no_sensor_measures_is_not_used() {
 }
 
 #[test]
-fn a_turn_goes_on_through_samples_that_are_not_used() {
+fn a_rotation_goes_on_through_unused_samples() {
     let mut bench = Bench::settled();
     let turning = [0.0, 0.0, 1.0f32.to_degrees()];
     bench.imu.gyro_dps = turning;
@@ -278,13 +278,13 @@ fn a_turn_goes_on_through_samples_that_are_not_used() {
     bench.run(0.05);
     bench.imu.gyro_dps = turning;
     bench.run(0.95);
-    // The turn began 5 ms before the first sample that shows it, as the rate of a sample stands for the time before.
+    // The rate of a sample stands for the 5 ms before it.
     assert!((bench.yaw_rad() - 2.0).abs() < 6e-3, "{}", bench.yaw_rad());
 }
 
-/// 100 ms at both ends of ±12 g would tilt the smoothed gravity by 20°.
+/// 100 ms at the ends of ±12 g would tilt a smoothed gravity vector by 20°.
 #[test]
-fn a_blow_beyond_the_range_does_not_tilt_the_robot() {
+fn an_impact_beyond_the_range_does_not_tilt_the_estimate() {
     let mut bench = Bench::settled();
     bench.imu.accel_mps2 = [117.6, -117.6, 9.8];
     bench.imu.saturated = true;
@@ -303,7 +303,7 @@ fn a_blow_beyond_the_range_does_not_tilt_the_robot() {
 }
 
 #[test]
-fn a_field_that_no_sensor_measures_changes_nothing() {
+fn an_impossible_field_changes_nothing() {
     for bad in [f32::NAN, f32::INFINITY, f32::MAX, 9_000.0] {
         let mut bench = Bench::settled();
         bench.mag.mag_ut = FACING_NORTH_UT;
@@ -348,8 +348,8 @@ fn a_jump_in_time_ends_validity_for_half_a_second() {
     }
 }
 
-/// 1834 rpm at the rotor are 10 rad/s of a 0.06 m wheel; the right motor sits mirrored. From rest to 0.6 m/s in 0.3 s
-/// and back again is 0.6 m/s times the time between the middles of both ramps.
+/// 1834 rpm of the rotor are 10 rad/s of a wheel with a radius of 0.06 m. The right motor is mirrored. From rest to 0.6
+/// m/s in 0.3 s and back to rest the robot moves 0.6 m/s times the time between the middles of both ramps.
 #[test]
 fn the_robot_drives_where_its_nose_points() {
     let mut bench = Bench::settled();
@@ -368,9 +368,9 @@ fn the_robot_drives_where_its_nose_points() {
     }
 }
 
-/// To and fro at 2 m/s² for a minute: what the wheels explain is no tilt.
+/// Back and forth at 2 m/s² for a minute. The wheels explain the acceleration, so it does not tilt the estimate.
 #[test]
-fn driving_does_not_tilt_the_horizon() {
+fn driving_does_not_tilt_the_estimate() {
     let mut bench = Bench::settled();
     bench.wheels_turn([0, 0]);
     bench.run(1.0);
@@ -391,9 +391,9 @@ fn driving_does_not_tilt_the_horizon() {
     assert!(worst_deg < 0.12, "{worst_deg}°");
 }
 
-/// 0.306 m/s² more than gravity: one board's offset.
+/// A bias of 0.306 m/s², that of one board.
 #[test]
-fn standing_still_shows_the_offset_of_the_accelerometer() {
+fn standing_still_shows_the_accelerometer_bias() {
     let mut bench = Bench::new();
     bench.imu.accel_mps2 = [0.0, 0.0, GRAVITY_MPS2 + 0.306];
     bench.wheels_turn([0, 0]);

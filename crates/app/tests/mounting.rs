@@ -1,4 +1,4 @@
-//! What the control loop makes of another setting of how the sensors sit.
+//! What the control loop does when the mounting of the sensors changes.
 
 use robot_app::{
     control::UserController,
@@ -11,9 +11,9 @@ use robot_app::{
 };
 
 const UP: [f32; 3] = [0.0, 0.0, 9.81];
-/// As a robot that lies on its nose feels it.
+/// The specific force of a robot that lies on its nose.
 const BACK: [f32; 3] = [-9.81, 0.0, 0.0];
-/// Level part along the nose, µT.
+/// Horizontal part along the nose, µT.
 const FIELD_UT: [f32; 3] = [22.0, 0.0, -42.0];
 
 struct Robot {
@@ -37,7 +37,7 @@ impl Robot {
         }
     }
 
-    /// A tick a millisecond; a sample of the IMU every 5 ms, of the field every 20 ms.
+    /// A tick every millisecond, an IMU sample every 5 ms, a field sample every 20 ms.
     fn run(&mut self, ms: u32, accel_mps2: [f32; 3]) {
         for _ in 0..ms {
             self.now_us += 1_000;
@@ -86,9 +86,9 @@ impl Robot {
     }
 }
 
-/// 13 is x-right-z-down: any other than before.
+/// 13 is x-right-z-down, another mounting than before.
 #[test]
-fn another_way_to_sit_begins_the_attitude_anew() {
+fn another_mounting_restarts_the_attitude() {
     let mut robot = Robot::new(None);
     robot.run(1_000, UP);
     assert!(robot.estimate.valid && robot.pitch_deg().abs() < 1.0);
@@ -99,7 +99,7 @@ fn another_way_to_sit_begins_the_attitude_anew() {
     robot.set(0, 13.0);
     robot.run(1, UP);
     assert!(!robot.estimate.valid, "at once");
-    // What was on its way was turned as before.
+    // Samples on their way have the old axes.
     robot.run(20, UP);
     robot.run(480, BACK);
     assert!(!robot.estimate.valid, "settling");
@@ -112,9 +112,9 @@ fn another_way_to_sit_begins_the_attitude_anew() {
     );
 }
 
-/// The field lies along the nose: a robot that uses it knows that it faces north, 90° from east.
+/// The field points along the nose. A robot that uses it knows that it faces north, 90° from east.
 #[test]
-fn the_heading_uses_a_magnetometer_that_sits_as_somebody_said() {
+fn the_heading_uses_a_magnetometer_with_a_known_mounting() {
     let mut robot = Robot::new(Some(Orientation::XForwardZUp));
     robot.run(2_000, UP);
     assert!((robot.yaw_deg() - 90.0).abs() < 3.0, "{}", robot.yaw_deg());

@@ -140,7 +140,7 @@ impl InsEstimator {
         self.motion.set_config(odometry);
     }
 
-    /// Starts anew, because the axes of the sensors have changed. Samples that may have the old axes are ignored.
+    /// Starts again, because the axes of the sensors have changed. Samples that may have the old axes are ignored.
     #[cold]
     #[inline(never)]
     pub fn restart(

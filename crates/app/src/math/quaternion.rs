@@ -5,7 +5,7 @@ use super::{
     vector::{self, Vector3},
 };
 
-/// A rotation of body vectors into the frame named by the owner.
+/// A unit quaternion w + xi + yj + zk. Its user says which frames it rotates between; most often it is body → world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quaternion {
     pub w: f32,
@@ -15,6 +15,7 @@ pub struct Quaternion {
 }
 
 impl Quaternion {
+    /// No rotation.
     pub const IDENTITY: Self = Self {
         w: 1.0,
         x: 0.0,
@@ -22,12 +23,12 @@ impl Quaternion {
         z: 0.0,
     };
 
-    /// Rotation by the vector `angle_rad` (axis times angle). By series: exact in single precision up to 1 rad, 1e-5 off
-    /// at 2 rad; the length is that of a unit quaternion no better.
+    /// Rotation by the vector `angle_rad`, axis times angle. Computed by series: exact in single precision up to 1 rad,
+    /// off by 1e-5 at 2 rad.
     pub fn from_rotation(angle_rad: Vector3) -> Self {
         let half = vector::scale(angle_rad, 0.5);
         let s = vector::dot(half, half);
-        // A tenth of a radian needs two terms.
+        // Above 0.2 rad the series needs another term.
         if s > 0.01 {
             return Self::from_large_rotation(half, s);
         }
@@ -44,7 +45,7 @@ impl Quaternion {
         let sinc = 1.0 - s / 6.0 * (1.0 - s / 20.0 * (1.0 - s / 42.0));
         let [x, y, z] = vector::scale(half, sinc);
         let rotation = Self { w, x, y, z };
-        // Beyond 1 rad the series shows in the length.
+        // Above 1 rad the error of the series shows in the length.
         if s > 0.25 {
             rotation.normalised()
         } else {
@@ -52,7 +53,7 @@ impl Quaternion {
         }
     }
 
-    /// The shortest rotation that turns the unit vector `v` to +z.
+    /// The shortest rotation that turns the unit vector `v` = (x, y, z) to +z.
     pub fn levelling([x, y, z]: Vector3) -> Self {
         let w = scalar::sqrt((z + 1.0) / 2.0);
         if w > 1e-3 {
@@ -74,7 +75,7 @@ impl Quaternion {
         }
     }
 
-    /// `first`, then `self`: the quaternion product self · first.
+    /// The quaternion product self · first: the rotation `first`, followed by `self`.
     #[must_use]
     pub fn after(self, first: Self) -> Self {
         let (a, b) = (self, first);
@@ -86,7 +87,7 @@ impl Quaternion {
         }
     }
 
-    /// Back to unit length; the identity if nothing is left to scale.
+    /// Scales to unit length. Returns the identity for a length of zero.
     #[must_use]
     #[inline(never)]
     pub fn normalised(self) -> Self {
@@ -103,7 +104,7 @@ impl Quaternion {
         }
     }
 
-    /// As `normalised`, for what is nearly of unit length: one Newton step.
+    /// The same for a quaternion of almost unit length: one Newton step.
     #[must_use]
     pub fn renormalised(self) -> Self {
         let squared = self.w * self.w + self.x * self.x + self.y * self.y + self.z * self.z;
@@ -119,7 +120,7 @@ impl Quaternion {
         }
     }
 
-    /// Rows of the matrix that does what the quaternion does.
+    /// The rotation matrix, by rows.
     pub fn rotation_matrix(self) -> [Vector3; 3] {
         let Self { w, x, y, z } = self;
         let (xx, yy, zz) = (2.0 * x * x, 2.0 * y * y, 2.0 * z * z);
@@ -132,8 +133,8 @@ impl Quaternion {
         ]
     }
 
-    /// Roll, pitch, yaw: rotations about x, then y, then z of the fixed frame; ±π, ±π/2, ±π. Near a pitch of ±π/2 only
-    /// the difference of roll and yaw means anything.
+    /// Roll, pitch and yaw in rad: rotations about x, then y, then z of the fixed frame, in ±π, ±π/2 and ±π. Near a
+    /// pitch of ±π/2 only the difference of roll and yaw is defined.
     pub fn roll_pitch_yaw(self) -> Vector3 {
         let Self { w, x, y, z } = self;
         let yy = y * y;
@@ -143,6 +144,7 @@ impl Quaternion {
         [roll, pitch, yaw]
     }
 
+    /// The four parts, w first.
     pub const fn to_wxyz(self) -> [f32; 4] {
         [self.w, self.x, self.y, self.z]
     }

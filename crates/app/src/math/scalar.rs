@@ -1,18 +1,18 @@
-//! Scalar functions, accurate to a few units in the last place over the ranges named.
+//! Scalar functions in single precision, with their error and range.
 
 use core::f32::consts::{FRAC_PI_2, PI};
 
-/// 1/√x for normal positive x; other inputs give 0.
+/// 1/√x for normal positive x, else 0. Relative error below 3e-7.
 #[inline(never)]
 pub fn inverse_sqrt(x: f32) -> f32 {
     const LEAST_NORMAL: u32 = 0x0080_0000;
     const INFINITY: u32 = 0x7F80_0000;
     let bits = x.to_bits();
-    // One comparison for zero, subnormal, negative, infinite and NaN.
+    // One comparison excludes zero, subnormal, negative, infinite and NaN.
     if bits.wrapping_sub(LEAST_NORMAL) >= INFINITY - LEAST_NORMAL {
         return 0.0;
     }
-    // First guess within 3.5 % by halving the exponent; each Newton round squares the error.
+    // Halving the exponent gives a first guess within 3.5 %. Each Newton step squares the relative error.
     let mut y = f32::from_bits(0x5F37_59DF_u32.wrapping_sub(bits >> 1));
     let half = 0.5 * x;
     y *= 1.5 - half * y * y;
@@ -21,18 +21,18 @@ pub fn inverse_sqrt(x: f32) -> f32 {
     y
 }
 
-/// As `f32::min`, which is a call into a library here: the core has no such instruction.
+/// The same as `f32::min`, which the compiler turns into a library call, as this core has no such instruction.
 pub fn min(a: f32, b: f32) -> f32 {
     if a < b || b.is_nan() { a } else { b }
 }
 
-/// As `f32::max`.
+/// The same as `f32::max`.
 pub fn max(a: f32, b: f32) -> f32 {
     if a > b || b.is_nan() { a } else { b }
 }
 
-/// Into `low` … `high`, `low` ≤ `high`; NaN stays NaN. Unlike `f32::clamp` it cannot panic, which would also bring the
-/// printing of floats into the image, 20 KiB.
+/// Limits `value` to `low` … `high`, where `low` ≤ `high`. NaN stays NaN. Unlike `f32::clamp` it cannot panic, which
+/// would also add the printing of floats to the image, 20 KiB.
 pub fn clamp(value: f32, low: f32, high: f32) -> f32 {
     if value > high {
         high
@@ -43,12 +43,12 @@ pub fn clamp(value: f32, low: f32, high: f32) -> f32 {
     }
 }
 
-/// √x; 0 for anything that is not a normal positive number.
+/// √x for normal positive x, else 0.
 pub fn sqrt(x: f32) -> f32 {
     x * inverse_sqrt(x)
 }
 
-/// sin and cos for |x| ≤ 0.5 by their series, error below 1e-7; beyond, up to 1, still below 3e-6.
+/// Sine and cosine by their series. The error is below 1e-7 for |x| ≤ 0.5 and below 3e-6 for |x| ≤ 1.
 pub fn sin_cos_small(x: f32) -> (f32, f32) {
     let x2 = x * x;
     let sin = x * (1.0 - x2 / 6.0 * (1.0 - x2 / 20.0 * (1.0 - x2 / 42.0)));
@@ -56,9 +56,9 @@ pub fn sin_cos_small(x: f32) -> (f32, f32) {
     (sin, cos)
 }
 
-/// Angle of the point (x, y), −π … π; 0 for the origin, NaN and two infinities. Error below 3e-7.
+/// Angle of the point (x, y) in −π … π; 0 for the origin, for NaN and for two infinities. The error is below 3e-7.
 ///
-/// Odd polynomial that is least off over 0 … 1 (minimax, 1e-8), of the smaller part over the larger.
+/// The ratio of the smaller part to the larger goes through an odd minimax polynomial over 0 … 1, whose error is 1e-8.
 #[inline(never)]
 pub fn atan2(y: f32, x: f32) -> f32 {
     let (ax, ay) = (x.abs(), y.abs());
@@ -89,9 +89,9 @@ pub fn atan2(y: f32, x: f32) -> f32 {
     if y < 0.0 { -angle } else { angle }
 }
 
-/// Arc sine; the argument is clamped to −1 … 1, NaN and infinity give 0. Error below 1e-6.
+/// Arc sine of `x` limited to −1 … 1; 0 for NaN and infinity. The error is below 1e-6.
 ///
-/// Polynomial of the Cephes library up to 30°; beyond, asin x = π/2 − 2·asin √((1 − x)/2).
+/// Up to 30° it is the polynomial of the Cephes library. Beyond, asin x = π/2 − 2·asin √((1 − x)/2).
 pub fn asin(x: f32) -> f32 {
     let size = x.abs();
     if size <= 0.5 {
@@ -100,13 +100,13 @@ pub fn asin(x: f32) -> f32 {
     if !size.is_finite() {
         return 0.0;
     }
-    // Beyond 1 it is negative, of which the root is 0.
+    // Negative for |x| > 1, where `sqrt` gives 0.
     let half = 0.5 - 0.5 * size;
     let angle = FRAC_PI_2 - 2.0 * asin_small(sqrt(half), half);
     if x < 0.0 { -angle } else { angle }
 }
 
-/// `x2`: square of `x`.
+/// `x2` is the square of `x`.
 fn asin_small(x: f32, x2: f32) -> f32 {
     let polynomial =
         (((4.216_32e-2 * x2 + 2.418_131e-2) * x2 + 4.547_002_6e-2) * x2 + 7.495_300_3e-2) * x2
@@ -119,14 +119,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn clamping_ends_at_the_limits() {
+    fn clamp_keeps_values_within_the_limits() {
         let inside = [-2.0, -1.0, 0.5, 1.0, f32::INFINITY].map(|value| clamp(value, -1.0, 1.0));
         assert_eq!(inside, [-1.0, -1.0, 0.5, 1.0, 1.0]);
         assert!(clamp(f32::NAN, -1.0, 1.0).is_nan());
     }
 
     #[test]
-    fn min_and_max_are_those_of_the_standard_library() {
+    fn min_and_max_match_the_standard_library() {
         let values = [-1.0, 0.0, 2.5, f32::INFINITY, f32::NEG_INFINITY, f32::NAN];
         for a in values {
             for b in values {
@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn inverse_sqrt_is_as_good_as_the_hardware() {
+    fn inverse_sqrt_matches_double_precision() {
         for exponent in -126..127 {
             for step in 0..64 {
                 let x = (1.0 + f64::from(step) / 64.0) * 2f64.powi(exponent);
@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn atan2_matches_double_precision_all_around() {
+    fn atan2_matches_double_precision() {
         for step in -18_000..=18_000 {
             let angle = (f64::from(step) / 100.0).to_radians();
             let (y, x) = (angle.sin() as f32 * 50.0, angle.cos() as f32 * 50.0);

@@ -10,6 +10,7 @@ use crate::{
     math::{Vector3, scalar, vector},
 };
 
+/// The covariance matrix, by rows in the order of [`ErrorVector`].
 #[derive(Clone, Debug)]
 pub(super) struct Covariance {
     pub rows: [ErrorVector; STATES],
@@ -143,6 +144,7 @@ impl Covariance {
         );
     }
 
+    /// Variances of tilt and heading.
     pub fn attitude_variance(&self) -> AttitudeVariance {
         let [x, y, heading] = self.variances(0);
         AttitudeVariance {

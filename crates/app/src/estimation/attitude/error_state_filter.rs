@@ -25,6 +25,7 @@ pub(super) struct Correction {
     errors: ErrorVector,
 }
 
+/// The filter. Its work on one window is 19 steps long.
 #[derive(Clone, Debug)]
 pub(super) struct ErrorStateFilter {
     pub covariance: Covariance,

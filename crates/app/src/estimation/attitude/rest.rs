@@ -27,6 +27,7 @@ const CONFIRMING_WINDOWS: u8 = 35;
 /// Windows in the mean of the initial field, and time constant of the current one.
 const FIELD_WINDOWS: u8 = 6;
 
+/// Detects rest, window by window.
 #[derive(Clone, Debug, Default)]
 pub(super) struct RestDetector {
     sums: Sums,
@@ -63,6 +64,7 @@ struct Means {
 }
 
 impl RestDetector {
+    /// Forgets the current window and rest.
     #[inline(never)]
     pub fn reset(&mut self) {
         *self = Self::default();

@@ -1,4 +1,4 @@
-//! The whole attitude filter in single precision over hours of rest and motion.
+//! The complete attitude filter over hours of rest and motion.
 
 use super::{covariance::Covariance, error_state::STATES, *};
 use crate::estimation::testing::{Random, Rotation, to_f32};
@@ -12,13 +12,13 @@ const NEVER: Saturation = Saturation {
     gyro_ms: [0; 3],
 };
 
-/// A robot that stands for a minute, then is carried about for one, and so on.
+/// A robot that alternates between a minute of rest and a minute of being carried about.
 struct World {
     random: Random,
     attitude: Rotation,
     rate_rps: [f64; 3],
     sample: u32,
-    /// How often the filter found that it had been lost.
+    /// How often the filter found that it had diverged.
     jumps: u32,
 }
 
@@ -48,7 +48,7 @@ impl World {
         self.attitude = unit(self.attitude);
     }
 
-    /// About 1 rad/s, forgotten in half a second.
+    /// A random rate of about 1 rad/s with a correlation time of half a second.
     fn choose_rate(&mut self, resting: bool) {
         let push = self.random.normals(if resting { 0.0 } else { 0.14 });
         self.rate_rps = std::array::from_fn(|axis| 0.99 * self.rate_rps[axis] + push[axis]);
@@ -73,11 +73,11 @@ impl World {
     }
 }
 
-/// true = measured − bias − scale · measured, nearly.
+/// True rate = measured − bias − scale · measured, to first order.
 const BIAS_DPS: [f64; 3] = [0.3, -0.5, 0.2];
 const SCALE: [f64; 3] = [0.003, -0.002, 0.001];
 
-/// Rounding of a million turns taken off (Gram and Schmidt).
+/// Removes the rounding errors of a million rotations (Gram-Schmidt).
 fn unit(attitude: Rotation) -> Rotation {
     use crate::estimation::testing::rotation::{cross, dot};
     let scaled = |row: [f64; 3]| row.map(|x| x / dot(row, row).sqrt());
@@ -96,8 +96,8 @@ fn bias_error_dps(filter: &AttitudeFilter) -> f64 {
     squares.sum::<f64>().sqrt()
 }
 
-/// In units of the standard deviations: symmetric, and all of it positive (Cholesky's decomposition exists).
-fn assert_sound(covariance: &Covariance, minute: u32) {
+/// Asserts that the correlation matrix is symmetric and positive definite, so that it has a Cholesky decomposition.
+fn assert_valid(covariance: &Covariance, minute: u32) {
     let entry = |row: usize, column: usize| f64::from(covariance.rows[row][column]);
     let share = |row: usize, column: usize| {
         entry(row, column) / (entry(row, row) * entry(column, column)).sqrt()
@@ -126,24 +126,24 @@ fn assert_sound(covariance: &Covariance, minute: u32) {
 }
 
 #[test]
-fn hours_of_rest_and_motion_keep_the_filter_sound() {
+fn hours_of_rest_and_motion_keep_the_covariance_valid() {
     let mut world = World::new();
     let mut filter = AttitudeFilter::new();
     let (mut worst_deg, mut worst_bias_dps) = (0.0_f64, 0.0_f64);
     for minute in 0..MINUTES {
         let resting = minute % 2 == 0;
         world.minute(&mut filter, resting);
-        assert_sound(&filter.filter.covariance, minute);
+        assert_valid(&filter.filter.covariance, minute);
         let variances = filter.filter.covariance.variances(BIAS);
         let sure = variances.iter().all(|variance| variance.sqrt() < 0.5 * DEG);
-        assert!(sure, "minute {minute}: started anew: {variances:?}");
+        assert!(sure, "minute {minute}: reset: {variances:?}");
         if minute > 3 {
             let attitude = Rotation::of(filter.orientation(0.0));
             worst_deg = worst_deg.max(attitude.angle_deg(world.attitude));
             worst_bias_dps = worst_bias_dps.max(bias_error_dps(&filter));
         }
     }
-    // The offset was not known at the start.
+    // The bias is unknown at the start.
     assert!(world.jumps <= 1, "{} jumps", world.jumps);
     println!("worst {worst_deg:.2}°, bias {worst_bias_dps:.3}°/s");
     assert!(worst_deg < 2.0, "{worst_deg}");
@@ -155,7 +155,7 @@ fn hours_of_rest_and_motion_keep_the_filter_sound() {
     }
 }
 
-/// Turns in place; `heading_rad`: of a nose that pointed east.
+/// A robot that rotates in place. `heading_rad` is counted from east.
 struct Turntable {
     filter: AttitudeFilter,
     rate_rps: f64,
@@ -186,10 +186,10 @@ impl Turntable {
     }
 }
 
-/// The heading has drifted by 11°, and the field that is remembered with it. Brought back while turning, both come back
-/// together: nothing looks as if it were late.
+/// The heading and the reference field have drifted by 11°. Both are corrected together while the robot rotates, so
+/// that the field does not seem delayed.
 #[test]
-fn a_corrected_heading_takes_the_remembered_field_along() {
+fn a_heading_correction_rotates_the_reference_field() {
     for rate_rps in [2.0, -2.0] {
         let mut table = Turntable {
             filter: AttitudeFilter::new(),

@@ -17,6 +17,7 @@ const REFERENCE_SAMPLES: u16 = 1_000;
 /// Samples in the reference field before it is used.
 const MIN_SAMPLES: u16 = 50;
 
+/// Estimates the delay.
 #[derive(Clone, Debug)]
 pub(super) struct DelayFilter {
     seconds: f32,

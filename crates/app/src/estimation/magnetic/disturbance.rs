@@ -38,6 +38,7 @@ impl NormAndDip {
     }
 }
 
+/// Compares the field with a reference, and adopts a new reference when the field has been another one for long enough.
 #[derive(Clone, Debug)]
 pub(super) struct DisturbanceDetector {
     reference: Option<NormAndDip>,

@@ -1,4 +1,4 @@
-//! Which headings are believed, how far, and when what was believed is doubted.
+//! Which headings are accepted, clipped or rejected, and when the heading becomes uncertain.
 
 mod moving;
 
@@ -14,13 +14,13 @@ use crate::{
 const WINDOW_S: f32 = 0.2;
 const RAD: f64 = std::f64::consts::PI / 180.0;
 const EARTH_UT: [f64; 3] = [0.0, 20.0, -45.0];
-/// 0.5° of inclination, 1° of heading.
+/// Standard deviations: tilt 0.5°, heading 1°.
 const SURE: AttitudeVariance = AttitudeVariance {
     tilt: (0.5 * DEG) * (0.5 * DEG),
     heading: DEG * DEG,
 };
 
-/// A robot that stands, and believes its heading as it is.
+/// A robot that stands. Its attitude is not corrected.
 struct Robot {
     magnetic: MagneticHeading,
     strapdown: Strapdown,
@@ -38,22 +38,22 @@ impl Robot {
         }
     }
 
-    /// North is known, and believed for so long.
+    /// A robot whose heading is aligned and has been accepted for some time.
     fn aligned(seconds: f32) -> Self {
         let mut robot = Self::new();
         let report = robot.window(0.0, SURE);
         assert!(report.initial_heading_rad.is_some());
-        robot.believe(seconds);
+        robot.accept(seconds);
         robot
     }
 
-    fn believe(&mut self, seconds: f32) {
+    fn accept(&mut self, seconds: f32) {
         for _ in 0..(seconds / WINDOW_S).round() as u32 {
             assert!(self.window(0.0, SURE).heading.is_some());
         }
     }
 
-    /// Ten samples of a field whose north is turned to the left by `north_deg`.
+    /// Feeds ten samples of a field whose north is rotated to the left by `north_deg`.
     fn window(&mut self, north_deg: f64, known: AttitudeVariance) -> HeadingReport {
         let field = Rotation::by([0.0, 0.0, north_deg * RAD]).apply(EARTH_UT);
         self.window_of(field, known)
@@ -67,8 +67,8 @@ impl Robot {
         self.magnetic.close_window(WINDOW_S, known)
     }
 
-    /// Windows with north elsewhere until what was believed is doubted, s.
-    fn doubted_after_s(&mut self, north_deg: f64) -> Option<f32> {
+    /// Time in s after which another north adds variance to the heading.
+    fn variance_added_after_s(&mut self, north_deg: f64) -> Option<f32> {
         (1_u16..1_000).find_map(|window| {
             let report = self.window(north_deg, SURE);
             assert!(report.heading.is_none());
@@ -82,26 +82,26 @@ fn heading_deg(report: HeadingReport) -> f32 {
 }
 
 #[test]
-fn the_first_sample_and_the_first_window_show_north_at_once() {
+fn the_first_sample_and_the_first_window_align_the_heading() {
     let mut robot = Robot::new();
     let seen = robot
         .attitude
         .seen_from_body(Rotation::by([0.0, 0.0, -100.0 * RAD]).apply(EARTH_UT));
-    // North seems to lie 100° to the right: the robot must turn left to bring it back.
+    // North seems to lie 100° to the right, so the robot must turn by that to the left.
     let turn = robot.magnetic.feed(to_f32(seen), &robot.strapdown, 0.0);
     assert!((turn.expect("a turn").to_degrees() - 100.0).abs() < 0.01);
     let report = robot.window(-3.0, SURE);
     let first = report.initial_heading_rad.expect("a heading").to_degrees();
     assert!((first - 3.0).abs() < 0.01, "{first}");
     assert!(report.heading.is_none());
-    // From then on it is corrected little by little.
+    // From then on the heading is measured, not aligned.
     let report = robot.window(-3.0, SURE);
     assert!(report.initial_heading_rad.is_none());
     assert!((heading_deg(report) - 3.0).abs() < 0.01);
 }
 
 #[test]
-fn north_is_found_anew_until_the_inclination_is_sure() {
+fn the_heading_is_aligned_again_until_the_tilt_is_known() {
     let mut robot = Robot::new();
     let unsure = AttitudeVariance {
         tilt: (4.0 * DEG) * (4.0 * DEG),
@@ -114,22 +114,23 @@ fn north_is_found_anew_until_the_inclination_is_sure() {
     }
     robot.window(0.0, SURE);
     assert!(robot.window(0.0, SURE).heading.is_some());
-    // Later the field waits until the inclination is sure again.
+    // Later too, a field is used only while the tilt is known.
     let report = robot.window(0.0, unsure);
     assert!(report.initial_heading_rad.is_none() && report.heading.is_none());
     assert!(robot.window(0.0, SURE).heading.is_some());
 }
 
 #[test]
-fn a_turn_of_north_to_the_left_is_a_turn_of_the_robot_to_the_right() {
+fn a_north_to_the_left_is_a_heading_error_to_the_right() {
     let mut robot = Robot::aligned(10.0);
     assert!((heading_deg(robot.window(5.0, SURE)) + 5.0).abs() < 0.01);
     assert!((heading_deg(robot.window(-5.0, SURE)) - 5.0).abs() < 0.01);
 }
 
-/// Buildings turn the field by 5°; with 1° of its own the heading's spread is 5.1°: clipped at two, refused at three.
+/// The disturbance of 5° and the heading's own 1° make a standard deviation of 5.1°: clipped at two of them, rejected
+/// at three.
 #[test]
-fn far_off_headings_count_less_or_not_at_all() {
+fn large_innovations_are_clipped_or_rejected() {
     let spread_deg = 26.0_f32.sqrt();
     let mut robot = Robot::aligned(10.0);
     for (north_deg, expected) in [
@@ -153,7 +154,7 @@ fn far_off_headings_count_less_or_not_at_all() {
 }
 
 #[test]
-fn an_unsure_heading_takes_the_field_more_seriously() {
+fn an_uncertain_heading_is_measured_with_less_noise() {
     let mut robot = Robot::aligned(10.0);
     let noise = |robot: &mut Robot, heading_sd_deg: f32| {
         let heading = (heading_sd_deg * DEG) * (heading_sd_deg * DEG);
@@ -165,21 +166,24 @@ fn an_unsure_heading_takes_the_field_more_seriously() {
             .sqrt()
             .to_degrees()
     };
-    // 20° for a second, so √5 of it for 0.2 s.
+    // 20° over one second are √5 times as much over 0.2 s.
     assert!((noise(&mut robot, 4.0) - 44.72).abs() < 0.01);
     assert!((noise(&mut robot, 6.0) - 10.0).abs() < 0.01);
 }
 
 #[test]
-fn what_was_believed_is_doubted_after_as_long_again() {
-    for (accepted_s, doubted_s) in [(2.0, 2.2), (20.0, 20.2), (300.0, 60.2)] {
+fn a_contradicting_field_is_rejected_for_as_long_as_the_old_one_was_accepted() {
+    for (accepted_s, expected_s) in [(2.0, 2.2), (20.0, 20.2), (300.0, 60.2)] {
         let mut robot = Robot::aligned(accepted_s);
-        let after_s = robot.doubted_after_s(40.0).expect("doubt");
-        assert!((after_s - doubted_s).abs() < 0.3, "{accepted_s}: {after_s}");
-        // From then on the new north is refused no longer: it is doubted each time.
+        let after_s = robot.variance_added_after_s(40.0).expect("added variance");
+        assert!(
+            (after_s - expected_s).abs() < 0.3,
+            "{accepted_s}: {after_s}"
+        );
+        // From then on the new north is rejected no longer, but adds variance each time.
         let report = robot.window(40.0, SURE);
         assert!((report.added_variance_rad2.sqrt().to_degrees() - 40.0).abs() < 0.01);
-        // With that doubt it is within the gate.
+        // With that variance it passes the gate.
         let heading = (40.0 * DEG) * (40.0 * DEG);
         let report = robot.window(40.0, AttitudeVariance { heading, ..SURE });
         assert!((heading_deg(report) + 40.0).abs() < 0.01);
@@ -193,16 +197,16 @@ fn short_disturbances_do_not_add_up() {
         for _ in 0..20 {
             assert_eq!(robot.window(40.0, SURE).added_variance_rad2, 0.0);
         }
-        robot.believe(4.0);
+        robot.accept(4.0);
     }
 }
 
-/// Of the right direction, but a fifth too strong: no more than a hint that it is not the earth's.
+/// The direction is right, but the field is stronger by a fifth.
 #[test]
-fn a_magnet_that_points_north_is_not_believed_either() {
+fn a_magnet_that_points_north_is_rejected() {
     let mut robot = Robot::aligned(1.0);
     robot.strapdown.rate_rps = [0.0, 1.0, 0.0];
-    robot.believe(10.0);
+    robot.accept(10.0);
     let report = robot.window_of(EARTH_UT.map(|part| 1.2 * part), SURE);
     assert!(report.heading.is_none() && report.added_variance_rad2 == 0.0);
     assert!(robot.window(0.0, SURE).heading.is_none());
@@ -219,9 +223,9 @@ fn a_steep_field_has_no_direction() {
     );
 }
 
-/// Beside a loudspeaker, for as long as anyone likes, from the start or later.
+/// Near a loudspeaker, from the start or later.
 #[test]
-fn a_field_that_the_earth_never_has_is_never_believed() {
+fn a_field_too_strong_for_the_earth_is_never_accepted() {
     let loudspeaker = [200.0, -100.0, 250.0];
     let mut robot = Robot::new();
     robot.strapdown.rate_rps = [1.0, 0.0, 0.0];
@@ -230,12 +234,12 @@ fn a_field_that_the_earth_never_has_is_never_believed() {
         assert!(report.initial_heading_rad.is_none() && report.heading.is_none());
     }
     assert!(robot.window(0.0, SURE).initial_heading_rad.is_some());
-    robot.believe(60.0);
+    robot.accept(60.0);
     for _ in 0..2_000 {
         let report = robot.window_of(loudspeaker, SURE);
         assert!(report.heading.is_none() && report.added_variance_rad2 == 0.0);
     }
-    // Back home nothing has been forgotten.
+    // Away from it, the old reference is still there.
     assert!(robot.window(0.0, SURE).heading.is_some());
 }
 
@@ -258,9 +262,9 @@ fn the_field_in_the_body_is_what_was_measured() {
     }
 }
 
-/// Samples that were turned into a world which has been tilted since.
+/// The samples of the window were rotated to a world that has been corrected since.
 #[test]
-fn a_tilt_of_the_world_takes_a_half_full_window_along() {
+fn a_rotation_of_the_world_rotates_a_half_full_window() {
     let mut robot = Robot::aligned(10.0);
     let seen = to_f32(robot.attitude.seen_from_body(EARTH_UT));
     for _ in 0..5 {
@@ -276,9 +280,9 @@ fn a_tilt_of_the_world_takes_a_half_full_window_along() {
     assert!((heading_deg(report) + 3.0).abs() < 0.02);
 }
 
-/// A sample of 20 ms ago while turning at 1 rad/s, or of the future.
+/// A sample of 20 ms ago at 1 rad/s, and one that is newer than the IMU sample.
 #[test]
-fn an_old_sample_is_turned_to_the_present() {
+fn a_sample_is_rotated_by_the_attitude_at_its_time() {
     let mut robot = Robot::aligned(10.0);
     let truth = robot.attitude;
     robot.strapdown.rate_rps = [0.3, 0.2, 1.0];

@@ -26,6 +26,7 @@ pub(super) struct Axes {
 }
 
 impl Axes {
+    /// The axes of a body in this pose.
     pub fn new(pose: &BodyPose) -> Self {
         let rotation = pose.orientation.rotation_matrix();
         let [[x, ..], [y, ..], up_in_body] = rotation;

@@ -21,6 +21,7 @@ impl Position {
         }
     }
 
+    /// Adds a step in the world frame.
     pub fn add(&mut self, step_m: Vector3) {
         let sums = self.total_m.iter_mut().zip(&mut self.excess_m);
         for ((total_m, excess_m), step_m) in sums.zip(step_m) {
@@ -31,6 +32,7 @@ impl Position {
         }
     }
 
+    /// The position in the world frame.
     pub const fn total_m(&self) -> Vector3 {
         self.total_m
     }

@@ -13,6 +13,7 @@ const DRIFT_MPS2: f32 = 0.05;
 /// … after it has stayed within that for this long.
 const AGREE_S: f32 = 0.1;
 
+/// Whether a wheel rolls or slips.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum SlipState {
     Rolling,
@@ -46,6 +47,7 @@ impl SlipState {
         }
     }
 
+    /// The state of a wheel that has just begun to slip.
     pub const SLIPPING: Self = Self::Slipping {
         since_s: 0.0,
         agreed_s: 0.0,

@@ -16,6 +16,7 @@ const STANDING_MPS: f32 = 0.15;
 /// … and the time constant with which that speed decays while the robot stands and its wheels spin.
 const DECAY_S: f32 = 2.0;
 
+/// What is known since the last standstill.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Standstill {
     /// Time since the standstill, plus an equivalent for the yaw angle.

@@ -10,20 +10,20 @@ use crate::{domain::WheelFeedback, math::Quaternion};
 
 const GRAVITY_MPS2: f32 = 9.806_65;
 const DT_S: f32 = 0.005;
-/// 1834 rpm of the rotor are 10 rad/s of a wheel of 0.06 m.
+/// 1834 rpm of the rotor are 10 rad/s of a wheel with a radius of 0.06 m.
 const RPM_PER_MPS: f32 = 1_834.0 / 0.6;
 
-/// Feeds samples.
+/// A motion estimator with made-up sensors.
 struct Bench {
     motion: MotionEstimator,
     pose: BodyPose,
     motor: MotorFeedback,
-    /// Specific force, body axes.
+    /// Specific force in body axes.
     accel_mps2: Vector3,
 }
 
 impl Bench {
-    /// Level, nose to the east, at rest, wheels silent.
+    /// Level, facing east, at rest, without wheel feedback.
     fn new() -> Self {
         Self {
             motion: MotionEstimator::new(&WheelOdomConfig::default()),
@@ -36,7 +36,7 @@ impl Bench {
         }
     }
 
-    /// Stands on wheels that are heard.
+    /// At rest for a second, with wheel feedback.
     fn on_wheels() -> Self {
         let mut bench = Self::new();
         bench.wheels_run([0.0, 0.0]);
@@ -44,7 +44,7 @@ impl Bench {
         bench
     }
 
-    /// Rim speeds, forward positive.
+    /// Sets the wheel speeds, forward positive.
     fn wheels_run(&mut self, [left_mps, right_mps]: [f32; 2]) {
         for (wheel, mps) in self.motor.wheels.iter_mut().zip([left_mps, -right_mps]) {
             *wheel = WheelFeedback {
@@ -69,7 +69,7 @@ impl Bench {
         }
     }
 
-    /// Forward with both wheels following, from a speed to a speed.
+    /// Accelerates evenly from one speed to another, forward, with both wheels.
     fn drive(&mut self, from_mps: f32, to_mps: f32, seconds: f32) {
         let accel_mps2 = (to_mps - from_mps) / seconds;
         self.accel_mps2 = [accel_mps2, 0.0, GRAVITY_MPS2];
@@ -96,7 +96,7 @@ impl Bench {
     }
 }
 
-/// From facing east, computed in double precision.
+/// Facing `yaw_rad` to the left of east, computed in double precision.
 fn turned_left(yaw_rad: f64) -> Quaternion {
     let (sin, cos) = (0.5 * yaw_rad).sin_cos();
     Quaternion {

@@ -33,6 +33,7 @@ const STANDSTILL_S: f32 = 0.05;
 /// Time constant of the bias in a zero-velocity update.
 const STANDSTILL_BIAS_S: f32 = 1.0;
 
+/// Stationary Kalman gains of one axis.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Gains {
     /// k in 1/s.
@@ -66,6 +67,7 @@ const MAX_LEVER_GAIN: f32 = 50.0;
 /// The bias is updated only as far as that acceleration is small against this, the zero-g offset of the BMI088 (20 mg).
 const BIAS_MPS2: f32 = 0.2;
 
+/// Velocity and accelerometer bias of all three axes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct VelocityFilter {
     /// World frame, at the end of the last sample.

@@ -29,10 +29,10 @@ pub(super) enum WheelAiding {
     Slipping,
     /// No wheel is heard. The accelerometer goes on alone.
     Silent,
-    /// The wheels are believed again, because one rolls or because the accelerometer is no better by now. The forward speed
+    /// The wheels are used again, because one rolls or because the accelerometer is no better by now. The forward speed
     /// is set to theirs, the speed to the left to zero.
     Reset(f32),
-    /// No wheel is heard, and the accelerometer is not believed any longer.
+    /// No wheel is heard, and the accelerometer alone is not good enough any longer.
     Lost,
 }
 
@@ -52,6 +52,7 @@ impl InertialInnovation {
     }
 }
 
+/// Follows both wheels and decides what they contribute.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WheelSelection {
     slip: [SlipState; 2],

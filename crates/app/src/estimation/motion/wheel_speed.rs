@@ -12,6 +12,7 @@ const STANDING_RPM: u16 = 20;
 /// touch the ground.
 pub(super) type PerWheel = [Option<f32>; 2];
 
+/// Converts rotor speeds into forward speeds.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WheelSpeeds {
     /// Ground speed at one rotor revolution a minute, forward positive: left, right.

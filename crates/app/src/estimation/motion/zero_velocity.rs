@@ -29,6 +29,7 @@ pub(super) enum WheelEvidence {
     Silent,
 }
 
+/// Detects a standstill by wheels, gyro and accelerometer.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ZeroVelocityDetector {
     /// Smoothed specific force in body axes; `None` before the first sample.

@@ -1,4 +1,4 @@
-//! Turns worked out by hand, and a cone whose rates are known in closed form.
+//! Rotations worked out by hand, and coning motion with rates in closed form.
 
 use super::*;
 use crate::estimation::testing::{Rotation, to_f32};
@@ -22,7 +22,7 @@ fn a_quarter_turn_to_the_left_in_a_second() {
     }
     let left = Rotation::by([0.0, 0.0, std::f64::consts::FRAC_PI_2]);
     assert!(angle_deg(&strapdown, left) < 1e-3);
-    // A tenth of a second more at that rate, or less.
+    // Extrapolated by 0.1 s forward and back.
     let ahead = Rotation::of(strapdown.attitude_at(0.1));
     assert!(ahead.angle_deg(Rotation::by([0.0, 0.0, 99_f64.to_radians()])) < 1e-3);
     let back = Rotation::of(strapdown.attitude_at(-0.1));
@@ -31,23 +31,23 @@ fn a_quarter_turn_to_the_left_in_a_second() {
 
 /// First about x, then about the body's own y.
 #[test]
-fn turns_are_about_the_axes_of_the_body() {
+fn rotations_are_about_the_axes_of_the_body() {
     let mut strapdown = Strapdown::new();
     for rate in [[FRAC_PI_2, 0.0, 0.0], [0.0, FRAC_PI_2, 0.0]] {
-        // As long as the last turn about another axis counts, there is a bit of coning: begin from rest.
+        // One sample at rest in between keeps the coning correction out.
         strapdown.integrate_rate([0.0; 3], 0.005);
         for _ in 0..200 {
             strapdown.integrate_rate(rate, 0.005);
         }
     }
-    // The second turn moves forward to what was down; the first had laid that to the left.
+    // The first rotation lays the body's down axis to the left, the second moves forward to it.
     let rows = strapdown.attitude.rotation_matrix();
     let forward = rows.map(|[x, _, _]| x);
     assert_near(forward, [0.0, 1.0, 0.0], 1e-4);
 }
 
 #[test]
-fn the_middle_of_a_sample_is_half_way() {
+fn the_middle_of_a_sample_is_half_the_rotation() {
     let mut strapdown = Strapdown::new();
     let mid_sample = strapdown.integrate_rate([0.0, 0.0, 20.0], 0.005);
     // 0.1 rad in all.
@@ -57,7 +57,7 @@ fn the_middle_of_a_sample_is_half_way() {
 }
 
 #[test]
-fn the_true_rate_is_measured_less_bias_less_misalignment() {
+fn the_gyro_model_subtracts_bias_and_misalignment() {
     let gyro = GyroModel {
         bias_rps: [0.1, -0.2, 0.3],
         misalignment: [[0.01, 0.02, 0.0], [0.0, -0.01, 0.03], [0.04, 0.0, 0.02]],
@@ -70,7 +70,7 @@ fn the_true_rate_is_measured_less_bias_less_misalignment() {
     assert_near(strapdown.rate_rps, [0.85, 2.13, 2.6], 1e-6);
 }
 
-/// The axis x of the body draws a cone of half-angle `a`: attitude exp(a·(cos wt, sin wt, 0)), whose rate in the body is
+/// The body's x axis draws a cone of half-angle `a`. The attitude is exp(a·(cos wt, sin wt, 0)), the rate in body axes
 /// (−w·sin a·sin wt, w·sin a·cos wt, −w·(1 − cos a)).
 fn cone_drift_deg(half_angle_deg: f64, frequency_hz: f64) -> f64 {
     let (a, w) = (
@@ -94,9 +94,9 @@ fn cone_drift_deg(half_angle_deg: f64, frequency_hz: f64) -> f64 {
     angle_deg(&strapdown, attitude(f64::from(samples) * dt))
 }
 
-/// Without the term for coning a cone of 5° at 5 Hz drifts 1.8° in a minute.
+/// Without the coning correction a cone of 5° at 5 Hz drifts by 1.8° in a minute.
 #[test]
-fn a_cone_does_not_drift() {
+fn coning_motion_does_not_drift() {
     for (half_angle_deg, frequency_hz) in [(5.0, 5.0), (2.0, 10.0), (20.0, 1.0)] {
         let drift_deg = cone_drift_deg(half_angle_deg, frequency_hz);
         println!("{half_angle_deg}° at {frequency_hz} Hz: {drift_deg:.4}° in a minute");
@@ -104,20 +104,20 @@ fn a_cone_does_not_drift() {
     }
 }
 
-/// Rates that grow evenly are bridged exactly: 1 rad/s in the last sample, then 35 ms without, then one whose middle is
-/// 40 ms later.
+/// A rate that grows evenly is bridged exactly: 1 rad/s in the last sample, then 35 ms without a sample, then one whose
+/// middle is 40 ms later.
 #[test]
-fn a_gap_is_bridged_by_the_mean_of_both_rates() {
+fn a_gap_is_bridged_by_linear_interpolation() {
     let growth_rps2 = 10.0;
     let mut strapdown = Strapdown::new();
     strapdown.integrate_rate([0.0, 0.0, 1.0], 0.005);
     let before = Rotation::of(strapdown.attitude);
     let mid_sample = strapdown.integrate_rate([0.0, 0.0, 1.0 + growth_rps2 * 0.040], 0.040);
-    // From the end of the first sample, 2.5 ms after its middle: 40 ms from 1.025 rad/s on.
+    // From the end of the first sample, 2.5 ms after its middle, the rate grows from 1.025 rad/s for 40 ms.
     let turned = 1.025 * 0.040 + 0.5 * f64::from(growth_rps2) * 0.040 * 0.040;
     let [_, _, z] = before.to(Rotation::of(strapdown.attitude));
     assert!((z - turned).abs() < 1e-6, "{z}, not {turned}");
-    // What was guessed: half the change of 0.4 rad/s for 35 ms, 7 mrad.
+    // The interpolated part: half the change of 0.4 rad/s over 35 ms, 7 mrad.
     assert!((mid_sample.gap_error_rad2 - 0.007 * 0.007).abs() < 1e-8);
 }
 
@@ -132,26 +132,26 @@ fn a_late_sample_is_no_gap() {
 }
 
 #[test]
-fn a_speed_is_felt_and_forgotten() {
+fn the_velocity_is_integrated_and_decays() {
     let mut strapdown = Strapdown::new();
     for _ in 0..20 {
         strapdown.integrate_force([2.0, -1.0, 9.8], 0.005);
     }
-    // Forgetting takes 1.25 % of it in 0.1 s.
+    // 1.25 % decay in 0.1 s.
     let [east, north] = strapdown.speed_mps;
     assert!((east - 0.2).abs() < 0.004 && (north + 0.1).abs() < 0.002);
     for _ in 0..800 {
         strapdown.integrate_force([0.0, 0.0, 9.8], 0.005);
     }
-    // After the time given 1/e is left.
+    // After the time constant 1/e is left.
     let left = strapdown.speed_mps[0] / east;
     assert!((left - (-1.0_f32).exp()).abs() < 0.003, "{left}");
 }
 
 #[test]
-fn the_world_is_tilted_about_its_own_axes() {
+fn the_world_rotates_about_its_own_axes() {
     let mut strapdown = Strapdown::new();
-    // Nose to the north: forward is y of the world.
+    // The nose points north: forward is the world's y axis.
     strapdown.attitude = Quaternion::from_rotation([0.0, 0.0, FRAC_PI_2]);
     strapdown.rotate_world([0.1, 0.0, 0.0]);
     let forward = strapdown.attitude.rotation_matrix().map(|[x, _, _]| x);

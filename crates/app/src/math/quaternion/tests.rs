@@ -1,4 +1,4 @@
-//! Turns known by hand, and the edges of what is accepted.
+//! Rotations known by hand, and the limits of accuracy.
 
 use super::*;
 use crate::estimation::testing::Rotation;
@@ -7,7 +7,6 @@ fn rotate(q: Quaternion, v: Vector3) -> Vector3 {
     q.rotation_matrix().map(|row| vector::dot(row, v))
 }
 
-/// Quarter turns whose result is known by hand.
 #[test]
 fn a_quarter_turn_to_the_left_moves_x_to_y() {
     let half = core::f32::consts::FRAC_1_SQRT_2;
@@ -42,7 +41,7 @@ fn nose_up_is_negative_pitch_about_left_axis() {
     let [roll, pitch, yaw] = q.roll_pitch_yaw();
     assert!(roll.abs() < 1e-6 && (pitch - 0.2).abs() < 1e-6 && yaw.abs() < 1e-6);
 }
-/// Rows of the matrix beside Rodrigues' formula in double precision.
+/// Error in rad against Rodrigues' formula in double precision.
 fn error(angle_rad: Vector3) -> f64 {
     let got = Rotation::of(Quaternion::from_rotation(angle_rad));
     got.angle_deg(Rotation::by(angle_rad.map(f64::from)))
@@ -55,7 +54,7 @@ fn length(q: Quaternion) -> f64 {
 }
 
 #[test]
-fn rotations_up_to_one_radian_are_exact_and_up_to_two_nearly() {
+fn rotation_vectors_are_accurate_up_to_two_radians() {
     let axis = [0.6, -0.48, 0.64];
     assert_eq!(Quaternion::from_rotation([0.0; 3]), Quaternion::IDENTITY);
     for (angle, limit) in [
@@ -66,7 +65,7 @@ fn rotations_up_to_one_radian_are_exact_and_up_to_two_nearly() {
         (1.01, 1e-6),
         (-1.5, 1e-5),
         (2.0, 5e-5),
-        // Half a turn: what a long gap at full speed asks for.
+        // Half a turn, the most that a long gap at full rate asks for.
         (core::f32::consts::PI, 3e-3),
     ] {
         let angle_rad = vector::scale(axis, angle);
@@ -93,7 +92,7 @@ fn levelling_turns_any_vector_upright() {
         let q = Quaternion::levelling(v);
         assert!((length(q) - 1.0).abs() < 1e-6, "{v:?}: {q:?}");
         let [x, y, z] = rotate(q, v);
-        // Within 0.002 rad of upside down any half turn will do.
+        // Within 0.002 rad of upside down any half turn is accepted.
         assert!(
             x.abs() < 2.5e-3 && y.abs() < 2.5e-3 && z > 0.999_99,
             "{v:?}: {x} {y} {z}"
@@ -130,7 +129,7 @@ fn nearly_unit_quaternions_become_unit() {
 }
 
 #[test]
-fn a_product_is_one_turn_after_the_other() {
+fn a_product_is_one_rotation_after_the_other() {
     let (first, second) = ([0.5, 0.2, -0.7], [-0.3, 0.9, 0.1]);
     let product = Quaternion::from_rotation(second).after(Quaternion::from_rotation(first));
     let expected =

@@ -1,8 +1,8 @@
-//! What is done to the covariance from outside the filter.
+//! Changes to the covariance other than prediction and update.
 
 use super::*;
 
-/// Everything depends on everything.
+/// A covariance in which all states are correlated.
 fn full() -> Covariance {
     let mut covariance = Covariance::new();
     covariance.reset();
@@ -15,7 +15,7 @@ fn full() -> Covariance {
 }
 
 #[test]
-fn a_new_bias_has_nothing_to_do_with_what_was_known() {
+fn a_reset_bias_is_not_correlated_with_other_states() {
     let before = full();
     let mut after = before.clone();
     after.reset_bias(0.25);
@@ -34,7 +34,7 @@ fn a_new_bias_has_nothing_to_do_with_what_was_known() {
 }
 
 #[test]
-fn doubt_adds_to_its_errors_alone() {
+fn added_variance_changes_only_its_states() {
     for first in [0, 2, 14] {
         let before = full();
         let mut after = before.clone();
@@ -56,14 +56,14 @@ fn doubt_adds_to_its_errors_alone() {
 }
 
 #[test]
-fn rounding_leaves_a_variance() {
+fn rounding_keeps_variances_positive() {
     let mut covariance = Covariance::new();
     covariance.add_bias_noise(0.0);
     assert_eq!(covariance.variances(BIAS), [1e-12; 3]);
 }
 
 #[test]
-fn columns_follow_the_rows_of_angles_and_speeds() {
+fn symmetrising_copies_the_rows_of_angles_and_speeds() {
     let mut covariance = full();
     for row in 0..BIAS {
         for column in row..STATES {
@@ -86,7 +86,7 @@ fn columns_follow_the_rows_of_angles_and_speeds() {
 }
 
 #[test]
-fn the_less_sure_of_both_level_axes_counts() {
+fn tilt_variance_is_that_of_the_worse_axis() {
     let mut covariance = Covariance::new();
     covariance.rows[0][0] = 1e-4;
     covariance.rows[1][1] = 3e-4;

@@ -1,5 +1,5 @@
-//! The Kalman filter against a textbook one with dense matrices in double precision, and against what errors really do
-//! to the strapdown integration.
+//! The filter against a textbook Kalman filter with dense matrices in double precision, and its propagation of errors
+//! against strapdown integration.
 
 mod dense;
 mod propagation;
@@ -16,14 +16,14 @@ use crate::{
 
 const DT_S: f32 = 0.005;
 const GRAVITY_MPS2: f64 = 9.806_65;
-/// Nothing is learnt from a finding this unsure.
+/// A measurement with so much noise that it corrects nothing.
 const IGNORED: Measurement = Measurement {
     innovation: 0.0,
     variance: 1e12,
 };
 const NO_MEASUREMENTS: Measurements = [Some(IGNORED), Some(IGNORED), None, None, None, None];
 
-/// Angles, speeds, bias, misalignment.
+/// Angles, velocity, bias, misalignment.
 fn state(correction: &Correction) -> [f64; STATES] {
     correction.errors.map(f64::from)
 }
@@ -33,7 +33,7 @@ fn matrix(covariance: &Covariance) -> Vec<Vec<f64>> {
     covariance.rows.iter().map(to_vec).collect()
 }
 
-/// All the work on one window. It must end before the next window is full.
+/// Does all steps of one window. They must end before the next window is full.
 fn finish(filter: &mut ErrorStateFilter) -> Correction {
     (0..40)
         .find_map(|_| filter.step().copied())
@@ -41,12 +41,12 @@ fn finish(filter: &mut ErrorStateFilter) -> Correction {
 }
 
 #[test]
-fn a_broken_covariance_starts_anew_without_a_correction() {
+fn an_invalid_covariance_is_reset_without_a_correction() {
     for broken in [-1.0, f32::NAN, f32::INFINITY] {
         let mut filter = ErrorStateFilter::new();
         filter.covariance.rows[3][3] = broken;
         filter.begin(&Window::new(), NO_MEASUREMENTS);
-        // Not a number is kept by no maximum; a negative variance may be lifted to the least one.
+        // NaN and infinity are not valid. A negative variance may be raised to the least one instead.
         let corrections = (0..40).filter_map(|_| filter.step().copied());
         for correction in corrections {
             assert!(state(&correction).iter().all(|x| x.is_finite()), "{broken}");

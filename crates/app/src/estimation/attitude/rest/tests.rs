@@ -1,4 +1,4 @@
-//! How long until rest is believed, and what is no rest.
+//! When a rest is detected, and what is no rest.
 
 use super::*;
 use crate::estimation::testing::Random;
@@ -7,10 +7,10 @@ use core::f32::consts::TAU;
 const GRAVITY: Vector3 = [0.0, 0.0, 9.806_65];
 const SAMPLES: u8 = 40;
 const DT_S: f32 = 0.005;
-/// Level strength 20 µT.
+/// A horizontal strength of 20 µT.
 const FIELD_UT: Vector3 = [0.0, 20.0, -45.0];
 
-/// First window (from 1) at whose end `gyro` and `accel` of the time, and the field, are rest; None within `windows`.
+/// Number of the first window (from 1) that is a rest, or `None` within `windows`. The inputs are functions of time.
 fn first_rest(
     windows: u16,
     gyro: impl Fn(f32) -> Vector3,
@@ -37,7 +37,7 @@ fn upright(_: f32) -> Vector3 {
     GRAVITY
 }
 
-/// As seen from a body that turns to the left.
+/// The field in a body that rotates to the left.
 fn turning_field(rate_rps: f32) -> impl Fn(f32) -> Option<Vector3> {
     let [_, level, up] = FIELD_UT;
     move |time_s| {
@@ -47,7 +47,7 @@ fn turning_field(rate_rps: f32) -> impl Fn(f32) -> Option<Vector3> {
 }
 
 #[test]
-fn rest_takes_seven_windows_and_twenty_where_the_field_is_watched() {
+fn rest_takes_seven_windows_or_twenty_with_a_magnetometer() {
     assert_eq!(first_rest(30, still, upright, |_| None), Some(7));
     assert_eq!(first_rest(30, still, upright, |_| Some(FIELD_UT)), Some(20));
 }
@@ -67,9 +67,9 @@ fn the_rate_at_rest_is_the_mean_of_the_window() {
     assert!((x - 0.03).abs() < 1e-6 && (y + 0.02).abs() < 1e-6 && (z - 0.01).abs() < 1e-6);
 }
 
-/// Steady: only the field shows it.
+/// The rotation is even, so only the field shows it.
 #[test]
-fn a_slow_turn_is_not_rest_where_there_is_a_field() {
+fn with_a_magnetometer_a_slow_rotation_is_no_rest() {
     for rate_dps in [-1.0_f32, -0.8, 0.8, 1.0, 3.0] {
         let rate_rps = rate_dps.to_radians();
         let gyro = |_: f32| [0.0, 0.0, rate_rps];
@@ -84,19 +84,19 @@ fn a_slow_turn_is_not_rest_where_there_is_a_field() {
 }
 
 #[test]
-fn noise_of_the_field_is_not_a_turn() {
+fn noise_of_the_field_is_no_rotation() {
     let noise = core::cell::RefCell::new(Random::new(5));
     let field = |_: f32| {
-        // Mean of ten samples of 0.3 µT each.
+        // The mean of ten samples with a noise of 0.3 µT.
         let [x, y, z] = noise.borrow_mut().normals(0.1).map(|x| x as f32);
         Some(vector::add(FIELD_UT, [x, y, z]))
     };
     assert_eq!(first_rest(30, still, upright, field), Some(20));
 }
 
-/// As steady as an offset; from the thirty-fifth window on it would be taken for one.
+/// A rotation is as even as a bias. Without the field it would be taken for one from the 35th window on.
 #[test]
-fn a_turn_is_never_proven_to_be_an_offset_and_a_rest_is_in_seven_seconds() {
+fn a_rest_is_confirmed_in_seven_seconds_and_a_rotation_never() {
     let first_proof = |rate_dps: f32, level_ut: f32| {
         let rate_rps = rate_dps.to_radians();
         let mut detector = RestDetector::default();
@@ -123,7 +123,7 @@ fn a_turn_is_never_proven_to_be_an_offset_and_a_rest_is_in_seven_seconds() {
     assert_eq!(first_proof(0.0, 20.0), Some(35));
 }
 
-/// A motor's: seen as the mean of each 5 ms at 50 Hz.
+/// The vibration of a motor at 50 Hz, as means over 5 ms.
 fn vibration(amplitude: f32) -> impl Fn(f32) -> f32 {
     move |time_s| {
         let phase = |t: f32| (TAU * 50.0 * t).cos() / (TAU * 50.0);
@@ -132,7 +132,7 @@ fn vibration(amplitude: f32) -> impl Fn(f32) -> f32 {
 }
 
 #[test]
-fn a_motor_that_runs_may_shake_it_a_little() {
+fn slight_vibration_of_a_motor_is_still_rest() {
     let shaken = |amplitude: f32| {
         let wave = vibration(amplitude);
         move |time_s: f32| {
@@ -141,12 +141,12 @@ fn a_motor_that_runs_may_shake_it_a_little() {
         }
     };
     assert_eq!(first_rest(30, still, shaken(0.3), |_| None), Some(7));
-    // Beyond 0.35 m/s² in the root of the mean square it is no rest: the means of 5 ms show 0.90 of the amplitude.
+    // A root mean square above 0.35 m/s² is no rest. The means over 5 ms show 0.90 of the amplitude.
     assert_eq!(first_rest(30, still, shaken(0.6), |_| None), None);
 }
 
 #[test]
-fn a_shaking_gyro_is_not_rest() {
+fn vibration_of_the_gyro_is_no_rest() {
     let shaken = |amplitude_dps: f32| {
         let wave = vibration(amplitude_dps.to_radians());
         move |time_s: f32| [0.0, wave(time_s), 0.0]
@@ -156,8 +156,8 @@ fn a_shaking_gyro_is_not_rest() {
 }
 
 #[test]
-fn a_rest_elsewhere_is_another_rest() {
-    // Quiet at all times, but from 1 s on another attitude, or another rate.
+fn a_rest_at_another_attitude_is_a_new_rest() {
+    // Quiet at all times, but with another attitude or rate from 1 s on.
     let tilted = |time_s: f32| {
         if time_s < 1.01 {
             GRAVITY
@@ -176,7 +176,7 @@ fn a_rest_elsewhere_is_another_rest() {
     assert_eq!(first_rest(30, turning, upright, |_| None), Some(5 + 7));
 }
 
-/// Slowly tilted: each window is like the last, but not like the first.
+/// Each window matches the one before but not the first.
 #[test]
 fn a_slow_drift_of_the_force_ends_the_rest() {
     let tilting = |time_s: f32| [9.806_65 * (0.02 * time_s).sin(), 0.0, 9.806_65];
@@ -192,7 +192,7 @@ fn a_slow_drift_of_the_force_ends_the_rest() {
             rests += 1;
         }
     }
-    // 0.3 m/s² are reached in 1.5 s: of every 8 windows one or two are rest.
+    // The force has changed by 0.3 m/s² after 1.5 s, so one or two of every 8 windows are rest.
     assert!(rests < 20, "{rests} of 60");
 }
 

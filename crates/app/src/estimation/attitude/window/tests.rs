@@ -9,7 +9,7 @@ fn close(got: f32, expected: f32) -> bool {
 #[test]
 fn forty_samples_fill_a_window() {
     let mut window = Window::new();
-    // Body x points north, y west, z up.
+    // The body's x axis points north, y west, z up.
     let mid_sample = MidSample {
         rotation: [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]],
         gap_error_rad2: 1e-4,
@@ -26,7 +26,8 @@ fn forty_samples_fill_a_window() {
     assert!(close(window.squared_rate_integral, 2.65));
     let [east, north, up] = window.accel_mps2();
     assert!(close(east, 19.5) && close(north, 0.0) && close(up, 9.0));
-    // A bias about y (west) turns about east by +, one about x about north by −, one about z about up by −.
+    // A bias about y (west) rotates about east positively, one about x about north negatively, one about z about up
+    // negatively.
     let t = 0.2;
     let expected = [
         [
@@ -80,6 +81,6 @@ fn forty_samples_fill_a_window() {
 }
 
 #[test]
-fn without_a_sample_there_is_no_force() {
+fn an_empty_window_has_no_force() {
     assert_eq!(Window::new().accel_mps2(), [0.0; 3]);
 }

@@ -1,11 +1,11 @@
-//! A magnetometer that is late, on a robot whose attitude is known exactly.
+//! A delayed magnetometer on a robot whose attitude is known exactly.
 
 use super::*;
 use crate::estimation::testing::{Random, Rotation, to_f32};
 
 const EARTH_UT: [f64; 3] = [0.0, 20.0, -45.0];
 
-/// Turns back and forth, and tilts.
+/// Rotates back and forth, and tilts.
 fn moving(t: f64) -> Rotation {
     Rotation::by([0.0, 0.0, 3.0 * (0.8 * t).sin()]).then_in_body(Rotation::by([
         0.5 * (1.7 * t).sin(),
@@ -14,7 +14,7 @@ fn moving(t: f64) -> Rotation {
     ]))
 }
 
-/// `late_s` beyond what the stamps say, for so long at 50 Hz. Delay found.
+/// The delay found after some time at 50 Hz. The true delay beyond the time stamps is `late_s`.
 fn found_s(late_s: f64, seconds: f64, noise_ut: f64, attitude: impl Fn(f64) -> Rotation) -> f64 {
     let mut delay = DelayFilter::new();
     let mut random = Random::new(21);
@@ -24,12 +24,12 @@ fn found_s(late_s: f64, seconds: f64, noise_ut: f64, attitude: impl Fn(f64) -> R
         let seen = attitude(t - late_s).seen_from_body(EARTH_UT);
         let noise = random.normals(noise_ut);
         let seen = std::array::from_fn(|axis| seen[axis] + noise[axis]);
-        let believed = attitude(t - f64::from(delay.seconds()));
+        let estimated = attitude(t - f64::from(delay.seconds()));
         let step = 1e-4;
-        let rate = believed
+        let rate = estimated
             .to(attitude(t - f64::from(delay.seconds()) + step))
             .map(|angle| angle / step);
-        delay.update(to_f32(believed.apply(seen)), to_f32(rate));
+        delay.update(to_f32(estimated.apply(seen)), to_f32(rate));
         assert!((0.0..=MAX_DELAY_S).contains(&delay.seconds()));
     }
     f64::from(delay.seconds())
@@ -40,7 +40,7 @@ fn a_delay_is_found_in_motion() {
     for late_s in [0.0, 0.005, 0.015, 0.030] {
         let found = found_s(late_s, 120.0, 0.5, moving);
         println!("{} ms: {:.2} ms", 1e3 * late_s, 1e3 * found);
-        // The prior, none ± 10 ms, holds it back by an eighth.
+        // The prior of 0 ± 10 ms holds the estimate back by an eighth.
         assert!(
             (found - late_s).abs() < 0.000_5 + late_s / 8.0,
             "{late_s}: {found}"
@@ -58,13 +58,13 @@ fn without_motion_there_is_no_delay() {
 fn a_delay_stays_within_its_limits() {
     let found = found_s(0.2, 120.0, 0.5, moving);
     assert!((0.04..0.050_001).contains(&found), "{found}");
-    // A stamp that is too old.
+    // The samples are newer than their time stamps.
     assert!(found_s(-0.02, 120.0, 0.5, moving) < 0.002);
 }
 
-/// A sample that is 40 µT off says nothing about the time.
+/// The innovation of 40 µT fails the gate.
 #[test]
-fn another_field_is_not_a_late_one() {
+fn a_disturbance_is_no_delay() {
     let mut delay = DelayFilter::new();
     let rate_rps = [0.0, 0.0, 2.0];
     for _ in 0..500 {
@@ -76,9 +76,9 @@ fn another_field_is_not_a_late_one() {
     assert_eq!(delay.seconds(), 0.0);
 }
 
-/// A late field is carried along with the turn: turning left it seems to lie to the left.
+/// A delayed field seems to rotate with the robot: to the left in a rotation to the left.
 #[test]
-fn the_sign_is_that_of_the_turn() {
+fn the_sign_of_the_delay_is_right() {
     for (rate, east_ut) in [(2.0, -0.6), (-2.0, 0.6)] {
         let mut delay = DelayFilter::new();
         for _ in 0..200 {
@@ -100,12 +100,12 @@ fn the_sign_is_that_of_the_turn() {
 }
 
 #[test]
-fn a_tilt_of_the_world_takes_the_mean_along() {
+fn a_rotation_of_the_world_rotates_the_reference() {
     let mut delay = DelayFilter::new();
     for _ in 0..1_000 {
         delay.update([0.0, 20.0, -45.0], [0.0; 3]);
     }
-    // North was 0.1 rad further to the left: the same field now lies there.
+    // The heading is corrected by 0.1 rad to the left, so the same field now lies there.
     delay.rotate_world([0.0, 0.0, 0.1]);
     for _ in 0..200 {
         delay.update([-2.0, 20.0, -45.0], [0.0, 0.0, 5.0]);

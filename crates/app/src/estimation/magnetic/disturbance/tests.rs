@@ -1,15 +1,15 @@
-//! Which field becomes the reference, when, and what disturbs it.
+//! Which field becomes the reference, and which is a disturbance.
 
 use super::*;
 
 const WINDOW_S: f32 = 0.2;
 const TURNING_RPS: f32 = 1.0;
-/// Middle Europe: 49 µT, dip 66°.
+/// Central Europe: 49 µT, dip 66°.
 const HOME: [f32; 2] = [20.0, -45.0];
-/// 15 % stronger, same dip.
+/// 15 % stronger, with the same dip.
 const STRONGER: [f32; 2] = [23.0, -51.75];
 
-/// Feeds a field, level and up, for a while. True if it was disturbed at the end.
+/// Feeds a field (horizontal, up) for some time. Returns whether it is disturbed at the end.
 fn feed(
     detector: &mut DisturbanceDetector,
     [level, up]: [f32; 2],
@@ -35,20 +35,20 @@ fn the_first_field_is_adopted_after_five_seconds_of_motion() {
     for (seconds, rate_rps, known) in [
         (4.6, TURNING_RPS, false),
         (5.6, TURNING_RPS, true),
-        // 20 °/s is motion, less is not.
+        // Motion begins at 20 °/s.
         (60.0, 15.0_f32.to_radians(), false),
         (5.6, 25.0_f32.to_radians(), true),
     ] {
         let mut detector = DisturbanceDetector::new();
         assert!(!feed(&mut detector, HOME, rate_rps, seconds));
-        // Before there is a reference nothing contradicts it.
+        // Without a reference no field is disturbed.
         let disturbed = feed(&mut detector, STRONGER, TURNING_RPS, WINDOW_S);
         assert_eq!(disturbed, known, "{seconds} s at {rate_rps} rad/s");
     }
 }
 
 #[test]
-fn a_magnet_is_noticed_at_once_and_forgotten_half_a_second_after_it_is_gone() {
+fn a_disturbance_starts_at_once_and_ends_after_half_a_second() {
     let steeper = [10.0, -48.3];
     let flatter = [29.0, -40.0];
     let weaker = [17.0, -38.25];
@@ -76,18 +76,18 @@ fn small_differences_are_the_same_field() {
 }
 
 #[test]
-fn another_place_is_believed_after_a_minute_of_motion() {
+fn another_reference_is_adopted_after_a_minute_of_motion() {
     let mut detector = at_home();
     assert!(feed(&mut detector, STRONGER, TURNING_RPS, 59.0));
-    // At rest no time counts.
+    // Time at rest does not count.
     assert!(feed(&mut detector, STRONGER, 0.0, 300.0));
     assert!(!feed(&mut detector, STRONGER, TURNING_RPS, 2.0));
-    // Now this is home.
+    // Now the stronger field is the reference.
     assert!(feed(&mut detector, HOME, TURNING_RPS, WINDOW_S));
 }
 
 #[test]
-fn a_field_that_changes_is_not_another_place() {
+fn a_changing_field_never_becomes_the_reference() {
     let mut detector = at_home();
     for _ in 0..10 {
         assert!(feed(&mut detector, STRONGER, TURNING_RPS, 20.0));

@@ -1,4 +1,4 @@
-//! A magnet on the robot is told from one in the room by turning.
+//! Hard iron is told from magnets in the room by rotating the robot.
 
 use super::*;
 use crate::estimation::testing::{Random, Rotation, to_f32};
@@ -9,7 +9,7 @@ const WINDOW_S: f32 = 0.2;
 struct Robot {
     hard_iron: HardIron,
     carried_ut: [f64; 3],
-    /// In the room, ENU.
+    /// Disturbance in the room, ENU.
     passing_ut: [f64; 3],
     random: Random,
     time_s: f64,
@@ -26,7 +26,7 @@ impl Robot {
         }
     }
 
-    /// Windows of 0.2 s with the attitude of the time.
+    /// Feeds windows of 0.2 s. `attitude` is a function of time.
     fn run(&mut self, seconds: f64, attitude: impl Fn(f64) -> Rotation) {
         let windows = (seconds / f64::from(WINDOW_S)).round() as u32;
         for _ in 0..windows {
@@ -60,20 +60,20 @@ impl Robot {
     }
 }
 
-/// Rolls, pitches and turns at once.
+/// Rolls, pitches and yaws at once.
 fn tumbling(t: f64) -> Rotation {
     Rotation::by([0.0, 0.0, 0.9 * t])
         .then_in_body(Rotation::by([0.0, 1.1 * (0.7 * t).sin(), 0.0]))
         .then_in_body(Rotation::by([1.3 * (0.5 * t).sin(), 0.0, 0.0]))
 }
 
-/// On its wheels.
+/// Yaws only.
 fn driving(t: f64) -> Rotation {
     Rotation::by([0.0, 0.0, 0.9 * t])
 }
 
 #[test]
-fn a_magnet_on_the_robot_is_found_by_turning_it_about() {
+fn hard_iron_is_found_in_motion() {
     for carried_ut in [
         [10.0, 0.0, 0.0],
         [0.0, -10.0, 0.0],
@@ -83,7 +83,7 @@ fn a_magnet_on_the_robot_is_found_by_turning_it_about() {
         let mut robot = Robot::new(carried_ut);
         robot.run(120.0, tumbling);
         println!("{carried_ut:?}: {:.1?}", robot.found_ut());
-        // Of 10 µT the least size that counts keeps back (4 µT)² / 10 µT.
+        // Of 10 µT, the compensation leaves (4 µT)² / 10 µT.
         assert!(
             robot.error_ut() < 2.5,
             "{carried_ut:?}: {:?}",
@@ -93,22 +93,22 @@ fn a_magnet_on_the_robot_is_found_by_turning_it_about() {
 }
 
 #[test]
-fn what_a_calibration_leaves_is_no_magnet() {
+fn the_residual_of_a_calibration_is_not_compensated() {
     let mut robot = Robot::new([2.0, -1.5, 1.0]);
     robot.run(120.0, tumbling);
     assert_eq!(robot.found_ut(), [0.0; 3]);
 }
 
 #[test]
-fn without_a_turn_nothing_is_found() {
+fn without_rotation_nothing_is_found() {
     let mut robot = Robot::new([15.0, -10.0, 20.0]);
     robot.run(600.0, |_| Rotation::by([0.1, 0.2, 0.3]));
     assert_eq!(robot.found_ut(), [0.0; 3]);
 }
 
-/// A robot that only balances, in a room whose field differs by a few µT from place to place.
+/// The robot only balances, in a room whose field differs by a few µT from place to place.
 #[test]
-fn too_little_turning_shows_next_to_nothing() {
+fn too_little_rotation_shows_next_to_nothing() {
     let mut robot = Robot::new([0.0; 3]);
     let mut places = Random::new(7);
     let mut worst_ut = 0.0_f64;
@@ -122,13 +122,13 @@ fn too_little_turning_shows_next_to_nothing() {
     assert!(worst_ut < 3.0, "{worst_ut}");
 }
 
-/// Turned about up alone, a vertical magnet is not to be told from the earth.
+/// If the robot only yaws, vertical hard iron cannot be told from the earth's field.
 #[test]
-fn nothing_is_found_about_an_axis_that_never_tilts() {
+fn yaw_alone_shows_only_horizontal_hard_iron() {
     let mut robot = Robot::new([0.0, 0.0, 20.0]);
     robot.run(300.0, driving);
     assert_eq!(robot.found_ut(), [0.0; 3]);
-    // The level part is, but less of it while the rest is unsure.
+    // Its horizontal part can, but is compensated less while the vertical part is uncertain.
     let mut robot = Robot::new([12.0, 0.0, 20.0]);
     robot.run(300.0, driving);
     let [x, y, z] = robot.found_ut();
@@ -139,7 +139,7 @@ fn nothing_is_found_about_an_axis_that_never_tilts() {
 }
 
 #[test]
-fn a_magnet_that_is_passed_is_not_carried() {
+fn a_passing_magnet_is_not_hard_iron() {
     let mut robot = Robot::new([0.0; 3]);
     robot.run(60.0, tumbling);
     for passing_ut in [
@@ -150,7 +150,7 @@ fn a_magnet_that_is_passed_is_not_carried() {
     ] {
         robot.passing_ut = passing_ut;
         robot.run(10.0, tumbling);
-        // It stops beside it.
+        // The robot stops beside the magnet.
         let standing = tumbling(robot.time_s);
         robot.run(20.0, |_| standing);
         assert_eq!(robot.found_ut(), [0.0; 3], "{passing_ut:?}");
@@ -161,7 +161,7 @@ fn a_magnet_that_is_passed_is_not_carried() {
 }
 
 #[test]
-fn one_that_is_carried_is_still_found_after_one_that_was_passed() {
+fn hard_iron_survives_a_passing_magnet() {
     let mut robot = Robot::new([10.0, 0.0, 0.0]);
     robot.run(120.0, tumbling);
     robot.passing_ut = [90.0, 0.0, 40.0];

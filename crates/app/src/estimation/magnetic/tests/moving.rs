@@ -1,4 +1,4 @@
-//! A robot in motion whose attitude is known exactly: what the magnetometer hides is found.
+//! Delay and hard iron of a robot in motion whose attitude is known exactly.
 
 use super::*;
 use crate::estimation::testing::Random;
@@ -6,10 +6,10 @@ use crate::estimation::testing::Random;
 struct Moving {
     magnetic: MagneticHeading,
     random: Random,
-    /// The magnetometer is this late, beyond what its stamps say.
+    /// Delay of the magnetometer beyond its time stamps.
     late_s: f64,
     carried_ut: [f64; 3],
-    /// The world is believed to be turned to the left by this.
+    /// Heading error of the estimated attitude, positive to the left.
     world_rad: f64,
     samples: u32,
 }
@@ -32,7 +32,7 @@ impl Moving {
             .then_in_body(Rotation::by([1.2 * (0.5 * t).sin(), 0.0, 0.0]))
     }
 
-    /// Worst heading of a window, degrees.
+    /// Returns the largest heading innovation of a window, in degrees.
     fn run(&mut self, seconds: f64) -> f32 {
         let windows = (seconds / 0.2).round() as u32;
         let mut worst_deg = 0.0;
@@ -59,7 +59,7 @@ impl Moving {
         let noise = self.random.normals(0.3);
         let seen = std::array::from_fn(|axis| field[axis] + self.carried_ut[axis] + noise[axis]);
         if let Some(turn_rad) = self.magnetic.feed(to_f32(seen), &strapdown, 0.0) {
-            // As when north is found: from here on the truth.
+            // The heading is aligned: the attitude is the truth from here on.
             assert!(turn_rad.abs() < 0.5);
             self.magnetic.discard_world_frame();
         }
@@ -70,7 +70,7 @@ impl Moving {
     }
 }
 
-/// From the rotation vector, in parts small enough for the series.
+/// From the rotation vector, in four parts small enough for the series.
 fn quaternion(attitude: Rotation) -> Quaternion {
     let part = Rotation::by([0.0; 3])
         .to(attitude)
@@ -81,7 +81,7 @@ fn quaternion(attitude: Rotation) -> Quaternion {
 }
 
 #[test]
-fn a_late_magnetometer_is_set_right() {
+fn a_delay_is_compensated() {
     let mut robot = Moving::new(0.015, [0.0; 3]);
     robot.run(200.0);
     assert!(
@@ -96,7 +96,7 @@ fn a_late_magnetometer_is_set_right() {
 }
 
 #[test]
-fn a_magnet_on_the_robot_is_taken_out() {
+fn hard_iron_is_compensated() {
     let mut robot = Moving::new(0.0, [6.0, -7.0, 5.0]);
     robot.run(200.0);
     let left_deg = robot.run(60.0);
@@ -106,15 +106,15 @@ fn a_magnet_on_the_robot_is_taken_out() {
     assert!(vector::norm(errors) < 2.5, "{found:?}");
 }
 
-/// What is remembered of the field is turned along when the world is.
+/// The reference field is rotated or dropped with the world.
 #[test]
-fn another_north_is_no_delay() {
-    for (turn_rad, forgotten) in [(0.1, false), (0.35, true), (-0.35, true)] {
+fn another_heading_is_no_delay() {
+    for (turn_rad, discarded) in [(0.1, false), (0.35, true), (-0.35, true)] {
         let mut robot = Moving::new(0.0, [0.0; 3]);
         robot.run(30.0);
         let before_ms = robot.late_ms();
         robot.world_rad = turn_rad;
-        if forgotten {
+        if discarded {
             robot.magnetic.discard_world_frame();
         } else {
             robot.magnetic.rotate_world([0.0, 0.0, turn_rad as f32]);

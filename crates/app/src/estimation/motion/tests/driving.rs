@@ -1,23 +1,23 @@
-//! Driving, turning and being carried, with wheels that are heard.
+//! Driving, turning and being carried, with wheel feedback.
 
 use super::*;
 
 #[test]
-fn speed_and_way_follow_a_drive() {
+fn speed_and_position_follow_a_drive() {
     let mut bench = Bench::on_wheels();
     bench.drive(0.0, 1.0, 0.5);
     assert!((bench.forward_mps() - 1.0).abs() < 0.01);
     bench.run(2.0);
     bench.drive(1.0, 0.0, 0.5);
     bench.run(1.0);
-    // 1 m/s for the 2.5 s between the middles of the ramps.
+    // 1 m/s over the 2.5 s between the middles of the two ramps.
     assert_close(bench.position_m(), [2.5, 0.0, 0.0], 0.02);
     assert_close(bench.velocity_mps(), [0.0; 3], 1e-4);
 }
 
-/// Offset forward and to the left while driving, so that no rest shows it.
+/// The bias appears while the robot drives, so that no standstill shows it.
 #[test]
-fn an_offset_is_learnt_while_driving() {
+fn the_accelerometer_bias_is_found_while_driving() {
     let mut bench = Bench::on_wheels();
     bench.drive(0.0, 1.0, 0.5);
     bench.run(2.0);
@@ -27,7 +27,7 @@ fn an_offset_is_learnt_while_driving() {
     assert_close(bench.velocity_mps(), [1.0, 0.0, 0.0], 5e-3);
 }
 
-/// Nothing but sensor values tells a constant speed from rest; turning wheels do.
+/// The IMU cannot tell constant speed from rest, but the wheels can.
 #[test]
 fn a_constant_speed_is_not_taken_for_rest() {
     let mut bench = Bench::on_wheels();
@@ -46,7 +46,7 @@ fn moving_off_after_a_long_rest_is_followed_at_once() {
     assert!((bench.forward_mps() - 0.4).abs() < 0.02);
 }
 
-/// On its own a wheel runs slower inside a left turn by yaw rate · half the track: 2 rad/s · 0.21 m.
+/// In a left turn the left wheel runs slower than the middle by yaw rate · half the track, 2 rad/s · 0.21 m.
 #[test]
 fn one_wheel_and_the_yaw_rate_are_enough() {
     for silent in [0, 1] {
@@ -59,8 +59,8 @@ fn one_wheel_and_the_yaw_rate_are_enough() {
     }
 }
 
-/// The motor turns with the body: leaning forward at 1 rad/s over wheels that stand turns the rotor backward by 1 rad/s
-/// of the wheel.
+/// The motor pitches with the body. If the body leans forward at 1 rad/s over standing wheels, the rotor turns backward
+/// by 1 rad/s of the wheel.
 #[test]
 fn pitching_over_standing_wheels_is_no_motion() {
     let mut bench = Bench::on_wheels();
@@ -70,10 +70,10 @@ fn pitching_over_standing_wheels_is_no_motion() {
     assert_close(bench.velocity_mps(), [0.0; 3], 1e-2);
 }
 
-/// Wheels spinning, so that nothing corrects; pushed east at 2 m/s² for a second while it turns at 20 rad/s. Each sample
-/// is the force's mean over its interval, in axes that turn meanwhile.
+/// The wheels spin, so that nothing corrects the velocity. The robot is pushed east at 2 m/s² for a second while it
+/// turns at 20 rad/s. Each sample is the mean force over its interval, in rotating axes.
 #[test]
-fn a_force_is_taken_where_the_body_was_in_the_middle_of_its_sample() {
+fn a_force_is_rotated_from_the_middle_of_its_sample() {
     let mut bench = Bench::on_wheels();
     bench.wheels_run([5.0, 5.0]);
     bench.pose.rate_rps = [0.0, 0.0, 20.0];
@@ -88,7 +88,7 @@ fn a_force_is_taken_where_the_body_was_in_the_middle_of_its_sample() {
     assert_close(bench.velocity_mps(), [2.0, 0.0, 0.0], 0.02);
 }
 
-/// Somebody carries the robot off, its wheels stand: they explain no force.
+/// Somebody carries the robot. Its wheels stand and explain no force.
 #[test]
 fn standing_wheels_accelerate_nothing() {
     let mut bench = Bench::on_wheels();
@@ -101,9 +101,9 @@ fn standing_wheels_accelerate_nothing() {
     }
 }
 
-/// Round a circle of 0.5 m at 2 rad/s, the IMU's samples turned with the body: all of the force is kinematic.
+/// On a circle with a radius of 0.5 m at 2 rad/s, all of the horizontal force is kinematic.
 #[test]
-fn a_circle_is_no_tilt() {
+fn the_force_of_a_circle_is_kinematic() {
     let mut bench = Bench::on_wheels();
     bench.drive(0.0, 1.0, 0.5);
     bench.accel_mps2 = [0.0, 2.0, GRAVITY_MPS2];

@@ -2,7 +2,7 @@
 
 use super::super::velocity_filter::{FORWARD, Gains, LEFT, UP};
 
-/// The covariance run step by step at 200 Hz until it is steady, in double precision.
+/// The gains of a covariance that is propagated at 200 Hz until it is stationary.
 fn riccati(std_mps: f64, lasts_s: f64, wander_mps2: f64) -> [f64; 2] {
     let dt = 0.005;
     let (q, p, r) = (
@@ -27,7 +27,7 @@ fn riccati(std_mps: f64, lasts_s: f64, wander_mps2: f64) -> [f64; 2] {
 }
 
 #[test]
-fn gains_are_those_of_the_kalman_filter() {
+fn gains_are_the_stationary_ones_of_the_kalman_filter() {
     let check = |Gains { speed, bias }: Gains, expected: [f64; 2]| {
         for (got, expected) in [speed, bias].into_iter().zip(expected) {
             let ratio = f64::from(got) / expected;

@@ -2,7 +2,7 @@
 
 use super::{super::slip::SlipState, *};
 
-/// Wheels spin up to 2 m/s within 0.1 s, nothing accelerates the robot.
+/// The wheels spin up to 2 m/s within 0.1 s. Nothing accelerates the robot.
 fn spin_up(bench: &mut Bench) {
     for sample in 1..=20 {
         let mps = 0.1 * sample as f32;
@@ -11,9 +11,10 @@ fn spin_up(bench: &mut Bench) {
     }
 }
 
-/// Somebody carries the robot, or it is pushed: slip from the first samples on, for 2 s.
+/// The robot is pushed or carried, so the zero-velocity detector does not help. The wheels slip from the first sample
+/// on.
 #[test]
-fn slipping_wheels_of_a_shaken_robot_are_not_believed_for_two_seconds() {
+fn slipping_wheels_of_a_pushed_robot_are_rejected_for_two_seconds() {
     let mut bench = Bench::on_wheels();
     bench.accel_mps2 = [0.0, 0.5, GRAVITY_MPS2];
     bench.sample();
@@ -25,9 +26,10 @@ fn slipping_wheels_of_a_shaken_robot_are_not_believed_for_two_seconds() {
     assert!((bench.forward_mps() - 2.0).abs() < 0.1);
 }
 
-/// In the air, body at rest: whatever the wheels do, fast or slow, together or against each other, for however long.
+/// With the wheels in the air and the body at rest, they may spin at any speed, together or against each other, for any
+/// time.
 #[test]
-fn wheels_that_spin_beside_a_robot_at_rest_move_nothing() {
+fn spinning_wheels_do_not_move_a_robot_at_rest() {
     let mut bench = Bench::on_wheels();
     let speeds = [
         [2.0, 2.0],
@@ -59,9 +61,9 @@ fn wheels_that_spin_beside_a_robot_at_rest_move_nothing() {
     assert!((bench.forward_mps() - 1.0).abs() < 0.02, "it drives off");
 }
 
-/// As a thumb pushes the stick: 0.3 m/s² that nothing feels.
+/// As with a thumb on the stick: 0.3 m/s² that the accelerometer does not measure.
 #[test]
-fn wheels_that_spin_up_slowly_are_found_out() {
+fn wheels_that_spin_up_slowly_are_detected() {
     let mut bench = Bench::on_wheels();
     for sample in 0..800 {
         let mps = (0.3 * 0.005 * sample as f32).min(0.6);
@@ -76,9 +78,9 @@ fn wheels_that_spin_up_slowly_are_found_out() {
     assert!(bench.forward_mps().abs() < 0.02, "{}", bench.forward_mps());
 }
 
-/// Very smooth ice: 0.2 m/s², less than what shakes a robot. It moves off all the same.
+/// On very smooth ice the robot accelerates by 0.2 m/s², less than what ends a quiet sample. It moves all the same.
 #[test]
-fn a_robot_that_glides_away_under_spinning_wheels_is_not_held() {
+fn a_robot_that_glides_on_spinning_wheels_is_not_held() {
     let mut bench = Bench::on_wheels();
     bench.accel_mps2 = [0.2, 0.0, GRAVITY_MPS2];
     bench.wheels_run([1.5, 1.5]);
@@ -87,9 +89,9 @@ fn a_robot_that_glides_away_under_spinning_wheels_is_not_held() {
     assert!((0.15..0.5).contains(&mps), "{mps} of 0.38");
 }
 
-/// Driving, one wheel runs away from what the gyro says: the other one is believed.
+/// While driving, one wheel departs from what the yaw rate allows. The other is used.
 #[test]
-fn of_two_wheels_that_contradict_the_gyro_the_one_further_off_slips() {
+fn of_two_inconsistent_wheels_the_one_further_off_slips() {
     let mut bench = Bench::on_wheels();
     bench.drive(0.0, 1.0, 0.5);
     bench.run(4.0);
@@ -107,7 +109,7 @@ fn of_two_wheels_that_contradict_the_gyro_the_one_further_off_slips() {
 }
 
 #[test]
-fn one_slipping_wheel_is_left_out_for_as_long_as_it_slips() {
+fn one_slipping_wheel_is_ignored_while_it_slips() {
     let mut bench = Bench::on_wheels();
     bench.wheels_run([0.0, 1.5]);
     bench.run(10.0);
@@ -115,7 +117,7 @@ fn one_slipping_wheel_is_left_out_for_as_long_as_it_slips() {
 }
 
 #[test]
-fn grip_returns_once_the_speeds_agree_for_a_tenth_of_a_second() {
+fn a_wheel_rolls_again_after_its_speed_agrees_for_a_tenth_of_a_second() {
     let mut slip_state = SlipState::Rolling;
     for _ in 0..100 {
         slip_state = slip_state.step(0.29, DT_S);
@@ -123,7 +125,7 @@ fn grip_returns_once_the_speeds_agree_for_a_tenth_of_a_second() {
     assert!(slip_state.is_rolling());
     slip_state = slip_state.step(-0.31, DT_S);
     assert!(!slip_state.is_rolling());
-    // It passes by.
+    // The wheel's speed passes the robot's.
     for _ in 0..15 {
         slip_state = slip_state.step(0.02, DT_S);
     }

@@ -2,9 +2,10 @@
 
 use super::*;
 
-/// 1 m/s when the wheels fall silent, and an accelerometer that is 0.3 m/s² off: 2 s by it, then it fades.
+/// The wheels fall silent at 1 m/s, and the accelerometer has a bias of 0.3 m/s². The velocity follows it for 2 s and
+/// then decays.
 #[test]
-fn without_wheels_the_speed_fades_and_the_way_ends() {
+fn without_wheels_the_velocity_decays_and_the_position_stays() {
     let mut bench = Bench::on_wheels();
     bench.drive(0.0, 1.0, 0.5);
     bench.motor = MotorFeedback::default();
@@ -18,9 +19,9 @@ fn without_wheels_the_speed_fades_and_the_way_ends() {
     assert_close(bench.position_m(), before_m, 1e-3);
 }
 
-/// Lying on its side the robot does not roll, however fast the wheels turn.
+/// A robot on its side does not roll, however fast its wheels turn.
 #[test]
-fn wheels_of_a_fallen_robot_say_nothing() {
+fn wheels_of_a_fallen_robot_are_ignored() {
     let mut bench = Bench::on_wheels();
     let half = core::f32::consts::FRAC_1_SQRT_2;
     bench.pose.orientation = Quaternion {
@@ -35,9 +36,9 @@ fn wheels_of_a_fallen_robot_say_nothing() {
     assert_close(bench.velocity_mps(), [0.0; 3], 1e-3);
 }
 
-/// After half a second e⁻¹ of the speed is left, and 0.5 · 0.5 · (1 − e⁻¹) m are gone.
+/// After half a second e⁻¹ of the speed is left, over 0.5 · 0.5 · (1 − e⁻¹) m.
 #[test]
-fn the_speed_fades_while_the_imu_is_silent() {
+fn the_velocity_decays_while_the_imu_is_silent() {
     let mut bench = Bench::on_wheels();
     bench.drive(0.0, 0.5, 0.2);
     let [before_m, ..] = bench.position_m();
@@ -49,9 +50,9 @@ fn the_speed_fades_while_the_imu_is_silent() {
     assert!((after_m - before_m - 0.158).abs() < 0.01);
 }
 
-/// A 100 km way in steps of 1 mm: a plain single-precision sum would be kilometres off.
+/// 100 km in steps of 1 mm. A plain single-precision sum would be kilometres off.
 #[test]
-fn small_steps_far_from_home_are_kept() {
+fn small_steps_are_not_lost_in_a_large_position() {
     let mut position = Position::new();
     let mut exact_m = 0.0;
     for _ in 0..100_000_000 {
@@ -62,9 +63,9 @@ fn small_steps_far_from_home_are_kept() {
     assert!((f64::from(x) - exact_m).abs() < 0.01, "{x}");
 }
 
-/// Settings that are no numbers, and the largest values a sensor may give.
+/// Settings that are not numbers, and the largest values that a sensor may give.
 #[test]
-fn extremes_leave_nothing_behind() {
+fn extreme_inputs_leave_no_trace() {
     for odd in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, 1e20] {
         let mut bench = Bench::on_wheels();
         let default = WheelOdomConfig::default();

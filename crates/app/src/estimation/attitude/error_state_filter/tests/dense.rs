@@ -1,5 +1,5 @@
-//! Several hundred windows of random motion beside the textbook: x = F·x, P = F·P·Fᵀ + Q, then one measurement after the
-//! other with K = P·hᵀ / (h·P·hᵀ + r), P − K·h·P.
+//! Hundreds of windows of random motion against the textbook: x = F·x, P = F·P·Fᵀ + Q, then for each measurement K =
+//! P·hᵀ / (h·P·hᵀ + r), P − K·h·P.
 
 use super::*;
 use crate::estimation::testing::rotation::cross;
@@ -13,7 +13,7 @@ fn zeros() -> Matrix {
     vec![vec![0.0; STATES]; STATES]
 }
 
-/// What is fed to both.
+/// Input of both filters.
 struct Sample {
     attitude: Rotation,
     gyro_rps: [f64; 3],
@@ -64,7 +64,7 @@ impl World {
         }
     }
 
-    /// Innovations as large as they should be, some far larger.
+    /// A measurement with a random innovation of the expected size. One in twenty is an outlier.
     fn measurement(&mut self, variance: f64, noise: f64) -> Measurement {
         let outlier = if self.random.share() < 0.05 {
             20.0
@@ -166,7 +166,7 @@ fn transition(recording: &Recording) -> Matrix {
     f
 }
 
-/// Φ.
+/// Φ = ∂θ/∂p.
 fn angle_jacobian(recording: &Recording) -> [[f64; GYRO_PARAMETERS]; 3] {
     let dt_s = f64::from(DT_S);
     let mut phi = [[0.0; GYRO_PARAMETERS]; 3];
@@ -280,7 +280,7 @@ fn hundreds_of_windows_agree_with_the_textbook() {
         }
     }
     println!("states {worst_state:.1e}, covariance {worst_covariance:.1e} standard deviations off");
-    // The window takes two samples at a time, the textbook each by itself; without that 3e-3 are left.
+    // The Jacobian of the window takes two samples at a time, the textbook one. With equal Jacobians 3e-3 are left.
     assert!(worst_state < 2e-2, "{worst_state}");
     assert!(worst_covariance < 2e-2, "{worst_covariance}");
 }

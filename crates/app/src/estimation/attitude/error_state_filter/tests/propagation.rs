@@ -1,30 +1,31 @@
-//! A correction that was found some samples ago, against two strapdown integrations that differ by it.
+//! Propagation of a correction through the next window, against two strapdown integrations that differ by that
+//! correction.
 
 use super::*;
 use crate::estimation::strapdown::Strapdown;
 
-/// What the filter believes, and the truth: both see the same sensors.
-struct Twins {
-    believed: Strapdown,
-    real: Strapdown,
+/// An estimated and a true state that integrate the same sensors.
+struct Pair {
+    estimated: Strapdown,
+    truth: Strapdown,
     window: Window,
     random: Random,
     rate_rps: [f64; 3],
 }
 
-impl Twins {
-    /// `correction` turns what is believed into the truth.
+impl Pair {
+    /// `correction` turns the estimate into the truth.
     fn new(correction: &Correction) -> Self {
-        let mut believed = Strapdown::new();
-        believed.attitude = Quaternion::from_rotation([0.4, -0.3, 0.5]);
-        let mut real = believed.clone();
+        let mut estimated = Strapdown::new();
+        estimated.attitude = Quaternion::from_rotation([0.4, -0.3, 0.5]);
+        let mut truth = estimated.clone();
         let [x, y, z, east, north, ..] = correction.errors;
-        real.rotate_world([x, y, z]);
-        real.speed_mps = [east, north];
-        correction.apply_to(&mut real.gyro);
+        truth.rotate_world([x, y, z]);
+        truth.speed_mps = [east, north];
+        correction.apply_to(&mut truth.gyro);
         Self {
-            believed,
-            real,
+            estimated,
+            truth,
             window: Window::new(),
             random: Random::new(3),
             rate_rps: [1.0, -2.0, 1.5],
@@ -35,43 +36,43 @@ impl Twins {
         let push = self.random.normals(0.2);
         self.rate_rps = std::array::from_fn(|axis| self.rate_rps[axis] + push[axis]);
         let gyro_rps = to_f32(self.rate_rps);
-        let before = self.real.integrate_rate(gyro_rps, DT_S);
-        // The body is pushed about, so that the force is not upright.
+        let before = self.truth.integrate_rate(gyro_rps, DT_S);
+        // The body accelerates, so that the force does not point up.
         let force_enu = [1.5, -2.0, 9.806_65];
         let middle = before.rotation;
         let accel_mps2: Vector3 =
             std::array::from_fn(|axis| (0..3).map(|row| middle[row][axis] * force_enu[row]).sum());
-        let mid_sample = self.believed.integrate_rate(gyro_rps, DT_S);
+        let mid_sample = self.estimated.integrate_rate(gyro_rps, DT_S);
         self.window
-            .add_rotation(&mid_sample, gyro_rps, self.believed.rate_rps, DT_S);
-        let felt = mid_sample.rotation.map(|row| vector::dot(row, accel_mps2));
-        self.window.add_accel(felt);
-        self.believed.integrate_force(felt, DT_S);
-        self.real.integrate_force(force_enu, DT_S);
+            .add_rotation(&mid_sample, gyro_rps, self.estimated.rate_rps, DT_S);
+        let force = mid_sample.rotation.map(|row| vector::dot(row, accel_mps2));
+        self.window.add_accel(force);
+        self.estimated.integrate_force(force, DT_S);
+        self.truth.integrate_force(force_enu, DT_S);
     }
 }
 
-/// How far apart they are after `samples`, and what the filter says.
+/// Compares the difference of the two after `samples` with the propagated correction.
 fn compare(correction: &Correction, samples: usize, angle_limit: f64, speed_limit: f64) {
-    let mut twins = Twins::new(correction);
+    let mut pair = Pair::new(correction);
     for _ in 0..samples {
-        twins.sample();
+        pair.sample();
     }
-    let real = Rotation::of(twins.believed.attitude).to(Rotation::of(twins.real.attitude));
-    let (angle, speed) = correction.propagated_through(&twins.window);
+    let truth = Rotation::of(pair.estimated.attitude).to(Rotation::of(pair.truth.attitude));
+    let (angle, speed) = correction.propagated_through(&pair.window);
     for axis in 0..3 {
-        let off = f64::from(angle[axis]) - real[axis];
-        assert!(off.abs() < angle_limit, "angle {angle:?}, really {real:?}");
+        let off = f64::from(angle[axis]) - truth[axis];
+        assert!(off.abs() < angle_limit, "angle {angle:?}, really {truth:?}");
     }
     for axis in 0..2 {
-        let apart = twins.real.speed_mps[axis] - twins.believed.speed_mps[axis];
+        let apart = pair.truth.speed_mps[axis] - pair.estimated.speed_mps[axis];
         let off = f64::from(speed[axis] - apart);
         assert!(off.abs() < speed_limit, "speed {speed:?} off by {off}");
     }
 }
 
 #[test]
-fn a_wrong_attitude_gains_speed_sideways() {
+fn an_attitude_error_becomes_a_velocity_error() {
     for axis in 0..3 {
         let mut correction = Correction::default();
         correction.errors[axis] = 0.01;
@@ -81,20 +82,20 @@ fn a_wrong_attitude_gains_speed_sideways() {
 }
 
 #[test]
-fn a_speed_stays() {
+fn a_velocity_error_stays() {
     let mut correction = Correction::default();
     correction.errors[SPEED] = 0.5;
     correction.errors[SPEED + 1] = -0.3;
-    // Of a speed 2 % are forgotten in 80 ms.
+    // 2 % of a velocity decay in 80 ms.
     compare(&correction, 16, 1e-6, 0.02 * 0.5);
 }
 
 #[test]
-fn each_parameter_of_the_gyro_turns_the_attitude_its_own_way() {
+fn each_gyro_parameter_propagates_into_the_attitude() {
     for parameter in 0..GYRO_PARAMETERS {
         let mut correction = Correction::default();
         correction.errors[BIAS + parameter] = 0.01;
-        // 0.01 rad/s for 80 ms: 8e-4 rad; the speed that this adds by then is left out, 3 mm/s.
+        // 0.01 rad/s for 80 ms are 8e-4 rad. The velocity that results from it, 3 mm/s, is not modelled.
         compare(&correction, 16, 3e-6 + 3e-5, 0.003 * 3.0);
     }
 }
