@@ -1,13 +1,11 @@
 //! 1 kHz: CAN frames and snapshots in, CAN frames out. The one task that feeds the watchdog.
 
 use embassy_time::{Duration, Instant};
-use robot_app::control::UserController;
 use robot_app::diagnostics::DiagnosticsSnapshot;
 use robot_app::domain::FlashRequest;
 use robot_app::domain::LogicBus;
 use robot_app::domain::{CalibrationState, LateTasks, RemoteUpdate, SystemHealth};
-use robot_app::tick::robot_loop::{self, RobotLoop};
-use robot_app::tick::{ControlInputs, ControlOutputs, DIAGNOSTICS_PERIOD_TICKS};
+use robot_app::tick::{ControlInputs, ControlOutputs, DIAGNOSTICS_PERIOD_TICKS, RobotLoop};
 use robot_snapshot::{Follower, Writer};
 
 use crate::config::LAYOUT;
@@ -144,12 +142,7 @@ impl ControlContext {
             },
             stalls: StallWatch::new(),
             jitter: CycleJitter::start(),
-            control_loop: RobotLoop::with_diagnostics(
-                &LAYOUT,
-                exchange.config.latest().config,
-                UserController::default(),
-                debugger_view,
-            ),
+            control_loop: RobotLoop::new(&LAYOUT, exchange.config.latest().config, debugger_view),
             output: Output {
                 writers,
                 config_revision: 0,
@@ -194,7 +187,7 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
     for port in ports.iter_mut() {
         port.begin_tick(now_us);
         let bus = port.bus();
-        port.drain(|frame, ts_us| robot_loop::on_can_frame(control_loop, bus, frame, ts_us));
+        port.drain(|frame, ts_us| control_loop.on_can_frame(bus, frame, ts_us));
     }
 
     note_late_tasks(&mut health.late_tasks, now_us);
@@ -214,7 +207,7 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
         flash_request: params.request,
         watchdog: watchdog.period(),
     };
-    let outputs = robot_loop::tick(control_loop, &inputs, now_us);
+    let outputs = control_loop.tick(&inputs, now_us);
 
     for (bus, frame) in outputs.frames {
         if let Some(port) = ports.iter_mut().find(|port| port.bus() == *bus) {

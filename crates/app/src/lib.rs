@@ -37,8 +37,8 @@
 //! - logic task, 100 Hz: `logic::LogicStage::step`.
 //! - boot: `params::ParamService::boot` gives the settings; params task, each ms: `ParamService::step` with what the
 //!   tick grants, which gets what it asks for.
-//! - control task, 1 kHz: `tick::robot_loop::on_can_frame` for each received frame, then
-//!   `tick::robot_loop::tick(&mut control_loop, &inputs, now_us)`; send `outputs.frames`, publish the rest.
+//! - control task, 1 kHz: `tick::RobotLoop::on_can_frame` for each received frame, then
+//!   `tick::RobotLoop::tick`; send `outputs.frames`, publish the rest.
 //! - boot, panic and fault handlers: send the layout's `safe_frames` raw.
 
 #![cfg_attr(not(test), no_std)]

@@ -1,6 +1,13 @@
 //! The 1 kHz tick: CAN frames and snapshots in, CAN frames and snapshots out, nothing else.
 
 mod control_loop;
-pub mod robot_loop;
+mod inputs;
+mod outputs;
+mod robot_loop;
+mod state;
 
-pub use control_loop::{ControlInputs, ControlLoop, ControlOutputs, DIAGNOSTICS_PERIOD_TICKS};
+pub use control_loop::{ControlLoop, DIAGNOSTICS_PERIOD_TICKS};
+pub use inputs::ControlInputs;
+pub use outputs::ControlOutputs;
+pub use robot_loop::RobotLoop;
+use state::TickState;

@@ -2,6 +2,7 @@
 
 use robot_app::{
     control::UserController,
+    diagnostics::DiagnosticsSnapshot,
     domain::{
         BusId, CanFrame, FlashRequest, ImuState, LogicBus, MagState, Orientation, ParamStatus,
         RemoteUpdate, RobotConfig, StandardId, StateEstimate, SystemHealth,
@@ -18,6 +19,7 @@ const FIELD_UT: [f32; 3] = [22.0, 0.0, -42.0];
 
 struct Robot {
     control: ControlLoop,
+    diagnostics: DiagnosticsSnapshot,
     imu: ImuState,
     mag: MagState,
     estimate: StateEstimate,
@@ -30,6 +32,7 @@ impl Robot {
         config.mounting.mag = mag;
         Self {
             control: ControlLoop::new(config, UserController::default()),
+            diagnostics: DiagnosticsSnapshot::default(),
             imu: ImuState::default(),
             mag: MagState::default(),
             estimate: StateEstimate::default(),
@@ -66,6 +69,7 @@ impl Robot {
                 watchdog: WatchdogPeriod::Short,
             },
             self.now_us,
+            &mut self.diagnostics,
         );
         self.estimate = *outputs.estimate;
     }
@@ -74,7 +78,8 @@ impl Robot {
         let [a, b, c, d] = number.to_le_bytes();
         let id = StandardId::new(0x7A0).unwrap();
         let frame = CanFrame::new(id, [0x20, 8, index, 0, a, b, c, d]);
-        self.control.on_can_frame(BusId::Can1, &frame, self.now_us);
+        self.control
+            .on_can_frame(BusId::Can1, &frame, self.now_us, &self.diagnostics);
     }
 
     fn pitch_deg(&self) -> f32 {

@@ -186,7 +186,8 @@ impl Robot {
                     let id = StandardId::new(frame.id as u16).expect("11 bits");
                     let frame = CanFrame::from_payload(id, &frame.data[..frame.dlc.into()]);
                     let frame = frame.expect("at most eight bytes");
-                    self.control.on_can_frame(bus, &frame, self.now_us());
+                    self.control
+                        .on_can_frame(bus, &frame, self.now_us(), &self.diagnostics);
                 }
             }
         }
@@ -207,6 +208,7 @@ impl Robot {
                 watchdog: WatchdogPeriod::Short,
             },
             now_us,
+            &mut self.diagnostics,
         );
         for (bus, frame) in outputs.frames {
             let wire = match bus {
@@ -231,7 +233,6 @@ impl Robot {
                 self.sent_digest = self.sent_digest.rotate_left(5) ^ u64::from(byte);
             }
         }
-        self.diagnostics = *outputs.diagnostics;
         self.follow_wire();
     }
 

@@ -203,10 +203,9 @@ impl Robot {
             flash_request: self.flash_request,
             watchdog: WatchdogPeriod::Short,
         };
-        let outputs = self.control.tick(&inputs, now_us);
+        let outputs = self.control.tick(&inputs, now_us, &mut self.diagnostics);
         self.sent = outputs.frames.to_vec();
         self.flash = outputs.flash;
-        self.diagnostics = *outputs.diagnostics;
         self.send();
     }
 
@@ -263,7 +262,8 @@ impl Robot {
                     let id = StandardId::new(frame.id as u16).expect("11 bits");
                     let frame = CanFrame::from_payload(id, &frame.data[..frame.dlc.into()]);
                     let frame = frame.expect("at most eight bytes");
-                    self.control.on_can_frame(bus, &frame, self.now / US);
+                    self.control
+                        .on_can_frame(bus, &frame, self.now / US, &self.diagnostics);
                 }
             }
         }

@@ -2,6 +2,7 @@
 
 use robot_app::{
     control::UserController,
+    diagnostics::DiagnosticsSnapshot,
     domain::{
         BusId, CanFrame, ImuState, LogicBus, MagState, RemoteUpdate, RobotConfig, SystemHealth,
     },
@@ -13,7 +14,7 @@ use robot_app::{
 use crate::robot::{Chip, Robot};
 
 /// One millisecond of both tasks: what the one publishes is what the other gets.
-fn step(robot: &mut Robot, control: &mut ControlLoop) {
+fn step(robot: &mut Robot, control: &mut ControlLoop, diagnostics: &mut DiagnosticsSnapshot) {
     let outputs = control.tick(
         &ControlInputs {
             remote: &RemoteUpdate::default(),
@@ -26,6 +27,7 @@ fn step(robot: &mut Robot, control: &mut ControlLoop) {
             watchdog: WatchdogPeriod::Short,
         },
         robot.now_us(),
+        diagnostics,
     );
     let granted = outputs.flash.granted;
     robot.take(outputs.config, &outputs.diagnostics.tuning);
@@ -38,6 +40,7 @@ fn what_is_set_over_can_is_saved_and_there_after_a_reboot() {
     let chip = Chip::blank();
     let mut robot = Robot::ready(&chip);
     let mut control = ControlLoop::new(robot.config, UserController::default());
+    let mut diagnostics = DiagnosticsSnapshot::default();
     for (payload, target_c) in [
         ([opcode::WRITE_PARAMETER, 7, 0, 0, 0, 0, 0xF0, 0x41], 30.0),
         (
@@ -46,10 +49,10 @@ fn what_is_set_over_can_is_saved_and_there_after_a_reboot() {
         ),
     ] {
         let frame = CanFrame::new(WRITE_ID, payload);
-        control.on_can_frame(BusId::Can1, &frame, robot.now_us());
+        control.on_can_frame(BusId::Can1, &frame, robot.now_us(), &diagnostics);
         let saved = robot.status().save_ok;
         for _ in 0..600 {
-            step(&mut robot, &mut control);
+            step(&mut robot, &mut control, &mut diagnostics);
         }
         assert_eq!(robot.status().save_ok, saved + 1);
         assert_eq!(robot.status().unsaved, 0);

@@ -2,6 +2,7 @@
 
 use robot_app::{
     control::ChassisController,
+    diagnostics::DiagnosticsSnapshot,
     domain::{BusId, CanFrame, RobotConfig, StandardId, StateEstimate},
     motor::layout::{ROBOT_LAYOUT, RS00_LAYOUT},
     tick::ControlLoop,
@@ -53,6 +54,7 @@ impl Tick {
 
 pub struct Bench<C: ChassisController> {
     control: ControlLoop<C>,
+    diagnostics: DiagnosticsSnapshot,
     make: Make,
     rules: Rules,
     producers: Producers,
@@ -75,6 +77,7 @@ impl<C: ChassisController> Bench<C> {
         config.joint_ctrl.rs00_timeout_set = 1;
         Self {
             control: ControlLoop::with_layout(layout, config, controller),
+            diagnostics: DiagnosticsSnapshot::default(),
             make,
             rules: Rules::default(),
             producers: Producers::default(),
@@ -113,7 +116,8 @@ impl<C: ChassisController> Bench<C> {
         if bus == BusId::Can2 {
             self.replies.note(id.raw(), data);
         }
-        self.control.on_can_frame(bus, &frame, self.now_us);
+        self.control
+            .on_can_frame(bus, &frame, self.now_us, &self.diagnostics);
     }
 
     fn hear_buses(&mut self, phase: &Phase) {
@@ -143,7 +147,9 @@ impl<C: ChassisController> Bench<C> {
             self.tuned,
             self.now_us,
         );
-        let outputs = self.control.tick(&inputs, self.now_us);
+        let outputs = self
+            .control
+            .tick(&inputs, self.now_us, &mut self.diagnostics);
         assert_sound(outputs.estimate);
         let frames = outputs.frames.to_vec();
         for bus in BusId::ALL {

@@ -11,8 +11,7 @@ use super::{
 };
 use crate::{
     domain::{
-        BusId, CanFrame, ChassisCommand, JointCommand, MotorCurrent, MotorFeedback, RobotConfig,
-        WheelCommand,
+        BusId, CanFrame, ChassisCommand, MotorCurrent, MotorFeedback, RobotConfig, WheelCommand,
     },
     safety::TorquePermit,
 };
@@ -26,6 +25,7 @@ pub struct MotorManager {
     layout: &'static MotorLayout,
     wheels: [Wheel; 2],
     joints: [Joint; 4],
+    sent_wheels: [WheelCommand; 2],
 }
 
 impl MotorManager {
@@ -35,6 +35,7 @@ impl MotorManager {
             layout,
             wheels: group.escs.map(|esc| Wheel::new(esc, group.max_current_ma)),
             joints: layout.joints().each_ref().map(Joint::new),
+            sent_wheels: [WheelCommand::default(); 2],
         }
     }
 
@@ -106,7 +107,7 @@ impl MotorManager {
         permit.is_some_and(|permit| joints.any(|slot| permit.allows_joints(slot.bus)))
     }
 
-    /// Adds the frames of this tick and returns the commands they carry in `sent`. A motor without a permit gets
+    /// Adds the frames of this tick. A motor without a permit gets
     /// exactly zero: zero current for a wheel, a disable frame for a joint. These frames are sent as well, as a speed
     /// controller may hold its last command, and a joint motor reports only when addressed.
     pub fn compose(
@@ -116,10 +117,17 @@ impl MotorManager {
         config: &RobotConfig,
         now_us: u64,
         frames: &mut TickFrames,
-        sent: &mut ChassisCommand,
     ) {
-        sent.wheels = self.drive_wheels(command, permit, config, now_us, frames);
-        self.drive_joints(command, permit, config, now_us, frames, &mut sent.joints);
+        self.drive_wheels(command, permit, config, now_us, frames);
+        self.drive_joints(command, permit, config, now_us, frames);
+    }
+
+    /// Writes the commands that the frames of this tick carry, after limits and permit.
+    pub fn record_sent(&self, sent: &mut ChassisCommand) {
+        sent.wheels = self.sent_wheels;
+        for (joint, sent) in self.joints.iter().zip(&mut sent.joints) {
+            *sent = *joint.sent();
+        }
     }
 
     fn drive_wheels(
@@ -129,13 +137,13 @@ impl MotorManager {
         config: &RobotConfig,
         now_us: u64,
         frames: &mut TickFrames,
-    ) -> [WheelCommand; 2] {
+    ) {
         let bus = self.layout.wheels().bus;
         let permitted = permit.is_some_and(|permit| permit.allows_wheels(bus));
-        let mut sent = [WheelCommand::default(); 2];
         let mut currents = [MotorCurrent::ZERO; 4];
         let wheels = self.layout.wheels().escs.iter().zip(&mut self.wheels);
-        for ((esc, wheel), (command, sent)) in wheels.zip(command.wheels.iter().zip(&mut sent)) {
+        let commands = command.wheels.iter().zip(&mut self.sent_wheels);
+        for ((esc, wheel), (command, sent)) in wheels.zip(commands) {
             let current = wheel.drive(command, &config.wheel_ctrl, permitted, now_us);
             sent.current_ma = current.ma();
             if let Some(place) = currents.get_mut(esc.index()) {
@@ -144,7 +152,6 @@ impl MotorManager {
         }
         // The layout guarantees room.
         let _ = frames.push((bus, m3508::encode_currents(currents)));
-        sent
     }
 
     fn drive_joints(
@@ -154,14 +161,12 @@ impl MotorManager {
         config: &RobotConfig,
         now_us: u64,
         frames: &mut TickFrames,
-        sent: &mut [JointCommand; 4],
     ) {
         let slots = self.layout.joints().iter().zip(&mut self.joints);
         let orders = command.joints.iter().zip(&config.joints);
-        for (((slot, joint), (command, config)), sent) in slots.zip(orders).zip(sent) {
+        for ((slot, joint), (command, config)) in slots.zip(orders) {
             let permitted = permit.is_some_and(|permit| permit.allows_joints(slot.bus));
             let frame = joint.drive(command, config, permitted, now_us);
-            *sent = *joint.sent();
             if let Some(frame) = frame {
                 // The layout guarantees room.
                 let _ = frames.push((slot.bus, frame));

@@ -8,7 +8,7 @@ use super::{
 use crate::{
     bring_up::BringUp,
     diagnostics::DiagnosticsSnapshot,
-    domain::{BusId, CanFrame, OperatorState, RobotConfig, TuningStatus},
+    domain::{BusId, CanFrame, OperatorState, RobotConfig, SensorsSnapshot, TuningStatus},
     motor::{NotStationary, layout::MotorLayout},
     safety::ArmingState,
 };
@@ -38,6 +38,8 @@ pub type StationaryAngle<'a> = &'a dyn Fn(usize) -> Option<Result<f32, NotStatio
 pub struct TuningAccess<'a> {
     pub config: &'a mut RobotConfig,
     pub bring_up: &'a mut BringUp,
+    pub sensors: &'a SensorsSnapshot,
+    /// The report that live pages show.
     pub diagnostics: &'a DiagnosticsSnapshot,
     pub stationary_angle_rad: StationaryAngle<'a>,
 }
@@ -79,6 +81,7 @@ impl TuningChannel {
         let TuningAccess {
             config,
             bring_up,
+            sensors,
             diagnostics,
             stationary_angle_rad,
         } = access;
@@ -135,7 +138,7 @@ impl TuningChannel {
                     .map(|()| protocol::echo(frame))
             }
             Request::Record(seconds) => {
-                self.recorder.start(bus, seconds, diagnostics);
+                self.recorder.start(bus, seconds, sensors);
                 Ok(protocol::echo(frame))
             }
         });

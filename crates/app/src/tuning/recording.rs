@@ -4,10 +4,7 @@
 //! `u16`, all little-endian. Frames leave in ticks without a reply, one a tick, in the mailbox that motors leave free.
 
 use super::{TuningGate, protocol::id};
-use crate::{
-    diagnostics::DiagnosticsSnapshot,
-    domain::{BusId, CanFrame, StandardId},
-};
+use crate::domain::{BusId, CanFrame, SensorsSnapshot, StandardId};
 
 /// Longest recording.
 pub const MAX_RECORDING_S: u16 = 600;
@@ -122,13 +119,13 @@ pub struct Recorder {
 
 impl Recorder {
     /// A new recording in the place of any other; 0 s only ends that one.
-    pub fn start(&mut self, bus: BusId, seconds: u16, diagnostics: &DiagnosticsSnapshot) {
+    pub fn start(&mut self, bus: BusId, seconds: u16, sensors: &SensorsSnapshot) {
         let duration_us = u64::from(seconds).saturating_mul(1_000_000);
         self.running = (seconds != 0).then(|| Running {
             bus,
-            until_us: diagnostics.ts_us.saturating_add(duration_us),
-            imu_ts_us: diagnostics.sensors.imu.ts_us,
-            mag_ts_us: diagnostics.sensors.mag.ts_us,
+            until_us: sensors.ts_us.saturating_add(duration_us),
+            imu_ts_us: sensors.imu.ts_us,
+            mag_ts_us: sensors.mag.ts_us,
             gyro: None,
         });
         self.status = RecordingStatus {
@@ -154,10 +151,9 @@ impl Recorder {
     pub fn next(
         &mut self,
         gate: TuningGate,
-        diagnostics: &DiagnosticsSnapshot,
+        sensors: &SensorsSnapshot,
     ) -> Option<(BusId, CanFrame)> {
         let running = self.running.as_mut()?;
-        let sensors = &diagnostics.sensors;
         if gate == TuningGate::Shut {
             self.end(RecordingState::CutShort);
             return None;
@@ -204,16 +200,16 @@ mod tests {
     use super::*;
 
     /// 1 s into a run, sensors just sampled.
-    fn start(seconds: u16) -> (Recorder, DiagnosticsSnapshot) {
-        let mut diagnostics = DiagnosticsSnapshot {
+    fn start(seconds: u16) -> (Recorder, SensorsSnapshot) {
+        let mut sensors = SensorsSnapshot {
             ts_us: 1_000_000,
-            ..DiagnosticsSnapshot::default()
+            ..SensorsSnapshot::default()
         };
-        diagnostics.sensors.imu.ts_us = 999_000;
-        diagnostics.sensors.mag.ts_us = 998_000;
+        sensors.imu.ts_us = 999_000;
+        sensors.mag.ts_us = 998_000;
         let mut recorder = Recorder::default();
-        recorder.start(BusId::Can2, seconds, &diagnostics);
-        (recorder, diagnostics)
+        recorder.start(BusId::Can2, seconds, &sensors);
+        (recorder, sensors)
     }
 
     fn payload(sent: Option<(BusId, CanFrame)>) -> (u16, [u8; 8]) {
@@ -226,15 +222,15 @@ mod tests {
     /// 1.0041 s = 10,041 = 0x2739, 1.0032 s = 10,032 = 0x2730.
     #[test]
     fn each_sample_is_sent_once_in_steps_with_its_time() {
-        let (mut recorder, mut diagnostics) = start(1);
-        assert_eq!(recorder.next(TuningGate::Open, &diagnostics), None);
-        let imu = &mut diagnostics.sensors.imu;
+        let (mut recorder, mut sensors) = start(1);
+        assert_eq!(recorder.next(TuningGate::Open, &sensors), None);
+        let imu = &mut sensors.imu;
         imu.accel_mps2 = [-1.0, 0.0, 9.8125];
         imu.gyro_dps = [0.0, 0.0, -2.5];
         imu.ts_us = 1_004_199;
-        diagnostics.sensors.mag.mag_ut = [48.1, 0.0, 1e9];
-        diagnostics.sensors.mag.ts_us = 1_003_200;
-        let mut next = || recorder.next(TuningGate::Open, &diagnostics);
+        sensors.mag.mag_ut = [48.1, 0.0, 1e9];
+        sensors.mag.ts_us = 1_003_200;
+        let mut next = || recorder.next(TuningGate::Open, &sensors);
         let accel = [0x00, 0xFF, 0, 0, 0xD0, 0x09, 0x39, 0x27];
         assert_eq!(payload(next()), (0x7A3, accel));
         assert_eq!(
@@ -264,10 +260,10 @@ mod tests {
             (TuningGate::Open, 2_000_000, RecordingState::Ended),
             (TuningGate::Shut, 1_500_000, RecordingState::CutShort),
         ] {
-            let (mut recorder, mut diagnostics) = start(1);
-            diagnostics.sensors.ts_us = at_us;
-            diagnostics.sensors.imu.ts_us = at_us;
-            let sent = recorder.next(gate, &diagnostics);
+            let (mut recorder, mut sensors) = start(1);
+            sensors.ts_us = at_us;
+            sensors.imu.ts_us = at_us;
+            let sent = recorder.next(gate, &sensors);
             assert_eq!(sent.is_some(), state == RecordingState::Running);
             assert_eq!(recorder.is_running(), sent.is_some());
             assert_eq!(recorder.status().state, state);

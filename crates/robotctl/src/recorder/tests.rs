@@ -78,7 +78,8 @@ fn send(bus: &Bus, seconds: u64, lose: usize) -> impl FnMut() {
             let gate = robot.gate;
             for _ in 0..3 {
                 let recorder = robot.channel.recorder();
-                if let Some((BusId::Can2, frame)) = recorder.next(gate, &robot.diagnostics) {
+                if let Some((BusId::Can2, frame)) = recorder.next(gate, &robot.diagnostics.sensors)
+                {
                     sent += 1;
                     if !sent.is_multiple_of(lose) {
                         robot.replies.push_back(frame);

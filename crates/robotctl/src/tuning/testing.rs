@@ -64,6 +64,7 @@ impl Robot {
         let access = TuningAccess {
             config: &mut self.config,
             bring_up: &mut BringUp::default(),
+            sensors: &self.diagnostics.sensors,
             diagnostics: &self.diagnostics,
             stationary_angle_rad: &|_| Some(self.standing),
         };

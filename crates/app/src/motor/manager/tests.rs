@@ -70,9 +70,10 @@ fn without_a_permit_no_motor_has_torque() {
         let mut ids = Vec::<u16, 6>::new();
         for now_us in [1_000, 2_000] {
             let mut frames = TickFrames::new();
-            let mut sent = command;
             let config = RobotConfig::default();
-            manager.compose(&command, None, &config, now_us, &mut frames, &mut sent);
+            manager.compose(&command, None, &config, now_us, &mut frames);
+            let mut sent = command;
+            manager.record_sent(&mut sent);
             assert_eq!(sent, ChassisCommand::default());
             for (bus, frame) in &frames {
                 let zero = match bus {

@@ -1,7 +1,12 @@
 use super::*;
 use crate::{
-    domain::StandardId,
-    tick::robot_loop::{self, RobotLoop},
+    domain::{
+        FlashRequest, ImuState, LogicBus, MagState, ParamStatus, RemoteUpdate, StandardId,
+        SystemHealth,
+    },
+    motor::layout::REPLY_PERIOD_TICKS,
+    safety::WatchdogPeriod,
+    tick::RobotLoop,
 };
 
 /// The firmware's loop on a level, still robot that hears its two wheels.
@@ -20,10 +25,9 @@ struct Bench {
 impl Bench {
     fn new() -> Self {
         Self {
-            control: RobotLoop::with_diagnostics(
+            control: RobotLoop::new(
                 &ROBOT_LAYOUT,
                 RobotConfig::default(),
-                UserController::default(),
                 Box::leak(Box::default()),
             ),
             remote: RemoteUpdate::default(),
@@ -38,7 +42,7 @@ impl Bench {
 
     fn hear(&mut self, bus: BusId, id: u16, payload: [u8; 8]) {
         let frame = CanFrame::new(StandardId::new(id).unwrap(), payload);
-        robot_loop::on_can_frame(&mut self.control, bus, &frame, self.now_us);
+        self.control.on_can_frame(bus, &frame, self.now_us);
     }
 
     fn tick(&mut self) -> ControlOutputs<'_> {
@@ -64,7 +68,7 @@ impl Bench {
             flash_request: FlashRequest::None,
             watchdog: WatchdogPeriod::Short,
         };
-        robot_loop::tick(&mut self.control, &inputs, self.now_us)
+        self.control.tick(&inputs, self.now_us)
     }
 
     fn run(&mut self, ticks: u32) -> ControlOutputs<'_> {

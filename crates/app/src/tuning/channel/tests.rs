@@ -42,6 +42,7 @@ impl Bench {
         let access = TuningAccess {
             config: &mut self.config,
             bring_up: &mut self.bring_up,
+            sensors: &self.diagnostics.sensors,
             diagnostics: &self.diagnostics,
             stationary_angle_rad: &|joint| self.standing.get(joint).copied(),
         };
@@ -471,7 +472,7 @@ fn a_recording_is_started_followed_and_ended() {
     let recorded = bench
         .channel
         .recorder()
-        .next(TuningGate::Open, &bench.diagnostics);
+        .next(TuningGate::Open, &bench.diagnostics.sensors);
     assert!(recorded.is_some_and(|(bus, _)| bus == BusId::Can1));
     assert_eq!(bench.read(&[0x43]), [0x43, 1, 0, 0, 0, 1, 0, 0]);
     bench.write(&[0x42, 0, 0, 0, 0, 0, 0, 0]);

@@ -1,0 +1,101 @@
+//! Whose command counts, and the frames that carry it to the motors.
+
+use super::{ControlInputs, ControlLoop};
+use crate::{
+    control::{ChassisController, ChassisControllerInput, ChassisControllerOutput},
+    domain::{ChassisCommand, HighLevelCommand, LogicBus, age_us},
+    safety::TorquePermit,
+};
+
+/// Who decides the commands of this tick.
+enum Demand<'a> {
+    /// Nobody: no motor may move, or no command is fresh and valid.
+    Stop,
+    /// The logic bus or bring-up, past the controller.
+    Direct(&'a ChassisCommand),
+    Control(HighLevelCommand),
+}
+
+/// What no command reaches in this tick.
+struct Stopped {
+    wheels: bool,
+    joints: bool,
+}
+
+impl<C: ChassisController> ControlLoop<C> {
+    pub(super) fn act(
+        &mut self,
+        inputs: &ControlInputs<'_>,
+        permit: Option<&TorquePermit>,
+        trial: Option<&ChassisCommand>,
+        now_us: u64,
+    ) {
+        let stopped = Stopped {
+            wheels: !self.motors.wheels_may_move(permit),
+            joints: !self.motors.joints_may_move(permit),
+        };
+        let demand = if stopped.wheels && stopped.joints {
+            Demand::Stop
+        } else if let Some(command) = trial {
+            Demand::Direct(command)
+        } else {
+            self.demand(inputs.logic, now_us)
+        };
+        let output;
+        let wanted = match demand {
+            Demand::Control(hl_cmd) => {
+                output = self.control(inputs, hl_cmd, &stopped);
+                if output.cmd_valid {
+                    &output.cmd
+                } else {
+                    &ChassisCommand::STOP
+                }
+            }
+            Demand::Direct(command) => {
+                self.controller.reset();
+                command
+            }
+            Demand::Stop => {
+                self.controller.reset();
+                &ChassisCommand::STOP
+            }
+        };
+        if self.state.safety.clear_faults {
+            self.motors.clear_faults();
+        }
+        self.frames.clear();
+        self.motors
+            .compose(wanted, permit, &self.config, now_us, &mut self.frames);
+    }
+
+    fn demand<'a>(&self, logic: &'a LogicBus, now_us: u64) -> Demand<'a> {
+        if age_us(logic.ts_us, now_us) > self.config.safety.command_timeout_us {
+            Demand::Stop
+        } else if logic.cmd_valid {
+            Demand::Direct(&logic.cmd)
+        } else if logic.hl_valid {
+            Demand::Control(logic.hl_cmd)
+        } else {
+            Demand::Stop
+        }
+    }
+
+    fn control(
+        &mut self,
+        inputs: &ControlInputs<'_>,
+        hl_cmd: HighLevelCommand,
+        stopped: &Stopped,
+    ) -> ChassisControllerOutput {
+        self.controller.step(&ChassisControllerInput {
+            sensors: &self.state.sensors,
+            estimate: &self.state.estimate,
+            wheel_odom_cfg: &self.config.wheel_odom,
+            wheel_ctrl_cfg: &self.config.wheel_ctrl,
+            joint_ctrl_cfg: &self.config.joint_ctrl,
+            operator_state: &inputs.remote.operator,
+            hl_cmd,
+            wheels_stopped: stopped.wheels,
+            joints_stopped: stopped.joints,
+        })
+    }
+}

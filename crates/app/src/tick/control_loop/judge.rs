@@ -1,0 +1,100 @@
+//! Whether anything may move in this tick, and whether flash may be written.
+
+use super::{ControlInputs, ControlLoop};
+use crate::{
+    control::ChassisController,
+    domain::FlashRequest,
+    safety::{
+        ArmingInputs, ArmingState, FlashPermitInputs, MotorReadiness, SafetyInputs, TorquePermit,
+    },
+};
+
+impl<C: ChassisController> ControlLoop<C> {
+    pub(super) fn guard_flash(&mut self, inputs: &ControlInputs<'_>, now_us: u64) {
+        if inputs.flash_request != FlashRequest::None {
+            return self.consider_flash(inputs, now_us);
+        }
+        self.flash
+            .idle(self.state.arming.state, inputs.watchdog, now_us);
+    }
+
+    /// Rare.
+    #[cold]
+    #[inline(never)]
+    fn consider_flash(&mut self, inputs: &ControlInputs<'_>, now_us: u64) {
+        self.flash.step(
+            &FlashPermitInputs {
+                request: inputs.flash_request,
+                watchdog: inputs.watchdog,
+                arming: self.state.arming.state,
+                enabled: inputs.remote.operator.enabled,
+                tries_motors: self.bring_up.tries_motors(),
+                motor: &self.state.sensors.motor,
+                buses: &self.motors.layout().buses(),
+                can: &inputs.health.can,
+            },
+            now_us,
+        );
+    }
+
+    /// What arming looks at and need not be newer than some milliseconds.
+    #[inline(never)]
+    pub(super) fn look_at_what_must_rest(&mut self, inputs: &ControlInputs<'_>, now_us: u64) {
+        let (state, config) = (&mut self.state, &self.config);
+        let fresh = state.link.age_us <= config.safety.remote_timeout_us;
+        state.sticks_centred =
+            self.centred_sticks
+                .step(&inputs.remote.state, fresh, &config.safety, now_us);
+        let rejects = &inputs.health.imu_status.rejects;
+        state.attitude_settled = self.attitude_settling.step(rejects, now_us);
+        if state.arming.state == ArmingState::Disarmed {
+            state.motors = MotorReadiness::assess(&state.sensors.motor, &config.joints);
+        }
+    }
+
+    pub(super) fn judge(
+        &mut self,
+        inputs: &ControlInputs<'_>,
+        now_us: u64,
+    ) -> Option<TorquePermit> {
+        let state = &mut self.state;
+        state.safety = self.policy.evaluate(
+            &SafetyInputs {
+                config: &self.config.safety,
+                remote: &state.link,
+                operator: &inputs.remote.operator,
+                may_resume: state.sticks_centred || state.arming.state == ArmingState::Disarmed,
+                imu_ts_us: inputs.imu.ts_us,
+                estimate: &state.estimate,
+                motor: &state.sensors.motor,
+                motor_timeout_us: self.config.wheel_ctrl.feedback_timeout_us,
+                command_ts_us: inputs.logic.ts_us,
+                health: inputs.health,
+            },
+            now_us,
+        );
+        let (status, token) = self.arming.step(
+            &ArmingInputs {
+                config: &self.config.safety,
+                sticks_centred: state.sticks_centred,
+                attitude_settled: state.attitude_settled,
+                remote_age_us: state.link.age_us,
+                operator: &inputs.remote.operator,
+                estimate_valid: state.estimate.valid,
+                calibrated: inputs.health.imu_calibrated,
+                motor: &state.motors,
+                read_only: self.bring_up.blocks_arming(),
+                tries_motors: self.bring_up.tries_motors(),
+                flash_busy: self.flash.grant().blocks_arming,
+                params: inputs.params,
+                debugger_catches: inputs.health.debug_probe.catches,
+                joint_timeout_unset: self.timeout_by_hand
+                    && self.config.joint_ctrl.rs00_timeout_set == 0,
+                safety: &state.safety,
+            },
+            now_us,
+        );
+        state.arming = status;
+        token.map(|token| TorquePermit::new(token, &state.safety))
+    }
+}
