@@ -1,1 +1,3 @@
+//! What several tests of this crate share.
 
+pub mod links;

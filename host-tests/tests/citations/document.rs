@@ -2,11 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use crate::{
-    slug::anchors,
-    source::missing_documents,
-    tree::{Tree, resolved},
-};
+use robot_host_tests::links::resolved;
+
+use crate::{anchors::anchors, source::missing_documents, tree::Tree};
 
 /// What a document cites and the tree does not have, a line each.
 pub fn missing(tree: &Tree, path: &str, text: &str) -> Vec<String> {

@@ -1,15 +1,19 @@
 //! Documents and comments cite only what is in the tree: documents, their sections, files, folders and tests.
 
+mod anchors;
 mod document;
 mod port_table;
-mod slug;
 mod source;
 mod tree;
 
 use tree::Tree;
 
 /// Tests of citations: their examples cite what is not there.
-const EXAMPLES: [&str; 2] = ["host-tests/tests/citations/", "host-tests/tests/languages/"];
+const EXAMPLES: [&str; 3] = [
+    "host-tests/src/links.rs",
+    "host-tests/tests/citations/",
+    "host-tests/tests/languages/",
+];
 
 #[test]
 fn documents_cite_what_is_there() {

@@ -1,10 +1,8 @@
 //! Documents, and files in backticks, that the comments of a source file cite.
 
-use crate::{
-    document::missing_place,
-    slug::anchors,
-    tree::{Tree, resolved},
-};
+use robot_host_tests::links::resolved;
+
+use crate::{anchors::anchors, document::missing_place, tree::Tree};
 
 /// What a source file cites and the tree does not have, a line each.
 pub fn missing(tree: &Tree, path: &str, text: &str) -> Vec<String> {

@@ -78,29 +78,6 @@ impl Tree {
     }
 }
 
-/// The path that `link` means in the file `from`; `None` if it leads out of the repository.
-pub fn resolved(from: &str, link: &str) -> Option<String> {
-    let mut parts: Vec<&str> = from.split('/').collect();
-    parts.pop();
-    for part in link.split('/') {
-        match part {
-            "" | "." => {}
-            ".." => {
-                parts.pop()?;
-            }
-            name => parts.push(name),
-        }
-    }
-    Some(parts.join("/"))
-}
-
-#[test]
-fn links_lead_from_the_file_that_has_them() {
-    assert_eq!(resolved("docs/a.md", "b.md").unwrap(), "docs/b.md");
-    assert_eq!(resolved("docs/a.md", "../src/x.rs").unwrap(), "src/x.rs");
-    assert_eq!(resolved("a.md", "../b.md"), None);
-}
-
 #[test]
 fn a_file_is_found_by_the_end_of_its_path() {
     let tree = Tree::read();
