@@ -115,6 +115,9 @@ fn asin_small(x: f32, x2: f32) -> f32 {
 }
 
 #[cfg(test)]
+mod beside_micromath;
+
+#[cfg(test)]
 mod tests {
     use super::*;
 
