@@ -3,26 +3,11 @@
 
 use proptest::prelude::*;
 use robot_app::input::{DbusParser, SbusFrame, SbusParser};
+use robot_test_support::Random;
 
 const FRAME_LEN: usize = 25;
 /// 12 bit at 100 kbaud.
 const BYTE_US: u64 = 120;
-
-/// Small fast generator (xorshift64*), so that ten million bytes cost little.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        self.0.wrapping_mul(0x2545_F491_4F6C_DD1D)
-    }
-
-    fn below(&mut self, limit: u64) -> u64 {
-        self.next() % limit
-    }
-}
 
 /// Of SBUS and SBUS2; of Futaba R7003SB (bolderflight/sbus#79).
 const FOOTERS: [u8; 6] = [0x00, 0x04, 0x14, 0x24, 0x34, 0x08];
@@ -43,27 +28,27 @@ fn specified(bytes: &[u8], after_silence: bool) -> Option<([u16; 16], bool, bool
 
 fn random_frame(random: &mut Random) -> [u8; FRAME_LEN] {
     let mut frame = [0; FRAME_LEN];
-    frame.fill_with(|| random.next() as u8);
+    frame.fill_with(|| random.byte());
     frame[0] = 0x0F;
     frame[23] &= 0x0F;
-    frame[24] = FOOTERS[random.below(6) as usize];
+    frame[24] = FOOTERS[random.below(6)];
     frame
 }
 
 /// Random bytes, good frames and damaged frames, without end.
 fn append_mutated(stream: &mut Vec<u8>, random: &mut Random) {
     match random.below(4) {
-        0 => stream.extend((0..random.below(80)).map(|_| random.next() as u8)),
+        0 => stream.extend((0..random.below(80)).map(|_| random.byte())),
         1 => stream.extend(random_frame(random)),
         2 => {
             let mut frame = random_frame(random);
-            let at = random.below(FRAME_LEN as u64) as usize;
+            let at = random.below(FRAME_LEN);
             frame[at] ^= 1 << random.below(8);
             stream.extend(frame);
         }
         _ => {
             let frame = random_frame(random);
-            let cut = random.below(FRAME_LEN as u64) as usize;
+            let cut = random.below(FRAME_LEN);
             stream.extend(&frame[..cut]);
         }
     }
@@ -73,7 +58,7 @@ fn append_mutated(stream: &mut Vec<u8>, random: &mut Random) {
 /// no two may share a byte.
 #[test]
 fn ten_million_bytes_without_a_frame_that_the_specification_rejects() {
-    let mut random = Random(0x5B05);
+    let mut random = Random::new(0x5B05);
     let mut parser = SbusParser::new();
     let (mut stream, mut now_us, mut total, mut delivered) = (Vec::new(), 0, 0usize, 0usize);
     while total < 10_000_000 {
@@ -118,12 +103,10 @@ fn ten_million_bytes_without_a_frame_that_the_specification_rejects() {
 /// Garbage of any kind, then frames as a radio sends them: the second at the latest is delivered, and all after it.
 #[test]
 fn two_frames_after_any_garbage_it_is_back() {
-    let mut random = Random(0xBAD);
+    let mut random = Random::new(0xBAD);
     for round in 0..20_000 {
         let mut parser = SbusParser::new();
-        let garbage: Vec<u8> = (0..random.below(120))
-            .map(|_| random.next() as u8)
-            .collect();
+        let garbage: Vec<u8> = (0..random.below(120)).map(|_| random.byte()).collect();
         let mut now_us = 1_000_000;
         parser.feed(&garbage, now_us, |_| ());
         let mut good = 0;
@@ -131,7 +114,7 @@ fn two_frames_after_any_garbage_it_is_back() {
             let bytes = random_frame(&mut random);
             now_us += 7_000;
             // DMA may hand the frame over in two pieces.
-            let cut = random.below(FRAME_LEN as u64) as usize;
+            let cut = random.below(FRAME_LEN);
             let early_us = now_us - (FRAME_LEN - cut) as u64 * BYTE_US;
             parser.feed(&bytes[..cut], early_us, |_| good += 1);
             parser.feed(&bytes[cut..], now_us, |_| good += 1);
@@ -146,7 +129,7 @@ fn two_frames_after_any_garbage_it_is_back() {
 /// The same without any silence between garbage and frames, for frames in which no other place looks like a frame.
 #[test]
 fn two_frames_after_garbage_even_without_silence() {
-    let mut random = Random(0xCAFE);
+    let mut random = Random::new(0xCAFE);
     let frame: [u8; FRAME_LEN] = [
         0x0F, 0xE0, 0x03, 0x1F, 0xF8, 0xC0, 0x07, 0x3E, 0xF0, 0x81, 0x0F, 0x7C, 0xE0, 0x03, 0x1F,
         0xF8, 0xC0, 0x07, 0x3E, 0xF0, 0x81, 0x0F, 0x7C, 0x00, 0x00,
@@ -154,7 +137,7 @@ fn two_frames_after_garbage_even_without_silence() {
     for _ in 0..20_000 {
         // No 0x0F: garbage that happens to start a frame may cost more.
         let mut stream: Vec<u8> = (0..random.below(60))
-            .map(|_| random.next() as u8 | 0x10)
+            .map(|_| random.byte() | 0x10)
             .collect();
         for _ in 0..4 {
             stream.extend(frame);
@@ -168,7 +151,7 @@ fn two_frames_after_garbage_even_without_silence() {
 /// A byte lost in the middle of a frame spoils that frame only.
 #[test]
 fn a_lost_byte_costs_one_frame() {
-    let mut random = Random(0x10);
+    let mut random = Random::new(0x10);
     for lost in 0..FRAME_LEN {
         let mut parser = SbusParser::new();
         let mut good = Vec::new();
@@ -204,18 +187,18 @@ proptest! {
 /// Frames after garbage of any length, 14 ms apart.
 #[test]
 fn dbus_finds_the_first_frame_after_silence() {
-    let mut random = Random(0xD8);
+    let mut random = Random::new(0xD8);
     let centred: [u8; 18] = [
         0x00, 0x04, 0x20, 0x00, 0x01, 0xF8, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0x00, 0x04,
     ];
     for _ in 0..5_000 {
         let mut parser = DbusParser::new();
-        let garbage: Vec<u8> = (0..random.below(60)).map(|_| random.next() as u8).collect();
+        let garbage: Vec<u8> = (0..random.below(60)).map(|_| random.byte()).collect();
         parser.feed(&garbage, 100_000, |_| ());
         let mut good = 0;
         for index in 1..=3u64 {
             let now_us = 100_000 + index * 14_000;
-            let cut = random.below(18) as usize;
+            let cut = random.below(18);
             let early_us = now_us - (18 - cut) as u64 * 110;
             parser.feed(&centred[..cut], early_us, |_| good += 1);
             parser.feed(&centred[cut..], now_us, |_| good += 1);

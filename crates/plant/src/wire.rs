@@ -16,6 +16,19 @@ pub struct CanFrame {
     pub data: [u8; 8],
 }
 
+impl CanFrame {
+    /// A data frame with a standard identifier and eight bytes.
+    pub const fn with_data(id: u32, data: [u8; 8]) -> Self {
+        Self {
+            id,
+            extended: false,
+            remote: false,
+            dlc: 8,
+            data,
+        }
+    }
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parity {
     None,

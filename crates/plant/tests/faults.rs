@@ -10,10 +10,7 @@ fn world(config: WorldConfig) -> World {
 }
 
 fn signal(world: &World, name: &str) -> f64 {
-    let index = world.signal_names().iter().position(|n| n == name);
-    let mut values = Vec::new();
-    world.sample(&mut values);
-    values[index.unwrap_or_else(|| panic!("no signal {name}"))]
+    world.signal(name).expect(name)
 }
 
 /// Whole frames on the radio line up to `end`, told apart by the gap after them.

@@ -37,13 +37,7 @@ impl Bench {
     }
 
     fn send(&mut self, id: u32, data: [u8; 8]) {
-        let frame = CanFrame {
-            id,
-            extended: false,
-            remote: false,
-            dlc: 8,
-            data,
-        };
+        let frame = CanFrame::with_data(id, data);
         for node in 0..self.world.can_nodes(BUS) {
             if self.world.can_hears(BUS, node) {
                 self.world.can_received(BUS, node, &frame, self.now);
@@ -81,10 +75,7 @@ impl Bench {
     }
 
     fn signal(&self, name: &str) -> f64 {
-        let index = self.world.signal_names().iter().position(|n| n == name);
-        let mut values = Vec::new();
-        self.world.sample(&mut values);
-        values[index.unwrap_or_else(|| panic!("no signal {name}"))]
+        self.world.signal(name).expect(name)
     }
 
     fn fault(&mut self, name: &str, active: bool) {
@@ -241,13 +232,7 @@ fn wheels_get_hot_and_change_their_names() {
         .collect();
     assert_eq!((frames[0].id, frames[0].data[6]), (0x201, 120));
     assert_eq!((frames[1].id, frames[1].data[6]), (0x206, 30));
-    let command = CanFrame {
-        id: 0x200,
-        extended: false,
-        remote: false,
-        dlc: 8,
-        data: [0x10, 0, 0x10, 0, 0, 0, 0, 0],
-    };
+    let command = CanFrame::with_data(0x200, [0x10, 0, 0x10, 0, 0, 0, 0, 0]);
     for node in 0..2 {
         bench
             .world

@@ -20,28 +20,14 @@ fn world(plant: PlantKind, radio: RadioKind) -> World {
 }
 
 fn signal(world: &World, name: &str) -> f64 {
-    let index = world
-        .signal_names()
-        .iter()
-        .position(|signal| signal == name)
-        .unwrap_or_else(|| panic!("no signal {name}"));
-    let mut values = Vec::new();
-    world.sample(&mut values);
-    assert_eq!(values.len(), world.signal_names().len());
-    values[index]
+    world.signal(name).expect(name)
 }
 
 fn command(world: &mut World, left: i16, right: i16, now: Ps) {
     let mut data = [0; 8];
     data[..2].copy_from_slice(&left.to_be_bytes());
     data[2..4].copy_from_slice(&right.to_be_bytes());
-    let frame = CanFrame {
-        id: 0x200,
-        extended: false,
-        remote: false,
-        dlc: 8,
-        data,
-    };
+    let frame = CanFrame::with_data(0x200, data);
     for node in 0..world.can_nodes(CanBusId::Can1) {
         if world.can_present(CanBusId::Can1, node) {
             world.can_received(CanBusId::Can1, node, &frame, now);

@@ -4,8 +4,8 @@ use robot_app::{
     control::UserController,
     diagnostics::DiagnosticsSnapshot,
     domain::{
-        BusId, CanFrame, ChassisCommand, FlashRequest, ImuState, LogicBus, MagState, ParamStatus,
-        RemoteUpdate, RobotConfig, SafetyConfig, StandardId, SystemHealth,
+        ChassisCommand, FlashRequest, ImuState, LogicBus, MagState, ParamStatus, RemoteUpdate,
+        RobotConfig, SafetyConfig, SystemHealth,
     },
     input::{RemoteFormat, RemoteMapping, RemoteReceiver},
     logic::{LogicInputs, LogicStage, UserLogic},
@@ -14,9 +14,9 @@ use robot_app::{
 };
 use robot_plant::{
     time::{MS, Ps, US},
-    wire::CanFrame as WireFrame,
-    world::{CanBusId, PlantKind, RadioKind, RemoteInput, WireEvent, World, WorldConfig},
+    world::{PlantKind, RadioKind, RemoteInput, WireEvent, World, WorldConfig},
 };
+use robot_test_support::CanWires;
 
 use crate::sensors::Sensors;
 
@@ -119,11 +119,7 @@ impl Robot {
     }
 
     pub fn signal(&self, name: &str) -> f64 {
-        let names = self.world.signal_names();
-        let index = names.iter().position(|known| known == name);
-        let mut values = Vec::new();
-        self.world.sample(&mut values);
-        values[index.unwrap_or_else(|| panic!("no signal {name}"))]
+        self.world.signal(name).expect(name)
     }
 
     pub fn attitude_error_deg(&self) -> [f64; 3] {
@@ -179,18 +175,10 @@ impl Robot {
     }
 
     fn receive_can(&mut self) {
-        for (bus, wire) in [(BusId::Can1, CanBusId::Can1), (BusId::Can2, CanBusId::Can2)] {
-            for node in 0..self.world.can_nodes(wire) {
-                if let Some(frame) = self.world.can_pending(wire, node, self.now) {
-                    self.world.can_sent(wire, node, self.now);
-                    let id = StandardId::new(frame.id as u16).expect("11 bits");
-                    let frame = CanFrame::from_payload(id, &frame.data[..frame.dlc.into()]);
-                    let frame = frame.expect("at most eight bytes");
-                    self.control
-                        .on_can_frame(bus, &frame, self.now_us(), &self.diagnostics);
-                }
-            }
-        }
+        let now_us = self.now_us();
+        self.world.take_frames(self.now, |bus, frame| {
+            self.control.on_can_frame(bus, frame, now_us, &self.diagnostics);
+        });
     }
 
     fn control_tick(&mut self) {
@@ -211,25 +199,8 @@ impl Robot {
             &mut self.diagnostics,
         );
         for (bus, frame) in outputs.frames {
-            let wire = match bus {
-                BusId::Can1 => CanBusId::Can1,
-                BusId::Can2 => CanBusId::Can2,
-            };
-            let mut data = [0; 8];
-            data[..frame.payload().len()].copy_from_slice(frame.payload());
-            let sent = WireFrame {
-                id: frame.id().raw().into(),
-                extended: false,
-                remote: false,
-                dlc: frame.payload().len() as u8,
-                data,
-            };
-            for node in 0..self.world.can_nodes(wire) {
-                if self.world.can_present(wire, node) {
-                    self.world.can_received(wire, node, &sent, self.now);
-                }
-            }
-            for byte in data {
+            self.world.deliver(*bus, frame, self.now);
+            for byte in frame.padded_payload() {
                 self.sent_digest = self.sent_digest.rotate_left(5) ^ u64::from(byte);
             }
         }

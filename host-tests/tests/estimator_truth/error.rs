@@ -1,6 +1,6 @@
 //! How far an estimate is from the truth.
 
-use crate::rotation::Rotation;
+use robot_test_support::Rotation;
 
 /// estimate · truth⁻¹, split into a turn about the vertical and one about a level axis.
 #[derive(Clone, Copy, Debug)]
@@ -15,11 +15,11 @@ pub struct AttitudeError {
 impl AttitudeError {
     pub fn between(estimate: Rotation, truth: Rotation) -> Self {
         let error = estimate.then_in_body(truth.inverse());
-        let [x, y, z] = error.v;
+        let [w, x, y, z] = error.to_wxyz();
         Self {
             total_deg: error.angle_deg(),
-            heading_deg: wrapped_deg(2.0 * z.atan2(error.w).to_degrees()),
-            inclination_deg: 2.0 * x.hypot(y).atan2(z.hypot(error.w)).to_degrees(),
+            heading_deg: wrapped_deg(2.0 * z.atan2(w).to_degrees()),
+            inclination_deg: 2.0 * x.hypot(y).atan2(z.hypot(w)).to_degrees(),
         }
     }
 }

@@ -4,11 +4,9 @@ use robot_app::{
     domain::{ImuState, MagState, MotorFeedback, StateEstimate, WheelOdomConfig},
     estimation::InsEstimator,
 };
+use robot_test_support::{Random, Rotation};
 
-use crate::{
-    error::AttitudeError, figures::Figures, motion::home_field_ut, noise::Noise,
-    rotation::Rotation, run::assert_sound,
-};
+use crate::{error::AttitudeError, figures::Figures, motion::home_field_ut, run::assert_sound};
 
 const VALUES: [f32; 16] = [
     0.0,
@@ -29,11 +27,11 @@ const VALUES: [f32; 16] = [
     -299.0,
 ];
 
-fn value(noise: &mut Noise) -> f32 {
+fn value(noise: &mut Random) -> f32 {
     VALUES[noise.below(VALUES.len())]
 }
 
-fn time_us(noise: &mut Noise, now_us: u64) -> u64 {
+fn time_us(noise: &mut Random, now_us: u64) -> u64 {
     match noise.below(10) {
         0 => 0,
         1 => u64::MAX,
@@ -89,13 +87,13 @@ impl Victim {
 
     fn error(&self) -> AttitudeError {
         let attitude = Rotation::from_wxyz(self.estimate.q_wxyz.map(f64::from));
-        AttitudeError::between(attitude.unit(), truth())
+        AttitudeError::between(attitude, truth())
     }
 
     /// One tick with at least one field that makes no sense.
-    fn garbage(&mut self, noise: &mut Noise) {
+    fn garbage(&mut self, noise: &mut Random) {
         self.now_us += 1_000;
-        let three = |noise: &mut Noise| -> [f32; 3] { std::array::from_fn(|_| value(noise)) };
+        let three = |noise: &mut Random| -> [f32; 3] { std::array::from_fn(|_| value(noise)) };
         let imu = ImuState {
             gyro_dps: three(noise),
             accel_mps2: three(noise),
@@ -138,7 +136,7 @@ fn truth() -> Rotation {
 #[test]
 fn any_garbage_leaves_a_sound_state() {
     for seed in 0..200 {
-        let mut noise = Noise::new(seed);
+        let mut noise = Random::new(seed);
         let mut victim = Victim::new();
         for _ in 0..2_000 {
             victim.garbage(&mut noise);
@@ -152,7 +150,7 @@ fn after_garbage_a_minute_of_rest_puts_all_right() {
     let mut figures = Figures::default();
     let (mut heading_deg, mut inclination_deg, mut bias_dps) = (0.0_f64, 0.0_f64, 0.0_f64);
     for seed in 0..40 {
-        let mut noise = Noise::new(seed);
+        let mut noise = Random::new(seed);
         let mut victim = Victim::new();
         if seed % 2 == 0 {
             victim.rest(5);

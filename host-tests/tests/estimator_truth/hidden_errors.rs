@@ -1,9 +1,10 @@
 //! Errors of the sensors that nobody measured beforehand: motion shows them.
 
+use robot_test_support::Vector;
+
 use crate::{
     figures::Figures,
     motion::{Motion, carried_rate_dps, window},
-    rotation::Vector,
     run::Run,
     sensors::Sensors,
 };

@@ -1,9 +1,10 @@
 //! Fields that are not the earth's, and no field at all.
 
+use robot_test_support::Vector;
+
 use crate::{
     figures::Figures,
     motion::{Motion, window},
-    rotation::Vector,
     run::Run,
     sensors::Sensors,
 };
@@ -158,7 +159,7 @@ fn a_magnetometer_that_stops_and_returns() {
 #[test]
 fn a_magnetometer_that_comes_late() {
     let mut figures = Figures::default();
-    let motion = driven().starting(crate::rotation::Rotation::by_deg([0.0, 0.0, 120.0]));
+    let motion = driven().starting(robot_test_support::Rotation::by_deg([0.0, 0.0, 120.0]));
     let mut run = Run::new(motion, Sensors::real().with_mag_while(|t| t > 60.0));
     run.skip(65.0);
     let worst = run.worst(80.0);

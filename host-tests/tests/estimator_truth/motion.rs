@@ -1,6 +1,6 @@
 //! What the body really does and what surrounds it.
 
-use crate::rotation::{Rotation, Vector};
+use robot_test_support::{Rotation, Vector};
 
 pub const GRAVITY_MPS2: f64 = 9.806_65;
 
@@ -35,7 +35,7 @@ pub fn home_field_ut() -> Vector {
 impl Motion {
     pub fn at_rest() -> Self {
         Self {
-            start: Rotation::NONE,
+            start: Rotation::default(),
             rate_rps: Box::new(|_| [0.0; 3]),
             accel_mps2: Box::new(|_| [0.0; 3]),
             earth_field_ut: home_field_ut(),

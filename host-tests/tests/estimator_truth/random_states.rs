@@ -4,12 +4,9 @@ use robot_app::{
     domain::{ImuState, MagState, MotorFeedback, StateEstimate, WheelOdomConfig},
     estimation::InsEstimator,
 };
+use robot_test_support::{Random, Rotation, Vector, scale};
 
-use crate::{
-    noise::Noise,
-    rotation::{Rotation, Vector, scale},
-    run::assert_sound,
-};
+use crate::run::assert_sound;
 
 const STATES: u32 = 1_000_000;
 /// How long one kind of motion lasts.
@@ -26,8 +23,8 @@ struct Kind {
     max_gap_us: u64,
 }
 
-fn kind(noise: &mut Noise) -> Kind {
-    let one_of = |noise: &mut Noise, choices: [f64; 4]| choices[noise.below(4)];
+fn kind(noise: &mut Random) -> Kind {
+    let one_of = |noise: &mut Random, choices: [f64; 4]| choices[noise.below(4)];
     Kind {
         rate_dps: one_of(noise, [0.0, 5.0, 300.0, 2_000.0]),
         accel_mps2: one_of(noise, [0.0, 0.01, 10.0, 117.0]),
@@ -37,7 +34,7 @@ fn kind(noise: &mut Noise) -> Kind {
     }
 }
 
-fn in_cube(noise: &mut Noise, end: f64) -> Vector {
+fn in_cube(noise: &mut Random, end: f64) -> Vector {
     std::array::from_fn(|_| match noise.below(8) {
         0 => end,
         1 => -end,
@@ -46,14 +43,14 @@ fn in_cube(noise: &mut Noise, end: f64) -> Vector {
     })
 }
 
-fn any_attitude(noise: &mut Noise) -> Rotation {
+fn any_attitude(noise: &mut Random) -> Rotation {
     let wxyz = std::array::from_fn(|_| noise.normal());
-    Rotation::from_wxyz(wxyz).unit()
+    Rotation::from_wxyz(wxyz)
 }
 
 #[test]
 fn a_million_random_states_keep_it_sound() {
-    let mut noise = Noise::new(20_000);
+    let mut noise = Random::new(20_000);
     let mut estimator = InsEstimator::new(WheelOdomConfig::default());
     let mut motor = MotorFeedback::default();
     let mut estimate = StateEstimate::default();

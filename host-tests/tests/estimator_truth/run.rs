@@ -4,11 +4,11 @@ use robot_app::{
     domain::{ImuState, MagState, MotorFeedback, StateEstimate, WheelOdomConfig},
     estimation::InsEstimator,
 };
+use robot_test_support::{Rotation, Vector};
 
 use crate::{
     error::{AttitudeError, Worst},
     motion::Motion,
-    rotation::{Rotation, Vector},
     sensors::Sensors,
     world::World,
 };
@@ -129,7 +129,7 @@ impl Run {
     }
 
     pub fn attitude(&self) -> Rotation {
-        Rotation::from_wxyz(self.estimate.q_wxyz.map(f64::from)).unit()
+        Rotation::from_wxyz(self.estimate.q_wxyz.map(f64::from))
     }
 
     /// As believed, body frame.
@@ -172,12 +172,10 @@ pub fn assert_sound(estimate: &StateEstimate, now_us: u64) {
                 .all(|values| finite(*values)),
         "not finite: {estimate:?}"
     );
-    let attitude = Rotation::from_wxyz(q_wxyz.map(f64::from));
-    assert!(
-        (attitude.length() - 1.0).abs() < 1e-5,
-        "length {}: {estimate:?}",
-        attitude.length()
-    );
+    let q_wxyz = q_wxyz.map(f64::from);
+    let length = q_wxyz.iter().map(|part| part * part).sum::<f64>().sqrt();
+    assert!((length - 1.0).abs() < 1e-5, "length {length}: {estimate:?}");
+    let attitude = Rotation::from_wxyz(q_wxyz);
     assert_eq!(*ts_us, now_us);
     let [roll, pitch, yaw] = rpy_rad.map(f64::from);
     let from_angles = Rotation::by([0.0, 0.0, yaw])

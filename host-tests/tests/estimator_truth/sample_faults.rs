@@ -1,9 +1,10 @@
 //! Samples that are cut off, lost, late or repeated.
 
+use robot_test_support::{Vector, dot};
+
 use crate::{
     figures::Figures,
     motion::{Motion, carried_rate_dps, window},
-    rotation::{Vector, dot},
     run::Run,
     sensors::{Sensors, Timing},
 };

@@ -1,6 +1,8 @@
 //! How the truth is measured.
 
-use crate::{motion::OverTime, rotation::Vector};
+use robot_test_support::Vector;
+
+use crate::motion::OverTime;
 
 /// Standard deviation of one sample.
 #[derive(Clone, Copy, Debug)]
@@ -67,7 +69,7 @@ impl Sensors {
             has_mag: Box::new(|_| true),
             loses: Box::new(|_| false),
             timing: Timing::Exact,
-            seed: 1,
+            seed: 3,
             start_us: 1_000_000,
         }
     }

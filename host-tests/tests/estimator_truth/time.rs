@@ -1,9 +1,10 @@
 //! The robot's clock: late ticks, hours of it, and where 32 bits of microseconds wrap.
 
+use robot_test_support::Random;
+
 use crate::{
     figures::Figures,
     motion::{Motion, window},
-    noise::Noise,
     run::Run,
     sensors::Sensors,
 };
@@ -40,7 +41,7 @@ fn late_ticks_cost_nothing() {
     let motion = Motion::at_rest()
         .turning(|t| [50.0, -70.0, 300.0].map(|rate| rate * window(t, 3.0, 1e9, 1.0)));
     let mut run = Run::new(motion, Sensors::ideal());
-    let mut noise = Noise::new(7);
+    let mut noise = Random::new(7);
     let mut total_deg = 0.0_f64;
     while run.time_s() < 60.0 {
         run.step_after(1 + noise.below(4) as u64);

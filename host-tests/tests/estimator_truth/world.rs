@@ -3,11 +3,10 @@
 use std::collections::VecDeque;
 
 use robot_app::domain::{ImuState, MagState};
+use robot_test_support::{Random, Rotation, Vector, add, dot, scale};
 
 use crate::{
     motion::{GRAVITY_MPS2, Motion},
-    noise::Noise,
-    rotation::{Rotation, Vector, add, dot, scale},
     sensors::{Sensors, Timing},
 };
 
@@ -27,7 +26,7 @@ struct Due<T> {
 pub struct World {
     motion: Motion,
     sensors: Sensors,
-    noise: Noise,
+    noise: Random,
     elapsed_us: u64,
     attitude: Rotation,
     angle_rad: Vector,
@@ -43,7 +42,7 @@ impl World {
     pub fn new(motion: Motion, sensors: Sensors) -> Self {
         Self {
             attitude: motion.start,
-            noise: Noise::new(sensors.seed),
+            noise: Random::new(sensors.seed),
             motion,
             sensors,
             elapsed_us: 0,
@@ -111,7 +110,7 @@ impl World {
         let middle = self.attitude.then_in_body(half);
         let felt = add((self.motion.accel_mps2)(middle_s), [0.0, 0.0, GRAVITY_MPS2]);
         let felt = middle.inverse().turn(felt);
-        self.attitude = middle.then_in_body(half).unit();
+        self.attitude = middle.then_in_body(half);
         self.angle_rad = add(self.angle_rad, turn);
         self.velocity_mps = add(self.velocity_mps, scale(felt, dt_s));
         self.elapsed_us += STEP_US;

@@ -12,7 +12,8 @@ mod run;
 #[path = "../closed_loop/sensors.rs"]
 mod sensors;
 
-use motion::{Base, Blow, Noise, Vector};
+use motion::{Base, Blow};
+use robot_test_support::{Random, Vector};
 use run::Outcome;
 
 const FEW: u64 = 8;
@@ -23,9 +24,9 @@ const DRIVING: [Base; 1] = [Base::Driving];
 const MOST_DEG: f64 = 90.0;
 
 /// Between these peaks in °/s, of 10 to 100 ms, about any axis.
-fn any_blow(noise: &mut Noise, at_s: f64, from_dps: f64, to_dps: f64) -> Blow {
+fn any_blow(noise: &mut Random, at_s: f64, from_dps: f64, to_dps: f64) -> Blow {
     loop {
-        let abrupt = noise.uniform() < 0.5;
+        let abrupt = noise.unit() < 0.5;
         let peak_dps = noise.between(from_dps, to_dps);
         let ms = noise.between(10.0, 100.0);
         let turn_deg = peak_dps
@@ -45,30 +46,30 @@ fn any_blow(noise: &mut Noise, at_s: f64, from_dps: f64, to_dps: f64) -> Blow {
             peak_dps,
             ms,
             abrupt,
-            accel_mps2: motion::scale(direction(noise), push_mps2(noise, ms)),
+            accel_mps2: robot_test_support::scale(direction(noise), push_mps2(noise, ms)),
         };
     }
 }
 
 /// Up to what the accelerometer cannot see, or what makes a robot 2 m/s faster.
-fn push_mps2(noise: &mut Noise, ms: f64) -> f64 {
-    if noise.uniform() < 0.5 {
+fn push_mps2(noise: &mut Random, ms: f64) -> f64 {
+    if noise.unit() < 0.5 {
         return noise.between(80.0, 400.0);
     }
     noise.between(0.0, 2.0) / (ms * 1e-3)
 }
 
 /// Half of them along an axis of the body, as robots are hit.
-fn direction(noise: &mut Noise) -> Vector {
+fn direction(noise: &mut Random) -> Vector {
     let mut vector = [0.0; 3];
-    if noise.uniform() < 0.5 {
-        let axis = (3.0 * noise.uniform()) as usize % 3;
-        vector[axis] = if noise.uniform() < 0.5 { -1.0 } else { 1.0 };
+    if noise.unit() < 0.5 {
+        let axis = noise.below(3);
+        vector[axis] = if noise.unit() < 0.5 { -1.0 } else { 1.0 };
         return vector;
     }
     let drawn = noise.vector(1.0);
     let length = drawn.iter().map(|part| part * part).sum::<f64>().sqrt();
-    motion::scale(drawn, 1.0 / length.max(1e-6))
+    robot_test_support::scale(drawn, 1.0 / length.max(1e-6))
 }
 
 /// What is wanted of each, and the worst of all.
@@ -76,12 +77,12 @@ fn hold(
     name: &str,
     bases: &[Base],
     count: u64,
-    blows: impl Fn(&mut Noise) -> Vec<Blow>,
+    blows: impl Fn(&mut Random) -> Vec<Blow>,
     wanted: impl Fn(Base, &Outcome) -> bool,
 ) {
     let mut worst: Option<Outcome> = None;
     for seed in 1..=count {
-        let mut noise = Noise::new(seed);
+        let mut noise = Random::new(seed);
         let blows = blows(&mut noise);
         for base in bases {
             let outcome = Outcome::of(&format!("{name}-{seed}"), *base, &blows);

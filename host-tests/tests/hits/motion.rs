@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-pub type Vector = [f64; 3];
+use robot_test_support::{Random, Rotation, Vector, add, scale};
 
 const GRAVITY_MPS2: f64 = 9.81;
 /// East, north, up.
@@ -108,8 +108,8 @@ pub struct Row {
 
 /// Rows, and when the robot stands upright again for good: with a base that rests it rests from then on.
 pub fn rows(base: Base, blows: &[Blow], seconds: f64, seed: u64) -> (Vec<Row>, f64) {
-    let mut noise = Noise::new(seed);
-    let mut q = [1.0, 0.0, 0.0, 0.0];
+    let mut noise = Random::new(seed);
+    let mut attitude = Rotation::default();
     let mut rows = Vec::new();
     let (mut fallen, mut upright_s) = (false, 0.0);
     for step in 0..(seconds / DT_S).round() as u32 {
@@ -121,7 +121,7 @@ pub fn rows(base: Base, blows: &[Blow], seconds: f64, seed: u64) -> (Vec<Row>, f
         let dazed = blows
             .iter()
             .any(|blow| (blow.at_s..blow.end_s() + DAZED_S).contains(&t_s));
-        let (righting_dps, tilt_rad) = righting(q);
+        let (righting_dps, tilt_rad) = righting(attitude);
         fallen = dazed
             || fallen
                 && tilt_rad
@@ -137,8 +137,8 @@ pub fn rows(base: Base, blows: &[Blow], seconds: f64, seed: u64) -> (Vec<Row>, f
             dps = add(dps, righting_dps);
         }
         let rate_rps = dps.map(f64::to_radians);
-        q = turned(q, scale(rate_rps, DT_S));
-        let mut felt = felt_mps2(base, q, t_s);
+        attitude = attitude.then_in_body(Rotation::by(scale(rate_rps, DT_S)));
+        let mut felt = felt_mps2(base, attitude, t_s);
         for blow in blows {
             if blow.share(t_s).is_some() {
                 felt = add(felt, blow.accel_mps2);
@@ -147,16 +147,16 @@ pub fn rows(base: Base, blows: &[Blow], seconds: f64, seed: u64) -> (Vec<Row>, f
         rows.push(Row {
             gyro_rps: add(rate_rps, noise.vector(0.15_f64.to_radians())),
             accel_mps2: add(felt, noise.vector(0.06)),
-            field_ut: add(to_body(q, EARTH_UT), noise.vector(0.4)),
-            q_wxyz: q,
+            field_ut: add(attitude.seen_from_body(EARTH_UT), noise.vector(0.4)),
+            q_wxyz: attitude.to_wxyz(),
         });
     }
     (rows, upright_s)
 }
 
 /// Rate that brings the body's z axis up, and how far it is from there.
-fn righting(q: [f64; 4]) -> (Vector, f64) {
-    let [x, y, z] = to_body(q, [0.0, 0.0, 1.0]);
+fn righting(attitude: Rotation) -> (Vector, f64) {
+    let [x, y, z] = attitude.seen_from_body([0.0, 0.0, 1.0]);
     let tilt_rad = x.hypot(y).atan2(z);
     // Up is at (x, y, z) in the body: turning about (−y, x, 0) takes z there.
     let axis = [-y, x, 0.0];
@@ -168,77 +168,14 @@ fn righting(q: [f64; 4]) -> (Vector, f64) {
     (scale(axis, dps / length), tilt_rad)
 }
 
-fn felt_mps2(base: Base, q: [f64; 4], t_s: f64) -> Vector {
+fn felt_mps2(base: Base, attitude: Rotation, t_s: f64) -> Vector {
     let [along, left] = base.accel_mps2(t_s);
-    let [w, x, y, z] = q;
+    let [w, x, y, z] = attitude.to_wxyz();
     let yaw = (2.0 * (w * z + x * y)).atan2(1.0 - 2.0 * (y * y + z * z));
     let (sin, cos) = yaw.sin_cos();
-    to_body(
-        q,
-        [
-            cos * along - sin * left,
-            sin * along + cos * left,
-            GRAVITY_MPS2,
-        ],
-    )
-}
-
-pub fn add(a: Vector, b: Vector) -> Vector {
-    std::array::from_fn(|axis| a[axis] + b[axis])
-}
-
-pub fn scale(a: Vector, factor: f64) -> Vector {
-    a.map(|part| factor * part)
-}
-
-fn product([w, x, y, z]: [f64; 4], [bw, bx, by, bz]: [f64; 4]) -> [f64; 4] {
-    [
-        w * bw - x * bx - y * by - z * bz,
-        w * bx + x * bw + y * bz - z * by,
-        w * by - x * bz + y * bw + z * bx,
-        w * bz + x * by - y * bx + z * bw,
-    ]
-}
-
-fn turned(q: [f64; 4], [x, y, z]: Vector) -> [f64; 4] {
-    let angle = (x * x + y * y + z * z).sqrt();
-    if angle == 0.0 {
-        return q;
-    }
-    let sinc = (angle / 2.0).sin() / angle;
-    let turned = product(q, [(angle / 2.0).cos(), sinc * x, sinc * y, sinc * z]);
-    let length = turned.iter().map(|part| part * part).sum::<f64>().sqrt();
-    turned.map(|part| part / length)
-}
-
-fn to_body([w, x, y, z]: [f64; 4], [vx, vy, vz]: Vector) -> Vector {
-    let [_, x, y, z] = product(product([w, -x, -y, -z], [0.0, vx, vy, vz]), [w, x, y, z]);
-    [x, y, z]
-}
-
-/// Splitmix, and twelve of its numbers added for a normal one.
-pub struct Noise(u64);
-
-impl Noise {
-    pub fn new(seed: u64) -> Self {
-        Self(seed.wrapping_mul(0xD134_2543_DE82_EF95))
-    }
-
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.uniform()
-    }
-
-    /// 0 … 1.
-    pub fn uniform(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    /// Of parts with this standard deviation.
-    pub fn vector(&mut self, std: f64) -> Vector {
-        std::array::from_fn(|_| std * ((0..12).map(|_| self.uniform()).sum::<f64>() - 6.0))
-    }
+    attitude.seen_from_body([
+        cos * along - sin * left,
+        sin * along + cos * left,
+        GRAVITY_MPS2,
+    ])
 }

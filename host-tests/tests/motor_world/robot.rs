@@ -14,9 +14,9 @@ use robot_app::{
 };
 use robot_plant::{
     time::{MS, Ps, US},
-    wire::CanFrame as WireFrame,
-    world::{CanBusId, JointKind, World, WorldConfig},
+    world::{JointKind, World, WorldConfig},
 };
+use robot_test_support::CanWires;
 
 pub struct Robot {
     pub command: ChassisCommand,
@@ -96,13 +96,7 @@ impl Robot {
     /// The whole board stands still for a flash erase; what the motors say meanwhile is lost.
     pub fn stall(&mut self, ms: u64) {
         self.run_without_board(ms, |_, _| ());
-        for wire in [CanBusId::Can1, CanBusId::Can2] {
-            for node in 0..self.world.can_nodes(wire) {
-                if self.world.can_pending(wire, node, self.now).is_some() {
-                    self.world.can_sent(wire, node, self.now);
-                }
-            }
-        }
+        self.world.take_frames(self.now, |_, _| ());
     }
 
     /// The firmware tells the tick of the stall.
@@ -150,11 +144,7 @@ impl Robot {
     }
 
     pub fn signal(&self, name: &str) -> f64 {
-        let names = self.world.signal_names();
-        let index = names.iter().position(|known| known == name);
-        let mut values = Vec::new();
-        self.world.sample(&mut values);
-        values[index.unwrap_or_else(|| panic!("no signal {name}"))]
+        self.world.signal(name).expect(name)
     }
 
     /// What `name` says of each joint, as in `can.joint.{}.enabled`.
@@ -206,7 +196,9 @@ impl Robot {
         let outputs = self.control.tick(&inputs, now_us, &mut self.diagnostics);
         self.sent = outputs.frames.to_vec();
         self.flash = outputs.flash;
-        self.send();
+        for (bus, frame) in &self.sent {
+            self.world.deliver(*bus, frame, self.now);
+        }
     }
 
     fn remote(&self, now_us: u64) -> RemoteUpdate {
@@ -235,56 +227,16 @@ impl Robot {
     }
 
     /// Somebody else on CAN2 sends a frame.
-    pub fn hear_from_a_stranger(&mut self, id: u32, data: [u8; 8]) {
-        let sent = WireFrame {
-            id,
-            extended: false,
-            remote: false,
-            dlc: 8,
-            data,
-        };
-        self.deliver(CanBusId::Can2, &sent);
-    }
-
-    fn deliver(&mut self, wire: CanBusId, sent: &WireFrame) {
-        for node in 0..self.world.can_nodes(wire) {
-            if self.world.can_present(wire, node) {
-                self.world.can_received(wire, node, sent, self.now);
-            }
-        }
+    pub fn hear_from_a_stranger(&mut self, id: u16, data: [u8; 8]) {
+        let id = StandardId::new(id).expect("11 bits");
+        self.world
+            .deliver(BusId::Can2, &CanFrame::new(id, data), self.now);
     }
 
     fn receive(&mut self) {
-        for (bus, wire) in [(BusId::Can1, CanBusId::Can1), (BusId::Can2, CanBusId::Can2)] {
-            for node in 0..self.world.can_nodes(wire) {
-                if let Some(frame) = self.world.can_pending(wire, node, self.now) {
-                    self.world.can_sent(wire, node, self.now);
-                    let id = StandardId::new(frame.id as u16).expect("11 bits");
-                    let frame = CanFrame::from_payload(id, &frame.data[..frame.dlc.into()]);
-                    let frame = frame.expect("at most eight bytes");
-                    self.control
-                        .on_can_frame(bus, &frame, self.now / US, &self.diagnostics);
-                }
-            }
-        }
-    }
-
-    fn send(&mut self) {
-        let frames = std::mem::take(&mut self.sent);
-        for (bus, frame) in &frames {
-            let wire = match bus {
-                BusId::Can1 => CanBusId::Can1,
-                BusId::Can2 => CanBusId::Can2,
-            };
-            let sent = WireFrame {
-                id: frame.id().raw().into(),
-                extended: false,
-                remote: false,
-                dlc: 8,
-                data: frame.full_payload().expect("motors take full frames"),
-            };
-            self.deliver(wire, &sent);
-        }
-        self.sent = frames;
+        let now_us = self.now_us();
+        self.world.take_frames(self.now, |bus, frame| {
+            self.control.on_can_frame(bus, frame, now_us, &self.diagnostics);
+        });
     }
 }

@@ -48,13 +48,7 @@ impl ReplyBox {
     }
 
     fn put(&mut self, id: u32, data: [u8; 8], fed_back: Option<Feedback>, ready_at: Ps) {
-        let frame = CanFrame {
-            id,
-            extended: false,
-            remote: false,
-            dlc: 8,
-            data,
-        };
+        let frame = CanFrame::with_data(id, data);
         self.waiting = Some(Reply {
             ready_at,
             frame,

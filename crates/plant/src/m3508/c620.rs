@@ -127,13 +127,8 @@ impl C620 {
     }
 
     pub(crate) fn pending(&self) -> Option<CanFrame> {
-        self.feedback_pending.then_some(CanFrame {
-            id: self.feedback_id(),
-            extended: false,
-            remote: false,
-            dlc: 8,
-            data: self.feedback,
-        })
+        self.feedback_pending
+            .then_some(CanFrame::with_data(self.feedback_id(), self.feedback))
     }
 
     pub(crate) fn sent(&mut self) {
@@ -184,13 +179,7 @@ mod tests {
     // docs/hardware.md#test-vectors: +1000, −1000, +16384, −16384.
     #[test]
     fn takes_its_own_slot_of_the_reference_command() {
-        let frame = CanFrame {
-            id: 0x200,
-            extended: false,
-            remote: false,
-            dlc: 8,
-            data: [0x03, 0xE8, 0xFC, 0x18, 0x40, 0x00, 0xC0, 0x00],
-        };
+        let frame = CanFrame::with_data(0x200, [0x03, 0xE8, 0xFC, 0x18, 0x40, 0x00, 0xC0, 0x00]);
         let expected_ma = [1_220.703_125, -1_220.703_125, 20_000.0, -20_000.0];
         for (id, expected) in (1..=4).zip(expected_ma) {
             let mut esc = esc(id);
@@ -213,13 +202,7 @@ mod tests {
     #[test]
     fn feedback_is_big_endian_rotor_speed_and_current() {
         let mut esc = esc(2);
-        esc.receive(&CanFrame {
-            id: 0x200,
-            extended: false,
-            remote: false,
-            dlc: 8,
-            data: [0, 0, 0x10, 0, 0, 0, 0, 0],
-        });
+        esc.receive(&CanFrame::with_data(0x200, [0, 0, 0x10, 0, 0, 0, 0, 0]));
         // One turn a second at the wheel: 19.203 · 60 = 1152.2 rpm at the rotor; 0x1000 = 5 A after many time constants.
         for _ in 0..100 {
             esc.step(std::f64::consts::TAU, 24.0);
@@ -236,13 +219,7 @@ mod tests {
     fn with_another_number_it_obeys_and_answers_under_that() {
         let mut esc = esc(1);
         esc.set_number(2);
-        esc.receive(&CanFrame {
-            id: 0x200,
-            extended: false,
-            remote: false,
-            dlc: 8,
-            data: [0x10, 0, 0x20, 0, 0, 0, 0, 0],
-        });
+        esc.receive(&CanFrame::with_data(0x200, [0x10, 0, 0x20, 0, 0, 0, 0, 0]));
         assert_eq!(esc.commanded_ma(), 10_000.0);
         esc.prepare_feedback(0.0);
         assert_eq!(esc.pending().expect("feedback is due").id, 0x202);
@@ -270,13 +247,10 @@ mod tests {
     fn a_current_taken_back_is_zero_and_no_denormal_number_after_50_ms() {
         let mut esc = esc(1);
         for commanded in [0x10, 0] {
-            esc.receive(&CanFrame {
-                id: 0x200,
-                extended: false,
-                remote: false,
-                dlc: 8,
-                data: [commanded, 0, 0, 0, 0, 0, 0, 0],
-            });
+            esc.receive(&CanFrame::with_data(
+                0x200,
+                [commanded, 0, 0, 0, 0, 0, 0, 0],
+            ));
             for _ in 0..200 {
                 esc.step(0.0, 24.0);
             }
@@ -287,13 +261,7 @@ mod tests {
     #[test]
     fn command_holds_without_further_frames_and_dies_with_the_supply() {
         let mut esc = esc(1);
-        esc.receive(&CanFrame {
-            id: 0x200,
-            extended: false,
-            remote: false,
-            dlc: 8,
-            data: [0x10, 0, 0, 0, 0, 0, 0, 0],
-        });
+        esc.receive(&CanFrame::with_data(0x200, [0x10, 0, 0, 0, 0, 0, 0, 0]));
         for _ in 0..4_000 {
             esc.step(0.0, 24.0);
         }

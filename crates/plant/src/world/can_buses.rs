@@ -10,13 +10,7 @@ use crate::{
 };
 
 /// The highest priority there is.
-const ROGUE_FRAME: CanFrame = CanFrame {
-    id: 0,
-    extended: false,
-    remote: false,
-    dlc: 8,
-    data: [0; 8],
-};
+const ROGUE_FRAME: CanFrame = CanFrame::with_data(0, [0; 8]);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Node {

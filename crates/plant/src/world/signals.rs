@@ -201,6 +201,13 @@ impl World {
         &self.signal_names
     }
 
+    /// Present value of one signal, or `None` if there is none of that name.
+    pub fn signal(&self, name: &str) -> Option<f64> {
+        signals(self.playback.is_some())
+            .find(|(known, _)| *known == name)
+            .map(|(_, read)| read(self))
+    }
+
     /// Present value of every signal, in the order of `signal_names`; replaces what `out` held.
     pub fn sample(&self, out: &mut Vec<f64>) {
         out.clear();

@@ -1,9 +1,10 @@
 //! An offset of many °/s from the first sample on, as if no calibration had taken it out.
 
+use robot_test_support::{Vector, norm, scale};
+
 use crate::{
     figures::Figures,
     motion::{Motion, carried_rate_dps, window},
-    rotation::{Vector, norm, scale},
     run::Run,
     sensors::Sensors,
 };

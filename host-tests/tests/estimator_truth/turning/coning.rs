@@ -1,14 +1,9 @@
 //! An axis that goes round on a cone: no net turn, but every gyro axis shows a rate all the time.
 
+use robot_test_support::{Rotation, Vector};
 use std::f64::consts::TAU;
 
-use crate::{
-    figures::Figures,
-    motion::Motion,
-    rotation::{Rotation, Vector},
-    run::Run,
-    sensors::Sensors,
-};
+use crate::{figures::Figures, motion::Motion, run::Run, sensors::Sensors};
 
 /// Tilted by `half_angle_rad` about a level axis that goes round at `rate_rps`.
 fn attitude(half_angle_rad: f64, rate_rps: f64, t: f64) -> Rotation {

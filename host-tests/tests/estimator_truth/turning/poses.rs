@@ -1,11 +1,11 @@
 //! Poses that break angles: vertical, upside down, half turns; and waking up in any of them.
 
+use robot_test_support::{Rotation, Vector};
 use std::f64::consts::TAU;
 
 use crate::{
     figures::Figures,
     motion::{Motion, window},
-    rotation::{Rotation, Vector},
     run::Run,
     sensors::Sensors,
 };

@@ -1,9 +1,10 @@
 //! Round and round, past ±π, up to the end of the gyro's range.
 
+use robot_test_support::{Rotation, Vector, scale};
+
 use crate::{
     figures::Figures,
     motion::{Motion, window},
-    rotation::{Rotation, Vector, scale},
     run::Run,
     sensors::Sensors,
 };

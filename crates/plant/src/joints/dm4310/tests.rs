@@ -26,13 +26,7 @@ fn bench() -> Bench {
 
 impl Bench {
     fn send(&mut self, id: u32, data: [u8; 8]) -> Reception {
-        let frame = CanFrame {
-            id,
-            extended: false,
-            remote: false,
-            dlc: 8,
-            data,
-        };
+        let frame = CanFrame::with_data(id, data);
         self.motor.receive(&frame, self.shaft, self.now)
     }
 

@@ -39,13 +39,7 @@ fn bench() -> Bench {
 
 impl Bench {
     fn ask(&mut self, id: u32, data: [u8; 8]) -> Option<[u8; 8]> {
-        let frame = CanFrame {
-            id,
-            extended: false,
-            remote: false,
-            dlc: 8,
-            data,
-        };
+        let frame = CanFrame::with_data(id, data);
         if self.motor.receive(&frame, self.shaft, self.now) != Reception::Accepted {
             return None;
         }
@@ -203,13 +197,7 @@ fn another_motors_frames_and_services_beyond_the_model_are_told_apart() {
     let mut bench = bench();
     assert_eq!(bench.ask(2, ENABLE), None);
     assert_eq!(bench.ask(0x303, ENABLE), None);
-    let rename = CanFrame {
-        id: 3,
-        extended: false,
-        remote: false,
-        dlc: 8,
-        data: [0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x05, 0xFA],
-    };
+    let rename = CanFrame::with_data(3, [0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x05, 0xFA]);
     let heard = bench.motor.receive(&rename, bench.shaft, bench.now);
     assert!(matches!(heard, Reception::NotModelled(_)));
 }
