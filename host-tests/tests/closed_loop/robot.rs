@@ -177,7 +177,8 @@ impl Robot {
     fn receive_can(&mut self) {
         let now_us = self.now_us();
         self.world.take_frames(self.now, |bus, frame| {
-            self.control.on_can_frame(bus, frame, now_us, &self.diagnostics);
+            self.control
+                .on_can_frame(bus, frame, now_us, &self.diagnostics);
         });
     }
 
