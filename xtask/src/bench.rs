@@ -3,16 +3,16 @@
 use std::process::{Command, ExitCode};
 
 use crate::{
+    emulator,
     firmware::{self, Parts},
     host_program, job,
     passed_on::PassedOn,
-    prerequisites::{self, EMULATOR},
     tool,
 };
 
 /// Builds what is out of date and runs the bench on it; its exit code becomes ours.
 pub fn run(args: &PassedOn) -> anyhow::Result<ExitCode> {
-    prerequisites::ensure(&EMULATOR)?;
+    emulator::ensure_buildable()?;
     let (build, path) = host_program::build("robot-bench", "bench")?;
     let mut jobs = vec![build];
     let mut command = Command::new(path);

@@ -2,6 +2,8 @@
 
 use std::process::{Command, ExitCode};
 
+use anyhow::ensure;
+
 use crate::{
     firmware::{self, Parts},
     host_program, job,
@@ -10,12 +12,23 @@ use crate::{
     tool,
 };
 
+/// Its CPU core is C that nobody has built for Windows.
+pub const IS_BUILT_HERE: bool = !cfg!(windows);
+pub const NOT_BUILT_HERE: &str = "the emulated board is not built on Windows: run it in WSL, where \
+    all commands work as on Linux (docs/platforms.md)";
+
 /// With any of these no image is built: one is named, or none is run.
 const WITHOUT_IMAGE: [&str; 4] = ["--elf", "--help", "-h", "--list-faults"];
 
+/// Installs what the emulator's CPU core takes; fails where it cannot be built.
+pub fn ensure_buildable() -> anyhow::Result<()> {
+    ensure!(IS_BUILT_HERE, NOT_BUILT_HERE);
+    prerequisites::ensure(&EMULATOR)
+}
+
 /// Builds what is out of date and runs `program` on the image; its exit code becomes ours.
 pub fn run(program: &str, args: &PassedOn) -> anyhow::Result<ExitCode> {
-    prerequisites::ensure(&EMULATOR)?;
+    ensure_buildable()?;
     let (build_emulator, path) = host_program::build("robot-sim", program)?;
     let mut jobs = vec![build_emulator];
     let mut command = Command::new(path);

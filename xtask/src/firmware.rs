@@ -9,7 +9,7 @@ use anyhow::Context;
 
 use crate::{
     job::Job,
-    tool,
+    tool, toolchain,
     workspace::{self, BOARD},
 };
 
@@ -115,29 +115,40 @@ fn cargo() -> anyhow::Result<Command> {
     }
 }
 
-/// Clippy over the image and the filters' programs; `None` if the toolchain of `rust-toolchain.toml` lacks the target.
+/// Clippy over the image and the filters' programs; `None` if the compiler of `rust-toolchain.toml` lacks the target.
 pub fn clippy() -> Option<Command> {
-    rustup_has_target().then(|| {
+    let mut command = over_programs("clippy")?;
+    command.args(["--", "-D", "warnings"]);
+    Some(command)
+}
+
+/// The documentation of the same; a broken link is an error.
+pub fn docs() -> Option<Command> {
+    let mut command = over_programs("doc")?;
+    command.args(["--no-deps", "--document-private-items"]);
+    command.env("RUSTDOCFLAGS", tool::RUSTDOC_FLAGS);
+    Some(command)
+}
+
+/// Shares the dependencies that clippy has checked.
+fn over_programs(what: &str) -> Option<Command> {
+    toolchain::has(BOARD).then(|| {
         let mut command = tool::cargo();
-        command.args(["clippy", "--release", "--package", PACKAGE]);
+        command.args([what, "--release", "--package", PACKAGE]);
         command.args(["--package", FILTERS, "--features"]);
         command.arg(format!("{FILTERS}/board"));
         command.args(["--target", BOARD, "--target-dir"]);
         command.arg(Parts::DEFAULT.target_dir());
-        command.args(["--", "-D", "warnings"]);
         command
     })
 }
 
 fn compiler() -> anyhow::Result<Compiler> {
-    if rustup_has_target() {
+    if toolchain::has(BOARD) {
         return Ok(Compiler::Rustup);
     }
     if !distribution::is_installed() {
-        eprintln!("fetching the core library for {BOARD} with rustup");
-        let mut add = tool::command("rustup");
-        add.args(["target", "add", BOARD]);
-        if tool::succeeds(add) && rustup_has_target() {
+        if toolchain::add(BOARD) {
             return Ok(Compiler::Rustup);
         }
         distribution::install().with_context(|| {
@@ -148,10 +159,4 @@ fn compiler() -> anyhow::Result<Compiler> {
         })?;
     }
     Ok(Compiler::Distribution)
-}
-
-fn rustup_has_target() -> bool {
-    let mut rustc = tool::command("rustc");
-    rustc.args(["--print", "target-libdir", "--target", BOARD]);
-    tool::printed_by(rustc).is_ok_and(|dir| PathBuf::from(dir).is_dir())
 }

@@ -1,6 +1,6 @@
 //! Programs of the workspace that run on this machine.
 
-use std::path::PathBuf;
+use std::{env::consts::EXE_SUFFIX, path::PathBuf};
 
 use crate::{job::Job, tool, workspace};
 
@@ -16,7 +16,7 @@ pub fn build(package: &str, program: &str) -> anyhow::Result<(Job, PathBuf)> {
     let path = workspace::host_target_dir()
         .join(&host)
         .join(HOST_PROFILE)
-        .join(program);
+        .join(format!("{program}{EXE_SUFFIX}"));
     let job = Job {
         name: package.to_owned(),
         command,

@@ -160,22 +160,29 @@ impl Status {
 mod tests {
     use super::*;
 
-    fn job(name: &str, program: &str, argument: &str) -> Job {
+    fn job(name: &str, program: &str, arguments: &[&str]) -> Job {
         let mut command = Command::new(program);
-        command.arg(argument);
+        command.args(arguments);
         Job {
             name: name.to_owned(),
             command,
         }
     }
 
+    /// A program of this system that does not end by itself.
+    const ENDLESS: (&str, &[&str]) = if cfg!(windows) {
+        ("ping", &["-t", "localhost"])
+    } else {
+        ("sleep", &["1000"])
+    };
+
     #[test]
     fn one_failure_ends_the_others_and_is_named() {
         let jobs = vec![
-            job("test-endless", "sleep", "1000"),
-            job("test-broken", "ls", "/no/such/file"),
+            job("test-endless", ENDLESS.0, ENDLESS.1),
+            job("test-broken", "rustc", &["no-such-file.rs"]),
         ];
-        let error = run_all(jobs).expect_err("ls fails");
+        let error = run_all(jobs).expect_err("rustc fails");
         assert!(error.to_string().contains("test-broken"), "{error}");
     }
 }

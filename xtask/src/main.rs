@@ -11,6 +11,7 @@ mod prerequisites;
 mod replay;
 mod test;
 mod tool;
+mod toolchain;
 mod workspace;
 
 use std::process::ExitCode;

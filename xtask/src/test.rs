@@ -1,7 +1,9 @@
 //! `cargo xtask test`: everything CI runs. One failed step does not hide the next.
 
+mod host;
 mod steps;
 mod totals;
+mod windows;
 
 use std::{process::ExitCode, time::Instant};
 

@@ -30,6 +30,9 @@ fn is_leftover(name: &str) -> bool {
         || name.starts_with("DEP_")
 }
 
+/// A public item may name a private one: readers of these pages see both.
+pub const RUSTDOC_FLAGS: &str = "-D warnings -A rustdoc::private_intra_doc_links";
+
 /// `program` in the repository root, without leftovers of the cargo that started us.
 pub fn command(program: impl AsRef<OsStr>) -> Command {
     let mut command = Command::new(program);

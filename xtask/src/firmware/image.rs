@@ -2,7 +2,7 @@
 
 use std::{fs, ops::Range, path::Path};
 
-use anyhow::Context;
+use anyhow::{Context, bail, ensure};
 use object::{
     Object, ObjectSection, ObjectSegment, ObjectSymbol,
     elf::{FileHeader32, PT_LOAD},
@@ -56,7 +56,7 @@ struct Section {
 pub struct Check {
     pub name: &'static str,
     /// What was found, or what is wrong.
-    pub outcome: Result<String, String>,
+    pub outcome: anyhow::Result<String>,
 }
 
 impl Image {
@@ -105,12 +105,12 @@ impl Image {
         ]
     }
 
-    fn flash_budget(&self) -> Result<String, String> {
+    fn flash_budget(&self) -> anyhow::Result<String> {
         let used = self.programmed.iter().map(length).sum();
         within(used, FLASH_BUDGET_BYTES)
     }
 
-    fn ram_budget(&self) -> Result<String, String> {
+    fn ram_budget(&self) -> anyhow::Result<String> {
         let in_sram = |section: &&Section| SRAM.contains(&section.range.start);
         let sections = self.sections.iter().filter(in_sram);
         within(
@@ -119,66 +119,56 @@ impl Image {
         )
     }
 
-    fn vector_table(&self) -> Result<String, String> {
+    fn vector_table(&self) -> anyhow::Result<String> {
         let table = self.section(".vector_table")?;
         if table.start != SECTOR_0.start || table.end > SECTOR_0.end {
-            return Err(format!("it lies at {}", shown(table)));
+            bail!("it lies at {}", shown(table));
         }
-        let [stack, reset] = self.reset_words.ok_or("it has no contents")?;
+        let [stack, reset] = self.reset_words.context("it has no contents")?;
         if u64::from(stack) != CCM.end {
-            return Err(format!(
-                "the stack starts at {stack:#010x}, not at the top of CCM"
-            ));
+            bail!("the stack starts at {stack:#010x}, not at the top of CCM");
         }
         let text = self.section(".text")?;
         let is_thumb = reset % 2 == 1;
         if !is_thumb || !text.contains(&u64::from(reset)) {
-            return Err(format!(
-                "reset goes to {reset:#010x}, which is not in .text"
-            ));
+            bail!("reset goes to {reset:#010x}, which is not in .text");
         }
         Ok(shown(table))
     }
 
-    fn code_start(&self) -> Result<String, String> {
+    fn code_start(&self) -> anyhow::Result<String> {
         let text = self.section(".text")?;
-        if text.start == CODE_START {
-            Ok(shown(text))
-        } else {
-            Err(format!(".text lies at {}", shown(text)))
-        }
+        ensure!(text.start == CODE_START, ".text lies at {}", shown(text));
+        Ok(shown(text))
     }
 
-    fn parameters_free(&self) -> Result<String, String> {
+    fn parameters_free(&self) -> anyhow::Result<String> {
         let overlaps =
             |range: &&Range<u64>| range.start < PARAMETERS.end && PARAMETERS.start < range.end;
         match self.programmed.iter().find(overlaps) {
             None => Ok(shown(&PARAMETERS)),
-            Some(range) => Err(format!("the image programs {}", shown(range))),
+            Some(range) => bail!("the image programs {}", shown(range)),
         }
     }
 
-    fn absent(&self, what: &str, is_unwanted: fn(&str) -> bool) -> Result<String, String> {
+    fn absent(&self, what: &str, is_unwanted: fn(&str) -> bool) -> anyhow::Result<String> {
         let found: Vec<_> = self
             .symbols
             .iter()
             .map(String::as_str)
             .filter(|name| is_unwanted(name))
             .collect();
-        if self.symbols.is_empty() {
-            Err("the image has no symbols to look at".to_owned())
-        } else if found.is_empty() {
-            Ok(format!("none of {} symbols", self.symbols.len()))
-        } else {
-            Err(format!("{what} symbols: {}", found.join(", ")))
-        }
+        let count = self.symbols.len();
+        ensure!(count > 0, "the image has no symbols to look at");
+        ensure!(found.is_empty(), "{what} symbols: {}", found.join(", "));
+        Ok(format!("none of {count} symbols"))
     }
 
-    fn section(&self, name: &str) -> Result<&Range<u64>, String> {
+    fn section(&self, name: &str) -> anyhow::Result<&Range<u64>> {
         let found = self.sections.iter().find(|section| section.name == name);
         found
             .map(|section| &section.range)
-            .ok_or_else(|| format!("there is no section {name}"))
+            .with_context(|| format!("there is no section {name}"))
     }
 }
 
@@ -235,9 +225,10 @@ fn is_soft_double(name: &str) -> bool {
             .any(|prefix| name.starts_with(prefix))
 }
 
-fn within(used: u64, budget: u64) -> Result<String, String> {
+fn within(used: u64, budget: u64) -> anyhow::Result<String> {
     let text = format!("{used} of {budget} bytes");
-    if used <= budget { Ok(text) } else { Err(text) }
+    ensure!(used <= budget, text);
+    Ok(text)
 }
 
 fn length(range: &Range<u64>) -> u64 {

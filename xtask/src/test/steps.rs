@@ -1,56 +1,67 @@
 //! What is tested, in the order of what fails quickest.
 
-use std::{env, path::Path, process::Command};
+use std::{path::Path, process::Command};
 
-use super::totals::{self, Totals};
+use super::{
+    host::{self, Images},
+    totals::{self, Totals},
+    windows,
+};
 use crate::{
+    emulator,
     firmware::{self, Parts, image::Image},
-    host_program::HOST_PROFILE,
     job,
     prerequisites::{self, EMULATOR},
-    tool, workspace,
+    tool,
+    workspace::BOARD,
 };
-
-const FIRMWARE: &str = "robot-firmware";
-/// Packages whose tests need images: the emulated board, and what counts in it.
-const EMULATED: [&str; 2] = ["robot-sim", "robot-bench"];
 
 pub struct Step {
     pub name: &'static str,
     pub run: Box<dyn FnOnce() -> anyhow::Result<Totals>>,
 }
 
-/// All steps. Packages are installed before, so that no step fails for the want of one.
+/// Returns all steps. Packages are installed before, so that no step fails for the want of one.
 pub fn all() -> anyhow::Result<Vec<Step>> {
-    prerequisites::ensure(&EMULATOR)?;
+    if emulator::IS_BUILT_HERE {
+        prerequisites::ensure(&EMULATOR)?;
+    }
     let host = tool::host_triple()?;
     let (build, elf) = firmware::build(&Parts::DEFAULT)?;
     let (build_other, elf_other) = firmware::build(&Parts::OTHER)?;
     let (build_filters, filters) = firmware::build_filters()?;
-    let (checked, booted) = (elf.clone(), elf);
-    let mut steps = vec![
-        of_command("format", cargo(&["fmt", "--all", "--check"])),
+    let emulator_tests = host::emulator_tests(
+        &host,
+        &Images {
+            default: &elf,
+            other: &elf_other,
+            filters: &filters,
+        },
+    );
+    Ok(vec![
+        of_command("format", format()),
         step("dependencies", check_dependencies),
-        of_command("clippy, host", clippy_host(&host)),
+        of_command("clippy, host", host::clippy(&host)),
+        of_command("docs, host", host::docs(&host)),
+        step("check for Windows", windows::check),
         step("build the images", move || {
             job::run_all(vec![build, build_other, build_filters]).map(|()| Totals::PASSED)
         }),
-        step("clippy, firmware", || match firmware::clippy() {
-            Some(command) => totals::of_command(command),
-            None => {
-                println!("skipped: rustup has no {} here", workspace::BOARD);
+        step("clippy, firmware", || on_the_board(firmware::clippy())),
+        step("docs, firmware", || on_the_board(firmware::docs())),
+        step("image checks", move || check_image(&elf)),
+        of_runner("host tests", host::tests(&host)),
+        of_runner("examples in docs", host::examples(&host)),
+        of_runner("loom", host::loom(&host)),
+        step("emulator tests", move || {
+            if emulator::IS_BUILT_HERE {
+                totals::of_test_runner(emulator_tests)
+            } else {
+                println!("skipped: {}", emulator::NOT_BUILT_HERE);
                 Ok(Totals::SKIPPED)
             }
         }),
-        step("image checks", move || check_image(&checked)),
-    ];
-    let host_tests = test_host(&host);
-    let loom = loom(&host);
-    let emulator_tests = test_emulator(&host, &booted, &elf_other, &filters);
-    steps.push(of_runner("host tests", host_tests));
-    steps.push(of_runner("loom", loom));
-    steps.push(of_runner("emulator tests", emulator_tests));
-    Ok(steps)
+    ])
 }
 
 fn step(name: &'static str, run: impl FnOnce() -> anyhow::Result<Totals> + 'static) -> Step {
@@ -68,9 +79,9 @@ fn of_runner(name: &'static str, command: Command) -> Step {
     step(name, || totals::of_test_runner(command))
 }
 
-fn cargo(arguments: &[&str]) -> Command {
+fn format() -> Command {
     let mut command = tool::cargo();
-    command.args(arguments);
+    command.args(["fmt", "--all", "--check"]);
     command
 }
 
@@ -80,94 +91,27 @@ fn check_dependencies() -> anyhow::Result<Totals> {
         println!("skipped: no cargo-deny here (cargo install cargo-deny --locked)");
         return Ok(Totals::SKIPPED);
     }
-    totals::of_command(cargo(&[
+    let mut command = tool::cargo();
+    command.args([
         "deny",
         "--workspace",
         "check",
         "licenses",
         "bans",
         "sources",
-    ]))
-}
-
-fn clippy_host(host: &str) -> Command {
-    cargo(&[
-        "clippy",
-        "--workspace",
-        "--exclude",
-        FIRMWARE,
-        "--all-targets",
-        "--profile",
-        HOST_PROFILE,
-        "--target",
-        host,
-        "--",
-        "-D",
-        "warnings",
-    ])
-}
-
-fn test_host(host: &str) -> Command {
-    cargo(&[
-        "test",
-        "--workspace",
-        "--exclude",
-        FIRMWARE,
-        "--exclude",
-        EMULATED[0],
-        "--exclude",
-        EMULATED[1],
-        "--profile",
-        HOST_PROFILE,
-        "--target",
-        host,
-        "--no-fail-fast",
-        "--",
-        "--show-output",
-    ])
-}
-
-fn test_emulator(host: &str, elf: &Path, elf_other: &Path, filters: &Path) -> Command {
-    let mut command = cargo(&[
-        "test",
-        "--package",
-        EMULATED[0],
-        "--package",
-        EMULATED[1],
-        "--profile",
-        HOST_PROFILE,
-        "--target",
-        host,
-        "--no-fail-fast",
-        "--",
-        "--show-output",
     ]);
-    command.env("ROBOT_ELF", elf);
-    command.env("ROBOT_ELF_DBUS_RS00", elf_other);
-    command.env("ROBOT_FILTERS", filters);
-    command
+    totals::of_command(command)
 }
 
-/// Loom replaces the atomics of the snapshot by modelled ones, so everything is built apart.
-fn loom(host: &str) -> Command {
-    let mut flags = env::var("RUSTFLAGS").unwrap_or_default();
-    flags.push_str(" --cfg loom");
-    let mut command = cargo(&[
-        "test",
-        "--package",
-        "robot-snapshot",
-        "--test",
-        "loom",
-        "--profile",
-        HOST_PROFILE,
-        "--target",
-        host,
-        "--target-dir",
-    ]);
-    command.arg(workspace::host_target_dir().join("loom"));
-    command.args(["--", "--show-output"]);
-    command.env("RUSTFLAGS", flags.trim());
-    command
+/// Skipped without a command: then the compiler of `rust-toolchain.toml` lacks the target.
+fn on_the_board(command: Option<Command>) -> anyhow::Result<Totals> {
+    match command {
+        Some(command) => totals::of_command(command),
+        None => {
+            println!("skipped: rustup has no {BOARD} here");
+            Ok(Totals::SKIPPED)
+        }
+    }
 }
 
 fn check_image(elf: &Path) -> anyhow::Result<Totals> {
@@ -175,7 +119,7 @@ fn check_image(elf: &Path) -> anyhow::Result<Totals> {
     for check in Image::read(elf)?.checks() {
         let (verdict, found, totals) = match check.outcome {
             Ok(found) => ("ok", found, Totals::PASSED),
-            Err(wrong) => ("FAILED", wrong, Totals::FAILED),
+            Err(error) => ("FAILED", format!("{error:#}"), Totals::FAILED),
         };
         println!("{:<30} {verdict:<7} {found}", check.name);
         sum += totals;

@@ -187,15 +187,21 @@ test result: FAILED. 0 passed; 1 failed; 0 ignored; 0 measured; 0 filtered out; 
         assert!(!shown.contains(&"noise"));
     }
 
+    fn failing() -> Command {
+        let mut command = Command::new("rustc");
+        command.arg("no-such-file.rs").stderr(Stdio::null());
+        command
+    }
+
     #[test]
     fn a_failing_command_is_one_failure() {
-        let totals = of_command(Command::new("false")).expect("it starts");
+        let totals = of_command(failing()).expect("it starts");
         assert_eq!(totals, Totals::FAILED);
     }
 
     #[test]
     fn a_runner_that_dies_without_a_count_is_one_failure() {
-        let totals = of_test_runner(Command::new("false")).expect("it starts");
+        let totals = of_test_runner(failing()).expect("it starts");
         assert_eq!(totals, Totals::FAILED);
     }
 }

@@ -174,7 +174,7 @@ fn exact_32(id: u32) -> Filter {
     Filter { id, mask: !1 }
 }
 
-/// STDID, RTR, IDE, EXID[17:15] of a 16-bit filter at their places in the 32-bit layout.
+/// STDID, RTR, IDE, EXID bits 17 to 15 of a 16-bit filter at their places in the 32-bit layout.
 fn spread_16(half: u16) -> u32 {
     let half = u32::from(half);
     half >> 5 << 21 | (half >> 4 & 1) << 1 | (half >> 3 & 1) << 2 | (half & 7) << 18

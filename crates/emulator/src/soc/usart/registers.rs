@@ -40,7 +40,7 @@ pub mod cr3 {
     pub const MODELLED: u32 = EIE | DMAR | DMAT | ONEBIT;
 }
 
-/// STOP[13:12]: whole stop bits only.
+/// STOP, bits 13 and 12: whole stop bits only.
 const CR2_MODELLED: u32 = 1 << 13;
 
 /// The bits of a write that ask for something the model lacks (LIN, smartcard, IrDA, mute mode, flow control …).

@@ -1,0 +1,92 @@
+//! Cargo commands over all packages that run on this machine.
+
+use std::{env, path::Path, process::Command};
+
+use crate::{emulator, host_program::HOST_PROFILE, tool, workspace};
+
+const FIRMWARE: &str = "robot-firmware";
+/// Packages that are built on the emulator's CPU core.
+const ON_THE_CORE: [&str; 3] = ["robot-emulator", "robot-sim", "robot-bench"];
+/// Packages whose tests need images: the emulated board, and what counts in it.
+const EMULATED: [&str; 2] = ["robot-sim", "robot-bench"];
+
+/// Images that the tests of the emulated board boot.
+pub struct Images<'a> {
+    pub default: &'a Path,
+    /// For a DBUS receiver and RS00 joints.
+    pub other: &'a Path,
+    /// Folder of the filters' programs.
+    pub filters: &'a Path,
+}
+
+pub fn clippy(host: &str) -> Command {
+    let mut command = over_workspace("clippy", host, &[]);
+    command.args(["--all-targets", "--", "-D", "warnings"]);
+    command
+}
+
+/// The documentation of public and private items; a broken link is an error.
+pub fn docs(host: &str) -> Command {
+    let mut command = over_workspace("doc", host, &[]);
+    command.args(["--no-deps", "--document-private-items"]);
+    command.env("RUSTDOCFLAGS", tool::RUSTDOC_FLAGS);
+    command
+}
+
+/// The examples in doc comments.
+pub fn examples(host: &str) -> Command {
+    let mut command = over_workspace("test", host, &[]);
+    command.args(["--doc", "--no-fail-fast", "--", "--show-output"]);
+    command
+}
+
+/// All tests that need no image.
+pub fn tests(host: &str) -> Command {
+    let mut command = over_workspace("test", host, &EMULATED);
+    command.args(["--tests", "--no-fail-fast", "--", "--show-output"]);
+    command
+}
+
+/// The tests that need images.
+pub fn emulator_tests(host: &str, images: &Images<'_>) -> Command {
+    let mut command = tool::cargo();
+    command.arg("test");
+    for package in EMULATED {
+        command.args(["--package", package]);
+    }
+    command.args(["--profile", HOST_PROFILE, "--target", host]);
+    command.args(["--tests", "--no-fail-fast", "--", "--show-output"]);
+    command.env("ROBOT_ELF", images.default);
+    command.env("ROBOT_ELF_DBUS_RS00", images.other);
+    command.env("ROBOT_FILTERS", images.filters);
+    command
+}
+
+/// Loom replaces the atomics of the snapshot by modelled ones, so everything is built apart.
+pub fn loom(host: &str) -> Command {
+    let mut flags = env::var("RUSTFLAGS").unwrap_or_default();
+    flags.push_str(" --cfg loom");
+    let mut command = tool::cargo();
+    command.args(["test", "--package", "robot-snapshot", "--test", "loom"]);
+    command.args(["--profile", HOST_PROFILE, "--target", host, "--target-dir"]);
+    command.arg(workspace::host_target_dir().join("loom"));
+    command.args(["--", "--show-output"]);
+    command.env("RUSTFLAGS", flags.trim());
+    command
+}
+
+/// `cargo WHAT` over all packages of this machine but those `left_out`.
+fn over_workspace(what: &str, host: &str, left_out: &[&str]) -> Command {
+    let mut command = tool::cargo();
+    command.args([what, "--workspace", "--exclude", FIRMWARE]);
+    let missing: &[&str] = if emulator::IS_BUILT_HERE {
+        &[]
+    } else {
+        &ON_THE_CORE
+    };
+    for package in missing.iter().chain(left_out) {
+        command.args(["--exclude", package]);
+    }
+    command.args(["--profile", HOST_PROFILE, "--target", host]);
+    command
+}

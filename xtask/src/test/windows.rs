@@ -1,0 +1,41 @@
+//! Whether the tools and the host tests still compile for Windows, seen from any machine.
+
+use std::process::Command;
+
+use super::totals::{self, Totals};
+use crate::{host_program::HOST_PROFILE, tool, toolchain};
+
+/// The target that needs no Microsoft compiler: its core library alone is enough to check code.
+const TARGET: &str = "x86_64-pc-windows-gnu";
+/// What works on Windows (docs/platforms.md).
+const PACKAGES: [&str; 8] = [
+    "robotctl",
+    "robot-replay",
+    "robot-chart",
+    "robot-app",
+    "robot-plant",
+    "robot-snapshot",
+    "robot-host-tests",
+    "xtask",
+];
+
+/// Runs `cargo check` with tests; skipped where rustup cannot fetch the target.
+pub fn check() -> anyhow::Result<Totals> {
+    if toolchain::add(TARGET) {
+        return totals::of_command(command());
+    }
+    println!("skipped: rustup cannot fetch {TARGET} here");
+    Ok(Totals::SKIPPED)
+}
+
+fn command() -> Command {
+    let mut command = tool::cargo();
+    command.args(["check", "--all-targets", "--profile", HOST_PROFILE]);
+    command.args(["--target", TARGET]);
+    for package in PACKAGES {
+        command.args(["--package", package]);
+    }
+    // Code that only Windows leaves unused is a warning nowhere else.
+    command.env("RUSTFLAGS", "-D warnings");
+    command
+}
