@@ -10,13 +10,13 @@ use cortex_m_rt::{ExceptionFrame, exception};
 use embassy_stm32::pac::can::Can;
 use embassy_stm32::pac::{CAN1, CAN2, RCC};
 use panic_probe as _;
-use robot_app::domain::{BusId, CanFrame, LastWords};
+use robot_app::domain::{BusId, CanFrame, CrashCause};
 
 use crate::board;
 use crate::config::SAFE_FRAMES;
+use crate::crash_record;
 use crate::drivers::can::transmit::{self, MailboxesFull};
 use crate::drivers::debug_probe;
-use crate::last_words;
 
 /// Register reads to wait for the mailboxes, about 0.5 ms: a frame takes at most 0.14 ms.
 const MAILBOX_POLLS: u32 = 6_000;
@@ -58,10 +58,10 @@ extern "C" fn hard_fault(frame: *const ExceptionFrame) -> ! {
     stop_everything();
     let frame = stacked_frame(frame);
     let panicked = frame.is_some_and(is_panic);
-    let is_first = leave_last_words(if panicked {
-        LastWords::Panic
+    let is_first = write_crash_record(if panicked {
+        CrashCause::Panic
     } else {
-        LastWords::HardFault
+        CrashCause::HardFault
     });
     if is_first && !panicked {
         match frame {
@@ -116,7 +116,7 @@ fn stacked_frame(frame: *const ExceptionFrame) -> Option<&'static ExceptionFrame
 #[exception]
 unsafe fn DefaultHandler(irq: i16) -> ! {
     stop_everything();
-    if leave_last_words(LastWords::UnexpectedInterrupt) {
+    if write_crash_record(CrashCause::UnexpectedInterrupt) {
         defmt::error!("unexpected exception or interrupt {=i16}", irq);
     }
     stay_safe_until_reset()
@@ -133,13 +133,13 @@ fn stop_everything() {
 
 /// Leaves `words` for the next run. False if this run has failed before: a fault on the way to the reset keeps the
 /// first words.
-fn leave_last_words(words: LastWords) -> bool {
+fn write_crash_record(words: CrashCause) -> bool {
     static HAS_FAILED: AtomicBool = AtomicBool::new(false);
     if HAS_FAILED.swap(true, Ordering::Relaxed) {
         return false;
     }
     // SAFETY: a fault handler, and interrupts are disabled until the reset.
-    unsafe { last_words::leave(words) };
+    unsafe { crash_record::write(words) };
     true
 }
 

@@ -17,6 +17,7 @@
 
 mod board;
 mod config;
+mod crash_record;
 mod deadlines;
 mod debugger_view;
 mod drivers;
@@ -24,25 +25,24 @@ mod exchange;
 mod executors;
 mod fault;
 mod isr_cell;
-mod last_words;
 mod stall;
 mod tasks;
 
 use defmt_rtt as _;
 use embassy_executor::{Executor, Spawner};
 use embassy_time::{Duration, Instant};
-use robot_app::domain::{LastWords, ResetCause, RobotConfig};
+use robot_app::domain::{CrashCause, ResetCause, RobotConfig};
 use robot_app::params::ParamService;
 use static_cell::StaticCell;
 
 use board::Board;
+use crash_record::LastRun;
 use drivers::can::CanPort;
 use drivers::debug_probe;
 use drivers::param_flash::ParamFlash;
 use drivers::reset_cause;
 use drivers::watchdog::Watchdog;
 use exchange::Exchange;
-use last_words::LastRun;
 use tasks::control::ControlContext;
 
 /// A bus is idle for 11 bits within one frame time of at most 0.14 ms; a dead bus must not stop the boot.
@@ -56,7 +56,7 @@ fn main() -> ! {
     let last_run = LastRun {
         reset_cause: reset_cause::take(),
         // SAFETY: nothing else runs yet.
-        last_words: unsafe { last_words::take() },
+        last_words: unsafe { crash_record::take() },
     };
     let peripherals = embassy_stm32::init(board::clocks());
     let board = Board::start(peripherals, config::REMOTE_FORMAT);
@@ -158,10 +158,10 @@ fn log_boot(last_run: LastRun) {
         last_words,
     } = last_run;
     match (reset_cause, last_words) {
-        (ResetCause::IndependentWatchdog, LastWords::Silent) => {
+        (ResetCause::IndependentWatchdog, CrashCause::Silent) => {
             defmt::error!("boot, reset by watchdog: the control tick hung");
         }
-        (cause, LastWords::Silent) => defmt::info!("boot, reset cause {}", cause),
+        (cause, CrashCause::Silent) => defmt::info!("boot, reset cause {}", cause),
         (cause, words) => defmt::error!("boot, reset cause {}: {}", cause, words),
     }
 }

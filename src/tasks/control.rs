@@ -9,6 +9,7 @@ use robot_app::tick::{ControlInputs, ControlOutputs, DIAGNOSTICS_PERIOD_TICKS, R
 use robot_snapshot::{Follower, Writer};
 
 use crate::config::LAYOUT;
+use crate::crash_record::{self, LastRun};
 use crate::deadlines;
 use crate::drivers::can::CanPort;
 use crate::drivers::cycle_jitter::CycleJitter;
@@ -18,7 +19,6 @@ use crate::exchange::{
     ConfigUpdate, ControlWriters, Exchange, FlashPermission, ImuReport, MagReport, ParamsReport,
     RADIO_LINE,
 };
-use crate::last_words::{self, LastRun};
 use crate::stall::{StallWatch, SteadyTicker};
 
 const PERIOD: Duration = Duration::from_hz(1_000);
@@ -244,8 +244,8 @@ fn renew_late_tasks(noted: &mut LateTasks, now_us: u64) {
     }
     *noted = late;
     // SAFETY: called by the control tick alone.
-    unsafe { last_words::leave(late.last_words()) };
+    unsafe { crash_record::write(late.crash_cause()) };
     if late.any() {
-        defmt::error!("{}, waiting for the watchdog", late.last_words());
+        defmt::error!("{}, waiting for the watchdog", late.crash_cause());
     }
 }

@@ -1,12 +1,12 @@
-//! Types shared by all stages. Plain `repr(C)` data, so that a debugger or the emulator can read them by name.
+//! Types that all stages share. They are plain `repr(C)` data, so a debugger and the emulator can read them by name.
 
 mod can;
 mod command;
 mod config;
+mod crash_cause;
 mod estimate;
 mod health;
 mod imu_status;
-mod last_words;
 mod logic_bus;
 mod mounting;
 mod param_store;
@@ -23,6 +23,7 @@ pub use config::{
     HeaterConfig, ImuCalibration, JointConfig, JointControllerConfig, MagCalibration,
     MountingConfig, RobotConfig, SafetyConfig, WheelControllerConfig, WheelOdomConfig,
 };
+pub use crash_cause::{CrashCause, LateTasks};
 pub use estimate::StateEstimate;
 pub use health::{
     BusErrorState, BusHealth, DebugProbe, RadioLineHealth, ResetCause, SensorHealth, SystemHealth,
@@ -31,7 +32,6 @@ pub use imu_status::{
     CalibrationState, CalibrationStatus, GyroBufferStatus, HeaterState, HeaterStatus, ImuRejects,
     ImuStatus, Warmth,
 };
-pub use last_words::{LastWords, LateTasks};
 pub use logic_bus::LogicBus;
 pub use mounting::Orientation;
 pub use param_store::{FlashRequest, ParamError, ParamState, ParamStatus};
@@ -42,7 +42,8 @@ pub use sensors::{
 };
 pub use tuning_status::TuningStatus;
 
-/// Microseconds from `then_us` to `now_us`, saturating at both ends; a `then_us` of 0 means never and gives `u32::MAX`.
+/// Microseconds from `then_us` to `now_us`, saturating at both ends. A `then_us` of 0 means never and gives
+/// `u32::MAX`.
 pub fn age_us(then_us: u64, now_us: u64) -> u32 {
     if then_us == 0 {
         return u32::MAX;

@@ -1,8 +1,8 @@
-//! Settings that survive a power cut (docs/parameters.md).
+//! The parameter store: settings that survive a power cut (docs/parameters.md).
 
 mod checksum;
 mod record;
-mod saver;
+mod save_scheduler;
 mod sector;
 mod service;
 mod slot;

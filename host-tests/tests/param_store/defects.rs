@@ -15,7 +15,7 @@ const SECTOR_1: u32 = 0x0800_4000;
 const SECTOR_BYTES: u32 = 0x4000;
 
 /// Saves as the firmware does, which tries again after an error; gives how many there were.
-fn save_stubbornly(
+fn save_with_retries(
     store: &mut BootedStore,
     ledger: &mut Ledger,
     count: usize,
@@ -30,7 +30,7 @@ fn save_stubbornly(
                 ledger
                     .saved
                     .insert((record.id.key, record.id.variant), record);
-                return tidy_stubbornly(store, errors);
+                return tidy_with_retries(store, errors);
             }
             Ok(Progress::Worked) => {}
             Err(error) => errors.push(error),
@@ -40,7 +40,7 @@ fn save_stubbornly(
 }
 
 /// Some tries; a store may go on wanting an erase that never works.
-fn tidy_stubbornly(store: &mut BootedStore, errors: &mut Vec<ParamError>) {
+fn tidy_with_retries(store: &mut BootedStore, errors: &mut Vec<ParamError>) {
     for _ in 0..4 {
         if store.next(false) == FlashRequest::None {
             return;
@@ -61,7 +61,7 @@ fn use_for_long(chip: &mut FlashChip, contents: Contents) -> Vec<ParamError> {
         let mut store = Store::open(&mut *chip);
         for _ in 0..session {
             count += 1;
-            save_stubbornly(&mut store, &mut ledger, count, &mut errors);
+            save_with_retries(&mut store, &mut ledger, count, &mut errors);
         }
         let (store, found) = boot(chip).unwrap_or_else(|error| panic!("boot: {error:?}"));
         assert_eq!(store.report().lost_sectors, 0, "after {count}");
@@ -166,7 +166,7 @@ fn a_sector_that_takes_no_mark_is_not_erased_at_each_boot() {
         let erases = |chip: &FlashChip| PARAMETER_SECTORS.map(|sector| chip.erases(sector)).sum();
         let before: u32 = erases(&chip);
         for _ in 0..20 {
-            tidy_stubbornly(&mut Store::open(&mut chip), &mut Vec::new());
+            tidy_with_retries(&mut Store::open(&mut chip), &mut Vec::new());
         }
         assert!(erases(&chip) - before <= 2, "{sector}");
     }
@@ -198,7 +198,7 @@ fn with_no_erase_working_the_store_fills_up_and_stays_readable() {
     let mut store = Store::open(&mut chip);
     // The rest of this sector, and the one that is clean already.
     for count in 0..67 + 127 - 18 {
-        save_stubbornly(&mut store, &mut ledger, count, &mut Vec::new());
+        save_with_retries(&mut store, &mut ledger, count, &mut Vec::new());
     }
     for count in 0..20 {
         let failed = store.work(Some(&nth_save(7_000 + count)));

@@ -4,7 +4,7 @@ use super::{Strangers, TickStats};
 use crate::{
     bring_up::BringUpStatus,
     domain::{
-        BusHealth, ChassisCommand, DebugProbe, ImuStatus, LastWords, LateTasks, LogicBus,
+        BusHealth, ChassisCommand, CrashCause, DebugProbe, ImuStatus, LateTasks, LogicBus,
         OperatorState, ParamStatus, RadioLineHealth, RemoteDiagnostics, RemoteState, ResetCause,
         SensorHealth, SensorsSnapshot, StateEstimate, TuningStatus,
     },
@@ -40,7 +40,7 @@ pub struct DiagnosticsSnapshot {
     pub params: ParamStatus,
     pub battery_v: f32,
     /// Of the run before this one.
-    pub last_words: LastWords,
+    pub last_words: CrashCause,
     pub reset_cause: ResetCause,
     pub imu_calibrated: bool,
     pub debug_probe: DebugProbe,

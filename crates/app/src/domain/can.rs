@@ -5,20 +5,23 @@
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
 pub enum BusId {
+    /// CAN1.
     Can1 = 0,
+    /// CAN2.
     Can2 = 1,
 }
 
 impl BusId {
+    /// Both buses, by number.
     pub const ALL: [Self; 2] = [Self::Can1, Self::Can2];
 }
 
-/// Which bus each motor is on.
+/// The bus of each motor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MotorBuses {
-    /// Both wheels share one.
+    /// Both wheels share a bus.
     pub wheels: BusId,
-    /// In the order of `ChassisCommand`.
+    /// The joints' buses, in the order of `ChassisCommand`.
     pub joints: [BusId; 4],
 }
 
@@ -28,17 +31,18 @@ pub struct MotorBuses {
 pub struct StandardId(u16);
 
 impl StandardId {
-    /// `None` above 0x7FF.
+    /// Returns `None` above 0x7FF.
     pub const fn new(raw: u16) -> Option<Self> {
         if raw <= 0x7FF { Some(Self(raw)) } else { None }
     }
 
+    /// The identifier as a number.
     pub const fn raw(self) -> u16 {
         self.0
     }
 }
 
-/// A data frame with an 11-bit identifier. Whole words, because frames are copied all the time.
+/// A data frame with an 11-bit identifier. It is aligned to words, as frames are copied often.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C, align(4))]
@@ -54,7 +58,7 @@ impl CanFrame {
         Self { id, len: 8, data }
     }
 
-    /// `None` if `payload` is longer than eight bytes.
+    /// Returns `None` if `payload` is longer than eight bytes.
     pub fn from_payload(id: StandardId, payload: &[u8]) -> Option<Self> {
         let mut data = [0; 8];
         data.get_mut(..payload.len())?.copy_from_slice(payload);
@@ -62,6 +66,7 @@ impl CanFrame {
         Some(Self { id, len, data })
     }
 
+    /// The identifier.
     pub const fn id(&self) -> StandardId {
         self.id
     }
@@ -71,7 +76,7 @@ impl CanFrame {
         self.data.get(..usize::from(self.len)).unwrap_or(&self.data)
     }
 
-    /// The bytes on the wire, zeros after them.
+    /// The bytes on the wire, padded with zeros.
     pub const fn padded_payload(&self) -> [u8; 8] {
         self.data
     }

@@ -2,66 +2,72 @@
 
 use crate::math::scalar;
 
-/// What the pilot or a planner wants, normalised.
+/// A normalised drive command from the pilot or a planner.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct HighLevelCommand {
-    /// Forward, −1 … 1.
+    /// Forward, −1…1.
     pub vx: f32,
-    /// Turn, −1 … 1, counter-clockwise from above positive.
+    /// Turn, −1…1, counter-clockwise from above positive.
     pub wz: f32,
 }
 
-/// Current of one wheel motor in the motor's own sense (see `WheelFeedback`). As requested it may be anything, even NaN;
-/// only a [`MotorCurrent`] leaves the board.
+/// Current of one wheel motor in the motor's own direction (see `WheelFeedback`). A requested current may have any
+/// value, even NaN. Only a [`MotorCurrent`] leaves the board.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct WheelCommand {
+    /// Torque current in mA.
     pub current_ma: f32,
 }
 
-/// How a joint motor closes its loop. A whole word, so that a command has no padding and is copied fast.
+/// Control mode of a joint motor. It is a whole word, so commands have no padding and are copied fast.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u32)]
 pub enum JointMode {
-    /// Enabled without torque: turns freely.
+    /// Enabled without torque: the joint turns freely.
     #[default]
     Off = 0,
-    /// `kp`·(`pos_rad` − angle) + `kd`·(`vel_rps` − speed) + `tau_nm`.
+    /// Torque = `kp`·(`pos_rad` − angle) + `kd`·(`vel_rps` − speed) + `tau_nm`.
     Mit = 1,
-    /// To `pos_rad`, at most `vel_rps` fast.
+    /// Move to `pos_rad` at no more than `vel_rps`.
     PositionSpeed = 2,
-    /// At `vel_rps`.
+    /// Turn at `vel_rps`.
     Speed = 3,
 }
 
-/// Command of one joint in joint coordinates (see `JointFeedback`). As requested it may be anything, even NaN; limits
-/// are applied before anything leaves the board.
+/// Command of one joint in joint coordinates (see `JointFeedback`). A requested command may hold any value, even NaN.
+/// Limits are applied before anything leaves the board.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct JointCommand {
+    /// Control mode.
     pub mode: JointMode,
+    /// Target angle in rad.
     pub pos_rad: f32,
+    /// Target speed, or speed limit, in rad/s.
     pub vel_rps: f32,
-    /// N·m/rad.
+    /// Stiffness in N·m/rad.
     pub kp: f32,
-    /// N·m·s/rad.
+    /// Damping in N·m·s/rad.
     pub kd: f32,
+    /// Feed-forward torque in N·m.
     pub tau_nm: f32,
 }
 
-/// Commands of all actuators; wheel 0 = left, 1 = right; joint 0 = left front, 1 = left rear, 2 = right front, 3 = right
-/// rear.
+/// Commands of all actuators.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct ChassisCommand {
+    /// Left, right.
     pub wheels: [WheelCommand; 2],
+    /// Left front, left rear, right front, right rear.
     pub joints: [JointCommand; 4],
 }
 
 impl ChassisCommand {
-    /// No current, no torque: the default as a constant.
+    /// No current and no torque: the default as a constant.
     pub const STOP: Self = {
         let wheel = WheelCommand { current_ma: 0.0 };
         let joint = JointCommand {
@@ -79,18 +85,19 @@ impl ChassisCommand {
     };
 }
 
-/// A motor current that may leave the board: finite and inside the limit it was made with.
+/// A motor current that may leave the board: finite and within the limit it was made with.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MotorCurrent {
     ma: f32,
 }
 
 impl MotorCurrent {
+    /// No current.
     pub const ZERO: Self = Self { ma: 0.0 };
-    /// Full scale of the C620 (datasheet): ±20 A.
+    /// Full scale of the C620 in mA: ±20 A (datasheet).
     pub const FULL_SCALE_MA: f32 = 20_000.0;
 
-    /// Clamps to ±`limit_ma`, and the limit itself to 0 … 20 A; NaN on either side gives zero.
+    /// Clamps a current to ±`limit_ma`, and the limit itself to 0…20 A. NaN on either side gives zero.
     pub fn clamped(requested_ma: f32, limit_ma: f32) -> Self {
         if requested_ma.is_nan() || limit_ma.is_nan() {
             return Self::ZERO;
@@ -101,6 +108,7 @@ impl MotorCurrent {
         }
     }
 
+    /// The current in mA.
     pub const fn ma(self) -> f32 {
         self.ma
     }
@@ -111,7 +119,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn current_is_always_finite_and_limited() {
+    fn a_motor_current_is_finite_and_limited() {
         let cases = [
             (f32::NAN, 8_000.0, 0.0),
             (1.0, f32::NAN, 0.0),

@@ -1,18 +1,20 @@
-//! Values that fit this code to one robot.
+//! Settings that adapt the firmware to one robot.
 
 use super::{Orientation, RemoteMapping};
 
-/// Wheel geometry.
+/// Geometry of the wheels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct WheelOdomConfig {
+    /// Wheel radius in m.
     pub wheel_radius_m: f32,
-    /// Distance of the two contact points.
+    /// Distance between the two contact points in m.
     pub wheel_track_m: f32,
-    /// Rotor turns a wheel turn.
+    /// Rotor turns per wheel turn.
     pub gear_ratio: f32,
-    /// +1 or −1: rotor direction that drives the robot forward.
+    /// Rotor direction of the left wheel that drives the robot forward, +1 or −1.
     pub rpm_sign_left: f32,
+    /// The same for the right wheel.
     pub rpm_sign_right: f32,
 }
 
@@ -29,31 +31,32 @@ impl Default for WheelOdomConfig {
 }
 
 impl WheelOdomConfig {
-    /// Sign of wheel 0 = left, 1 = right.
+    /// Rotor directions of the left and the right wheel.
     pub const fn rpm_signs(&self) -> [f32; 2] {
         [self.rpm_sign_left, self.rpm_sign_right]
     }
 
-    /// Ground speed in m/s of one rotor revolution a minute.
+    /// Ground speed in m/s at a rotor speed of 1 rpm.
     pub fn mps_per_rpm(&self) -> f32 {
         self.wheel_radius_m * (core::f32::consts::TAU / 60.0) / self.gear_ratio
     }
 }
 
-/// Wheel speed controller.
+/// Settings of the wheel speed controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct WheelControllerConfig {
-    /// Speed at full stick.
+    /// Speed at full stick in m/s.
     pub max_vx_mps: f32,
-    /// Turn rate at full stick.
+    /// Turn rate at full stick in rad/s.
     pub max_wz_rps: f32,
-    /// Motor current for each m/s of wheel speed error.
+    /// Motor current in mA per m/s of wheel speed error.
     pub kp_ma_per_mps: f32,
+    /// Limit of each wheel's current in mA.
     pub current_limit_ma: f32,
-    /// Without wheel feedback: motor current for each m/s of wanted wheel speed.
+    /// Motor current in mA per m/s of target speed, while there is no wheel feedback.
     pub open_loop_ma_per_mps: f32,
-    /// Feedback older than this counts as none.
+    /// Maximum age of wheel feedback in µs.
     pub feedback_timeout_us: u32,
 }
 
@@ -70,16 +73,16 @@ impl Default for WheelControllerConfig {
     }
 }
 
-/// How the default controller holds the legs, and what people have done to their motors.
+/// How the default controller holds the legs, and what has been set on the motors by hand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct JointControllerConfig {
-    /// N·m/rad.
+    /// Stiffness in N·m/rad.
     pub hold_kp: f32,
-    /// N·m·s/rad.
+    /// Damping in N·m·s/rad.
     pub hold_kd: f32,
-    /// 1 when somebody has set the time-out of each RS00: its MIT protocol can neither set nor read it. Of other motors it
-    /// says nothing.
+    /// 1 if the time-out of each RS00 has been set by hand, as its MIT protocol can neither set nor read it. It does
+    /// not concern other motors.
     pub rs00_timeout_set: u32,
 }
 
@@ -93,19 +96,25 @@ impl Default for JointControllerConfig {
     }
 }
 
-/// One joint's place in the robot and what it may do, in joint coordinates.
+/// Place and limits of one joint, in joint coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct JointConfig {
-    /// +1 or −1: sense of the motor that turns the joint forward.
+    /// Motor direction that turns the joint forward, +1 or −1.
     pub direction: f32,
-    /// Motor angle at joint angle zero.
+    /// Motor angle at joint angle zero, in rad.
     pub zero_rad: f32,
+    /// Lower soft limit in rad.
     pub min_rad: f32,
+    /// Upper soft limit in rad.
     pub max_rad: f32,
+    /// Torque limit in N·m.
     pub max_torque_nm: f32,
+    /// Speed limit in rad/s.
     pub max_speed_rps: f32,
+    /// Largest stiffness in N·m/rad.
     pub max_kp: f32,
+    /// Largest damping in N·m·s/rad.
     pub max_kd: f32,
 }
 
@@ -113,34 +122,37 @@ pub struct JointConfig {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct SafetyConfig {
-    /// A remote frame older than this: remote lost.
+    /// Maximum age of a remote frame in µs. Beyond it the remote is lost.
     pub remote_timeout_us: u32,
-    /// Good fraction of the last 64 remote frames below this: link too bad to drive.
+    /// Smallest fraction of good frames among the last 64. Below it the link is too bad to drive.
     pub min_remote_quality: f32,
+    /// Maximum age of an IMU sample in µs.
     pub imu_timeout_us: u32,
-    /// A command on the logic bus older than this is zero.
+    /// Maximum age of a command on the logic bus in µs. Beyond it the command is zero.
     pub command_timeout_us: u32,
-    /// Errors a sensor may add to its leaky account (one forgiven every 100 ms) before safe mode.
+    /// Number of sensor errors that stops the robot. One is forgotten every 100 ms.
     pub max_sensor_errors: u32,
-    /// Frames that may fail to leave in a row before a bus counts as congested.
+    /// Number of consecutive unsent frames after which a bus counts as congested.
     pub max_tx_failures: u32,
-    /// How far a stick may be off centre while arming, 0 … 1.
+    /// Limit of a stick's deflection while arming, 0…1.
     pub stick_centre: f32,
-    /// How long a flip of the enable switch may wait for settings being written to flash; for nothing else it waits.
+    /// Time in µs that a request to arm may wait for a write to flash. It waits for nothing else.
     pub arm_request_us: u32,
-    /// A joint's reply older than this: silent.
+    /// Maximum age of a joint's reply in µs. Beyond it the joint is silent.
     pub joint_timeout_us: u32,
-    /// Angle between the body's z axis and the vertical beyond this: fallen over.
+    /// Limit of the angle between the body's z axis and the vertical in rad. Beyond it the robot has fallen.
     pub max_tilt_rad: f32,
+    /// Temperature limit of the wheel motors in °C.
     pub max_wheel_c: f32,
+    /// Temperature limit of the joint motors in °C.
     pub max_joint_c: f32,
-    /// Below this: no arming, a warning while armed. 0 switches both battery limits off.
+    /// Battery voltage that blocks arming and gives a warning while armed. 0 disables both battery limits.
     pub battery_low_v: f32,
-    /// Below this: everything stops.
+    /// Battery voltage below which everything stops.
     pub battery_empty_v: f32,
-    /// How long enable off and e-stop thrown together clear latched stops.
+    /// Time in µs for which the clearing gesture (enable off and e-stop thrown) must be held.
     pub clear_hold_us: u32,
-    /// 1: what was stopped in part moves again only after the sticks have been centred.
+    /// 1: after a partial stop the part moves only when the sticks have been centred.
     pub resume_centred: u32,
 }
 
@@ -167,26 +179,30 @@ impl Default for SafetyConfig {
     }
 }
 
-/// How the sensors sit. Applied to what they measure before anything else, so that all other settings and all results
+/// How the sensors are mounted. It is applied to measurements before anything else, so all other settings and results
 /// are in the robot's axes (x forward, y left, z up).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct MountingConfig {
-    /// The IMU's axes in the robot's.
+    /// Orientation of the IMU's axes in the robot.
     pub board: Orientation,
-    /// The magnetometer's axes in the IMU's, as if those were the robot's. `None`: nobody knows, and the heading goes
-    /// without it.
+    /// Orientation of the magnetometer's axes relative to those of the IMU. `None` means unknown, and the heading is
+    /// estimated without the magnetometer.
     pub mag: Option<Orientation>,
 }
 
-/// In body axes (x forward, y left, z up): calibrated = (turned − bias) · scale.
+/// Calibration of the IMU in body axes (x forward, y left, z up): calibrated = (rotated − bias) · scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct ImuCalibration {
+    /// Offset of the accelerometer in m/s².
     pub accel_bias_mps2: [f32; 3],
+    /// Scale of the accelerometer.
     pub accel_scale: [f32; 3],
-    /// Stored offset; the start-up calibration replaces it by what it measures within 2 °/s of it.
+    /// Stored offset of the gyro in °/s. The start-up calibration replaces it by its measurement if that lies within
+    /// 2 °/s.
     pub gyro_bias_dps: [f32; 3],
+    /// Scale of the gyro.
     pub gyro_scale: [f32; 3],
 }
 
@@ -201,12 +217,13 @@ impl Default for ImuCalibration {
     }
 }
 
-/// Hard and soft iron of the robot, applied in the body frame: calibrated = soft_iron · (turned − bias).
+/// Hard and soft iron of the robot in the body frame: calibrated = soft_iron · (rotated − bias).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct MagCalibration {
+    /// Hard-iron offset in µT.
     pub bias_ut: [f32; 3],
-    /// Symmetric, row by row.
+    /// Symmetric soft-iron matrix, row by row.
     pub soft_iron: [[f32; 3]; 3],
 }
 
@@ -219,16 +236,17 @@ impl Default for MagCalibration {
     }
 }
 
-/// Control of the IMU's heater.
+/// Settings of the IMU's heater.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct HeaterConfig {
-    /// Below 20 switches the heater off.
+    /// Target temperature in °C. Below 20 °C the heater is off.
     pub target_c: f32,
-    /// Duty (0 … 1) a kelvin.
+    /// Proportional gain: duty (0…1) per K.
     pub kp: f32,
-    /// Duty a kelvin and second.
+    /// Integral gain: duty per K·s.
     pub ki: f32,
+    /// Largest duty, 0…1.
     pub max_duty: f32,
 }
 
@@ -243,19 +261,29 @@ impl Default for HeaterConfig {
     }
 }
 
-/// Everything about one robot that can be changed while it stands: the tuning channel writes it. Its defaults depend on
-/// the motors: `motor::layout::MotorLayout::default_config`.
+/// All settings of a robot that can be changed while it is disarmed, through the tuning channel. Their defaults depend on
+/// the motors: see `motor::layout::MotorLayout::default_config`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct RobotConfig {
+    /// Geometry of the wheels.
     pub wheel_odom: WheelOdomConfig,
+    /// Wheel speed controller.
     pub wheel_ctrl: WheelControllerConfig,
+    /// Joint controller.
     pub joint_ctrl: JointControllerConfig,
+    /// Left front, left rear, right front, right rear.
     pub joints: [JointConfig; 4],
+    /// Limits of the safety stage.
     pub safety: SafetyConfig,
+    /// Mounting of the sensors.
     pub mounting: MountingConfig,
+    /// Calibration of the IMU.
     pub imu: ImuCalibration,
+    /// Calibration of the magnetometer.
     pub mag: MagCalibration,
+    /// The IMU's heater.
     pub heater: HeaterConfig,
+    /// Channels of the radio.
     pub radio: RemoteMapping,
 }

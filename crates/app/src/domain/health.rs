@@ -1,82 +1,100 @@
-//! What the platform knows about its parts: filled by the firmware, judged by `safety`.
+//! State of the platform, filled in by the firmware and judged by `safety`.
 
-use super::{ImuStatus, LastWords, LateTasks};
+use super::{CrashCause, ImuStatus, LateTasks};
 
 /// Fault confinement state of a CAN controller (ISO 11898-1).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
 pub enum BusErrorState {
+    /// Error active.
     #[default]
+    /// Error passive.
     Active = 0,
+    /// Bus-off.
     Passive = 1,
     BusOff = 2,
 }
 
-/// Counters of one CAN bus, all since boot unless the name says otherwise.
+/// Counters and state of one CAN bus. Counters run since boot unless the name says otherwise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(C)]
 pub struct BusHealth {
+    /// Frames sent.
     pub tx_frames: u32,
-    /// Frames taken back because they had not left within their tick.
+    /// Frames aborted because they had not been sent within their tick.
     pub tx_aborted: u32,
-    /// Of those, how many since the last one that did leave.
+    /// Frames aborted since the last one that was sent.
     pub tx_failures_in_row: u32,
+    /// Frames received.
     pub rx_frames: u32,
     /// Frames lost in the controller's FIFOs.
     pub rx_overruns: u32,
     /// Frames lost because the queue to the control tick was full.
     pub rx_queue_full: u32,
+    /// Transitions to bus-off.
     pub bus_off_count: u32,
+    /// Fault confinement state.
     pub state: BusErrorState,
+    /// The controller's transmit error counter.
     pub transmit_errors: u8,
+    /// The controller's receive error counter.
     pub receive_errors: u8,
 }
 
-/// Health of one sensor, kept by the sensor task.
+/// Health of one sensor, maintained by its task.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(C)]
 pub struct SensorHealth {
-    /// Brought up and answering.
+    /// The sensor has been brought up and responds.
     pub ready: bool,
+    /// Samples since boot.
     pub samples: u32,
     /// Bus errors and rejected samples since boot.
     pub errors: u32,
+    /// Bring-ups after a loss since boot.
     pub reinits: u32,
 }
 
 impl SensorHealth {
+    /// Counts a good sample.
     pub fn count_sample(&mut self) {
         self.ready = true;
         self.samples = self.samples.wrapping_add(1);
     }
 
+    /// Counts an error.
     pub fn count_error(&mut self) {
         self.errors = self.errors.wrapping_add(1);
     }
 
-    /// The sensor does not answer and must be brought up again.
+    /// Counts a loss: the sensor does not respond and must be brought up again.
     pub fn count_loss(&mut self) {
         self.ready = false;
         self.reinits = self.reinits.wrapping_add(1);
     }
 }
 
-/// What the receiver's UART saw since boot.
+/// What the receiver's UART has seen since boot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(C)]
 pub struct RadioLineHealth {
     /// Bursts of bytes.
     pub rx_events: u32,
+    /// Bytes received.
     pub rx_bytes: u32,
+    /// Parity errors.
     pub parity: u32,
+    /// Framing errors.
     pub framing: u32,
+    /// Noise errors.
     pub noise: u32,
+    /// Overrun errors.
     pub overrun: u32,
 }
 
 impl RadioLineHealth {
-    /// Errors of any kind; wraps.
+    /// Errors of all kinds; it wraps.
     pub fn errors(&self) -> u32 {
         [self.parity, self.framing, self.noise, self.overrun]
             .into_iter()
@@ -84,13 +102,15 @@ impl RadioLineHealth {
     }
 }
 
-/// What a debug probe does to the core.
+/// How a debug probe affects the core.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(C)]
 pub struct DebugProbe {
-    /// One is attached, or was since power-on: C_DEBUGEN of DHCSR (ARMv7-M ARM C1.6.2), which only the probe can clear.
+    /// A probe is attached, or has been since power-on: C_DEBUGEN of DHCSR (ARMv7-M ARM C1.6.2), which only a probe
+    /// can clear.
     pub attached: bool,
-    /// It halts the core at a fault, a reset or a breakpoint, or the watchdog with it, and clearing that does not help.
+    /// The probe would halt the core at a fault, a reset or a breakpoint, or halt the watchdog with it, and this
+    /// could not be cleared.
     pub catches: bool,
 }
 
@@ -99,36 +119,51 @@ pub struct DebugProbe {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
 pub enum ResetCause {
+    /// No known flag was set.
     #[default]
+    /// Power-on.
     Unknown = 0,
+    /// Reset pin.
     PowerOn = 1,
+    /// Supply voltage too low.
     Pin = 2,
+    /// Reset by software.
     BrownOut = 3,
+    /// Independent watchdog.
     Software = 4,
+    /// Window watchdog.
     IndependentWatchdog = 5,
+    /// Low-power reset.
     WindowWatchdog = 6,
     LowPower = 7,
 }
 
-/// Everything the safety policy needs to know about the platform.
+/// State of the platform for the safety policy.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct SystemHealth {
     /// Index = `BusId`.
     pub can: [BusHealth; 2],
+    /// The IMU.
     pub imu: SensorHealth,
+    /// The magnetometer.
     pub mag: SensorHealth,
+    /// The radio's UART.
     pub radio_line: RadioLineHealth,
+    /// Details of the IMU.
     pub imu_status: ImuStatus,
-    /// 0 while not measured.
+    /// Battery voltage, 0 while not measured.
     pub battery_v: f32,
-    /// Of the run before this one.
-    pub last_words: LastWords,
+    /// How the previous run ended.
+    pub last_words: CrashCause,
+    /// Why the chip started.
     pub reset_cause: ResetCause,
     /// See `TickStats`.
     pub max_jitter_cycles: u32,
-    /// Start-up gyro calibration finished.
+    /// The start-up gyro calibration has finished.
     pub imu_calibrated: bool,
+    /// Tasks that missed their deadline.
     pub late_tasks: LateTasks,
+    /// State of the debug interface.
     pub debug_probe: DebugProbe,
 }

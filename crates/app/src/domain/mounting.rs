@@ -1,4 +1,4 @@
-//! How a sensor sits: which way its axes point (docs/mounting.md).
+//! The orientation of a sensor: where its axes point (docs/mounting.md).
 
 use crate::math::{Vector3, vector};
 
@@ -11,8 +11,8 @@ const DOWN: Vector3 = [0.0, 0.0, -1.0];
 
 macro_rules! orientations {
     ($($variant:ident = $number:literal, $name:literal, $x:ident, $z:ident;)*) => {
-        /// One of the 24 ways to put right-handed axes along those of something else, named by where x and z point.
-        /// The numbers are on the wire and in flash and never change.
+        /// One of the 24 orientations of right-handed axes, named by where x and z point. The numbers are on the wire
+        /// and in flash and never change.
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
         #[cfg_attr(feature = "defmt", derive(defmt::Format))]
         #[repr(u32)]
@@ -22,10 +22,10 @@ macro_rules! orientations {
         }
 
         impl Orientation {
-            /// By number.
+            /// All orientations, by number.
             pub const ALL: [Self; 24] = [$(Self::$variant),*];
 
-            /// Such as `x-forward-z-up`.
+            /// Its name, such as `x-forward-z-up`.
             pub const fn name(self) -> &'static str {
                 match self {
                     $(Self::$variant => $name),*
@@ -70,19 +70,19 @@ orientations! {
 }
 
 impl Orientation {
-    /// On the wire and in flash.
+    /// Its number on the wire and in flash.
     pub const fn number(self) -> u32 {
         self as u32
     }
 
-    /// `None` unless `number` is one that [`number`](Self::number) gives.
+    /// Returns `None` unless `number` comes from [`number`](Self::number).
     pub fn from_number(number: u32) -> Option<Self> {
         let index = usize::try_from(number).ok()?;
         Self::ALL.get(index).copied()
     }
 
-    /// A vector in the sensor's axes → the same in those it sits in.
-    pub fn turn(self, [x, y, z]: Vector3) -> Vector3 {
+    /// Rotates a vector from the sensor's axes to the outer ones.
+    pub fn rotate(self, [x, y, z]: Vector3) -> Vector3 {
         let [x_axis, y_axis, z_axis] = self.axes();
         vector::add(
             vector::add(vector::scale(x_axis, x), vector::scale(y_axis, y)),
@@ -90,8 +90,8 @@ impl Orientation {
         )
     }
 
-    /// The other way round.
-    pub fn turn_back(self, outer: Vector3) -> Vector3 {
+    /// Rotates a vector from the outer axes to the sensor's.
+    pub fn rotate_back(self, outer: Vector3) -> Vector3 {
         self.axes().map(|axis| vector::dot(axis, outer))
     }
 

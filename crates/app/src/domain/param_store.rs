@@ -1,21 +1,22 @@
-//! What the parameter store says about itself, and what it asks the control tick for.
+//! State of the parameter store, and its requests to the control tick.
 
-/// What the store is about.
+/// What the store is doing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
 pub enum ParamState {
-    /// Flash holds what is in use.
+    /// Flash holds the settings in use.
     #[default]
     Saved = 0,
-    /// Something changed; it is saved once nothing has changed for 500 ms.
+    /// Something changed. It is saved when nothing has changed for 500 ms.
     Settling = 1,
-    /// Armed, or motors may still turn: flash is left alone.
+    /// The robot is armed or motors may be turning, so flash is not written.
     WaitingForRest = 2,
+    /// A record is being written.
     Saving = 3,
-    /// A sector is being erased: the chip stands still.
+    /// A sector is being erased, during which the chip stands still.
     Erasing = 4,
-    /// The last attempt failed; the next one comes after 1, 10, 60 or 300 s.
+    /// The last attempt failed. The next one comes after 1, 10, 60 or 300 s.
     BackingOff = 5,
 }
 
@@ -29,7 +30,7 @@ impl ParamState {
         Self::BackingOff,
     ];
 
-    /// The numbers are on the wire (docs/tuning.md) and never change.
+    /// Decodes a number from the wire (docs/tuning.md). The numbers never change.
     pub fn from_code(code: u8) -> Option<Self> {
         Self::ALL.into_iter().find(|state| *state as u8 == code)
     }
@@ -40,7 +41,7 @@ impl ParamState {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
 pub enum ParamError {
-    /// None has.
+    /// No attempt has failed.
     #[default]
     None = 0,
     /// The flash controller reported an error.
@@ -49,7 +50,7 @@ pub enum ParamError {
     NotProgrammed = 2,
     /// A sector was not blank after its erase.
     NotErased = 3,
-    /// No sector left that can be written.
+    /// No writable sector is left.
     Full = 4,
 }
 
@@ -62,63 +63,69 @@ impl ParamError {
         Self::Full,
     ];
 
-    /// The numbers are on the wire (docs/tuning.md) and never change.
+    /// Decodes a number from the wire (docs/tuning.md). The numbers never change.
     pub fn from_code(code: u8) -> Option<Self> {
         Self::ALL.into_iter().find(|error| *error as u8 == code)
     }
 }
 
-/// Counters since boot unless the name says otherwise.
+/// State of the store. Counters run since boot unless the name says otherwise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(C)]
 pub struct ParamStatus {
-    /// Grows with every change of the other fields.
+    /// Increases with every change of the other fields.
     pub revision: u32,
-    /// The `TuningStatus::revision` that `unsaved` and `state` know of: a younger change is not saved.
+    /// The `TuningStatus::revision` to which `unsaved` and `state` refer. A later change is not saved.
     pub seen: u32,
     /// Records saved and read back.
     pub save_ok: u32,
-    /// Attempts that failed, erases among them.
+    /// Attempts that failed, including erases.
     pub save_failed: u32,
+    /// Erases attempted.
     pub erases: u32,
-    /// Times a sector became the active one, since the store was new.
+    /// Rotations to another sector since the store was new.
     pub generation: u32,
-    /// Reading the store at boot.
+    /// Time in µs to read the store at boot.
     pub boot_us: u32,
-    /// The longest time the chip stood still for an erase after boot.
+    /// Longest time in µs that the chip stood still for an erase after boot.
     pub longest_stall_us: u32,
-    /// Found at boot; bits are positions in `tuning::PARAMETERS`.
+    /// Groups loaded at boot, one bit for each index in `tuning::PARAMETERS`.
     pub loaded: u32,
-    /// Found, but of a later version or with values that are not allowed: the defaults are in use, and the record stays
-    /// until someone changes the group or gives it its defaults, and that is saved. A bit set here blocks arming.
+    /// Groups whose record has a later version or values that are not allowed, one bit each. Their defaults are in
+    /// use. The record stays until the group is changed or set to its defaults, and that is saved. A bit set here
+    /// blocks arming.
     pub refused: u32,
-    /// Groups whose values are not in flash yet.
+    /// Groups whose values are not in flash yet, one bit each.
     pub unsaved: u32,
-    /// Places in the active sector that hold neither a record nor nothing, as found at boot.
+    /// Slots of the active sector that were neither blank nor held a record at boot.
     pub damaged: u16,
-    /// Records of groups this firmware does not have, or of another make of joint motor: kept but not used.
+    /// Records of groups that this firmware does not have, or of another make of joint motor. They are kept but not
+    /// used.
     pub foreign: u16,
-    /// Records that fit before the next sector is begun.
+    /// Number of records that fit before the next rotation.
     pub free_slots: u16,
+    /// What the store is doing.
     pub state: ParamState,
+    /// Why the last failed attempt failed.
     pub last_error: ParamError,
-    /// Sectors found ruined at boot by something else than a power cut: settings saved there are gone, and older values
-    /// or defaults are in use.
+    /// Sectors found ruined at boot by something other than a power cut. Settings saved there are lost, and older
+    /// values or defaults are in use.
     pub lost_sectors: u8,
-    /// Sectors found at boot to hold something else than settings, such as parts of a firmware flashed before this one.
-    /// They are erased when their turn comes.
+    /// Sectors found at boot with something other than settings, such as parts of an earlier firmware. They are
+    /// erased when needed.
     pub strange_sectors: u8,
 }
 
-/// What the parameter task wants to do to flash; the control tick says when it may.
+/// What the parameter task wants to do to flash. The control tick grants it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum FlashRequest {
+    /// Nothing.
     #[default]
     None = 0,
-    /// Words of 16 µs each, up to 100 µs.
+    /// Program some words, each taking 16 µs and at most 100 µs.
     Program = 1,
-    /// Everything on the chip waits for 0.25 to 0.5 s.
+    /// Erase a sector, for which the chip stands still for 0.25 to 0.5 s.
     Erase = 2,
 }
 
@@ -127,7 +134,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn codes_are_those_of_the_wire_and_no_others() {
+    fn only_the_documented_codes_are_decoded() {
         let states: Vec<_> = (0..=u8::MAX).filter_map(ParamState::from_code).collect();
         assert_eq!(states, ParamState::ALL);
         let errors: Vec<_> = (0..=u8::MAX).filter_map(ParamError::from_code).collect();

@@ -1,4 +1,4 @@
-//! What the pilot's radio says.
+//! State of the pilot's radio.
 
 use super::age_us;
 use crate::math::scalar;
@@ -7,19 +7,19 @@ use crate::math::scalar;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct RemoteState {
-    /// −1 … 1 each, as of a FrSky transmitter, whatever the settings say.
+    /// All channels, −1…1 by the counts of a FrSky transmitter, independent of the settings.
     pub channels: [f32; 16],
-    /// Forward stick, −1 … 1, forward positive.
+    /// Forward stick, −1…1, forward positive.
     pub vx: f32,
-    /// Turn stick, −1 … 1, left turn positive.
+    /// Turn stick, −1…1, left positive.
     pub wz: f32,
-    /// Left stick's vertical, −1 … 1, up positive: picks the motor in bring-up.
+    /// Left stick, vertical, −1…1, up positive. It selects the motor in bring-up.
     pub select: f32,
-    /// Last frame that really came over the air; 0 = none yet.
+    /// Time of the last frame received over the air; 0 = none yet.
     pub ts_us: u64,
 }
 
-/// Who decides where the robot goes.
+/// Source of the drive command.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
@@ -29,27 +29,31 @@ pub enum DriveMode {
     Manual = 0,
     /// The computer on the PC link.
     Pc = 1,
-    /// `logic/user_logic.rs`.
+    /// The user's logic in `logic/user_logic.rs`.
     Custom = 2,
 }
 
-/// What the pilot asks for with the switches.
+/// The pilot's switches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct OperatorState {
+    /// The enable switch is on.
     pub enabled: bool,
-    /// The enable switch is off beyond doubt; never together with `enabled`. Neither of the two: not known for sure.
+    /// The enable switch is confirmed off. It is never set together with `enabled`; if neither is set, the position
+    /// is uncertain.
     pub disabled: bool,
+    /// The e-stop is thrown.
     pub e_stop: bool,
-    /// The left stick is held to the right: what bring-up's torque needs.
+    /// The left stick is held to the right, which bring-up needs for torque.
     pub dead_man: bool,
-    /// Three-position switch.
+    /// Position of the mode switch.
     pub mode: DriveMode,
+    /// Time of the frame; 0 = none yet.
     pub ts_us: u64,
 }
 
 impl Default for OperatorState {
-    /// Until a frame says otherwise the operator wants a stop.
+    /// Without any frame the robot is stopped.
     fn default() -> Self {
         Self {
             enabled: false,
@@ -66,31 +70,31 @@ impl Default for OperatorState {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct RemoteDiagnostics {
-    /// Frames a second on the wire, smoothed.
+    /// Smoothed number of frames per second on the wire.
     pub frame_rate_hz: f32,
-    /// Fraction of the last 64 frames that came whole and without the frame-lost flag, at the last accepted one; frames
-    /// before the first count as good.
+    /// Fraction of the last 64 frames that were complete and without the frame-lost flag, as of the last accepted
+    /// one. Frames before the first count as good.
     pub quality: f32,
     /// Accepted frames, with or without the frame-lost flag.
     pub frames: u32,
-    /// Frames that carried the frame-lost flag (the receiver repeats old values in them).
+    /// Frames with the frame-lost flag, in which the receiver repeats old values.
     pub lost_frames: u32,
     /// Bytes that belonged to no accepted frame.
     pub discarded_bytes: u32,
-    /// Bursts of bytes dropped because the UART flagged one of them (parity, framing, noise, overrun).
+    /// Bursts of bytes dropped because the UART flagged an error in them (parity, framing, noise, overrun).
     pub damaged_bursts: u32,
-    /// The receiver itself says that the radio is gone.
+    /// The receiver reports that the radio is lost.
     pub failsafe: bool,
-    /// Age of the last frame that came over the air; `u32::MAX` before the first.
+    /// Age of the last frame received over the air; `u32::MAX` before the first.
     pub age_us: u32,
-    /// Last frame on the wire, 0 = none yet.
+    /// Time of the last frame on the wire, 0 = none yet.
     pub frame_ts_us: u64,
-    /// Last frame that came over the air, 0 = none yet.
+    /// Time of the last frame received over the air, 0 = none yet.
     pub good_ts_us: u64,
 }
 
 impl RemoteDiagnostics {
-    /// The same link seen at `now_us`: ages grow and the rate falls when frames stay away.
+    /// The link's state at `now_us`: without frames, ages grow and the rate falls.
     #[must_use]
     pub fn at(mut self, now_us: u64) -> Self {
         self.age_us = age_us(self.good_ts_us, now_us);
@@ -102,14 +106,17 @@ impl RemoteDiagnostics {
     }
 }
 
-/// One decoded frame: all that the radio stage publishes, together so that it is always consistent.
+/// The result of one decoded frame. It is published as a whole, so it is always consistent.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct RemoteUpdate {
+    /// Sticks and channels.
     pub state: RemoteState,
+    /// Switches.
     pub operator: OperatorState,
+    /// Quality of the link.
     pub diagnostics: RemoteDiagnostics,
-    /// Channels as on the wire in the last frame, lost or not: SBUS 0 … 2047; of DBUS the four sticks and the wheel,
-    /// 364 … 1684, then zeros.
+    /// Raw channels of the last frame, even a lost one. SBUS: 0…2047. DBUS: the four sticks and the wheel, 364…1684,
+    /// then zeros.
     pub raw: [u16; 16],
 }

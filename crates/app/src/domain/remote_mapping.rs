@@ -1,25 +1,27 @@
-//! Which channel of an SBUS transmitter means what, and how far its sticks and switches go.
+//! The meaning and the travel of the channels of an SBUS transmitter.
 
-/// A channel number that stands for "there is none". Smaller ones are indices into the frame, from 0.
+/// The channel number that means "no channel". Smaller numbers are indices into the frame, from 0.
 pub const NO_CHANNEL: u32 = 16;
 
-/// One stick or switch of the transmitter. Counts are as on the wire, 0 … 2047.
+/// One stick or switch of the transmitter. Counts are those on the wire, 0…2047.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct RemoteChannel {
-    /// 0 … 15, or [`NO_CHANNEL`].
+    /// 0…15, or [`NO_CHANNEL`].
     pub index: u32,
-    /// Fully left, down, back or off.
+    /// Count when fully left, down, back or off.
     pub low: u32,
+    /// Count at the centre.
     pub centre: u32,
-    /// Fully right, up, forward or on.
+    /// Count when fully right, up, forward or on.
     pub high: u32,
-    /// 1: the transmitter sends it the other way round.
+    /// 1 if the transmitter sends the channel reversed.
     pub reversed: u32,
 }
 
 impl RemoteChannel {
-    /// Counts at −100, 0, +100 % of FrSky and of most others; Futaba and RadioLink have theirs at about 352, 1024, 1696.
+    /// A channel with the counts of FrSky and most other makes at −100, 0, +100 %. Futaba and RadioLink send about
+    /// 352, 1024, 1696.
     const fn new(index: u32) -> Self {
         Self {
             index,
@@ -30,14 +32,14 @@ impl RemoteChannel {
         }
     }
 
-    /// −1 at the low end, 0 at the centre, 1 at the high end, and beyond them if the channel goes beyond. `None` without
-    /// a channel.
+    /// Position of the channel: −1 at the low end, 0 at the centre, 1 at the high end, and beyond if the channel goes
+    /// beyond. `None` without a channel.
     pub fn position(&self, raw: &[u16; 16]) -> Option<f32> {
         let raw = *raw.get(self.index as usize)?;
         let centre = self.centre as f32;
         let offset = f32::from(raw) - centre;
         let end = if offset < 0.0 { self.low } else { self.high };
-        // Settings leave room between centre and ends; without it there is no position.
+        // Valid settings leave room between centre and ends. Without room the position is 0.
         let span = (end as f32 - centre).abs();
         let position = if span > 0.0 { offset / span } else { 0.0 };
         Some(if self.reversed == 1 {
@@ -48,8 +50,8 @@ impl RemoteChannel {
     }
 }
 
-/// All that the robot listens to. DBUS needs none of it: its sticks and switches are labelled on the transmitter, and
-/// their counts are fixed.
+/// All channels that the robot uses. DBUS does not need it: its sticks and switches are labelled on the transmitter,
+/// and their counts are fixed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct RemoteMapping {
@@ -63,13 +65,14 @@ pub struct RemoteMapping {
     pub dead_man: RemoteChannel,
     /// High = enabled.
     pub enable: RemoteChannel,
-    /// Low, middle, high = 0, 1, 2.
+    /// Low, middle, high = manual, PC, custom.
     pub mode: RemoteChannel,
-    /// Low = run; anything else stops.
+    /// Low = run; any other position stops the robot.
     pub e_stop: RemoteChannel,
 }
 
 impl RemoteMapping {
+    /// All channels.
     pub const fn all(&self) -> [&RemoteChannel; 7] {
         [
             &self.steering,

@@ -4,21 +4,21 @@
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct ImuState {
-    /// Specific force: +9.8 on z at rest. ±118 (12 g) on each axis.
+    /// Specific force: +9.8 on z at rest. The range is ±118 (12 g) on each axis.
     pub accel_mps2: [f32; 3],
-    /// Offset taken out. ±2000 on each axis.
+    /// Angular rate without offset. The range is ±2000 on each axis.
     pub gyro_dps: [f32; 3],
-    /// The offset that was taken out, before scaling.
+    /// The offset that was removed, before scaling.
     pub gyro_bias_dps: [f32; 3],
-    /// Of the accelerometer's die, renewed every 1.28 s; 0 before the first.
+    /// Temperature of the accelerometer, renewed every 1.28 s; 0 before the first value.
     pub temperature_c: f32,
     /// An axis is at the end of its range, so the true value may lie beyond.
     pub saturated: bool,
-    /// How long each axis of the gyro was at the end of its range within the interval, ms: it turned further than
-    /// `gyro_dps` says, by an unknown angle.
+    /// Time in ms that each gyro axis spent at the end of its range within the interval. The robot turned further
+    /// than `gyro_dps` says, by an unknown angle.
     pub gyro_clipped_ms: [u8; 3],
-    /// End of the interval since the sample before, whose mean rate `gyro_dps` is; the delay of the sensor's filter is
-    /// taken off. 0 = no sample yet.
+    /// End of the interval since the previous sample, over which `gyro_dps` is the mean rate. The filter delay of the
+    /// sensor is subtracted. 0 = no sample yet.
     pub ts_us: u64,
 }
 
@@ -26,9 +26,10 @@ pub struct ImuState {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct MagState {
-    /// At most 1600 on x and y, 2500 on z before calibration; the earth's field is 25 to 65 long.
+    /// Magnetic field: at most 1600 on x and y and 2500 on z before calibration. The earth's field is 25 to 65
+    /// strong.
     pub mag_ut: [f32; 3],
-    /// Middle of the time over which it was measured, 0 = no sample yet.
+    /// Middle of the measuring time, 0 = no sample yet.
     pub ts_us: u64,
 }
 
@@ -36,20 +37,21 @@ pub struct MagState {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct WheelFeedback {
-    /// Rotor angle, 0 … 8191 a turn.
+    /// Rotor angle, 0…8191 per turn.
     pub rotor_angle: u16,
-    /// Rotor speed before the gear, right-hand rule about the outward shaft.
+    /// Rotor speed before the gear, by the right-hand rule about the outward shaft.
     pub rpm: i16,
-    /// Torque current, ±20,000; positive pushes towards positive `rpm`.
+    /// Torque current, ±20,000. Positive current pushes towards positive `rpm`.
     pub current_ma: f32,
+    /// Temperature of the motor in °C.
     pub temperature_c: u8,
-    /// Its reports contradict themselves or what was commanded: it repeats an old one.
+    /// The reports contradict themselves or the command, so the motor repeats an old one.
     pub frozen: bool,
-    /// Its angle does not move as its speed says: there are two senders, or its sensor is broken.
+    /// The angle contradicts the speed: there are two senders, or the sensor is broken.
     pub doubtful: bool,
-    /// Since `ts_us`; `u32::MAX` before the first report.
+    /// Age of the report; `u32::MAX` before the first.
     pub age_us: u32,
-    /// When it was received, 0 = no report yet.
+    /// Time of reception, 0 = no report yet.
     pub ts_us: u64,
 }
 
@@ -68,23 +70,23 @@ impl Default for WheelFeedback {
     }
 }
 
-/// What a joint motor does, as far as the board knows.
+/// State of a joint motor as known to the board.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
 pub enum JointState {
-    /// No reply within the time limit.
+    /// No reply came within the time limit.
     #[default]
     Silent = 0,
-    /// Answers, but its ranges, time-out or mode are not verified yet.
+    /// The motor replies, but its ranges, time-out or mode are not verified yet.
     SettingUp = 1,
-    /// Verified, gives no torque.
+    /// Verified, without torque.
     Disabled = 2,
-    /// Asked to enable, not confirmed.
+    /// Enabling was requested but is not confirmed.
     Enabling = 3,
-    /// Obeys commands.
+    /// The motor follows commands.
     Enabled = 4,
-    /// Reports a fault and gives no torque until that is cleared.
+    /// The motor reports a fault and gives no torque until that is cleared.
     Fault = 5,
 }
 
@@ -92,21 +94,25 @@ pub enum JointState {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct JointFeedback {
+    /// Angle in rad.
     pub pos_rad: f32,
+    /// Speed in rad/s.
     pub vel_rps: f32,
+    /// Torque in N·m.
     pub torque_nm: f32,
-    /// The hotter of driver and winding, as far as the motor tells.
+    /// The higher of driver and winding temperature in °C, as far as the motor reports them.
     pub temperature_c: f32,
+    /// State of the motor.
     pub state: JointState,
-    /// The motor's own fault code, 0 = none: DM4310 the ERR nibble if it is 8 or more, RS00 the fault word.
+    /// The motor's own fault code, 0 = none. DM4310: the ERR nibble if it is 8 or more. RS00: the fault word.
     pub fault_code: u32,
-    /// Its reports contradict themselves or what was commanded: it repeats an old one.
+    /// The reports contradict themselves or the command, so the motor repeats an old one.
     pub frozen: bool,
-    /// By its last report it gives torque, whatever it was told. An RS00 reports no such thing.
+    /// By its last report the motor gives torque, whatever it was commanded. An RS00 does not report this.
     pub reports_enabled: bool,
-    /// Since `ts_us`; `u32::MAX` before the first report.
+    /// Age of the report; `u32::MAX` before the first.
     pub age_us: u32,
-    /// When it was received, 0 = no report yet.
+    /// Time of reception, 0 = no report yet.
     pub ts_us: u64,
 }
 
@@ -127,23 +133,28 @@ impl Default for JointFeedback {
     }
 }
 
-/// All motors, in the order of `ChassisCommand`.
+/// Feedback of all motors, in the order of `ChassisCommand`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct MotorFeedback {
+    /// Left, right.
     pub wheels: [WheelFeedback; 2],
+    /// Left front, left rear, right front, right rear.
     pub joints: [JointFeedback; 4],
-    /// Tick that the ages refer to; each motor has its own time of report.
+    /// Time of the tick to which the ages refer. Each motor has its own time of report.
     pub ts_us: u64,
 }
 
-/// What control sees of the world in one tick.
+/// The measurements that a controller gets in one tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct SensorsSnapshot {
+    /// The newest IMU sample.
     pub imu: ImuState,
+    /// The newest magnetometer sample.
     pub mag: MagState,
+    /// The newest feedback of all motors.
     pub motor: MotorFeedback,
-    /// The tick; each part has its own time of measurement.
+    /// Time of the tick. Each part has its own time of measurement.
     pub ts_us: u64,
 }

@@ -1,18 +1,19 @@
-//! The tuning channel for diagnostics.
+//! State of the tuning channel, for diagnostics.
 
 /// Counters since boot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(C)]
 pub struct TuningStatus {
-    /// Requests that were done, reads included.
+    /// Requests executed, including reads.
     pub accepted: u32,
+    /// Requests refused.
     pub refused: u32,
-    /// Requests left undone and unanswered: a second one in the same slot on the same bus.
+    /// Requests neither executed nor answered: a second one in the same slot on the same bus.
     pub dropped: u32,
-    /// Grows whenever a setting or `restored` changes.
+    /// Increases whenever a setting or `restored` changes.
     pub revision: u32,
-    /// Groups that were given their defaults; bits are positions in `PARAMETERS`.
+    /// Groups that were set to their defaults, one bit for each index in `PARAMETERS`.
     pub restored: u32,
-    /// Of the last refusal: see `Refusal`; 0 = none yet.
+    /// Code of the last refusal: see `Refusal`; 0 = none yet.
     pub last_refusal: u8,
 }

@@ -1,9 +1,9 @@
 //! CRC-32 as in zip and Ethernet (CRC-32/ISO-HDLC).
 
-/// Reflected.
+/// In reflected form.
 const POLYNOMIAL: u32 = 0xEDB8_8320;
 
-/// Without a table, out of line: flash is scarce, and a slot takes 30 µs.
+/// Computes the CRC without a table and out of line: flash is scarce, and a slot takes only 30 µs.
 #[inline(never)]
 pub(super) fn checksum(bytes: &[u8]) -> u32 {
     let mut crc = u32::MAX;
@@ -21,9 +21,9 @@ pub(super) fn checksum(bytes: &[u8]) -> u32 {
 mod tests {
     use super::*;
 
-    /// The check value in the catalogue of CRCs.
+    /// The check value of the CRC catalogue.
     #[test]
-    fn the_checksum_is_that_of_zip() {
+    fn the_checksum_matches_the_catalogue() {
         assert_eq!(checksum(b"123456789"), 0xCBF4_3926);
         assert_eq!(checksum(b""), 0);
     }

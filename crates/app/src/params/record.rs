@@ -1,29 +1,30 @@
-//! A group of settings as a record of the store, and back (docs/parameters.md).
+//! Conversion between a group of settings and a record of the store (docs/parameters.md).
 
 use core::cmp::Ordering;
 
-use super::{Record, RecordId, saver::Position};
+use super::{Record, RecordId, save_scheduler::GroupIndex};
 use crate::{
     domain::RobotConfig,
     motor::layout::MotorLayout,
     tuning::{ParameterGroup, Refusal, Scope, consistency},
 };
 
-/// What became of a record at boot.
+/// The result of loading a record at boot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
-    /// In use. What the record is too old to know has its default.
-    Loaded(Position),
-    /// A later version, or values that are not allowed.
-    Refused(Position),
-    /// A group this firmware does not have, or of motors the robot does not have.
+pub enum LoadOutcome {
+    /// The values are in use. Settings that the record is too old to contain have their defaults.
+    Loaded(GroupIndex),
+    /// The record has a later version, or values that are not allowed.
+    Refused(GroupIndex),
+    /// The record belongs to a group that this firmware does not have, or to motors that the robot does not have.
     Foreign,
 }
 
+/// Encodes a group of settings as a record.
 pub fn encode(group: &ParameterGroup, config: &RobotConfig, layout: &MotorLayout) -> Record {
     let mut values = heapless::Vec::new();
     for parameter in group.parameters {
-        // No group is larger than a record.
+        // The compiler checks that no group is larger than a record.
         let _ = values.push(parameter.read(config).to_bits());
     }
     Record {
@@ -33,27 +34,27 @@ pub fn encode(group: &ParameterGroup, config: &RobotConfig, layout: &MotorLayout
     }
 }
 
-/// Takes the values of the record, all of them or none. `groups` is `tuning::PARAMETERS`.
+/// Loads a record into `config`, either all values or none. `groups` is `tuning::PARAMETERS`.
 pub fn load(
     record: &Record,
     groups: &[ParameterGroup],
     layout: &MotorLayout,
     config: &mut RobotConfig,
-) -> Verdict {
+) -> LoadOutcome {
     let mut groups = groups.iter().enumerate();
     let Some((position, group)) = groups.find(|(_, group)| id(group, layout) == record.id) else {
-        return Verdict::Foreign;
+        return LoadOutcome::Foreign;
     };
     match migrate(record, group, *config) {
         Ok(loaded) => {
             *config = loaded;
-            Verdict::Loaded(position)
+            LoadOutcome::Loaded(position)
         }
-        Err(_) => Verdict::Refused(position),
+        Err(_) => LoadOutcome::Refused(position),
     }
 }
 
-/// A later version only appends settings, so the values of an earlier one are the first of this one.
+/// Later versions only append settings, so the values of an earlier version come first.
 fn migrate(
     record: &Record,
     group: &ParameterGroup,

@@ -1,4 +1,4 @@
-//! One flash sector: its head and its 127 slots (docs/parameters.md).
+//! The layout of a flash sector: a head and 127 slots (docs/parameters.md).
 //!
 //! | word of the head | holds | programmed |
 //! |---|---|---|
@@ -14,38 +14,39 @@ use super::{
 
 pub(super) const SECTORS: u8 = 3;
 pub(super) const SECTOR_BYTES: u32 = 16 * 1024;
-/// The head takes the place of slot 0.
+/// The head occupies slot 0.
 pub(super) const FIRST_SLOT: u8 = 1;
 pub(super) const LAST_SLOT: u8 = 127;
 
-/// Half the bits are ones: neither an erased word nor one programmed to zero is mistaken for it.
+/// Marks a clean sector. Half of its bits are ones, so neither an erased word nor one programmed to zero resembles
+/// it.
 pub(super) const CLEAN: [u8; 4] = *b"\xC1\xEA\x5E\xD0";
-/// The digit is the format's number.
+/// The digit is the number of the format.
 const MAGIC: [u8; 4] = *b"PRM1";
 
-/// Where in the head, in bytes.
+/// Offsets in the head, in bytes.
 pub(super) const OPENED_AT: usize = 4;
 pub(super) const COPIES_AT: [usize; 2] = [8, 24];
 pub(super) const HEAD_PROOF_AT: usize = 40;
 pub(super) const HEAD_BYTES: usize = 44;
 
-/// One of the two copies.
+/// Size of one of the two copies.
 const COPY_BYTES: usize = 16;
 
-/// What a sector is good for.
+/// State of a sector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum SectorState {
-    /// Blank from a finished erase.
+    /// Blank after a completed erase.
     Clean,
-    /// Complete when it was begun: all records there were, then those saved since.
+    /// The sector holds all records that existed when it was begun, and those saved since.
     Headed { generation: u32 },
-    /// To be erased before use. What reads as no head now might be one at the next boot.
+    /// The sector must be erased before use. Its contents are no head now, but might be one at the next boot.
     Garbage,
-    /// As garbage, but for the head: it is blank or cleared, and never comes back.
+    /// As `Garbage`, but the head is blank or cleared, so it cannot return.
     Headless,
 }
 
-/// One copy of what commits a head.
+/// Encodes one of the two copies that commit a head.
 #[inline(never)]
 pub(super) fn commitment(generation: u32) -> [u8; COPY_BYTES] {
     let mut copy = [0; COPY_BYTES];
@@ -63,7 +64,7 @@ pub(super) struct Head {
 }
 
 impl Head {
-    /// Of the first copy that is right.
+    /// Generation in the first correct copy.
     pub fn generation(&self) -> Option<u32> {
         COPIES_AT.into_iter().find_map(|at| {
             let copy = self.bytes.get(at..)?.first_chunk::<COPY_BYTES>()?;
@@ -73,24 +74,24 @@ impl Head {
         })
     }
 
-    /// Something is where both copies were. A change of sectors that was cut short leaves the second one blank, and
-    /// whoever erases a sector clears both first.
+    /// Whether both copies hold something wrong. An interrupted rotation leaves the second copy blank, and an erase
+    /// clears both first, so a power cut does not cause this.
     pub fn is_ruined(&self) -> bool {
         COPIES_AT.into_iter().all(|at| {
             let copy = self.bytes.get(at..).and_then(|rest| rest.get(..COPY_BYTES));
-            copy.is_some_and(holds_something)
+            copy.is_some_and(has_data)
         })
     }
 
-    /// One of the store's own marks is left, a few bits of it perhaps not: what was here was a head of the store, and
-    /// not a program that used to be in this place. Of 700 programs, one passes for a head.
+    /// Whether one of the store's own marks is there, with some bits possibly wrong. It shows that the sector held a
+    /// head of the store rather than a program. One in 700 programs passes for a head.
     pub fn has_marks(&self) -> bool {
         let [first, second] = COPIES_AT;
         [(0, CLEAN), (first, MAGIC), (second, MAGIC)]
             .into_iter()
             .any(|(at, mark)| {
                 let found = self.bytes.get(at..).and_then(|rest| rest.first_chunk());
-                found.is_some_and(|found| is_nearly(*found, mark))
+                found.is_some_and(|found| matches_mark(*found, mark))
             })
     }
 
@@ -103,28 +104,28 @@ impl Head {
         !is_blank(proof)
     }
 
-    /// The mark is there, and nothing else.
+    /// Whether the head holds the clean mark and nothing else.
     pub fn is_clean(&self) -> bool {
         let (mark, rest) = self.bytes.split_at(OPENED_AT);
         mark == CLEAN && is_blank(rest)
     }
 }
 
-/// A bit or so may be stuck, in a blank word or a cleared one.
-fn holds_something(bytes: &[u8]) -> bool {
+/// Whether a word is neither blank nor cleared, with one or two stuck bits tolerated.
+fn has_data(bytes: &[u8]) -> bool {
     const STUCK: u32 = 2;
     let ones = |word: &[u8]| word.iter().map(|byte| byte.count_ones()).sum();
     let mut words = bytes.chunks_exact(4).map(ones);
     words.any(|ones: u32| ones > STUCK && ones < 32 - STUCK)
 }
 
-fn is_nearly(found: [u8; 4], mark: [u8; 4]) -> bool {
+fn matches_mark(found: [u8; 4], mark: [u8; 4]) -> bool {
     const WRONG_BITS: u32 = 6;
     let wrong = u32::from_le_bytes(found) ^ u32::from_le_bytes(mark);
     wrong.count_ones() <= WRONG_BITS
 }
 
-/// Of a slot, or with slot 0 of the head, from the start of the store.
+/// Offset from the start of the store of a slot, or of the head with slot 0.
 pub(super) fn offset(sector: u8, slot: u8) -> u32 {
     let sector = u32::from(sector).wrapping_mul(SECTOR_BYTES);
     sector.wrapping_add(u32::from(slot).wrapping_mul(SLOT_BYTES as u32))

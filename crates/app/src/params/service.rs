@@ -1,11 +1,11 @@
-//! Settings from flash at boot, and back to it whenever they changed.
+//! The parameter service loads settings from flash at boot and saves them after changes.
 
 use embedded_storage::nor_flash::NorFlash;
 
 use super::{
     Progress, Store,
-    record::{self, Verdict},
-    saver::{BackOff, Position, Saver},
+    record::{self, LoadOutcome},
+    save_scheduler::{BackOff, GroupIndex, SaveScheduler},
 };
 use crate::{
     domain::{FlashRequest, ParamError, ParamState, ParamStatus, RobotConfig},
@@ -13,17 +13,17 @@ use crate::{
     tuning::{PARAMETERS, ParameterGroup, bit},
 };
 
-/// Steps that prove what is in flash at boot. The store needs two: the head and the last record.
+/// Steps that verify the contents of flash at boot. The store needs two, for the head and the last record.
 const MAX_PROOFS: usize = 4;
 
-/// What the next step does.
+/// The work of the next step.
 #[derive(Clone, Copy, Debug)]
 enum Job {
     /// The store's next step towards a new record of this group.
-    Save(FlashRequest, Position, &'static ParameterGroup),
-    /// The store's next step without one, so that later saves go quickly.
+    Save(FlashRequest, GroupIndex, &'static ParameterGroup),
+    /// The store's next step without a record, so that later saves are fast.
     TidyUp(FlashRequest),
-    /// Waits until the pause after a failure is over.
+    /// Waits for the end of a pause after a failure.
     Pause,
     Nothing,
 }
@@ -32,21 +32,22 @@ enum Job {
 pub struct ParamService<F> {
     store: Store<F>,
     layout: &'static MotorLayout,
-    saver: Saver,
-    /// A sector that cannot be erased must not keep the next one from being written.
+    save_scheduler: SaveScheduler,
+    /// Programming and erasing back off separately: a sector that cannot be erased must not delay writing the next
+    /// one.
     program_pause: BackOff,
     erase_pause: BackOff,
     status: ParamStatus,
 }
 
 impl<F: NorFlash> ParamService<F> {
-    /// Reads the store; what it has no good record for gets its default. May program some words, but erases nothing:
-    /// motors may still turn.
+    /// Reads the store. Settings without a good record get their defaults. This may program some words but erases
+    /// nothing, as motors may still be turning.
     pub fn boot(flash: F, layout: &'static MotorLayout) -> (Self, RobotConfig) {
         let mut service = Self {
             store: Store::open(flash),
             layout,
-            saver: Saver::new(layout.default_config()),
+            save_scheduler: SaveScheduler::new(layout.default_config()),
             program_pause: BackOff::default(),
             erase_pause: BackOff::default(),
             status: ParamStatus::default(),
@@ -55,15 +56,15 @@ impl<F: NorFlash> ParamService<F> {
         service.status.damaged = found.damaged;
         service.status.lost_sectors = found.lost_sectors;
         service.status.strange_sectors = found.strange_sectors;
-        service.settle();
+        service.settle_torn_slots();
         let config = service.load();
-        service.saver = Saver::new(config);
-        service.tell(FlashRequest::None, 0);
+        service.save_scheduler = SaveScheduler::new(config);
+        service.update_status(FlashRequest::None, 0);
         (service, config)
     }
 
-    /// What a power cut left half programmed is made to last as it reads now.
-    fn settle(&mut self) {
+    /// Rewrites what a power cut left half programmed, so that it stays as it reads now.
+    fn settle_torn_slots(&mut self) {
         for _ in 0..MAX_PROOFS {
             if self.store.next(false) != FlashRequest::Program {
                 return;
@@ -85,17 +86,17 @@ impl<F: NorFlash> ParamService<F> {
         let mut config = layout.default_config();
         store.for_each(|found| {
             match record::load(found, &PARAMETERS, layout, &mut config) {
-                Verdict::Loaded(position) => status.loaded |= bit(position),
-                Verdict::Refused(position) => status.refused |= bit(position),
-                Verdict::Foreign => status.foreign = status.foreign.saturating_add(1),
+                LoadOutcome::Loaded(position) => status.loaded |= bit(position),
+                LoadOutcome::Refused(position) => status.refused |= bit(position),
+                LoadOutcome::Foreign => status.foreign = status.foreign.saturating_add(1),
             };
         });
         config
     }
 
-    /// `config`, `revision` and `restored` (of `TuningStatus`) are of the same moment; `granted` is what the control
-    /// tick allows now. Does what was asked for in the step before, if that is allowed: at most one slot or one sector.
-    /// Gives what the next step wants to do.
+    /// Does the work that the previous step requested, if `granted` allows it: at most one slot or one sector.
+    /// Returns the request for the next step. `config`, `revision` and `restored` (of `TuningStatus`) must belong to
+    /// the same moment.
     pub fn step(
         &mut self,
         config: &RobotConfig,
@@ -104,37 +105,39 @@ impl<F: NorFlash> ParamService<F> {
         granted: FlashRequest,
         now_us: u64,
     ) -> FlashRequest {
-        // What is in use instead of a refused record looks saved; only by a command it becomes what is wanted.
-        let overruled = restored & self.status.refused;
-        self.saver.observe(config, revision, overruled, now_us);
+        // The defaults in use instead of a refused record look saved. Only an explicit command makes them wanted.
+        let forced = restored & self.status.refused;
+        self.save_scheduler
+            .observe(config, revision, forced, now_us);
         let job = self.job(now_us);
-        // The state is told before the work begins: an erase stops everything, and whoever looks then sees why.
+        // The state is published before the work begins: an erase stalls the chip, and an observer then sees why.
         if job.is_allowed(granted) && self.status.state == job.state_at_work() {
             self.work(job, config, now_us);
         }
-        self.tell(granted, now_us);
+        self.update_status(granted, now_us);
         self.job(now_us).request()
     }
 
+    /// State of the store, for diagnostics.
     pub fn status(&self) -> &ParamStatus {
         &self.status
     }
 
-    /// How long [`boot`](Self::boot) took.
+    /// Records the duration of [`boot`](Self::boot).
     pub fn note_boot(&mut self, boot_us: u32) {
         self.status.boot_us = boot_us;
         self.status.revision = self.status.revision.wrapping_add(1);
     }
 
-    /// How long the chip stood still in the last step, if it did.
+    /// Records how long the chip stood still in the last step.
     pub fn note_stall(&mut self, stall_us: u32) {
-        self.erase_pause.lengthen(stall_us);
+        self.erase_pause.extend(stall_us);
         self.status.longest_stall_us = self.status.longest_stall_us.max(stall_us);
         self.status.revision = self.status.revision.wrapping_add(1);
     }
 
     fn job(&self, now_us: u64) -> Job {
-        let due = self.saver.due(now_us);
+        let due = self.save_scheduler.due(now_us);
         if let Some((position, group)) = due
             && let Some(request) = self.next(true, now_us)
         {
@@ -148,7 +151,7 @@ impl<F: NorFlash> ParamService<F> {
         }
     }
 
-    /// The store's next step, unless one like it failed a short while ago.
+    /// Returns the store's next step, unless a similar one failed a short while ago.
     fn next(&self, want_write: bool, now_us: u64) -> Option<FlashRequest> {
         let request = self.store.next(want_write);
         let may = match request {
@@ -178,7 +181,7 @@ impl<F: NorFlash> ParamService<F> {
         &mut self,
         request: FlashRequest,
         progress: Progress,
-        position: Option<Position>,
+        position: Option<GroupIndex>,
         config: &RobotConfig,
     ) {
         if request == FlashRequest::Erase {
@@ -187,7 +190,7 @@ impl<F: NorFlash> ParamService<F> {
         }
         match (progress, position) {
             (Progress::Stored, Some(position)) => {
-                self.saver.saved(position, config);
+                self.save_scheduler.mark_saved(position, config);
                 self.status.refused &= !bit(position);
                 self.program_pause.succeed();
                 self.status.save_ok = self.status.save_ok.wrapping_add(1);
@@ -200,7 +203,7 @@ impl<F: NorFlash> ParamService<F> {
         &mut self,
         request: FlashRequest,
         error: ParamError,
-        position: Option<Position>,
+        position: Option<GroupIndex>,
         now_us: u64,
     ) {
         self.status.save_failed = self.status.save_failed.wrapping_add(1);
@@ -212,22 +215,22 @@ impl<F: NorFlash> ParamService<F> {
             self.program_pause.fail(now_us);
         }
         if let Some(position) = position {
-            self.saver.failed(position);
+            self.save_scheduler.mark_failed(position);
         }
     }
 
-    fn tell(&mut self, granted: FlashRequest, now_us: u64) {
+    fn update_status(&mut self, granted: FlashRequest, now_us: u64) {
         let report = self.store.report();
-        let told = ParamStatus {
-            seen: self.saver.seen(),
-            unsaved: self.saver.unsaved(),
+        let updated = ParamStatus {
+            seen: self.save_scheduler.seen(),
+            unsaved: self.save_scheduler.unsaved(),
             generation: report.generation,
             free_slots: report.free_slots,
             state: self.state(granted, now_us),
             ..self.status
         };
-        if told != self.status || self.status.revision == 0 {
-            self.status = told;
+        if updated != self.status || self.status.revision == 0 {
+            self.status = updated;
             self.status.revision = self.status.revision.wrapping_add(1);
         }
     }
@@ -237,12 +240,13 @@ impl<F: NorFlash> ParamService<F> {
         if job.is_allowed(granted) {
             return job.state_at_work();
         }
-        let settles = self.saver.unsaved() != 0 && self.saver.due(now_us).is_none();
+        let settles =
+            self.save_scheduler.unsaved() != 0 && self.save_scheduler.due(now_us).is_none();
         match job {
             _ if settles => ParamState::Settling,
             Job::Save(..) => ParamState::WaitingForRest,
             Job::Pause => ParamState::BackingOff,
-            Job::TidyUp(_) if self.saver.unsaved() != 0 => ParamState::BackingOff,
+            Job::TidyUp(_) if self.save_scheduler.unsaved() != 0 => ParamState::BackingOff,
             Job::TidyUp(_) | Job::Nothing => ParamState::Saved,
         }
     }

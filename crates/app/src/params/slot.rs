@@ -1,4 +1,4 @@
-//! One place for a record: 32 words that hold a record, nothing, or what a power cut left (docs/parameters.md).
+//! A slot: 32 words that hold a record, nothing, or the remains of a power cut (docs/parameters.md).
 //!
 //! | word | holds | programmed |
 //! |---|---|---|
@@ -14,45 +14,47 @@ use heapless::Vec;
 
 use super::checksum::checksum;
 
-/// Values one record may have.
+/// Largest number of values in a record.
 pub const MAX_VALUES: usize = 28;
 
 pub(super) const SLOT_BYTES: usize = 128;
 pub(super) const BLANK: u8 = 0xFF;
-/// Where in a slot, in bytes.
+/// Offsets in a slot, in bytes.
 pub(super) const BODY_AT: usize = 4;
 pub(super) const PROOF_AT: usize = 120;
 pub(super) const CRC_AT: usize = 124;
 const VALUES_AT: usize = 8;
 
-/// What a record is about.
+/// Identity of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RecordId {
-    /// `ParameterGroup::number`.
+    /// The group: `ParameterGroup::number`.
     pub key: u8,
-    /// Records of one key that must not be mistaken for each other, such as those for motors of different makes.
+    /// Separates records of one key that must not be confused, such as those for motors of different makes.
     pub variant: u8,
 }
 
-/// What is stored under one identity.
+/// The values stored under one identity.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Record {
+    /// Identity of the record.
     pub id: RecordId,
-    /// Of the meaning of the values.
+    /// Version of the meaning of the values.
     pub version: u8,
-    /// Any bits; the store does not look at them.
+    /// The values' bits. The store does not interpret them.
     pub values: Vec<u32, MAX_VALUES>,
 }
 
-/// A slot as read once. Words torn by a power cut may read differently the next time, so nothing is judged twice.
+/// A slot as it was read once. Words torn by a power cut may read differently the next time, so each check uses this
+/// copy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Slot {
     pub bytes: [u8; SLOT_BYTES],
 }
 
 impl Slot {
-    /// Guard and proof are blank: they are programmed by themselves.
-    pub fn of(record: &Record) -> Self {
+    /// Encodes a record. Guard and proof stay blank, as they are programmed separately.
+    pub fn from_record(record: &Record) -> Self {
         let mut bytes = [BLANK; SLOT_BYTES];
         let count = record.values.len() as u8;
         let header = [record.id.key, record.version, count, record.id.variant];
@@ -70,7 +72,7 @@ impl Slot {
         is_blank(&self.bytes)
     }
 
-    /// What the header says, be it right or not.
+    /// The identity in the header, whether or not the slot is intact.
     pub fn claimed_id(&self) -> RecordId {
         RecordId {
             key: self.bytes[4],
@@ -78,24 +80,24 @@ impl Slot {
         }
     }
 
-    /// Cheap where nothing is stored: a blank slot claims more values than there can be.
+    /// Whether the checksum is right. It is cheap for a blank slot, which claims more values than possible.
     pub fn is_intact(&self) -> bool {
         self.count() <= MAX_VALUES
             && self.bytes[CRC_AT..] == checksum(&self.bytes[BODY_AT..PROOF_AT]).to_le_bytes()
     }
 
-    /// Read back once already: what it holds stays as it reads now.
+    /// Whether the slot has been read back once, so that its contents are stable.
     pub fn is_proven(&self) -> bool {
         !is_blank(&self.bytes[PROOF_AT..CRC_AT])
     }
 
-    /// Guard and proof aside, which mean something only by not being blank.
+    /// Whether both slots hold the same, apart from guard and proof, which only count as blank or not.
     pub fn holds_the_same(&self, other: &Self) -> bool {
         self.bytes[BODY_AT..PROOF_AT] == other.bytes[BODY_AT..PROOF_AT]
             && self.bytes[CRC_AT..] == other.bytes[CRC_AT..]
     }
 
-    /// Only of an intact slot.
+    /// The record of an intact slot.
     pub fn record(&self) -> Record {
         let places = self.bytes[VALUES_AT..PROOF_AT].chunks_exact(4);
         let words = places.filter_map(|place| Some(u32::from_le_bytes(place.try_into().ok()?)));
@@ -119,7 +121,7 @@ impl Slot {
     }
 }
 
-/// Out of line, as more of the store: flash is scarce, and none of this is in a hurry.
+/// Out of line, as much of the store: flash is scarce, and this code is not time-critical.
 #[inline(never)]
 pub(super) fn is_blank(bytes: &[u8]) -> bool {
     bytes.iter().all(|byte| *byte == BLANK)

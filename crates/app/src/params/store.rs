@@ -1,9 +1,9 @@
 //! The parameter store: records in three flash sectors that no power cut can lose (docs/parameters.md).
 //!
-//! Records are appended to the *active* sector, the one of the highest generation. When it is full, the newest copy of
-//! every record moves to a clean sector, whose head is written last and makes it the active one. The old sector stays
-//! as a backup until the next clean sector is needed. A sector is erased only while none is clean, so an erase comes
-//! after such a change, and hardly ever is a save left waiting for one.
+//! Records are appended to the *active* sector, which has the highest generation. When it is full, the newest copy of
+//! every record is copied to a clean sector. Writing that sector's head comes last and makes it the active one. The
+//! old sector remains as a backup until the next clean sector is needed. A sector is erased only while none is clean.
+//! So an erase follows such a rotation, and a save rarely has to wait for one.
 
 use embedded_storage::nor_flash::NorFlash;
 
@@ -18,45 +18,94 @@ mod programming;
 mod reading;
 mod rotation;
 
-use reading::Walk;
+use reading::Cursor;
 use rotation::Rotation;
 
-/// The newest copies of this many records move along; what is older is left behind.
+/// Number of records whose newest copies a rotation keeps.
 pub const MAX_RECORDS: usize = 64;
 
-/// What a step has done.
+/// Result of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Progress {
-    /// The record handed in is in flash and was read back. No power cut takes it back.
+    /// The given record is in flash and was read back. No power cut can undo it.
     Stored,
     /// More steps may follow: see [`Store::next`].
     Worked,
 }
 
+/// State of the store.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StoreReport {
-    /// Of the active sector; 0 without one.
+    /// Generation of the active sector; 0 without one.
     pub generation: u32,
-    /// Places of the active sector that hold neither a record nor nothing, as found by `open`.
+    /// Slots of the active sector that `open` found neither blank nor with a record.
     pub damaged: u16,
-    /// Records that fit before the next sector is begun.
+    /// Number of records that fit before the next rotation.
     pub free_slots: u16,
-    /// Sectors whose head was ruined by something else than a power cut, as found by `open`: what was saved there is
-    /// gone, and an older value or none is in its place.
+    /// Sectors whose head `open` found ruined by something other than a power cut. Their records are lost, and older
+    /// values or none take their place.
     pub lost_sectors: u8,
-    /// Sectors that hold something else than a store, as found by `open` where there was no store either.
+    /// Sectors in which `open` found something other than a store, while there was no store either.
     pub strange_sectors: u8,
 }
 
-/// Records in `F`: 48 KiB from offset 0, sectors of 16 KiB, words of 4 bytes.
+/// A store in `F`: 48 KiB from offset 0, with sectors of 16 KiB and words of 4 bytes.
 ///
-/// Programming must be able to clear further bits of a word that is not blank, as the STM32F4's flash can, and a read
-/// after `write` or `erase` must show the cells, not a cache.
+/// Programming must be able to clear further bits of a word that is not blank, as the STM32F4's flash can. A read
+/// after `write` or `erase` must return the cells' contents rather than those of a cache.
+///
+/// ```
+/// use embedded_storage::nor_flash::{ErrorType, NorFlash, NorFlashErrorKind, ReadNorFlash};
+/// use robot_app::domain::FlashRequest;
+/// use robot_app::params::{Progress, Record, RecordId, Store};
+///
+/// struct Flash(Vec<u8>);
+///
+/// impl ErrorType for Flash {
+///     type Error = NorFlashErrorKind;
+/// }
+/// impl ReadNorFlash for Flash {
+///     const READ_SIZE: usize = 1;
+///     fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), NorFlashErrorKind> {
+///         bytes.copy_from_slice(&self.0[offset as usize..][..bytes.len()]);
+///         Ok(())
+///     }
+///     fn capacity(&self) -> usize {
+///         self.0.len()
+///     }
+/// }
+/// impl NorFlash for Flash {
+///     const WRITE_SIZE: usize = 4;
+///     const ERASE_SIZE: usize = 0x4000;
+///     fn erase(&mut self, from: u32, to: u32) -> Result<(), NorFlashErrorKind> {
+///         self.0[from as usize..to as usize].fill(0xFF);
+///         Ok(())
+///     }
+///     fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), NorFlashErrorKind> {
+///         for (cell, byte) in self.0[offset as usize..].iter_mut().zip(bytes) {
+///             *cell &= byte;
+///         }
+///         Ok(())
+///     }
+/// }
+///
+/// let mut store = Store::open(Flash(vec![0xFF; 3 * 0x4000]));
+/// let record = Record {
+///     id: RecordId { key: 7, variant: 0 },
+///     version: 1,
+///     values: [0x4220_0000].into_iter().collect(),
+/// };
+/// assert_eq!(store.next(true), FlashRequest::Erase); // a new chip has no clean sector
+/// while store.work(Some(&record)) != Ok(Progress::Stored) {}
+/// let mut found = Vec::new();
+/// store.for_each(|record| found.push(record.clone()));
+/// assert_eq!(found, [record]);
+/// ```
 #[derive(Debug)]
 pub struct Store<F> {
     flash: F,
     sectors: [Sector; SECTORS as usize],
-    /// The sector of the highest generation is the active one.
+    /// State of the sector with the highest generation.
     active: Active,
     rotation: Option<Rotation>,
     damaged: u16,
@@ -67,34 +116,34 @@ pub struct Store<F> {
 #[derive(Clone, Copy, Debug)]
 struct Sector {
     state: SectorState,
-    /// Since boot; such a sector is tried last.
+    /// An operation on the sector has failed since boot. Such a sector is used last.
     failed: bool,
 }
 
 /// What is known of the active sector beyond its state.
 #[derive(Clone, Copy, Debug)]
 struct Active {
-    /// Where the next record goes; after `LAST_SLOT` the sector is full.
+    /// Slot for the next record. Beyond `LAST_SLOT` the sector is full.
     next_slot: u8,
-    /// Read back: no power cut left it half programmed.
+    /// The head has been read back, so no power cut left it half programmed.
     head_is_proven: bool,
-    /// The last slot that is taken, likewise.
+    /// The same for the last occupied slot.
     slot_is_proven: bool,
-    /// It was to be proven and did not take it: the next boot may not find it.
-    head_is_doubtful: bool,
-    failures: InARow,
+    /// Verifying the head failed, so the next boot may not find it.
+    head_is_unreliable: bool,
+    failures: ConsecutiveFailures,
 }
 
-/// Slots that took no record, one after the other.
+/// Counts consecutive slots that failed to take a record.
 #[derive(Clone, Copy, Debug, Default)]
-struct InARow(u8);
+struct ConsecutiveFailures(u8);
 
-impl InARow {
-    /// Then the sector is taken for worn out.
+impl ConsecutiveFailures {
+    /// After this number the sector counts as worn out.
     const MAX: u8 = 3;
 
-    /// An error of the controller says nothing about the sector.
-    fn note(&mut self, written: Result<(), ParamError>) {
+    /// Counts a result. An error of the flash controller says nothing about the sector.
+    fn count(&mut self, written: Result<(), ParamError>) {
         match written {
             Ok(()) => self.0 = 0,
             Err(ParamError::NotProgrammed) => self.0 = self.0.saturating_add(1),
@@ -102,7 +151,7 @@ impl InARow {
         }
     }
 
-    fn is_too_many(self) -> bool {
+    fn limit_reached(self) -> bool {
         self.0 >= Self::MAX
     }
 }
@@ -119,7 +168,7 @@ enum Step {
 }
 
 impl<F: NorFlash> Store<F> {
-    /// Reads all there is. Never fails and never writes.
+    /// Reads the state of all sectors. It never fails and never writes.
     pub fn open(flash: F) -> Self {
         let mut store = Self {
             flash,
@@ -137,17 +186,18 @@ impl<F: NorFlash> Store<F> {
         store
     }
 
-    /// The newest intact copy of every record, each once, in no particular order.
+    /// Calls `f` with the newest intact copy of every record, in no particular order.
     ///
-    /// At boot, first let the store do what [`Store::next`] asks to program: a record that a power cut left half
-    /// programmed then stays as it is read here.
+    /// At boot, first program what [`Store::next`] requests. A record that a power cut left half programmed then
+    /// stays as it is read here.
     pub fn for_each(&mut self, mut f: impl FnMut(&Record)) {
-        let mut walk = Walk::new();
-        while let Some(slot) = self.next_newest(&mut walk) {
+        let mut cursor = Cursor::new();
+        while let Some(slot) = self.next_newest(&mut cursor) {
             f(&slot.record());
         }
     }
 
+    /// State of the store.
     pub fn report(&self) -> StoreReport {
         let free = LAST_SLOT
             .saturating_add(1)
@@ -161,7 +211,7 @@ impl<F: NorFlash> Store<F> {
         }
     }
 
-    /// What [`Store::work`] would do now, with a record or without.
+    /// The operation that [`Store::work`] would perform now, with a record or without.
     pub fn next(&self, want_write: bool) -> FlashRequest {
         match self.plan(want_write) {
             None => FlashRequest::None,
@@ -170,11 +220,10 @@ impl<F: NorFlash> Store<F> {
         }
     }
 
-    /// One step: programs at most one slot or head, or erases one sector.
+    /// Performs one step: programs at most one slot or head, or erases one sector.
     ///
-    /// # Errors
-    /// Why the step failed. The next call tries something else where there is something else to try; nothing that was
-    /// stored is lost.
+    /// # Errors Returns why the step failed. The next call tries an alternative if there is one. No stored record is
+    /// lost.
     pub fn work(&mut self, record: Option<&Record>) -> Result<Progress, ParamError> {
         let done = match (self.plan(record.is_some()), record) {
             (Some(Step::Append { sector }), Some(record)) => {
@@ -186,7 +235,7 @@ impl<F: NorFlash> Store<F> {
             (Some(Step::ProveSlot { sector }), _) => self.prove_last_slot(sector),
             (Some(Step::ClearHead { sector }), _) => self.clear_garbage(sector),
             (Some(Step::Open { target }), _) => self.open_sector(target),
-            (Some(Step::Move), _) => self.move_one(),
+            (Some(Step::Move), _) => self.copy_next_record(),
             (Some(Step::Erase { sector }), _) => self.erase(sector),
             (Some(Step::Append { .. }) | None, _) => Ok(()),
         };
@@ -208,13 +257,13 @@ impl<F: NorFlash> Store<F> {
         }
         let clean = self.first_in(SectorState::Clean);
         if want_write {
-            // A head that cannot be read now must not come back and hide what is written from here on.
+            // A head that cannot be read now must not return later and hide what is written from here on.
             if let Some(sector) = self.first_in(SectorState::Garbage) {
                 return Some(Step::ClearHead { sector });
             }
             if let Some((sector, _)) = active
                 && self.active.next_slot <= LAST_SLOT
-                && !(self.active.failures.is_too_many() && self.has_another_sector())
+                && !(self.active.failures.limit_reached() && self.has_another_sector())
             {
                 return Some(Step::Append { sector });
             }
@@ -230,13 +279,13 @@ impl<F: NorFlash> Store<F> {
 }
 
 impl Active {
-    /// Nothing to prove and no room.
+    /// A sector without room and with nothing to verify.
     const FULL: Self = Self {
         next_slot: LAST_SLOT.saturating_add(1),
         head_is_proven: true,
         slot_is_proven: true,
-        head_is_doubtful: false,
-        failures: InARow(0),
+        head_is_unreliable: false,
+        failures: ConsecutiveFailures(0),
     };
 }
 

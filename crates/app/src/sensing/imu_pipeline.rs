@@ -185,10 +185,10 @@ impl ImuPipeline {
         let outliers = &mut self.rejects.gyro_frames;
         *outliers = outliers.wrapping_add(sample.gyro.outliers.into());
         let gyro_dps = vector::scale(sample.gyro.mean_counts, GyroRaw::DPS_PER_COUNT);
-        let clipped_ms = self.mounting.turn(sample.gyro.clipped_ms.map(f32::from));
+        let clipped_ms = self.mounting.rotate(sample.gyro.clipped_ms.map(f32::from));
         Ok(CheckedSample {
-            accel_mps2: self.mounting.turn(accel.mps2()),
-            gyro_dps: self.mounting.turn(gyro_dps),
+            accel_mps2: self.mounting.rotate(accel.mps2()),
+            gyro_dps: self.mounting.rotate(gyro_dps),
             gyro_clipped_ms: clipped_ms.map(|ms| ms.abs() as u8),
             temperature_c: accel.temperature.map(|temperature| temperature.celsius()),
             saturated: sample.saturated,

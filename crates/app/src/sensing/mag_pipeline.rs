@@ -77,7 +77,7 @@ impl MagPipeline {
         let raw = ist8310::decode(answer).ok_or(MagSampleError::NotReady)?;
         let sensor_ut = raw.right_handed_ut().ok_or(MagSampleError::OutOfRange)?;
         let MountingConfig { board, mag } = self.mounting;
-        let field_ut = board.turn(mag.unwrap_or_default().turn(sensor_ut));
+        let field_ut = board.rotate(mag.unwrap_or_default().rotate(sensor_ut));
         Ok(MagState {
             mag_ut: correct_by_matrix(
                 field_ut,

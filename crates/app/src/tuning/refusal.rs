@@ -65,7 +65,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn codes_are_those_of_the_wire_and_no_others() {
+    fn only_the_documented_codes_are_decoded() {
         let reasons: Vec<_> = (0..=u8::MAX).filter_map(Refusal::from_code).collect();
         assert_eq!(reasons, Refusal::ALL);
         assert_eq!(Refusal::from_code(7), Some(Refusal::Inconsistent));

@@ -86,7 +86,7 @@ pub fn find_board(poses: &Poses) -> Result<BoardFound, BoardError> {
     }
     let points = |axis: Axis, robot: [f32; 3]| {
         let axis = axis.unit().map(|part| part as f32);
-        move |orientation: &Orientation| orientation.turn(axis.into()) == robot
+        move |orientation: &Orientation| orientation.rotate(axis.into()) == robot
     };
     let (is_up, is_forward) = (
         points(up.0, [0.0, 0.0, 1.0]),

@@ -76,7 +76,7 @@ pub fn find_mag(board: Orientation, samples: &[FieldSample]) -> Result<MagFound,
     let mut ways = Orientation::ALL.map(|mag| {
         let turned = |field: Vector3<f64>| {
             let field = field.map(|part| part as f32);
-            Vector3::from(board.turn(mag.turn(field.into()))).map(f64::from)
+            Vector3::from(board.rotate(mag.rotate(field.into()))).map(f64::from)
         };
         (mag, turn.fit(samples, turned))
     });

@@ -50,7 +50,7 @@ fn three_poses_show_how_the_board_sits() {
 fn every_way_to_sit_is_found() {
     for orientation in Orientation::ALL {
         let felt = |up: [f32; 3]| {
-            Vector3::from(orientation.turn_back(up.map(|part| 9.8 * part))).map(f64::from)
+            Vector3::from(orientation.rotate_back(up.map(|part| 9.8 * part))).map(f64::from)
         };
         let poses = Poses {
             level: felt([0.05, -0.05, 0.99]),
@@ -158,7 +158,7 @@ fn every_way_the_magnetometer_may_sit_is_found() {
         let samples = turned(200, 0.9, |field| {
             wobble += 1.3;
             let noisy = field.map(|part| (part + 2.0 * wobble.sin()) as f32);
-            mag.turn_back(board.turn_back(noisy)).map(f64::from)
+            mag.rotate_back(board.rotate_back(noisy)).map(f64::from)
         });
         assert_eq!(find_mag(board, &samples).unwrap().orientation, mag);
     }

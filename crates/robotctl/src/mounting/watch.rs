@@ -111,6 +111,6 @@ fn vector(reading: &LiveReading, fields: [&'static str; 3]) -> Result<Vector3<f6
 }
 
 fn turned_back(orientation: Orientation, robot: Vector3<f64>) -> Vector3<f64> {
-    let sensor = orientation.turn_back(robot.map(|part| part as f32).into());
+    let sensor = orientation.rotate_back(robot.map(|part| part as f32).into());
     Vector3::from(sensor).map(f64::from)
 }

@@ -51,7 +51,7 @@ impl fmt::Display for Axis {
 /// Such as `x points left, y backward, z up`.
 pub fn describe(orientation: Orientation) -> String {
     let [x, y, z] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
-        .map(|axis| direction(orientation.turn(axis)));
+        .map(|axis| direction(orientation.rotate(axis)));
     format!("x points {x}, y {y}, z {z}")
 }
 

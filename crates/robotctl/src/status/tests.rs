@@ -2,7 +2,7 @@
 
 use robot_app::{
     diagnostics::DiagnosticsSnapshot,
-    domain::{JointState, LastWords, ResetCause},
+    domain::{CrashCause, JointState, ResetCause},
     safety::{ArmingBlockers, ArmingState, SafetyVerdict},
 };
 
@@ -17,7 +17,7 @@ fn status(fill: impl FnOnce(&mut DiagnosticsSnapshot)) -> Status {
 fn what_speaks_against_arming_is_told_with_what_to_do() {
     let text = status(|diagnostics| {
         diagnostics.reset_cause = ResetCause::IndependentWatchdog;
-        diagnostics.last_words = LastWords::ImuLate;
+        diagnostics.last_words = CrashCause::ImuLate;
         diagnostics.ts_us = 3_661_000_000;
         diagnostics.battery_v = 23.994;
         let joint = &mut diagnostics.sensors.motor.joints[1];

@@ -37,14 +37,14 @@ fn what_the_sensor_reads_is_turned_as_by_hand() {
         assert_eq!(orientation.name(), name);
         assert_eq!(orientation.number(), number as u32);
         // Robot axes: x forward, y left, z up.
-        assert_eq!(orientation.turn(level), [0.0, 0.0, 1.0], "{name}, level");
+        assert_eq!(orientation.rotate(level), [0.0, 0.0, 1.0], "{name}, level");
         assert_eq!(
-            orientation.turn(nose_up),
+            orientation.rotate(nose_up),
             [1.0, 0.0, 0.0],
             "{name}, nose up"
         );
         assert_eq!(
-            orientation.turn(left_up),
+            orientation.rotate(left_up),
             [0.0, 1.0, 0.0],
             "{name}, left up"
         );
@@ -58,7 +58,7 @@ fn what_the_sensor_reads_is_turned_as_by_hand() {
 #[test]
 fn they_are_the_rotations_of_a_cube() {
     let turned =
-        |o: Orientation| [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|v| o.turn(v));
+        |o: Orientation| [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|v| o.rotate(v));
     let all = Orientation::ALL.map(turned);
     for (index, axes) in all.iter().enumerate() {
         let [x, y, z] = *axes;
@@ -69,17 +69,17 @@ fn they_are_the_rotations_of_a_cube() {
         );
         let outer = Orientation::ALL[index];
         for inner in Orientation::ALL {
-            let both = turned(inner).map(|v| outer.turn(v));
+            let both = turned(inner).map(|v| outer.rotate(v));
             assert!(all.contains(&both), "{} in {}", inner.name(), outer.name());
         }
     }
 }
 
 #[test]
-fn turning_back_undoes_a_turn() {
+fn rotating_back_undoes_a_rotation() {
     let felt = [0.1, -1234.5, 9.81];
     for orientation in Orientation::ALL {
-        assert_eq!(orientation.turn_back(orientation.turn(felt)), felt);
+        assert_eq!(orientation.rotate_back(orientation.rotate(felt)), felt);
     }
-    assert_eq!(Orientation::default().turn(felt), felt);
+    assert_eq!(Orientation::default().rotate(felt), felt);
 }

@@ -1,7 +1,7 @@
 use super::*;
 use crate::params::slot::BLANK;
 
-/// As docs/parameters.md says it, generation 7, the checksum computed with zlib.
+/// A copy by docs/parameters.md with a checksum from zlib: generation 7.
 const COPY: [u8; 16] = *b"PRM1\x07\0\0\0\xF8\xFF\xFF\xFF\x44\xB1\xDB\x7C";
 
 fn head_with(at: usize, bytes: &[u8]) -> Head {
@@ -13,12 +13,12 @@ fn head_with(at: usize, bytes: &[u8]) -> Head {
 }
 
 #[test]
-fn a_head_is_committed_as_documented() {
+fn a_head_has_the_documented_layout() {
     assert_eq!(commitment(7), COPY);
 }
 
 #[test]
-fn one_copy_of_the_head_is_enough() {
+fn one_intact_copy_of_the_head_is_enough() {
     assert_eq!(head_with(8, &COPY).generation(), Some(7));
     assert_eq!(head_with(24, &COPY).generation(), Some(7));
     assert_eq!(head_with(12, &COPY).generation(), None);
@@ -32,9 +32,9 @@ fn one_copy_of_the_head_is_enough() {
     }
 }
 
-/// A power cut in an erase may leave a sector that reads blank, or zeros.
+/// An interrupted erase may leave a sector that reads blank or as zeros.
 #[test]
-fn only_the_mark_makes_a_blank_sector_clean() {
+fn a_blank_sector_is_clean_only_with_its_mark() {
     assert!(head_with(0, b"\xC1\xEA\x5E\xD0").is_clean());
     assert!(!head_with(0, &[BLANK; 4]).is_clean());
     assert!(!head_with(0, &[0; 4]).is_clean());
@@ -43,9 +43,9 @@ fn only_the_mark_makes_a_blank_sector_clean() {
     assert!(!opened.is_clean());
 }
 
-/// What a cut in a change of sectors, a cut while a head is cleared and worn-out cells leave is no damage.
+/// An interrupted rotation, an interrupted clearing of a head, and worn-out cells do not count as damage.
 #[test]
-fn only_a_head_with_two_wrong_copies_is_ruined() {
+fn a_head_is_ruined_only_if_both_copies_are_wrong() {
     let mut flipped = COPY;
     flipped[5] ^= 1;
     let with_second = |mut head: Head, copy: &[u8]| {
@@ -63,9 +63,9 @@ fn only_a_head_with_two_wrong_copies_is_ruined() {
     assert!(!head_with(0, &stuck).is_ruined());
 }
 
-/// Two stuck bits a word are nothing, in a cleared word as in a blank one; three are something.
+/// Two stuck bits in a word are ignored, in a cleared word as in a blank one. Three are not.
 #[test]
-fn a_head_holds_something_beyond_two_stuck_bits_a_word() {
+fn up_to_two_stuck_bits_in_a_word_count_as_blank() {
     for (word, holds) in [
         (0x0000_0003_u32, false),
         (0x0000_0007, true),
@@ -74,14 +74,14 @@ fn a_head_holds_something_beyond_two_stuck_bits_a_word() {
     ] {
         let mut copies = [0; 8];
         copies[..4].copy_from_slice(&word.to_le_bytes());
-        assert_eq!(holds_something(&copies), holds, "{word:x}");
+        assert_eq!(has_data(&copies), holds, "{word:x}");
     }
 }
 
-/// Code of another firmware, an erased or cleared place and noise have none of them; a head of which bits are wrong, or
-/// only one word is left, has.
+/// Code of another firmware, erased or cleared words, and noise have no mark. A head with wrong bits, or with only
+/// one word left, has one.
 #[test]
-fn a_head_of_the_store_is_known_by_its_marks() {
+fn a_head_of_the_store_is_recognised_by_its_marks() {
     let mut hurt = *b"\xC1\xEA\x5E\xD0";
     hurt[2] ^= 0x3F;
     assert!(head_with(0, &hurt).has_marks());
@@ -98,7 +98,7 @@ fn a_head_of_the_store_is_known_by_its_marks() {
 }
 
 #[test]
-fn slots_lie_128_bytes_apart_and_sectors_16_kib() {
+fn slots_are_128_bytes_and_sectors_16_kib_apart() {
     assert_eq!(offset(0, 1), 0x80);
     assert_eq!(offset(1, 0), 0x4000);
     assert_eq!(offset(2, 127), 0xBF80);

@@ -1,6 +1,6 @@
 use super::*;
 
-/// As docs/parameters.md says it, the checksums computed with zlib: key 4, version 1, three values, variant 2.
+/// A slot by docs/parameters.md with a checksum from zlib: key 4, version 1, three values, variant 2.
 fn by_hand() -> [u8; SLOT_BYTES] {
     let mut bytes = [BLANK; SLOT_BYTES];
     bytes[4..8].copy_from_slice(&[4, 1, 3, 2]);
@@ -20,16 +20,16 @@ fn the_record() -> Record {
 }
 
 #[test]
-fn a_record_lies_in_its_slot_as_documented() {
-    assert_eq!(Slot::of(&the_record()).bytes, by_hand());
+fn a_slot_has_the_documented_layout() {
+    assert_eq!(Slot::from_record(&the_record()).bytes, by_hand());
     let slot = Slot { bytes: by_hand() };
     assert!(slot.is_intact() && !slot.is_blank());
     assert_eq!(slot.record(), the_record());
 }
 
-/// Guard and proof aside, of which only "not blank" means something.
+/// Guard and proof are exempt, as they only count as blank or not.
 #[test]
-fn no_flipped_bit_goes_unnoticed() {
+fn every_flipped_bit_is_detected() {
     for bit in 0..SLOT_BYTES * 8 {
         let mut slot = Slot { bytes: by_hand() };
         slot.bytes[bit / 8] ^= 1 << (bit % 8);
@@ -45,7 +45,7 @@ fn no_flipped_bit_goes_unnoticed() {
 }
 
 #[test]
-fn neither_a_blank_slot_nor_a_cleared_one_is_a_record() {
+fn blank_and_cleared_slots_are_not_records() {
     let blank = Slot {
         bytes: [BLANK; SLOT_BYTES],
     };
@@ -57,11 +57,11 @@ fn neither_a_blank_slot_nor_a_cleared_one_is_a_record() {
 }
 
 #[test]
-fn a_record_has_28_values_at_most() {
+fn a_record_has_at_most_28_values() {
     let mut record = the_record();
     record.values = (0..28).map(|index| index * 0x0101_0101).collect();
     (record.id.key, record.version, record.id.variant) = (200, 9, 255);
-    let slot = Slot::of(&record);
+    let slot = Slot::from_record(&record);
     assert_eq!(slot.bytes[124..], 0x04DC_7C6F_u32.to_le_bytes());
     assert_eq!(slot.record(), record);
     let mut claims_more = slot;
@@ -71,11 +71,11 @@ fn a_record_has_28_values_at_most() {
     assert!(!claims_more.is_intact());
 }
 
-/// The third value is all ones: it needs no programming.
+/// The third value is all ones, so it needs no programming.
 #[test]
 fn blank_words_at_the_end_are_not_programmed() {
-    assert_eq!(Slot::of(&the_record()).body(), &by_hand()[4..16]);
+    assert_eq!(Slot::from_record(&the_record()).body(), &by_hand()[4..16]);
     let mut full = the_record();
     full.values = [7; MAX_VALUES].into_iter().collect();
-    assert_eq!(Slot::of(&full).body().len(), 4 * 29);
+    assert_eq!(Slot::from_record(&full).body().len(), 4 * 29);
 }

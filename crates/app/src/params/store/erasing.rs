@@ -1,4 +1,4 @@
-//! Which sector is erased, and when it counts as clean.
+//! Selects the sector to erase, and erases it.
 
 use embedded_storage::nor_flash::NorFlash;
 
@@ -9,13 +9,13 @@ use crate::{
 };
 
 impl<F: NorFlash> Store<F> {
-    /// Never the active sector, nor its backup as long as the active one may be gone at the next boot. Garbage before
-    /// the oldest backup; what failed before, after everything else.
+    /// Selects the sector to erase. It is never the active sector, nor its backup while the active head may vanish at
+    /// the next boot. Garbage comes before the oldest backup, and sectors that failed come last.
     #[inline(never)]
     pub(super) fn victim(&self) -> Option<u8> {
         let active = self.active_sector();
         let backup = active.and_then(|(_, generation)| self.newest_below(generation));
-        let spared = [active, backup.filter(|_| self.active.head_is_doubtful)];
+        let spared = [active, backup.filter(|_| self.active.head_is_unreliable)];
         let mut victim = None;
         for (sector, number) in self.sectors.iter().zip(0..SECTORS) {
             let rank = sector.rank();
@@ -27,7 +27,7 @@ impl<F: NorFlash> Store<F> {
         victim.map(|(number, _)| number)
     }
 
-    /// One that is clean, or could be erased as far as is known.
+    /// Whether another sector is clean, or might be erased successfully.
     pub(super) fn has_another_sector(&self) -> bool {
         let active = self.active_sector().map(|(sector, _)| sector);
         let mut sectors = self.sectors.iter().zip(0..SECTORS);
@@ -46,7 +46,7 @@ impl<F: NorFlash> Store<F> {
     }
 
     fn erase_and_mark(&mut self, sector: u8) -> Result<(), ParamError> {
-        // If the erase is cut short, neither an old head nor an old mark may be left.
+        // If the erase is interrupted, neither an old head nor an old mark may remain.
         self.clear_head(sector)?;
         let from = offset(sector, 0);
         let to = from.wrapping_add(SECTOR_BYTES);
@@ -62,7 +62,8 @@ impl<F: NorFlash> Store<F> {
         Ok(())
     }
 
-    /// If the controller refuses, it is tried again: better no save than one that a later boot may not find.
+    /// Clears a garbage head. If the controller refuses, it is tried again: saving nothing is better than saving a
+    /// record that a later boot may not find.
     pub(super) fn clear_garbage(&mut self, sector: u8) -> Result<(), ParamError> {
         self.clear_head(sector)?;
         self.set_state(sector, SectorState::Headless);
@@ -81,7 +82,7 @@ impl<F: NorFlash> Store<F> {
 }
 
 impl Sector {
-    /// The lowest is erased first.
+    /// Order of erasing, lowest first.
     fn rank(&self) -> u64 {
         let age = match self.state {
             SectorState::Headed { generation } => generation,

@@ -1,4 +1,4 @@
-//! Records and heads into flash, read back before they count.
+//! Writes records and heads, and reads them back before they count.
 
 use embedded_storage::nor_flash::NorFlash;
 
@@ -12,21 +12,22 @@ use crate::{
     },
 };
 
-/// A word of a mark: only that it is not blank counts.
+/// A mark only counts as blank or not.
 const MARK: [u8; 4] = [0; 4];
 
 impl<F: NorFlash> Store<F> {
     pub(super) fn append(&mut self, sector: u8, record: &Record) -> Result<(), ParamError> {
         let place = self.active.next_slot;
-        // Whatever happens, the slot is not tried again.
+        // Whatever the result, this slot is not tried again.
         self.active.next_slot = place.saturating_add(1);
-        let written = self.write_slot(sector, place, &Slot::of(record));
-        self.active.failures.note(written);
+        let written = self.write_slot(sector, place, &Slot::from_record(record));
+        self.active.failures.count(written);
         self.active.slot_is_proven = written.is_ok();
         written
     }
 
-    /// Guard first: a bit it leaves half programmed changes nothing. Checksum last: without it there is no record.
+    /// Writes a slot. The guard comes first, as a half-programmed guard changes nothing. The checksum comes last, and
+    /// without it there is no record.
     #[inline(never)]
     pub(super) fn write_slot(
         &mut self,
@@ -43,10 +44,10 @@ impl<F: NorFlash> Store<F> {
         self.program(sector, place, PROOF_AT, &MARK)
     }
 
-    /// A power cut may have left the last slot such that it reads now this way, now that. If it reads as a record now,
-    /// it is programmed once more and is one for good; if not, all its bits are cleared and it never will be.
+    /// Stabilises the last slot, which a power cut may have left reading differently each time. If it now reads as a
+    /// record, it is programmed again and stays one. If not, all its bits are cleared and it never will be one.
     pub(super) fn prove_last_slot(&mut self, sector: u8) -> Result<(), ParamError> {
-        // Nothing in this slot was ever promised, so a failure here is told but keeps nobody waiting.
+        // This slot was never confirmed, so a failure here is reported but delays nothing.
         self.active.slot_is_proven = true;
         let place = self.active.next_slot.saturating_sub(1);
         let slot = self.read_slot(sector, place);
@@ -59,7 +60,8 @@ impl<F: NorFlash> Store<F> {
         self.program(sector, place, PROOF_AT, &MARK)
     }
 
-    /// The same for the head: no record is appended under one that may be gone at the next boot.
+    /// Stabilises the head of the active sector: no record may be appended under a head that may vanish at the next
+    /// boot.
     pub(super) fn prove_active_head(
         &mut self,
         sector: u8,
@@ -67,9 +69,9 @@ impl<F: NorFlash> Store<F> {
     ) -> Result<(), ParamError> {
         let proven = self.write_head(sector, generation);
         if proven == Err(ParamError::NotProgrammed) {
-            // Everything moves to the next sector.
+            // Every record moves to the next sector.
             self.active.next_slot = LAST_SLOT.saturating_add(1);
-            self.active.head_is_doubtful = true;
+            self.active.head_is_unreliable = true;
         }
         if proven != Err(ParamError::Flash) {
             self.active.head_is_proven = true;
@@ -77,7 +79,7 @@ impl<F: NorFlash> Store<F> {
         proven
     }
 
-    /// One copy after the other; one that reads back is enough.
+    /// Writes both copies of the head. One that reads back correctly is enough.
     #[inline(never)]
     pub(super) fn write_head(&mut self, sector: u8, generation: u32) -> Result<(), ParamError> {
         for at in COPIES_AT {

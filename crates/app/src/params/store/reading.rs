@@ -1,4 +1,4 @@
-//! What the sectors hold.
+//! Reads the contents of the sectors.
 
 use embedded_storage::nor_flash::NorFlash;
 use heapless::Vec;
@@ -10,17 +10,17 @@ use crate::params::{
     slot::{SLOT_BYTES, Slot},
 };
 
-/// From the newest slot to the oldest, over all sectors with a head.
+/// A cursor over all slots from the newest to the oldest, across all sectors with a head.
 #[derive(Debug)]
-pub(super) struct Walk {
-    /// Sectors from this generation on are done with.
+pub(super) struct Cursor {
+    /// Sectors of this generation and above have been visited.
     below: u32,
     slot: u8,
-    /// Met already, in a newer copy.
+    /// Records already visited in a newer copy.
     seen: Vec<RecordId, MAX_RECORDS>,
 }
 
-impl Walk {
+impl Cursor {
     pub fn new() -> Self {
         Self {
             below: u32::MAX,
@@ -29,7 +29,7 @@ impl Walk {
         }
     }
 
-    /// The record met last is met again.
+    /// Makes the next call return the last record again.
     pub fn step_back(&mut self) {
         self.slot = self.slot.saturating_add(1);
         self.seen.pop();
@@ -37,7 +37,7 @@ impl Walk {
 }
 
 impl<F: NorFlash> Store<F> {
-    /// All there is to know at boot.
+    /// Determines the state of the store at boot.
     #[inline(never)]
     pub(super) fn scan(&mut self) {
         let mut ruined: u8 = 0;
@@ -53,12 +53,12 @@ impl<F: NorFlash> Store<F> {
                 }
             }
         }
-        // A store in use has cleared the heads of what was there before it.
+        // A store in use has cleared the heads of earlier contents.
         if self.active_sector().is_none() {
             self.strange_sectors = without_marks;
             ruined = ruined.saturating_sub(without_marks);
         }
-        // One may be what is left of an erase that was cut short: a sector is erased only while none is clean.
+        // One of them may be the remains of an interrupted erase, as a sector is erased only while none is clean.
         let by_a_cut = u8::from(self.first_in(SectorState::Clean).is_none());
         self.lost_sectors = ruined.saturating_sub(by_a_cut);
         if let Some((sector, _)) = self.active_sector() {
@@ -118,7 +118,7 @@ impl<F: NorFlash> Store<F> {
         self.newest_below(u32::MAX)
     }
 
-    /// Sector and generation of the newest one that is older.
+    /// Sector and generation of the newest sector below a generation.
     #[inline(never)]
     pub(super) fn newest_below(&self, limit: u32) -> Option<(u8, u32)> {
         let mut found = None;
@@ -133,20 +133,20 @@ impl<F: NorFlash> Store<F> {
         found
     }
 
-    /// The newest copy of a record not met yet.
+    /// Returns the newest copy of a record that has not been visited.
     #[inline(never)]
-    pub(super) fn next_newest(&mut self, walk: &mut Walk) -> Option<Slot> {
-        while let Some((sector, generation)) = self.newest_below(walk.below) {
-            while walk.slot >= FIRST_SLOT {
-                let slot = self.read_slot(sector, walk.slot);
-                walk.slot = walk.slot.saturating_sub(1);
+    pub(super) fn next_newest(&mut self, cursor: &mut Cursor) -> Option<Slot> {
+        while let Some((sector, generation)) = self.newest_below(cursor.below) {
+            while cursor.slot >= FIRST_SLOT {
+                let slot = self.read_slot(sector, cursor.slot);
+                cursor.slot = cursor.slot.saturating_sub(1);
                 let id = slot.claimed_id();
-                if !walk.seen.contains(&id) && slot.is_intact() && walk.seen.push(id).is_ok() {
+                if !cursor.seen.contains(&id) && slot.is_intact() && cursor.seen.push(id).is_ok() {
                     return Some(slot);
                 }
             }
-            walk.below = generation;
-            walk.slot = LAST_SLOT;
+            cursor.below = generation;
+            cursor.slot = LAST_SLOT;
         }
         None
     }
@@ -157,7 +157,7 @@ impl<F: NorFlash> Store<F> {
         }
     }
 
-    /// What cannot be read is neither blank nor a record.
+    /// Reads a slot. An unreadable slot is neither blank nor a record.
     #[inline(never)]
     pub(super) fn read_slot(&mut self, sector: u8, slot: u8) -> Slot {
         let mut bytes = [0; SLOT_BYTES];

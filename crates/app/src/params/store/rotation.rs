@@ -1,8 +1,8 @@
-//! From a full sector to the next: every record moves, then the head makes it the active one.
+//! Rotation from a full sector to the next: all records are copied, and then the head makes it the active one.
 
 use embedded_storage::nor_flash::NorFlash;
 
-use super::{Active, FIRST_SLOT, InARow, LAST_SLOT, Store, Walk};
+use super::{Active, ConsecutiveFailures, Cursor, FIRST_SLOT, LAST_SLOT, Store};
 use crate::{
     domain::ParamError,
     params::sector::{OPENED_AT, SectorState},
@@ -12,45 +12,45 @@ use crate::{
 pub(super) struct Rotation {
     target: u8,
     next_slot: u8,
-    walk: Walk,
-    failures: InARow,
+    cursor: Cursor,
+    failures: ConsecutiveFailures,
 }
 
 impl<F: NorFlash> Store<F> {
-    /// From here on the sector needs an erase before it counts as clean again.
+    /// Opens a clean sector. From here on it needs an erase before it is clean again.
     pub(super) fn open_sector(&mut self, target: u8) -> Result<(), ParamError> {
         self.set_state(target, SectorState::Garbage);
         self.program(target, 0, OPENED_AT, &[0; 4])?;
         self.rotation = Some(Rotation {
             target,
             next_slot: FIRST_SLOT,
-            walk: Walk::new(),
-            failures: InARow(0),
+            cursor: Cursor::new(),
+            failures: ConsecutiveFailures(0),
         });
         Ok(())
     }
 
-    /// One record, or after the last one the head.
-    pub(super) fn move_one(&mut self) -> Result<(), ParamError> {
+    /// Copies one record, or after the last one commits the head.
+    pub(super) fn copy_next_record(&mut self) -> Result<(), ParamError> {
         let Some(mut rotation) = self.rotation.take() else {
             return Ok(());
         };
         let place = rotation.next_slot;
-        // One slot at least must be left for what is to be saved.
+        // At least one slot must remain for the record to be saved.
         if place > LAST_SLOT {
             self.set_failed(rotation.target, true);
             return Err(ParamError::Full);
         }
-        let Some(slot) = self.next_newest(&mut rotation.walk) else {
+        let Some(slot) = self.next_newest(&mut rotation.cursor) else {
             return self.commit(&rotation);
         };
         rotation.next_slot = place.saturating_add(1);
         let written = self.write_slot(rotation.target, place, &slot);
         if written.is_err() {
-            rotation.walk.step_back();
+            rotation.cursor.step_back();
         }
-        rotation.failures.note(written);
-        if rotation.failures.is_too_many() {
+        rotation.failures.count(written);
+        if rotation.failures.limit_reached() {
             self.set_failed(rotation.target, true);
         } else {
             self.rotation = Some(rotation);
@@ -62,7 +62,7 @@ impl<F: NorFlash> Store<F> {
         let generation = self.active_sector().map_or(0, |(_, generation)| generation);
         let generation = generation.saturating_add(1);
         if let Err(error) = self.write_head(rotation.target, generation) {
-            // What is there must not turn out to be a head after all; if clearing fails too, the erase tries again.
+            // The remains must not become a valid head later. If clearing fails too, the erase tries again.
             let _ = self.clear_head(rotation.target);
             self.set_failed(rotation.target, true);
             return Err(error);

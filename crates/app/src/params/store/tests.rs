@@ -8,16 +8,16 @@ use crate::params::{
 
 const SIZE: usize = 3 * 0x4000;
 
-/// Bits go from 1 to 0, and every operation is noted.
+/// Flash cells whose bits go from 1 to 0, with a log of all operations.
 struct Cells {
     bytes: Vec<u8>,
-    /// Offset and length of what was programmed; an erase has length 0.
+    /// Offset and length of each programming operation; an erase has length 0.
     log: Vec<(u32, usize)>,
-    /// Bits that are 1 after each write, in the byte at that offset.
+    /// Bits that stay 1 in the byte at that offset.
     stuck: Vec<(u32, u8)>,
-    /// A sector whose head reads as noise, whatever it holds.
+    /// A sector whose head reads as noise.
     unreadable: Option<u8>,
-    /// Sectors on which an erase does nothing.
+    /// Sectors on which an erase has no effect.
     worn: Vec<u8>,
 }
 
@@ -88,7 +88,7 @@ fn record(key: u8, value: u32) -> Record {
     }
 }
 
-/// Steps until the record is stored.
+/// Number of steps until the record is stored.
 fn save<F: NorFlash>(store: &mut Store<F>, record: &Record) -> usize {
     for steps in 1..300 {
         if store.work(Some(record)) == Ok(Progress::Stored) {
@@ -112,7 +112,7 @@ fn values<F: NorFlash>(store: &mut Store<F>) -> Vec<(u8, u32)> {
 }
 
 #[test]
-fn a_new_chip_wants_an_erase_and_then_nothing() {
+fn a_new_chip_requests_one_erase() {
     let mut cells = Cells::blank();
     let mut store = Store::open(&mut cells);
     assert_eq!(store.report(), StoreReport::default());
@@ -127,7 +127,7 @@ fn a_new_chip_wants_an_erase_and_then_nothing() {
 }
 
 #[test]
-fn opening_and_reading_writes_nothing() {
+fn opening_and_reading_write_nothing() {
     let mut cells = Cells::blank();
     save(&mut Store::open(&mut cells), &record(1, 10));
     cells.log.clear();
@@ -139,7 +139,7 @@ fn opening_and_reading_writes_nothing() {
 }
 
 #[test]
-fn a_slot_is_programmed_guard_first_checksum_and_proof_last() {
+fn a_slot_is_programmed_with_guard_first_and_checksum_and_proof_last() {
     let mut cells = Cells::blank();
     save(&mut Store::open(&mut cells), &record(1, 10));
     cells.log.clear();
@@ -150,7 +150,7 @@ fn a_slot_is_programmed_guard_first_checksum_and_proof_last() {
 }
 
 #[test]
-fn a_full_sector_moves_on_head_last_and_an_erase_follows() {
+fn a_full_sector_is_rotated_with_the_head_last_and_an_erase_after_it() {
     let mut cells = Cells::blank();
     let mut store = Store::open(&mut cells);
     for value in 0..127 {
@@ -160,7 +160,7 @@ fn a_full_sector_moves_on_head_last_and_an_erase_follows() {
     assert_eq!(store.report().free_slots, 0);
     assert_eq!(store.next(false), FlashRequest::None);
     store.flash.log.clear();
-    // Opens, moves three, writes the head, appends.
+    // The steps open the sector, copy three records, write the head, and append.
     assert_eq!(save(&mut store, &record(0, 1000)), 6);
     assert_eq!(store.next(false), FlashRequest::Erase);
     let report = store.report();
@@ -175,7 +175,7 @@ fn a_full_sector_moves_on_head_last_and_an_erase_follows() {
 
 /// A bit of the first value cannot be cleared.
 #[test]
-fn a_slot_that_does_not_take_a_record_is_left_behind() {
+fn a_slot_that_does_not_take_a_record_is_skipped() {
     let mut cells = Cells::blank();
     save(&mut Store::open(&mut cells), &record(1, 10));
     cells.stuck.push((offset(0, 2) + 8, 0x80));
@@ -193,7 +193,7 @@ fn a_slot_that_does_not_take_a_record_is_left_behind() {
     assert_eq!(again.next(false), FlashRequest::Erase);
 }
 
-/// The older copy of a damaged record is taken, in the same sector and in the backup.
+/// The older copy is found both in the same sector and in the backup.
 #[test]
 fn a_damaged_record_falls_back_to_its_older_copy() {
     let mut cells = Cells::blank();
@@ -202,7 +202,7 @@ fn a_damaged_record_falls_back_to_its_older_copy() {
         save(&mut store, &record(1, value));
         tidy(&mut store);
     }
-    // The moved copy of 126 and the new 127 are all there is in the active sector.
+    // The active sector holds only the copy of 126 and the new 127.
     for (damaged, found) in [(2, 126), (1, 126)] {
         cells.bytes[offset(1, damaged) as usize + 8] ^= 1;
         assert_eq!(values(&mut Store::open(&mut cells)), [(1, found)]);
@@ -210,14 +210,14 @@ fn a_damaged_record_falls_back_to_its_older_copy() {
     assert_eq!(Store::open(&mut cells).report().damaged, 2);
 }
 
-/// It read as a head at boot, but programming it again breaks it.
+/// The head was readable at boot, but programming it again breaks it.
 #[test]
-fn records_leave_a_sector_whose_head_cannot_be_made_to_last() {
+fn a_sector_with_an_unreliable_head_is_rotated() {
     let mut cells = Cells::blank();
     let mut store = Store::open(&mut cells);
     save(&mut store, &record(1, 10));
     tidy(&mut store);
-    // A power cut before the proof.
+    // A power cut came before the proof.
     cells.bytes[40..44].fill(0xFF);
     cells.stuck = vec![(10, 0xFF), (26, 0xFF)];
     let mut store = Store::open(&mut cells);
@@ -230,7 +230,7 @@ fn records_leave_a_sector_whose_head_cannot_be_made_to_last() {
     assert_eq!(values(&mut Store::open(&mut cells)), [(1, 10), (2, 20)]);
 }
 
-/// Saves until the `generation`-th sector is active, with the last value in it.
+/// Saves until the sector of this generation is active, and returns its last value.
 fn fill<F: NorFlash>(store: &mut Store<F>, generation: u32) -> u32 {
     let mut value = 0;
     while store.report().generation < generation {
@@ -241,14 +241,14 @@ fn fill<F: NorFlash>(store: &mut Store<F>, generation: u32) -> u32 {
     value
 }
 
-/// Bits of the header stay 1 in these slots: none takes a record.
+/// Makes bits of the header stay 1 in these slots, so they take no record.
 fn wear_out(cells: &mut Cells, sector: u8, slots: core::ops::RangeInclusive<u8>) {
     let stuck = slots.map(|slot| (offset(sector, slot) + 5, 0x80));
     cells.stuck.extend(stuck);
 }
 
-/// Errors until the record is stored, as often as it takes.
-fn save_stubbornly<F: NorFlash>(store: &mut Store<F>, record: &Record) -> Vec<ParamError> {
+/// Repeats the save until the record is stored, and returns the errors.
+fn save_with_retries<F: NorFlash>(store: &mut Store<F>, record: &Record) -> Vec<ParamError> {
     let mut errors = Vec::new();
     for _ in 0..1000 {
         match store.work(Some(record)) {
@@ -260,9 +260,9 @@ fn save_stubbornly<F: NorFlash>(store: &mut Store<F>, record: &Record) -> Vec<Pa
     panic!("never stored: {errors:?}");
 }
 
-/// Its records are gone for a boot. What is saved in that boot must not be hidden when they come back.
+/// Its records are missing in one boot. What is saved in that boot must not be hidden when they return.
 #[test]
-fn a_head_that_can_be_read_again_hides_nothing_saved_meanwhile() {
+fn a_head_that_becomes_readable_hides_no_later_record() {
     let mut cells = Cells::blank();
     fill(&mut Store::open(&mut cells), 2);
     cells.unreadable = Some(1);
@@ -278,14 +278,14 @@ fn a_head_that_can_be_read_again_hides_nothing_saved_meanwhile() {
     assert_eq!(store.report().lost_sectors, 0);
 }
 
-/// The same, but what is saved meanwhile is appended: the older sector is not full.
+/// The record is appended this time, as the older sector is not full.
 #[test]
-fn nor_does_it_hide_what_was_appended_to_an_older_sector() {
+fn a_head_that_becomes_readable_hides_no_record_appended_elsewhere() {
     let mut cells = Cells::blank();
     save(&mut Store::open(&mut cells), &record(1, 10));
     tidy(&mut Store::open(&mut cells));
     wear_out(&mut cells, 0, 2..=4);
-    save_stubbornly(&mut Store::open(&mut cells), &record(1, 11));
+    save_with_retries(&mut Store::open(&mut cells), &record(1, 11));
     cells.stuck.clear();
     cells.unreadable = Some(1);
     let mut store = Store::open(&mut cells);
@@ -297,31 +297,31 @@ fn nor_does_it_hide_what_was_appended_to_an_older_sector() {
 }
 
 #[test]
-fn after_three_failures_a_record_goes_to_the_next_sector() {
+fn after_three_failures_a_record_is_saved_in_the_next_sector() {
     let mut cells = Cells::blank();
     save(&mut Store::open(&mut cells), &record(1, 10));
     tidy(&mut Store::open(&mut cells));
     wear_out(&mut cells, 0, 2..=127);
     let mut store = Store::open(&mut cells);
-    let errors = save_stubbornly(&mut store, &record(1, 11));
+    let errors = save_with_retries(&mut store, &record(1, 11));
     assert_eq!(errors, [ParamError::NotProgrammed; 3]);
     assert_eq!(store.report().generation, 2);
     assert_eq!(values(&mut store), [(1, 11)]);
-    assert_eq!(save_stubbornly(&mut store, &record(1, 12)), []);
+    assert_eq!(save_with_retries(&mut store, &record(1, 12)), []);
 }
 
 #[test]
-fn after_three_failures_a_change_of_sectors_takes_another_target() {
+fn after_three_failures_a_rotation_takes_another_sector() {
     let mut cells = Cells::blank();
     fill(&mut Store::open(&mut cells), 1);
     wear_out(&mut cells, 1, 1..=127);
     let mut store = Store::open(&mut cells);
     for value in 100..226 {
-        assert_eq!(save_stubbornly(&mut store, &record(1, value)), []);
+        assert_eq!(save_with_retries(&mut store, &record(1, value)), []);
         tidy(&mut store);
     }
     assert_eq!(store.report().free_slots, 0);
-    let errors = save_stubbornly(&mut store, &record(1, 1000));
+    let errors = save_with_retries(&mut store, &record(1, 1000));
     assert_eq!(errors, [ParamError::NotProgrammed; 3]);
     assert_eq!(values(&mut store), [(1, 1000)]);
     assert!(matches!(
@@ -330,23 +330,23 @@ fn after_three_failures_a_change_of_sectors_takes_another_target() {
     ));
 }
 
-/// There is no other sector: slots behind the worn ones are tried on.
+/// Without another sector, the slots behind the worn ones are tried.
 #[test]
-fn with_no_other_sector_the_worn_one_goes_on_being_tried() {
+fn without_another_sector_the_worn_one_is_tried_further() {
     let mut cells = Cells::blank();
     save(&mut Store::open(&mut cells), &record(1, 10));
     wear_out(&mut cells, 0, 2..=9);
     cells.bytes[offset(1, 0) as usize..].fill(0x5A);
     cells.worn = vec![1, 2];
     let mut store = Store::open(&mut cells);
-    let errors = save_stubbornly(&mut store, &record(1, 11));
+    let errors = save_with_retries(&mut store, &record(1, 11));
     let of = |wanted| errors.iter().filter(|error| **error == wanted).count();
     assert_eq!(of(ParamError::NotProgrammed), 8);
     assert_eq!(of(ParamError::NotErased), 2);
     assert_eq!(values(&mut store), [(1, 11)]);
 }
 
-/// The active head breaks while it is proven, and the third sector cannot be erased: the backup is all there is.
+/// The active head breaks while it is verified, and the third sector cannot be erased, so only the backup remains.
 #[test]
 fn the_backup_of_a_broken_head_is_not_erased() {
     let mut cells = Cells::blank();
@@ -358,7 +358,7 @@ fn the_backup_of_a_broken_head_is_not_erased() {
     while store.report().generation < 2 {
         assert_eq!(store.work(Some(&record(1, 128))), Ok(Progress::Worked));
     }
-    // A power cut before the proof, and a third sector that is worn out.
+    // A power cut came before the proof, and the third sector is worn out.
     cells.bytes[offset(1, 0) as usize + 40..][..4].fill(0xFF);
     cells.bytes[offset(2, 0) as usize..].fill(0x5A);
     cells.stuck = [10, 26].map(|at| (offset(1, 0) + at, 0xFF)).into();
@@ -369,14 +369,14 @@ fn the_backup_of_a_broken_head_is_not_erased() {
         let _ = store.work(Some(&record(2, 20)));
     }
     assert_eq!(values(&mut store), [(1, 127)]);
-    // At the next boot the head is gone, and what was moved there is found where it came from.
+    // At the next boot the head is gone, and its records are found in the backup.
     let mut store = Store::open(&mut cells);
     assert_eq!(store.report().generation, 1);
     assert_eq!(values(&mut store), [(1, 127)]);
 }
 
 #[test]
-fn a_sector_is_clean_only_if_all_of_it_is_blank() {
+fn a_sector_is_clean_only_if_it_is_entirely_blank() {
     let mut cells = Cells::blank();
     cells.bytes[..CLEAN.len()].copy_from_slice(&CLEAN);
     assert_eq!(Store::open(&mut cells).next(false), FlashRequest::None);
@@ -391,7 +391,7 @@ fn a_sector_is_clean_only_if_all_of_it_is_blank() {
 
 /// Word 3 of the last slot was torn, and nothing after it was programmed.
 #[test]
-fn what_a_cut_left_of_a_record_is_cleared_for_good() {
+fn the_remains_of_an_interrupted_record_are_cleared() {
     let mut cells = Cells::blank();
     save(&mut Store::open(&mut cells), &record(1, 0x55));
     let sector = Store::open(&mut cells).active_sector().unwrap().0;

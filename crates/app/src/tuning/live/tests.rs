@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::{
-    domain::{JointState, LastWords, ResetCause},
+    domain::{CrashCause, JointState, ResetCause},
     motor::layout::{ROBOT_LAYOUT, RS00_LAYOUT},
     safety::{ArmingState, SafetyFlags},
 };
@@ -246,8 +246,8 @@ fn names_of_choices_are_those_of_the_firmware() {
     let boot = page("boot");
     for code in 0..=255 {
         let bytes = [code << 4, code >> 4, 0, 0, 0, 0];
-        let name = LastWords::from_code(code)
-            .map(LastWords::text)
+        let name = CrashCause::from_code(code)
+            .map(CrashCause::text)
             .ok_or(code.into());
         assert_eq!(value(boot, bytes, "last-words"), LiveValue::Choice(name));
     }

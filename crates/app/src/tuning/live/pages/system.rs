@@ -197,7 +197,7 @@ pub(super) const RESET_CAUSES: [&str; 8] = [
     "low-power",
 ];
 
-/// As `LastWords::text`.
+/// As `CrashCause::text`.
 pub(super) const LAST_WORDS: [&str; 10] = [
     "nothing was reported",
     "panic",

@@ -1,10 +1,10 @@
-//! Pauses after failures: 1, 10, 60, 300 s and then 300 s each time.
+//! Pauses after consecutive failures: 1, 10, 60 and 300 s, and then 300 s each time.
 
 const PAUSES_US: [u64; 4] = [1_000_000, 10_000_000, 60_000_000, 300_000_000];
 
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BackOff {
-    /// Since the last success; saturates at the longest pause.
+    /// Failures since the last success. It saturates at the longest pause.
     failures: u8,
     until_us: u64,
 }
@@ -23,8 +23,8 @@ impl BackOff {
         }
     }
 
-    /// By time in which no clock ran.
-    pub fn lengthen(&mut self, by_us: u32) {
+    /// Extends the pause by a time in which no clock ran.
+    pub fn extend(&mut self, by_us: u32) {
         self.until_us = self.until_us.saturating_add(u64::from(by_us));
     }
 
@@ -37,7 +37,7 @@ impl BackOff {
 mod tests {
     use super::*;
 
-    /// Times of the attempts in seconds if each is made as soon as it may and fails.
+    /// Times of the attempts in seconds, if each is made as soon as possible and fails.
     fn attempts_s(back_off: &mut BackOff, count: usize) -> Vec<u64> {
         let attempt_s = |second: &u64| {
             let due = back_off.is_over(second * 1_000_000);
@@ -49,25 +49,25 @@ mod tests {
         (0..10_000).filter(attempt_s).take(count).collect()
     }
 
-    /// docs/parameters.md: 1 s, 10 s, 60 s, 300 s.
+    /// The pauses of docs/parameters.md.
     #[test]
-    fn pauses_grow_and_then_stay() {
+    fn pauses_grow_to_a_maximum() {
         let mut back_off = BackOff::default();
         let times = attempts_s(&mut back_off, 7);
         assert_eq!(times, [0, 1, 11, 71, 371, 671, 971]);
     }
 
     #[test]
-    fn time_without_a_clock_does_not_shorten_a_pause() {
+    fn a_stopped_clock_does_not_shorten_a_pause() {
         let mut back_off = BackOff::default();
         back_off.fail(0);
-        back_off.lengthen(500_000);
+        back_off.extend(500_000);
         assert!(!back_off.is_over(1_499_999));
         assert!(back_off.is_over(1_500_000));
     }
 
     #[test]
-    fn a_success_begins_anew() {
+    fn a_success_resets_the_pauses() {
         let mut back_off = BackOff::default();
         attempts_s(&mut back_off, 4);
         back_off.succeed();

@@ -2,19 +2,19 @@
 
 use core::cell::UnsafeCell;
 
-use robot_app::domain::{LastWords, ResetCause};
+use robot_app::domain::{CrashCause, ResetCause};
 
 /// How the run before this one ended.
 #[derive(Clone, Copy)]
 pub struct LastRun {
     pub reset_cause: ResetCause,
-    pub last_words: LastWords,
+    pub last_words: CrashCause,
 }
 
 /// Written by the control tick and the fault handlers, read and cleared at boot.
 struct Slot(UnsafeCell<[u32; 2]>);
 
-// SAFETY: `leave` and `take` say in their contracts that no two accesses overlap.
+// SAFETY: `write` and `take` say in their contracts that no two accesses overlap.
 unsafe impl Sync for Slot {}
 
 /// Start-up code leaves `.uninit` alone; after power-on it holds noise.
@@ -27,7 +27,7 @@ const MARK: u32 = 0x4C57_A500;
 
 /// # Safety
 /// Only the control tick, or a fault handler with all interrupts disabled, may call this.
-pub unsafe fn leave(words: LastWords) {
+pub unsafe fn write(words: CrashCause) {
     let word = MARK | u32::from(words.code());
     // SAFETY: a static; the contract forbids concurrent access. Volatile, because nothing in this run reads it.
     unsafe { SLOT.0.get().write_volatile([word, !word]) };
@@ -37,7 +37,7 @@ pub unsafe fn leave(words: LastWords) {
 ///
 /// # Safety
 /// Only `main` may call this, before any task runs.
-pub unsafe fn take() -> LastWords {
+pub unsafe fn take() -> CrashCause {
     // SAFETY: a static; the contract forbids concurrent access. Volatile, because its initial value is not what the
     // memory holds.
     let [word, complement] = unsafe { SLOT.0.get().read_volatile() };
@@ -46,8 +46,8 @@ pub unsafe fn take() -> LastWords {
     let [code, mark @ ..] = word.to_le_bytes();
     let [_, expected_mark @ ..] = MARK.to_le_bytes();
     if word == !complement && mark == expected_mark {
-        LastWords::from_code(code).unwrap_or_default()
+        CrashCause::from_code(code).unwrap_or_default()
     } else {
-        LastWords::Silent
+        CrashCause::Silent
     }
 }

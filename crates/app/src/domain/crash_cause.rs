@@ -1,63 +1,78 @@
-//! Which tasks are late, and what a dying firmware tells the next boot.
+//! Late tasks, and the cause of a crash as recorded for the next boot.
 
-/// Tasks below the control tick that missed their deadline. While one is late the robot stops and the watchdog starves.
+/// Tasks that missed their deadline. While one is late, the robot is stopped and the watchdog is not fed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(C)]
 pub struct LateTasks {
+    /// The IMU task.
     pub imu: bool,
+    /// The magnetometer task.
     pub mag: bool,
+    /// The radio task.
     pub sbus: bool,
+    /// The logic task.
     pub logic: bool,
+    /// The status task.
     pub status: bool,
+    /// The parameter task.
     pub params: bool,
 }
 
 impl LateTasks {
+    /// Whether any task is late.
     pub fn any(self) -> bool {
         self.imu | self.mag | self.sbus | self.logic | self.status | self.params
     }
 
-    /// What to tell the next boot. Of several late tasks the one of the highest priority, because it may starve the
-    /// others.
-    pub const fn last_words(self) -> LastWords {
+    /// The crash cause to record. If several tasks are late it names the one of the highest priority, which may
+    /// starve the others.
+    pub const fn crash_cause(self) -> CrashCause {
         if self.imu {
-            LastWords::ImuLate
+            CrashCause::ImuLate
         } else if self.mag {
-            LastWords::MagLate
+            CrashCause::MagLate
         } else if self.sbus {
-            LastWords::SbusLate
+            CrashCause::SbusLate
         } else if self.logic {
-            LastWords::LogicLate
+            CrashCause::LogicLate
         } else if self.status {
-            LastWords::StatusLate
+            CrashCause::StatusLate
         } else if self.params {
-            LastWords::ParamsLate
+            CrashCause::ParamsLate
         } else {
-            LastWords::Silent
+            CrashCause::Silent
         }
     }
 }
 
-/// Why the run before this one ended, in its own words.
+/// Why the previous run ended, as recorded by itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
-pub enum LastWords {
-    /// Nothing was said: power-on, reset pin, or a control tick that hangs.
+pub enum CrashCause {
+    /// Nothing was recorded: power-on, reset pin, or a control tick that hung.
     #[default]
     Silent = 0,
+    /// A panic.
     Panic = 1,
+    /// A HardFault exception.
     HardFault = 2,
     /// An exception or interrupt without a handler.
     UnexpectedInterrupt = 3,
+    /// The IMU task was late.
     ImuLate = 4,
+    /// The magnetometer task was late.
     MagLate = 5,
+    /// The radio task was late.
     SbusLate = 6,
+    /// The logic task was late.
     LogicLate = 7,
+    /// The status task was late.
     StatusLate = 8,
+    /// The parameter task was late.
     ParamsLate = 9,
 }
 
-impl LastWords {
+impl CrashCause {
     const ALL: [Self; 10] = [
         Self::Silent,
         Self::Panic,
@@ -71,16 +86,17 @@ impl LastWords {
         Self::ParamsLate,
     ];
 
-    /// For memory that survives the reset.
+    /// Code for memory that survives a reset.
     pub const fn code(self) -> u8 {
         self as u8
     }
 
-    /// `None` unless `code` is one that [`code`](Self::code) gives.
+    /// Returns `None` unless `code` comes from [`code`](Self::code).
     pub fn from_code(code: u8) -> Option<Self> {
         Self::ALL.into_iter().find(|words| words.code() == code)
     }
 
+    /// Text for the log.
     pub const fn text(self) -> &'static str {
         match self {
             Self::Silent => "nothing was reported",
@@ -98,7 +114,7 @@ impl LastWords {
 }
 
 #[cfg(feature = "defmt")]
-impl defmt::Format for LastWords {
+impl defmt::Format for CrashCause {
     fn format(&self, f: defmt::Formatter<'_>) {
         defmt::write!(f, "{=str}", self.text());
     }
@@ -109,22 +125,25 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_word_survives_its_code_and_nothing_else_is_one() {
+    fn crash_causes_survive_their_codes() {
         let known: Vec<u8> = (0..=u8::MAX)
-            .filter(|&code| LastWords::from_code(code).is_some())
+            .filter(|&code| CrashCause::from_code(code).is_some())
             .collect();
         assert_eq!(known, (0..=9).collect::<Vec<u8>>());
         for code in known {
-            assert_eq!(LastWords::from_code(code).map(LastWords::code), Some(code));
+            assert_eq!(
+                CrashCause::from_code(code).map(CrashCause::code),
+                Some(code)
+            );
         }
     }
 
     #[test]
-    fn a_late_task_names_itself() {
-        let named = |late: LateTasks| late.last_words().text();
+    fn a_late_task_is_named() {
+        let named = |late: LateTasks| late.crash_cause().text();
         let none = LateTasks::default();
         assert!(!none.any());
-        assert_eq!(none.last_words(), LastWords::Silent);
+        assert_eq!(none.crash_cause(), CrashCause::Silent);
         for (late, name) in [
             (LateTasks { imu: true, ..none }, "imu"),
             (LateTasks { mag: true, ..none }, "mag"),

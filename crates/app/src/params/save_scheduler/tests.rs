@@ -2,9 +2,9 @@ use super::*;
 
 const START_US: u64 = 60_000_000;
 
-/// A saver that is told of changes as the service does, and the group it would save, by name.
+/// A scheduler that gets changes as from the service, and the name of the group it would save.
 struct Bench {
-    saver: Saver,
+    save_scheduler: SaveScheduler,
     config: RobotConfig,
     revision: u32,
 }
@@ -13,7 +13,7 @@ impl Bench {
     fn new() -> Self {
         let config = RobotConfig::default();
         Self {
-            saver: Saver::new(config),
+            save_scheduler: SaveScheduler::new(config),
             config,
             revision: 0,
         }
@@ -27,24 +27,26 @@ impl Bench {
 
     fn due(&mut self, at_ms: u64) -> Option<&'static str> {
         let now_us = START_US + at_ms * 1_000;
-        self.saver.observe(&self.config, self.revision, 0, now_us);
-        self.saver.due(now_us).map(|(_, group)| group.name)
+        self.save_scheduler
+            .observe(&self.config, self.revision, 0, now_us);
+        self.save_scheduler.due(now_us).map(|(_, group)| group.name)
     }
 
-    fn position(&self, at_ms: u64) -> Position {
-        self.saver.due(START_US + at_ms * 1_000).unwrap().0
+    fn position(&self, at_ms: u64) -> GroupIndex {
+        self.save_scheduler.due(START_US + at_ms * 1_000).unwrap().0
     }
 
     fn save(&mut self, at_ms: u64) {
-        self.saver.saved(self.position(at_ms), &self.config);
+        self.save_scheduler
+            .mark_saved(self.position(at_ms), &self.config);
     }
 
     fn fail(&mut self, at_ms: u64) {
-        self.saver.failed(self.position(at_ms));
+        self.save_scheduler.mark_failed(self.position(at_ms));
     }
 }
 
-/// docs/parameters.md: half a second in which nothing changes.
+/// The pause of docs/parameters.md.
 #[test]
 fn a_save_waits_for_half_a_second_without_changes() {
     let mut bench = Bench::new();
@@ -56,11 +58,11 @@ fn a_save_waits_for_half_a_second_without_changes() {
     assert_eq!(bench.due(999), Some("heater"));
     bench.save(999);
     assert_eq!(bench.due(5_000), None);
-    assert_eq!(bench.saver.unsaved(), 0);
+    assert_eq!(bench.save_scheduler.unsaved(), 0);
 }
 
 #[test]
-fn every_group_is_noticed_and_saved_once() {
+fn every_changed_group_is_saved_once() {
     for (position, group) in PARAMETERS.iter().enumerate() {
         let mut bench = Bench::new();
         bench.change(0, |config| {
@@ -68,7 +70,7 @@ fn every_group_is_noticed_and_saved_once() {
                 parameter.write(config, parameter.min).unwrap();
             }
         });
-        assert_eq!(bench.saver.unsaved(), 1 << position);
+        assert_eq!(bench.save_scheduler.unsaved(), 1 << position);
         assert_eq!(bench.due(500), Some(group.name));
         bench.save(500);
         assert_eq!(bench.due(1_000), None);
@@ -76,18 +78,18 @@ fn every_group_is_noticed_and_saved_once() {
 }
 
 #[test]
-fn what_is_set_back_before_the_save_needs_none() {
+fn a_value_restored_before_the_save_is_not_saved() {
     let mut bench = Bench::new();
     bench.change(0, |config| config.heater.kp = 1.0);
-    assert_ne!(bench.saver.unsaved(), 0);
+    assert_ne!(bench.save_scheduler.unsaved(), 0);
     bench.change(100, |config| *config = RobotConfig::default());
-    assert_eq!(bench.saver.unsaved(), 0);
+    assert_eq!(bench.save_scheduler.unsaved(), 0);
     assert_eq!(bench.due(10_000), None);
 }
 
 /// The record may be in flash although reading it back failed.
 #[test]
-fn what_is_set_back_after_a_failed_save_is_saved_all_the_same() {
+fn a_value_restored_after_a_failed_save_is_saved_again() {
     let mut bench = Bench::new();
     bench.change(0, |config| config.heater.kp = 1.0);
     bench.fail(500);
@@ -101,7 +103,7 @@ fn what_is_set_back_after_a_failed_save_is_saved_all_the_same() {
 }
 
 #[test]
-fn what_is_changed_after_a_save_is_saved_again() {
+fn a_change_after_a_save_is_saved_again() {
     let mut bench = Bench::new();
     bench.change(0, |config| config.heater.kp = 1.0);
     bench.save(500);
@@ -109,20 +111,20 @@ fn what_is_changed_after_a_save_is_saved_again() {
     assert_eq!(bench.due(1_000), None);
     assert_eq!(bench.due(1_001), Some("heater"));
     bench.save(1_001);
-    // Back to the default, which is not what flash holds.
+    // The default is not what flash holds.
     bench.change(1_100, |config| *config = RobotConfig::default());
     assert_eq!(bench.due(1_600), Some("heater"));
 }
 
-/// The configuration changed after it was handed to the save: the younger value is still to be saved.
+/// The configuration changed after it was passed to the save, so the newer value must still be saved.
 #[test]
-fn a_change_while_the_save_goes_on_is_not_forgotten() {
+fn a_change_during_a_save_is_saved_afterwards() {
     let mut bench = Bench::new();
     bench.change(0, |config| config.heater.kp = 1.0);
     let position = bench.position(500);
     let in_flash = bench.config;
     bench.change(501, |config| config.heater.kp = 2.0);
-    bench.saver.saved(position, &in_flash);
+    bench.save_scheduler.mark_saved(position, &in_flash);
     bench.change(502, |config| config.safety.stick_centre = 0.1);
     assert_eq!(bench.due(1_002), Some("safety"));
     bench.save(1_002);
@@ -130,7 +132,7 @@ fn a_change_while_the_save_goes_on_is_not_forgotten() {
 }
 
 #[test]
-fn a_group_that_cannot_be_saved_does_not_keep_the_others_waiting() {
+fn a_group_that_cannot_be_saved_does_not_block_the_others() {
     let mut bench = Bench::new();
     bench.change(0, |config| {
         config.wheel_odom.wheel_track_m = 0.3;
