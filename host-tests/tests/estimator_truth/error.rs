@@ -1,12 +1,12 @@
-//! How far an estimate is from the truth.
+//! The error of an estimate against the truth.
 
 use robot_test_support::Rotation;
 
-/// estimate · truth⁻¹, split into a turn about the vertical and one about a level axis.
+/// The rotation estimate · truth⁻¹, split into one about the vertical and one about a level axis.
 #[derive(Clone, Copy, Debug)]
 pub struct AttitudeError {
     pub total_deg: f64,
-    /// To the left, ±180.
+    /// Positive to the left, ±180.
     pub heading_deg: f64,
     /// 0 … 180.
     pub inclination_deg: f64,
@@ -24,20 +24,20 @@ impl AttitudeError {
     }
 }
 
-/// Into ±180.
+/// Wraps an angle into ±180.
 pub fn wrapped_deg(angle_deg: f64) -> f64 {
     angle_deg - 360.0 * (angle_deg / 360.0).round()
 }
 
-/// The largest errors of a stretch of time, without sign.
+/// The largest absolute errors over some time.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Worst {
     pub total_deg: f64,
     pub heading_deg: f64,
     pub inclination_deg: f64,
-    /// Of the heading error against what it was at the beginning of the stretch: what counts without a magnetometer.
+    /// Change of the heading error since the beginning. Without a magnetometer only that is meaningful.
     pub heading_drift_deg: f64,
-    /// Between two ticks, beyond the true turn.
+    /// Rotation between two ticks beyond the true one.
     pub jump_deg: f64,
 }
 

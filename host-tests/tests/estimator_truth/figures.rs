@@ -1,4 +1,4 @@
-//! Figures against their limits: all are printed, then all that miss are named.
+//! Figures against their limits. All are printed before any miss fails the test.
 
 #[derive(Default)]
 pub struct Figures {
@@ -6,7 +6,7 @@ pub struct Figures {
 }
 
 impl Figures {
-    /// NaN misses.
+    /// NaN exceeds every limit.
     pub fn at_most(&mut self, what: &str, got: f64, limit: f64) {
         let held = got <= limit;
         let line = format!("{what}: {got:.4}, at most {limit}");

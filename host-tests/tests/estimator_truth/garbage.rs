@@ -1,4 +1,4 @@
-//! Values that are no numbers and times that make no sense.
+//! Inputs that are not numbers, out of range or out of time.
 
 use robot_app::{
     domain::{ImuState, MagState, MotorFeedback, StateEstimate, WheelOdomConfig},
@@ -6,7 +6,9 @@ use robot_app::{
 };
 use robot_test_support::{Random, Rotation};
 
-use crate::{error::AttitudeError, figures::Figures, motion::home_field_ut, run::assert_sound};
+use crate::{
+    error::AttitudeError, figures::Figures, motion::home_field_ut, run::assert_valid_state,
+};
 
 const VALUES: [f32; 16] = [
     0.0,
@@ -43,7 +45,7 @@ fn time_us(noise: &mut Random, now_us: u64) -> u64 {
     }
 }
 
-/// An estimator and the clock of the good samples it gets in between.
+/// An estimator, and the clock of the good samples that it gets in between.
 struct Victim {
     estimator: InsEstimator,
     estimate: StateEstimate,
@@ -64,10 +66,10 @@ impl Victim {
     fn step(&mut self, imu: &ImuState, mag: &MagState, now_us: u64) {
         self.estimator
             .step(imu, mag, &self.motor, now_us, &mut self.estimate);
-        assert_sound(&self.estimate, now_us);
+        assert_valid_state(&self.estimate, now_us);
     }
 
-    /// Stands level with its nose 30° left of east.
+    /// A robot that stands level with its nose 30° left of east.
     fn rest(&mut self, seconds: u64) {
         let field = truth().inverse().turn(home_field_ut());
         for tick in 0..seconds * 1_000 {
@@ -90,7 +92,7 @@ impl Victim {
         AttitudeError::between(attitude, truth())
     }
 
-    /// One tick with at least one field that makes no sense.
+    /// One tick with at least one invalid field.
     fn garbage(&mut self, noise: &mut Random) {
         self.now_us += 1_000;
         let three = |noise: &mut Random| -> [f32; 3] { std::array::from_fn(|_| value(noise)) };
@@ -134,7 +136,7 @@ fn truth() -> Rotation {
 }
 
 #[test]
-fn any_garbage_leaves_a_sound_state() {
+fn any_garbage_leaves_a_valid_state() {
     for seed in 0..200 {
         let mut noise = Random::new(seed);
         let mut victim = Victim::new();
@@ -144,9 +146,9 @@ fn any_garbage_leaves_a_sound_state() {
     }
 }
 
-/// What a sensor may show in range (299 m/s², 2,499 °/s) turns the horizon; a minute of rest puts it right.
+/// Values within the sensors' ranges (299 m/s², 2,499 °/s) tilt the estimate. A minute of rest corrects it.
 #[test]
-fn after_garbage_a_minute_of_rest_puts_all_right() {
+fn a_minute_of_rest_corrects_the_effect_of_garbage() {
     let mut figures = Figures::default();
     let (mut heading_deg, mut inclination_deg, mut bias_dps) = (0.0_f64, 0.0_f64, 0.0_f64);
     for seed in 0..40 {
@@ -174,13 +176,13 @@ fn after_garbage_a_minute_of_rest_puts_all_right() {
         inclination_deg,
         0.5,
     );
-    // Chaos: of 400 seeds 15 end beyond 5°, some at 25°; which ones changes with each rounding.
+    // This is chaotic: of 400 seeds 15 end beyond 5°, some at 25°, and which ones changes with each rounding.
     figures.at_most("a minute after garbage, heading in °", heading_deg, 10.0);
-    figures.at_most("a minute after garbage, offset in °/s", bias_dps, 0.1);
+    figures.at_most("a minute after garbage, gyro bias in °/s", bias_dps, 0.1);
     figures.done();
 }
 
-/// Values no sensor can show are no samples: they leave no trace in attitude and offset.
+/// Values that no sensor can show are rejected and change neither attitude nor bias.
 #[test]
 fn impossible_values_leave_no_trace() {
     for bad in [f32::NAN, f32::INFINITY, f32::MIN, 1e20] {

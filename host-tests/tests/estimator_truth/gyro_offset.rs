@@ -1,4 +1,4 @@
-//! The gyro's offset: large at start-up, wandering later, taken out elsewhere, and real turns that look like one.
+//! The gyro bias: large at start-up, wandering later, removed by a calibration; and rotations that look like one.
 
 mod balancing;
 mod calibrated;

@@ -1,4 +1,4 @@
-//! Errors of the sensors that nobody measured beforehand: motion shows them.
+//! Sensor errors that no calibration has measured, and that motion makes observable.
 
 use robot_test_support::Vector;
 
@@ -9,8 +9,14 @@ use crate::{
     sensors::Sensors,
 };
 
-/// Two minutes of learning, then a minute that counts.
-fn learnt(figures: &mut Figures, name: &str, motion: Motion, sensors: Sensors, heading_deg: f64) {
+/// Two minutes to converge, then a minute that is measured.
+fn converged(
+    figures: &mut Figures,
+    name: &str,
+    motion: Motion,
+    sensors: Sensors,
+    heading_deg: f64,
+) {
     let mut run = Run::new(motion, sensors);
     run.skip(120.0);
     let worst = run.worst(180.0);
@@ -26,9 +32,9 @@ fn learnt(figures: &mut Figures, name: &str, motion: Motion, sensors: Sensors, h
     );
 }
 
-/// The BMI088 may be 1 % off in scale and have 1 % of cross-talk between its axes. A swing by 60° is then 0.6° off.
+/// The BMI088 may have 1 % of scale error and 1 % of cross-axis sensitivity. A swing by 60° is then off by 0.6°.
 #[test]
-fn a_gyro_that_is_one_per_cent_off() {
+fn a_gyro_misalignment_of_one_per_cent_is_found() {
     let mut figures = Figures::default();
     let scaled: [(&str, [Vector; 3]); 3] = [
         (
@@ -47,28 +53,28 @@ fn a_gyro_that_is_one_per_cent_off() {
     for (name, gyro_matrix) in scaled {
         let mut sensors = Sensors::real();
         sensors.gyro_matrix = gyro_matrix;
-        learnt(&mut figures, name, Motion::carried_about(), sensors, 3.0);
+        converged(&mut figures, name, Motion::carried_about(), sensors, 3.0);
     }
     figures.done();
 }
 
-/// 12 µT against 19 µT of level field turn north by 32° one way and the other. In all attitudes the earth's field is the
-/// part that stays in the world, the magnet's the part that stays in the body.
+/// 12 µT against 19 µT of horizontal field deflect north by 32° either way. Over all attitudes the earth's field is the
+/// part that is constant in the world, hard iron the part that is constant in the body.
 #[test]
-fn a_carried_magnet_is_found() {
+fn hard_iron_is_found() {
     let mut figures = Figures::default();
     for magnet_ut in [[12.0, 0.0, 0.0], [0.0, -8.0, 8.0], [5.0, 5.0, -9.0]] {
         let mut sensors = Sensors::real();
-        sensors.carried_magnet_ut = magnet_ut;
+        sensors.hard_iron_ut = magnet_ut;
         let name = format!("carried magnet of {magnet_ut:?} µT");
-        learnt(&mut figures, &name, Motion::carried_about(), sensors, 6.0);
+        converged(&mut figures, &name, Motion::carried_about(), sensors, 6.0);
     }
     figures.done();
 }
 
-/// Turning to and fro shows it; while spinning one way 25 ms at 150 °/s would be 3.8° of heading.
+/// Rotation back and forth shows the delay. In a rotation one way 25 ms at 150 °/s would be 3.8° of heading.
 #[test]
-fn a_field_that_is_older_than_its_stamp() {
+fn a_delay_of_the_magnetometer_is_found() {
     let mut figures = Figures::default();
     let motion = Motion::carried_about().turning(|t| {
         let spin = window(t, 118.0, 1e9, 1.0);
@@ -77,6 +83,6 @@ fn a_field_that_is_older_than_its_stamp() {
     });
     let mut sensors = Sensors::real();
     sensors.unknown_mag_delay_us = 25_000;
-    learnt(&mut figures, "field 25 ms older", motion, sensors, 1.0);
+    converged(&mut figures, "field 25 ms older", motion, sensors, 1.0);
     figures.done();
 }

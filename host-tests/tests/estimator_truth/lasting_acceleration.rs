@@ -1,4 +1,4 @@
-//! Pushes that last look like a tilt: only the gyro knows better.
+//! A lasting acceleration looks like a tilt. Only the gyro shows that it is none.
 
 use crate::{
     figures::Figures,
@@ -7,10 +7,10 @@ use crate::{
     sensors::Sensors,
 };
 
-/// The gyro holds the horizon to 0.2° for 4 s; believed for three seconds' mean the acceleration alone would tilt it by
-/// 60 % of what it seems to be. A filter that tells pushes from gravity lets less than a third of it in.
+/// The gyro holds the attitude to 0.2° for 4 s. A mean of the force over three seconds would tilt it by 60 % of the
+/// apparent angle. A filter that models acceleration lets in less than a third.
 #[test]
-fn speeding_up_and_braking_tilt_nothing() {
+fn accelerating_and_braking_do_not_tilt_the_estimate() {
     let mut figures = Figures::default();
     for (push_mps2, seconds) in [(1.0, 3.0), (3.0, 1.0), (3.0, 3.0), (5.0, 1.0)] {
         let motion = Motion::at_rest().accelerated(move |t| {
@@ -40,7 +40,7 @@ fn speeding_up_and_braking_tilt_nothing() {
     figures.done();
 }
 
-/// Round a circle to the left whose entry and exit take a second each.
+/// A circle to the left, entered and left within a second each.
 #[derive(Clone, Copy)]
 struct Circle {
     push_mps2: f64,
@@ -56,7 +56,7 @@ impl Circle {
         window(t, Self::FROM_S, Self::TO_S, 1.0)
     }
 
-    /// Run through since the entry: the ramps count half.
+    /// Angle since the entry. The ramps count half.
     fn angle_rad(self, t: f64) -> f64 {
         let ramp = |from: f64| (t - from).clamp(0.0, 1.0).powi(2) / 2.0 + (t - from - 1.0).max(0.0);
         self.rate_rps * (ramp(Self::FROM_S) - ramp(Self::TO_S - 1.0))
@@ -71,7 +71,7 @@ impl Circle {
         Motion::at_rest()
             .turning(move |t| [0.0, 0.0, (self.rate_rps * Self::share(t)).to_degrees()])
             .accelerated(move |t| {
-                // To the left of the way, which starts along x.
+                // Across the path to the left. The path starts along x.
                 let (sin, cos) = self.angle_rad(t).sin_cos();
                 let push_mps2 = self.push_mps2 * Self::share(t);
                 [-push_mps2 * sin, push_mps2 * cos, 0.0]
@@ -99,10 +99,11 @@ const CIRCLES: [Circle; 3] = [
     },
 ];
 
-/// Round a circle the push turns with the robot, so it has no mean. Entering it changes the velocity by at most twice
-/// the speed v: a mean over τ = 3 s tilts by 2 v/(g τ) at most, a filter that tells pushes from gravity by half of it.
+/// On a circle the acceleration rotates with the robot, so its mean is zero. Entering it changes the velocity by at
+/// most twice the speed v. A mean over τ = 3 s tilts by 2 v/(g τ) at most, a filter that models acceleration by half of
+/// that.
 #[test]
-fn driving_in_a_circle_tilts_nothing() {
+fn driving_in_a_circle_does_not_tilt_the_estimate() {
     let mut figures = Figures::default();
     for circle in CIRCLES {
         let limit_deg = (circle.speed_mps() / (GRAVITY_MPS2 * 3.0)).to_degrees();
@@ -124,10 +125,10 @@ fn driving_in_a_circle_tilts_nothing() {
     figures.done();
 }
 
-/// Wheels that roll show the acceleration along the way and, with the rate of turn, the one across it. 0.7° of tilt is
-/// 0.12 m/s²: an eighth of the weakest of these pushes.
+/// Rolling wheels show the acceleration along the path and, with the yaw rate, the one across it. 0.7° of tilt are 0.12
+/// m/s², an eighth of the weakest acceleration here.
 #[test]
-fn what_the_wheels_show_is_no_tilt() {
+fn acceleration_that_the_wheels_show_is_no_tilt() {
     let mut figures = Figures::default();
     for circle in CIRCLES {
         let motion = circle.motion().rolling(move |t| circle.wheels_mps(t));
@@ -142,7 +143,7 @@ fn what_the_wheels_show_is_no_tilt() {
         );
     }
     for (push_mps2, seconds) in [(1.0, 2.0), (2.5, 0.8)] {
-        // The ramps take their time off the plateau's end.
+        // The ramps take their time from the end of the plateau.
         let speed_mps = move |t: f64, from: f64| {
             let since = t - from;
             let ramp = |from: f64| {

@@ -1,4 +1,4 @@
-//! Fields that are not the earth's, and no field at all.
+//! Magnetic disturbances, and no magnetometer at all.
 
 use robot_test_support::Vector;
 
@@ -9,7 +9,7 @@ use crate::{
     sensors::Sensors,
 };
 
-/// Across north, where it turns the needle most, and along it.
+/// Across north, where they deflect it most, and along it.
 const MAGNETS_UT: [(&str, Vector); 4] = [
     ("20 µT east", [20.0, 0.0, 0.0]),
     ("30 µT west and up", [-25.0, 0.0, 17.0]),
@@ -17,7 +17,7 @@ const MAGNETS_UT: [(&str, Vector); 4] = [
     ("40 µT down", [5.0, 0.0, -40.0]),
 ];
 
-/// Turned about the vertical and rocked, as on an uneven floor.
+/// Yaws and rocks, as on an uneven floor.
 fn driven() -> Motion {
     Motion::at_rest().turning(|t| {
         [
@@ -28,10 +28,10 @@ fn driven() -> Motion {
     })
 }
 
-/// The field's strength or dip shows at once that it is not the earth's; meanwhile the gyro holds: its offset, known to
-/// 0.05 °/s, makes 1.5° in half a minute.
+/// Norm or dip show the disturbance at once. Meanwhile the gyro holds the heading: its bias, known to 0.05 °/s, makes
+/// 1.5° in half a minute.
 #[test]
-fn a_magnet_that_comes_and_goes_turns_nothing() {
+fn a_passing_magnet_does_not_rotate_the_estimate() {
     let mut figures = Figures::default();
     for (name, magnet_ut) in MAGNETS_UT {
         for (seconds, ramp_s) in [(5.0, 0.05), (30.0, 0.05), (15.0, 1.5)] {
@@ -60,9 +60,9 @@ fn a_magnet_that_comes_and_goes_turns_nothing() {
     figures.done();
 }
 
-/// Five times in a row, each for 8 s with 8 s between: errors must not add up.
+/// Five times in a row, for 8 s each with 8 s between. The errors must not add up.
 #[test]
-fn a_magnet_passed_again_and_again_turns_nothing() {
+fn a_magnet_passed_repeatedly_does_not_rotate_the_estimate() {
     let mut figures = Figures::default();
     let motion = driven().with_magnet(|t| {
         let near = (30.0..110.0).contains(&t) && t.rem_euclid(16.0) < 8.0;
@@ -79,7 +79,7 @@ fn a_magnet_passed_again_and_again_turns_nothing() {
     figures.done();
 }
 
-/// Another building: the field stays different for good. North is then where it points, 20° from before.
+/// In another building the field stays different by 20°. The heading must follow it.
 #[test]
 fn the_field_of_a_new_place_is_adopted_within_three_minutes() {
     let mut figures = Figures::default();
@@ -109,9 +109,9 @@ fn the_field_of_a_new_place_is_adopted_within_three_minutes() {
     figures.done();
 }
 
-/// Waking up beside a magnet is no reason to be wrong for good.
+/// A magnet at power-on must not deflect the heading for good.
 #[test]
-fn a_magnet_at_the_start_is_forgotten() {
+fn a_magnet_at_the_start_is_no_lasting_error() {
     let mut figures = Figures::default();
     let motion = driven().with_magnet(|t| if t < 3.0 { [30.0, 0.0, 10.0] } else { [0.0; 3] });
     let mut run = Run::new(motion, Sensors::real());
@@ -125,9 +125,10 @@ fn a_magnet_at_the_start_is_forgotten() {
     figures.done();
 }
 
-/// 0.05 °/s of unknown offset for a minute is 3°; nothing else suffers, and nothing jumps when it comes back.
+/// An unknown bias of 0.05 °/s makes 3° in a minute. Nothing else suffers, and nothing jumps when the magnetometer
+/// comes back.
 #[test]
-fn a_magnetometer_that_stops_and_returns() {
+fn a_magnetometer_may_stop_and_return() {
     let mut figures = Figures::default();
     let sensors = Sensors::real().with_mag_while(|t| !(60.0..120.0).contains(&t));
     let mut run = Run::new(driven(), sensors);
@@ -155,9 +156,9 @@ fn a_magnetometer_that_stops_and_returns() {
     figures.done();
 }
 
-/// First seen after a minute: the heading goes straight to north.
+/// The first sample comes after a minute, and aligns the heading at once.
 #[test]
-fn a_magnetometer_that_comes_late() {
+fn a_magnetometer_may_start_late() {
     let mut figures = Figures::default();
     let motion = driven().starting(robot_test_support::Rotation::by_deg([0.0, 0.0, 120.0]));
     let mut run = Run::new(motion, Sensors::real().with_mag_while(|t| t > 60.0));
@@ -171,7 +172,7 @@ fn a_magnetometer_that_comes_late() {
     figures.done();
 }
 
-/// From the equator to the polar circles, north and south: strength and dip by the World Magnetic Model.
+/// From the equator to the polar circles, north and south. Norm and dip are those of the World Magnetic Model.
 #[test]
 fn north_is_found_all_over_the_earth() {
     let mut figures = Figures::default();
@@ -196,7 +197,7 @@ fn north_is_found_all_over_the_earth() {
     figures.done();
 }
 
-/// The inclination does not know whether there is a magnetometer.
+/// The tilt does not depend on the magnetometer.
 #[test]
 fn without_magnetometer_only_the_heading_suffers() {
     let mut figures = Figures::default();

@@ -1,7 +1,7 @@
-//! The estimator against made-up motion whose truth is known exactly.
+//! The estimator on simulated motion whose truth is known exactly.
 //!
-//! `world` integrates body rates in double precision at 4 kHz and measures the result as the sensors do; each case
-//! states what physics lets a good filter reach. Run with `--nocapture` to see the figures.
+//! `world` integrates body rates in double precision at 4 kHz and measures the result as the sensors do. Each case
+//! states what physics lets a good filter reach. `--nocapture` prints the figures.
 
 mod error;
 mod figures;

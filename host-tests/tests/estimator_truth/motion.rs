@@ -1,4 +1,4 @@
-//! What the body really does and what surrounds it.
+//! The true motion of the body, and the field around it.
 
 use robot_test_support::{Rotation, Vector};
 
@@ -6,28 +6,28 @@ pub const GRAVITY_MPS2: f64 = 9.806_65;
 
 pub type OverTime = Box<dyn Fn(f64) -> Vector>;
 
-/// Functions of the time in seconds. World: ENU, y to magnetic north.
+/// Functions of the time in seconds. World frame: ENU, y to magnetic north.
 pub struct Motion {
     pub start: Rotation,
     /// Body frame.
     pub rate_rps: OverTime,
-    /// World frame, gravity left out.
+    /// World frame, without gravity.
     pub accel_mps2: OverTime,
     /// World frame.
     pub earth_field_ut: Vector,
     /// World frame, added to the earth's field.
     pub magnet_ut: OverTime,
-    /// Ground speed of the left and the right wheel in m/s; none: they are silent.
+    /// Ground speed of the left and the right wheel in m/s. `None`: the wheels are silent.
     pub wheels_mps: Option<Box<dyn Fn(f64) -> [f64; 2]>>,
 }
 
-/// North, and down by `dip_deg`.
+/// A field that points north and down by `dip_deg`.
 fn field_ut(strength_ut: f64, dip_deg: f64) -> Vector {
     let dip = dip_deg.to_radians();
     [0.0, strength_ut * dip.cos(), -strength_ut * dip.sin()]
 }
 
-/// Of Central Europe: 19.1 µT to the north.
+/// The field of Central Europe: 19.1 µT to the north.
 pub fn home_field_ut() -> Vector {
     field_ut(49.0, 67.0)
 }
@@ -59,7 +59,7 @@ impl Motion {
         self
     }
 
-    /// Rate in °/s, body frame.
+    /// Sets the rate in °/s, body frame.
     pub fn turning(mut self, rate_dps: impl Fn(f64) -> Vector + 'static) -> Self {
         self.rate_rps = Box::new(move |t| rate_dps(t).map(f64::to_radians));
         self
@@ -75,7 +75,7 @@ impl Motion {
         self
     }
 
-    /// As if carried about by hand: turns about all axes of up to some 100 °/s, pushes of up to 3 m/s², no rest.
+    /// As carried by hand: rotation about all axes at up to some 100 °/s, accelerations of up to 3 m/s², no rest.
     pub fn carried_about() -> Self {
         Self::at_rest().turning(carried_rate_dps).accelerated(|t| {
             let wave = |hz: f64, phase: f64| (std::f64::consts::TAU * hz * t + phase).sin();
@@ -97,7 +97,7 @@ pub fn carried_rate_dps(t: f64) -> Vector {
     ]
 }
 
-/// 1 inside `from … to`, else 0, with ramps of `ramp_s` within.
+/// 1 between `from` and `to`, else 0, with ramps of `ramp_s` inside.
 pub fn window(t: f64, from: f64, to: f64, ramp_s: f64) -> f64 {
     ((t - from) / ramp_s).min((to - t) / ramp_s).clamp(0.0, 1.0)
 }

@@ -1,4 +1,4 @@
-//! A million states that no motion leads through: nothing that a sensor can show breaks the state.
+//! A million random inputs, such as no motion gives: no sensor value breaks the state.
 
 use robot_app::{
     domain::{ImuState, MagState, MotorFeedback, StateEstimate, WheelOdomConfig},
@@ -6,19 +6,19 @@ use robot_app::{
 };
 use robot_test_support::{Random, Rotation, Vector, scale};
 
-use crate::run::assert_sound;
+use crate::run::assert_valid_state;
 
 const STATES: u32 = 1_000_000;
-/// How long one kind of motion lasts.
+/// Number of states of one kind.
 const STATES_A_KIND: u32 = 500;
 
-/// What the sensors show, drawn anew for each sample.
+/// What the sensors show, drawn again for each sample.
 #[derive(Clone, Copy)]
 struct Kind {
     rate_dps: f64,
     accel_mps2: f64,
     field_ut: f64,
-    /// Share of the gravity vector that is there, turned at random.
+    /// Share of gravity in the force, in a random direction.
     gravity: f64,
     max_gap_us: u64,
 }
@@ -49,7 +49,7 @@ fn any_attitude(noise: &mut Random) -> Rotation {
 }
 
 #[test]
-fn a_million_random_states_keep_it_sound() {
+fn a_million_random_inputs_keep_the_state_valid() {
     let mut noise = Random::new(20_000);
     let mut estimator = InsEstimator::new(WheelOdomConfig::default());
     let mut motor = MotorFeedback::default();
@@ -82,6 +82,6 @@ fn a_million_random_states_keep_it_sound() {
             wheel.age_us = noise.below(100_000) as u32;
         }
         estimator.step(&imu, &mag, &motor, now_us, &mut estimate);
-        assert_sound(&estimate, now_us);
+        assert_valid_state(&estimate, now_us);
     }
 }

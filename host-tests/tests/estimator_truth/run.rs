@@ -1,4 +1,4 @@
-//! The estimator on a made-up motion, tick by tick beside the truth.
+//! The estimator on a simulated motion, compared with the truth tick by tick.
 
 use robot_app::{
     domain::{ImuState, MagState, MotorFeedback, StateEstimate, WheelOdomConfig},
@@ -45,7 +45,7 @@ impl Run {
         self.step_after(1);
     }
 
-    /// A tick that comes `ticks` ms after the last.
+    /// A tick `ticks` ms after the last.
     pub fn step_after(&mut self, ticks: u64) {
         self.tick += ticks;
         let elapsed_us = self.tick * TICK_US;
@@ -65,10 +65,10 @@ impl Run {
             now_us,
             &mut self.estimate,
         );
-        assert_sound(&self.estimate, now_us);
+        assert_valid_state(&self.estimate, now_us);
     }
 
-    /// A rotor's revolutions a minute: metres a second over the wheel's circumference, times the gear.
+    /// Rotor speed in rpm: ground speed over the wheel's circumference, times the gear ratio.
     fn turn_wheels(&mut self, now_us: u64) {
         self.motor.ts_us = now_us;
         let Some(wheels_mps) = self.world.wheels_mps() else {
@@ -89,7 +89,7 @@ impl Run {
         }
     }
 
-    /// As `step`; then the samples in hand change their values, but not their stamps.
+    /// As `step`. Then the samples are repeated with other values but the same time stamps.
     pub fn step_then_repeat_other_values(&mut self) {
         self.step();
         self.imu.gyro_dps = [500.0, -300.0, 100.0];
@@ -97,7 +97,7 @@ impl Run {
         self.mag.mag_ut = [-40.0, 10.0, 5.0];
     }
 
-    /// Worst errors from now until `until_s`.
+    /// The largest errors from now until `until_s`.
     pub fn worst(&mut self, until_s: f64) -> Worst {
         let mut worst = Worst::default();
         let first = self.error();
@@ -113,7 +113,7 @@ impl Run {
         worst
     }
 
-    /// On to `until_s`, whatever the errors.
+    /// Goes on to `until_s` without looking at the errors.
     pub fn skip(&mut self, until_s: f64) {
         while self.time_s() < until_s - 1e-6 {
             self.step();
@@ -132,12 +132,12 @@ impl Run {
         Rotation::from_wxyz(self.estimate.q_wxyz.map(f64::from))
     }
 
-    /// As believed, body frame.
+    /// The estimated up axis in the body frame.
     pub fn up(&self) -> Vector {
         self.attitude().inverse().turn([0.0, 0.0, 1.0])
     }
 
-    /// Length of the difference between the offset found and the true one.
+    /// Error of the estimated gyro bias.
     pub fn bias_error_dps(&self) -> f64 {
         let truth = self.world.gyro_offset_dps();
         let found = self
@@ -152,8 +152,8 @@ impl Run {
     }
 }
 
-/// What holds in every tick whatever comes in: all finite, unit length, angles that belong to the quaternion.
-pub fn assert_sound(estimate: &StateEstimate, now_us: u64) {
+/// What holds in every tick for any input: finite values, unit length, and angles that match the quaternion.
+pub fn assert_valid_state(estimate: &StateEstimate, now_us: u64) {
     let StateEstimate {
         q_wxyz,
         rpy_rad,
@@ -182,7 +182,7 @@ pub fn assert_sound(estimate: &StateEstimate, now_us: u64) {
         .then_in_body(Rotation::by([0.0, pitch, 0.0]))
         .then_in_body(Rotation::by([roll, 0.0, 0.0]));
     let between = attitude.inverse().then_in_body(from_angles).angle_deg();
-    // At the vertical roll and yaw are one: there the sine's rounding, √(2 · 2⁻²³) rad, is all that is left of them.
+    // Near the vertical roll and yaw merge. The rounding of the sine, √(2 · 2⁻²³) rad, limits what is left of them.
     if pitch.sin().abs() < 0.9999 {
         assert!(between < 0.1, "angles {between}° off: {estimate:?}");
     }

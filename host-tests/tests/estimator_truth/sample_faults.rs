@@ -1,4 +1,4 @@
-//! Samples that are cut off, lost, late or repeated.
+//! Samples that are saturated, lost, late or repeated.
 
 use robot_test_support::{Vector, dot};
 
@@ -9,9 +9,9 @@ use crate::{
     sensors::{Sensors, Timing},
 };
 
-/// 2,300 °/s for 0.3 s where 2,000 is the most the gyro shows: up to 90° are lost. The magnetometer and gravity have to
-/// bring them back.
-fn blow(axis: usize) -> Motion {
+/// 2,300 °/s for 0.3 s, of which the gyro shows 2,000. Up to 90° are lost, and field and gravity have to bring them
+/// back.
+fn impact(axis: usize) -> Motion {
     Motion::at_rest().turning(move |t| {
         let mut rate: Vector = [0.0, 0.0, 20.0 * (0.5 * t).sin()];
         rate[axis] += 2_300.0 * window(t, 30.0, 30.3, 0.02);
@@ -23,11 +23,11 @@ fn blow(axis: usize) -> Motion {
 fn a_saturated_gyro_is_recovered_from() {
     let mut figures = Figures::default();
     for axis in 0..3 {
-        let mut run = Run::new(blow(axis), Sensors::real());
+        let mut run = Run::new(impact(axis), Sensors::real());
         run.skip(30.31);
         let at_once = run.error();
         println!(
-            "after the blow about axis {axis}: {:.1}° off",
+            "after the impact about axis {axis}: {:.1}° off",
             at_once.total_deg
         );
         run.skip(35.0);
@@ -56,7 +56,7 @@ fn a_saturated_gyro_is_recovered_from() {
             2.0,
         );
         figures.at_most(
-            &format!("{name}, offset after 40 s in °/s"),
+            &format!("{name}, gyro bias after 40 s in °/s"),
             run.bias_error_dps(),
             0.3,
         );
@@ -64,11 +64,11 @@ fn a_saturated_gyro_is_recovered_from() {
     figures.done();
 }
 
-/// After a rest that showed the offset, ten kerbs, one every 3 s: 2 m/s are lost within 10 ms, 0.8 of it beyond 12 g, and
-/// won back by 0.7 s of a push forward. A mean over three seconds that skips what was cut off sees the push alone: 3.9°;
-/// one that takes it as it is: 1.6°.
+/// After a rest that showed the bias, the robot hits ten kerbs, one every 3 s. It loses 2 m/s within 10 ms, 0.8 of that
+/// beyond 12 g, and regains it within 0.7 s. A mean over three seconds would tilt by 3.9° without the saturated samples
+/// and by 1.6° with them.
 #[test]
-fn kerbs_beyond_the_range_do_not_tilt_the_horizon() {
+fn kerbs_beyond_the_range_do_not_tilt_the_estimate() {
     let mut figures = Figures::default();
     let motion = Motion::at_rest().accelerated(|t| {
         let since = if t < 12.0 { 0.0 } else { t.rem_euclid(3.0) };
@@ -87,10 +87,10 @@ fn kerbs_beyond_the_range_do_not_tilt_the_horizon() {
     figures.done();
 }
 
-/// At a steady turn the neighbours of a hole tell all about the rate in it, up to the 100 ms that are bridged. The
-/// acceleration of the hole's last 5 ms stands for all of it, though its level part has turned by then.
+/// In an even rotation the neighbours of a gap show the rate in it, up to the 100 ms that are bridged. The force of the
+/// last 5 ms stands for all of the gap, though its level part has rotated by then.
 #[test]
-fn a_hole_in_a_steady_turn_costs_nothing() {
+fn a_gap_in_an_even_rotation_costs_nothing() {
     let mut figures = Figures::default();
     for lost in [1, 5, 19] {
         let motion = Motion::at_rest()
@@ -100,7 +100,7 @@ fn a_hole_in_a_steady_turn_costs_nothing() {
         run.skip(11.0);
         let worst = run.worst(60.0);
         let name = format!("{lost} samples lost every 2 s");
-        // The output is carried on for 25 ms; then it stands until the next sample.
+        // The output is extrapolated for 25 ms, then it stays until the next sample.
         let standing_s = (lost as f64 + 1.0) * 0.005 - 0.025;
         let limit_deg = 0.3 + 206.2 * standing_s.max(0.0);
         figures.at_most(&format!("{name}, total in °"), worst.total_deg, limit_deg);
@@ -115,7 +115,7 @@ fn a_hole_in_a_steady_turn_costs_nothing() {
     figures.done();
 }
 
-/// Every twentieth sample lost at random while carried about: unknown for 5 ms at up to 700 °/s² is 0.01° each time.
+/// Every twentieth sample is lost at random in motion. 5 ms at up to 700 °/s² are 0.01° each time.
 #[test]
 fn lost_samples_in_motion_cost_little() {
     let mut figures = Figures::default();
@@ -130,14 +130,14 @@ fn lost_samples_in_motion_cost_little() {
     figures.done();
 }
 
-/// True stamps make up for any jitter; wrong stamps cost rate × error for one sample and nothing after it.
+/// True time stamps make up for any jitter. Wrong ones cost rate × error for one sample.
 #[test]
-fn late_and_jittering_samples() {
+fn late_and_jittering_samples_cost_little() {
     let mut figures = Figures::default();
     let steady = || Motion::at_rest().turning(|t| [0.0, 0.0, 200.0 * window(t, 5.0, 1e9, 1.0)]);
     for (timing, limit_deg) in [
         (Timing::Jitter, 0.2),
-        // 2 ms and 3 ms of lag to the tick that sees the sample, at 200 °/s.
+        // 2 ms of error, and 3 ms of lag until the tick that sees the sample, at 200 °/s.
         (Timing::WrongStamps, 0.2 + 200.0 * 0.002),
         (Timing::Late, 0.2),
     ] {
@@ -161,9 +161,9 @@ fn late_and_jittering_samples() {
     figures.done();
 }
 
-/// A sample counts once: the same stamp again, with whatever values, changes nothing.
+/// A sample with the same time stamp is not used again, whatever its values.
 #[test]
-fn a_repeated_stamp_is_no_new_sample() {
+fn a_repeated_time_stamp_is_no_new_sample() {
     let motion = || Motion::at_rest().turning(carried_rate_dps);
     let mut once = Run::new(motion(), Sensors::real());
     let mut again = Run::new(motion(), Sensors::real());
@@ -175,10 +175,10 @@ fn a_repeated_stamp_is_no_new_sample() {
     }
 }
 
-/// Turned over within three seconds that the IMU slept through. Rest then shows where up is, the field where north is;
-/// while up jumps the attitude is not to be trusted.
+/// The robot is turned over within three seconds without samples. Then rest shows the tilt and the field the heading.
+/// While the tilt jumps, the estimate is not valid.
 #[test]
-fn turned_over_while_silent() {
+fn a_robot_turned_over_without_samples_is_found_out() {
     let mut figures = Figures::default();
     for axis in 0..3 {
         let motion = Motion::at_rest().turning(move |t| {

@@ -1,10 +1,10 @@
-//! How the truth is measured.
+//! How the sensors measure the truth.
 
 use robot_test_support::Vector;
 
 use crate::motion::OverTime;
 
-/// Standard deviation of one sample.
+/// Standard deviations of one sample.
 #[derive(Clone, Copy, Debug)]
 pub struct NoiseLevel {
     pub gyro_dps: f64,
@@ -12,46 +12,46 @@ pub struct NoiseLevel {
     pub mag_ut: f64,
 }
 
-/// When samples are taken and handed over.
+/// When samples are taken and delivered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Timing {
-    /// Every 5 ms to the microsecond, seen by the tick of the same instant.
+    /// Every 5 ms exactly, delivered in the same tick.
     Exact,
-    /// Taken up to 2 ms early or late and stamped truly.
+    /// Taken up to 2 ms early or late, with true time stamps.
     Jitter,
-    /// Taken every 5 ms, stamped up to 2 ms wrong.
+    /// Taken every 5 ms, with time stamps up to 2 ms wrong.
     WrongStamps,
-    /// Taken every 5 ms, seen 1 … 9 ms later.
+    /// Taken every 5 ms, delivered 1 … 9 ms later.
     Late,
 }
 
 pub struct Sensors {
     pub noise: NoiseLevel,
-    /// °/s over time.
+    /// The gyro bias in °/s, over time.
     pub gyro_offset_dps: OverTime,
-    /// °/s over time: the share of the offset that a calibration has taken out of the samples.
-    pub taken_out_dps: OverTime,
-    /// Measured rate by true rate, rows x, y, z: scale and angles between the axes.
+    /// The part of that bias in °/s that a calibration has removed from the samples, over time.
+    pub removed_bias_dps: OverTime,
+    /// Measured rate from true rate, rows x, y, z: scale, and angles between the axes.
     pub gyro_matrix: [Vector; 3],
-    /// A rate beyond is cut off and the sample marked.
+    /// A larger rate saturates and marks the sample.
     pub gyro_range_dps: f64,
     pub accel_range_mps2: f64,
-    /// Body frame: of a magnet that the robot carries.
-    pub carried_magnet_ut: Vector,
-    /// How much earlier than its stamp says the field is measured.
+    /// Hard iron, body frame.
+    pub hard_iron_ut: Vector,
+    /// Delay of the magnetometer beyond its time stamp.
     pub unknown_mag_delay_us: u64,
-    /// Is there a magnetometer at this time?
+    /// Whether there is a magnetometer at this time.
     pub has_mag: Box<dyn Fn(f64) -> bool>,
-    /// Is the IMU sample with this number lost?
+    /// Whether the IMU sample with this number is lost.
     pub loses: Box<dyn Fn(u64) -> bool>,
     pub timing: Timing,
     pub seed: u64,
-    /// Clock of the robot when the motion starts.
+    /// The robot's clock when the motion starts.
     pub start_us: u64,
 }
 
 impl Sensors {
-    /// No noise, no offset, 9 axes.
+    /// No noise, no bias, with magnetometer.
     pub fn ideal() -> Self {
         Self {
             noise: NoiseLevel {
@@ -60,11 +60,11 @@ impl Sensors {
                 mag_ut: 0.0,
             },
             gyro_offset_dps: Box::new(|_| [0.0; 3]),
-            taken_out_dps: Box::new(|_| [0.0; 3]),
+            removed_bias_dps: Box::new(|_| [0.0; 3]),
             gyro_matrix: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
             gyro_range_dps: 2_000.0,
             accel_range_mps2: 117.7,
-            carried_magnet_ut: [0.0; 3],
+            hard_iron_ut: [0.0; 3],
             unknown_mag_delay_us: 0,
             has_mag: Box::new(|_| true),
             loses: Box::new(|_| false),
@@ -74,7 +74,7 @@ impl Sensors {
         }
     }
 
-    /// Noise by the data sheets: BMI088 0.014 °/s/√Hz and 175 µg/√Hz over 100 Hz, IST8310 0.3 µT.
+    /// Noise by the datasheets: BMI088 0.014 °/s/√Hz and 175 µg/√Hz over 100 Hz, IST8310 0.3 µT.
     pub fn real() -> Self {
         Self {
             noise: NoiseLevel {

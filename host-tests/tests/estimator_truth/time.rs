@@ -1,4 +1,4 @@
-//! The robot's clock: late ticks, hours of it, and where 32 bits of microseconds wrap.
+//! The robot's clock: late ticks, hours of operation, and where 32 bits of microseconds wrap.
 
 use robot_test_support::Random;
 
@@ -9,9 +9,9 @@ use crate::{
     sensors::Sensors,
 };
 
-/// The same motion gives the same attitude to the bit whenever it happens.
+/// The same motion gives the same attitude, bit by bit, at any time.
 #[test]
-fn it_does_not_matter_when() {
+fn the_start_time_does_not_matter() {
     let at = |start_us: u64| {
         let sensors = Sensors {
             start_us,
@@ -20,7 +20,7 @@ fn it_does_not_matter_when() {
         Run::new(Motion::carried_about(), sensors)
     };
     let mut soon = at(1_000_000);
-    // 10 s before 32 bits wrap; three years.
+    // 10 s before 32 bits wrap, and after three years.
     let later = [(1 << 32) - 10_000_000, 100_000_000_000_000];
     let mut later = later.map(at);
     for _ in 0..20_000 {
@@ -34,7 +34,7 @@ fn it_does_not_matter_when() {
     }
 }
 
-/// Ticks 1 … 4 ms apart at random: each output belongs to its own tick.
+/// Ticks at random intervals of 1 … 4 ms. Each output is for its own tick.
 #[test]
 fn late_ticks_cost_nothing() {
     let mut figures = Figures::default();

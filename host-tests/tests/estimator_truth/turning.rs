@@ -1,4 +1,4 @@
-//! Rotations of every kind, with perfect sensors: what is wrong here is the filter's arithmetic.
+//! Rotations of every kind with perfect sensors. Any error here is one of the filter's arithmetic.
 
 mod coning;
 mod poses;

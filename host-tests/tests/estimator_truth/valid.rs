@@ -1,17 +1,17 @@
-//! `StateEstimate::valid` falls and returns as its documentation says, to the tick.
+//! `StateEstimate::valid` changes as its documentation says, to the tick.
 
 use robot_app::{
     domain::{ImuState, MagState, MotorFeedback, StateEstimate, WheelOdomConfig},
     estimation::InsEstimator,
 };
 
-/// The documentation's own figures.
+/// The figures of that documentation.
 const MAX_SAMPLE_AGE_US: u64 = 25_000;
 const SAMPLES_IN_A_ROW: u32 = 100;
 const MAX_SAMPLE_GAP_US: u64 = 100_000;
 const MAX_TICK_US: u64 = 20_000;
-/// After a gap a rest of 0.6 s shows where up is.
-const SAMPLES_TO_FIND_UP: u32 = 120;
+/// After a gap a rest of 0.6 s shows the tilt.
+const SAMPLES_TO_FIND_TILT: u32 = 120;
 
 const SAMPLE_US: u64 = 5_000;
 
@@ -68,7 +68,7 @@ impl Robot {
         valid
     }
 
-    /// Good samples in a row until it counts, that one included.
+    /// Number of good samples in a row until the estimate is valid, including that one.
     fn samples_until_valid(&mut self) -> u32 {
         for count in 1..10 * SAMPLES_IN_A_ROW {
             if self.sample_after(SAMPLE_US) {
@@ -79,14 +79,14 @@ impl Robot {
     }
 }
 
-/// The row may begin with the sample of the tick that broke it.
-fn assert_anew(robot: &mut Robot, row: u32) {
+/// The sample of the tick that broke the row may be the first of the next.
+fn assert_counts_again(robot: &mut Robot, row: u32) {
     let needed = robot.samples_until_valid();
     assert!(needed == row || needed == row - 1, "{needed} samples");
 }
 
 #[test]
-fn nothing_counts_before_the_first_sample() {
+fn it_is_false_before_the_first_sample() {
     let mut robot = Robot::new();
     for _ in 0..2_000 {
         let next_us = robot.now_us + 1_000;
@@ -96,7 +96,7 @@ fn nothing_counts_before_the_first_sample() {
 }
 
 #[test]
-fn a_sample_counts_for_25_ms_and_the_next_makes_it_good() {
+fn a_sample_is_valid_for_25_ms_and_the_next_one_again() {
     let mut robot = Robot::settled();
     let last_us = robot.now_us;
     assert!(robot.ticks_without_sample(last_us + MAX_SAMPLE_AGE_US));
@@ -105,11 +105,11 @@ fn a_sample_counts_for_25_ms_and_the_next_makes_it_good() {
 }
 
 #[test]
-fn a_gap_of_more_than_100_ms_starts_anew() {
+fn a_gap_of_more_than_100_ms_ends_it() {
     for (gap_us, needed) in [
         (MAX_SAMPLE_GAP_US, 1),
-        (MAX_SAMPLE_GAP_US + 1, SAMPLES_TO_FIND_UP),
-        (3_000_000, SAMPLES_TO_FIND_UP),
+        (MAX_SAMPLE_GAP_US + 1, SAMPLES_TO_FIND_TILT),
+        (3_000_000, SAMPLES_TO_FIND_TILT),
     ] {
         let mut robot = Robot::settled();
         let last_us = robot.now_us;
@@ -119,7 +119,7 @@ fn a_gap_of_more_than_100_ms_starts_anew() {
 }
 
 #[test]
-fn impossible_values_start_anew() {
+fn impossible_values_end_it() {
     let spoils: [fn(&mut ImuState, f32); 3] = [
         |imu, value| imu.gyro_dps[1] = value,
         |imu, value| imu.accel_mps2[2] = value,
@@ -138,16 +138,16 @@ fn impossible_values_start_anew() {
 }
 
 #[test]
-fn samples_from_the_past_start_anew() {
+fn samples_from_the_past_end_it() {
     let mut robot = Robot::settled();
     robot.imu.ts_us -= 1;
     let next_us = robot.now_us + SAMPLE_US;
     assert!(!robot.tick_at(next_us));
-    assert_anew(&mut robot, SAMPLES_TO_FIND_UP);
+    assert_counts_again(&mut robot, SAMPLES_TO_FIND_TILT);
 }
 
 #[test]
-fn ticks_that_run_back_stand_or_jump_start_anew() {
+fn ticks_that_run_back_stand_or_jump_end_it() {
     let jumps: [fn(u64) -> u64; 5] = [
         |now_us| now_us - 1,
         |now_us| now_us - 500_000,
@@ -163,10 +163,10 @@ fn ticks_that_run_back_stand_or_jump_start_anew() {
         assert!(!robot.tick_at(now_us), "counted after a jump to {now_us}");
         let gap = robot.imu.ts_us - sample_us > MAX_SAMPLE_GAP_US;
         robot.now_us = robot.now_us.max(robot.imu.ts_us);
-        assert_anew(
+        assert_counts_again(
             &mut robot,
             if gap {
-                SAMPLES_TO_FIND_UP
+                SAMPLES_TO_FIND_TILT
             } else {
                 SAMPLES_IN_A_ROW
             },
@@ -176,9 +176,9 @@ fn ticks_that_run_back_stand_or_jump_start_anew() {
     assert!(robot.sample_after(MAX_TICK_US), "20 ms are allowed");
 }
 
-/// An offset of more than 1 °/s, or up more than 30° from where it was believed: the attitude jumps.
+/// A bias of more than 1 °/s, or a tilt error of more than 30°: the attitude jumps.
 #[test]
-fn a_rest_that_proves_it_wrong_starts_anew() {
+fn a_rest_that_shows_a_wrong_attitude_ends_it() {
     let proofs: [fn(&mut ImuState); 3] = [
         |imu| imu.gyro_dps = [0.0, 1.2, 0.0],
         |imu| imu.accel_mps2 = [0.0, 5.4, 8.2],
@@ -189,15 +189,15 @@ fn a_rest_that_proves_it_wrong_starts_anew() {
         proof(&mut robot.imu);
         let fell = (0..1_000).any(|_| !robot.sample_after(SAMPLE_US));
         assert!(fell, "{:?} taken for motion", robot.imu);
-        assert_anew(&mut robot, SAMPLES_IN_A_ROW);
-        // Once proved it stands.
+        assert_counts_again(&mut robot, SAMPLES_IN_A_ROW);
+        // It stays valid after that.
         assert!((0..2_000).all(|_| robot.sample_after(SAMPLE_US)));
     }
 }
 
-/// What the others hold while it is false: the attitude of the last good samples.
+/// While it is false the other fields hold the last good attitude.
 #[test]
-fn while_false_the_attitude_stays() {
+fn while_it_is_false_the_attitude_stays() {
     let mut robot = Robot::settled();
     let before = robot.estimate.q_wxyz;
     let until_us = robot.now_us + 5_000_000;
@@ -207,9 +207,9 @@ fn while_false_the_attitude_stays() {
     assert!(change.fold(0.0, f32::max) < 1e-3, "{before:?} {after:?}");
 }
 
-/// Heading and wheels are not its business.
+/// Heading and wheels do not affect it.
 #[test]
-fn it_says_nothing_about_magnetometer_and_wheels() {
+fn it_does_not_depend_on_magnetometer_and_wheels() {
     let mut robot = Robot::settled();
     for _ in 0..1_000 {
         assert!(robot.sample_after(SAMPLE_US));

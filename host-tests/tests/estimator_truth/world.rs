@@ -13,7 +13,7 @@ use crate::{
 const STEP_US: u64 = 250;
 const IMU_US: u64 = 5_000;
 const MAG_US: u64 = 20_000;
-/// From the middle of the magnetometer's measurement until it is read.
+/// From the middle of the magnetometer's measurement to its reading.
 const MAG_READ_US: u64 = 4_000;
 /// In steps of the motion.
 const MAX_JITTER_STEPS: f64 = 8.0;
@@ -60,10 +60,10 @@ impl World {
         self.attitude
     }
 
-    /// What is left of it in the samples.
+    /// The bias that is left in the samples.
     pub fn gyro_offset_dps(&self) -> Vector {
         let t = self.time_s();
-        let taken_out = (self.sensors.taken_out_dps)(t);
+        let taken_out = (self.sensors.removed_bias_dps)(t);
         add((self.sensors.gyro_offset_dps)(t), scale(taken_out, -1.0))
     }
 
@@ -72,7 +72,7 @@ impl World {
         Some(wheels(self.time_s()))
     }
 
-    /// What the robot's clock shows `elapsed_us` after the start.
+    /// The robot's clock `elapsed_us` after the start.
     pub fn clock_us(&self, elapsed_us: u64) -> u64 {
         self.sensors.start_us + elapsed_us
     }
@@ -101,18 +101,18 @@ impl World {
         self.elapsed_us as f64 * 1e-6
     }
 
-    /// Half the turn, push, half the turn: each quantity at the middle of the step.
+    /// Half the rotation, the acceleration, half the rotation: each quantity is that of the middle of the step.
     fn move_on(&mut self) {
         let dt_s = STEP_US as f64 * 1e-6;
         let middle_s = self.time_s() + dt_s / 2.0;
         let turn = scale((self.motion.rate_rps)(middle_s), dt_s);
         let half = Rotation::by(scale(turn, 0.5));
         let middle = self.attitude.then_in_body(half);
-        let felt = add((self.motion.accel_mps2)(middle_s), [0.0, 0.0, GRAVITY_MPS2]);
-        let felt = middle.inverse().turn(felt);
+        let force = add((self.motion.accel_mps2)(middle_s), [0.0, 0.0, GRAVITY_MPS2]);
+        let force = middle.inverse().turn(force);
         self.attitude = middle.then_in_body(half);
         self.angle_rad = add(self.angle_rad, turn);
-        self.velocity_mps = add(self.velocity_mps, scale(felt, dt_s));
+        self.velocity_mps = add(self.velocity_mps, scale(force, dt_s));
         self.elapsed_us += STEP_US;
     }
 
@@ -161,7 +161,7 @@ impl World {
             saturated: gyro.iter().any(|rate| rate.abs() > gyro_end)
                 || accel.iter().any(|part| part.abs() > accel_end),
             gyro_clipped_ms: gyro.map(|rate| if rate.abs() > gyro_end { 5 } else { 0 }),
-            gyro_bias_dps: (self.sensors.taken_out_dps)(self.time_s()).map(|part| part as f32),
+            gyro_bias_dps: (self.sensors.removed_bias_dps)(self.time_s()).map(|part| part as f32),
             ts_us: self
                 .clock_us(self.elapsed_us)
                 .saturating_add_signed(stamp_error_us),
@@ -178,14 +178,14 @@ impl World {
             (self.motion.magnet_ut)(self.time_s()),
         );
         let seen = self.attitude.inverse().turn(field);
-        let seen = add(seen, self.sensors.carried_magnet_ut);
+        let seen = add(seen, self.sensors.hard_iron_ut);
         let seen = add(seen, self.noise_of(self.sensors.noise.mag_ut));
-        let believed_us = self.elapsed_us + self.sensors.unknown_mag_delay_us;
+        let stamp_us = self.elapsed_us + self.sensors.unknown_mag_delay_us;
         let sample = MagState {
             mag_ut: seen.map(|part| part as f32),
-            ts_us: self.clock_us(believed_us),
+            ts_us: self.clock_us(stamp_us),
         };
-        let at_us = believed_us + MAG_READ_US;
+        let at_us = stamp_us + MAG_READ_US;
         self.mag_due.push_back(Due { at_us, sample });
     }
 
@@ -199,7 +199,7 @@ impl World {
     }
 }
 
-/// Samples are handed over in the order they were taken.
+/// Samples are delivered in the order in which they were taken.
 fn take_due<T>(queue: &mut VecDeque<Due<T>>, elapsed_us: u64) -> Option<T> {
     queue
         .pop_front_if(|due| due.at_us <= elapsed_us)

@@ -1,4 +1,4 @@
-//! A robot that stands or drives, is hit, and is brought upright again; in double precision, one row a millisecond.
+//! A robot that stands or drives, is hit and is righted, in double precision with one row a millisecond.
 
 use std::f64::consts::PI;
 
@@ -8,27 +8,27 @@ const GRAVITY_MPS2: f64 = 9.81;
 /// East, north, up.
 const EARTH_UT: Vector = [0.0, 20.0, -44.0];
 const DT_S: f64 = 1e-3;
-/// From the end of a blow until the robot is righted.
-const DAZED_S: f64 = 0.15;
+/// Time from the end of an impact until the robot starts to right itself.
+const LYING_S: f64 = 0.15;
 const MAX_RIGHTING_DPS: f64 = 90.0;
-/// Closer to upright than this it counts as righted, and closer than that where it nods anyway.
+/// Tilt below which the robot counts as upright. It is larger while driving, where the robot nods.
 const UPRIGHT_RAD: f64 = 0.002;
 const NODDING_RAD: f64 = 0.04;
 
 #[derive(Clone, Copy, Debug)]
-pub struct Blow {
+pub struct Impact {
     pub at_s: f64,
-    /// Body axis, right hand.
+    /// Body frame, right-hand rule.
     pub axis: Vector,
     pub peak_dps: f64,
     pub ms: f64,
-    /// At full rate at once, or as half a sine.
+    /// A step, or half a sine.
     pub abrupt: bool,
-    /// For as long, in body axes.
+    /// Acceleration during the impact, body frame.
     pub accel_mps2: Vector,
 }
 
-impl Blow {
+impl Impact {
     fn share(&self, t_s: f64) -> Option<f64> {
         let share = (t_s - self.at_s) / (self.ms * 1e-3);
         (0.0..1.0).contains(&share).then_some(share)
@@ -50,16 +50,16 @@ impl Blow {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Base {
     Standing,
-    /// Turns about the vertical at this rate.
+    /// Rotates about the vertical at this rate.
     Turning {
         dps: i32,
     },
-    /// Weaves, speeds up and brakes, nods.
+    /// Weaves, accelerates, brakes and nods.
     Driving,
 }
 
 impl Base {
-    /// From rest, which the start-up calibration needs, in a second.
+    /// Starts from rest, which the start-up calibration needs, within a second.
     fn rate_dps(self, t_s: f64) -> Vector {
         scale(self.full_rate_dps(t_s), begun(t_s))
     }
@@ -76,7 +76,7 @@ impl Base {
         }
     }
 
-    /// Along the nose and to the left.
+    /// Along the nose, and to the left.
     fn accel_mps2(self, t_s: f64) -> [f64; 2] {
         self.full_accel_mps2(t_s).map(|part| begun(t_s) * part)
     }
@@ -106,8 +106,8 @@ pub struct Row {
     pub q_wxyz: [f64; 4],
 }
 
-/// Rows, and when the robot stands upright again for good: with a base that rests it rests from then on.
-pub fn rows(base: Base, blows: &[Blow], seconds: f64, seed: u64) -> (Vec<Row>, f64) {
+/// The rows, and the time from which on the robot is upright.
+pub fn rows(base: Base, impacts: &[Impact], seconds: f64, seed: u64) -> (Vec<Row>, f64) {
     let mut noise = Random::new(seed);
     let mut attitude = Rotation::default();
     let mut rows = Vec::new();
@@ -115,12 +115,12 @@ pub fn rows(base: Base, blows: &[Blow], seconds: f64, seed: u64) -> (Vec<Row>, f
     for step in 0..(seconds / DT_S).round() as u32 {
         let t_s = f64::from(step) * DT_S;
         let mut dps = base.rate_dps(t_s);
-        for blow in blows {
-            dps = add(dps, blow.rate_dps(t_s));
+        for impact in impacts {
+            dps = add(dps, impact.rate_dps(t_s));
         }
-        let dazed = blows
+        let dazed = impacts
             .iter()
-            .any(|blow| (blow.at_s..blow.end_s() + DAZED_S).contains(&t_s));
+            .any(|impact| (impact.at_s..impact.end_s() + LYING_S).contains(&t_s));
         let (righting_dps, tilt_rad) = righting(attitude);
         fallen = dazed
             || fallen
@@ -138,15 +138,15 @@ pub fn rows(base: Base, blows: &[Blow], seconds: f64, seed: u64) -> (Vec<Row>, f
         }
         let rate_rps = dps.map(f64::to_radians);
         attitude = attitude.then_in_body(Rotation::by(scale(rate_rps, DT_S)));
-        let mut felt = felt_mps2(base, attitude, t_s);
-        for blow in blows {
-            if blow.share(t_s).is_some() {
-                felt = add(felt, blow.accel_mps2);
+        let mut force = force_mps2(base, attitude, t_s);
+        for impact in impacts {
+            if impact.share(t_s).is_some() {
+                force = add(force, impact.accel_mps2);
             }
         }
         rows.push(Row {
             gyro_rps: add(rate_rps, noise.vector(0.15_f64.to_radians())),
-            accel_mps2: add(felt, noise.vector(0.06)),
+            accel_mps2: add(force, noise.vector(0.06)),
             field_ut: add(attitude.seen_from_body(EARTH_UT), noise.vector(0.4)),
             q_wxyz: attitude.to_wxyz(),
         });
@@ -154,11 +154,11 @@ pub fn rows(base: Base, blows: &[Blow], seconds: f64, seed: u64) -> (Vec<Row>, f
     (rows, upright_s)
 }
 
-/// Rate that brings the body's z axis up, and how far it is from there.
+/// The rate that rights the robot, and its tilt.
 fn righting(attitude: Rotation) -> (Vector, f64) {
     let [x, y, z] = attitude.seen_from_body([0.0, 0.0, 1.0]);
     let tilt_rad = x.hypot(y).atan2(z);
-    // Up is at (x, y, z) in the body: turning about (−y, x, 0) takes z there.
+    // Up is (x, y, z) in the body frame. Rotation about (−y, x, 0) moves the z axis there.
     let axis = [-y, x, 0.0];
     let length = x.hypot(y);
     if length < 1e-9 {
@@ -168,7 +168,7 @@ fn righting(attitude: Rotation) -> (Vector, f64) {
     (scale(axis, dps / length), tilt_rad)
 }
 
-fn felt_mps2(base: Base, attitude: Rotation, t_s: f64) -> Vector {
+fn force_mps2(base: Base, attitude: Rotation, t_s: f64) -> Vector {
     let [along, left] = base.accel_mps2(t_s);
     let [w, x, y, z] = attitude.to_wxyz();
     let yaw = (2.0 * (w * z + x * y)).atan2(1.0 - 2.0 * (y * y + z * z));

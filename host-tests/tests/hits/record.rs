@@ -1,4 +1,4 @@
-//! Rows as a recording that the sensors' models play: a JSON header beside gzipped columns.
+//! Writes rows as a recording that the sensor models play: a JSON header beside gzipped columns.
 
 use std::{
     fs,
@@ -15,7 +15,7 @@ const COLUMNS: [&str; 14] = [
     "gx", "gy", "gz", "ax", "ay", "az", "mx", "my", "mz", "qw", "qx", "qy", "qz", "mov",
 ];
 
-/// Gone when dropped.
+/// The files are removed when it is dropped.
 pub struct Recording {
     folder: PathBuf,
     pub header: PathBuf,

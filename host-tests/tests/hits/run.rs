@@ -1,53 +1,57 @@
-//! One blow or some, and what became of the attitude.
+//! Plays impacts, and measures the attitude.
 
 use robot_replay::{At, Trial};
 
 use crate::{
     board::{self, Wheels},
-    motion::{self, Base, Blow},
+    motion::{self, Base, Impact},
     record::Recording,
 };
 
-/// While a blow lasts the output is late by some milliseconds of it.
-const BLOW_IS_OVER_S: f64 = 0.05;
+/// The estimate may be late by some milliseconds of an impact.
+const IMPACT_DELAY_S: f64 = 0.05;
 /// Long enough to be righted and to drive for a while.
 const AFTERWARDS_S: f64 = 8.0;
-/// A rest tells where up is within this, driving within that.
+/// Time within which rest shows the tilt.
 const REST_S: f64 = 1.5;
 const DRIVING_S: f64 = 4.0;
 
 #[derive(Clone, Copy, Debug)]
 pub struct Outcome {
-    /// Largest inclination error from when up must be known again.
+    /// Largest tilt error from the time on at which the tilt must be known again.
     pub late_deg: f64,
-    /// Largest inclination error while the estimate counted, blows themselves left out.
-    pub lie_deg: f64,
-    /// When it counted again for good, after the robot was upright.
+    /// Largest tilt error while the estimate was valid, without the impacts themselves.
+    pub valid_error_deg: f64,
+    /// Time from upright until the estimate was valid for good.
     pub valid_after_s: f64,
     pub rejected: u32,
-    /// It counted while it showed the robot fallen, for longer than a knock, though it was not.
+    /// The estimate was valid and showed a fallen robot for longer than a knock, though it had not fallen.
     pub falls: bool,
 }
 
 impl Outcome {
-    pub fn of(name: &str, base: Base, blows: &[Blow]) -> Self {
-        Self::try_of(name, base, blows).unwrap_or_else(|error| panic!("{name}: {error}"))
+    pub fn of(name: &str, base: Base, impacts: &[Impact]) -> Self {
+        Self::try_of(name, base, impacts).unwrap_or_else(|error| panic!("{name}: {error}"))
     }
 
     pub fn worse_of(&self, other: &Self) -> Self {
         Self {
             late_deg: self.late_deg.max(other.late_deg),
-            lie_deg: self.lie_deg.max(other.lie_deg),
+            valid_error_deg: self.valid_error_deg.max(other.valid_error_deg),
             valid_after_s: self.valid_after_s.max(other.valid_after_s),
             rejected: self.rejected.max(other.rejected),
             falls: self.falls || other.falls,
         }
     }
 
-    fn try_of(name: &str, base: Base, blows: &[Blow]) -> anyhow::Result<Self> {
-        let end_s = blows.last().map_or(0.0, Blow::end_s);
-        let (rows, upright_s) =
-            motion::rows(base, blows, end_s + AFTERWARDS_S, 1 + blows.len() as u64);
+    fn try_of(name: &str, base: Base, impacts: &[Impact]) -> anyhow::Result<Self> {
+        let end_s = impacts.last().map_or(0.0, Impact::end_s);
+        let (rows, upright_s) = motion::rows(
+            base,
+            impacts,
+            end_s + AFTERWARDS_S,
+            1 + impacts.len() as u64,
+        );
         let recording = Recording::write(name, &rows)?;
         let trial = Trial::read(&recording.header)?;
         let wheels = match base {
@@ -61,10 +65,10 @@ impl Outcome {
             } else {
                 REST_S
             };
-        let first_s = blows.first().map_or(0.0, |blow| blow.at_s);
+        let first_s = impacts.first().map_or(0.0, |impact| impact.at_s);
         let mut outcome = Self {
             late_deg: 0.0,
-            lie_deg: 0.0,
+            valid_error_deg: 0.0,
             valid_after_s: -upright_s,
             rejected,
             falls: false,
@@ -81,9 +85,10 @@ impl Outcome {
             if t_s >= known_s {
                 outcome.late_deg = outcome.late_deg.max(error_deg);
             }
-            let struck = |blow: &Blow| (blow.at_s..blow.end_s() + BLOW_IS_OVER_S).contains(&t_s);
-            if tick.valid && !blows.iter().any(struck) {
-                outcome.lie_deg = outcome.lie_deg.max(error_deg);
+            let struck =
+                |impact: &Impact| (impact.at_s..impact.end_s() + IMPACT_DELAY_S).contains(&t_s);
+            if tick.valid && !impacts.iter().any(struck) {
+                outcome.valid_error_deg = outcome.valid_error_deg.max(error_deg);
             }
             if !tick.valid {
                 outcome.valid_after_s = t_s - upright_s;

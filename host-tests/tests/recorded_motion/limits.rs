@@ -6,36 +6,36 @@ use crate::twelve_trials::Errors;
 
 /// Means over the trials.
 pub struct Limits {
-    /// At the reference's times.
+    /// At the times of the reference.
     total_at_samples_deg: f64,
     /// At every output.
     total_every_tick_deg: f64,
     inclination_deg: f64,
 }
 
-/// VQF, default settings: 2.56°, extrapolated to 1 kHz 2.57°; inclination 0.84°.
+/// VQF with default settings: 2.56°, extrapolated to 1 kHz 2.57°; inclination 0.84°.
 pub const WITH_MAGNETOMETER: Limits = Limits {
     total_at_samples_deg: 2.30,
     total_every_tick_deg: 2.32,
     inclination_deg: 0.75,
 };
 
-/// VQF, default settings: 5.60°, inclination 0.84°.
+/// VQF with default settings: 5.60°, inclination 0.84°.
 pub const WITHOUT_MAGNETOMETER: Limits = Limits {
     total_at_samples_deg: 5.0,
     total_every_tick_deg: 5.0,
     inclination_deg: 0.75,
 };
 
-/// Of any one trial.
+/// The limit for a single trial.
 pub const WORST_INCLINATION_DEG: f64 = 3.0;
-/// The magnetometer says nothing about the horizon.
+/// The most by which the magnetometer may change the inclination.
 pub const TILT_BY_MAGNETOMETER_DEG: f64 = 0.5;
 
-/// Each 4.4 °/s long. Added to every gyro sample of every trial, on top of the sensors' own offsets.
+/// Each is 4.4 °/s long and added to every gyro sample of every trial, on top of the sensors' own biases.
 pub const START_UP_OFFSETS_DPS: [[f32; 3]; 3] =
     [[2.54, -2.54, 2.54], [4.4, 0.0, 0.0], [0.0, -4.4, 0.0]];
-/// How much worse than without offset any figure may be.
+/// The most by which such a bias may increase any figure.
 pub const WORSE_BY_OFFSET_DEG: f64 = 0.3;
 
 impl Limits {
@@ -63,7 +63,7 @@ impl Limits {
     }
 }
 
-/// The largest growth of a figure.
+/// The largest increase of a figure.
 pub fn worse_deg(figures: &Figures, before: &Figures) -> f64 {
     let growth = [
         figures.total_deg - before.total_deg,

@@ -1,7 +1,7 @@
-//! The estimator on recorded human motion with optical ground truth (BROAD; `cargo xtask replay` shows the same).
+//! The estimator on recorded human motion with optical ground truth (BROAD). `cargo xtask replay` shows the same.
 //!
-//! The recordings stay outside the repository: in `../shared/data/broad`, or where `ROBOT_DATA` points when this is
-//! built. Without them these tests count as ignored.
+//! The recordings are not part of the repository. They are in `../shared/data/broad`, or where `ROBOT_DATA` points when
+//! this is built. Without them these tests count as ignored.
 
 mod limits;
 mod twelve_trials;
@@ -40,7 +40,7 @@ fn attitude_follows_the_optical_reference() -> anyhow::Result<()> {
     Ok(())
 }
 
-fn a_start_up_offset_costs_next_to_nothing(mode: Mode) -> anyhow::Result<()> {
+fn a_start_up_bias_costs_next_to_nothing(mode: Mode) -> anyhow::Result<()> {
     let without = errors_of_all(mode, NO_OFFSET)?;
     for offset_dps in limits::START_UP_OFFSETS_DPS {
         let with = errors_of_all(mode, offset_dps)?;
@@ -64,8 +64,8 @@ fn a_start_up_offset_costs_next_to_nothing(mode: Mode) -> anyhow::Result<()> {
     not(recorded_motion),
     ignore = "no recorded motion: set ROBOT_DATA to its folder"
 )]
-fn a_start_up_offset_is_found_with_magnetometer() -> anyhow::Result<()> {
-    a_start_up_offset_costs_next_to_nothing(Mode::NineAxis)
+fn a_start_up_bias_is_found_with_magnetometer() -> anyhow::Result<()> {
+    a_start_up_bias_costs_next_to_nothing(Mode::NineAxis)
 }
 
 #[test]
@@ -73,6 +73,6 @@ fn a_start_up_offset_is_found_with_magnetometer() -> anyhow::Result<()> {
     not(recorded_motion),
     ignore = "no recorded motion: set ROBOT_DATA to its folder"
 )]
-fn a_start_up_offset_is_found_without_magnetometer() -> anyhow::Result<()> {
-    a_start_up_offset_costs_next_to_nothing(Mode::SixAxis)
+fn a_start_up_bias_is_found_without_magnetometer() -> anyhow::Result<()> {
+    a_start_up_bias_costs_next_to_nothing(Mode::SixAxis)
 }

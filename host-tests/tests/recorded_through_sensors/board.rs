@@ -1,4 +1,4 @@
-//! The board's sensor tasks and the control tick's part of the estimator, while a recording plays.
+//! The board's sensor tasks and the estimator's part of the control tick, while a recording plays.
 
 use std::path::Path;
 
@@ -25,9 +25,9 @@ const TICK_PHASE: Ps = 500 * US;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wheels {
-    /// No motor is heard.
+    /// There is no wheel feedback.
     Silent,
-    /// The motors report that they stand, as on a robot that is carried around.
+    /// The wheels report that they stand, as on a robot that is carried about.
     Standing,
 }
 
@@ -44,8 +44,8 @@ impl Wheels {
     }
 }
 
-/// Outputs from the begin of the record on. `phase`: of the IMU's readings against the chips' own clocks.
-/// And how many IMU samples were rejected.
+/// Plays a recording. Returns the outputs from its beginning and the number of rejected IMU samples. `phase` is the
+/// time of the IMU's readings against the chips' own clocks.
 pub fn play(header: &Path, phase: Ps, wheels: Wheels) -> anyhow::Result<(Run, u32)> {
     let mut world = World::new(WorldConfig {
         plant: PlantKind::Stand,
@@ -87,7 +87,7 @@ struct Board {
 impl Board {
     fn bring_up(world: &mut World, phase: Ps, wheels: Wheels) -> Self {
         let mut sensors = Sensors::new();
-        // The recorder's axes are the robot's.
+        // The recorder's axes are those of the robot.
         sensors.set_mounting(&MountingConfig {
             board: Orientation::XForwardZUp,
             mag: Some(Orientation::XForwardZUp),

@@ -1,8 +1,8 @@
-//! Recorded motion through the models of the board's sensors and the app's own sensing, against the same recordings fed to
-//! the estimator as they are: what the chips' filters, resolution and clocks make of the attitude.
+//! Recorded motion through the models of the board's sensors and the sensing stage, compared with the same recordings
+//! fed to the estimator directly. It shows what the chips' filters, resolution and clocks cost.
 //!
-//! The recordings stay outside the repository: in `../shared/data/broad`, or where `ROBOT_DATA` points when this is
-//! built. Without them these tests count as ignored.
+//! The recordings are not part of the repository. They are in `../shared/data/broad`, or where `ROBOT_DATA` points when
+//! this is built. Without them these tests count as ignored.
 
 mod board;
 #[path = "../closed_loop/sensors.rs"]
@@ -14,8 +14,8 @@ use board::Wheels;
 use robot_plant::time::{Ps, US};
 use robot_replay::{At, Figures, Mode, Trial};
 
-/// The gyro's newest values are up to 1 ms old, the accelerometer's up to 1.25 ms: at which the board's readings fall is
-/// chance, and half of that is what the stamp of a sample may be off.
+/// The gyro's newest values are up to 1 ms old, the accelerometer's up to 1.25 ms. When the board reads them is chance,
+/// and a time stamp may be off by half of that.
 const PHASES: [Ps; 2] = [0, 600 * US];
 
 struct Compared {
@@ -86,7 +86,7 @@ fn the_sensors_cost_no_accuracy() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Whoever carries a robot around whose wheels stand moves it as no wheels can; its attitude must not follow the wheels.
+/// A robot that is carried about moves as no wheels can. Its attitude must not follow its standing wheels.
 #[test]
 #[cfg_attr(
     not(recorded_motion),
@@ -99,9 +99,9 @@ fn standing_wheels_do_not_tilt_a_carried_robot() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The figures of single trials differ by what half a millisecond more or less of delay makes of them, and where magnets
-/// are near by which samples of the field happen to be believed: fed with another fourth of the rows as they are, trial 34
-/// differs by 0.3°. In the mean over the trials that is less.
+/// Single trials differ by what half a millisecond of delay makes of them. Near magnets it also matters which field
+/// samples are accepted: fed with another quarter of the rows, trial 34 differs by 0.3°. The mean over the trials
+/// differs by less.
 const WORSE_HEADING_DEG: f64 = 0.8;
 const WORSE_INCLINATION_DEG: f64 = 0.15;
 const WORSE_MEAN_TOTAL_DEG: f64 = 0.1;

@@ -1,4 +1,4 @@
-//! A robot on two wheels is never at rest: it sways.
+//! A balancing robot is never at rest: it sways.
 
 use std::f64::consts::TAU;
 
@@ -7,7 +7,7 @@ use crate::{figures::Figures, motion::Motion, run::Run, sensors::Sensors};
 const SWAY_DEG: f64 = 1.5;
 const SWAY_HZ: f64 = 0.9;
 
-/// Pitch to and fro, and the axle under it.
+/// Pitches back and forth, with the axle below it moving along.
 fn swaying() -> Motion {
     let phase = |t: f64| TAU * SWAY_HZ * t;
     Motion::at_rest()
@@ -15,9 +15,9 @@ fn swaying() -> Motion {
         .accelerated(move |t| [0.4 * phase(t).sin(), 0.0, 0.0])
 }
 
-/// The field shows the offset about the vertical: 0.1 °/s makes 2° in 20 s, sample noise of 0.3 µT in 19 µT is 0.9°.
+/// The field shows the bias about the vertical. 0.1 °/s makes 2° in 20 s; a sample's noise of 0.3 µT in 19 µT is 0.9°.
 #[test]
-fn a_balancing_robot_finds_its_offset() {
+fn a_balancing_robot_finds_its_gyro_bias() {
     let mut figures = Figures::default();
     for offset_dps in [[0.3, -0.2, 0.5], [2.0, -2.0, 3.0], [0.0, 0.0, -6.0]] {
         let sensors = Sensors::real().with_offset(offset_dps);

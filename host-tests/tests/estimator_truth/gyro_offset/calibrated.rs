@@ -1,17 +1,17 @@
-//! A calibration elsewhere takes the offset out of the samples and says so.
+//! A calibration removes the bias from the samples and says so.
 
 use crate::{figures::Figures, motion::Motion, run::Run, sensors::Sensors};
 
 const OFFSET_DPS: [f64; 3] = [3.0, -2.0, 4.0];
 const CALIBRATED_S: f64 = 15.0;
 
-/// What was found before no longer counts; nothing turns when the samples change by 5.4 °/s.
+/// The estimator's own bias is reset. The samples change by 5.4 °/s, but that is no rotation.
 #[test]
-fn an_offset_taken_out_elsewhere_is_no_turn() {
+fn a_bias_removed_by_a_calibration_is_no_rotation() {
     let mut figures = Figures::default();
     for sensors in [Sensors::real(), Sensors::real().without_mag()] {
         let mut sensors = sensors.with_offset(OFFSET_DPS);
-        sensors.taken_out_dps =
+        sensors.removed_bias_dps =
             Box::new(|t| OFFSET_DPS.map(|part| if t < CALIBRATED_S { 0.0 } else { part }));
         let mut run = Run::new(Motion::at_rest(), sensors);
         run.skip(CALIBRATED_S - 0.1);

@@ -1,4 +1,4 @@
-//! A slow turn is as steady as an offset: the field or the wheels tell them apart.
+//! A slow rotation is as even as a bias. The field or the wheels tell them apart.
 
 use crate::{
     figures::Figures,
@@ -20,13 +20,13 @@ fn turntable(speed_dps: f64) -> Motion {
     })
 }
 
-/// The field shows that the body turns, so the turn is no gyro offset: the heading follows, and when the table stops nothing
-/// of the turn is left in the offset.
+/// The field rotates in the body, so the rate is no bias. The heading follows, and after the turntable stops no part of
+/// the rotation is left in the bias.
 ///
-/// 0.5 °/s is where a turn begins to count as rest. There it depends on the noise: with most other seeds the turn ends up in
-/// the offset and the heading is lost.
+/// 0.5 °/s is where a rotation begins to count as rest. There it depends on the noise: with most other seeds the rotation
+/// ends up in the bias and the heading is lost.
 #[test]
-fn a_slow_steady_turn_is_seen_in_the_field() {
+fn the_field_shows_a_slow_even_rotation() {
     let mut figures = Figures::default();
     for speed_dps in [0.5, 1.0, 1.8, 3.0, -3.0, 6.0, 15.0] {
         let mut run = Run::new(turntable(speed_dps), Sensors::real());
@@ -52,10 +52,10 @@ fn a_slow_steady_turn_is_seen_in_the_field() {
     figures.done();
 }
 
-/// Smooth ground and a wide bend: no magnetometer, and the IMU feels nothing but 1 °/s. The wheels turn, so it is no
-/// rest; the offset stays known to 0.05 °/s from the rest before.
+/// On smooth ground in a wide bend, without a magnetometer, the IMU shows nothing but 1 °/s. The wheels turn, so it is
+/// no rest, and the bias stays as accurate as after the rest before, 0.05 °/s.
 #[test]
-fn with_turning_wheels_it_is_no_rest() {
+fn with_turning_wheels_a_slow_rotation_is_no_rest() {
     const TRACK_M: f64 = 0.42;
     let mut figures = Figures::default();
     for speed_dps in [1.0_f64, -1.7] {

@@ -1,4 +1,4 @@
-//! An offset of many °/s from the first sample on, as if no calibration had taken it out.
+//! A large bias from the first sample on, as without a start-up calibration.
 
 use robot_test_support::{Vector, norm, scale};
 
@@ -9,7 +9,7 @@ use crate::{
     sensors::Sensors,
 };
 
-/// Up to here the horizon tilts by less than half a radian in three seconds: small enough to be put right at one go.
+/// Up to this bias the estimate tilts by less than half a radian in three seconds, which one correction can repair.
 const LARGE_DPS: f64 = 9.0;
 
 const OFFSETS_DPS: [(&str, Vector); 6] = [
@@ -21,10 +21,10 @@ const OFFSETS_DPS: [(&str, Vector); 6] = [
     ("17 °/s", [-10.0, 10.0, 10.0]),
 ];
 
-/// At rest the offset is what the gyro shows; two seconds tell rest from motion, and then the mean of half a second of
-/// samples (0.14 °/s each) is right to 0.02 °/s.
+/// At rest the gyro shows its bias. Two seconds tell rest from motion. The mean over another half second of samples
+/// with a noise of 0.14 °/s is right to 0.02 °/s.
 #[test]
-fn at_rest_the_offset_is_found_within_five_seconds() {
+fn at_rest_the_bias_is_found_within_five_seconds() {
     let mut figures = Figures::default();
     for (name, offset_dps) in OFFSETS_DPS {
         let mut run = Run::new(Motion::at_rest(), Sensors::real().with_offset(offset_dps));
@@ -50,9 +50,9 @@ fn at_rest_the_offset_is_found_within_five_seconds() {
     figures.done();
 }
 
-/// Without a magnetometer the heading keeps the value it had when the offset was found.
+/// Without a magnetometer the heading stays where it was when the bias was found.
 #[test]
-fn at_rest_without_magnetometer_the_heading_stands_once_the_offset_is_found() {
+fn at_rest_without_magnetometer_the_heading_stays_once_the_bias_is_found() {
     let mut figures = Figures::default();
     for (name, offset_dps) in OFFSETS_DPS {
         let sensors = Sensors::real().with_offset(offset_dps).without_mag();
@@ -79,7 +79,7 @@ fn at_rest_without_magnetometer_the_heading_stands_once_the_offset_is_found() {
     figures.done();
 }
 
-/// Three seconds of rest, then carried about without end.
+/// Three seconds of rest, then motion without end.
 fn soon_carried() -> Motion {
     let carried = Motion::carried_about();
     let (turning, pushing) = (carried.rate_rps, carried.accel_mps2);
@@ -89,10 +89,10 @@ fn soon_carried() -> Motion {
     motion
 }
 
-/// Gravity and field show two turns, so all three axes of the offset, at any time: the tilt that 0.3 °/s makes in three
-/// seconds (1°) stands out of the pushes' mean. Half a minute is ten such looks, a minute twenty.
+/// Gravity and field make all three axes of the bias observable. In three seconds 0.3 °/s tilt by 1°, which exceeds the
+/// mean of the accelerations. Half a minute has ten such intervals, a minute twenty.
 #[test]
-fn in_motion_the_offset_is_found_within_half_a_minute_or_a_minute() {
+fn in_motion_the_bias_is_found_within_half_a_minute_or_a_minute() {
     let mut figures = Figures::default();
     for (name, offset_dps) in OFFSETS_DPS {
         for (start, motion) in [
@@ -128,9 +128,9 @@ fn in_motion_the_offset_is_found_within_half_a_minute_or_a_minute() {
     figures.done();
 }
 
-/// Gravity alone shows the offset's part across the vertical; the body turns, so each axis gets its chance.
+/// Gravity alone shows the bias across the vertical. The body rotates, so that each axis is across it at times.
 #[test]
-fn in_motion_without_magnetometer_the_offset_is_found_within_a_minute() {
+fn in_motion_without_magnetometer_the_bias_is_found_within_a_minute() {
     let mut figures = Figures::default();
     for (name, offset_dps) in OFFSETS_DPS {
         let sensors = Sensors::real().with_offset(offset_dps).without_mag();
@@ -156,9 +156,9 @@ fn in_motion_without_magnetometer_the_offset_is_found_within_a_minute() {
     figures.done();
 }
 
-/// Set down while it still turns: what lasts for little more than a second is no rest yet.
+/// A robot is set down while it still rotates. A little more than a second of that is no rest yet.
 #[test]
-fn a_short_slow_turn_at_the_start_is_a_turn() {
+fn a_short_slow_rotation_at_the_start_is_no_bias() {
     let mut figures = Figures::default();
     for speed_dps in [4.0, -8.0] {
         let motion =
@@ -175,10 +175,9 @@ fn a_short_slow_turn_at_the_start_is_a_turn() {
     figures.done();
 }
 
-/// No offset, and none made up: what is carried about for three minutes keeps an offset near zero, once the first ten
-/// seconds have shown that there is none.
+/// Without any bias, after ten seconds that show so, three minutes of motion must not make one up.
 #[test]
-fn motion_makes_up_no_offset() {
+fn motion_makes_up_no_bias() {
     let mut figures = Figures::default();
     for (name, sensors) in [
         ("9d", Sensors::real()),

@@ -1,4 +1,4 @@
-//! The offset as temperature moves it.
+//! The bias changes as with temperature.
 
 use std::f64::consts::TAU;
 
@@ -15,10 +15,10 @@ fn wandering(mut sensors: Sensors, seed: u64) -> Sensors {
     sensors
 }
 
-/// The offset about the vertical changes by at most 0.0017 °/s each second. Found with a lag of 10 s that is 0.017 °/s,
-/// up and down again; the ramp's share of it adds up to 1° in ten minutes.
+/// The bias about the vertical changes by 0.0017 °/s each second at most. Followed with a lag of 10 s that is an error
+/// of 0.017 °/s, up and down again. The ramp's share of it adds up to 1° in ten minutes.
 #[test]
-fn at_rest_a_wandering_offset_turns_nothing() {
+fn at_rest_a_wandering_bias_does_not_rotate_the_estimate() {
     let mut figures = Figures::default();
     for seed in 1..4 {
         let mut run = Run::new(
@@ -41,11 +41,11 @@ fn at_rest_a_wandering_offset_turns_nothing() {
     figures.done();
 }
 
-/// Twenty minutes without rest: single precision keeps the filter as good as it was after the first. A look at gravity
-/// lasts 3 s and is 0.3 °/s good among such pushes; against a change of 0.002 °/s each second the best mean is one over
-/// 40 s, which lags by 0.08 °/s. In the ten seconds in which gravity and field are believed that is 0.8°.
+/// After twenty minutes without rest, single precision must leave the filter as good as after the first. A look at
+/// gravity lasts 3 s and is good to 0.3 °/s among such accelerations. Against a change of 0.002 °/s each second the
+/// best mean is one over 40 s, which lags by 0.08 °/s. Gravity and field correct within ten seconds, which makes 0.8°.
 #[test]
-fn in_motion_a_wandering_offset_is_followed() {
+fn in_motion_a_wandering_bias_is_followed() {
     let mut figures = Figures::default();
     for (name, sensors, drift_deg) in [
         ("9d", Sensors::real(), 4.0),

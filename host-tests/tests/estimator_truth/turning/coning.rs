@@ -1,11 +1,11 @@
-//! An axis that goes round on a cone: no net turn, but every gyro axis shows a rate all the time.
+//! Coning motion: no net rotation, but every gyro axis measures a rate all the time.
 
 use robot_test_support::{Rotation, Vector};
 use std::f64::consts::TAU;
 
 use crate::{figures::Figures, motion::Motion, run::Run, sensors::Sensors};
 
-/// Tilted by `half_angle_rad` about a level axis that goes round at `rate_rps`.
+/// Tilted by `half_angle_rad` about a level axis that rotates at `rate_rps`.
 fn attitude(half_angle_rad: f64, rate_rps: f64, t: f64) -> Rotation {
     let (sin, cos) = (rate_rps * t).sin_cos();
     Rotation::by([half_angle_rad * cos, half_angle_rad * sin, 0.0])
@@ -30,9 +30,9 @@ fn coning(half_angle_deg: f64, hz: f64) -> Motion {
         .turning(move |t| rate_dps(half_angle_rad, rate_rps, t))
 }
 
-/// Checks the world itself: its integrated attitude is the closed form of the motion.
+/// Checks the simulation itself: its integrated attitude is the closed form of the motion.
 #[test]
-fn the_made_up_world_follows_the_closed_form() {
+fn the_simulated_world_follows_the_closed_form() {
     for (half_angle_deg, hz) in [(2.0, 10.0), (30.0, 1.0)] {
         let mut world = crate::world::World::new(coning(half_angle_deg, hz), Sensors::ideal());
         world.advance_to(60_000_000);
@@ -42,12 +42,12 @@ fn the_made_up_world_follows_the_closed_form() {
     }
 }
 
-/// Without a magnetometer nothing but the gyro holds the heading. Added up as plain vectors the mean rates of 5 ms
-/// intervals lose ½ a² Ω (ΩT)²/6 (a: half angle, Ω: rate of the cone): 0.3° to 2° in a minute here. With the cross
-/// product of neighbouring intervals (Bortz 1971, Savage 1998) a tenth of a degree is held. The horizon is half a sample's
-/// turn off at first, up to 0.4°.
+/// Without a magnetometer only the gyro holds the heading. Adding the mean rates of 5 ms intervals as vectors loses ½
+/// a² Ω (ΩT)²/6 (a: half angle, Ω: rate of the cone), 0.3° to 2° in a minute here. With the cross product of
+/// neighbouring intervals (Bortz 1971, Savage 1998) it is a tenth of a degree. The tilt is off by half a sample's
+/// rotation at first, up to 0.4°.
 #[test]
-fn coning_turns_nothing() {
+fn coning_does_not_rotate_the_estimate() {
     let mut figures = Figures::default();
     for (half_angle_deg, hz) in [
         (2.0, 5.0),

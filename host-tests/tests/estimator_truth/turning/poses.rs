@@ -1,4 +1,4 @@
-//! Poses that break angles: vertical, upside down, half turns; and waking up in any of them.
+//! Poses that are singular for angles: vertical, upside down, half turns; and power-on in any of them.
 
 use robot_test_support::{Rotation, Vector};
 use std::f64::consts::TAU;
@@ -10,7 +10,7 @@ use crate::{
     sensors::Sensors,
 };
 
-/// Every pose the robot may wake up in: nine tilts by six headings, west among them, where the angle wraps.
+/// Poses at power-on: nine tilts by six headings. One of them is west, where the angle wraps.
 fn poses() -> impl Iterator<Item = Rotation> {
     const TILTS_DEG: [Vector; 9] = [
         [0.0, 0.0, 0.0],
@@ -31,7 +31,7 @@ fn poses() -> impl Iterator<Item = Rotation> {
     })
 }
 
-/// From the first valid estimate on: a hundred samples average the noise to 0.01° of inclination, 25 field samples of
+/// Checked from the first valid estimate on. A hundred samples average the noise to 0.01° of tilt, 25 field samples of
 /// 0.3 µT against 19 µT to 0.2° of heading.
 #[test]
 fn every_pose_is_known_once_it_is_valid() {
@@ -58,9 +58,9 @@ fn every_pose_is_known_once_it_is_valid() {
     figures.done();
 }
 
-/// To and fro by ±130° about y: through nose down and nose up and over, where roll and yaw jump by half a turn.
+/// Back and forth by ±130° about y: nose down, nose up and beyond, where roll and yaw jump by half a turn.
 #[test]
-fn through_the_vertical_and_back() {
+fn the_vertical_is_no_singularity() {
     let rate_dps = |t: f64| {
         [
             0.0,
@@ -82,9 +82,9 @@ fn through_the_vertical_and_back() {
     figures.done();
 }
 
-/// Half turns in half a second about each axis, three seconds of rest between them.
+/// Half turns within half a second about each axis, with three seconds of rest between.
 #[test]
-fn half_turns() {
+fn half_turns_are_followed() {
     let mut figures = Figures::default();
     for axis in 0..3 {
         for sign in [1.0, -1.0] {

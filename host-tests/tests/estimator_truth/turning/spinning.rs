@@ -1,4 +1,4 @@
-//! Round and round, past ±π, up to the end of the gyro's range.
+//! Continuous rotation past ±π, up to the end of the gyro's range.
 
 use robot_test_support::{Rotation, Vector, scale};
 
@@ -23,9 +23,9 @@ fn spin(axis: Vector, speed_dps: f64) -> Motion {
         .turning(move |t| scale(axis, speed_dps * window(t, 2.0, 1e9, 1.0)))
 }
 
-/// The mean acceleration of 5 ms belongs to the middle of the interval, the field to the middle of its measurement: at
-/// 1,900 °/s that is 4.8° and 7.6° away from the attitude at the tick. Who minds it stays within half a degree. A spin
-/// of two minutes is up to 228,000°: single precision may lose 2e-6 of it.
+/// The mean force of 5 ms belongs to the middle of its interval, the field to the middle of its measurement. At 1,900
+/// °/s that is 4.8° and 7.6° from the attitude of the tick. A filter that accounts for it stays within half a degree.
+/// Two minutes of rotation are up to 228,000°, of which single precision may lose 2e-6.
 #[test]
 fn spinning_stays_on_the_truth() {
     let mut figures = Figures::default();
@@ -48,7 +48,7 @@ fn spinning_stays_on_the_truth() {
 }
 
 #[test]
-fn spinning_without_magnetometer_loses_no_heading() {
+fn spinning_without_magnetometer_keeps_the_heading() {
     let mut figures = Figures::default();
     for (name, axis) in AXES {
         for speed_dps in [-200.0, 1_900.0] {
@@ -71,15 +71,15 @@ fn spinning_without_magnetometer_loses_no_heading() {
     figures.done();
 }
 
-/// Between samples the attitude is carried on with the last rate: at a steady rate no tick is off.
+/// Between samples the attitude is extrapolated with the last rate. At a steady rate no tick is off.
 #[test]
-fn a_steady_turn_shows_no_staircase() {
+fn an_even_rotation_shows_no_steps() {
     let mut figures = Figures::default();
     for (name, axis) in AXES {
         let mut run = Run::new(spin(axis, 1_000.0), Sensors::ideal());
         run.skip(10.0);
         let worst = run.worst(12.0);
-        // A tick turns by 1°: a held output would jump by 1° and then by 4° the other way.
+        // The robot rotates by 1° a tick. An output without extrapolation would jump by 1° and then by 4° back.
         figures.at_most(
             &format!("steady turn about {name}, jump in °"),
             worst.jump_deg,
