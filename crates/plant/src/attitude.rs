@@ -35,7 +35,7 @@ mod tests {
     }
 
     #[test]
-    fn heading_and_inclination_are_told_apart() {
+    fn heading_and_inclination_are_separate() {
         let reference = about(2, 70.0);
         close(
             error_deg(about(2, 73.0), reference).unwrap_or_default(),

@@ -25,20 +25,20 @@ use transaction::Transaction;
 
 /// Fastest serial clock of both dies.
 const MAX_SCK_HZ: u32 = 10_000_000;
-/// Beyond it, but DJI's own programs for this board run so, and work.
+/// Above the limit, but DJI's own programs for this board use it and work.
 const SCK_SEEN_TO_WORK_HZ: u32 = 10_500_000;
 
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct ImuFaults {
-    /// No supply: nothing answers, and all settings are lost.
+    /// No supply: neither die answers, and all settings are lost.
     pub gone: bool,
     /// The data registers never change again.
     pub frozen: bool,
-    /// Every new sample is an end of the range.
+    /// Every new sample is at an end of the range.
     pub extreme: bool,
     /// The gyro's FIFO slips by one axis (ArduPilot pull request 20434).
     pub fifo_shift: bool,
-    /// Now and then a gyro sample is −32768 on all axes (ArduPilot issues 22710 and 25178).
+    /// Some gyro samples are −32768 on all axes (ArduPilot issues 22710 and 25178).
     pub gyro_spikes: bool,
 }
 
@@ -88,7 +88,7 @@ impl Bmi088 {
         self.thermal.temperature_c()
     }
 
-    /// Of writes that came too soon after another.
+    /// Complaints of writes that came too soon after another.
     pub(crate) fn take_complaints(&mut self) -> impl Iterator<Item = Complaint> {
         let dies = [
             self.accel.take_write_complaint(),
@@ -152,7 +152,7 @@ impl Bmi088 {
         }
     }
 
-    /// Why the selected dies may not understand the master, if so.
+    /// The misuse by which the selected dies may not understand the master, if there is one.
     pub(crate) fn misuse(&self, sck_hz: u32, mode: u8) -> Option<Complaint> {
         let too_fast = || format!("BMI088: SCK at {sck_hz} Hz, at most {MAX_SCK_HZ} Hz");
         if self.accel_wire.selected && self.gyro_wire.selected {
@@ -192,7 +192,7 @@ impl Bmi088 {
     }
 }
 
-/// Three axes at an end of the range each.
+/// Three axes, each at a random end of the range.
 fn extremes(random: &mut Random) -> [i16; 3] {
     const ENDS: [i16; 3] = [i16::MAX, i16::MIN, -i16::MAX];
     std::array::from_fn(|_| ENDS[random.below(3) as usize])

@@ -70,7 +70,7 @@ impl Body {
         }
     }
 
-    /// What a sensor in the body feels.
+    /// Specific force and angular rate at the IMU, in body axes.
     pub(crate) fn motion(&self) -> Motion {
         match self {
             Self::Stand(stand) => stand.motion(),

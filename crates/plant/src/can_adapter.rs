@@ -1,4 +1,4 @@
-//! A PC's CAN adapter: the one node whose frames come from outside the simulation.
+//! The CAN adapter of a PC, whose frames come from outside of the simulation.
 
 use std::collections::VecDeque;
 
@@ -12,15 +12,16 @@ const INBOX: usize = 1_024;
 /// How the adapter takes part in its bus.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AdapterMode {
+    /// Not on the bus.
     #[default]
     Off,
-    /// Hears what others acknowledge.
+    /// Receives what others acknowledge.
     ListenOnly,
-    /// Sends, hears and acknowledges.
+    /// Sends, receives and acknowledges.
     Active,
 }
 
-/// Both queues are bounded: a PC too slow for the bus loses frames, the bus waits for nobody.
+/// The adapter with its two queues. Both are bounded: a PC that is too slow for the bus loses frames.
 #[derive(Debug, Default)]
 pub struct CanAdapter {
     mode: AdapterMode,
@@ -31,18 +32,19 @@ pub struct CanAdapter {
 }
 
 impl CanAdapter {
+    /// How it takes part in its bus.
     pub fn mode(&self) -> AdapterMode {
         self.mode
     }
 
-    /// Frames of the mode before are forgotten.
+    /// Changes the mode and drops all frames that wait.
     pub fn set_mode(&mut self, mode: AdapterMode) {
         self.mode = mode;
         self.outbox.clear();
         self.inbox.clear();
     }
 
-    /// False where the frame cannot be sent: not active, or too many wait already.
+    /// Queues a frame for the bus. False if it cannot be sent: the adapter is not active, or too many frames wait.
     pub fn send(&mut self, frame: CanFrame) -> bool {
         let taken = self.mode == AdapterMode::Active && self.outbox.len() < OUTBOX;
         if taken {
@@ -51,7 +53,7 @@ impl CanAdapter {
         taken
     }
 
-    /// The next frame heard, with the end of its transmission.
+    /// The next frame received, with the end of its transmission.
     pub fn take(&mut self) -> Option<(Ps, CanFrame)> {
         self.inbox.pop_front()
     }
@@ -61,7 +63,7 @@ impl CanAdapter {
         self.sent
     }
 
-    /// Frames heard that nobody took in time.
+    /// Frames received that nobody took in time.
     pub fn lost(&self) -> u64 {
         self.lost
     }
@@ -75,7 +77,7 @@ impl CanAdapter {
         self.sent += 1;
     }
 
-    pub(crate) fn hear(&mut self, frame: &CanFrame, now: Ps) {
+    pub(crate) fn receive(&mut self, frame: &CanFrame, now: Ps) {
         if self.inbox.len() < INBOX {
             self.inbox.push_back((now, *frame));
         } else {
@@ -116,7 +118,7 @@ mod tests {
         let mut adapter = CanAdapter::default();
         adapter.set_mode(AdapterMode::ListenOnly);
         for id in 0..INBOX as u32 + 3 {
-            adapter.hear(&frame(id), 7);
+            adapter.receive(&frame(id), 7);
         }
         assert_eq!(adapter.lost(), 3);
         assert_eq!(adapter.take(), Some((7, frame(0))));

@@ -1,23 +1,27 @@
-//! What a device or chip was asked to do beyond what its makers promise.
+//! Complaints of a device or chip that was used outside of its maker's limits.
 
-/// What such a demand comes to on a real board.
+/// What the misuse leads to on a real board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Severity {
-    /// It does not work, or works on some specimens only: ignored, lost, garbled, undefined, or beyond a limit that
+    /// It fails on all or on some specimens: the access is ignored, lost, garbled or undefined, or a limit is exceeded that
     /// nobody is known to exceed with success.
     Fails,
-    /// Outside what the datasheet promises or others recommend, but boards that do it are known to run, or only
-    /// accuracy suffers.
+    /// The datasheet does not promise it, or others advise against it, but boards that do it are known to run, or it costs
+    /// accuracy only.
     Suspicious,
 }
 
+/// One misuse of a device.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Complaint {
+    /// What it leads to.
     pub severity: Severity,
+    /// The device, what was done, and the limit.
     pub text: String,
 }
 
 impl Complaint {
+    /// A misuse that fails on a real board.
     pub fn fails(text: impl Into<String>) -> Self {
         Self {
             severity: Severity::Fails,
@@ -25,6 +29,7 @@ impl Complaint {
         }
     }
 
+    /// A misuse that may work on a real board.
     pub fn suspicious(text: impl Into<String>) -> Self {
         Self {
             severity: Severity::Suspicious,

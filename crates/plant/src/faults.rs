@@ -1,4 +1,4 @@
-//! Everything that can go wrong outside the chip, by name.
+//! The faults outside of the chip, by name.
 
 /// A fault that a scenario can start and end.
 #[derive(Clone, Copy, Debug)]
@@ -87,7 +87,7 @@ faults! {
     FloorSlippery "floor-slippery" "floor like wet ice: the wheels spin when they push, and slide when they brake (plant rolling)",
 }
 
-/// Which faults are there now.
+/// The faults that are in force.
 #[derive(Clone, Debug)]
 pub(crate) struct ActiveFaults {
     active: [bool; ALL.len()],
@@ -111,14 +111,14 @@ impl ActiveFaults {
     }
 }
 
-/// What can befall one motor.
+/// The faults of one motor.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MotorFaults {
     pub gone: Fault,
     pub frozen: Fault,
     pub hot: Fault,
     pub wrong_id: Fault,
-    /// Of joints only.
+    /// Fault of the driver; joints only.
     pub fault: Option<Fault>,
 }
 
@@ -152,7 +152,7 @@ impl MotorFaults {
     }
 }
 
-/// Share of the radio's frames each loss takes.
+/// Share of the radio's frames that each fault loses.
 pub(crate) const RADIO_LOSSES: [(Fault, f64); 9] = [
     (Fault::SbusLoss10, 0.1),
     (Fault::SbusLoss20, 0.2),

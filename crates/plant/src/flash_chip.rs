@@ -1,7 +1,7 @@
 //! The flash cells of the STM32F407 (RM0090 3.4–3.6): what programming, erasing and a power cut leave in them.
 //!
-//! Times, keys and registers are the flash controller's; here every operation is done at once. Addresses are the
-//! processor's. The parameter store's tests meet the cells through `embedded_storage`'s `NorFlash`.
+//! Times, keys and registers belong to the flash controller, which is not here: every operation is done at once. Addresses
+//! are those of the processor. The tests of the parameter store reach the cells through `embedded_storage`'s `NorFlash`.
 
 mod cells;
 mod defects;
@@ -26,8 +26,7 @@ pub use error::FlashError;
 pub use power::Phase;
 pub use sectors::{PARAMETER_SECTORS, sector_range};
 
-/// Contents, wear and defects of sectors 1–3, where the parameters are kept. Everything random in it follows from the
-/// seed.
+/// Contents, wear and defects of sectors 1–3, where the parameters are kept. All random behaviour follows from the seed.
 #[derive(Clone, Debug)]
 pub struct FlashChip {
     cells: Cells,
@@ -39,7 +38,7 @@ pub struct FlashChip {
 }
 
 impl FlashChip {
-    /// Erased, without a defect.
+    /// Erased sectors without a defect.
     pub fn parameters(seed: u64) -> Self {
         Self {
             cells: Cells::blank(PARAMETER_ADDRESSES.len()),
@@ -51,19 +50,25 @@ impl FlashChip {
         }
     }
 
-    /// Draws from here on as a chip made with `seed` would.
+    /// Restarts the random numbers, as in a chip made with `seed`.
     pub fn reseed(&mut self, seed: u64) {
         self.random = Random::new(seed, Stream::Flash);
     }
 
-    /// Puts `bytes` there as if erased and programmed well before. Counts as no step and no wear.
+    /// Puts `bytes` at `address` as if they had been programmed long ago. This is no step and wears nothing.
+    ///
+    /// # Errors
+    /// The range is not in sectors 1–3.
     pub fn set_contents(&mut self, address: u32, bytes: &[u8]) -> Result<(), FlashError> {
         let range = self.range(address, bytes.len())?;
         self.cells.set(range, bytes);
         Ok(())
     }
 
-    /// What the cells read as this time: an unstable bit is drawn anew with every call.
+    /// Reads the cells. An unstable bit reads differently from call to call.
+    ///
+    /// # Errors
+    /// The chip has no power, or the range is not in sectors 1–3.
     pub fn read(&mut self, address: u32, bytes: &mut [u8]) -> Result<(), FlashError> {
         self.power.check()?;
         let range = self.range(address, bytes.len())?;
@@ -72,7 +77,10 @@ impl FlashChip {
         Ok(())
     }
 
-    /// Programs a word: bits go from 1 to 0 only. The chip gives no error for a 0 that should become 1.
+    /// Programs a word: bits go from 1 to 0 only. The chip reports no error for a 0 that should become 1.
+    ///
+    /// # Errors
+    /// The chip has no power or loses it, or the address is no word of sectors 1–3.
     pub fn program_word(&mut self, address: u32, value: u32) -> Result<(), FlashError> {
         if !address.is_multiple_of(WORD) {
             return Err(FlashError::NotAligned(address));
@@ -88,7 +96,10 @@ impl FlashChip {
         outcome.result()
     }
 
-    /// Erases sector 1, 2 or 3, as far as its defects let it.
+    /// Erases sector 1, 2 or 3, as far as its defects allow.
+    ///
+    /// # Errors
+    /// The chip has no power or loses it, or it is another sector.
     pub fn erase(&mut self, sector: u8) -> Result<(), FlashError> {
         let addresses = sector_range(sector)
             .filter(|_| PARAMETER_SECTORS.contains(&sector))
@@ -114,51 +125,52 @@ impl FlashChip {
         outcome.result()
     }
 
-    /// Erases of the sector that began, torn ones too: each of them wears it.
+    /// Erases of the sector that were begun. A torn one counts too, since it wears the sector.
     pub fn erases(&self, sector: u8) -> u32 {
         self.erases.get(sector).unwrap_or_default()
     }
 
-    /// Words whose programming began.
+    /// Words whose programming was begun.
     pub fn programs(&self) -> u64 {
         self.programs
     }
 
-    /// Programs and erases begun since the chip was made: the next one is the step of this number.
+    /// Programs and erases begun since the chip was made, which is also the number of the next step.
     pub fn steps(&self) -> u64 {
         self.power.steps()
     }
 
-    /// Takes the power away at the step of that number, counted as [`Self::steps`] does.
+    /// Cuts the power at the step of that number, as [`Self::steps`] counts.
     pub fn cut_at(&mut self, step: u64, phase: Phase) {
         self.power.cut_at(step, phase);
     }
 
+    /// False from a power cut until [`Self::power_up`].
     pub fn is_powered(&self) -> bool {
         self.power.check().is_ok()
     }
 
-    /// Gives the power back and forgets a cut that was still to come.
+    /// Restores the power and cancels a cut that has not come yet.
     pub fn power_up(&mut self) {
         self.power = self.power.restored();
     }
 
-    /// The cell is stuck from now on, whatever is written.
+    /// Sticks a cell: from now on it reads the same, whatever is written.
     pub fn stick(&mut self, bit: StuckBit) {
         self.defects.stick(bit);
     }
 
-    /// No bit is stuck any more.
+    /// Frees all stuck cells.
     pub fn mend_bits(&mut self) {
         self.defects.mend_bits();
     }
 
-    /// Erases of the sector fail that way from now on, or work again.
+    /// Makes erases of the sector fail in this way, or work again.
     pub fn set_erase_fault(&mut self, sector: u8, fault: Option<EraseFault>) {
         self.defects.set_erase_fault(sector, fault);
     }
 
-    /// Place of `length` bytes at `address` among the cells.
+    /// Indices of `length` cells from `address` on.
     fn range(&self, address: u32, length: usize) -> Result<Range<usize>, FlashError> {
         let outside = FlashError::OutOfRange(address);
         let start = address

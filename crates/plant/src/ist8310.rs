@@ -31,7 +31,7 @@ const STAT1_OVERRUN: u8 = 1 << 1;
 const CNTL2_SOFT_RESET: u8 = 1 << 0;
 const CNTL2_DRDY_HIGH: u8 = 1 << 2;
 const CNTL2_DRDY_ENABLED: u8 = 1 << 3;
-/// Drivers wait 50 ms after power or the reset pin; the chip is given most of it.
+/// Drivers wait 50 ms after power-on or the reset pin; the model needs most of it.
 const POWER_ON: Ps = 45 * MS;
 /// The shortest wait a driver is known to get away with (ArduPilot).
 const SOFT_RESET: Ps = 10 * MS;
@@ -39,14 +39,15 @@ const SOFT_RESET: Ps = 10 * MS;
 const LSB_14_BIT_UT: f64 = 0.3;
 const LSB_16_BIT_UT: f64 = 100.0 / 1320.0;
 const RANGE_UT: [f64; 3] = [1_600.0, 1_600.0, 2_500.0];
-/// Noise of one conversion in µT; no source gives it: a fair value for the type, divided by the root of the average.
+/// Noise of one conversion, µT, divided by the root of the number of averages. No source gives it: a usual value for this
+/// kind of sensor.
 const NOISE_UT: f64 = 0.8;
 
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct MagFaults {
-    /// No supply: never acknowledges, settings lost.
+    /// No supply: the chip never acknowledges, and its settings are lost.
     pub gone: bool,
-    /// Some device holds SDA low.
+    /// A device holds SDA low.
     pub bus_held: bool,
 }
 
@@ -78,7 +79,7 @@ enum Transfer {
     Read,
 }
 
-/// Mean of what was felt during one conversion, body axes.
+/// Mean of the field during one conversion, in the sensor's axes.
 #[derive(Clone, Copy, Debug, Default)]
 struct FieldMean {
     sum_ut: [f64; 3],
@@ -93,7 +94,7 @@ impl FieldMean {
         self.steps += 1;
     }
 
-    /// 0 where nothing was felt. Begins anew.
+    /// Takes the mean in µT, 0 without a sample, and starts over.
     fn take_ut(&mut self) -> [f64; 3] {
         let Self { sum_ut, steps } = std::mem::take(self);
         sum_ut.map(|sum| sum / f64::from(steps.max(1)))
@@ -110,14 +111,14 @@ pub(crate) struct Ist8310 {
     transfer: Transfer,
     pointer: u8,
     conversion_done_at: Option<Ps>,
-    felt: FieldMean,
+    field: FieldMean,
     data: [i16; 3],
     data_ready: bool,
     overrun: bool,
 }
 
 impl Ist8310 {
-    /// A recording brings its own noise, so the chip adds none to it.
+    /// The chip adds no noise to a recording, which has its own.
     pub(crate) fn new(seed: u64, source: MotionSource) -> Self {
         Self {
             random: Random::new(seed, Stream::Magnetometer),
@@ -132,7 +133,7 @@ impl Ist8310 {
             transfer: Transfer::Idle,
             pointer: 0,
             conversion_done_at: None,
-            felt: FieldMean::default(),
+            field: FieldMean::default(),
             data: [0; 3],
             data_ready: false,
             overrun: false,
@@ -159,7 +160,7 @@ impl Ist8310 {
         self.transfer = Transfer::Idle;
         self.pointer = 0;
         self.conversion_done_at = None;
-        self.felt = FieldMean::default();
+        self.field = FieldMean::default();
         self.data = [0; 3];
         self.data_ready = false;
         self.overrun = false;
@@ -173,7 +174,7 @@ impl Ist8310 {
         self.faults.bus_held
     }
 
-    /// Level of DRDY: at rest, and while switched off, it is inactive.
+    /// Level of DRDY, which is inactive at rest and while it is switched off.
     pub(crate) fn drdy_pin(&self) -> bool {
         let enabled = self.registers.cntl2 & CNTL2_DRDY_ENABLED != 0;
         let active_high = self.registers.cntl2 & CNTL2_DRDY_HIGH != 0;
@@ -189,23 +190,23 @@ impl Ist8310 {
         self.conversion_done_at.unwrap_or(Ps::MAX)
     }
 
-    /// True while the field counts: a conversion averages over all of its time.
+    /// True during a conversion, which averages the field over all of its time.
     pub(crate) fn is_converting(&self, now: Ps) -> bool {
         let done_at = self.conversion_done_at;
         done_at.is_some_and(|done_at| now + self.conversion_time() > done_at)
     }
 
-    /// The field of one step of the world, body axes (µT), while a conversion is under way.
-    pub(crate) fn feel(&mut self, field_ut: [f64; 3]) {
-        self.felt.add(field_ut);
+    /// Adds the field of one step, in the sensor's axes, to the conversion under way.
+    pub(crate) fn sample_field(&mut self, field_ut: [f64; 3]) {
+        self.field.add(field_ut);
     }
 
-    /// Ends the conversion due.
+    /// Ends the conversion that is due.
     pub(crate) fn convert(&mut self) {
         let Some(done_at) = self.conversion_done_at.take() else {
             return;
         };
-        let field_ut = self.felt.take_ut();
+        let field_ut = self.field.take_ut();
         // The chip's own axes are left-handed: y points the other way.
         let chip_ut = [field_ut[0], -field_ut[1], field_ut[2]];
         let average = |code: u8| f64::from(1 << code.min(4));
@@ -227,7 +228,7 @@ impl Ist8310 {
         }
     }
 
-    /// Why the chip cannot understand the master, if so.
+    /// The misuse by which the chip cannot understand the master, if there is one.
     pub(crate) fn misuse(&self, addr7: u8, scl_hz: u32) -> Option<Complaint> {
         (addr7 == ADDRESS && scl_hz > MAX_SCL_HZ).then(|| {
             Complaint::fails(format!(
@@ -308,7 +309,7 @@ impl Ist8310 {
         match register {
             register::CNTL1 => {
                 self.registers.cntl1 = value & 0x0F;
-                self.felt = FieldMean::default();
+                self.field = FieldMean::default();
                 self.conversion_done_at = match self.registers.cntl1 {
                     0 => None,
                     _ => Some(now + self.conversion_time()),
@@ -386,7 +387,7 @@ mod tests {
         assert!(chip.is_converting(start + 250 * US) && chip.is_converting(start + 6 * MS));
         assert_eq!(read::<1>(&mut chip, 0x02, start + 5 * MS)[0] & 1, 0);
         for field_ut in [[20.0, 60.0, -90.0], [40.0, 60.0, -90.0]] {
-            chip.feel(field_ut);
+            chip.sample_field(field_ut);
         }
         chip.convert();
         assert_eq!(read::<1>(&mut chip, 0x02, start + 6 * MS)[0] & 1, 1);

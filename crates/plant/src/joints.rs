@@ -1,7 +1,7 @@
 //! The four leg joints' drives: left front, left rear, right front, right rear.
 //!
-//! Drives think in their own sense of rotation; a leg's joint angle is `DIRECTION` times the shaft's, since the right
-//! side is mirrored.
+//! A drive counts in its own sense of rotation. The joint angle of a leg is `DIRECTION` times the angle of the shaft, since
+//! the right side is mirrored.
 
 mod actuator;
 mod dm4310;
@@ -19,10 +19,10 @@ use mit_frame::Feedback;
 use rs00::Rs00;
 
 pub(crate) const JOINTS: usize = 4;
-/// Joint angle against shaft angle.
+/// Joint angle per shaft angle.
 const DIRECTION: [f64; JOINTS] = [1.0, 1.0, -1.0, -1.0];
 
-/// Which motor drives every joint.
+/// The motor that drives every joint.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum JointKind {
     /// Damiao DM4310.
@@ -32,7 +32,7 @@ pub enum JointKind {
     Rs00,
 }
 
-/// What a wire event tells of.
+/// What wire events report of a drive.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct WireState {
     pub enabled: bool,
@@ -45,7 +45,8 @@ pub(crate) struct Joint {
     direction: f64,
 }
 
-/// ESC_ID or motor identifier 1 to 4; DM4310 reply under 0x11 to 0x14, RS00 under host identifiers set to 0xF1 to 0xF4.
+/// Drives with ESC_ID or motor identifier 1 to 4. DM4310 reply under 0x11 to 0x14, RS00 under the host identifiers 0xF1 to
+/// 0xF4.
 pub(crate) fn drives(kind: JointKind, rs00_timeout: Ps) -> [Joint; JOINTS] {
     std::array::from_fn(|joint| {
         let id = joint as u32 + 1;
@@ -113,7 +114,7 @@ impl Joint {
         self.drive.replies().on_the_wire()
     }
 
-    /// On the joint, before the gear's friction.
+    /// Torque on the joint, before the friction of the gear.
     pub(crate) fn torque_nm(&self) -> f64 {
         self.direction * self.drive.actuator().torque_nm()
     }

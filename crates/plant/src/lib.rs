@@ -1,6 +1,9 @@
 //! The world around the C board: robot, motors, sensors and radio, each speaking its real wire format.
 //!
-//! Of the chip only the cells of its flash are here, which outlive it without power. Nothing here uses the firmware's codecs: a codec must not be tested against itself.
+//! The chip itself is not here, except for its flash cells, which keep their contents without power. Nothing here uses the
+//! firmware's codecs: a codec must not be tested against itself.
+
+#![deny(missing_docs)]
 
 pub mod attitude;
 pub mod can_adapter;

@@ -1,4 +1,4 @@
-//! How a sensor was screwed on.
+//! How a sensor sits in what carries it.
 
 use std::str::FromStr;
 
@@ -8,6 +8,7 @@ pub struct Mounting {
     axes: [[f64; 3]; 3],
 }
 
+/// A text that names no [`Mounting`].
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "`{0}` is no mounting; write where the axes x and z point, at right angles, such as `x-forward-z-up` (forward, \
@@ -40,8 +41,8 @@ impl FromStr for Mounting {
 }
 
 impl Mounting {
-    /// What a vector of the carrier is along the sensor's own axes.
-    pub(crate) fn felt(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+    /// A vector in the carrier's axes, seen in the sensor's own axes.
+    pub(crate) fn to_sensor(self, [x, y, z]: [f64; 3]) -> [f64; 3] {
         self.axes
             .map(|axis| axis[0] * x + axis[1] * y + axis[2] * z)
     }
@@ -67,26 +68,32 @@ fn cross([ax, ay, az]: [f64; 3], [bx, by, bz]: [f64; 3]) -> [f64; 3] {
 mod tests {
     use super::*;
 
-    fn felt(name: &str, carrier: [f64; 3]) -> [f64; 3] {
+    fn measured(name: &str, carrier: [f64; 3]) -> [f64; 3] {
         let mounting: Mounting = name.parse().expect("a mounting");
-        // Without the sign of a zero.
-        mounting.felt(carrier).map(|axis| axis + 0.0)
+        // Adding 0.0 takes the sign off a zero.
+        mounting.to_sensor(carrier).map(|axis| axis + 0.0)
     }
 
     #[test]
-    fn a_sensor_feels_along_its_own_axes() {
+    fn a_sensor_measures_along_its_own_axes() {
         let nose_left_top = [1.0, 2.0, 3.0];
-        assert_eq!(felt("x-forward-z-up", nose_left_top), nose_left_top);
-        assert_eq!(felt("x-forward-z-down", nose_left_top), [1.0, -2.0, -3.0]);
-        assert_eq!(felt("x-left-z-up", nose_left_top), [2.0, -1.0, 3.0]);
-        assert_eq!(felt("x-down-z-forward", nose_left_top), [-3.0, 2.0, 1.0]);
-        assert_eq!(felt("x-up-z-left", nose_left_top), [3.0, 1.0, 2.0]);
+        assert_eq!(measured("x-forward-z-up", nose_left_top), nose_left_top);
+        assert_eq!(
+            measured("x-forward-z-down", nose_left_top),
+            [1.0, -2.0, -3.0]
+        );
+        assert_eq!(measured("x-left-z-up", nose_left_top), [2.0, -1.0, 3.0]);
+        assert_eq!(
+            measured("x-down-z-forward", nose_left_top),
+            [-3.0, 2.0, 1.0]
+        );
+        assert_eq!(measured("x-up-z-left", nose_left_top), [3.0, 1.0, 2.0]);
         let default = Mounting::default();
         assert_eq!("x-forward-z-up".parse(), Ok(default));
     }
 
     #[test]
-    fn what_is_no_mounting_is_named() {
+    fn the_error_names_a_text_that_is_no_mounting() {
         for name in [
             "x-forward-z-backward",
             "x-up-z-up",

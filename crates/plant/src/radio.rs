@@ -34,11 +34,11 @@ enum Loss {
     Missing,
 }
 
-/// Sends one frame a period from power-on, with the sticks as they stand at the frame's first bit.
+/// Sends one frame per period from power-on, with the sticks as they are at the first bit of the frame.
 pub(crate) struct Receiver {
     kind: RadioKind,
     pilot: Pilot,
-    /// As in the last packet the receiver got.
+    /// Sticks and switches in the last packet that the receiver got.
     received: Pilot,
     next_frame: Ps,
     on_the_line: VecDeque<UartChar>,
@@ -71,7 +71,7 @@ impl Receiver {
         self.next_frame
     }
 
-    /// Start of the first character after `now`, or of the next frame.
+    /// Start of the first character after `now`, or else of the next frame.
     pub(crate) fn next_event(&self, now: Ps) -> Ps {
         self.on_the_line
             .iter()
@@ -81,7 +81,7 @@ impl Receiver {
             .min(self.next_frame)
     }
 
-    /// Puts the frame due at `next_frame` on the line.
+    /// Puts the frame that is due at `next_frame` on the line.
     pub(crate) fn start_frame(&mut self, faults: RadioFaults) {
         let start = self.next_frame;
         let lost = self.lose(faults);
@@ -97,7 +97,7 @@ impl Receiver {
         if faults.silent || lost == Some(Loss::Missing) {
             return;
         }
-        // What nobody fetched within two periods is gone: a line has no memory.
+        // A character that nobody took within two periods is gone: a line has no memory.
         self.on_the_line
             .retain(|character| character.start + 2 * period > start);
         let character_time = character_time(format);
@@ -118,7 +118,7 @@ impl Receiver {
         self.on_the_line.extend(characters);
     }
 
-    /// Half of the frames lost are flagged by the receiver, half never leave it.
+    /// Decides whether this frame is lost. The receiver flags half of the lost frames and does not send the other half.
     fn lose(&mut self, faults: RadioFaults) -> Option<Loss> {
         if faults.loss == 0.0 || self.losses.unit() >= faults.loss {
             None
@@ -129,7 +129,7 @@ impl Receiver {
         }
     }
 
-    /// A receiver without a new packet holds the sticks of the last one.
+    /// The bytes of the frame. A receiver without a new packet repeats the sticks of the last one.
     fn frame(&mut self, faults: RadioFaults) -> Option<Vec<u8>> {
         if !(faults.failsafe || faults.frame_lost) {
             self.received = self.pilot;
@@ -140,7 +140,7 @@ impl Receiver {
         }
     }
 
-    /// Cuts off every character that has not started yet.
+    /// Drops every character that has not started yet.
     pub(crate) fn unplug(&mut self, now: Ps) {
         self.on_the_line.retain(|character| character.start <= now);
     }
@@ -153,7 +153,7 @@ impl Receiver {
     }
 }
 
-/// Start bit, data, parity, stop bits.
+/// Duration of one character: start bit, data, parity and stop bits.
 fn character_time(format: LineFormat) -> Ps {
     let parity = match format.parity {
         crate::wire::Parity::None => 0,

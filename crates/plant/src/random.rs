@@ -1,10 +1,10 @@
-//! Seeded randomness: one independent stream a device, so that adding a draw to one leaves the others as they were.
+//! Seeded random numbers. Each device has a stream of its own, so that one more draw leaves the other devices as they were.
 
 use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 
-/// Who draws; the discriminant is the generator's stream.
+/// The device that draws. The discriminant is the generator's stream.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Stream {
     Accel = 1,

@@ -1,6 +1,6 @@
 //! A recorded trial played through the IMU and magnetometer models.
 //!
-//! The robot stands still while the record plays: the record moves its sensors only.
+//! The robot stands still while the record plays: only its sensors are moved.
 
 mod error;
 mod trial;
@@ -15,15 +15,19 @@ use crate::{
 pub use error::{TrialDefect, TrialError};
 pub use trial::{Row, Trial};
 
-/// Room for boot and sensor start-up before the record begins. Until then its first moments, which are all at rest,
-/// play backwards: real noise, and no jump where the record starts.
+/// Time for boot and sensor start-up before the record begins. Until then the first moments of the record, which are all at
+/// rest, play backwards: this gives real noise and no jump where the record starts.
 pub const LEAD_IN: Ps = 1_000 * MS;
-/// How long a run lasts that plays all of the trial `header` describes: lead-in and every row.
+
+/// Length of a run that plays the whole trial that `header` describes: the lead-in and every row.
+///
+/// # Errors
+/// The header cannot be read.
 pub fn run_length(header: &Path) -> Result<Ps, TrialError> {
     Ok(LEAD_IN + trial::duration(header)?)
 }
 
-/// What the recorder's sensors showed moves the board's: the delays of both add up.
+/// A trial as the motion of the board's sensors. The delays of the recorder's sensors and of the board's add up.
 pub(crate) struct Playback {
     trial: Trial,
 }
@@ -35,7 +39,7 @@ impl Playback {
         Ok(Self { trial })
     }
 
-    /// Time in the record in s, negative in the lead-in. Row 0 ends at 0.
+    /// Time in the record in s. It is negative in the lead-in, and row 0 ends at 0.
     pub(crate) fn time_s(&self, now: Ps) -> f64 {
         to_seconds(now) - to_seconds(LEAD_IN)
     }
@@ -61,7 +65,7 @@ impl Playback {
         self.row(now).field_ut
     }
 
-    /// True in the movement phase, which is the part that is scored.
+    /// True in the movement phase, which is the part that counts for the score.
     pub(crate) fn moving(&self, now: Ps) -> bool {
         let since = now.checked_sub(LEAD_IN);
         since.is_some_and(|since| self.trial.row(self.trial.index_at(since)).moving)

@@ -2,10 +2,11 @@
 
 /// Six cells, half charged.
 const OPEN_CIRCUIT_V: f64 = 24.0;
-/// 3.4 V and 3.1 V a cell.
+/// 3.4 V per cell.
 const LOW_V: f64 = 20.5;
+/// 3.1 V per cell.
 const EMPTY_V: f64 = 18.5;
-/// Pack and leads; assumed.
+/// Resistance of pack and leads; assumed.
 const RESISTANCE_OHM: f64 = 0.05;
 /// 200 kΩ over 22 kΩ (docs/hardware.md#board-devices).
 const DIVIDER: f64 = 22.0 / 222.0;
@@ -37,7 +38,7 @@ impl Battery {
         self.charge = charge;
     }
 
-    /// Sags under the mechanical power of the motors, W (negative while they brake).
+    /// Lets the voltage sag under the mechanical power of the motors, W, negative while they brake.
     pub(crate) fn load(&mut self, power_w: f64) {
         let open_v = match self.charge {
             Charge::Half => OPEN_CIRCUIT_V,
@@ -51,7 +52,7 @@ impl Battery {
         self.terminal_v
     }
 
-    /// At PF10.
+    /// Voltage at PF10.
     pub(crate) fn adc_volts(&self) -> f64 {
         self.terminal_v * DIVIDER
     }

@@ -1,4 +1,4 @@
-//! What crosses a wire between the board and a device.
+//! What crosses a wire between the board and a device: CAN frames, UART characters, chip selects.
 
 use crate::time::Ps;
 
@@ -7,12 +7,13 @@ use crate::time::Ps;
 pub struct CanFrame {
     /// 11 bits, or 29 where `extended`.
     pub id: u32,
+    /// The identifier has 29 bits.
     pub extended: bool,
-    /// Asks for the data (RTR) instead of carrying them.
+    /// A remote frame (RTR): it asks for data and carries none.
     pub remote: bool,
     /// 0 to 8.
     pub dlc: u8,
-    /// The first `dlc` bytes; none of a remote frame reach the wire.
+    /// The first `dlc` bytes count. A remote frame sends none of them.
     pub data: [u8; 8],
 }
 
@@ -29,18 +30,25 @@ impl CanFrame {
     }
 }
 
+/// The parity bit of a UART character.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parity {
+    /// No parity bit.
     None,
+    /// The ones of data and parity bit are even in number.
     Even,
+    /// The ones of data and parity bit are odd in number.
     Odd,
 }
 
-/// How a UART transmitter shapes a character (polarity as it arrives at the MCU pin).
+/// How a UART transmitter shapes a character. The polarity is that of the MCU's pin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LineFormat {
+    /// Bits per second.
     pub baud: u32,
+    /// Data bits, without parity.
     pub data_bits: u8,
+    /// The bit after the data bits.
     pub parity: Parity,
     /// 1 or 2.
     pub stop_bits: u8,
@@ -49,8 +57,11 @@ pub struct LineFormat {
 /// One character on a UART line, from the falling edge of its start bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UartChar {
+    /// Falling edge of the start bit.
     pub start: Ps,
+    /// The data bits.
     pub byte: u8,
+    /// How it was sent, which a receiver set up otherwise gets wrong.
     pub format: LineFormat,
 }
 

@@ -34,21 +34,26 @@ pub use crate::{
     wire::{CanBusId, SpiSelect},
 };
 
+/// What stands around the board.
 #[derive(Clone, Debug, Default)]
 pub struct WorldConfig {
+    /// Body and wheels.
     pub plant: PlantKind,
+    /// The radio receiver.
     pub radio: RadioKind,
+    /// The leg joints' motors.
     pub joints: JointKind,
-    /// What somebody has set as the RS00's CAN time-out; 0 = off, as shipped.
+    /// CAN time-out that somebody has set in the RS00 joints; 0 is off, as shipped.
     pub rs00_timeout: Ps,
+    /// Seed of all noise: the same seed gives the same world.
     pub seed: u64,
-    /// A recorded trial (`<trial>.json` beside its `.f32.gz`) played through the IMU and magnetometer models.
+    /// A recorded trial (`<trial>.json` beside its `.f32.gz`) that plays through the IMU and magnetometer models.
     pub imu_trial: Option<std::path::PathBuf>,
-    /// Package of the IMU at power-on, °C; unset, the board has been on before and is at 40 °C.
+    /// Temperature of the IMU's package at power-on, °C. Unset, the board was on before and is at 40 °C.
     pub imu_temperature_c: Option<f64>,
-    /// The board in the robot.
+    /// How the board sits in the robot.
     pub mounting: Mounting,
-    /// The magnetometer on the board, as if the IMU's axes were the robot's: nobody has proven how it sits.
+    /// How the magnetometer sits on the board, relative to the IMU's axes, which no public source proves.
     pub mag_mounting: Mounting,
 }
 
@@ -77,18 +82,42 @@ pub struct WireEvent {
 /// What the board drives beside its buses.
 #[derive(Clone, Copy, Debug, Default)]
 struct Indicators {
-    /// Blue, green, red, 0 … 1.
+    /// Brightness of blue, green and red, 0 … 1.
     leds_bgr: [f64; 3],
-    /// 0 = silent.
+    /// Frequency; 0 while silent.
     buzzer_hz: f64,
 }
 
+/// Robot, motors, sensors, radio and PC around one board.
+///
+/// Every method that takes `now` first advances the world to it.
+///
+/// ```
+/// use robot_plant::{
+///     time::{MS, US},
+///     wire::CanFrame,
+///     world::{CanBusId, World, WorldConfig},
+/// };
+///
+/// let mut world = World::new(WorldConfig::default()).expect("no recording to load");
+///
+/// // Half of the full current for the left C620, node 0 of CAN1, in bytes 0 and 1 of 0x200.
+/// let command = CanFrame::with_data(0x200, [0x20, 0, 0, 0, 0, 0, 0, 0]);
+/// world.can_received(CanBusId::Can1, 0, &command, 10 * MS);
+/// world.advance(100 * MS);
+/// assert_eq!(world.signal("can.m3508.0.current_ma"), Some(10_000.0));
+/// assert!(world.signal("truth.wheel.0.speed_rps") > Some(10.0));
+///
+/// // The C620 feeds back once a millisecond under 0x201.
+/// let feedback = world.can_pending(CanBusId::Can1, 0, 100 * MS + 500 * US);
+/// assert_eq!(feedback.map(|frame| frame.id), Some(0x201));
+/// ```
 pub struct World {
     now: Ps,
     next_step: Ps,
     body: Body,
     tilt: Tilt,
-    /// Left, right.
+    /// Left, right wheel.
     escs: [C620; 2],
     joints: [Joint; JOINTS],
     /// State of each joint as the last wire events reported it.

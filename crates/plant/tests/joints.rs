@@ -180,7 +180,7 @@ fn enabling_torque_and_stopping_are_events_at_their_instants() {
 }
 
 #[test]
-fn a_timeout_or_a_fault_disables_without_a_frame_and_tells() {
+fn a_timeout_or_a_fault_disables_without_a_frame_and_is_an_event() {
     let mut bench = Bench::new(JointKind::Dm4310);
     // TIMEOUT 2000 · 50 µs on the fourth motor.
     bench.send(0x7FF, [4, 0, 0x55, 9, 0xD0, 0x07, 0, 0]);
@@ -222,7 +222,7 @@ fn motors_2_to_5_are_the_joints() {
 }
 
 #[test]
-fn wheels_get_hot_and_change_their_names() {
+fn wheels_get_hot_and_change_their_numbers() {
     let mut bench = Bench::new(JointKind::Dm4310);
     bench.fault("motor-0-hot", true);
     bench.fault("motor-1-wrong-id", true);
@@ -243,7 +243,7 @@ fn wheels_get_hot_and_change_their_names() {
 }
 
 #[test]
-fn the_adapter_notes_replies_of_the_tuning_channel() {
+fn the_adapter_records_replies_of_the_tuning_channel() {
     use robot_plant::can_adapter::AdapterMode;
     let mut bench = Bench::new(JointKind::Dm4310);
     let reply = [0x21, 3, 1, 0, 0, 0, 0x80, 0x3F];
@@ -322,7 +322,7 @@ fn no_frame_makes_a_joint_stronger_than_its_motor_or_its_numbers_infinite() {
 }
 
 #[test]
-fn a_frame_beyond_the_model_is_complained_of() {
+fn a_frame_beyond_the_model_is_reported() {
     let mut bench = Bench::new(JointKind::Dm4310);
     bench.send(0x7FF, [1, 0, 0x33, 0x50, 0, 0, 0, 0]);
     let complaints = bench.world.take_complaints();

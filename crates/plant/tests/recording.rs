@@ -211,7 +211,7 @@ fn lead_in_is_the_records_rest_played_backwards() {
 }
 
 #[test]
-fn a_broken_trial_says_which_file_and_why() {
+fn the_error_of_a_broken_trial_names_the_file_and_the_defect() {
     let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("absent.json");
     let error = play(path).err().expect("file is absent").to_string();
     assert!(error.contains("absent.json"), "{error}");

@@ -57,7 +57,7 @@ mod tests {
     }
 
     #[test]
-    fn a_turn_and_a_tilt_are_told_apart() {
+    fn a_turn_is_a_heading_error_and_a_tilt_an_inclination_error() {
         let (sin, cos) = 10_f64.to_radians().sin_cos();
         let level = [1.0, 0.0, 0.0, 0.0];
         let turned = AttitudeError::between([cos, 0.0, 0.0, -sin], level);

@@ -40,15 +40,16 @@ const CHIP_ID: u8 = 0x1E;
 const SUSPEND: u8 = 0x03;
 const ACC_ENABLED: u8 = 0x04;
 const START_UP: Ps = MS;
-/// 39.0625 µs a count.
+/// 39.0625 µs per count.
 const SENSORTIME_LSB: Ps = SECOND / 25_600;
 const TEMPERATURE_PERIOD: Ps = 1_280 * MS;
 
 /// Noise density, x and y 160, z 190 µg/√Hz.
 const NOISE_G_PER_SQRT_HZ: [f64; 3] = [160e-6, 160e-6, 190e-6];
-/// Zero-g offset ±20 mg typical, drawn evenly within.
+/// Zero-g offset, typically ±20 mg; the model draws it uniformly.
 const OFFSET_G: f64 = 0.020;
-/// Excursion of the self test in g; its size is assumed: both polarities together exceed the 1000/1000/500 mg the datasheet asks for.
+/// Deflection of the self test in g. Its size is assumed: both polarities together exceed the 1000, 1000 and 500 mg that the
+/// datasheet asks for.
 const SELF_TEST_G: [f64; 3] = [0.7, 0.7, 0.4];
 
 pub(super) struct AccelDie {
@@ -67,7 +68,7 @@ pub(super) struct AccelDie {
     temperature_at: Ps,
 }
 
-/// The die listens for I2C until its chip select first rises.
+/// The bus of the die: it expects I2C until its chip select first rises.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Bus {
     I2c,
@@ -121,7 +122,7 @@ impl AccelDie {
         }
     }
 
-    /// State after supply comes up, and after the soft reset.
+    /// The state after power-on and after the soft reset.
     pub(super) fn power_on(&mut self, now: Ps) {
         self.bus = Bus::I2c;
         self.registers = RESET;
@@ -139,7 +140,8 @@ impl AccelDie {
         self.registers.pwr_ctrl == ACC_ENABLED && self.registers.pwr_conf != SUSPEND
     }
 
-    /// `locked`: a burst is being read, so the data registers are shadowed until it ends. True with a new sample.
+    /// Advances by one step; true with a new sample. `locked` means that a burst is being read, during which the data
+    /// registers keep their values.
     pub(super) fn step(
         &mut self,
         accel_mps2: [f64; 3],
@@ -233,7 +235,7 @@ impl Die for AccelDie {
         if self.bus == Bus::I2c {
             return;
         }
-        // A die that starts hears nothing.
+        // A die ignores writes while it starts.
         if now < self.alive_at {
             return;
         }
@@ -260,7 +262,7 @@ impl Die for AccelDie {
         }
     }
 
-    /// A die that is still starting misses the edge, so the one that ends its soft reset does not count.
+    /// A die that is still starting misses the edge. So the edge that ends the soft reset does not count.
     fn deselected(&mut self, now: Ps) {
         self.write_gap.deselected(now);
         if now >= self.alive_at {
@@ -273,8 +275,8 @@ impl Die for AccelDie {
     }
 }
 
-/// Output rate and 3 dB bandwidth in Hz of an ACC_CONF value (datasheet table 5.3); none for a reserved code, which the
-/// die ignores.
+/// Output rate and 3 dB bandwidth in Hz of an ACC_CONF value (datasheet table 5.3), or `None` for a reserved code, which
+/// the die ignores.
 fn output_filter(conf: u8) -> Option<(f64, f64)> {
     let rate_hz = match conf & 0x0F {
         code @ 0x5..=0xC => 12.5 * f64::from(1 << (code - 0x5)),

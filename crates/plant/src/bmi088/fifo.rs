@@ -6,14 +6,14 @@ const FRAMES: usize = 100;
 const FRAME_LEN: usize = 6;
 const OVERRUN: u8 = 1 << 7;
 
-/// FIFO_CONFIG_1, upper two bits.
+/// Upper two bits of FIFO_CONFIG_1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Mode {
-    /// The data registers are all there is.
+    /// Nothing is stored.
     Bypass,
-    /// Full, it takes no more until it is configured anew.
+    /// When full, it takes no more samples until it is configured again.
     Fifo,
-    /// Full, it drops the oldest.
+    /// When full, it drops the oldest sample.
     Stream,
 }
 
@@ -22,9 +22,9 @@ pub(super) struct Fifo {
     config: u8,
     frames: VecDeque<[i16; 3]>,
     overrun: bool,
-    /// Bytes of the oldest frame that have been read.
+    /// Number of bytes of the oldest frame that have been read.
     read: usize,
-    /// What is read begins one axis too early: with Z of the frame before.
+    /// Each frame reads one axis too early: it begins with Z of the frame before.
     slipped: bool,
     last_z: i16,
 }
@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn full_it_keeps_the_newest_or_the_oldest_and_says_so() {
+    fn when_full_it_keeps_the_newest_or_the_oldest_and_sets_the_overrun_bit() {
         for (config, first) in [(0x80, 1), (0x40, 0)] {
             let mut fifo = filled(config, 101);
             assert_eq!(fifo.status(), 0x80 | 100);
@@ -167,7 +167,7 @@ mod tests {
 
     /// Datasheet: in FIFO mode no frame is stored after the overrun until FIFO_CONFIG_1 is written.
     #[test]
-    fn in_fifo_mode_it_stands_after_an_overrun() {
+    fn in_fifo_mode_it_stores_nothing_after_an_overrun() {
         let mut fifo = filled(0x40, 101);
         for _ in 0..FRAMES * FRAME_LEN {
             fifo.read();

@@ -37,12 +37,12 @@ const CHIP_ID: u8 = 0x0F;
 const SUSPEND: u8 = 0x80;
 const DEEP_SUSPEND: u8 = 0x20;
 const START_UP: Ps = 30 * MS;
-/// The datasheet gives no duration; most drivers wait 10 ms or poll.
+/// The datasheet gives no duration. Most drivers wait 10 ms or poll.
 const SELF_TEST_TIME: Ps = 10 * MS;
 
 /// Noise density 0.014 °/s/√Hz.
 const NOISE_DPS_PER_SQRT_HZ: f64 = 0.014;
-/// Zero-rate offset ±1 °/s typical, drawn evenly within.
+/// Zero-rate offset, typically ±1 °/s; the model draws it uniformly.
 const OFFSET_DPS: f64 = 1.0;
 
 pub(super) struct GyroDie {
@@ -102,7 +102,7 @@ impl GyroDie {
         }
     }
 
-    /// State after supply comes up, and after the soft reset.
+    /// The state after power-on and after the soft reset.
     pub(super) fn power_on(&mut self, now: Ps) {
         self.registers = RESET;
         self.alive_at = now + START_UP;
@@ -121,7 +121,8 @@ impl GyroDie {
         self.registers.lpm1 & (SUSPEND | DEEP_SUSPEND) != 0
     }
 
-    /// `locked`: a burst is being read, so the data registers are shadowed until it ends. True with a new sample.
+    /// Advances by one step; true with a new sample. `locked` means that a burst is being read, during which the data
+    /// registers keep their values.
     pub(super) fn step(&mut self, gyro_rps: [f64; 3], locked: bool, now: Ps) -> bool {
         if now < self.alive_at || self.suspended() {
             return false;
@@ -142,12 +143,12 @@ impl GyroDie {
         self.fifo.replace_newest(data);
     }
 
-    /// The FIFO shows its axes one place late.
+    /// Shifts the axes in the FIFO by one place.
     pub(super) fn slip_fifo(&mut self) {
         self.fifo.slip();
     }
 
-    /// The FIFO is in the mode in which it is reported to slip.
+    /// True in the FIFO mode in which slips were reported.
     pub(super) fn streams(&self) -> bool {
         self.fifo.streams()
     }
@@ -211,7 +212,7 @@ impl Die for GyroDie {
     }
 
     fn write(&mut self, register: u8, value: u8, selected_at: Ps, now: Ps) {
-        // A die that starts hears nothing.
+        // A die ignores writes while it starts.
         if now < self.alive_at {
             return;
         }

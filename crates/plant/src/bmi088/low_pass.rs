@@ -1,6 +1,6 @@
-//! Second-order Butterworth low-pass, the stand-in for the dies' undocumented digital filters.
+//! Second-order Butterworth low-pass in place of the dies' digital filters, which are not documented.
 
-/// Three axes of one bilinear biquad with the 3 dB point exact.
+/// A biquad by the bilinear transform, with an exact 3 dB point, for three axes.
 #[derive(Clone, Debug)]
 pub(super) struct LowPass {
     b: [f64; 3],

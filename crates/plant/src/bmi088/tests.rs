@@ -121,7 +121,7 @@ fn gyro_answers_without_dummy_byte_but_not_in_its_first_30_ms() {
 
 /// 1000 Hz for 5 ms; a burst of FIFO_DATA stays at its register.
 #[test]
-fn gyro_keeps_what_it_measured_until_it_is_read() {
+fn gyro_keeps_its_samples_until_they_are_read() {
     let mut bench = Bench::configured(MotionSource::Recording);
     bench.motion.gyro_rps = [1.0, -2.0, 0.5];
     bench.write(SpiSelect::Gyro, 0x10, 0x82);
@@ -214,7 +214,7 @@ fn suspended_accelerometer_measures_nothing() {
 
 /// Datasheet, idle time after write access: 2 µs in normal mode, 450 µs in suspend mode.
 #[test]
-fn hurried_writes_are_taken_and_complained_of() {
+fn writes_too_soon_after_another_are_accepted_and_reported() {
     let complaint = |bench: &mut Bench| bench.imu.take_complaints().next().map(|c| c.severity);
     let mut bench = Bench::new(MotionSource::Physics);
     bench.wait(30 * MS);
@@ -272,7 +272,7 @@ fn a_clock_just_above_the_limit_is_suspicious_and_works() {
 }
 
 #[test]
-fn both_dies_selected_at_once_are_complained_of() {
+fn selecting_both_dies_at_once_is_reported() {
     let mut bench = Bench::configured(MotionSource::Physics);
     bench.imu.select(SpiSelect::Gyro, true, bench.now);
     bench.imu.select(SpiSelect::Accel, true, bench.now);

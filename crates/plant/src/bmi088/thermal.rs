@@ -1,26 +1,26 @@
 //! Temperature of the package on its heated copper island.
 
-/// Assumed board without heater, once its other chips have warmed it.
+/// Assumed temperature of a board that its other chips have warmed, without heater.
 const WARM_BOARD_C: f64 = 30.0;
-/// A package whose heater held it there until the power went off for a moment.
+/// Temperature of a package that its heater has held until a moment ago.
 const WARM_PACKAGE_C: f64 = 40.0;
 /// Heater of the C board: 43 Ω on 5 V.
 const HEATER_W: f64 = 0.58;
-/// No source gives it: chosen so that full heat ends 25 K above the board.
+/// An assumption: full power then ends 25 K above the board.
 const KELVIN_PER_WATT: f64 = 43.0;
-/// An assumption too.
+/// An assumption.
 const TIME_CONSTANT_S: f64 = 15.0;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Thermal {
-    /// 0 … 1.
+    /// Duty cycle of the heater, 0 … 1.
     pub(super) heater_duty: f64,
     board_c: f64,
     temperature_c: f64,
 }
 
 impl Thermal {
-    /// A package colder than a warm board sits on a board as cold as itself.
+    /// A package that is colder than a warm board sits on a board of its own temperature.
     pub(super) fn new(temperature_c: Option<f64>) -> Self {
         let temperature_c = temperature_c.unwrap_or(WARM_PACKAGE_C);
         Self {

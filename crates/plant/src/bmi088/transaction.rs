@@ -1,9 +1,9 @@
-//! The bytes between a fall and a rise of one chip select.
+//! The bytes that are exchanged while one chip select is low.
 
 use super::die::Die;
 use crate::time::Ps;
 
-/// State of one chip select: bytes seen since it fell.
+/// State of one chip select, and what was exchanged since it fell.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Transaction {
     pub selected: bool,

@@ -1,4 +1,4 @@
-//! The pause that a die wants after a register write: 2 µs in normal mode, 450 µs in suspend mode (datasheet
+//! The pause that a die needs after a register write: 2 µs in normal mode, 450 µs in suspend mode (datasheet
 //! BST-BMI088-DS001, SPI timing, "idle time after write access"; Bosch's BMI08x sensor API waits as long).
 
 use crate::{
@@ -9,14 +9,15 @@ use crate::{
 const NORMAL: Ps = 2 * US;
 const SUSPEND: Ps = 450 * US;
 
-/// Watches one chip select. The write that came too soon is taken all the same: DJI's `BMI088driver.c` pauses 150 µs
-/// in suspend mode, on this board, and its sensor starts.
+/// Watches one chip select. A write that comes too soon is accepted all the same: DJI's `BMI088driver.c` pauses only 150 µs
+/// in suspend mode on this board, and its sensor starts.
 #[derive(Debug, Default)]
 pub(super) struct WriteGap {
-    /// Of the last write, and when it is over; it begins with the rise of the chip select.
+    /// The pause after the last write, which begins when the chip select rises.
     gap: Ps,
+    /// When that pause is over.
     over_at: Ps,
-    /// A write is in the transaction under way.
+    /// The transaction under way has written a register.
     wrote: bool,
     complaint: Option<Complaint>,
 }

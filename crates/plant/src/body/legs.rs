@@ -1,16 +1,16 @@
-//! Four leg links that hang from the body's hips: each a pendulum of its own, locked to nothing.
+//! Four leg links that hang from the hips, each an independent pendulum.
 //!
 //! The linkage that couples the two joints of a leg, and the body's weight on it, are not modelled.
 
 use super::shaft::turn_shaft;
 use crate::{joints::JOINTS, m3508::Friction};
 
-/// A link about its hip with the motor's reflected rotor: an assumption.
+/// Inertia of a link about its hip, with the reflected rotor. An assumption.
 const INERTIA_KGM2: f64 = 0.02;
-/// Of a link held level: an assumption.
+/// Gravity torque of a link that is held level. An assumption.
 const GRAVITY_NM: f64 = 1.0;
 
-/// Angles from hanging down, rad, and speeds of each joint.
+/// Angle of each joint from hanging down, and its speed.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Legs {
     pub(crate) pos_rad: [f64; JOINTS],

@@ -14,9 +14,9 @@ use crate::{m3508::Friction, motion::Motion, physics::STANDARD_GRAVITY_MPS2};
 const MASS_KG: f64 = 9.0;
 /// About z: a 0.3 m square body of 7.5 kg and two wheels of 0.75 kg at half the track.
 const YAW_INERTIA_KGM2: f64 = 0.18;
-/// Assumed share of the grip used per unit of slip ratio: full grip at 10 % slip.
+/// Assumed share of the grip per unit of slip ratio: 10 % slip uses the full grip.
 const SLIP_STIFFNESS: f64 = 10.0;
-/// Speed below which slip is counted against this instead, so that the slip ratio stays finite at rest.
+/// Least reference speed of the slip ratio, which keeps it finite at rest.
 const SLIP_REFERENCE_MPS: f64 = 0.1;
 /// Assumed rolling resistance per newton of load.
 const ROLLING_RESISTANCE: f64 = 0.015;
@@ -108,7 +108,7 @@ impl Rolling {
         self.pose
     }
 
-    /// Specific force at the IMU: the axle's, plus tangential and centripetal terms of the lever.
+    /// Motion at the IMU: that of the axle, with the tangential and centripetal terms of the lever.
     pub(crate) fn motion(&self) -> Motion {
         let [rx, ry] = IMU_M;
         let wz = self.pose.wz_rps;
@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn equal_torques_accelerate_straight_as_newton_says() {
+    fn equal_torques_accelerate_straight_by_newtons_law() {
         let mut rolling = Rolling::default();
         drive(&mut rolling, 1.0, |_| [0.6, 0.6]);
         // (2·0.6/0.06 − 2·0.015·44.13) N on 9 kg and two reflected wheel inertias of 0.0105/0.06² = 2.917 kg.

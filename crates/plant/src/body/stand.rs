@@ -71,7 +71,7 @@ mod tests {
     }
 
     #[test]
-    fn torque_spins_up_the_wheel_as_newton_says() {
+    fn torque_accelerates_the_wheel_by_newtons_law() {
         // 1 N·m less friction on 0.0105 kg·m² for 0.1 s: 9.52 rad/s less 0.1404/0.0105·0.1 = 1.34 and viscous drag.
         let mut stand = Stand::default();
         for _ in 0..400 {

@@ -7,13 +7,13 @@ use crate::{
 
 const DEG: f64 = std::f64::consts::PI / 180.0;
 const FALL_RPS: f64 = 2.0;
-/// Where it lies.
+/// Pitch of a body that lies on the floor.
 const LYING_RAD: f64 = 80.0 * DEG;
-/// What a gyro of ±2000 °/s cannot see.
+/// Beyond the range of a gyro of ±2000 °/s.
 const BLOW_RPS: f64 = 3_500.0 * DEG;
 const STRUCK_RAD: f64 = 35.0 * DEG;
 
-/// Where the body goes.
+/// The pose towards which the body moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Stance {
     Upright,
@@ -38,8 +38,8 @@ impl Stance {
     }
 }
 
-/// Pitch beyond what the mechanics know: about the body's y axis, nose down positive. The fall is taken to turn about
-/// the IMU itself, so it adds a rate and no force.
+/// Pitch on top of the mechanics, about the body's y axis, nose down positive. The body is taken to turn about the IMU itself,
+/// so a fall adds a rate and no force.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Tilt {
     pitch_rad: f64,
@@ -55,8 +55,8 @@ impl Tilt {
         self.rate_rps = moved_rad / dt_s;
     }
 
-    /// What a sensor feels in the pitched body, of what it would feel in the level one.
-    pub(crate) fn felt(&self, level: Motion) -> Motion {
+    /// Motion in the axes of the pitched body, from that of the level body.
+    pub(crate) fn apply(&self, level: Motion) -> Motion {
         if self.pitch_rad == 0.0 && self.rate_rps == 0.0 {
             return level;
         }
@@ -91,22 +91,22 @@ mod tests {
         }
         // Half a second: 1 rad. Gravity's reaction points to the tail and up: −sin 1, cos 1; the turn about the
         // earth's vertical likewise.
-        let felt = tilt.felt(LEVEL);
+        let pitched = tilt.apply(LEVEL);
         let expected = [-8.25196, 0.0, 5.29855, -0.252_441, 2.0, 0.162_091];
-        let got = [felt.accel_mps2, felt.gyro_rps].concat();
+        let got = [pitched.accel_mps2, pitched.gyro_rps].concat();
         for (got, expected) in got.iter().zip(expected) {
-            assert!((got - expected).abs() < 1e-4, "{felt:?}");
+            assert!((got - expected).abs() < 1e-4, "{pitched:?}");
         }
         for _ in 0..2_000 {
             tilt.step(Stance::Fallen, 250e-6);
         }
-        let lying = tilt.felt(LEVEL);
+        let lying = tilt.apply(LEVEL);
         assert!((lying.accel_mps2[2] - 9.80665 * 0.173_648).abs() < 1e-4);
         assert_eq!(lying.gyro_rps[1], 0.0);
         for _ in 0..4_000 {
             tilt.step(Stance::Upright, 250e-6);
         }
-        assert_eq!(tilt.felt(LEVEL).accel_mps2, LEVEL.accel_mps2);
+        assert_eq!(tilt.apply(LEVEL).accel_mps2, LEVEL.accel_mps2);
     }
 
     /// 35° at 3500 °/s are 10 ms.
@@ -115,16 +115,16 @@ mod tests {
         let mut tilt = Tilt::default();
         for _ in 0..38 {
             tilt.step(Stance::Struck, 250e-6);
-            assert!((tilt.felt(LEVEL).gyro_rps[1] - 61.087).abs() < 0.1);
+            assert!((tilt.apply(LEVEL).gyro_rps[1] - 61.087).abs() < 0.1);
         }
         for _ in 0..4 {
             tilt.step(Stance::Struck, 250e-6);
         }
-        let struck = tilt.felt(LEVEL);
+        let struck = tilt.apply(LEVEL);
         assert!((struck.accel_mps2[2] - 9.80665 * 0.819_152).abs() < 1e-4);
     }
 
-    /// The attitude turns the earth's upward gravity reaction into what the accelerometer feels.
+    /// The attitude turns the earth's upward gravity reaction into what the accelerometer measures.
     #[test]
     fn attitude_and_gravity_agree() {
         let tilt = Tilt {
@@ -132,9 +132,9 @@ mod tests {
             rate_rps: 0.0,
         };
         let up = attitude::to_body(tilt.attitude(0.7), [0.0, 0.0, 9.80665]);
-        let felt = tilt.felt(LEVEL).accel_mps2;
-        for (up, felt) in up.iter().zip(felt) {
-            assert!((up - felt).abs() < 1e-9, "{up} {felt}");
+        let pitched = tilt.apply(LEVEL).accel_mps2;
+        for (up, pitched) in up.iter().zip(pitched) {
+            assert!((up - pitched).abs() < 1e-9, "{up} {pitched}");
         }
     }
 }

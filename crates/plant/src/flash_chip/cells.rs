@@ -1,4 +1,4 @@
-//! The bits themselves: what they hold firmly, and which of them read differently from one read to the next.
+//! The bits: what they hold, and which of them read differently from one read to the next.
 
 use std::ops::Range;
 
@@ -6,15 +6,15 @@ use crate::random::Random;
 
 /// Bytes in a word, the smallest unit that the flash programs.
 pub(super) const WORD: u32 = 4;
-/// One word in that many escapes an erase that leaves some.
+/// An incomplete erase leaves one word in this many.
 const ONE_WORD_ESCAPES_IN: u32 = 64;
-/// Bits an erase cut near its end may leave undecided in a whole sector.
+/// Most bits per sector that an erase cut near its end leaves undecided.
 const MAX_UNDECIDED_AT_THE_END: u32 = 8;
 
 #[derive(Clone, Debug)]
 pub(super) struct Cells {
     bits: Vec<u8>,
-    /// A one: the charge of that cell lies between the levels.
+    /// Ones mark cells whose charge lies between the levels.
     unstable: Vec<u8>,
 }
 
@@ -45,8 +45,8 @@ impl Cells {
         self.set_word(start, bits & value, unstable & value);
     }
 
-    /// A program that was cut: of the bits to be cleared some are, some lie in between, the rest is untouched. How
-    /// many depends on when the power went, which is drawn too, so that the extremes come up.
+    /// A program that was cut: some of the bits to be cleared are cleared, some are undecided, the others untouched. The
+    /// shares depend on when the power was cut, which is random, so that the extremes occur too.
     pub fn program_torn(&mut self, start: usize, value: u32, random: &mut Random) {
         let (bits, unstable) = self.word(start);
         let wanted = !value & (bits | unstable);
@@ -68,8 +68,8 @@ impl Cells {
         }
     }
 
-    /// An erase that was cut. It first pulls all bits to 0, then lifts them to 1 together: cut early the old contents
-    /// shine through, later there is noise, and at the end the sector looks erased but for a few bits.
+    /// An erase that was cut. An erase first pulls all bits to 0 and then lifts them to 1 together. Cut early, it leaves some
+    /// of the old contents; cut later, noise; cut at its end, a sector that looks erased except for a few bits.
     pub fn erase_torn(&mut self, range: Range<usize>, random: &mut Random) {
         match random.below(4) {
             0 => {
@@ -111,7 +111,7 @@ impl Cells {
     }
 }
 
-/// A mask of 32 bits with a drawn share of ones: none, a quarter, half, three quarters or all of them.
+/// A random mask of 32 bits in which none, a quarter, half, three quarters or all bits are ones.
 fn some_bits(random: &mut Random) -> u32 {
     match random.below(5) {
         0 => 0,

@@ -2,21 +2,23 @@
 
 use super::sectors::PerSector;
 
-/// A cell that reads the same for ever.
+/// A cell that always reads the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StuckBit {
-    /// Of the byte.
+    /// Address of its byte.
     pub address: u32,
     /// 0 … 7.
     pub bit: u8,
+    /// What it reads.
     pub value: bool,
 }
 
-/// How the erase of a worn-out sector ends. The chip reports neither.
+/// How the erase of a worn-out sector fails. The chip reports neither failure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EraseFault {
+    /// All words keep what they held.
     DoesNothing,
-    /// A word in 64 or so keeps what it held.
+    /// About one word in 64 keeps what it held.
     LeavesSomeWords,
 }
 
@@ -45,7 +47,7 @@ impl Defects {
         self.erase.get(sector).flatten()
     }
 
-    /// Puts the stuck bits into what was read at `address`.
+    /// Overwrites the stuck bits in what was read at `address`.
     pub fn distort(&self, address: u32, bytes: &mut [u8]) {
         for stuck in &self.stuck {
             let offset = stuck.address.checked_sub(address);

@@ -1,15 +1,15 @@
-//! The supply of the flash, and the step at which it goes.
+//! The supply of the flash, and the step at which it is cut.
 
 use super::error::FlashError;
 
-/// Where within a step the power goes.
+/// When during a step the power is cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
-    /// Nothing happened yet.
+    /// Before anything has happened.
     Before,
     /// The word or the sector is torn.
     Middle,
-    /// All is done, but nobody heard of it.
+    /// After all is done, but before the processor knows.
     After,
 }
 

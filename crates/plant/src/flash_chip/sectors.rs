@@ -2,7 +2,7 @@
 
 use std::ops::{Range, RangeInclusive};
 
-/// Kept free of code for the parameters.
+/// The sectors that hold parameters instead of code.
 pub const PARAMETER_SECTORS: RangeInclusive<u8> = 1..=3;
 pub(super) const PARAMETER_ADDRESSES: Range<u32> = 0x0800_4000..0x0801_0000;
 
@@ -10,7 +10,7 @@ const BASE: u32 = 0x0800_0000;
 const COUNT: u8 = 12;
 const KIB: u32 = 1024;
 
-/// Addresses of sector 0 … 11.
+/// Addresses of one of the sectors 0 to 11, or `None` for another number.
 pub fn sector_range(sector: u8) -> Option<Range<u32>> {
     (sector < COUNT).then(|| start_address(sector)..start_address(sector + 1))
 }
@@ -24,7 +24,7 @@ fn start_address(sector: u8) -> u32 {
     }
 }
 
-/// Something of each parameter sector.
+/// One value per parameter sector.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct PerSector<T>([T; 3]);
 

@@ -70,7 +70,7 @@ fn an_erase_blanks_its_own_sector_alone_and_is_counted() {
 }
 
 #[test]
-fn what_is_no_word_of_the_chip_is_refused_and_counts_as_no_step() {
+fn an_address_that_is_no_word_is_refused_and_counts_as_no_step() {
     let mut chip = FlashChip::parameters(1);
     assert_eq!(
         chip.program_word(SECTOR_1 + 2, 0),
@@ -111,7 +111,7 @@ fn without_power_nothing_is_read_or_changed_until_it_is_back() {
 }
 
 #[test]
-fn cut_after_a_step_it_is_done_though_nobody_heard() {
+fn a_step_cut_at_its_end_is_done_but_reported_as_failed() {
     let mut chip = FlashChip::parameters(1);
     chip.cut_at(0, Phase::After);
     assert_eq!(chip.program_word(SECTOR_1, 7), Err(FlashError::PowerLost));
@@ -247,7 +247,7 @@ fn a_stuck_bit_reads_the_same_whatever_is_written() {
 }
 
 #[test]
-fn an_erase_that_fails_leaves_words_and_says_nothing() {
+fn an_erase_that_fails_leaves_words_and_reports_no_error() {
     let zeros = |chip: &mut FlashChip| -> usize {
         let bytes = sector_1(chip);
         bytes.as_chunks().0.iter().filter(|w| **w == [0; 4]).count()

@@ -1,7 +1,7 @@
 //! Torque and heat of a geared motor with its driver, seen at the output shaft.
 
 const AMBIENT_C: f64 = 30.0;
-/// What `motor-N-hot` heats a winding to.
+/// Temperature of the winding under the fault `motor-N-hot`.
 const HOT_C: f64 = 120.0;
 /// Assumed share of the winding's rise that reaches the driver's transistors.
 const DRIVER_SHARE: f64 = 0.5;
@@ -9,11 +9,11 @@ const DRIVER_SHARE: f64 = 0.5;
 #[derive(Debug)]
 pub(super) struct Rating {
     pub peak_nm: f64,
-    /// Speed without load and its supply.
+    /// Speed without load at `supply_v`.
     pub no_load_rps: f64,
     pub supply_v: f64,
-    /// Fall of the speed under load. It stands for the winding's resistance, so it also says the heat: a torque of
-    /// τ loses `slope · τ²` watts.
+    /// Fall of the speed under load. It stands for the resistance of the winding and so gives the heat too: a torque of τ
+    /// loses `slope · τ²` watts.
     pub slope_rps_per_nm: f64,
     /// Dry friction of the gear.
     pub friction_nm: f64,
@@ -55,8 +55,8 @@ impl Actuator {
         AMBIENT_C + DRIVER_SHARE * (self.winding_c() - AMBIENT_C)
     }
 
-    /// Torque follows at once, as far as the windings and the supply can push it against the back-EMF; `None` is a
-    /// driver switched off.
+    /// The torque follows at once, as far as the supply can drive the current against the back-EMF. `None` is a driver that
+    /// is switched off.
     pub(super) fn step(&mut self, wanted_nm: Option<f64>, vel_rps: f64, supply_v: f64, dt_s: f64) {
         let rating = self.rating;
         let loss_w = rating.slope_rps_per_nm * self.torque_nm * self.torque_nm;
@@ -67,7 +67,7 @@ impl Actuator {
 
     fn reachable_nm(&self, wanted_nm: f64, vel_rps: f64, supply_v: f64) -> f64 {
         let rating = self.rating;
-        // The no-load speed is reached against the gear's friction, hence without it the motor would run on a little.
+        // The no-load speed is reached against the friction of the gear; without it the motor would run a little faster.
         let free_rps = rating.no_load_rps * supply_v / rating.supply_v
             + rating.slope_rps_per_nm * rating.friction_nm;
         let max_nm = (free_rps - vel_rps) / rating.slope_rps_per_nm;

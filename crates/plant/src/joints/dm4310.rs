@@ -34,7 +34,7 @@ const TIMEOUT_UNIT: Ps = 50 * US;
 const WRONG_ID: u32 = 8;
 const STANDARD_ID: u32 = 0x7FF;
 
-/// ERR of a motor that has switched itself off.
+/// Why a motor has switched itself off; the discriminant is the ERR field of its replies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Trip {
     OverCurrent = 0xA,
@@ -51,7 +51,7 @@ enum State {
     Tripped(Trip),
 }
 
-/// What an enabled motor does; nothing until the first command.
+/// The command that an enabled motor follows; `None` until the first one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Target {
     None,
@@ -61,7 +61,7 @@ enum Target {
 }
 
 pub(crate) struct Dm4310 {
-    /// What a power cycle brings back.
+    /// The registers as stored, which a power cycle restores.
     stored: Registers,
     registers: Registers,
     state: State,
@@ -120,7 +120,7 @@ impl Dm4310 {
         (self.registers.mst_id + u32::from(self.faults.wrong_id) * WRONG_ID) & STANDARD_ID
     }
 
-    /// The motor's own guards.
+    /// The motor's own protection: time-out and over-temperature.
     fn watch(&mut self, now: Ps) {
         if self.state != State::Enabled {
             return;

@@ -1,7 +1,7 @@
 //! The packing that Damiao and RobStride share (docs/hardware.md#mit-frames): fields of 16 and 12 bits,
 //! most significant first, each spread evenly over its range.
 
-/// Coding ranges, each from minus to plus; not what the motor can do.
+/// Ranges of the coding, each symmetric about zero. The motor itself has other limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Ranges {
     pub pos_rad: f64,
@@ -12,7 +12,7 @@ pub(super) struct Ranges {
 const MAX_KP: f64 = 500.0;
 const MAX_KD: f64 = 5.0;
 
-/// What a motion-control frame asks for.
+/// The command in a motion-control frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct MitCommand {
     pub pos_rad: f64,
@@ -30,7 +30,7 @@ impl MitCommand {
     }
 }
 
-/// Position and speed as the reader of a reply decodes them.
+/// Position and speed that the receiver of a reply decodes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Feedback {
     pub pos_rad: f64,
@@ -50,7 +50,7 @@ impl Ranges {
         }
     }
 
-    /// The five bytes of position, speed and torque in a reply, and what they say.
+    /// The five bytes of position, speed and torque in a reply, and what a receiver decodes from them.
     pub(super) fn feedback(
         &self,
         pos_rad: f64,
@@ -62,11 +62,11 @@ impl Ranges {
         let torque = code(torque_nm, 12, self.torque_nm);
         let bits = u64::from(pos) << 24 | u64::from(vel) << 12 | u64::from(torque);
         let [_, _, _, bytes @ ..] = bits.to_be_bytes();
-        let said = Feedback {
+        let decoded = Feedback {
             pos_rad: value(pos, 16, -self.pos_rad, self.pos_rad),
             vel_rps: value(vel, 12, -self.vel_rps, self.vel_rps),
         };
-        (bytes, said)
+        (bytes, decoded)
     }
 }
 
@@ -134,8 +134,8 @@ mod tests {
     /// range: 0xFFF.
     #[test]
     fn feedback_truncates_and_clips() {
-        let (bytes, said) = DM4310.feedback(1.0, -10.0, 11.0);
+        let (bytes, decoded) = DM4310.feedback(1.0, -10.0, 11.0);
         assert_eq!(bytes, [0x8A, 0x3C, 0x55, 0x5F, 0xFF]);
-        assert!((said.pos_rad - 1.0).abs() < 4e-4 && (said.vel_rps + 10.0).abs() < 1e-9);
+        assert!((decoded.pos_rad - 1.0).abs() < 4e-4 && (decoded.vel_rps + 10.0).abs() < 1e-9);
     }
 }

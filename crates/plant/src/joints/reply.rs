@@ -1,4 +1,4 @@
-//! The one frame a motor sends for each frame it gets.
+//! The frame that a motor sends in reply to each frame it receives.
 
 use super::mit_frame::Feedback;
 use crate::{
@@ -6,7 +6,7 @@ use crate::{
     wire::CanFrame,
 };
 
-/// From the end of a command to the motor's wish to reply; assumed, no source gives it.
+/// Time from the end of a command until the reply is ready. An assumption: no source gives it.
 const REPLY_TIME: Ps = 150 * US;
 
 #[derive(Clone, Copy, Debug)]
@@ -16,7 +16,7 @@ struct Reply {
     fed_back: Option<Feedback>,
 }
 
-/// A reply that found no way onto the bus is replaced by the next one.
+/// The reply that waits for the bus. The next one replaces it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ReplyBox {
     waiting: Option<Reply>,
@@ -25,7 +25,7 @@ pub(super) struct ReplyBox {
 }
 
 impl ReplyBox {
-    /// `frozen` repeats the last feedback sent instead.
+    /// Queues a feedback; `frozen` repeats the last one instead.
     pub(super) fn feedback(
         &mut self,
         id: u32,
@@ -42,7 +42,7 @@ impl ReplyBox {
         self.put(id, data, Some(fed_back), now + REPLY_TIME);
     }
 
-    /// A reply that says nothing about the shaft.
+    /// Queues a reply without feedback.
     pub(super) fn other(&mut self, id: u32, data: [u8; 8], received: Ps) {
         self.put(id, data, None, received + REPLY_TIME);
     }
@@ -56,7 +56,7 @@ impl ReplyBox {
         });
     }
 
-    /// When the waiting reply wants the bus.
+    /// When the waiting reply is ready for the bus.
     pub(super) fn ready_at(&self) -> Option<Ps> {
         self.waiting.map(|reply| reply.ready_at)
     }
@@ -77,7 +77,7 @@ impl ReplyBox {
         self.waiting = None;
     }
 
-    /// What the last feedback on the wire said.
+    /// The last feedback that was sent.
     pub(super) fn on_the_wire(&self) -> Feedback {
         self.on_the_wire
     }

@@ -46,7 +46,7 @@ enum Mode {
     Speed = 2,
 }
 
-/// What a running motor does; nothing until the first command.
+/// The command that a running motor follows; `None` until the first one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Target {
     None,
@@ -55,10 +55,10 @@ enum Target {
     Speed { vel_rps: f64, max_a: f64 },
 }
 
-/// As shipped the last command holds for ever: the motor's own watch over the bus, parameter 0x7028, is off, and out of
-/// the MIT protocol's reach.
+/// The motor as shipped holds its last command for ever: its CAN time-out, parameter 0x7028, is off, and the MIT protocol
+/// cannot set it.
 pub(crate) struct Rs00 {
-    /// Silence after which it goes back to reset mode; 0 = never.
+    /// Time without frames after which it returns to reset mode; 0 is never.
     can_timeout: Ps,
     last_frame_at: Ps,
     motor_id: u32,
@@ -77,7 +77,7 @@ pub(crate) struct Rs00 {
 }
 
 impl Rs00 {
-    /// `can_timeout` as somebody set it in the private protocol.
+    /// `can_timeout` is what somebody set in the private protocol.
     pub(crate) fn new(motor_id: u32, host_id: u32, can_timeout: Ps) -> Self {
         Self {
             can_timeout,

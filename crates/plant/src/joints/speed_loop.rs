@@ -1,12 +1,12 @@
-//! The motors' own position and speed loops.
+//! The position and speed loops inside the motors.
 //!
-//! Neither maker publishes its gains: these are assumed, and settle a leg of 0.02 kg·m² within a tenth of a second.
+//! Neither maker publishes its gains. These are assumed; with them a leg of 0.02 kg·m² settles within a tenth of a second.
 
 const POSITION_GAIN_PER_S: f64 = 15.0;
 const SPEED_GAIN_NMS_PER_RAD: f64 = 1.0;
 const SPEED_INTEGRAL_NM_PER_RAD: f64 = 10.0;
 
-/// Speed that a position loop asks for, limited.
+/// Speed that a position loop asks for, at most `max_rps`.
 pub(super) fn towards(goal_rad: f64, pos_rad: f64, max_rps: f64) -> f64 {
     let max_rps = max_rps.abs();
     (POSITION_GAIN_PER_S * (goal_rad - pos_rad)).clamp(-max_rps, max_rps)

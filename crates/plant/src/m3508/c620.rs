@@ -13,11 +13,11 @@ const COMMAND_ID: u32 = 0x200;
 const WRONG_ID: u32 = 4;
 const FULL_SCALE_RAW: f64 = 16_384.0;
 const FULL_SCALE_A: f64 = 20.0;
-/// Time constant; no source gives it.
+/// Time constant of the current loop. No source gives it.
 const CURRENT_LOOP_S: f64 = 1e-3;
 const ENCODER_STEPS: f64 = 8_192.0;
 const FEEDBACK_PERIOD: Ps = SECOND / 1_000;
-/// Assumed: the controllers start one after the other and each runs on its own crystal, 50 ppm at most off.
+/// An assumption: the controllers start one after the other, and each runs on its own crystal, at most 50 ppm off.
 const STAGGER: Ps = 370 * US;
 const CRYSTAL_PPM: f64 = 50.0;
 
@@ -29,7 +29,7 @@ pub(crate) struct EscFaults {
     pub frozen: bool,
     /// Winding at 120 °C.
     pub hot: bool,
-    /// Somebody pressed its button: it is another ESC now.
+    /// Somebody pressed its button and gave it another number.
     pub wrong_id: bool,
 }
 
@@ -74,7 +74,7 @@ impl C620 {
         self.faults = faults;
     }
 
-    /// Somebody set another number, 1 … 4; it restarts with that.
+    /// Restarts the controller with another number, 1 … 4.
     pub(crate) fn set_number(&mut self, id: u8) {
         if id != self.id {
             self.id = id;
@@ -84,7 +84,7 @@ impl C620 {
         }
     }
 
-    /// Another ESC listens to 0x1FF and feeds back under an identifier of its own.
+    /// Identifier of the feedback. With a wrong number the controller listens to 0x1FF.
     fn feedback_id(&self) -> u32 {
         COMMAND_ID + u32::from(self.id) + u32::from(self.faults.wrong_id) * WRONG_ID
     }
@@ -107,7 +107,7 @@ impl C620 {
         self.next_feedback
     }
 
-    /// Takes the feedback due; one that found no way onto the bus is replaced.
+    /// Prepares the feedback that is due. It replaces one that is still waiting for the bus.
     pub(crate) fn prepare_feedback(&mut self, shaft_rps: f64) {
         self.next_feedback += self.feedback_period;
         if !self.powered() {
@@ -144,8 +144,8 @@ impl C620 {
         amperes(self.commanded_raw) * 1_000.0
     }
 
-    /// True where the frame was a command to this controller. The last command holds for ever: whether a C620 stops by
-    /// itself is unknown, so the board must say zero.
+    /// Returns true if the frame is a command to this controller. The last command holds for ever: whether a C620 stops by
+    /// itself is unknown, so the board must send zero.
     pub(crate) fn receive(&mut self, frame: &CanFrame) -> bool {
         if !self.powered()
             || self.faults.wrong_id
@@ -162,7 +162,7 @@ impl C620 {
     }
 }
 
-/// The controller clips what lies beyond its full scale.
+/// Current of a raw command, A, clipped to full scale as by the controller.
 fn amperes(raw: i16) -> f64 {
     f64::from(raw).clamp(-FULL_SCALE_RAW, FULL_SCALE_RAW) * FULL_SCALE_A / FULL_SCALE_RAW
 }

@@ -8,19 +8,18 @@ const TORQUE_NM_PER_A: f64 = 0.3;
 const NO_LOAD_RPS: f64 = 482.0 * std::f64::consts::TAU / 60.0;
 const NO_LOAD_A: f64 = 0.78;
 const RATED_V: f64 = 24.0;
-/// An assumption from memory of the datasheet's phase resistance; no source at hand gives it. It bounds the current at
-/// high speed and heats the winding, nothing else.
+/// An assumption: no public source gives the phase resistance. It limits the current at high speed and heats the winding.
 const RESISTANCE_OHM: f64 = 0.194;
-/// Back-EMF seen by the supply per output speed, so that 24 V end at the no-load point.
+/// Back-EMF per output speed, so that 24 V give the no-load speed.
 const BACK_EMF_V_PER_RPS: f64 = (RATED_V - RESISTANCE_OHM * NO_LOAD_A) / NO_LOAD_RPS;
 /// Assumed share of the no-load torque that is dry friction of gear and seals; the rest grows with speed.
 const DRY_SHARE: f64 = 0.6;
 const AMBIENT_C: f64 = 30.0;
-/// What `motor-N-hot` heats the winding to.
+/// Temperature of the winding under the fault `motor-N-hot`.
 const HOT_C: f64 = 120.0;
-/// A decaying current ends here instead of in denormal numbers; one step of the feedback is 10⁶ times as much.
+/// A smaller current counts as zero, which avoids denormal numbers. One step of the feedback is 10⁶ times as large.
 const NO_CURRENT_A: f64 = 1e-9;
-/// Winding to air; no source gives them: 10 A continuous ends near 90 °C.
+/// From winding to air. No source gives these two: with them 10 A end near 90 °C.
 const KELVIN_PER_WATT: f64 = 3.0;
 const HEAT_CAPACITY_J_PER_K: f64 = 120.0;
 
@@ -71,7 +70,7 @@ impl M3508 {
         if self.heated { HOT_C } else { self.winding_c }
     }
 
-    /// Current follows `wanted_a` as a first-order loop, as far as the supply can push it against the back-EMF.
+    /// The current follows `wanted_a` with a first-order lag, as far as the supply can drive it against the back-EMF.
     pub(crate) fn step(
         &mut self,
         wanted_a: f64,
@@ -93,7 +92,7 @@ impl M3508 {
         self.winding_c += (loss_w - cooling_w) * dt_s / HEAT_CAPACITY_J_PER_K;
     }
 
-    /// Supply cut: the winding is open.
+    /// Opens the winding: the supply is cut.
     pub(crate) fn cut(&mut self) {
         self.current_a = 0.0;
     }

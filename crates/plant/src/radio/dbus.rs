@@ -20,7 +20,7 @@ const SWITCH_UP: u8 = 1;
 const SWITCH_DOWN: u8 = 2;
 const SWITCH_MIDDLE: u8 = 3;
 
-/// The frame for these sticks; none while the DR16 has no packet to report, since its format has no flag to say so.
+/// The frame for these sticks, or `None` while the DR16 has no new packet: its format has no flag for that.
 pub(crate) fn frame(pilot: &Pilot, faults: RadioFaults) -> Option<[u8; 18]> {
     if faults.failsafe || faults.frame_lost {
         return None;

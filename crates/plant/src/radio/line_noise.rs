@@ -20,7 +20,7 @@ impl LineNoise {
         Self { random }
     }
 
-    /// Disturbs one frame and the gap after it.
+    /// Disturbs one frame and the gap that follows it.
     pub(super) fn disturb(
         &mut self,
         characters: &mut Vec<UartChar>,
@@ -46,7 +46,7 @@ impl LineNoise {
         }
     }
 
-    /// One flipped data bit leaves the sent parity bit wrong, two leave it right.
+    /// Flips no, one or two data bits. With one flipped bit the parity is wrong, with two it is right.
     fn flip(&mut self, character: &mut UartChar) {
         let draw = self.random.unit();
         if draw >= SINGLE_FLIP + DOUBLE_FLIP {

@@ -22,8 +22,8 @@ const FRAME_LOST: u8 = 1 << 2;
 const FAILSAFE: u8 = 1 << 3;
 const CENTRE: u16 = 992;
 
-/// The frame for these sticks. A receiver in failsafe is taken at its worst: it holds the last sticks and says so in
-/// the flags only.
+/// The frame for these sticks. A receiver in failsafe behaves in the worst way that is known: it holds the last sticks, and
+/// only the flags show the failsafe.
 pub(crate) fn frame(pilot: &Pilot, faults: RadioFaults) -> [u8; 25] {
     let mut flags = 0;
     if faults.frame_lost || faults.failsafe {

@@ -1,4 +1,4 @@
-//! The record's file format: a JSON header beside gzipped columns of 32-bit floats (BROAD trials, `README.md` there).
+//! The file format of a recorded trial: a JSON header beside gzipped columns of 32-bit floats.
 
 use std::{
     io::{self, Read},
@@ -83,18 +83,20 @@ fn unpack(header_path: &Path) -> Result<Vec<u8>, TrialDefect> {
 /// Means over the interval that ends with the row, in the sensors' axes. A sensor that failed reads NaN.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
+    /// Angular rate, rad/s.
     pub gyro_rps: [f64; 3],
-    /// Specific force: +9.8 up at rest.
+    /// Specific force, m/s²: +9.8 on the axis that points up at rest.
     pub accel_mps2: [f64; 3],
+    /// Magnetic field, µT.
     pub field_ut: [f64; 3],
-    /// Sensor → ENU earth at the end of the interval, scalar first. NaN where the cameras lost the markers, and in a
-    /// record without reference.
+    /// Reference attitude, sensor → ENU earth, at the end of the interval, scalar first. NaN where the cameras lost the
+    /// markers, and in a record without reference.
     pub reference_wxyz: [f64; 4],
-    /// In the movement phase, which is the part that is scored. Everywhere in a record that marks none.
+    /// True in the movement phase, which is the part that counts for the score, and throughout a record that marks no phase.
     pub moving: bool,
 }
 
-/// A record in memory. Row 0 ends at time 0.
+/// A trial in memory. Row 0 ends at time 0.
 pub struct Trial {
     rows: Vec<Row>,
     row_period: Ps,
@@ -162,17 +164,18 @@ impl Trial {
         })
     }
 
-    /// Row in force this long after row 0; the last one after the end.
+    /// Index of the row in force this long after row 0; after the end, that of the last row.
     pub(super) fn index_at(&self, since: Ps) -> usize {
         ((since / self.row_period) as usize).min(self.rows.len() - 1)
     }
 
-    /// Row whose interval contains the instant this long after row 0 ended, or ends with it; the last one after the end.
+    /// Index of the row whose interval contains the instant this long after row 0 ended, or ends with it; after the end, that
+    /// of the last row.
     pub(super) fn index_ending_after(&self, since: Ps) -> usize {
         (since.div_ceil(self.row_period) as usize).min(self.rows.len() - 1)
     }
 
-    /// Where a sensor failed, its last values stay; before the first, those come early.
+    /// Replaces the values of a sensor that failed by its last ones, or by the next ones before its first.
     pub(super) fn bridge_failures(&mut self) {
         let columns: [fn(&mut Row) -> &mut [f64; 3]; 3] = [
             |row| &mut row.gyro_rps,
@@ -193,7 +196,7 @@ impl Trial {
         }
     }
 
-    /// Row and share of the way to the next; `None` past the end.
+    /// Index of a row and share of the way to the next; `None` after the end.
     pub(super) fn position_at(&self, since: Ps) -> Option<(usize, f64)> {
         let index = (since / self.row_period) as usize;
         let share = (since % self.row_period) as f64 / self.row_period as f64;
@@ -204,11 +207,12 @@ impl Trial {
         self.rows[index]
     }
 
+    /// All rows, in the order of time.
     pub fn rows(&self) -> &[Row] {
         &self.rows
     }
 
-    /// The interval of one row.
+    /// The time that one row covers.
     pub fn row_period(&self) -> Ps {
         self.row_period
     }

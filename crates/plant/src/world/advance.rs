@@ -14,14 +14,15 @@ use crate::{
     time::Ps,
 };
 
-/// Earth's field in ENU, µT: 22 north, 42 into the ground, as in the middle of Europe or China; declination left out.
+/// Earth's magnetic field in ENU, µT: 22 north and 42 into the ground, as in the middle of Europe or China, without
+/// declination.
 const EARTH_FIELD_UT: [f64; 3] = [0.0, 22.0, -42.0];
-/// Right-hand turn about the outward shaft against forward rolling: left, right.
+/// Sign of a right-hand turn about the outward shaft when the wheel rolls forward: left, right.
 pub(super) const SHAFT_SIGN: [f64; 2] = [1.0, -1.0];
 
 impl World {
-    /// The next instant at which something happens here that the board could see by itself: a character on the radio
-    /// line, a motor's frame, the end of a magnetometer conversion. Mechanics in between need no visit.
+    /// The next instant at which the board could notice something: a character on the radio line, a motor's frame, or the
+    /// end of a magnetometer conversion. The mechanics before it need no call of [`advance`](Self::advance).
     pub fn next_event(&self) -> Ps {
         let [left, right] = &self.escs;
         let mut next = left.next_feedback().min(right.next_feedback());
@@ -36,7 +37,7 @@ impl World {
         next
     }
 
-    /// Brings the world up to `now`; never called with an earlier time than before.
+    /// Advances the world to `now`, which must not be earlier than in the call before.
     pub fn advance(&mut self, now: Ps) {
         while let Some((at, due)) = self.first_due(now) {
             match due {
@@ -52,7 +53,7 @@ impl World {
         self.now = self.now.max(now);
     }
 
-    /// The earliest thing to do up to `now`; mechanics first among equals, so that all else sees them up to date.
+    /// The earliest event up to `now`. Mechanics come first among simultaneous ones, so that the others see them up to date.
     fn first_due(&self, now: Ps) -> Option<(Ps, Due)> {
         [
             (self.next_step, Due::Step),
@@ -88,18 +89,16 @@ impl World {
         self.body
             .step(torques_nm, M3508::friction(), floor, physics_step_s());
         self.tilt.step(self.stance(), physics_step_s());
-        let Motion {
-            accel_mps2,
-            gyro_rps,
-        } = self.motion(at);
-        let felt = Motion {
-            accel_mps2: self.mounting.felt(accel_mps2),
-            gyro_rps: self.mounting.felt(gyro_rps),
+        let body_motion = self.motion(at);
+        let board_motion = Motion {
+            accel_mps2: self.mounting.to_sensor(body_motion.accel_mps2),
+            gyro_rps: self.mounting.to_sensor(body_motion.gyro_rps),
         };
-        self.imu.step(felt, at, physics_step_s());
+        self.imu.step(board_motion, at, physics_step_s());
         if self.mag.is_converting(at) {
-            let on_the_board_ut = self.mounting.felt(self.field_ut(at));
-            self.mag.feel(self.mag_mounting.felt(on_the_board_ut));
+            let board_field_ut = self.mounting.to_sensor(self.field_ut(at));
+            self.mag
+                .sample_field(self.mag_mounting.to_sensor(board_field_ut));
         }
     }
 
@@ -113,7 +112,7 @@ impl World {
         }
     }
 
-    /// Mechanical power of the joints' motors, W.
+    /// Steps the joints and returns the mechanical power of their motors, W.
     fn step_joints(&mut self, at: Ps, supply_v: f64) -> f64 {
         let mut power_w = 0.0;
         for index in 0..JOINTS {
@@ -136,7 +135,7 @@ impl World {
         self.joints[joint].shaft(self.legs.pos_rad[joint], self.legs.vel_rps[joint])
     }
 
-    /// Output shafts in their own sense of rotation, rad/s.
+    /// Speeds of the wheels' output shafts in their own sense of rotation, rad/s.
     pub(super) fn shaft_rps(&self) -> [f64; 2] {
         let wheel_rps = self.body.wheel_rps();
         [SHAFT_SIGN[0] * wheel_rps[0], SHAFT_SIGN[1] * wheel_rps[1]]
@@ -152,11 +151,11 @@ impl World {
         }
     }
 
-    /// What a sensor in the body feels, in the body's axes.
+    /// Specific force and angular rate of the body, in the body's axes.
     pub(super) fn motion(&self, at: Ps) -> Motion {
         match &self.playback {
             Some(playback) => playback.motion(at),
-            None => self.tilt.felt(self.body.motion()),
+            None => self.tilt.apply(self.body.motion()),
         }
     }
 

@@ -1,4 +1,4 @@
-//! Every wire of the board but CAN.
+//! Every wire of the board except CAN.
 
 use super::World;
 use crate::{
@@ -10,14 +10,15 @@ use crate::{
 
 /// SPI1: BMI088.
 impl World {
-    /// Level of a chip select; `selected` means low.
+    /// Sets a chip select; `selected` means low.
     pub fn spi_select(&mut self, device: SpiSelect, selected: bool, now: Ps) {
         self.advance(now);
         self.imu.select(device, selected, now);
     }
 
-    /// Exchanges one byte with the selected device; 0xFF (pulled up) where none is.
-    /// `sck_hz` and the SPI mode come from the chip's registers; a device out of its limits answers garbage and
+    /// Exchanges one byte with the selected device, or reads 0xFF (pulled up) if none is selected.
+    ///
+    /// `sck_hz` and the SPI mode come from the chip's registers. A device outside of its limits answers garbage and
     /// complains.
     pub fn spi_transfer(&mut self, mosi: u8, sck_hz: u32, mode: u8, now: Ps) -> u8 {
         self.advance(now);
@@ -30,38 +31,40 @@ impl World {
 
 /// I2C3: IST8310.
 impl World {
-    /// START and address byte; true = acknowledged. Too fast a clock is not, and complained of.
+    /// START and address byte; true if acknowledged. Too fast a clock is not acknowledged, and the device complains.
     pub fn i2c_address(&mut self, addr7: u8, read: bool, scl_hz: u32, now: Ps) -> bool {
         self.advance(now);
         self.complaints.extend(self.mag.misuse(addr7, scl_hz));
         self.mag.address(addr7, read, scl_hz, now)
     }
 
-    /// Data byte to the device; true = acknowledged.
+    /// Data byte to the device; true if acknowledged.
     pub fn i2c_write(&mut self, byte: u8, now: Ps) -> bool {
         self.advance(now);
         self.mag.write(byte, now)
     }
 
-    /// Data byte from the device; a refused acknowledge ends nothing here: the STOP that follows does.
+    /// Data byte from the device. A refused acknowledge ends nothing: the STOP that follows does.
     pub fn i2c_read(&mut self, _ack: bool, now: Ps) -> u8 {
         self.advance(now);
         self.mag.read(now)
     }
 
+    /// STOP: ends the transfer.
     pub fn i2c_stop(&mut self, now: Ps) {
         self.advance(now);
         self.mag.stop();
     }
 
-    /// True where a device holds SDA or SCL low.
+    /// True while a device holds SDA or SCL low.
     pub fn i2c_bus_held(&self) -> bool {
         self.mag.bus_held()
     }
 }
 
 impl World {
-    /// What the board asked of a device beyond its limits since the last call. Silicon punishes that without a word.
+    /// Takes the complaints since the last call: devices that the board used outside of their limits. On a real board nothing
+    /// reports this.
     pub fn take_complaints(&mut self) -> Vec<Complaint> {
         std::mem::take(&mut self.complaints)
     }
@@ -69,41 +72,41 @@ impl World {
 
 /// Plain pins.
 impl World {
-    /// IST8310 RSTN (PG6): level seen by the chip.
+    /// Sets the level of RSTN of the IST8310 (PG6).
     pub fn set_mag_reset_pin(&mut self, high: bool, now: Ps) {
         self.advance(now);
         self.mag.set_reset_pin(high, now);
     }
 
-    /// IST8310 DRDY (PG3).
+    /// Level of DRDY of the IST8310 (PG3).
     pub fn mag_drdy_pin(&self) -> bool {
         self.mag.drdy_pin()
     }
 
-    /// Mean on-fraction of the heater FET (PF6), 0 … 1.
+    /// Sets the duty cycle of the heater (PF6), 0 … 1.
     pub fn set_heater_duty(&mut self, duty: f64, now: Ps) {
         self.advance(now);
         self.imu.set_heater_duty(duty);
     }
 
-    /// LED brightness, blue, green, red, 0 … 1.
+    /// Sets the brightness of the LED: blue, green, red, 0 … 1.
     pub fn set_leds(&mut self, bgr: [f64; 3], now: Ps) {
         self.advance(now);
         self.indicators.leds_bgr = bgr;
     }
 
-    /// Buzzer drive: frequency and duty; duty 0 = silent.
+    /// Drives the buzzer with a frequency and a duty cycle; at a duty of 0 it is silent.
     pub fn set_buzzer(&mut self, hz: f64, duty: f64, now: Ps) {
         self.advance(now);
         self.indicators.buzzer_hz = if duty > 0.0 { hz } else { 0.0 };
     }
 
-    /// Volts at PF10 (battery behind the 200 k / 22 k divider).
+    /// Voltage at PF10, V: the battery behind the divider of 200 kΩ and 22 kΩ.
     pub fn battery_adc_volts(&self) -> f64 {
         self.battery.adc_volts()
     }
 
-    /// Supply and reference of the chip's converters, V: what the board's regulator gives.
+    /// Supply and reference voltage of the chip's converters, V.
     pub fn vdda_v(&self) -> f64 {
         if self.faults.has(Fault::VddaHigh) {
             3.4
@@ -114,7 +117,7 @@ impl World {
         }
     }
 
-    /// PA0, active low: nobody presses it.
+    /// Level of the user key (PA0), active low: nobody presses it.
     pub fn user_key_pin(&self) -> bool {
         true
     }
@@ -122,7 +125,7 @@ impl World {
 
 /// USART3: radio.
 impl World {
-    /// The next character on the USART3 RX line (radio) whose start bit falls at or before `now`.
+    /// Takes the next character on the line of the radio receiver (USART3 RX) whose start bit begins at or before `now`.
     pub fn radio_char(&mut self, now: Ps) -> Option<UartChar> {
         self.advance(now);
         self.radio.take(now)

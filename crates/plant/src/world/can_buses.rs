@@ -1,5 +1,4 @@
-//! Who sits on the CAN buses. The bus model asks every node at each start of frame; nodes are numbered from 0 on each
-//! bus.
+//! The nodes on the CAN buses, numbered from 0 on each bus. The bus model asks every node at each start of frame.
 
 use super::{WireEvent, World, signals};
 use crate::{
@@ -9,7 +8,7 @@ use crate::{
     wire::{CanBusId, CanFrame},
 };
 
-/// The highest priority there is.
+/// Identifier 0 has the highest priority.
 const ROGUE_FRAME: CanFrame = CanFrame::with_data(0, [0; 8]);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,6 +45,7 @@ fn nodes(bus: CanBusId) -> &'static [Node] {
 }
 
 impl World {
+    /// Number of nodes on this bus, present or not, without the board.
     pub fn can_nodes(&self, bus: CanBusId) -> usize {
         nodes(bus).len()
     }
@@ -57,7 +57,7 @@ impl World {
         })
     }
 
-    /// A node that is unpowered or unplugged neither sends nor acknowledges.
+    /// False for a node without power or unplugged, which neither sends nor acknowledges.
     pub fn can_present(&self, bus: CanBusId, node: usize) -> bool {
         !self.unplugged(bus)
             && match nodes(bus)[node] {
@@ -68,7 +68,7 @@ impl World {
             }
     }
 
-    /// True for the present nodes and for one that only listens.
+    /// True for every node that receives: the present ones and an adapter that only listens.
     pub fn can_hears(&self, bus: CanBusId, node: usize) -> bool {
         let listens = nodes(bus)[node] == Node::Adapter
             && self.adapter(bus).mode() == AdapterMode::ListenOnly;
@@ -84,7 +84,7 @@ impl World {
         &mut self.adapters[bus as usize]
     }
 
-    /// The frame this node wants on the bus now.
+    /// The frame that this node wants to send now.
     pub fn can_pending(&self, bus: CanBusId, node: usize, now: Ps) -> Option<CanFrame> {
         if !self.can_present(bus, node) {
             return None;
@@ -97,7 +97,7 @@ impl World {
         }
     }
 
-    /// Its pending frame went out and was acknowledged.
+    /// Tells the node that its pending frame was sent and acknowledged.
     pub fn can_sent(&mut self, bus: CanBusId, node: usize, now: Ps) {
         self.advance(now);
         match nodes(bus)[node] {
@@ -115,7 +115,7 @@ impl World {
         }
     }
 
-    /// A frame of another node ended without error (called once for each node that hears, but not the sender).
+    /// Delivers a frame that ended without error. To be called once for each node that receives, except the sender.
     pub fn can_received(&mut self, bus: CanBusId, node: usize, frame: &CanFrame, now: Ps) {
         self.advance(now);
         match nodes(bus)[node] {
@@ -128,7 +128,7 @@ impl World {
             }
             Node::Adapter => {
                 self.record_tuning_reply(frame, now);
-                self.can_adapter(bus).hear(frame, now);
+                self.can_adapter(bus).receive(frame, now);
             }
             Node::Joint(joint) => self.joint_received(joint, frame, now),
             Node::Esc(_) | Node::Rogue(_) => {}
@@ -147,7 +147,7 @@ impl World {
             .extend(events.map(|(signal, value)| WireEvent { at, signal, value }));
     }
 
-    /// True while a fault cuts or shorts this bus for everybody.
+    /// True while a fault cuts or shorts this bus for all nodes.
     pub fn can_broken(&self, bus: CanBusId) -> bool {
         self.faults.has(match bus {
             CanBusId::Can1 => Fault::Can1Broken,

@@ -1,4 +1,4 @@
-//! The joints' motors on CAN2 and what their frames tell.
+//! The joints' motors on CAN2 and the wire events that their frames cause.
 
 use super::{WireEvent, World, signals};
 use crate::{complaint::Complaint, joints::Reception, time::Ps, wire::CanFrame};
@@ -22,7 +22,7 @@ impl World {
         self.report_change(vel_rps, before.vel_rps, after.vel_rps, now);
     }
 
-    /// Events for whatever of the drive's state differs from what the last ones after.
+    /// Reports whatever of the drive's state has changed since the last report.
     pub(super) fn report_joint(&mut self, joint: usize, now: Ps) {
         let state = self.joints[joint].wire_state(self.joint_shaft(joint));
         let reported = std::mem::replace(&mut self.joints_reported[joint], state);

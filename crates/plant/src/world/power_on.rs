@@ -17,7 +17,10 @@ use crate::{
 };
 
 impl World {
-    /// Everything powered on at time 0, sticks centred, switches off.
+    /// Everything is powered on at time 0, with sticks centred and switches off.
+    ///
+    /// # Errors
+    /// The recorded trial cannot be read.
     pub fn new(config: WorldConfig) -> Result<Self, WorldError> {
         let playback = match &config.imu_trial {
             Some(path) => Some(Playback::open(path)?),

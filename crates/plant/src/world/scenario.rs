@@ -1,4 +1,4 @@
-//! What a scenario does to the world and asks of it.
+//! What a scenario changes in the world, and what it asks about it.
 
 use super::{World, WorldError};
 use crate::{
@@ -13,12 +13,15 @@ use crate::{
 };
 
 impl World {
-    /// Takes effect with the next radio frame.
+    /// Moves sticks and switches; the next radio frame carries them.
     pub fn set_remote(&mut self, input: RemoteInput) {
         self.radio.set_remote(input);
     }
 
     /// Starts or ends a fault at the present time.
+    ///
+    /// # Errors
+    /// No fault has this name.
     pub fn set_fault(&mut self, name: &str, active: bool) -> Result<(), WorldError> {
         let fault =
             faults::by_name(name).ok_or_else(|| WorldError::UnknownFault(name.to_owned()))?;
@@ -43,7 +46,7 @@ impl World {
         Ok(())
     }
 
-    /// Left 1, right 2, unless one has the other's number.
+    /// Gives the left controller number 1 and the right one 2, unless a fault gives both the same.
     fn number_escs(&mut self) {
         let [left, right] = &mut self.escs;
         let has = |fault| self.faults.has(fault);
@@ -51,7 +54,7 @@ impl World {
         right.set_number(if has(Fault::Motor0Doubled) { 1 } else { 2 });
     }
 
-    /// The board's power, which its sensors share; motors, radio and PC have their own.
+    /// Switches the power of the board and its sensors. Motors, radio and PC have their own.
     pub fn set_board_supply(&mut self, on: bool) {
         self.board_supply = on;
         self.set_sensor_faults();
@@ -74,7 +77,7 @@ impl World {
         self.mag.set_faults(mag, self.now);
     }
 
-    /// Wheels are the motors 0 and 1, joints follow.
+    /// Motors 0 and 1 are the wheels; the joints follow.
     fn set_motor_faults(&mut self, motor: usize) {
         let faults = &MOTORS[motor];
         let has = |fault| self.faults.has(fault);
@@ -102,17 +105,19 @@ impl World {
         }
     }
 
+    /// Every fault of the world, for [`World::set_fault`].
     pub fn faults() -> &'static [FaultInfo] {
         faults::INFO
     }
 
-    /// Attitude error of `q_wxyz` (body → ENU earth) against truth or the recording's reference, in degrees:
-    /// `[total, heading, inclination]`; `None` in a gap of the reference and for a quaternion that is none.
+    /// Error of the attitude `q_wxyz` (body → ENU earth, scalar first) against the truth or the recording's reference, in
+    /// degrees: `[total, heading, inclination]`. `None` in a gap of the reference, and for a quaternion without direction.
     pub fn attitude_error_deg(&self, q_wxyz: [f64; 4]) -> Option<[f64; 3]> {
         attitude::error_deg(q_wxyz, self.true_attitude()?)
     }
 
-    /// That of an estimate made at `at`, a little ago. What is not recorded is not remembered: it counts as it is now.
+    /// Error of an estimate that was made at `at`, a moment ago. Without a recording the present truth is used, since the
+    /// past one is not stored.
     pub fn past_attitude_error_deg(&self, q_wxyz: [f64; 4], at: Ps) -> Option<[f64; 3]> {
         match &self.playback {
             Some(playback) => attitude::error_deg(q_wxyz, playback.reference(at)?),

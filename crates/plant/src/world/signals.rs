@@ -1,31 +1,35 @@
-//! Named values for reports and expectations: each name stands beside what it reads.
+//! Named values for reports and expectations.
 
 use super::{WireEvent, World, advance::SHAFT_SIGN};
 use crate::{body::WHEEL_RADIUS_M, recording::Playback};
 
 type Signal = (&'static str, fn(&World) -> f64);
 
-/// Signals decoded from CAN come first, two a wheel, so that wire events can point at them.
+/// Index of the current that the wheel was commanded. Signals decoded from CAN come first, two per wheel, so that wire
+/// events can point at them.
 pub(super) fn motor_current_ma(wheel: usize) -> usize {
     2 * wheel
 }
 
+/// Index of the speed that the wheel's motor fed back.
 pub(super) fn motor_rpm(wheel: usize) -> usize {
     2 * wheel + 1
 }
 
-/// The five of a joint, in the order of their names.
+/// Indices of the five CAN signals of a joint, in the order of their names.
 pub(super) fn joint(joint: usize) -> [usize; 5] {
     std::array::from_fn(|part| 4 + 5 * joint + part)
 }
 
+/// Index of the count of tuning replies.
 pub(super) const TUNING_REPLIES: usize = 24;
 
+/// Index of one byte of the last tuning reply.
 pub(super) fn tuning_reply(byte: usize) -> usize {
     TUNING_REPLIES + 1 + byte
 }
 
-/// Current as commanded on the wire; rotor speed as fed back. Both in the motor's own sense of rotation.
+/// Commanded current and fed-back rotor speed of the wheels, both in the motor's own sense of rotation.
 const CAN: &[Signal] = &[
     ("can.m3508.0.current_ma", |w| w.escs[0].commanded_ma()),
     ("can.m3508.0.rpm", |w| w.escs[0].fed_back_rpm()),
@@ -33,7 +37,7 @@ const CAN: &[Signal] = &[
     ("can.m3508.1.rpm", |w| w.escs[1].fed_back_rpm()),
 ];
 
-/// Replies on the tuning channel that a PC's adapter heard on either bus, and the bytes of the last one.
+/// Number of tuning replies that a PC's adapter received on either bus, and the bytes of the last one.
 const TUNING: &[Signal] = &[
     ("can.tuning.replies", |w| w.tuning_replies.count as f64),
     ("can.tuning.reply.0", |w| w.tuning_replies.last[0]),
@@ -46,8 +50,8 @@ const TUNING: &[Signal] = &[
     ("can.tuning.reply.7", |w| w.tuning_replies.last[7]),
 ];
 
-/// Of one joint's motor, in its own sense of rotation: 1 while it is enabled; torque its present command asks for; the
-/// last feedback on the wire; disable frames it has received.
+/// One joint's motor, in its own sense of rotation: 1 while it is enabled; the torque that its present command asks for; the
+/// last feedback on the wire; the number of disable frames received.
 macro_rules! joint_on_the_wire {
     ($name:literal, $joint:literal) => {
         [
@@ -81,7 +85,7 @@ const JOINT_WIRES: [[Signal; 5]; 4] = [
     joint_on_the_wire!("can.joint.3", 3),
 ];
 
-/// Joint angle from the leg hanging down, speed and the motor's torque in joint coordinates; its winding.
+/// Angle from hanging down, speed and motor torque in joint coordinates; winding temperature.
 macro_rules! joint_truth {
     ($name:literal, $joint:literal) => {
         [
@@ -104,7 +108,7 @@ const JOINTS: [[Signal; 4]; 4] = [
     joint_truth!("truth.joint.3", 3),
 ];
 
-/// What the pilot does: sticks −1 … 1, switches as 0, 1, 2.
+/// Sticks −1 … 1 and switches 0, 1, 2, as the pilot holds them.
 const RADIO: &[Signal] = &[
     ("radio.vx", |w| w.radio.pilot().vx),
     ("radio.wz", |w| w.radio.pilot().wz),
@@ -113,8 +117,8 @@ const RADIO: &[Signal] = &[
     ("radio.mode", |w| f64::from(w.radio.pilot().mode)),
 ];
 
-/// x, y, yaw in the ENU earth frame, m and rad (full turns add up); path and speed along the body's forward axis, m
-/// and m/s. Attitude body → ENU, not a number in a gap of a recording's reference.
+/// x, y and yaw in the ENU earth frame, m and rad (full turns add up); path and speed along the body's forward axis, m and
+/// m/s; attitude body → ENU, NaN in a gap of a recording's reference.
 const BODY: &[Signal] = &[
     ("truth.body.x", |w| w.body.pose().x_m),
     ("truth.body.y", |w| w.body.pose().y_m),
@@ -128,7 +132,7 @@ const BODY: &[Signal] = &[
     ("truth.attitude.z", |w| attitude(w, 3)),
 ];
 
-/// Speed and torque of the motor on the wheel, forward positive; current in the coil, in the motor's own sense.
+/// Speed of the wheel and torque of its motor, forward positive; current in the coil, in the motor's own sense.
 const WHEELS: &[Signal] = &[
     ("truth.wheel.0.speed_mps", |w| rim_mps(w, 0)),
     ("truth.wheel.0.speed_rps", |w| w.body.wheel_rps()[0]),
@@ -140,7 +144,8 @@ const WHEELS: &[Signal] = &[
     ("truth.wheel.1.current_ma", |w| coil_ma(w, 1)),
 ];
 
-/// What the IMU feels before its own errors, in the body's axes, rad/s and m/s²; on-fraction of its heater, 0 … 1.
+/// Angular rate and specific force at the IMU without its errors, in the body's axes, rad/s and m/s²; temperature and duty
+/// cycle of its heater.
 const IMU: &[Signal] = &[
     ("truth.imu.gx", |w| w.motion(w.now).gyro_rps[0]),
     ("truth.imu.gy", |w| w.motion(w.now).gyro_rps[1]),
@@ -152,7 +157,7 @@ const IMU: &[Signal] = &[
     ("truth.imu.heater_duty", |w| w.imu.heater_duty()),
 ];
 
-/// Battery terminals in V, brightness 0 … 1, buzzer 0 while silent.
+/// Battery voltage at the terminals, brightness of the LED 0 … 1, frequency of the buzzer, 0 while silent.
 const BOARD: &[Signal] = &[
     ("truth.battery_v", |w| w.battery.volts()),
     ("truth.led.r", |w| w.indicators.leds_bgr[2]),
@@ -161,7 +166,7 @@ const BOARD: &[Signal] = &[
     ("truth.buzzer.hz", |w| w.indicators.buzzer_hz),
 ];
 
-/// Only while a recording plays: time in it in s, negative in the lead-in; 1 in its movement phase, which is scored.
+/// Only while a recording plays: the time in it, s, negative in the lead-in; 1 in its movement phase, which is scored.
 const RECORDING: &[Signal] = &[
     ("truth.trial.t", |w| {
         played(w, |playback| playback.time_s(w.now))
@@ -208,13 +213,13 @@ impl World {
             .map(|(_, read)| read(self))
     }
 
-    /// Present value of every signal, in the order of `signal_names`; replaces what `out` held.
+    /// Replaces the contents of `out` by the present value of every signal, in the order of [`World::signal_names`].
     pub fn sample(&self, out: &mut Vec<f64>) {
         out.clear();
         out.extend(signals(self.playback.is_some()).map(|(_, read)| read(self)));
     }
 
-    /// Moves wire-level changes since the last call (every received actuator command is one) to the end of `out`.
+    /// Appends the wire events since the last call to `out`. Every command that a motor receives is one.
     pub fn drain_wire_events(&mut self, out: &mut Vec<WireEvent>) {
         out.append(&mut self.wire_events);
     }

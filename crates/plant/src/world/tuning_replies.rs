@@ -1,4 +1,4 @@
-//! Replies on the tuning channel, as a PC's adapter hears them on either bus.
+//! Replies on the tuning channel that a PC's adapter receives on either bus.
 
 use crate::wire::CanFrame;
 
@@ -8,7 +8,7 @@ const REPLY_ID: u32 = 0x7A2;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TuningReplies {
     pub(super) count: u64,
-    /// Bytes of the last one, not a number where it had none.
+    /// Bytes of the last one, NaN beyond its end.
     pub(super) last: [f64; 8],
 }
 

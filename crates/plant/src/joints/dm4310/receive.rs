@@ -13,11 +13,11 @@ const READ: u8 = 0x33;
 const WRITE: u8 = 0x55;
 const STORE: u8 = 0xAA;
 const REFRESH: u8 = 0xCC;
-/// The motor is deaf and mute for so long while it stores its registers. Measured through a USB adapter, and there of a
-/// write; that a write alone is answered at once is how the reconstruction and python-damiao-driver have it.
+/// While a motor stores its registers it neither receives nor sends for this time. It was measured through a USB adapter,
+/// after a write. The reconstruction and python-damiao-driver answer a write alone at once.
 const STORE_TIME: Ps = 150 * MS;
 
-/// Of an identifier only this is compared with ESC_ID; the bits above tell the mode (umeow0716/damiao_firmware,
+/// The part of an identifier that is compared with ESC_ID. The bits above select the mode (umeow0716/damiao_firmware,
 /// `can_protocol.c`, a reconstruction of the maker's program).
 const ADDRESS: u32 = 0xFF;
 const MIT: u32 = 0x000;

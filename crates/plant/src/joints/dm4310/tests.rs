@@ -56,7 +56,7 @@ impl Bench {
 }
 
 #[test]
-fn enabled_it_pulls_as_the_reference_command_says() {
+fn an_enabled_motor_follows_the_reference_command() {
     let mut bench = bench();
     // Disabled at zero: ERR 0, id 1, codes of zero truncated, 30 °C.
     let first = bench
@@ -237,7 +237,7 @@ fn silence_trips_it_after_its_timeout_and_any_frame_counts() {
 }
 
 #[test]
-fn a_driver_fault_lets_go_and_stays_until_cleared_after_its_end() {
+fn a_driver_fault_cuts_the_torque_until_it_is_cleared_after_its_end() {
     let mut bench = bench();
     bench.ask(1, ENABLE);
     bench.ask(1, ONE);
@@ -255,7 +255,7 @@ fn a_driver_fault_lets_go_and_stays_until_cleared_after_its_end() {
 }
 
 #[test]
-fn only_frames_of_the_present_mode_count() {
+fn only_commands_of_the_present_mode_have_an_effect() {
     let mut bench = bench();
     let towards = |pos: f32, most: f32| {
         let [a, b, c, d] = pos.to_le_bytes();
@@ -295,7 +295,7 @@ fn zero_moves_what_the_feedback_calls_zero() {
 }
 
 #[test]
-fn frozen_hot_and_renamed_motors_say_so_or_do_not() {
+fn frozen_hot_and_renumbered_motors_reply_as_they_would() {
     let mut bench = bench();
     let before = bench.ask(1, DISABLE).expect("a reply");
     let frozen = DriveFaults {

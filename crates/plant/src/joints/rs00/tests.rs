@@ -65,7 +65,7 @@ impl Bench {
 
 /// Parameter 0x7028: 0 as shipped, 2000 for 100 ms; a trip is reset mode.
 #[test]
-fn it_holds_for_ever_unless_its_time_out_was_set() {
+fn it_holds_for_ever_unless_its_timeout_was_set() {
     for (can_timeout, lets_go) in [(0, false), (100 * MS, true)] {
         let mut bench = bench();
         bench.motor = Rs00::new(3, 0xFD, can_timeout);
@@ -135,7 +135,7 @@ fn mode_is_set_while_stopped_and_other_modes_commands_do_nothing() {
 }
 
 #[test]
-fn a_fault_is_a_bit_a_word_and_no_torque_until_cleared() {
+fn a_fault_sets_its_bit_and_cuts_the_torque_until_it_is_cleared() {
     let mut bench = bench();
     bench.ask(3, ENABLE);
     bench.ask(3, ONE);
@@ -193,7 +193,7 @@ fn zero_moves_the_goal_with_it() {
 }
 
 #[test]
-fn another_motors_frames_and_services_beyond_the_model_are_told_apart() {
+fn another_motors_frames_are_ignored_and_services_beyond_the_model_reported() {
     let mut bench = bench();
     assert_eq!(bench.ask(2, ENABLE), None);
     assert_eq!(bench.ask(0x303, ENABLE), None);
