@@ -1,17 +1,19 @@
-//! Links of a Markdown document, and paths and tests in its code.
+//! Links of a Markdown document, and paths, tests and commands in its code.
 
 use std::collections::BTreeSet;
 
 use robot_host_tests::links::resolved;
 
-use crate::{anchors::anchors, source::missing_documents, tree::Tree};
+use crate::{anchors::anchors, command, source::missing_documents, tree::Tree};
 
 /// What a document cites and the tree does not have, a line each.
 pub fn missing(tree: &Tree, path: &str, text: &str) -> Vec<String> {
     let mut found = BTreeSet::from_iter(missing_documents(tree, path, text));
     let links = links(text).filter(|link| !is_there(tree, path, link));
     found.extend(links.map(str::to_owned));
-    let words = code(text).into_iter().flat_map(str::split_whitespace);
+    let code = code(text);
+    found.extend(code.iter().flat_map(|line| command::missing(tree, line)));
+    let words = code.into_iter().flat_map(str::split_whitespace);
     found.extend(words.filter_map(|word| missing_place(tree, word)));
     found
         .into_iter()

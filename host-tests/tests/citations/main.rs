@@ -1,6 +1,7 @@
 //! Documents and comments cite only what is in the tree: documents, their sections, files, folders and tests.
 
 mod anchors;
+mod command;
 mod document;
 mod port_table;
 mod source;
