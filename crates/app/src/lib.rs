@@ -21,7 +21,8 @@
 //! | [`indication`] | state → what LED and buzzer tell people |
 //! | [`tick`] | the 1 kHz tick: all stages from CAN frames in to CAN frames out |
 //!
-//! A folder uses only folders above it in this table.
+//! A folder uses only folders above it in this table. The test `host-tests/tests/folder_order` reads the table and checks
+//! that; inside a folder it allows no circle of modules.
 //!
 //! # How the firmware uses it
 //! - sbus task: `input::RemoteReceiver::feed(bytes, ts_us, |update| publish)`, or `reject` if the UART flagged one of

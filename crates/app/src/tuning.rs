@@ -5,6 +5,8 @@
 
 mod channel;
 pub(crate) mod consistency;
+mod gate;
+mod identifiers;
 mod live;
 pub mod opcode;
 mod parameter;
@@ -14,13 +16,14 @@ mod recording;
 mod refusal;
 mod wheel_geometry;
 
-pub use channel::{TuningAccess, TuningChannel, TuningGate};
+pub use channel::{TuningAccess, TuningChannel};
+pub use gate::TuningGate;
+pub use identifiers::{READ_ID, REPLY_ID, WRITE_ID};
 pub use live::{JOINTS, LIVE_PAGES, LiveField, LiveKind, LivePage, LiveSource, LiveValue, WHEELS};
 pub use parameter::{Parameter, ParameterGroup, ParameterKind, Scope};
 pub use parameters::PARAMETERS;
 pub(crate) use parameters::bit;
 pub(crate) use protocol::is_request;
-pub use protocol::{READ_ID, REPLY_ID, WRITE_ID};
 pub use recording::{
     MAX_RECORDING_S, RecordedSample, RecordedSensor, Recorder, RecordingState, RecordingStatus,
 };

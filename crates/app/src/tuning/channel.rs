@@ -1,35 +1,17 @@
 //! Requests in, at most one reply a slot and bus out.
 
 use super::{
-    LiveSource, PARAMETERS, ParameterGroup, Recorder, Refusal, bit, consistency, live, parameters,
+    LiveSource, PARAMETERS, ParameterGroup, Recorder, Refusal, TuningGate, bit, consistency, live,
+    parameters,
     protocol::{self, Request, Restored},
     wheel_geometry::WheelGeometry,
 };
 use crate::{
     bring_up::BringUp,
     diagnostics::DiagnosticsSnapshot,
-    domain::{BusId, CanFrame, OperatorState, RobotConfig, SensorsSnapshot, TuningStatus},
+    domain::{BusId, CanFrame, RobotConfig, SensorsSnapshot, TuningStatus},
     motor::{NotStationary, layout::MotorLayout},
-    safety::ArmingState,
 };
-
-/// Whether writes are done (docs/safety.md#the-rules, 6).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TuningGate {
-    Open,
-    /// Armed, or the pilot is about to.
-    Shut,
-}
-
-impl TuningGate {
-    pub fn of(arming: ArmingState, operator: &OperatorState) -> Self {
-        if arming == ArmingState::Disarmed && !operator.enabled {
-            Self::Open
-        } else {
-            Self::Shut
-        }
-    }
-}
 
 /// Where the motor of a joint stands, in its own coordinates; `None` if there is no such joint.
 pub type StationaryAngle<'a> = &'a dyn Fn(usize) -> Option<Result<f32, NotStationary>>;

@@ -2,6 +2,7 @@
 
 use super::{
     MAX_RECORDING_S, PARAMETERS, ParameterGroup, RecordingStatus, Refusal, bit,
+    identifiers::{READ_ID, REPLY_ID, WRITE_ID},
     live::PAGE_BYTES,
     opcode::{
         BRING_UP, READ_FINDINGS, READ_GEOMETRY, READ_LIVE, READ_PARAMETER, READ_RECORDING,
@@ -11,21 +12,8 @@ use super::{
 };
 use crate::{
     bring_up::BringUpRequest,
-    domain::{CanFrame, ParamState, ParamStatus, StandardId},
+    domain::{CanFrame, ParamState, ParamStatus},
 };
-
-pub(super) const fn id(raw: u16) -> StandardId {
-    match StandardId::new(raw) {
-        Some(id) => id,
-        None => unreachable!(),
-    }
-}
-
-/// Requests that change something.
-pub const WRITE_ID: StandardId = id(0x7A0);
-/// Requests that only ask.
-pub const READ_ID: StandardId = id(0x7A1);
-pub const REPLY_ID: StandardId = id(0x7A2);
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Request {

@@ -3,7 +3,10 @@
 //! The frame of a sample has x, y and z in whole steps as `i16` and the low 16 bits of its time in units of 100 µs as
 //! `u16`, all little-endian. Frames leave in ticks without a reply, one a tick, in the mailbox that motors leave free.
 
-use super::{TuningGate, protocol::id};
+use super::{
+    TuningGate,
+    identifiers::{ACCEL_ID, GYRO_ID, MAG_ID},
+};
 use crate::domain::{BusId, CanFrame, SensorsSnapshot, StandardId};
 
 /// Longest recording.
@@ -25,9 +28,9 @@ impl RecordedSensor {
 
     pub const fn frame_id(self) -> StandardId {
         match self {
-            Self::Accel => id(0x7A3),
-            Self::Gyro => id(0x7A4),
-            Self::Mag => id(0x7A5),
+            Self::Accel => ACCEL_ID,
+            Self::Gyro => GYRO_ID,
+            Self::Mag => MAG_ID,
         }
     }
 

@@ -5,6 +5,7 @@ use crate::{
     bring_up::BringUpStep,
     domain::{ParamError, ParamState, ParamStatus, StandardId, WheelOdomConfig},
     motor::layout::ROBOT_LAYOUT,
+    tuning::READ_ID,
 };
 
 /// docs/tuning.md#frames: radius 75 mm, track 450 mm, ratio 36.00, left wheel reversed.
@@ -211,22 +212,6 @@ fn nothing_is_written_while_armed() {
     }
 }
 
-#[test]
-fn the_gate_is_open_only_with_the_switch_off_and_the_robot_disarmed() {
-    for (arming, enabled, gate) in [
-        (ArmingState::Disarmed, false, TuningGate::Open),
-        (ArmingState::Disarmed, true, TuningGate::Shut),
-        (ArmingState::Armed, false, TuningGate::Shut),
-        (ArmingState::Armed, true, TuningGate::Shut),
-    ] {
-        let operator = OperatorState {
-            enabled,
-            ..OperatorState::default()
-        };
-        assert_eq!(TuningGate::of(arming, &operator), gate);
-    }
-}
-
 /// The geometry is one change: an impossible ratio keeps the radius that came with it out, too.
 #[test]
 fn a_write_is_done_whole_or_not_at_all() {
@@ -243,7 +228,7 @@ fn one_request_a_slot_and_bus() {
     assert_eq!(bench.ask(TuningGate::Open, 0x7A0, &GEOMETRY), None);
     assert!(bench.unchanged());
     assert_eq!(bench.channel.status().dropped, 1);
-    let read = CanFrame::from_payload(protocol::READ_ID, &[0x11]).unwrap();
+    let read = CanFrame::from_payload(READ_ID, &[0x11]).unwrap();
     let other_bus = bench.ask_on(BusId::Can2, TuningGate::Open, &read);
     assert!(other_bus.is_some());
     bench.channel.begin_slot();
