@@ -9,7 +9,7 @@ use std::{
 
 use toml::{Table, Value};
 
-use crate::settings;
+use crate::settings::{self, UnknownName, ValueError};
 
 const HEADING: &str =
     "# Parameters of the robot: `robotctl tune --can … apply FILE` writes them.\n";
@@ -31,7 +31,20 @@ pub enum ParameterFileError {
         source: std::io::Error,
     },
     #[error("{path}: {why}")]
-    Wrong { path: PathBuf, why: String },
+    Wrong { path: PathBuf, why: FormatError },
+}
+
+/// A text is no parameter file.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum FormatError {
+    #[error(transparent)]
+    Toml(#[from] toml::de::Error),
+    #[error(transparent)]
+    Name(#[from] UnknownName),
+    #[error("{name}: {why}")]
+    Value { name: String, why: ValueError },
+    #[error("`{0}` is no number")]
+    NoNumber(String),
 }
 
 impl ParameterFile {
@@ -77,14 +90,14 @@ impl ParameterFile {
         self.0.iter().map(|(name, value)| (name.as_str(), *value))
     }
 
-    fn parse(text: &str) -> Result<Self, String> {
-        let table: Table = text.parse().map_err(|e: toml::de::Error| e.to_string())?;
+    fn parse(text: &str) -> Result<Self, FormatError> {
+        let table: Table = text.parse()?;
         let mut file = Self::default();
         file.add_table("", &table)?;
         Ok(file)
     }
 
-    fn add_table(&mut self, prefix: &str, table: &Table) -> Result<(), String> {
+    fn add_table(&mut self, prefix: &str, table: &Table) -> Result<(), FormatError> {
         for (key, value) in table {
             let name = format!("{prefix}{key}");
             match value {
@@ -94,13 +107,13 @@ impl ParameterFile {
                 }
                 Value::Integer(number) => self.set(&name, *number as f32),
                 Value::String(word) => {
-                    let named = settings::find(&name).map_err(|error| error.to_string())?;
-                    let value = named
-                        .parse(word)
-                        .map_err(|error| format!("{name}: {error}"))?;
-                    self.set(&name, value);
+                    let named = settings::find(&name)?;
+                    match named.parse(word) {
+                        Ok(value) => self.set(&name, value),
+                        Err(why) => return Err(FormatError::Value { name, why }),
+                    }
                 }
-                _ => return Err(format!("`{name}` is no number")),
+                _ => return Err(FormatError::NoNumber(name)),
             }
         }
         Ok(())
@@ -168,14 +181,14 @@ mod tests {
 
     #[test]
     fn what_is_no_number_is_named() {
-        let why = ParameterFile::parse("[heater]\nkp = \"one\"\n").unwrap_err();
-        assert_eq!(why, "heater.kp: `one` is no number");
-        let why = ParameterFile::parse("[heater]\nkp = true\n").unwrap_err();
-        assert_eq!(why, "`heater.kp` is no number");
-        let why = ParameterFile::parse("[mounting]\nboard = \"unset\"\n").unwrap_err();
+        let why = |text| ParameterFile::parse(text).unwrap_err().to_string();
+        let found = why("[heater]\nkp = \"one\"\n");
+        assert_eq!(found, "heater.kp: `one` is no number");
+        assert_eq!(why("[heater]\nkp = true\n"), "`heater.kp` is no number");
+        let found = why("[mounting]\nboard = \"unset\"\n");
         assert!(
-            why.starts_with("mounting.board: `unset` is not a value"),
-            "{why}"
+            found.starts_with("mounting.board: `unset` is not a value"),
+            "{found}"
         );
         assert!(ParameterFile::parse("[imu]\nscale = nan\n").is_err());
     }

@@ -2,46 +2,17 @@
 
 mod header;
 mod mcap;
+mod sample;
 mod table;
 mod units;
 
 use std::path::{Path, PathBuf};
 
-use nalgebra::Vector3;
-
-/// The sensors that can be calibrated from a recording.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sensor {
-    /// m/s², specific force in the body frame (x forward, y left, z up).
-    Accelerometer,
-    /// µT, body frame.
-    Magnetometer,
-}
-
-impl Sensor {
-    /// Columns of a table.
-    fn columns(self) -> [&'static str; 3] {
-        match self {
-            Self::Accelerometer => ["ax", "ay", "az"],
-            Self::Magnetometer => ["mx", "my", "mz"],
-        }
-    }
-
-    /// Place of the vector in the messages of `/diag`.
-    fn diagnostics_field(self) -> &'static str {
-        match self {
-            Self::Accelerometer => "/sensors/imu/accel_mps2",
-            Self::Magnetometer => "/sensors/mag/mag_ut",
-        }
-    }
-}
-
-/// One measurement; finite.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sample {
-    pub t_s: f64,
-    pub value: Vector3<f64>,
-}
+pub use header::HeaderError;
+pub use mcap::McapError;
+pub use sample::{Sample, Sensor};
+pub use table::RowError;
+pub use units::UnitError;
 
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
@@ -54,10 +25,10 @@ pub enum RecordingError {
     Table {
         path: PathBuf,
         line: usize,
-        why: String,
+        why: RowError,
     },
     #[error("{path} is no readable MCAP file: {why}")]
-    Mcap { path: PathBuf, why: String },
+    Mcap { path: PathBuf, why: McapError },
     #[error("{path} holds no samples: {expected}")]
     Empty {
         path: PathBuf,
@@ -65,13 +36,13 @@ pub enum RecordingError {
     },
 }
 
-/// All samples of a file in the order of their times. A name that ends in `.mcap` is a recording of the robot or the
-/// emulated board, any other a table.
+/// Reads all samples of a file, in the order of their times. A name that ends in `.mcap` is a recording of the robot or
+/// the emulated board, any other a table.
 pub fn load(path: &Path, sensor: Sensor) -> Result<Vec<Sample>, RecordingError> {
     load_noting(path, sensor, |_| {})
 }
 
-/// As [`load`]; `note` is told which unit the numbers were taken for where the header names none.
+/// Does what [`load`] does, and tells `note` which unit the numbers were taken for where the header names none.
 pub fn load_noting(
     path: &Path,
     sensor: Sensor,

@@ -46,7 +46,11 @@ impl Slcan {
             .open()
             .map_err(|error| CanLinkError::Open {
                 device: name.to_owned(),
-                why: format!("{error}; {}", advice(error.kind(), name, &port_names())),
+                why: format!(
+                    "{}; {}",
+                    error.to_string().trim_end_matches('.'),
+                    advice(error.kind(), name, &port_names())
+                ),
             })?;
         let mut link = Self {
             port,

@@ -69,7 +69,16 @@ pub enum ReportError {
         source: std::io::Error,
     },
     #[error("{path} is no report of first-board: {why}; name another with --report")]
-    Wrong { path: PathBuf, why: String },
+    Wrong { path: PathBuf, why: FormatError },
+}
+
+/// A text is no report.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum FormatError {
+    #[error(transparent)]
+    Toml(#[from] toml::de::Error),
+    #[error("[{0}] has no outcome")]
+    NoOutcome(&'static str),
 }
 
 /// Entries by the ids of their checks.
@@ -105,8 +114,8 @@ impl Report {
         Ok(report)
     }
 
-    fn parse(&mut self, text: &str) -> Result<(), String> {
-        let table: Table = text.parse().map_err(|e: toml::de::Error| e.to_string())?;
+    fn parse(&mut self, text: &str) -> Result<(), FormatError> {
+        let table: Table = text.parse()?;
         let status = table.get("status").and_then(Value::as_str);
         self.status = status.map(str::to_owned);
         for check in &CHECKS {
@@ -117,7 +126,7 @@ impl Report {
             let word = field("outcome");
             let mut outcomes = Outcome::ALL.into_iter();
             let outcome = outcomes.find(|outcome| Some(outcome.word()) == word);
-            let outcome = outcome.ok_or_else(|| format!("[{}] has no outcome", check.id))?;
+            let outcome = outcome.ok_or(FormatError::NoOutcome(check.id))?;
             let measured = value.get("measured").and_then(Value::as_table);
             let entry = Entry {
                 outcome,

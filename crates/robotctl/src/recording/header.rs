@@ -1,12 +1,37 @@
-//! The first line of a table: what separates its columns, and which of them count.
+//! The first line of a table: its separator, and the columns that are read.
 
-use super::{Sensor, table::expected, units::Quantity};
+use super::{sample::Sensor, units::Quantity};
 
-/// A column that counts.
+/// The header of a table, or a row under it, cannot be read.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum HeaderError {
+    #[error(
+        "`{line}` has one column only: separate columns with commas, semicolons or tabs; {}",
+        .sensor.expected_header()
+    )]
+    OneColumn { line: String, sensor: Sensor },
+    #[error("a line of numbers stands where the columns' names must be; {}", .0.expected_header())]
+    NoNames(Sensor),
+    #[error("no column `{name}` among {names}; {}", .sensor.expected_header())]
+    NoColumn {
+        name: String,
+        names: String,
+        sensor: Sensor,
+    },
+    #[error("the unit `{unit}` of column `{name}` is not known")]
+    UnknownUnit { unit: String, name: String },
+    #[error(
+        "{fields} fields under {names} names: are these decimal commas between commas? Export with semicolons or with \
+         decimal points"
+    )]
+    DecimalCommas { fields: usize, names: usize },
+}
+
+/// A column that is read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Column {
     pub place: usize,
-    /// Into s, m/s² or µT; `None` if the header names no unit.
+    /// Factor into s, m/s² or µT; `None` if the header names no unit.
     pub factor: Option<f64>,
 }
 
@@ -24,23 +49,18 @@ pub(super) struct Header {
 }
 
 impl Header {
-    pub fn parse(line: &str, sensor: Sensor) -> Result<Self, String> {
+    pub fn parse(line: &str, sensor: Sensor) -> Result<Self, HeaderError> {
         let count = |separator: &char| line.matches(*separator).count();
-        // The first of the most frequent ones.
+        // The most frequent one; of several, the first.
         let separator = [',', ';', '\t'].into_iter().rev().max_by_key(count);
         let separator = separator.filter(|separator| count(separator) > 0);
         let Some(separator) = separator else {
-            return Err(format!(
-                "`{line}` has one column only: separate columns with commas, semicolons or tabs; {}",
-                expected(sensor)
-            ));
+            let line = line.to_owned();
+            return Err(HeaderError::OneColumn { line, sensor });
         };
         let names: Vec<&str> = split(line, separator);
         if names.iter().all(|name| is_number(name)) {
-            return Err(format!(
-                "a line of numbers stands where the columns' names must be; {}",
-                expected(sensor)
-            ));
+            return Err(HeaderError::NoNames(sensor));
         }
         let [x, y, z] = ["x", "y", "z"].map(|axis| axis_column(&names, sensor, axis));
         Ok(Self {
@@ -53,20 +73,19 @@ impl Header {
         })
     }
 
-    pub fn fields<'a>(&self, row: &'a str) -> Result<Vec<&'a str>, String> {
+    /// Splits a row.
+    pub fn fields<'a>(&self, row: &'a str) -> Result<Vec<&'a str>, HeaderError> {
         let fields = split(row, self.separator);
         if self.separator == ',' && self.width > 1 && fields.len() == 2 * self.width {
-            return Err(format!(
-                "{} fields under {} names: are these decimal commas between commas? Export with semicolons or with decimal \
-                 points",
-                fields.len(),
-                self.width
-            ));
+            return Err(HeaderError::DecimalCommas {
+                fields: fields.len(),
+                names: self.width,
+            });
         }
         Ok(fields)
     }
 
-    /// With a decimal comma too, where commas do not separate.
+    /// Parses a number. Its decimal point may be a comma where commas do not separate columns.
     pub fn number(&self, field: &str) -> Option<f64> {
         match field.matches(',').count() {
             1 if self.separator != ',' && !field.contains('.') => field.replace(',', ".").parse(),
@@ -87,13 +106,13 @@ fn is_number(text: &str) -> bool {
     text.replace(',', ".").parse::<f64>().is_ok()
 }
 
-fn time_column(names: &[&str], sensor: Sensor) -> Result<Column, String> {
+fn time_column(names: &[&str], sensor: Sensor) -> Result<Column, HeaderError> {
     const NAMES: [&str; 3] = ["t", "time", "timestamp"];
     column(names, Quantity::Time, |name| NAMES.contains(&name))?
         .ok_or_else(|| missing("t", names, sensor))
 }
 
-fn axis_column(names: &[&str], sensor: Sensor, axis: &str) -> Result<Column, String> {
+fn axis_column(names: &[&str], sensor: Sensor, axis: &str) -> Result<Column, HeaderError> {
     let begins: &[&str] = match sensor {
         Sensor::Accelerometer => &["a", "acc", "accel"],
         Sensor::Magnetometer => &["m", "mag"],
@@ -103,19 +122,19 @@ fn axis_column(names: &[&str], sensor: Sensor, axis: &str) -> Result<Column, Str
         .ok_or_else(|| missing(&format!("{}{axis}", begins[0]), names, sensor))
 }
 
-fn missing(name: &str, names: &[&str], sensor: Sensor) -> String {
-    format!(
-        "no column `{name}` among {}; {}",
-        names.join(", "),
-        expected(sensor)
-    )
+fn missing(name: &str, names: &[&str], sensor: Sensor) -> HeaderError {
+    HeaderError::NoColumn {
+        name: name.to_owned(),
+        names: names.join(", "),
+        sensor,
+    }
 }
 
 fn column(
     names: &[&str],
     quantity: Quantity,
     is_wanted: impl Fn(&str) -> bool,
-) -> Result<Option<Column>, String> {
+) -> Result<Option<Column>, HeaderError> {
     for (place, name) in names.iter().enumerate() {
         let (name, unit) = name_and_unit(name, quantity);
         if !is_wanted(&name) {
@@ -125,7 +144,7 @@ fn column(
             None => None,
             Some(unit) => match quantity.factor(&unit) {
                 Some(factor) => Some(factor),
-                None => return Err(format!("the unit `{unit}` of column `{name}` is not known")),
+                None => return Err(HeaderError::UnknownUnit { unit, name }),
             },
         };
         return Ok(Some(Column { place, factor }));
@@ -133,7 +152,8 @@ fn column(
     Ok(None)
 }
 
-/// `ax`, `Acc_X`, `t_ms`, `ax [g]`, `time (s)`: the name in lower case without `_`, and the unit if there is one.
+/// Splits `ax`, `Acc_X`, `t_ms`, `ax [g]` or `time (s)` into the name, in lower case without `_`, and the unit if there is
+/// one.
 fn name_and_unit(text: &str, quantity: Quantity) -> (String, Option<String>) {
     let text = text.to_lowercase();
     let bare = |name: &str| name.replace(['_', ' ', '.'], "");

@@ -4,20 +4,29 @@ use mcap::MessageStream;
 use nalgebra::Vector3;
 use serde_json::Value;
 
-use super::{Sample, Sensor};
+use super::sample::{Sample, Sensor};
+
+/// A recording cannot be read.
+#[derive(Debug, thiserror::Error)]
+pub enum McapError {
+    #[error(transparent)]
+    Format(#[from] mcap::McapError),
+    #[error(transparent)]
+    Message(#[from] serde_json::Error),
+}
 
 const TOPIC: &str = "/diag";
 const NS_A_SECOND: f64 = 1e9;
 
-/// Each new measurement once: the recorder repeats the last one until the next comes.
-pub(super) fn samples(bytes: &[u8], sensor: Sensor) -> Result<Vec<Sample>, String> {
+/// Returns each new measurement once: the recorder repeats the last one until the next comes.
+pub(super) fn samples(bytes: &[u8], sensor: Sensor) -> Result<Vec<Sample>, McapError> {
     let mut samples: Vec<Sample> = Vec::new();
-    for message in MessageStream::new(bytes).map_err(|e| e.to_string())? {
-        let message = message.map_err(|e| e.to_string())?;
+    for message in MessageStream::new(bytes)? {
+        let message = message?;
         if message.channel.topic != TOPIC {
             continue;
         }
-        let json: Value = serde_json::from_slice(&message.data).map_err(|e| e.to_string())?;
+        let json: Value = serde_json::from_slice(&message.data)?;
         let Some(value) = vector(json.pointer(sensor.diagnostics_field())) else {
             continue;
         };

@@ -11,19 +11,36 @@
 use nalgebra::Vector3;
 
 use super::{
-    Sample, Sensor,
-    header::{Columns, Header},
-    units::{self, Quantity},
+    header::{Columns, Header, HeaderError},
+    sample::{Sample, Sensor},
+    units::{self, UnitError},
 };
+
+/// A line of a table cannot be read.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RowError {
+    #[error("this is no text in UTF-8")]
+    NotUtf8,
+    #[error(transparent)]
+    Header(#[from] HeaderError),
+    #[error(transparent)]
+    Unit(#[from] UnitError),
+    #[error("some of the three axes have a unit in the header and some have none")]
+    MixedUnits,
+    #[error("column {column}: `{field}` is no number")]
+    NoNumber { column: usize, field: String },
+    #[error("time runs backwards: one recording a file")]
+    TimeRunsBackwards,
+}
 
 #[derive(Debug, PartialEq)]
 pub(super) struct TableError {
     /// Counted from 1.
     pub line: usize,
-    pub why: String,
+    pub why: RowError,
 }
 
-/// The samples, in s and the sensor's unit, and what was taken for granted.
+/// The samples, in s and the sensor's unit, and notes about guessed units.
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct Table {
     pub samples: Vec<Sample>,
@@ -33,7 +50,7 @@ pub(super) struct Table {
 pub(super) fn read(bytes: &[u8], sensor: Sensor) -> Result<Table, TableError> {
     let text = std::str::from_utf8(bytes).map_err(|_| TableError {
         line: 1,
-        why: "this is no text in UTF-8".into(),
+        why: RowError::NotUtf8,
     })?;
     let mut lines = text
         .trim_start_matches('\u{feff}')
@@ -48,7 +65,7 @@ pub(super) fn read(bytes: &[u8], sensor: Sensor) -> Result<Table, TableError> {
         line: header_line,
         why,
     };
-    let header = Header::parse(header, sensor).map_err(of_header)?;
+    let header = Header::parse(header, sensor).map_err(|why| of_header(why.into()))?;
     let mut samples: Vec<Sample> = Vec::new();
     for (line, row) in lines {
         let sample = sample(&header, row).map_err(|why| TableError { line, why })?;
@@ -56,7 +73,7 @@ pub(super) fn read(bytes: &[u8], sensor: Sensor) -> Result<Table, TableError> {
             continue;
         };
         if samples.last().is_some_and(|last| last.t_s > sample.t_s) {
-            let why = "time runs backwards: one recording a file".into();
+            let why = RowError::TimeRunsBackwards;
             return Err(TableError { line, why });
         }
         samples.push(sample);
@@ -65,8 +82,8 @@ pub(super) fn read(bytes: &[u8], sensor: Sensor) -> Result<Table, TableError> {
     Ok(Table { samples, notes })
 }
 
-/// `None` if the row has no value of the sensor.
-fn sample(header: &Header, row: &str) -> Result<Option<Sample>, String> {
+/// Parses a row; `None` if it has no value of the sensor.
+fn sample(header: &Header, row: &str) -> Result<Option<Sample>, RowError> {
     let fields = header.fields(row)?;
     let field = |place: usize| fields.get(place).copied().unwrap_or_default();
     let axes = header.columns.axes.map(|axis| axis.place);
@@ -77,7 +94,10 @@ fn sample(header: &Header, row: &str) -> Result<Option<Sample>, String> {
         let field = field(place);
         match header.number(field) {
             Some(number) if number.is_finite() => Ok(number),
-            _ => Err(format!("column {}: `{field}` is no number", place + 1)),
+            _ => Err(RowError::NoNumber {
+                column: place + 1,
+                field: field.to_owned(),
+            }),
         }
     };
     let [x, y, z] = axes;
@@ -87,12 +107,12 @@ fn sample(header: &Header, row: &str) -> Result<Option<Sample>, String> {
     }))
 }
 
-/// Into s and the sensor's unit.
+/// Converts samples into s and the sensor's unit, and returns notes about guessed units.
 fn convert(
     samples: &mut [Sample],
     columns: &Columns,
     sensor: Sensor,
-) -> Result<Vec<String>, String> {
+) -> Result<Vec<String>, RowError> {
     let mut notes = Vec::new();
     let time_factor = match columns.time.factor {
         Some(factor) => factor,
@@ -113,9 +133,7 @@ fn convert(
             Vector3::repeat(guess.factor)
         }
         _ => {
-            return Err(
-                "some of the three axes have a unit in the header and some have none".into(),
-            );
+            return Err(RowError::MixedUnits);
         }
     };
     for sample in samples {
@@ -123,16 +141,6 @@ fn convert(
         sample.value.component_mul_assign(&factors);
     }
     Ok(notes)
-}
-
-/// For the messages of the header.
-pub(super) fn expected(sensor: Sensor) -> String {
-    let [x, y, z] = sensor.columns();
-    let unit = match Quantity::Of(sensor) {
-        Quantity::Of(Sensor::Accelerometer) => "m/s²",
-        _ => "µT",
-    };
-    format!("the header must be `t,{x},{y},{z}` (s and {unit})")
 }
 
 #[cfg(test)]

@@ -1,11 +1,30 @@
-//! Units of a table's columns: as the header names them, else as the numbers themselves tell.
+//! Units of a table's columns: named by the header, or else guessed from the numbers.
 
-use super::Sensor;
+use super::sample::Sensor;
 use crate::statistics::median;
 
 const GRAVITY_MPS2: f64 = 9.806_65;
-/// With fewer rows nothing is guessed.
+/// Fewer rows than this are no basis for a guess.
 const LEAST_ROWS: usize = 20;
+
+/// The unit of a column cannot be guessed.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum UnitError {
+    #[error(
+        "most rows have the time of the row before: it must be finer, such as seconds with three decimals"
+    )]
+    TimeStandsStill,
+    #[error(
+        "its rows are {0} apart in time: in seconds that is not what a sensor gives (50 Hz or more, so 0.02 or less); if \
+         it is another unit, name the column `t_ms` or `t_us`"
+    )]
+    UnlikelyPeriod(f64),
+    #[error(
+        "the acceleration is {0:.3} in the middle: at rest it is 9.8 in m/s² and 1 in g. Is it in another unit, or raw \
+         counts?"
+    )]
+    UnlikelyGravity(f64),
+}
 
 /// What a column measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,7 +34,7 @@ pub(super) enum Quantity {
 }
 
 impl Quantity {
-    /// Names of units, in lower case, and what one of them is in s, m/s² or µT.
+    /// Returns the names of units, in lower case, with their factors into s, m/s² or µT.
     fn units(self) -> &'static [(&'static str, f64)] {
         match self {
             Self::Time => &[
@@ -51,7 +70,7 @@ impl Quantity {
         }
     }
 
-    /// What one of the unit is in the quantity's own.
+    /// Returns the factor of a unit into the quantity's own.
     pub fn factor(self, unit: &str) -> Option<f64> {
         let mut units = self.units().iter();
         let found = units.find(|(name, _)| *name == unit);
@@ -59,12 +78,12 @@ impl Quantity {
     }
 }
 
-/// A unit that the numbers tell.
+/// A unit guessed from the numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Guess {
-    /// Into the quantity's own unit.
+    /// Factor into the quantity's own unit.
     pub factor: f64,
-    /// What it is taken for; `None` if that is what this tool expects.
+    /// Its name; `None` if it is the unit that this tool expects.
     pub taken_for: Option<&'static str>,
 }
 
@@ -82,8 +101,8 @@ impl Guess {
     }
 }
 
-/// Nobody samples a sensor faster than 3 kHz or slower than 4 Hz to calibrate it.
-pub(super) fn of_time(times: &[f64]) -> Result<Guess, String> {
+/// Guesses the unit of time: nobody samples a sensor faster than 3 kHz or slower than 4 Hz to calibrate it.
+pub(super) fn of_time(times: &[f64]) -> Result<Guess, UnitError> {
     if times.len() < LEAST_ROWS {
         return Ok(Guess::AS_EXPECTED);
     }
@@ -94,23 +113,14 @@ pub(super) fn of_time(times: &[f64]) -> Result<Guess, String> {
         2.0..=250.0 => Guess::taken(1e-3, "milliseconds"),
         400.0..=250_000.0 => Guess::taken(1e-6, "microseconds"),
         400_000.0..=250_000_000.0 => Guess::taken(1e-9, "nanoseconds"),
-        0.0 => {
-            return Err(
-                "most rows have the time of the row before: it must be finer, such as seconds with three decimals"
-                    .into(),
-            );
-        }
-        _ => {
-            return Err(format!(
-                "its rows are {step} apart in time: in seconds that is not what a sensor gives (50 Hz or more, so 0.02 or \
-                 less); if it is another unit, name the column `t_ms` or `t_us`"
-            ));
-        }
+        0.0 => return Err(UnitError::TimeStandsStill),
+        _ => return Err(UnitError::UnlikelyPeriod(step)),
     })
 }
 
-/// A robot that is mostly still shows gravity, in whatever unit; a compass the earth's field and some iron.
-pub(super) fn of_vectors(sensor: Sensor, strengths: &[f64]) -> Result<Guess, String> {
+/// Guesses the unit of a sensor: a robot that is mostly still shows gravity, and a magnetometer the earth's field and some
+/// iron.
+pub(super) fn of_vectors(sensor: Sensor, strengths: &[f64]) -> Result<Guess, UnitError> {
     if strengths.len() < LEAST_ROWS {
         return Ok(Guess::AS_EXPECTED);
     }
@@ -119,12 +129,7 @@ pub(super) fn of_vectors(sensor: Sensor, strengths: &[f64]) -> Result<Guess, Str
         (Sensor::Accelerometer, 6.5..=13.5) => Guess::AS_EXPECTED,
         (Sensor::Accelerometer, 0.65..=1.35) => Guess::taken(GRAVITY_MPS2, "g"),
         (Sensor::Accelerometer, 650.0..=1_350.0) => Guess::taken(GRAVITY_MPS2 * 1e-3, "mg"),
-        (Sensor::Accelerometer, _) => {
-            return Err(format!(
-                "the acceleration is {strength:.3} in the middle: at rest it is 9.8 in m/s² and 1 in g. Is it in another \
-                 unit, or raw counts?"
-            ));
-        }
+        (Sensor::Accelerometer, _) => return Err(UnitError::UnlikelyGravity(strength)),
         (Sensor::Magnetometer, 0.02..2.0) => Guess::taken(100.0, "gauss"),
         (Sensor::Magnetometer, 5_000.0..200_000.0) => Guess::taken(1e-3, "nanotesla"),
         (Sensor::Magnetometer, _) => Guess::AS_EXPECTED,

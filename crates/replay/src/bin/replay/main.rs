@@ -13,7 +13,7 @@ use std::{
     process::ExitCode,
 };
 
-use anyhow::{Context, bail};
+use anyhow::{Context, bail, ensure};
 use clap::Parser;
 use robot_replay::{Mode, trial_files};
 
@@ -51,16 +51,16 @@ Examples:
   cargo xtask replay --trial fast_rotation --gyro-offset-dps 2.5,-2.5,2.5
   python3 broad/score.py broad/hz200 target/replay --at est    # the same figures from the data's own script";
 
-fn offset(text: &str) -> Result<[f32; 3], String> {
+fn offset(text: &str) -> anyhow::Result<[f32; 3]> {
     let numbers: Result<Vec<f32>, _> = text.split(',').map(|n| n.trim().parse()).collect();
-    let numbers = numbers.map_err(|error| error.to_string())?;
-    let offset: [f32; 3] = numbers
-        .try_into()
-        .map_err(|_| "expected three numbers with commas between".to_owned())?;
-    match offset.iter().all(|axis| axis.is_finite()) {
-        true => Ok(offset),
-        false => Err("not a finite number".to_owned()),
-    }
+    let Ok(offset) = <[f32; 3]>::try_from(numbers?) else {
+        bail!("expected three numbers with commas between");
+    };
+    ensure!(
+        offset.iter().all(|axis| axis.is_finite()),
+        "not a finite number"
+    );
+    Ok(offset)
 }
 
 fn main() -> ExitCode {
@@ -125,7 +125,7 @@ mod tests {
 
     #[test]
     fn an_offset_is_three_finite_numbers() {
-        assert_eq!(offset("2.5, -1,0"), Ok([2.5, -1.0, 0.0]));
+        assert_eq!(offset("2.5, -1,0").unwrap(), [2.5, -1.0, 0.0]);
         for wrong in ["1,2", "1,2,3,4", "1,x,3", "", "1,2,NaN"] {
             assert!(offset(wrong).is_err(), "{wrong}");
         }

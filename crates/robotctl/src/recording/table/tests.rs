@@ -2,7 +2,7 @@ use super::*;
 
 fn error(text: &str) -> (usize, String) {
     let error = read(text.as_bytes(), Sensor::Accelerometer).unwrap_err();
-    (error.line, error.why)
+    (error.line, error.why.to_string())
 }
 
 #[test]
