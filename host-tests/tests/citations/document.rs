@@ -21,6 +21,13 @@ pub fn missing(tree: &Tree, path: &str, text: &str) -> Vec<String> {
         .collect()
 }
 
+/// Documents that the links of a document lead to.
+pub fn linked(from: &str, text: &str) -> Vec<String> {
+    let files = links(text).map(|link| link.split_once('#').map_or(link, |(file, _)| file));
+    let documents = files.filter(|file| file.ends_with(".md") && !file.contains("://"));
+    documents.filter_map(|file| resolved(from, file)).collect()
+}
+
 /// Targets of `[text](target)`.
 fn links(text: &str) -> impl Iterator<Item = &str> {
     let ends = text.split("](").skip(1);

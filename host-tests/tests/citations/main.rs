@@ -7,6 +7,8 @@ mod port_table;
 mod source;
 mod tree;
 
+use std::collections::BTreeSet;
+
 use tree::Tree;
 
 /// Tests of citations: their examples cite what is not there.
@@ -26,6 +28,23 @@ fn documents_cite_what_is_there() {
         .flat_map(|path| document::missing(&tree, path, &tree.text(path)))
         .collect();
     assert!(missing.is_empty(), "{}", missing.join("\n"));
+}
+
+/// From the front page on, over other documents.
+#[test]
+fn every_page_is_linked() {
+    let tree = Tree::read();
+    let mut reached = BTreeSet::from(["README.md".to_owned()]);
+    let mut next: Vec<String> = reached.iter().cloned().collect();
+    while let Some(page) = next.pop() {
+        let linked = document::linked(&page, &tree.text(&page));
+        let there = linked.into_iter().filter(|page| tree.has_file(page));
+        next.extend(there.filter(|page| reached.insert(page.clone())));
+    }
+    let pages = tree.files_ending_in(&[".md"]);
+    let pages = pages.filter(|path| path.starts_with("docs/") || !path.contains('/'));
+    let alone: Vec<_> = pages.filter(|path| !reached.contains(*path)).collect();
+    assert!(alone.is_empty(), "no link leads to {alone:?}");
 }
 
 #[test]
