@@ -29,62 +29,58 @@ pub enum ArmingState {
 #[repr(transparent)]
 pub struct ArmingBlockers(u32);
 
+bitflags::bitflags! {
+    impl ArmingBlockers: u32 {
+        /// No fresh remote frame.
+        const REMOTE_NOT_FRESH = 1 << 0;
+        /// The enable switch is off.
+        const ENABLE_OFF = 1 << 1;
+        /// The enable switch is on but must go off and on again: it was on at boot, or its request is used up.
+        const ENABLE_NOT_CYCLED = 1 << 2;
+        /// A stick is off centre, or was within the last 0.2 s.
+        const STICKS_NOT_CENTRED = 1 << 3;
+        /// The attitude estimate is not valid.
+        const ESTIMATE_INVALID = 1 << 4;
+        /// The start-up calibration has not finished.
+        const CALIBRATION_PENDING = 1 << 5;
+        /// `SafetyPolicy` demands a stop, even a partial one; see its flags.
+        const SAFETY_STOP = 1 << 6;
+        /// A joint does not answer, is not set up, or reports a fault.
+        const JOINTS_NOT_READY = 1 << 7;
+        /// Bring-up is in its read-only step, in which nothing may move.
+        const BRING_UP_READ_ONLY = 1 << 8;
+        /// The battery is low, or not measured.
+        const BATTERY_LOW = 1 << 9;
+        /// Settings are being written to flash, or a sector is erased for them. A request waits until this ends.
+        const FLASH_BUSY = 1 << 10;
+        /// A saved setting was refused at boot, and its default may not fit this robot.
+        const SETTINGS_REFUSED = 1 << 11;
+        /// A debugger would halt the core where it has to send zero frames, and this cannot be undone.
+        const DEBUGGER_CATCHES = 1 << 12;
+        /// A wheel has not reported since boot.
+        const WHEEL_NEVER_HEARD = 1 << 13;
+        /// A wheel's angle contradicts its speed: two speed controllers have the same number, or the sensor is broken.
+        const WHEEL_DOUBTFUL = 1 << 14;
+        /// A joint reads an angle beyond its soft limits: its zero is not set, or it is off by a turn. This does not
+        /// block arming while bring-up tests motors, which limits the torque.
+        const JOINT_OUT_OF_LIMITS = 1 << 15;
+        /// IMU samples were rejected within the last half second.
+        const ATTITUDE_UNSETTLED = 1 << 16;
+
+        /// A joint motor would keep its last command when the bus falls silent, unless its time-out has been set by hand.
+        /// No setting confirms that it has.
+        const JOINT_TIMEOUT_UNSET = 1 << 17;
+    }
+}
+
 impl ArmingBlockers {
     /// The empty set.
     pub const NONE: Self = Self(0);
-    /// No fresh remote frame.
-    pub const REMOTE_NOT_FRESH: Self = Self(1 << 0);
-    /// The enable switch is off.
-    pub const ENABLE_OFF: Self = Self(1 << 1);
-    /// The enable switch is on but must go off and on again: it was on at boot, or its request is used up.
-    pub const ENABLE_NOT_CYCLED: Self = Self(1 << 2);
-    /// A stick is off centre, or was within the last 0.2 s.
-    pub const STICKS_NOT_CENTRED: Self = Self(1 << 3);
-    /// The attitude estimate is not valid.
-    pub const ESTIMATE_INVALID: Self = Self(1 << 4);
-    /// The start-up calibration has not finished.
-    pub const CALIBRATION_PENDING: Self = Self(1 << 5);
-    /// `SafetyPolicy` demands a stop, even a partial one; see its flags.
-    pub const SAFETY_STOP: Self = Self(1 << 6);
-    /// A joint does not answer, is not set up, or reports a fault.
-    pub const JOINTS_NOT_READY: Self = Self(1 << 7);
-    /// Bring-up is in its read-only step, in which nothing may move.
-    pub const BRING_UP_READ_ONLY: Self = Self(1 << 8);
-    /// The battery is low, or not measured.
-    pub const BATTERY_LOW: Self = Self(1 << 9);
-    /// Settings are being written to flash, or a sector is erased for them. A request waits until this ends.
-    pub const FLASH_BUSY: Self = Self(1 << 10);
-    /// A saved setting was refused at boot, and its default may not fit this robot.
-    pub const SETTINGS_REFUSED: Self = Self(1 << 11);
-    /// A debugger would halt the core where it has to send zero frames, and this cannot be undone.
-    pub const DEBUGGER_CATCHES: Self = Self(1 << 12);
-    /// A wheel has not reported since boot.
-    pub const WHEEL_NEVER_HEARD: Self = Self(1 << 13);
-    /// A wheel's angle contradicts its speed: two speed controllers have the same number, or the sensor is broken.
-    pub const WHEEL_DOUBTFUL: Self = Self(1 << 14);
-    /// A joint reads an angle beyond its soft limits: its zero is not set, or it is off by a turn. This does not
-    /// block arming while bring-up tests motors, which limits the torque.
-    pub const JOINT_OUT_OF_LIMITS: Self = Self(1 << 15);
-    /// IMU samples were rejected within the last half second.
-    pub const ATTITUDE_UNSETTLED: Self = Self(1 << 16);
 
-    /// A joint motor would keep its last command when the bus falls silent, unless its time-out has been set by hand.
-    /// No setting confirms that it has.
-    pub const JOINT_TIMEOUT_UNSET: Self = Self(1 << 17);
-
-    /// The bits of the set.
-    pub const fn bits(self) -> u32 {
-        self.0
-    }
-
-    /// Whether the set is empty.
-    pub const fn is_empty(self) -> bool {
-        self.0 == 0
-    }
-
-    /// Whether the set contains `blocker`.
-    pub const fn contains(self, blocker: Self) -> bool {
-        self.0 & blocker.0 != 0
+    fn add_if(&mut self, blocker: Self, active: bool) {
+        if active {
+            self.insert(blocker);
+        }
     }
 
     /// Names of the blockers in the set, lowest bit first.
@@ -100,21 +96,6 @@ impl ArmingBlockers {
         let mut names = BLOCKER_NAMES.iter();
         let found = names.find(|(blocker, _)| blocker.0.trailing_zeros() == u32::from(bit));
         found.map(|(_, name)| *name)
-    }
-
-    /// Whether every blocker of the set is also in `other`.
-    const fn is_subset_of(self, other: Self) -> bool {
-        self.0 & !other.0 == 0
-    }
-
-    const fn union(self, other: Self) -> Self {
-        Self(self.0 | other.0)
-    }
-
-    fn add_if(&mut self, blocker: Self, active: bool) {
-        if active {
-            self.0 |= blocker.0;
-        }
     }
 }
 
@@ -334,7 +315,7 @@ impl Arming {
         let unsettled = SafetyFlags::ESTIMATE_INVALID.union(SafetyFlags::IMU_STALE);
         let waited_us = now_us.saturating_sub(since_us);
         self.unsettled
-            && blockers.is_subset_of(caused_by_flash)
+            && caused_by_flash.contains(blockers)
             && inputs.safety.would_run_without(unsettled)
             && waited_us <= u64::from(inputs.config.arm_request_us)
     }

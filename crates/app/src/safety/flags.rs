@@ -5,64 +5,69 @@
 #[repr(transparent)]
 pub struct SafetyFlags(u32);
 
+bitflags::bitflags! {
+    impl SafetyFlags: u32 {
+        /// No frame came over the air within the time limit.
+        const REMOTE_LOST = 1 << 0;
+        /// The receiver reports the loss of the radio.
+        const REMOTE_FAILSAFE = 1 << 1;
+        /// Too many of the last 64 frames were lost.
+        const REMOTE_QUALITY = 1 << 2;
+        /// The pilot has thrown the e-stop.
+        const E_STOP = 1 << 3;
+        /// The attitude estimate is not valid.
+        const ESTIMATE_INVALID = 1 << 4;
+        /// The last IMU sample is too old.
+        const IMU_STALE = 1 << 5;
+        /// Too many SPI errors or rejected samples of the IMU.
+        const IMU_ERRORS = 1 << 6;
+        /// Too many I2C errors or rejected samples of the magnetometer.
+        const MAG_ERRORS = 1 << 7;
+        /// CAN1 is bus-off.
+        const CAN1_FAULT = 1 << 8;
+        /// CAN2 is bus-off.
+        const CAN2_FAULT = 1 << 9;
+        /// Too many consecutive frames could not be sent on CAN1.
+        const CAN1_CONGESTED = 1 << 10;
+        /// Too many consecutive frames could not be sent on CAN2.
+        const CAN2_CONGESTED = 1 << 11;
+        /// No feedback of the left wheel came within the time limit. Its control falls back to open loop.
+        const WHEEL_LEFT_SILENT = 1 << 12;
+        /// As [`WHEEL_LEFT_SILENT`](Self::WHEEL_LEFT_SILENT) for the right wheel.
+        const WHEEL_RIGHT_SILENT = 1 << 13;
+        /// No command on the logic bus is fresh.
+        const COMMAND_STALE = 1 << 14;
+        /// A task other than the control tick missed its deadline. Unless it recovers, the watchdog resets the chip.
+        const TASK_LATE = 1 << 15;
+        /// The robot has fallen over.
+        const TILT = 1 << 16;
+        /// A wheel motor is too hot.
+        const WHEEL_HOT = 1 << 17;
+        /// A joint motor is too hot.
+        const JOINT_HOT = 1 << 18;
+        /// The battery is low, or not measured. This stops nothing but blocks arming.
+        const BATTERY_LOW = 1 << 19;
+        /// The battery is empty.
+        const BATTERY_EMPTY = 1 << 20;
+        /// A joint motor reports a fault and gives no torque.
+        const JOINT_FAULT = 1 << 21;
+        /// No reply of a joint came within the time limit.
+        const JOINT_SILENT = 1 << 22;
+        /// A wheel motor repeats an old report.
+        const WHEEL_FROZEN = 1 << 23;
+        /// A joint motor repeats an old position.
+        const JOINT_FROZEN = 1 << 24;
+        /// A joint motor replies, but could not be set up or enabled within a second. Its settings differ, or it is
+        /// another motor.
+        const JOINT_NOT_READY = 1 << 25;
+        /// The cause of a partial stop has ended, but the part waits until the sticks have been centred.
+        const STICKS_AWAITED = 1 << 26;
+    }
+}
+
 impl SafetyFlags {
     /// The empty set.
     pub const NONE: Self = Self(0);
-    /// No frame came over the air within the time limit.
-    pub const REMOTE_LOST: Self = Self(1 << 0);
-    /// The receiver reports the loss of the radio.
-    pub const REMOTE_FAILSAFE: Self = Self(1 << 1);
-    /// Too many of the last 64 frames were lost.
-    pub const REMOTE_QUALITY: Self = Self(1 << 2);
-    /// The pilot has thrown the e-stop.
-    pub const E_STOP: Self = Self(1 << 3);
-    /// The attitude estimate is not valid.
-    pub const ESTIMATE_INVALID: Self = Self(1 << 4);
-    /// The last IMU sample is too old.
-    pub const IMU_STALE: Self = Self(1 << 5);
-    /// Too many SPI errors or rejected samples of the IMU.
-    pub const IMU_ERRORS: Self = Self(1 << 6);
-    /// Too many I2C errors or rejected samples of the magnetometer.
-    pub const MAG_ERRORS: Self = Self(1 << 7);
-    /// CAN1 is bus-off.
-    pub const CAN1_FAULT: Self = Self(1 << 8);
-    /// CAN2 is bus-off.
-    pub const CAN2_FAULT: Self = Self(1 << 9);
-    /// Too many consecutive frames could not be sent on CAN1.
-    pub const CAN1_CONGESTED: Self = Self(1 << 10);
-    /// Too many consecutive frames could not be sent on CAN2.
-    pub const CAN2_CONGESTED: Self = Self(1 << 11);
-    /// No feedback of the left wheel came within the time limit. Its control falls back to open loop.
-    pub const WHEEL_LEFT_SILENT: Self = Self(1 << 12);
-    /// As [`WHEEL_LEFT_SILENT`](Self::WHEEL_LEFT_SILENT) for the right wheel.
-    pub const WHEEL_RIGHT_SILENT: Self = Self(1 << 13);
-    /// No command on the logic bus is fresh.
-    pub const COMMAND_STALE: Self = Self(1 << 14);
-    /// A task other than the control tick missed its deadline. Unless it recovers, the watchdog resets the chip.
-    pub const TASK_LATE: Self = Self(1 << 15);
-    /// The robot has fallen over.
-    pub const TILT: Self = Self(1 << 16);
-    /// A wheel motor is too hot.
-    pub const WHEEL_HOT: Self = Self(1 << 17);
-    /// A joint motor is too hot.
-    pub const JOINT_HOT: Self = Self(1 << 18);
-    /// The battery is low, or not measured. This stops nothing but blocks arming.
-    pub const BATTERY_LOW: Self = Self(1 << 19);
-    /// The battery is empty.
-    pub const BATTERY_EMPTY: Self = Self(1 << 20);
-    /// A joint motor reports a fault and gives no torque.
-    pub const JOINT_FAULT: Self = Self(1 << 21);
-    /// No reply of a joint came within the time limit.
-    pub const JOINT_SILENT: Self = Self(1 << 22);
-    /// A wheel motor repeats an old report.
-    pub const WHEEL_FROZEN: Self = Self(1 << 23);
-    /// A joint motor repeats an old position.
-    pub const JOINT_FROZEN: Self = Self(1 << 24);
-    /// A joint motor replies, but could not be set up or enabled within a second. Its settings differ, or it is
-    /// another motor.
-    pub const JOINT_NOT_READY: Self = Self(1 << 25);
-    /// The cause of a partial stop has ended, but the part waits until the sticks have been centred.
-    pub const STICKS_AWAITED: Self = Self(1 << 26);
 
     /// Each of these stops every actuator.
     pub const GLOBAL_STOP: Self = Self(
@@ -105,41 +110,9 @@ impl SafetyFlags {
             | Self::JOINT_NOT_READY.0,
     );
 
-    /// The bits of the set.
-    pub const fn bits(self) -> u32 {
-        self.0
-    }
-
-    /// Whether the set is empty.
-    pub const fn is_empty(self) -> bool {
-        self.0 == 0
-    }
-
-    /// Whether the two sets share a condition.
-    pub const fn intersects(self, other: Self) -> bool {
-        self.0 & other.0 != 0
-    }
-
-    /// The conditions of either set.
-    #[must_use]
-    pub const fn union(self, other: Self) -> Self {
-        Self(self.0 | other.0)
-    }
-
-    /// The conditions that both sets have.
-    #[must_use]
-    pub(super) const fn intersection(self, other: Self) -> Self {
-        Self(self.0 & other.0)
-    }
-
-    #[must_use]
-    pub(super) const fn without(self, other: Self) -> Self {
-        Self(self.0 & !other.0)
-    }
-
     pub(super) fn add_if(&mut self, flag: Self, active: bool) {
         if active {
-            self.0 |= flag.0;
+            self.insert(flag);
         }
     }
 

@@ -28,7 +28,7 @@ impl ResumeInterlock {
         } else {
             self.held.union(watched)
         };
-        let over = self.held.without(watched);
+        let over = self.held.difference(watched);
         if over.intersects(SILENT_WHEELS) {
             over.union(SafetyFlags::WHEELS_STOP)
         } else {

@@ -84,7 +84,7 @@ impl SafetyStatus {
 
     /// Whether only these conditions stop anything.
     pub(super) fn would_run_without(&self, conditions: SafetyFlags) -> bool {
-        Self::from_flags(self.flags.without(conditions)).verdict == SafetyVerdict::Run
+        Self::from_flags(self.flags.difference(conditions)).verdict == SafetyVerdict::Run
     }
 
     /// Whether wheels on this bus are stopped.
