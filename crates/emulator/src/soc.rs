@@ -26,6 +26,7 @@ pub mod peripheral;
 pub mod pins;
 pub mod pwr;
 pub mod rcc;
+mod registers;
 pub mod reset;
 pub mod routing;
 pub mod scheduler;

@@ -13,6 +13,7 @@ use crate::{
 mod breakpoints;
 pub mod debug_registers;
 mod nvic_registers;
+mod reg;
 mod scb_registers;
 
 use debug_registers::Debug;
@@ -40,8 +41,6 @@ const SCR_SLEEPONEXIT: u32 = 1 << 1;
 const SCR_SLEEPDEEP: u32 = 1 << 2;
 const SCR_SEVONPEND: u32 = 1 << 4;
 const CCR_USERSETMPEND: u32 = 1 << 1;
-/// Software trigger interrupt register.
-const STIR: u32 = 0xE000_EF00;
 const CPACR_FPU: u32 = 0xF << 20;
 /// ASPEN and LSPEN: automatic state preservation, lazily.
 const FPCCR_RESET: u32 = 0xC000_0000;
@@ -89,16 +88,16 @@ impl System {
     ) -> Result<u32, Unmodelled> {
         let access = Access::new(addr, size);
         let word = match access.register {
-            0xE000_E004 => 2, // ICTR: 96 interrupt lines
-            0xE000_E008 => self.actlr,
-            0xE000_E010 => self.systick.read_ctrl(),
-            0xE000_E014 => self.systick.reload(),
-            0xE000_E018 => self.systick.value(around.cycles),
-            0xE000_E01C => 0, // CALIB: no calibration value is promised
-            r @ 0xE000_E100..=0xE000_E4EF => {
+            reg::ICTR => 2, // ICTR: 96 interrupt lines
+            reg::ACTLR => self.actlr,
+            reg::SYST_CSR => self.systick.read_ctrl(),
+            reg::SYST_RVR => self.systick.reload(),
+            reg::SYST_CVR => self.systick.value(around.cycles),
+            reg::SYST_CALIB => 0, // CALIB: no calibration value is promised
+            r @ reg::NVIC_ISER0..=reg::NVIC_IPR59 => {
                 self.read_nvic(r).ok_or_else(|| unmodelled(r, "read"))?
             }
-            r @ (0xE000_ED00..=0xE000_ED94 | 0xE000_EF34..=0xE000_EF44) => {
+            r @ (reg::CPUID..=reg::MPU_CTRL | reg::FPCCR..=reg::MVFR1) => {
                 self.read_scb(r).ok_or_else(|| unmodelled(r, "read"))?
             }
             r => self
@@ -119,24 +118,26 @@ impl System {
         let access = Access::new(addr, size);
         let refused = || unmodelled(access.register, &format!("write of 0x{value:08X}"));
         let done = match access.register {
-            0xE000_E008 => {
+            reg::ACTLR => {
                 self.actlr = access.written_over(self.actlr, value);
                 true
             }
-            0xE000_E010 => {
+            reg::SYST_CSR => {
                 self.systick.write_ctrl(value, around.cycles);
                 true
             }
-            0xE000_E014 => {
+            reg::SYST_RVR => {
                 self.systick.write_reload(value);
                 true
             }
-            0xE000_E018 => {
+            reg::SYST_CVR => {
                 self.systick.write_value(around.cycles);
                 true
             }
-            r @ (0xE000_E100..=0xE000_E4EF | STIR) => self.write_nvic(r, access, value, around),
-            r @ (0xE000_ED00..=0xE000_ED94 | 0xE000_EF34..=0xE000_EF44) => {
+            r @ (reg::NVIC_ISER0..=reg::NVIC_IPR59 | reg::STIR) => {
+                self.write_nvic(r, access, value, around)
+            }
+            r @ (reg::CPUID..=reg::MPU_CTRL | reg::FPCCR..=reg::MVFR1) => {
                 self.write_scb(r, access, value)
             }
             r => self.debug.write(r, value, around.cycles),
@@ -164,7 +165,7 @@ impl System {
 
     /// Without privilege only STIR may be written, and that if CCR allows it (ARMv7-M ARM B3.2.26).
     pub fn may_be_written_unprivileged(&self, addr: u32) -> bool {
-        addr == STIR && self.ccr & CCR_USERSETMPEND != 0
+        addr == reg::STIR && self.ccr & CCR_USERSETMPEND != 0
     }
 
     /// SCR.SEVONPEND: a new pending interrupt is an event.
@@ -204,26 +205,30 @@ impl System {
 
 fn unmodelled(register: u32, what: &str) -> Unmodelled {
     Unmodelled {
-        register: register_name(register),
+        register: format!("{} 0x{register:08X}", block_of(register)),
         what: what.to_owned(),
     }
 }
 
-fn register_name(addr: u32) -> String {
-    let block = match addr {
-        0xE000_0000..=0xE000_0FFF => "ITM",
-        0xE000_1000..=0xE000_1FFF => "DWT",
-        0xE000_2000..=0xE000_2FFF => "FPB",
-        0xE000_E010..=0xE000_E0FF => "SysTick",
-        0xE000_E100..=0xE000_E4FF => "NVIC",
-        0xE000_ED90..=0xE000_EDB8 => "MPU",
-        0xE000_ED00..=0xE000_EDEF => "SCB",
-        0xE000_EDF0..=0xE000_EDFF => "CoreDebug",
-        0xE000_EF30..=0xE000_EF4F => "FPU",
-        0xE004_0000..=0xE004_0FFF => "TPIU",
-        0xE004_1000..=0xE004_1FFF => "ETM",
-        0xE004_2000..=0xE004_2FFF => "DBGMCU",
-        _ => "private peripheral bus",
-    };
-    format!("{block} 0x{addr:08X}")
+/// The private peripheral that an address belongs to: first and last address, and name.
+#[rustfmt::skip]
+const BLOCKS: [(u32, u32, &str); 12] = [
+    (0xE000_0000, 0xE000_0FFF, "ITM"),
+    (0xE000_1000, 0xE000_1FFF, "DWT"),
+    (0xE000_2000, 0xE000_2FFF, "FPB"),
+    (0xE000_E010, 0xE000_E0FF, "SysTick"),
+    (0xE000_E100, 0xE000_E4FF, "NVIC"),
+    (0xE000_ED90, 0xE000_EDB8, "MPU"),
+    (0xE000_ED00, 0xE000_EDEF, "SCB"),
+    (0xE000_EDF0, 0xE000_EDFF, "CoreDebug"),
+    (0xE000_EF30, 0xE000_EF4F, "FPU"),
+    (0xE004_0000, 0xE004_0FFF, "TPIU"),
+    (0xE004_1000, 0xE004_1FFF, "ETM"),
+    (0xE004_2000, 0xE004_2FFF, "DBGMCU"),
+];
+
+fn block_of(address: u32) -> &'static str {
+    let holds = |(first, last, _): &&(u32, u32, &str)| (*first..=*last).contains(&address);
+    let block = BLOCKS.iter().find(holds);
+    block.map_or("private peripheral bus", |(_, _, name)| name)
 }

@@ -3,15 +3,27 @@
 
 mod converter;
 
+use std::ops::Range;
+
 use crate::{
     soc::{
         access::Access,
         dma_request::DmaRequest,
         peripheral::{Ctx, Peripheral, Unmodelled},
+        registers::registers,
     },
     time::{Ps, US},
 };
 use converter::Converter;
+
+registers! {
+    CSR = 0x300,
+    CCR = 0x304,
+}
+
+/// The registers of ADC1 and ADC3.
+const ADC1: Range<u32> = 0x000..0x100;
+const ADC3: Range<u32> = 0x200..0x300;
 
 const IRQ: u8 = 18;
 const MAX_ADC_HZ: u32 = 36_000_000;
@@ -62,7 +74,7 @@ impl Common {
 
     fn write(&mut self, value: u32, ctx: &Ctx<'_>) -> Result<(), Unmodelled> {
         if value & !(ccr::ADCPRE | ccr::TSVREFE) != 0 {
-            return Err(unmodelled("ADC.CCR", &format!("write of {value:#010x}")));
+            return Err(reg::MAP.unmodelled_write("ADC", reg::CCR, value));
         }
         if value & !self.ccr & ccr::TSVREFE != 0 {
             self.reference_on_at = ctx.now + VREFINT_START;
@@ -100,12 +112,12 @@ impl Peripheral for Adc {
     fn read(&mut self, offset: u32, size: u8, ctx: &mut Ctx<'_>) -> Result<u32, Unmodelled> {
         let (access, own) = (Access::new(offset, size), Access::new(offset & 0xFF, size));
         let value = match access.register {
-            0x000..0x100 => self.adc1.read(own)?,
-            0x200..0x300 => self.adc3.read(own)?,
+            register if ADC1.contains(&register) => self.adc1.read(own)?,
+            register if ADC3.contains(&register) => self.adc3.read(own)?,
             // CSR shows the three status registers side by side.
-            0x300 => self.adc1.status() | self.adc3.status() << 16,
-            0x304 => self.common.ccr,
-            other => return Err(unmodelled(&format!("ADC.+{other:#x}"), "read")),
+            reg::CSR => self.adc1.status() | self.adc3.status() << 16,
+            reg::CCR => self.common.ccr,
+            other => return Err(reg::MAP.unmodelled_read("ADC", other)),
         };
         self.update_lines(ctx);
         Ok(access.read_of(value))
@@ -120,16 +132,17 @@ impl Peripheral for Adc {
     ) -> Result<(), Unmodelled> {
         let (access, own) = (Access::new(offset, size), Access::new(offset & 0xFF, size));
         match access.register {
-            0x000..0x100 => self.adc1.write(own, value, &self.common, ctx)?,
-            0x200..0x300 => self.adc3.write(own, value, &self.common, ctx)?,
-            0x304 => {
+            register if ADC1.contains(&register) => {
+                self.adc1.write(own, value, &self.common, ctx)?
+            }
+            register if ADC3.contains(&register) => {
+                self.adc3.write(own, value, &self.common, ctx)?
+            }
+            reg::CCR => {
                 let value = access.written_over(self.common.ccr, value);
                 self.common.write(value, ctx)?;
             }
-            other => {
-                let what = format!("write of {value:#010x}");
-                return Err(unmodelled(&format!("ADC.+{other:#x}"), &what));
-            }
+            other => return Err(reg::MAP.unmodelled_write("ADC", other, value)),
         }
         self.update_lines(ctx);
         Ok(())
@@ -147,13 +160,6 @@ impl Peripheral for Adc {
     fn reset(&mut self, ctx: &mut Ctx<'_>) {
         *self = Self::new();
         self.update_lines(ctx);
-    }
-}
-
-fn unmodelled(register: &str, what: &str) -> Unmodelled {
-    Unmodelled {
-        register: register.to_owned(),
-        what: what.to_owned(),
     }
 }
 

@@ -1,5 +1,7 @@
 //! CAN1 and CAN2 (bxCAN, RM0090 chapter 32): one block at CAN1's base, CAN2 at 0x400, with the bus of each.
 
+use std::ops::Range;
+
 use self::{
     bit_timing::BitTiming,
     controller::{Controller, Mode, ier, mcr, msr},
@@ -10,6 +12,7 @@ use crate::{
         access::Access,
         can_bus::{CanBus, CanBusStats},
         peripheral::{Ctx, Peripheral, Unmodelled},
+        registers::registers,
         scheduler::Target,
     },
     time::Ps,
@@ -22,6 +25,31 @@ pub mod errors;
 mod fifo;
 pub mod filter;
 mod mailboxes;
+
+registers! {
+    MCR = 0x00,
+    MSR = 0x04,
+    TSR = 0x08,
+    RF0R = 0x0C,
+    RF1R = 0x10,
+    IER = 0x14,
+    ESR = 0x18,
+    BTR = 0x1C,
+    TI0R = 0x180,
+    RI0R = 0x1B0,
+    FMR = 0x200,
+    FM1R = 0x204,
+    FS1R = 0x20C,
+    FFA1R = 0x214,
+    FA1R = 0x21C,
+    F0R1 = 0x240,
+}
+
+/// Four words each: identifier, length and time, data. Three transmit mailboxes, two FIFOs.
+const MAILBOXES: Range<u32> = reg::TI0R..reg::RI0R;
+const FIFOS: Range<u32> = reg::RI0R..reg::RI0R + 0x20;
+/// From CAN1's registers to CAN2's.
+const CAN2: u32 = 0x400;
 
 /// What an event is for, above the bus number in bit 0.
 const BUS_PHASE: u32 = 0;
@@ -115,20 +143,20 @@ impl Can {
     fn read_controller(&self, index: usize, register: u32) -> Option<u32> {
         let can = &self.controllers[index];
         Some(match register {
-            0x00 => can.mcr,
-            0x04 => can.status(),
-            0x08 => can.mailboxes.status(can.by_request_order()),
-            0x0C => can.fifos[0].status(),
-            0x10 => can.fifos[1].status(),
-            0x14 => can.ier,
-            0x18 => can.errors.register(),
-            0x1C => can.timing.0,
-            0x180..0x1B0 => {
-                let (mailbox, word) = cluster_word(register - 0x180);
+            reg::MCR => can.mcr,
+            reg::MSR => can.status(),
+            reg::TSR => can.mailboxes.status(can.by_request_order()),
+            reg::RF0R => can.fifos[0].status(),
+            reg::RF1R => can.fifos[1].status(),
+            reg::IER => can.ier,
+            reg::ESR => can.errors.register(),
+            reg::BTR => can.timing.0,
+            _ if MAILBOXES.contains(&register) => {
+                let (mailbox, word) = cluster_word(register - MAILBOXES.start);
                 can.mailboxes.read(mailbox, word)
             }
-            0x1B0..0x1D0 => {
-                let (fifo, word) = cluster_word(register - 0x1B0);
+            _ if FIFOS.contains(&register) => {
+                let (fifo, word) = cluster_word(register - FIFOS.start);
                 can.fifos[fifo].front()[word]
             }
             _ => return None,
@@ -142,28 +170,29 @@ impl Can {
         value: u32,
         ctx: &mut Ctx<'_>,
     ) -> Result<(), Unmodelled> {
-        let refuse = |what: &str| Err(unmodelled(index, register, what));
+        let block = name(index);
+        let refuse = |what: &str| Err(reg::MAP.unmodelled(block, register, what));
         let can = &mut self.controllers[index];
         match register {
-            0x00 if value & mcr::RESET != 0 => self.reset_controller(index, ctx),
-            0x00 => can.mcr = value & mcr::KEPT,
-            0x04 => can.msr_flags &= !(value & msr::CLEARED_BY_1),
-            0x08 => can.mailboxes.write_status(value),
-            0x0C => can.fifos[0].write_status(value),
-            0x10 => can.fifos[1].write_status(value),
-            0x14 => can.ier = value & ier::ALL,
-            0x18 => can.errors.write_lec((value >> 4) as u8),
-            0x1C if value & !BTR_MODELLED != 0 => return refuse("loop back mode"),
-            0x1C if can.mode == Mode::Initialization => can.timing = BitTiming(value),
-            0x1C => {
+            reg::MCR if value & mcr::RESET != 0 => self.reset_controller(index, ctx),
+            reg::MCR => can.mcr = value & mcr::KEPT,
+            reg::MSR => can.msr_flags &= !(value & msr::CLEARED_BY_1),
+            reg::TSR => can.mailboxes.write_status(value),
+            reg::RF0R => can.fifos[0].write_status(value),
+            reg::RF1R => can.fifos[1].write_status(value),
+            reg::IER => can.ier = value & ier::ALL,
+            reg::ESR => can.errors.write_lec((value >> 4) as u8),
+            reg::BTR if value & !BTR_MODELLED != 0 => return refuse("loop back mode"),
+            reg::BTR if can.mode == Mode::Initialization => can.timing = BitTiming(value),
+            reg::BTR => {
                 let message = format!(
                     "{}: BTR written outside initialization mode: ignored",
                     can.name()
                 );
                 ctx.errors.report(ctx.now, message);
             }
-            0x180..0x1B0 => {
-                let (mailbox, word) = cluster_word(register - 0x180);
+            _ if MAILBOXES.contains(&register) => {
+                let (mailbox, word) = cluster_word(register - MAILBOXES.start);
                 if word == 0 && value & 0b11 == 0b11 {
                     return refuse("sending a remote frame");
                 }
@@ -175,10 +204,14 @@ impl Can {
                     ctx.errors.report(ctx.now, message);
                 }
             }
-            _ => return refuse(&format!("write of {value:#010x}")),
+            _ => return Err(reg::MAP.unmodelled_write(block, register, value)),
         }
         Ok(())
     }
+}
+
+fn name(index: usize) -> &'static str {
+    ["CAN1", "CAN2"][index]
 }
 
 /// Which mailbox of a register cluster, and which of its four words.
@@ -186,21 +219,14 @@ fn cluster_word(offset: u32) -> (usize, usize) {
     ((offset / 0x10) as usize, (offset % 0x10 / 4) as usize)
 }
 
-fn unmodelled(index: usize, register: u32, what: &str) -> Unmodelled {
-    Unmodelled {
-        register: format!("CAN{}+{register:#x}", index + 1),
-        what: what.to_owned(),
-    }
-}
-
 impl Peripheral for Can {
     fn read(&mut self, offset: u32, size: u8, _ctx: &mut Ctx<'_>) -> Result<u32, Unmodelled> {
         let access = Access::new(offset, size);
-        let (index, register) = ((access.register / 0x400) as usize, access.register % 0x400);
+        let (index, register) = ((access.register / CAN2) as usize, access.register % CAN2);
         let value = self
             .read_controller(index, register)
             .or_else(|| self.filters.read(register).filter(|_| index == 0))
-            .ok_or_else(|| unmodelled(index, register, "read"))?;
+            .ok_or_else(|| reg::MAP.unmodelled_read(name(index), register))?;
         Ok(access.read_of(value))
     }
 
@@ -212,17 +238,17 @@ impl Peripheral for Can {
         ctx: &mut Ctx<'_>,
     ) -> Result<(), Unmodelled> {
         let access = Access::new(offset, size);
-        let (index, register) = ((access.register / 0x400) as usize, access.register % 0x400);
-        if index == 0 && register >= 0x200 {
+        let (index, register) = ((access.register / CAN2) as usize, access.register % CAN2);
+        if index == 0 && register >= reg::FMR {
             let old = self.filters.read(register).unwrap_or(0);
             return self
                 .filters
                 .write(register, access.written_over(old, value), ctx)
-                .ok_or_else(|| unmodelled(index, register, &format!("write of {value:#010x}")));
+                .ok_or_else(|| reg::MAP.unmodelled_write(name(index), register, value));
         }
         // Status registers are cleared by ones: the bytes a narrow write leaves alone count as zeros there.
         let old = match register {
-            0x04..=0x10 => 0,
+            reg::MSR..=reg::RF1R => 0,
             _ => self.read_controller(index, register).unwrap_or(0),
         };
         self.write_controller(index, register, access.written_over(old, value), ctx)?;

@@ -14,7 +14,15 @@ use crate::soc::{
     dma_request::DmaRequests,
     irq::Irq,
     peripheral::{Ctx, Peripheral, Unmodelled},
+    registers::registers,
 };
+
+registers! {
+    LISR = 0x00,
+    HISR = 0x04,
+    LIFCR = 0x08,
+    HIFCR = 0x0C,
+}
 
 /// First bit of a stream's flags in LISR or HISR, by stream modulo 4.
 const FLAG_SHIFTS: [u32; 4] = [0, 6, 16, 22];
@@ -85,7 +93,7 @@ impl Dma {
     fn announce_last(&self, stream: usize, ctx: &mut Ctx<'_>) {
         if let Some(line) = self.line_served_by(stream) {
             ctx.dma
-                .set_last(line.request, self.streams[stream].register(1) == Some(1));
+                .set_last(line.request, self.streams[stream].items_left() == 1);
         }
     }
 
@@ -97,6 +105,15 @@ impl Dma {
     fn drive_irq(&self, stream: usize, ctx: &mut Ctx<'_>) {
         ctx.irq
             .set(self.irq(stream), self.streams[stream].interrupts());
+    }
+
+    fn name(&self) -> String {
+        format!("DMA{}", self.number)
+    }
+
+    fn stream_lacks(&self, stream: usize, offset: u32, what: &str) -> Unmodelled {
+        let block = format!("DMA{} stream {stream}", self.number);
+        stream::reg::MAP.unmodelled(block, offset, what)
     }
 
     /// RM0090 table 62.
@@ -127,30 +144,28 @@ impl Dma {
 
     fn value(&self, register: u32) -> Result<u32, Unmodelled> {
         match register {
-            0x00 => Ok(self.status(false)),
-            0x04 => Ok(self.status(true)),
-            0x08 | 0x0C => Ok(0),
+            reg::LISR => Ok(self.status(false)),
+            reg::HISR => Ok(self.status(true)),
+            reg::LIFCR | reg::HIFCR => Ok(0),
             _ => {
-                let (stream, index) =
-                    stream_register(register).ok_or_else(|| self.unmodelled(register, "read"))?;
-                self.streams[stream]
-                    .register(index)
-                    .ok_or_else(|| self.unmodelled(register, "read"))
+                let refused = || reg::MAP.unmodelled_read(self.name(), register);
+                let (stream, offset) = stream_register(register).ok_or_else(refused)?;
+                self.streams[stream].register(offset).ok_or_else(refused)
             }
         }
     }
 
     fn store(&mut self, register: u32, value: u32, ctx: &mut Ctx<'_>) -> Result<(), Unmodelled> {
         match register {
-            0x00 | 0x04 => {}
-            0x08 => self.clear_flags(false, value, ctx),
-            0x0C => self.clear_flags(true, value, ctx),
+            reg::LISR | reg::HISR => {}
+            reg::LIFCR => self.clear_flags(false, value, ctx),
+            reg::HIFCR => self.clear_flags(true, value, ctx),
             _ => {
-                let (stream, index) =
-                    stream_register(register).ok_or_else(|| self.unmodelled(register, "write"))?;
+                let (stream, offset) = stream_register(register)
+                    .ok_or_else(|| reg::MAP.unmodelled_write(self.name(), register, value))?;
                 let enabled = self.streams[stream]
-                    .set_register(index, value)
-                    .map_err(|e| self.unmodelled(register, &e.what))?;
+                    .set_register(offset, value)
+                    .map_err(|what| self.stream_lacks(stream, offset, what))?;
                 if enabled {
                     self.announce_last(stream, ctx);
                     self.check_enabling(stream, ctx);
@@ -181,26 +196,17 @@ impl Dma {
             );
         }
     }
-
-    fn unmodelled(&self, register: u32, what: &str) -> Unmodelled {
-        const NAMES: [&str; 6] = ["CR", "NDTR", "PAR", "M0AR", "M1AR", "FCR"];
-        let number = self.number;
-        let register = match stream_register(register) {
-            Some((stream, index)) => format!("DMA{number}.S{stream}{}", NAMES[index as usize]),
-            None => format!("DMA{number}+{register:#x}"),
-        };
-        Unmodelled {
-            register,
-            what: what.to_owned(),
-        }
-    }
 }
 
-/// Stream and register index of an offset from 0x10 on.
+/// Where the registers of stream 0 begin, and how many bytes those of one stream take.
+const STREAMS: u32 = 0x10;
+const STREAM_BYTES: u32 = 0x18;
+
+/// The stream that an offset belongs to, and the offset among the stream's registers.
 fn stream_register(register: u32) -> Option<(usize, u32)> {
-    let offset = register.checked_sub(0x10)?;
-    let stream = (offset / 0x18) as usize;
-    (stream < 8).then_some((stream, offset % 0x18 / 4))
+    let offset = register.checked_sub(STREAMS)?;
+    let stream = (offset / STREAM_BYTES) as usize;
+    (stream < 8).then_some((stream, offset % STREAM_BYTES))
 }
 
 impl Peripheral for Dma {

@@ -5,8 +5,18 @@ use crate::soc::{
     irq::Irq,
     peripheral::{Ctx, Peripheral, Unmodelled},
     pins::PinMode,
+    registers::registers,
     syscfg::Syscfg,
 };
+
+registers! {
+    IMR = 0x00,
+    EMR = 0x04,
+    RTSR = 0x08,
+    FTSR = 0x0C,
+    SWIER = 0x10,
+    PR = 0x14,
+}
 
 const PIN_LINES: u32 = 0xFFFF;
 
@@ -58,13 +68,13 @@ impl Exti {
 
     fn value(&self, register: u32) -> Result<u32, Unmodelled> {
         Ok(match register {
-            0x00 => self.imr,
-            0x04 => 0,
-            0x08 => self.rtsr,
-            0x0C => self.ftsr,
-            0x10 => 0,
-            0x14 => self.pr,
-            _ => return Err(unmodelled(register, "read")),
+            reg::IMR => self.imr,
+            reg::EMR => 0,
+            reg::RTSR => self.rtsr,
+            reg::FTSR => self.ftsr,
+            reg::SWIER => 0,
+            reg::PR => self.pr,
+            _ => return Err(reg::MAP.unmodelled_read("EXTI", register)),
         })
     }
 }
@@ -100,7 +110,7 @@ impl Peripheral for Exti {
         ctx: &mut Ctx<'_>,
     ) -> Result<(), Unmodelled> {
         let access = Access::new(offset, size);
-        let is_pr = access.register == 0x14;
+        let is_pr = access.register == reg::PR;
         let old = if is_pr {
             0
         } else {
@@ -108,26 +118,19 @@ impl Peripheral for Exti {
         };
         let whole = access.written_over(old, value);
         if whole & !PIN_LINES != 0 && !is_pr {
-            return Err(unmodelled(
-                access.register,
-                &format!("write of {whole:#010x} (line above 15)"),
-            ));
+            let what = format!("write of {whole:#010x} (line above 15)");
+            return Err(reg::MAP.unmodelled("EXTI", access.register, what));
         }
         match access.register {
-            0x00 => self.imr = whole,
-            0x08 => self.rtsr = whole,
-            0x0C => self.ftsr = whole,
+            reg::IMR => self.imr = whole,
+            reg::RTSR => self.rtsr = whole,
+            reg::FTSR => self.ftsr = whole,
             // SWIER sets the pending bit of an unmasked line.
-            0x10 => self.pr |= whole & self.imr,
-            0x14 => self.pr &= !whole,
+            reg::SWIER => self.pr |= whole & self.imr,
+            reg::PR => self.pr &= !whole,
             // EMR: no event is routed to the core.
             _ if whole == 0 => {}
-            _ => {
-                return Err(unmodelled(
-                    access.register,
-                    &format!("write of {whole:#010x}"),
-                ));
-            }
+            other => return Err(reg::MAP.unmodelled_write("EXTI", other, whole)),
         }
         self.drive_irqs(ctx);
         Ok(())
@@ -141,17 +144,5 @@ impl Peripheral for Exti {
             ..Self::default()
         };
         self.drive_irqs(ctx);
-    }
-}
-
-fn unmodelled(register: u32, what: &str) -> Unmodelled {
-    let names = ["IMR", "EMR", "RTSR", "FTSR", "SWIER", "PR"];
-    let register = names.get((register / 4) as usize).map_or_else(
-        || format!("EXTI+{register:#x}"),
-        |name| format!("EXTI.{name}"),
-    );
-    Unmodelled {
-        register,
-        what: what.to_owned(),
     }
 }

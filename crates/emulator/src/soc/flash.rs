@@ -19,6 +19,7 @@ use crate::{
         access::Access,
         irq::Irq,
         peripheral::{Ctx, Peripheral, Unmodelled},
+        registers::registers,
         scheduler::Target,
     },
     time::{MS, Ps},
@@ -33,6 +34,15 @@ use work::{UnderWay, Work};
 pub use history::{FlashStep, FlashStepKind};
 pub use times::FlashTimes;
 pub use work::{CutPhase, PlannedCut};
+
+registers! {
+    ACR = 0x00,
+    KEYR = 0x04,
+    OPTKEYR = 0x08,
+    SR = 0x0C,
+    CR = 0x10,
+    OPTCR = 0x14,
+}
 
 /// One wait state each 30 MHz at 2.7–3.6 V (RM0090 table 10).
 const HZ_PER_WAIT_STATE: u32 = 30_000_000;
@@ -157,7 +167,7 @@ impl Flash {
         let sector = cr::sector(control);
         if control & cr::MER != 0 || !WRITABLE_SECTORS.contains(&sector) {
             let what = format!("erase of what the image runs from ({control:#010x})");
-            return Err(unmodelled(0x10, &what));
+            return Err(reg::MAP.unmodelled("FLASH", reg::CR, what));
         }
         let address = Work::Erase { sector }.address();
         if control & cr::PG != 0 {
@@ -251,10 +261,10 @@ impl Peripheral for Flash {
     fn read(&mut self, offset: u32, size: u8, _ctx: &mut Ctx<'_>) -> Result<u32, Unmodelled> {
         let access = Access::new(offset, size);
         match access.register {
-            0x00 => Ok(access.read_of(self.acr)),
-            0x0C => Ok(access.read_of(self.status())),
-            0x10 => Ok(access.read_of(self.control())),
-            _ => Err(unmodelled(offset, "read")),
+            reg::ACR => Ok(access.read_of(self.acr)),
+            reg::SR => Ok(access.read_of(self.status())),
+            reg::CR => Ok(access.read_of(self.control())),
+            _ => Err(reg::MAP.unmodelled_read("FLASH", offset)),
         }
     }
 
@@ -267,14 +277,14 @@ impl Peripheral for Flash {
     ) -> Result<(), Unmodelled> {
         let access = Access::new(offset, size);
         match access.register {
-            0x00 => self.write_access_control(access.written_over(self.acr, value), ctx),
-            0x04 => self.give_key(value, ctx),
-            0x0C => {
+            reg::ACR => self.write_access_control(access.written_over(self.acr, value), ctx),
+            reg::KEYR => self.give_key(value, ctx),
+            reg::SR => {
                 self.sr &= !(access.written_over(0, value) & sr::CLEARABLE);
                 self.update_interrupt(ctx);
             }
-            0x10 => return self.write_control(access.written_over(self.cr, value), ctx),
-            _ => return Err(unmodelled(offset, &format!("write of {value:#010x}"))),
+            reg::CR => return self.write_control(access.written_over(self.cr, value), ctx),
+            _ => return Err(reg::MAP.unmodelled_write("FLASH", offset, value)),
         }
         Ok(())
     }
@@ -310,17 +320,5 @@ impl Peripheral for Flash {
         self.generation += 1;
         self.caches_due = None;
         ctx.irq.set(FLASH_IRQ, false);
-    }
-}
-
-fn unmodelled(offset: u32, what: &str) -> Unmodelled {
-    let names = ["ACR", "KEYR", "OPTKEYR", "SR", "CR", "OPTCR"];
-    let register = names.get((offset / 4) as usize).map_or_else(
-        || format!("FLASH+{offset:#x}"),
-        |name| format!("FLASH.{name}"),
-    );
-    Unmodelled {
-        register,
-        what: what.to_owned(),
     }
 }

@@ -4,7 +4,21 @@ use crate::soc::{
     access::Access,
     peripheral::{Ctx, Peripheral, Unmodelled},
     pins::{Pin, PinMode, PinSettings, Pull},
+    registers::registers,
 };
+
+registers! {
+    MODER = 0x00,
+    OTYPER = 0x04,
+    OSPEEDR = 0x08,
+    PUPDR = 0x0C,
+    IDR = 0x10,
+    ODR = 0x14,
+    BSRR = 0x18,
+    LCKR = 0x1C,
+    AFRL = 0x20,
+    AFRH = 0x24,
+}
 
 #[derive(Debug)]
 pub struct Gpio {
@@ -34,6 +48,10 @@ impl Gpio {
             odr: 0,
             afr: [0; 2],
         }
+    }
+
+    fn name(&self) -> String {
+        format!("GPIO{}", char::from(b'A' + self.port))
     }
 
     fn pin(&self, number: u8) -> Pin {
@@ -92,30 +110,18 @@ impl Gpio {
 
     fn value(&self, register: u32, ctx: &Ctx<'_>) -> Result<u32, Unmodelled> {
         Ok(match register {
-            0x00 => self.moder,
-            0x04 => self.otyper,
-            0x08 => self.ospeedr,
-            0x0C => self.pupdr,
-            0x10 => self.idr(ctx),
-            0x14 => self.odr,
+            reg::MODER => self.moder,
+            reg::OTYPER => self.otyper,
+            reg::OSPEEDR => self.ospeedr,
+            reg::PUPDR => self.pupdr,
+            reg::IDR => self.idr(ctx),
+            reg::ODR => self.odr,
             // BSRR is write-only and reads 0.
-            0x18 => 0,
-            0x20 => self.afr[0],
-            0x24 => self.afr[1],
-            _ => return Err(self.unmodelled(register, "read")),
+            reg::BSRR => 0,
+            reg::AFRL => self.afr[0],
+            reg::AFRH => self.afr[1],
+            _ => return Err(reg::MAP.unmodelled_read(self.name(), register)),
         })
-    }
-
-    fn unmodelled(&self, register: u32, what: &str) -> Unmodelled {
-        let port = char::from(b'A' + self.port);
-        let register = match register {
-            0x1C => format!("GPIO{port}.LCKR"),
-            other => format!("GPIO{port}+{other:#x}"),
-        };
-        Unmodelled {
-            register,
-            what: what.to_owned(),
-        }
     }
 }
 
@@ -135,17 +141,17 @@ impl Peripheral for Gpio {
         let access = Access::new(offset, size);
         let whole = access.written_over(self.value(access.register, ctx)?, value);
         match access.register {
-            0x00 => self.moder = whole,
-            0x04 => self.otyper = whole & 0xFFFF,
-            0x08 => self.ospeedr = whole,
-            0x0C => self.pupdr = whole,
-            0x10 => {}
-            0x14 => self.odr = whole & 0xFFFF,
+            reg::MODER => self.moder = whole,
+            reg::OTYPER => self.otyper = whole & 0xFFFF,
+            reg::OSPEEDR => self.ospeedr = whole,
+            reg::PUPDR => self.pupdr = whole,
+            reg::IDR => {}
+            reg::ODR => self.odr = whole & 0xFFFF,
             // Set wins over reset where both are asked for.
-            0x18 => self.odr = self.odr & !(whole >> 16) | whole & 0xFFFF,
-            0x20 => self.afr[0] = whole,
-            0x24 => self.afr[1] = whole,
-            _ => return Err(self.unmodelled(access.register, "write")),
+            reg::BSRR => self.odr = self.odr & !(whole >> 16) | whole & 0xFFFF,
+            reg::AFRL => self.afr[0] = whole,
+            reg::AFRH => self.afr[1] = whole,
+            other => return Err(reg::MAP.unmodelled_write(self.name(), other, value)),
         }
         self.publish(ctx);
         Ok(())

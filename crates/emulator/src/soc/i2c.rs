@@ -10,7 +10,7 @@ mod master;
 mod registers;
 
 use master::{Master, Phase};
-use registers::{cr1, cr2, sr1, sr2};
+use registers::{cr1, cr2, reg, sr1, sr2};
 
 const IRQ_EVENT: u8 = 72;
 const IRQ_ERROR: u8 = 73;
@@ -135,16 +135,16 @@ impl Peripheral for I2c {
     fn read(&mut self, offset: u32, size: u8, ctx: &mut Ctx<'_>) -> Result<u32, Unmodelled> {
         let access = Access::new(offset, size);
         let value = match access.register {
-            0x00 => self.master.cr1,
-            0x04 => self.master.cr2,
-            0x08 => self.oar[0],
-            0x0C => self.oar[1],
-            0x10 => u32::from(self.master.read(ctx)),
-            0x14 => self.read_sr1(),
-            0x18 => self.read_sr2(ctx),
-            0x1C => self.master.ccr,
-            0x20 => self.master.trise,
-            other => return Err(registers::unmodelled(other, "read".to_owned())),
+            reg::CR1 => self.master.cr1,
+            reg::CR2 => self.master.cr2,
+            reg::OAR1 => self.oar[0],
+            reg::OAR2 => self.oar[1],
+            reg::DR => u32::from(self.master.read(ctx)),
+            reg::SR1 => self.read_sr1(),
+            reg::SR2 => self.read_sr2(ctx),
+            reg::CCR => self.master.ccr,
+            reg::TRISE => self.master.trise,
+            other => return Err(reg::MAP.unmodelled_read("I2C3", other)),
         };
         self.update_lines(ctx);
         Ok(access.read_of(value))
@@ -161,17 +161,17 @@ impl Peripheral for I2c {
         let over = |old| access.written_over(old, value);
         registers::check_write(access.register, over(0))?;
         match access.register {
-            0x00 => self.write_cr1(over(self.master.cr1), ctx),
-            0x04 => self.master.cr2 = over(self.master.cr2),
-            0x08 => self.oar[0] = over(self.oar[0]),
-            0x0C => self.oar[1] = over(self.oar[1]),
-            0x10 => self.write_dr(over(0) as u8, ctx),
-            0x14 => self.master.sr1 &= over(u32::MAX) | !sr1::ERRORS,
-            0x1C => {
+            reg::CR1 => self.write_cr1(over(self.master.cr1), ctx),
+            reg::CR2 => self.master.cr2 = over(self.master.cr2),
+            reg::OAR1 => self.oar[0] = over(self.oar[0]),
+            reg::OAR2 => self.oar[1] = over(self.oar[1]),
+            reg::DR => self.write_dr(over(0) as u8, ctx),
+            reg::SR1 => self.master.sr1 &= over(u32::MAX) | !sr1::ERRORS,
+            reg::CCR => {
                 self.check_disabled("CCR", ctx);
                 self.master.ccr = over(self.master.ccr);
             }
-            0x20 => {
+            reg::TRISE => {
                 self.check_disabled("TRISE", ctx);
                 self.master.trise = over(self.master.trise);
             }

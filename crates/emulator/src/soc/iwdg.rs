@@ -5,11 +5,23 @@ use crate::{
         access::Access,
         clocks::cycles_to_ps,
         peripheral::{Ctx, Peripheral, Unmodelled},
+        registers::registers,
         scheduler::Target,
     },
     time::Ps,
 };
 
+registers! {
+    KR = 0x00,
+    PR = 0x04,
+    RLR = 0x08,
+    SR = 0x0C,
+}
+
+/// Keys of KR: PR and RLR may be written; count from RLR again; start.
+const KEY_UNLOCK: u32 = 0x5555;
+const KEY_RELOAD: u32 = 0xAAAA;
+const KEY_START: u32 = 0xCCCC;
 const LSI_HZ: u32 = 32_000;
 /// A write to PR or RLR takes up to five cycles of the divided clock to cross into the watchdog's clock domain: "up to
 /// 5 LSI clock periods divided by the clock prescaler" (ST's stm32f4xx_hal_iwdg.c, which waits six of them). Of the
@@ -138,12 +150,12 @@ impl Iwdg {
     }
 
     fn key(&mut self, key: u32, ctx: &mut Ctx<'_>) {
-        self.unlocked = key == 0x5555;
+        self.unlocked = key == KEY_UNLOCK;
         match key {
-            0xCCCC if self.expires_at.is_none() => {
+            KEY_START if self.expires_at.is_none() => {
                 self.count_from(RELOAD_AFTER_RESET, ctx);
             }
-            0xAAAA if self.expires_at.is_some() => {
+            KEY_RELOAD if self.expires_at.is_some() => {
                 self.count_from(self.reload.effective(ctx.now), ctx);
             }
             _ => {}
@@ -192,13 +204,13 @@ impl Peripheral for Iwdg {
         let access = Access::new(offset, size);
         self.cross(ctx);
         let value = match access.register {
-            0x0 => 0,
-            0x4 => self.prescaler.value,
-            0x8 => self.reload.value,
-            0xC => {
+            reg::KR => 0,
+            reg::PR => self.prescaler.value,
+            reg::RLR => self.reload.value,
+            reg::SR => {
                 u32::from(self.prescaler.busy(ctx.now)) | u32::from(self.reload.busy(ctx.now)) << 1
             }
-            other => return Err(unmodelled(other, "read".to_owned())),
+            other => return Err(reg::MAP.unmodelled_read("IWDG", other)),
         };
         Ok(access.read_of(value))
     }
@@ -213,8 +225,8 @@ impl Peripheral for Iwdg {
         let access = Access::new(offset, size);
         let value = access.written_over(0, value);
         match access.register {
-            0x0 => self.key(value & 0xFFFF, ctx),
-            0x4 => {
+            reg::KR => self.key(value & 0xFFFF, ctx),
+            reg::PR => {
                 let left = self.periods_left(ctx.now);
                 self.write_guarded("PR", value & 7, ctx);
                 self.cross(ctx);
@@ -223,9 +235,9 @@ impl Peripheral for Iwdg {
                     self.expire_after(periods, ctx);
                 }
             }
-            0x8 => self.write_guarded("RLR", value & 0xFFF, ctx),
-            0xC => {}
-            other => return Err(unmodelled(other, format!("write of {value:#010x}"))),
+            reg::RLR => self.write_guarded("RLR", value & 0xFFF, ctx),
+            reg::SR => {}
+            other => return Err(reg::MAP.unmodelled_write("IWDG", other, value)),
         }
         self.cross(ctx);
         Ok(())
@@ -252,13 +264,6 @@ impl Peripheral for Iwdg {
 /// One count at that value of PR.
 fn period(prescaler: u32) -> Ps {
     cycles_to_ps(4 << prescaler.min(6), LSI_HZ)
-}
-
-fn unmodelled(register: u32, what: String) -> Unmodelled {
-    Unmodelled {
-        register: format!("IWDG+{register:#x}"),
-        what,
-    }
 }
 
 #[cfg(test)]

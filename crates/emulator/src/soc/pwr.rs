@@ -3,7 +3,13 @@
 use crate::soc::{
     access::Access,
     peripheral::{Ctx, Peripheral, Unmodelled},
+    registers::registers,
 };
+
+registers! {
+    CR = 0x00,
+    CSR = 0x04,
+}
 
 const PVDE: u32 = 1 << 4;
 const PLS_SHIFT: u32 = 5;
@@ -69,9 +75,9 @@ impl Peripheral for Pwr {
     fn read(&mut self, offset: u32, size: u8, _ctx: &mut Ctx<'_>) -> Result<u32, Unmodelled> {
         let access = Access::new(offset, size);
         match access.register {
-            0x00 => Ok(access.read_of(self.cr)),
-            0x04 => Ok(access.read_of(self.status())),
-            _ => Err(unmodelled(offset, "read")),
+            reg::CR => Ok(access.read_of(self.cr)),
+            reg::CSR => Ok(access.read_of(self.status())),
+            _ => Err(reg::MAP.unmodelled_read("PWR", offset)),
         }
     }
 
@@ -84,8 +90,8 @@ impl Peripheral for Pwr {
     ) -> Result<(), Unmodelled> {
         let access = Access::new(offset, size);
         let whole = access.written_over(self.cr, value);
-        if access.register != 0 || whole & !(PVDE | PLS | DBP | VOS | RESERVED_VOS) != 0 {
-            return Err(unmodelled(offset, &format!("write of {value:#010x}")));
+        if access.register != reg::CR || whole & !(PVDE | PLS | DBP | VOS | RESERVED_VOS) != 0 {
+            return Err(reg::MAP.unmodelled_write("PWR", offset, value));
         }
         self.cr = whole & !RESERVED_VOS;
         Ok(())
@@ -95,18 +101,6 @@ impl Peripheral for Pwr {
 
     fn reset(&mut self, _ctx: &mut Ctx<'_>) {
         self.cr = Self::default().cr;
-    }
-}
-
-fn unmodelled(offset: u32, what: &str) -> Unmodelled {
-    let register = match offset & !3 {
-        0x00 => "PWR.CR".to_owned(),
-        0x04 => "PWR.CSR".to_owned(),
-        other => format!("PWR+{other:#x}"),
-    };
-    Unmodelled {
-        register,
-        what: what.to_owned(),
     }
 }
 

@@ -7,7 +7,7 @@ mod registers;
 pub use frequencies::SystemClock;
 use frequencies::{BusClocks, HSE_HZ, HSI_HZ, Pll};
 use oscillator::Oscillator;
-use registers::{bdcr, cr, csr, register_name};
+use registers::{bdcr, cr, csr, reg};
 
 use crate::soc::{
     access::Access,
@@ -104,57 +104,70 @@ impl Rcc {
 
     fn value(&self, register: u32) -> Result<u32, Unmodelled> {
         Ok(match register {
-            0x00 => self.cr,
-            0x04 => self.pllcfgr,
-            0x08 => self.cfgr | self.source.sws() << 2,
-            0x0C => 0,
-            0x10..=0x24 if register != 0x1C => self.resets[bank(register, 0x10)],
-            0x30..=0x44 if register != 0x3C => self.enables[bank(register, 0x30)],
-            0x50..=0x64 if register != 0x5C => SLEEP_ENABLES[bank(register, 0x50)],
-            0x70 => self.bdcr,
-            0x74 => self.csr,
-            0x80 => self.sscgr,
-            0x84 => self.plli2scfgr,
-            DCKCFGR_ABSENT => 0,
-            _ => return Err(unmodelled(register, "read")),
+            reg::CR => self.cr,
+            reg::PLLCFGR => self.pllcfgr,
+            reg::CFGR => self.cfgr | self.source.sws() << 2,
+            reg::CIR => 0,
+            reg::AHB1RSTR | reg::AHB2RSTR | reg::AHB3RSTR | reg::APB1RSTR | reg::APB2RSTR => {
+                self.resets[bank(register, reg::AHB1RSTR)]
+            }
+            reg::AHB1ENR | reg::AHB2ENR | reg::AHB3ENR | reg::APB1ENR | reg::APB2ENR => {
+                self.enables[bank(register, reg::AHB1ENR)]
+            }
+            reg::AHB1LPENR | reg::AHB2LPENR | reg::AHB3LPENR | reg::APB1LPENR | reg::APB2LPENR => {
+                SLEEP_ENABLES[bank(register, reg::AHB1LPENR)]
+            }
+            reg::BDCR => self.bdcr,
+            reg::CSR => self.csr,
+            reg::SSCGR => self.sscgr,
+            reg::PLLI2SCFGR => self.plli2scfgr,
+            // Of the F42x, which drivers for the whole family touch; reserved on the F407.
+            reg::DCKCFGR => 0,
+            _ => return Err(reg::MAP.unmodelled_read("RCC", register)),
         })
     }
 
     fn store(&mut self, register: u32, value: u32, ctx: &mut Ctx<'_>) -> Result<(), Unmodelled> {
         match register {
-            0x00 => return self.write_cr(value, ctx),
-            0x04 => self.write_pllcfgr(value, ctx),
-            0x08 => return self.write_cfgr(value, ctx),
+            reg::CR => return self.write_cr(value, ctx),
+            reg::PLLCFGR => self.write_pllcfgr(value, ctx),
+            reg::CFGR => return self.write_cfgr(value, ctx),
             // No ready interrupt is ever pending, so clearing flags does nothing.
-            0x0C if value & 0x0000_FF00 == 0 => {}
-            0x10..=0x24 if register != 0x1C => self.write_resets(register, value),
-            0x30..=0x44 if register != 0x3C => {
-                self.enables[bank(register, 0x30)] = value;
+            reg::CIR if value & 0x0000_FF00 == 0 => {}
+            reg::AHB1RSTR | reg::AHB2RSTR | reg::AHB3RSTR | reg::APB1RSTR | reg::APB2RSTR => {
+                self.write_resets(register, value)
+            }
+            reg::AHB1ENR | reg::AHB2ENR | reg::AHB3ENR | reg::APB1ENR | reg::APB2ENR => {
+                self.enables[bank(register, reg::AHB1ENR)] = value;
                 self.publish_enables(ctx.clocks);
             }
-            0x50..=0x64 if register != 0x5C => {
-                let kept = SLEEP_ENABLES[bank(register, 0x50)];
+            reg::AHB1LPENR | reg::AHB2LPENR | reg::AHB3LPENR | reg::APB1LPENR | reg::APB2LPENR => {
+                let kept = SLEEP_ENABLES[bank(register, reg::AHB1LPENR)];
                 if value & kept != kept {
-                    return Err(unmodelled(register, "a clock that stops in sleep"));
+                    return Err(reg::MAP.unmodelled(
+                        "RCC",
+                        register,
+                        "a clock that stops in sleep",
+                    ));
                 }
             }
-            0x70 if self.backup_unlocked => return self.write_bdcr(value),
-            0x70 => {
+            reg::BDCR if self.backup_unlocked => return self.write_bdcr(value),
+            reg::BDCR => {
                 ctx.errors
                     .report(ctx.now, "RCC: BDCR written while PWR_CR.DBP is 0: ignored");
             }
-            0x74 => self.write_csr(value, ctx),
-            0x80 if value >> 31 == 0 => self.sscgr = value,
-            0x84 => self.plli2scfgr = value,
-            DCKCFGR_ABSENT => {}
-            _ => return Err(unmodelled(register, &format!("write of {value:#010x}"))),
+            reg::CSR => self.write_csr(value, ctx),
+            reg::SSCGR if value >> 31 == 0 => self.sscgr = value,
+            reg::PLLI2SCFGR => self.plli2scfgr = value,
+            reg::DCKCFGR => {}
+            _ => return Err(reg::MAP.unmodelled_write("RCC", register, value)),
         }
         Ok(())
     }
 
     fn write_cr(&mut self, value: u32, ctx: &mut Ctx<'_>) -> Result<(), Unmodelled> {
         if value & (cr::CSSON | cr::PLLI2SON) != 0 {
-            return Err(unmodelled(0x00, "bit CSSON or PLLI2SON"));
+            return Err(reg::MAP.unmodelled("RCC", reg::CR, "bit CSSON or PLLI2SON"));
         }
         self.cr = self.cr & !cr::SETTINGS | value & cr::SETTINGS;
         self.switch(Oscillator::Hsi, value & cr::HSION != 0, ctx);
@@ -257,10 +270,10 @@ impl Rcc {
 
     fn write_cfgr(&mut self, value: u32, ctx: &mut Ctx<'_>) -> Result<(), Unmodelled> {
         if value & 0xFFE0_0000 != 0 {
-            return Err(unmodelled(0x08, "clock output or I2S source"));
+            return Err(reg::MAP.unmodelled("RCC", reg::CFGR, "clock output or I2S source"));
         }
         if SystemClock::from_sw(value).is_none() {
-            return Err(unmodelled(0x08, "SW = 3 (not allowed)"));
+            return Err(reg::MAP.unmodelled("RCC", reg::CFGR, "SW = 3 (not allowed)"));
         }
         self.cfgr = value & 0x001F_FCF3;
         self.follow_sw();
@@ -309,7 +322,7 @@ impl Rcc {
     }
 
     fn write_resets(&mut self, register: u32, value: u32) {
-        let index = bank(register, 0x10);
+        let index = bank(register, reg::AHB1RSTR);
         let risen = value & !self.resets[index];
         self.resets[index] = value;
         let bus = match index {
@@ -325,7 +338,7 @@ impl Rcc {
 
     fn write_bdcr(&mut self, value: u32) -> Result<(), Unmodelled> {
         if value & (bdcr::LSEON | bdcr::LSEBYP) != 0 {
-            return Err(unmodelled(0x70, "bit LSEON (no low-speed crystal)"));
+            return Err(reg::MAP.unmodelled("RCC", reg::BDCR, "bit LSEON (no low-speed crystal)"));
         }
         self.bdcr = if value & bdcr::BDRST != 0 {
             bdcr::BDRST
@@ -384,16 +397,6 @@ impl Peripheral for Rcc {
     }
 }
 
-/// DCKCFGR of the F42x, which drivers for the whole family touch; reserved on the F407.
-const DCKCFGR_ABSENT: u32 = 0x8C;
-
 fn bank(register: u32, first: u32) -> usize {
     ((register - first) / 4) as usize
-}
-
-fn unmodelled(register: u32, what: &str) -> Unmodelled {
-    Unmodelled {
-        register: register_name(register),
-        what: what.to_owned(),
-    }
 }

@@ -6,12 +6,25 @@ use crate::{
         clocks::cycles_to_ps,
         dma_request::DmaRequest,
         peripheral::{Ctx, Peripheral, Unmodelled},
+        registers::registers,
         routing,
         scheduler::Target,
         signals::Signal,
     },
     time::Ps,
 };
+
+registers! {
+    CR1 = 0x00,
+    CR2 = 0x04,
+    SR = 0x08,
+    DR = 0x0C,
+    CRCPR = 0x10,
+    RXCRCR = 0x14,
+    TXCRCR = 0x18,
+    I2SCFGR = 0x1C,
+    I2SPR = 0x20,
+}
 
 const IRQ: u8 = 35;
 
@@ -174,7 +187,7 @@ impl Spi {
 
     fn write_cr1(&mut self, value: u32, ctx: &mut Ctx<'_>) -> Result<(), Unmodelled> {
         if value & !cr1::MODELLED != 0 {
-            return Err(unmodelled("CR1", format!("write of {value:#010x}")));
+            return Err(reg::MAP.unmodelled_write("SPI1", reg::CR1, value));
         }
         if std::mem::take(&mut self.modf_shown) {
             self.flags &= !sr::MODF;
@@ -195,13 +208,10 @@ impl Spi {
         self.cr1 = value;
         let enabled = value & cr1::SPE != 0;
         if enabled && value & cr1::MSTR == 0 {
-            return Err(unmodelled("CR1", "slave mode".to_owned()));
+            return Err(reg::MAP.unmodelled("SPI1", reg::CR1, "slave mode"));
         }
         if enabled && value & cr1::SSM == 0 && self.cr2 & cr2::SSOE == 0 {
-            return Err(unmodelled(
-                "CR1",
-                "master mode with NSS as an input".to_owned(),
-            ));
+            return Err(reg::MAP.unmodelled("SPI1", reg::CR1, "master mode with NSS as an input"));
         }
         if enabled && value & (cr1::SSM | cr1::SSI) == cr1::SSM {
             // NSS held low by software: another master has the bus (RM0090 28.3.10).
@@ -250,26 +260,19 @@ impl Spi {
     }
 }
 
-fn unmodelled(register: &str, what: String) -> Unmodelled {
-    Unmodelled {
-        register: format!("SPI1.{register}"),
-        what,
-    }
-}
-
 impl Peripheral for Spi {
     fn read(&mut self, offset: u32, size: u8, ctx: &mut Ctx<'_>) -> Result<u32, Unmodelled> {
         let access = Access::new(offset, size);
         let value = match access.register {
-            0x00 => self.cr1,
-            0x04 => self.cr2,
-            0x08 => self.read_sr(),
-            0x0C => self.read_dr(),
-            0x10 => self.crcpr,
+            reg::CR1 => self.cr1,
+            reg::CR2 => self.cr2,
+            reg::SR => self.read_sr(),
+            reg::DR => self.read_dr(),
+            reg::CRCPR => self.crcpr,
             // CRC results and I2S configuration stand at their reset values.
-            0x14 | 0x18 | 0x1C => 0,
-            0x20 => 2,
-            other => return Err(unmodelled(&format!("+{other:#x}"), "read".to_owned())),
+            reg::RXCRCR | reg::TXCRCR | reg::I2SCFGR => 0,
+            reg::I2SPR => 2,
+            other => return Err(reg::MAP.unmodelled_read("SPI1", other)),
         };
         self.update_lines(ctx);
         Ok(access.read_of(value))
@@ -285,25 +288,20 @@ impl Peripheral for Spi {
         let access = Access::new(offset, size);
         let over = |old| access.written_over(old, value);
         match access.register {
-            0x00 => self.write_cr1(over(self.cr1), ctx)?,
-            0x04 => {
+            reg::CR1 => self.write_cr1(over(self.cr1), ctx)?,
+            reg::CR2 => {
                 let value = over(self.cr2);
                 if value & !cr2::MODELLED != 0 {
-                    return Err(unmodelled("CR2", format!("write of {value:#010x}")));
+                    return Err(reg::MAP.unmodelled_write("SPI1", reg::CR2, value));
                 }
                 self.cr2 = value;
             }
             // All flags but CRCERR are read-only or cleared by sequences; CRC is not modelled.
-            0x08 => {}
-            0x0C => self.write_dr(over(0) as u16, ctx),
-            0x10 => self.crcpr = over(self.crcpr) & 0xFFFF,
-            0x1C if over(0) == 0 => {}
-            other => {
-                return Err(unmodelled(
-                    &format!("+{other:#x}"),
-                    format!("write of {value:#010x}"),
-                ));
-            }
+            reg::SR => {}
+            reg::DR => self.write_dr(over(0) as u16, ctx),
+            reg::CRCPR => self.crcpr = over(self.crcpr) & 0xFFFF,
+            reg::I2SCFGR if over(0) == 0 => {}
+            other => return Err(reg::MAP.unmodelled_write("SPI1", other, value)),
         }
         self.shift_next(ctx);
         self.update_lines(ctx);

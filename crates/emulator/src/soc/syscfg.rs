@@ -4,7 +4,18 @@ use crate::soc::{
     access::Access,
     peripheral::{Ctx, Peripheral, Unmodelled},
     pins::Pin,
+    registers::registers,
 };
+
+registers! {
+    MEMRMP = 0x00,
+    PMC = 0x04,
+    EXTICR1 = 0x08,
+    EXTICR2 = 0x0C,
+    EXTICR3 = 0x10,
+    EXTICR4 = 0x14,
+    CMPCR = 0x20,
+}
 
 #[derive(Debug, Default)]
 pub struct Syscfg {
@@ -27,9 +38,11 @@ impl Peripheral for Syscfg {
         let access = Access::new(offset, size);
         match access.register {
             // MEMRMP: started from flash.
-            0x00 => Ok(0),
-            0x08..=0x14 => Ok(access.read_of(self.exticr[(access.register - 0x08) as usize / 4])),
-            _ => Err(unmodelled(offset, "read")),
+            reg::MEMRMP => Ok(0),
+            reg::EXTICR1..=reg::EXTICR4 => {
+                Ok(access.read_of(self.exticr[(access.register - reg::EXTICR1) as usize / 4]))
+            }
+            _ => Err(reg::MAP.unmodelled_read("SYSCFG", offset)),
         }
     }
 
@@ -42,12 +55,12 @@ impl Peripheral for Syscfg {
     ) -> Result<(), Unmodelled> {
         let access = Access::new(offset, size);
         match access.register {
-            0x08..=0x14 => {
-                let exticr = &mut self.exticr[(access.register - 0x08) as usize / 4];
+            reg::EXTICR1..=reg::EXTICR4 => {
+                let exticr = &mut self.exticr[(access.register - reg::EXTICR1) as usize / 4];
                 *exticr = access.written_over(*exticr, value) & 0xFFFF;
                 Ok(())
             }
-            _ => Err(unmodelled(offset, &format!("write of {value:#010x}"))),
+            _ => Err(reg::MAP.unmodelled_write("SYSCFG", offset, value)),
         }
     }
 
@@ -55,18 +68,5 @@ impl Peripheral for Syscfg {
 
     fn reset(&mut self, _ctx: &mut Ctx<'_>) {
         *self = Self::default();
-    }
-}
-
-fn unmodelled(offset: u32, what: &str) -> Unmodelled {
-    let register = match offset & !3 {
-        0x00 => "SYSCFG.MEMRMP".to_owned(),
-        0x04 => "SYSCFG.PMC".to_owned(),
-        0x20 => "SYSCFG.CMPCR".to_owned(),
-        other => format!("SYSCFG+{other:#x}"),
-    };
-    Unmodelled {
-        register,
-        what: what.to_owned(),
     }
 }

@@ -11,12 +11,37 @@ use crate::{
         clocks::{ClockTree, cycles_to_ps, ps_to_cycles},
         irq::Irq,
         peripheral::{Ctx, Peripheral, Unmodelled},
+        registers::registers,
         scheduler::Target,
         wave::Wave,
     },
     time::Ps,
 };
 use counter::{Counter, UIF};
+
+registers! {
+    CR1 = 0x00,
+    CR2 = 0x04,
+    SMCR = 0x08,
+    DIER = 0x0C,
+    SR = 0x10,
+    EGR = 0x14,
+    CCMR1 = 0x18,
+    CCMR2 = 0x1C,
+    CCER = 0x20,
+    CNT = 0x24,
+    PSC = 0x28,
+    ARR = 0x2C,
+    RCR = 0x30,
+    CCR1 = 0x34,
+    CCR2 = 0x38,
+    CCR3 = 0x3C,
+    CCR4 = 0x40,
+    BDTR = 0x44,
+    DCR = 0x48,
+    DMAR = 0x4C,
+    OR = 0x50,
+}
 
 const CEN: u32 = 1;
 const UDIS: u32 = 1 << 1;
@@ -93,6 +118,10 @@ impl Timer {
         if self.number == 10 { 1 } else { 4 }
     }
 
+    fn name(&self) -> String {
+        format!("TIM{}", self.number)
+    }
+
     fn irq(&self) -> Irq {
         match self.number {
             2 => 28,
@@ -139,38 +168,38 @@ impl Timer {
 
     fn value(&self, register: u32) -> Result<u32, Unmodelled> {
         Ok(match register {
-            0x00 => self.cr1,
-            0x04 | 0x08 | 0x50 => 0,
-            0x0C => self.dier,
-            0x10 => self.sr,
-            0x14 => 0,
-            0x18 => self.ccmr[0],
-            0x1C => self.ccmr[1],
-            0x20 => self.ccer,
-            0x24 => self.counter.count(),
-            0x28 => self.counter.prescaler.written,
-            0x2C => self.counter.reload.written,
-            0x34..=0x40 => self.counter.compare[compare_index(register)].written,
-            _ => return Err(self.unmodelled(register, "read")),
+            reg::CR1 => self.cr1,
+            reg::CR2 | reg::SMCR | reg::OR => 0,
+            reg::DIER => self.dier,
+            reg::SR => self.sr,
+            reg::EGR => 0,
+            reg::CCMR1 => self.ccmr[0],
+            reg::CCMR2 => self.ccmr[1],
+            reg::CCER => self.ccer,
+            reg::CNT => self.counter.count(),
+            reg::PSC => self.counter.prescaler.written,
+            reg::ARR => self.counter.reload.written,
+            reg::CCR1..=reg::CCR4 => self.counter.compare[compare_index(register)].written,
+            _ => return Err(reg::MAP.unmodelled_read(self.name(), register)),
         })
     }
 
     fn store(&mut self, register: u32, value: u32) -> Result<(), Unmodelled> {
         match register {
-            0x00 if value & !CR1_KNOWN == 0 => self.write_cr1(value),
-            0x0C if value & !FLAGS == 0 => self.dier = value,
+            reg::CR1 if value & !CR1_KNOWN == 0 => self.write_cr1(value),
+            reg::DIER if value & !FLAGS == 0 => self.dier = value,
             // Flags are cleared by writing 0.
-            0x10 => self.sr &= value,
-            0x14 if value & !FLAGS == 0 => self.write_egr(value),
-            0x18 | 0x1C => return self.write_ccmr(register, value),
-            0x20 => self.ccer = value & if self.channels() == 1 { 0x3 } else { 0x3333 },
-            0x24 => self.counter.set_count(value & self.counter.max()),
-            0x28 => self.counter.prescaler.written = value & 0xFFFF,
-            0x2C => self.write_arr(value),
-            0x34..=0x40 => self.write_ccr(compare_index(register), value),
+            reg::SR => self.sr &= value,
+            reg::EGR if value & !FLAGS == 0 => self.write_egr(value),
+            reg::CCMR1 | reg::CCMR2 => return self.write_ccmr(register, value),
+            reg::CCER => self.ccer = value & if self.channels() == 1 { 0x3 } else { 0x3333 },
+            reg::CNT => self.counter.set_count(value & self.counter.max()),
+            reg::PSC => self.counter.prescaler.written = value & 0xFFFF,
+            reg::ARR => self.write_arr(value),
+            reg::CCR1..=reg::CCR4 => self.write_ccr(compare_index(register), value),
             // CR2, SMCR, OR: only their reset value.
-            0x04 | 0x08 | 0x50 if value == 0 => {}
-            _ => return Err(self.unmodelled(register, &format!("write of {value:#010x}"))),
+            reg::CR2 | reg::SMCR | reg::OR if value == 0 => {}
+            _ => return Err(reg::MAP.unmodelled_write(self.name(), register, value)),
         }
         Ok(())
     }
@@ -195,13 +224,17 @@ impl Timer {
     fn write_ccmr(&mut self, register: u32, value: u32) -> Result<(), Unmodelled> {
         for half in [value & 0xFF, value >> 8 & 0xFF] {
             if half & 3 != 0 {
-                return Err(self.unmodelled(register, "input capture"));
+                return Err(reg::MAP.unmodelled(self.name(), register, "input capture"));
             }
             if !output::mode_is_modelled(half >> 4 & 7) {
-                return Err(self.unmodelled(register, "toggling or one-shot output mode"));
+                return Err(reg::MAP.unmodelled(
+                    self.name(),
+                    register,
+                    "toggling or one-shot output mode",
+                ));
             }
         }
-        self.ccmr[usize::from(register == 0x1C)] = value & 0xFFFF;
+        self.ccmr[usize::from(register == reg::CCMR2)] = value & 0xFFFF;
         Ok(())
     }
 
@@ -220,22 +253,6 @@ impl Timer {
         self.counter.compare[channel].written = value;
         if !preload {
             self.counter.compare[channel].load();
-        }
-    }
-
-    fn unmodelled(&self, register: u32, what: &str) -> Unmodelled {
-        const NAMES: [&str; 21] = [
-            "CR1", "CR2", "SMCR", "DIER", "SR", "EGR", "CCMR1", "CCMR2", "CCER", "CNT", "PSC",
-            "ARR", "RCR", "CCR1", "CCR2", "CCR3", "CCR4", "BDTR", "DCR", "DMAR", "OR",
-        ];
-        let number = self.number;
-        let register = NAMES.get((register / 4) as usize).map_or_else(
-            || format!("TIM{number}+{register:#x}"),
-            |name| format!("TIM{number}.{name}"),
-        );
-        Unmodelled {
-            register,
-            what: what.to_owned(),
         }
     }
 }
@@ -259,7 +276,7 @@ impl Peripheral for Timer {
         let access = Access::new(offset, size);
         self.catch_up(ctx.now);
         // Bits of SR outside a narrow access keep their flags.
-        let old = if access.register == 0x10 {
+        let old = if access.register == reg::SR {
             u32::MAX
         } else {
             self.value(access.register)?
@@ -308,5 +325,5 @@ fn clock_hz(number: u8, clocks: &ClockTree) -> u32 {
 }
 
 fn compare_index(register: u32) -> usize {
-    ((register - 0x34) / 4) as usize
+    ((register - reg::CCR1) / 4) as usize
 }

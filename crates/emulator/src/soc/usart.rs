@@ -20,7 +20,7 @@ mod receiver;
 mod registers;
 mod waveform;
 
-use registers::{cr1, cr3, sr};
+use registers::{cr1, cr3, reg, sr};
 
 /// What an event is for; anything else it might have been asked for is out of date.
 const RECEIVED: u32 = 0;
@@ -295,17 +295,17 @@ impl Peripheral for Usart {
     fn read(&mut self, offset: u32, size: u8, ctx: &mut Ctx<'_>) -> Result<u32, Unmodelled> {
         let access = Access::new(offset, size);
         let value = match access.register {
-            0x00 => {
+            reg::SR => {
                 self.shown = self.sr;
                 self.sr
             }
-            0x04 => u32::from(self.read_dr()),
-            0x08 => self.brr,
-            0x0C => self.cr1,
-            0x10 => self.cr2,
-            0x14 => self.cr3,
-            0x18 => 0,
-            other => return Err(registers::unmodelled(self.number, other, "read".to_owned())),
+            reg::DR => u32::from(self.read_dr()),
+            reg::BRR => self.brr,
+            reg::CR1 => self.cr1,
+            reg::CR2 => self.cr2,
+            reg::CR3 => self.cr3,
+            reg::GTPR => 0,
+            other => return Err(reg::MAP.unmodelled_read(registers::name(self.number), other)),
         };
         self.update_lines(ctx);
         Ok(access.read_of(value))
@@ -323,16 +323,16 @@ impl Peripheral for Usart {
         registers::check_write(self.number, access.register, over(0))?;
         match access.register {
             // Only RXNE and TC can be cleared by writing 0.
-            0x00 => self.sr &= over(u32::MAX) | !(sr::RXNE | sr::TC),
-            0x04 => self.write_dr(ctx),
-            0x08 => {
+            reg::SR => self.sr &= over(u32::MAX) | !(sr::RXNE | sr::TC),
+            reg::DR => self.write_dr(ctx),
+            reg::BRR => {
                 self.brr = over(self.brr) & 0xFFFF;
                 self.received_at = None;
                 self.receiver.restart(ctx.now);
             }
-            0x0C => self.write_cr1(over(self.cr1), ctx),
-            0x10 => self.cr2 = over(self.cr2),
-            0x14 => self.cr3 = over(self.cr3),
+            reg::CR1 => self.write_cr1(over(self.cr1), ctx),
+            reg::CR2 => self.cr2 = over(self.cr2),
+            reg::CR3 => self.cr3 = over(self.cr3),
             _ => {}
         }
         self.plan_reception(ctx);

@@ -1,5 +1,7 @@
 //! The flash patch and breakpoint unit (ARMv7-M ARM C1.11): six comparators for code, two for literals.
 
+use super::reg;
+
 const COMPARATORS: usize = 8;
 /// Only these compare instruction addresses.
 const FOR_CODE: usize = 6;
@@ -44,13 +46,13 @@ impl Breakpoints {
 
     pub(super) fn read(&self, register: u32) -> Option<u32> {
         match register {
-            0xE000_2000 => Some(CTRL_NUMBERS | u32::from(self.enabled)),
+            reg::FP_CTRL => Some(CTRL_NUMBERS | u32::from(self.enabled)),
             _ => self.comparators.get(place(register)?).copied(),
         }
     }
 
     pub(super) fn write(&mut self, register: u32, value: u32) -> bool {
-        if register == 0xE000_2000 {
+        if register == reg::FP_CTRL {
             if value & CTRL_KEY != 0 {
                 self.enabled = value & ENABLE != 0;
             }
@@ -69,6 +71,6 @@ impl Breakpoints {
 }
 
 fn place(register: u32) -> Option<usize> {
-    let offset = register.checked_sub(0xE000_2008)?;
+    let offset = register.checked_sub(reg::FP_COMP0)?;
     Some(offset as usize / 4)
 }

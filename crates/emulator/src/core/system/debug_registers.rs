@@ -1,7 +1,7 @@
 //! The debug hardware: what a probe sets over SWD, and what firmware can read and undo of it (ARMv7-M ARM C1; RM0090
 //! 38.16). All of it outlives every reset but power-on. The cycle counter of the DWT is here too.
 
-use super::breakpoints::Breakpoints;
+use super::{breakpoints::Breakpoints, reg};
 use crate::core::exception::Exception;
 
 const DHCSR_C_DEBUGEN: u32 = 1;
@@ -25,6 +25,9 @@ const DWT_NUMCOMP: u32 = 4 << 28;
 const DBGMCU_IDCODE: u32 = 0x1007_6413;
 /// DBG_IWDG_STOP of DBGMCU_APB1_FZ: the watchdog stands while the core is halted.
 const APB1_FZ_IWDG: u32 = 1 << 12;
+
+/// Past the last register of the flash patch and breakpoint unit.
+const FPB_END: u32 = reg::FP_CTRL + 0x1000;
 
 #[derive(Debug, Default)]
 pub struct Debug {
@@ -91,38 +94,44 @@ impl Debug {
 
     pub(super) fn read(&self, register: u32, cycles: u64) -> Option<u32> {
         Some(match register {
-            0xE000_1000 => DWT_NUMCOMP | u32::from(self.counting),
-            0xE000_1004 => self.cyccnt(cycles),
+            reg::DWT_CTRL => DWT_NUMCOMP | u32::from(self.counting),
+            reg::DWT_CYCCNT => self.cyccnt(cycles),
             // FUNCTION 0 to 3: no watchpoint.
-            0xE000_1028 | 0xE000_1038 | 0xE000_1048 | 0xE000_1058 => 0,
-            0xE000_1FB4 => 0, // LSR: unlocked
-            0xE000_2000..=0xE000_2FFF => return self.breakpoints.read(register),
+            reg::DWT_FUNCTION0 | reg::DWT_FUNCTION1 | reg::DWT_FUNCTION2 | reg::DWT_FUNCTION3 => 0,
+            reg::DWT_LSR => 0, // LSR: unlocked
+            reg::FP_CTRL..FPB_END => return self.breakpoints.read(register),
             // Who can read it runs.
-            0xE000_EDF0 if self.enabled => DHCSR_S_REGRDY | DHCSR_C_DEBUGEN,
-            0xE000_EDF0 => DHCSR_S_REGRDY,
-            0xE000_EDFC => self.demcr,
-            0xE004_2000 => DBGMCU_IDCODE,
-            0xE004_2004..=0xE004_200C => self.dbgmcu[(register as usize - 0xE004_2004) / 4],
+            reg::DHCSR if self.enabled => DHCSR_S_REGRDY | DHCSR_C_DEBUGEN,
+            reg::DHCSR => DHCSR_S_REGRDY,
+            reg::DEMCR => self.demcr,
+            reg::DBGMCU_IDCODE => DBGMCU_IDCODE,
+            reg::DBGMCU_CR..=reg::DBGMCU_APB2_FZ => {
+                self.dbgmcu[((register - reg::DBGMCU_CR) / 4) as usize]
+            }
             _ => return None,
         })
     }
 
     pub(super) fn write(&mut self, register: u32, value: u32, cycles: u64) -> bool {
         match register {
-            0xE000_1000 => {
+            reg::DWT_CTRL => {
                 self.cyccnt = self.cyccnt(cycles);
                 self.started_at = cycles;
                 self.counting = value & DWT_CYCCNTENA != 0;
             }
-            0xE000_1004 => {
+            reg::DWT_CYCCNT => {
                 self.cyccnt = value;
                 self.started_at = cycles;
             }
-            0xE000_1028 | 0xE000_1038 | 0xE000_1048 | 0xE000_1058 => return value == 0,
-            0xE000_1FB0 => {} // LAR
-            0xE000_2000..=0xE000_2FFF => return self.breakpoints.write(register, value),
-            0xE000_EDFC => self.demcr = value & (DEMCR_TRCENA | DEMCR_VC_ALL) | self.insisted,
-            0xE004_2004..=0xE004_200C => self.dbgmcu[(register as usize - 0xE004_2004) / 4] = value,
+            reg::DWT_FUNCTION0 | reg::DWT_FUNCTION1 | reg::DWT_FUNCTION2 | reg::DWT_FUNCTION3 => {
+                return value == 0;
+            }
+            reg::DWT_LAR => {} // LAR
+            reg::FP_CTRL..FPB_END => return self.breakpoints.write(register, value),
+            reg::DEMCR => self.demcr = value & (DEMCR_TRCENA | DEMCR_VC_ALL) | self.insisted,
+            reg::DBGMCU_CR..=reg::DBGMCU_APB2_FZ => {
+                self.dbgmcu[((register - reg::DBGMCU_CR) / 4) as usize] = value
+            }
             _ => return false,
         }
         true

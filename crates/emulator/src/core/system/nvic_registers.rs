@@ -1,17 +1,20 @@
 //! ISER, ICER, ISPR, ICPR, IABR, IPR and STIR.
 
-use super::{Surroundings, System};
+use super::{Surroundings, System, reg};
 use crate::{core::exception::Exception, soc::access::Access};
 
+/// Past the last of the active bits.
+const NVIC_IABR_END: u32 = reg::NVIC_IABR0 + 0x80;
+
 impl System {
-    /// `register` between 0xE000_E100 and 0xE000_E4EF, word-aligned.
+    /// `register` from NVIC_ISER0 to NVIC_IPR59, word-aligned.
     pub(super) fn read_nvic(&self, register: u32) -> Option<u32> {
         let word = register >> 2 & 0x1F;
-        Some(match register >> 7 & 0xF {
-            0x2 | 0x3 => self.nvic.enabled_word(word),
-            0x4 | 0x5 => self.nvic.pending_word(word),
-            0x6 => self.nvic.active_word(word),
-            0x8 | 0x9 => self.priorities(16 + (register - 0xE000_E400)),
+        Some(match register {
+            reg::NVIC_ISER0..reg::NVIC_ISPR0 => self.nvic.enabled_word(word),
+            reg::NVIC_ISPR0..reg::NVIC_IABR0 => self.nvic.pending_word(word),
+            reg::NVIC_IABR0..NVIC_IABR_END => self.nvic.active_word(word),
+            reg::NVIC_IPR0..=reg::NVIC_IPR59 => self.priorities(16 + (register - reg::NVIC_IPR0)),
             _ => return None,
         })
     }
@@ -26,14 +29,16 @@ impl System {
         let word = register >> 2 & 0x1F;
         let bits = access.written_over(0, value);
         match register {
-            0xE000_E100..=0xE000_E17C => self.nvic.enable_word(word, bits),
-            0xE000_E180..=0xE000_E1FC => self.nvic.disable_word(word, bits),
-            0xE000_E200..=0xE000_E27C => self.nvic.set_pending_word(word, bits),
-            0xE000_E280..=0xE000_E2FC => self.nvic.clear_pending_word(word, bits, around.line_high),
-            0xE000_E400..=0xE000_E4EF => {
-                self.set_priorities(16 + (register - 0xE000_E400), access, value);
+            reg::NVIC_ISER0..reg::NVIC_ICER0 => self.nvic.enable_word(word, bits),
+            reg::NVIC_ICER0..reg::NVIC_ISPR0 => self.nvic.disable_word(word, bits),
+            reg::NVIC_ISPR0..reg::NVIC_ICPR0 => self.nvic.set_pending_word(word, bits),
+            reg::NVIC_ICPR0..reg::NVIC_IABR0 => {
+                self.nvic.clear_pending_word(word, bits, around.line_high)
             }
-            0xE000_EF00 => {
+            reg::NVIC_IPR0..=reg::NVIC_IPR59 => {
+                self.set_priorities(16 + (register - reg::NVIC_IPR0), access, value);
+            }
+            reg::STIR => {
                 let irq = value & 0x1FF;
                 self.nvic.set_pending_word(irq >> 5, 1 << (irq & 31));
             }

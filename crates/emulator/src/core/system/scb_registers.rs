@@ -1,6 +1,6 @@
 //! System control block and FPU control (ARMv7-M ARM B3.2).
 
-use super::{CCR_DIV_0_TRP, CCR_UNALIGN_TRP, FPCCR_RESET, System};
+use super::{CCR_DIV_0_TRP, CCR_UNALIGN_TRP, FPCCR_RESET, System, reg};
 use crate::{core::exception::Exception, soc::access::Access};
 
 /// Cortex-M4 r0p1, as on the STM32F407.
@@ -21,64 +21,64 @@ const SHCSR_ENABLES: [(u32, Exception); 3] = [
 impl System {
     pub(super) fn read_scb(&self, register: u32) -> Option<u32> {
         Some(match register {
-            0xE000_ED00 => CPUID,
-            0xE000_ED04 => self.icsr(),
-            0xE000_ED08 => self.vtor,
-            0xE000_ED0C => AIRCR_KEY_READ | u32::from(self.nvic.priority_group()) << 8,
-            0xE000_ED10 => self.scr,
-            0xE000_ED14 => self.ccr,
-            0xE000_ED18..=0xE000_ED20 => self.priorities(4 + (register - 0xE000_ED18)),
-            0xE000_ED24 => self.shcsr(),
-            0xE000_ED28 => self.faults.cfsr,
-            0xE000_ED2C => self.faults.hfsr,
-            0xE000_ED30 => 0, // DFSR: no debugger
-            0xE000_ED34 => 0, // MMFAR: no fault of ours has a valid address in it
-            0xE000_ED38 => self.faults.bfar,
-            0xE000_ED88 => self.cpacr,
-            0xE000_ED90 => MPU_TYPE,
-            0xE000_ED94 => 0, // MPU_CTRL
-            0xE000_EF34 => self.fpccr,
-            0xE000_EF3C => 0, // FPDSCR
-            0xE000_EF40 => 0x1011_0021,
-            0xE000_EF44 => 0x1100_0011,
+            reg::CPUID => CPUID,
+            reg::ICSR => self.icsr(),
+            reg::VTOR => self.vtor,
+            reg::AIRCR => AIRCR_KEY_READ | u32::from(self.nvic.priority_group()) << 8,
+            reg::SCR => self.scr,
+            reg::CCR => self.ccr,
+            reg::SHPR1..=reg::SHPR3 => self.priorities(4 + (register - reg::SHPR1)),
+            reg::SHCSR => self.shcsr(),
+            reg::CFSR => self.faults.cfsr,
+            reg::HFSR => self.faults.hfsr,
+            reg::DFSR => 0,  // DFSR: no debugger
+            reg::MMFAR => 0, // MMFAR: no fault of ours has a valid address in it
+            reg::BFAR => self.faults.bfar,
+            reg::CPACR => self.cpacr,
+            reg::MPU_TYPE => MPU_TYPE,
+            reg::MPU_CTRL => 0, // MPU_CTRL
+            reg::FPCCR => self.fpccr,
+            reg::FPDSCR => 0, // FPDSCR
+            reg::MVFR0 => 0x1011_0021,
+            reg::MVFR1 => 0x1100_0011,
             _ => return None,
         })
     }
 
     pub(super) fn write_scb(&mut self, register: u32, access: Access, value: u32) -> bool {
         match register {
-            0xE000_ED04 => self.write_icsr(value),
-            0xE000_ED08 => self.vtor = value & 0x3FFF_FF80,
-            0xE000_ED0C if value >> 16 == AIRCR_KEY => {
+            reg::ICSR => self.write_icsr(value),
+            reg::VTOR => self.vtor = value & 0x3FFF_FF80,
+            reg::AIRCR if value >> 16 == AIRCR_KEY => {
                 self.nvic.set_priority_group((value >> 8 & 7) as u8);
                 self.reset_requested |= value & AIRCR_SYSRESETREQ != 0;
             }
-            0xE000_ED0C => {} // without the key the write has no effect
-            0xE000_ED10 => self.scr = access.written_over(self.scr, value) & 0x16,
-            0xE000_ED14 => {
+            reg::AIRCR => {} // without the key the write has no effect
+            reg::SCR => self.scr = access.written_over(self.scr, value) & 0x16,
+            reg::CCR => {
                 let ccr = access.written_over(self.ccr, value);
                 if ccr & (CCR_DIV_0_TRP | CCR_UNALIGN_TRP) != 0 {
                     return false;
                 }
                 self.ccr = ccr & 0x303;
             }
-            0xE000_ED18..=0xE000_ED20 => {
-                self.set_priorities(4 + (register - 0xE000_ED18), access, value)
+            reg::SHPR1..=reg::SHPR3 => {
+                self.set_priorities(4 + (register - reg::SHPR1), access, value)
             }
-            0xE000_ED24 => {
+            reg::SHCSR => {
                 let enables = access.written_over(self.shcsr(), value);
                 for (bit, exception) in SHCSR_ENABLES {
                     self.nvic.set_enabled(exception, enables & bit != 0);
                 }
             }
-            0xE000_ED28 => self.faults.cfsr &= !access.written_over(0, value),
-            0xE000_ED2C => self.faults.hfsr &= !access.written_over(0, value),
-            0xE000_ED30 => {}
-            0xE000_ED88 => self.cpacr = access.written_over(self.cpacr, value) & 0x00F0_0000,
-            0xE000_ED94 if value == 0 => {}
+            reg::CFSR => self.faults.cfsr &= !access.written_over(0, value),
+            reg::HFSR => self.faults.hfsr &= !access.written_over(0, value),
+            reg::DFSR => {}
+            reg::CPACR => self.cpacr = access.written_over(self.cpacr, value) & 0x00F0_0000,
+            reg::MPU_CTRL if value == 0 => {}
             // Other stacking modes than the default would need another frame logic.
-            0xE000_EF34 => return value & FPCCR_RESET == FPCCR_RESET,
-            0xE000_EF3C if value == 0 => {}
+            reg::FPCCR => return value & FPCCR_RESET == FPCCR_RESET,
+            reg::FPDSCR if value == 0 => {}
             _ => return false,
         }
         true

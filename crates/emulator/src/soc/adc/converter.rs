@@ -1,11 +1,12 @@
 //! One converter: single conversions of one input, started by software.
 
-use super::{Common, MAX_ADC_HZ, VREFINT_V, unmodelled};
+use super::{Common, MAX_ADC_HZ, VREFINT_V};
 use crate::{
     soc::{
         access::Access,
         clocks::cycles_to_ps,
         peripheral::{Ctx, Unmodelled},
+        registers::registers,
         routing,
         scheduler::Target,
         signals::Signal,
@@ -22,6 +23,18 @@ const VREFINT_SAMPLING: Ps = 10 * US;
 const SWITCH_OHMS: f64 = 6_000.0;
 const SAMPLING_FARADS: f64 = 7e-12;
 const TIME_CONSTANTS: f64 = 9.7;
+
+registers! {
+    SR = 0x00,
+    CR1 = 0x04,
+    CR2 = 0x08,
+    SMPR1 = 0x0C,
+    SMPR2 = 0x10,
+    SQR1 = 0x2C,
+    SQR2 = 0x30,
+    SQR3 = 0x34,
+    DR = 0x4C,
+}
 
 mod sr {
     pub const EOC: u32 = 1 << 1;
@@ -84,10 +97,6 @@ impl Converter {
         format!("ADC{}", self.index + 1)
     }
 
-    fn unmodelled(&self, register: &str, what: &str) -> Unmodelled {
-        unmodelled(&format!("{}.{register}", self.name()), what)
-    }
-
     fn channel(&self) -> u32 {
         self.sqr[2] & 0x1F
     }
@@ -124,10 +133,18 @@ impl Converter {
             return Ok(());
         }
         if self.sqr[0] >> 20 & 0xF != 0 {
-            return Err(self.unmodelled("SQR1", "a sequence of more than one conversion"));
+            return Err(reg::MAP.unmodelled(
+                name,
+                reg::SQR1,
+                "a sequence of more than one conversion",
+            ));
         }
         let Some(input) = self.input() else {
-            return Err(self.unmodelled("SQR3", &format!("input IN{}", self.channel())));
+            return Err(reg::MAP.unmodelled(
+                name,
+                reg::SQR3,
+                format!("input IN{}", self.channel()),
+            ));
         };
         if ctx.now < self.stable_at {
             let what =
@@ -192,7 +209,7 @@ impl Converter {
     ) -> Result<(), Unmodelled> {
         let dma = value & cr2::DMA != 0 && self.index != 2;
         if value & !cr2::MODELLED != 0 || dma {
-            return Err(self.unmodelled("CR2", &format!("write of {value:#010x}")));
+            return Err(reg::MAP.unmodelled_write(self.name(), reg::CR2, value));
         }
         let was_on = self.cr2 & cr2::ADON != 0;
         self.cr2 = value & !cr2::SWSTART;
@@ -225,17 +242,17 @@ impl Converter {
     /// `access` counts from the converter's own registers.
     pub fn read(&mut self, access: Access) -> Result<u32, Unmodelled> {
         Ok(match access.register {
-            0x00 => self.sr,
-            0x04 => self.cr1,
-            0x08 => self.cr2,
-            0x0C => self.smpr1,
-            0x10 => self.smpr2,
-            0x2C..=0x34 => self.sqr[((access.register - 0x2C) / 4) as usize],
-            0x4C => {
+            reg::SR => self.sr,
+            reg::CR1 => self.cr1,
+            reg::CR2 => self.cr2,
+            reg::SMPR1 => self.smpr1,
+            reg::SMPR2 => self.smpr2,
+            reg::SQR1..=reg::SQR3 => self.sqr[((access.register - reg::SQR1) / 4) as usize],
+            reg::DR => {
                 self.sr &= !sr::EOC;
                 self.dr
             }
-            other => return Err(self.unmodelled(&format!("+{other:#x}"), "read")),
+            other => return Err(reg::MAP.unmodelled_read(self.name(), other)),
         })
     }
 
@@ -249,25 +266,22 @@ impl Converter {
         let over = |old| access.written_over(old, value);
         match access.register {
             // Every flag is cleared by writing 0.
-            0x00 => self.sr &= over(u32::MAX),
-            0x04 => {
+            reg::SR => self.sr &= over(u32::MAX),
+            reg::CR1 => {
                 let value = over(self.cr1);
                 if value & !(cr1::EOCIE | cr1::OVRIE | cr1::SCAN | cr1::RES) != 0 {
-                    return Err(self.unmodelled("CR1", &format!("write of {value:#010x}")));
+                    return Err(reg::MAP.unmodelled_write(self.name(), reg::CR1, value));
                 }
                 self.cr1 = value;
             }
-            0x08 => self.write_cr2(over(self.cr2), common, ctx)?,
-            0x0C => self.smpr1 = over(self.smpr1),
-            0x10 => self.smpr2 = over(self.smpr2),
-            0x2C..=0x34 => {
-                let sqr = &mut self.sqr[((access.register - 0x2C) / 4) as usize];
+            reg::CR2 => self.write_cr2(over(self.cr2), common, ctx)?,
+            reg::SMPR1 => self.smpr1 = over(self.smpr1),
+            reg::SMPR2 => self.smpr2 = over(self.smpr2),
+            reg::SQR1..=reg::SQR3 => {
+                let sqr = &mut self.sqr[((access.register - reg::SQR1) / 4) as usize];
                 *sqr = over(*sqr);
             }
-            other => {
-                let what = format!("write of {value:#010x}");
-                return Err(self.unmodelled(&format!("+{other:#x}"), &what));
-            }
+            other => return Err(reg::MAP.unmodelled_write(self.name(), other, value)),
         }
         Ok(())
     }

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::reg;
 use crate::{soc::peripheral::Ctx, wire::CanFrame};
 
 const BANKS: usize = 28;
@@ -58,11 +59,11 @@ impl Filters {
     /// A filter register by its offset from CAN1's base.
     pub fn read(&self, offset: u32) -> Option<u32> {
         Some(match offset {
-            0x200 => FMR_RESERVED | (self.split as u32) << 8 | u32::from(self.initialising),
-            0x204 => self.list_mode,
-            0x20C => self.scale_32,
-            0x214 => self.to_fifo_1,
-            0x21C => self.active,
+            reg::FMR => FMR_RESERVED | (self.split as u32) << 8 | u32::from(self.initialising),
+            reg::FM1R => self.list_mode,
+            reg::FS1R => self.scale_32,
+            reg::FFA1R => self.to_fifo_1,
+            reg::FA1R => self.active,
             _ => {
                 let (bank, word) = bank_word(offset)?;
                 self.banks[bank][word]
@@ -72,20 +73,20 @@ impl Filters {
 
     pub fn write(&mut self, offset: u32, value: u32, ctx: &mut Ctx<'_>) -> Option<()> {
         match offset {
-            0x200 => {
+            reg::FMR => {
                 self.initialising = value & 1 == 1;
                 self.split = (value >> 8 & 0x3F) as usize;
             }
-            0x204 | 0x20C | 0x214 if !self.initialising => {
+            reg::FM1R | reg::FS1R | reg::FFA1R if !self.initialising => {
                 ctx.errors.report(
                     ctx.now,
                     "CAN1: FM1R, FS1R or FFA1R written while FINIT is 0: ignored",
                 );
             }
-            0x204 => self.list_mode = value & ALL_BANKS,
-            0x20C => self.scale_32 = value & ALL_BANKS,
-            0x214 => self.to_fifo_1 = value & ALL_BANKS,
-            0x21C => self.active = value & ALL_BANKS,
+            reg::FM1R => self.list_mode = value & ALL_BANKS,
+            reg::FS1R => self.scale_32 = value & ALL_BANKS,
+            reg::FFA1R => self.to_fifo_1 = value & ALL_BANKS,
+            reg::FA1R => self.active = value & ALL_BANKS,
             _ => {
                 let (bank, word) = bank_word(offset)?;
                 if self.initialising || self.active >> bank & 1 == 0 {
@@ -191,7 +192,7 @@ pub fn register_layout(frame: &CanFrame) -> u32 {
 }
 
 fn bank_word(offset: u32) -> Option<(usize, usize)> {
-    let word = offset.checked_sub(0x240)? as usize / 4;
+    let word = offset.checked_sub(reg::F0R1)? as usize / 4;
     (word < 2 * BANKS).then_some((word / 2, word % 2))
 }
 

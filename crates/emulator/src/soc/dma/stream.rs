@@ -1,6 +1,15 @@
 //! One DMA stream: its registers, and the progress of its transfer (RM0090 10.3, 10.5.5–10.5.10).
 
-use crate::soc::peripheral::Unmodelled;
+use crate::soc::registers::registers;
+
+registers! {
+    CR = 0x00,
+    NDTR = 0x04,
+    PAR = 0x08,
+    M0AR = 0x0C,
+    M1AR = 0x10,
+    FCR = 0x14,
+}
 
 pub const EN: u32 = 1;
 pub const TEIE: u32 = 1 << 2;
@@ -95,34 +104,39 @@ impl Stream {
             .any(|(enable, flag)| self.cr & enable != 0 && self.flags & flag != 0)
     }
 
-    pub fn register(&self, index: u32) -> Option<u32> {
-        Some(match index {
-            0 => self.cr,
-            1 => self.ndtr,
-            2 => self.par,
-            3 => self.m0ar,
-            4 => self.m1ar,
-            5 => self.fcr | FS_EMPTY,
+    pub fn register(&self, offset: u32) -> Option<u32> {
+        Some(match offset {
+            reg::CR => self.cr,
+            reg::NDTR => self.ndtr,
+            reg::PAR => self.par,
+            reg::M0AR => self.m0ar,
+            reg::M1AR => self.m1ar,
+            reg::FCR => self.fcr | FS_EMPTY,
             _ => return None,
         })
     }
 
-    /// True where the write enabled the stream.
-    pub fn set_register(&mut self, index: u32, value: u32) -> Result<bool, Unmodelled> {
-        match index {
-            0 => return self.write_cr(value),
+    /// Items still to be moved.
+    pub fn items_left(&self) -> u32 {
+        self.ndtr
+    }
+
+    /// True where the write enabled the stream; an error names what is not modelled.
+    pub fn set_register(&mut self, offset: u32, value: u32) -> Result<bool, &'static str> {
+        match offset {
+            reg::CR => return self.write_cr(value),
             // Locked while the stream runs.
             _ if self.enabled() => {}
-            1 => self.ndtr = value & 0xFFFF,
-            2 => self.par = value,
-            3 => self.m0ar = value,
-            4 => self.m1ar = value,
+            reg::NDTR => self.ndtr = value & 0xFFFF,
+            reg::PAR => self.par = value,
+            reg::M0AR => self.m0ar = value,
+            reg::M1AR => self.m1ar = value,
             _ => self.fcr = value & FCR_BITS,
         }
         Ok(false)
     }
 
-    fn write_cr(&mut self, value: u32) -> Result<bool, Unmodelled> {
+    fn write_cr(&mut self, value: u32) -> Result<bool, &'static str> {
         let value = value & CR_BITS;
         let (was_on, on) = (self.enabled(), value & EN != 0);
         if was_on {
@@ -142,24 +156,20 @@ impl Stream {
         Ok(on)
     }
 
-    fn check_modelled(&self) -> Result<(), Unmodelled> {
+    fn check_modelled(&self) -> Result<(), &'static str> {
         let unusual = [
             (PFCTRL, "peripheral flow control"),
             (PINCOS, "PINCOS"),
             (DBM_CT, "double buffer mode"),
             (PBURST, "peripheral burst"),
         ];
-        let what = match unusual.iter().find(|(bit, _)| self.cr & bit != 0) {
-            Some((_, what)) => what,
-            None if self.cr & DIR > 1 << 6 => "memory-to-memory transfer",
+        match unusual.iter().find(|(bit, _)| self.cr & bit != 0) {
+            Some((_, what)) => Err(what),
+            None if self.cr & DIR > 1 << 6 => Err("memory-to-memory transfer"),
             // The FIFO would hold items back until its threshold.
-            None if self.fcr & DMDIS != 0 => "FIFO mode",
-            None => return Ok(()),
-        };
-        Err(Unmodelled {
-            register: "DMA stream CR".to_owned(),
-            what: what.to_owned(),
-        })
+            None if self.fcr & DMDIS != 0 => Err("FIFO mode"),
+            None => Ok(()),
+        }
     }
 
     fn item_size(&self) -> u8 {

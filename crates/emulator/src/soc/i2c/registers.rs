@@ -1,6 +1,19 @@
 //! Bits of the I2C registers (RM0090 27.6), and which of them the model has.
 
-use crate::soc::peripheral::Unmodelled;
+use crate::soc::{peripheral::Unmodelled, registers::registers};
+
+registers! {
+    CR1 = 0x00,
+    CR2 = 0x04,
+    OAR1 = 0x08,
+    OAR2 = 0x0C,
+    DR = 0x10,
+    SR1 = 0x14,
+    SR2 = 0x18,
+    CCR = 0x1C,
+    TRISE = 0x20,
+    FLTR = 0x24,
+}
 
 pub mod cr1 {
     pub const PE: u32 = 1;
@@ -41,28 +54,17 @@ pub mod sr2 {
 /// The bits of a write that ask for something the model lacks (slave, SMBus, PEC, POS, 10-bit own addresses …).
 pub fn check_write(register: u32, value: u32) -> Result<(), Unmodelled> {
     let modelled = match register {
-        0x00 => cr1::MODELLED,
-        0x04 => cr2::MODELLED,
+        reg::CR1 => cr1::MODELLED,
+        reg::CR2 => cr2::MODELLED,
         // Own addresses may be set; without slave mode nobody asks for them. Bit 14 of OAR1 is kept 1 by software.
-        0x08 | 0x0C => 0x43FE,
-        0x10 | 0x14 | 0x18 => u32::MAX,
-        0x1C => 0xCFFF,
-        0x20 => 0x3F,
+        reg::OAR1 | reg::OAR2 => 0x43FE,
+        reg::DR | reg::SR1 | reg::SR2 => u32::MAX,
+        reg::CCR => 0xCFFF,
+        reg::TRISE => 0x3F,
         _ => 0,
     };
-    if value & !modelled != 0 || register > 0x24 {
-        return Err(unmodelled(register, format!("write of {value:#010x}")));
+    if value & !modelled != 0 || register > reg::FLTR {
+        return Err(reg::MAP.unmodelled_write("I2C3", register, value));
     }
     Ok(())
-}
-
-pub fn unmodelled(register: u32, what: String) -> Unmodelled {
-    const NAMES: [&str; 10] = [
-        "CR1", "CR2", "OAR1", "OAR2", "DR", "SR1", "SR2", "CCR", "TRISE", "FLTR",
-    ];
-    let name = NAMES.get((register / 4) as usize).copied().unwrap_or("?");
-    Unmodelled {
-        register: format!("I2C3.{name} (+{register:#x})"),
-        what,
-    }
 }

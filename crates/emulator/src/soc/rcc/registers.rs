@@ -1,4 +1,34 @@
-//! Bits of the RCC registers (RM0090 7.3).
+//! Offsets and bits of the RCC registers (RM0090 7.3).
+
+use crate::soc::registers::registers;
+
+registers! {
+    CR = 0x00,
+    PLLCFGR = 0x04,
+    CFGR = 0x08,
+    CIR = 0x0C,
+    AHB1RSTR = 0x10,
+    AHB2RSTR = 0x14,
+    AHB3RSTR = 0x18,
+    APB1RSTR = 0x20,
+    APB2RSTR = 0x24,
+    AHB1ENR = 0x30,
+    AHB2ENR = 0x34,
+    AHB3ENR = 0x38,
+    APB1ENR = 0x40,
+    APB2ENR = 0x44,
+    AHB1LPENR = 0x50,
+    AHB2LPENR = 0x54,
+    AHB3LPENR = 0x58,
+    APB1LPENR = 0x60,
+    APB2LPENR = 0x64,
+    BDCR = 0x70,
+    CSR = 0x74,
+    SSCGR = 0x80,
+    PLLI2SCFGR = 0x84,
+    PLLSAICFGR = 0x88,
+    DCKCFGR = 0x8C,
+}
 
 pub mod cr {
     pub const HSION: u32 = 1;
@@ -34,39 +64,4 @@ pub mod bdcr {
     pub const RTCSEL: u32 = 3 << 8;
     pub const RTCEN: u32 = 1 << 15;
     pub const BDRST: u32 = 1 << 16;
-}
-
-const NAMES: [(u32, &str); 25] = [
-    (0x00, "CR"),
-    (0x04, "PLLCFGR"),
-    (0x08, "CFGR"),
-    (0x0C, "CIR"),
-    (0x10, "AHB1RSTR"),
-    (0x14, "AHB2RSTR"),
-    (0x18, "AHB3RSTR"),
-    (0x20, "APB1RSTR"),
-    (0x24, "APB2RSTR"),
-    (0x30, "AHB1ENR"),
-    (0x34, "AHB2ENR"),
-    (0x38, "AHB3ENR"),
-    (0x40, "APB1ENR"),
-    (0x44, "APB2ENR"),
-    (0x50, "AHB1LPENR"),
-    (0x54, "AHB2LPENR"),
-    (0x58, "AHB3LPENR"),
-    (0x60, "APB1LPENR"),
-    (0x64, "APB2LPENR"),
-    (0x70, "BDCR"),
-    (0x74, "CSR"),
-    (0x80, "SSCGR"),
-    (0x84, "PLLI2SCFGR"),
-    (0x88, "PLLSAICFGR"),
-    (0x8C, "DCKCFGR"),
-];
-
-pub fn register_name(offset: u32) -> String {
-    NAMES.iter().find(|(at, _)| *at == offset).map_or_else(
-        || format!("RCC+{offset:#x}"),
-        |(_, name)| format!("RCC.{name}"),
-    )
 }

@@ -1,6 +1,16 @@
 //! Bits of the USART registers (RM0090 30.6), and which of them the model has.
 
-use crate::soc::peripheral::Unmodelled;
+use crate::soc::{peripheral::Unmodelled, registers::registers};
+
+registers! {
+    SR = 0x00,
+    DR = 0x04,
+    BRR = 0x08,
+    CR1 = 0x0C,
+    CR2 = 0x10,
+    CR3 = 0x14,
+    GTPR = 0x18,
+}
 
 pub mod sr {
     pub const PE: u32 = 1;
@@ -46,29 +56,20 @@ const CR2_MODELLED: u32 = 1 << 13;
 /// The bits of a write that ask for something the model lacks (LIN, smartcard, IrDA, mute mode, flow control …).
 pub fn check_write(number: u8, register: u32, value: u32) -> Result<(), Unmodelled> {
     let modelled = match register {
-        0x00 | 0x08 => u32::MAX,
-        0x04 => 0x1FF,
-        0x0C => cr1::MODELLED,
-        0x10 => CR2_MODELLED,
-        0x14 => cr3::MODELLED,
+        reg::SR | reg::BRR => u32::MAX,
+        reg::DR => 0x1FF,
+        reg::CR1 => cr1::MODELLED,
+        reg::CR2 => CR2_MODELLED,
+        reg::CR3 => cr3::MODELLED,
         _ => 0,
     };
     let beyond = value & !modelled;
-    if beyond != 0 || register > 0x18 {
-        return Err(unmodelled(
-            number,
-            register,
-            format!("write of {value:#010x}"),
-        ));
+    if beyond != 0 || register > reg::GTPR {
+        return Err(reg::MAP.unmodelled_write(name(number), register, value));
     }
     Ok(())
 }
 
-pub fn unmodelled(number: u8, register: u32, what: String) -> Unmodelled {
-    const NAMES: [&str; 7] = ["SR", "DR", "BRR", "CR1", "CR2", "CR3", "GTPR"];
-    let name = NAMES.get((register / 4) as usize).copied().unwrap_or("?");
-    Unmodelled {
-        register: format!("USART{number}.{name} (+{register:#x})"),
-        what,
-    }
+pub fn name(number: u8) -> String {
+    format!("USART{number}")
 }

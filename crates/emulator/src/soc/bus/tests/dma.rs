@@ -123,7 +123,10 @@ fn fifo_mode_is_refused() {
         .soc
         .write(S1CR, 4, RECEIVE, now, &mut bench.ram)
         .unwrap_err();
-    assert_eq!(error.to_string(), "DMA1.S1CR: FIFO mode is not modelled");
+    assert_eq!(
+        error.to_string(),
+        "DMA1 stream 1.CR: FIFO mode is not modelled"
+    );
 }
 
 #[test]
