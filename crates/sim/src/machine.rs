@@ -24,13 +24,16 @@ mod power;
 mod probe;
 mod rtt;
 mod stack;
+mod tick_stats;
 
 use diagnostics::{Diagnostics, meaning::Meaning};
 use log::DefmtLog;
 use rtt::Rtt;
 use stack::StackWatch;
+use tick_stats::TickStats;
 
-pub use robot_emulator::{core::stats::Distribution, soc::bus::RegisterPatch};
+pub use robot_emulator::soc::bus::RegisterPatch;
+pub use tick_stats::Distribution;
 
 /// Symbols of the image that the machine looks for.
 const CONTROL_TICK: &str = "robotapp_control_tick";
@@ -125,6 +128,7 @@ pub struct Machine {
     /// False once the probe that read it is pulled.
     log_is_read: bool,
     diagnostics: Diagnostics,
+    ticks: TickStats,
     stack: StackWatch,
     /// Deepest stack before the last loss of power.
     stack_peak: u64,
@@ -154,6 +158,7 @@ impl Machine {
             log_is_read: true,
             diagnostics: Diagnostics::find(&bytes, &image).map_err(MachineError::Image)?,
             stack: StackWatch::of(&image),
+            ticks: TickStats::default(),
             stack_peak: 0,
             resets: Vec::new(),
             off_time: power::OFF_TIME,
@@ -175,13 +180,15 @@ impl Machine {
     pub fn run_until(&mut self, until: Ps) -> Result<(), MachineError> {
         while self.cpu.now() < until {
             let step = until.min((self.cpu.now() / LOG_POLL + 1) * LOG_POLL);
-            match self.cpu.run(step).map_err(|halt| self.stopped(halt))? {
+            let pause = self.cpu.run(step);
+            self.ticks.follow(self.cpu.stats().entries());
+            match pause.map_err(|halt| self.stopped(halt))? {
                 Pause::Limit => self.poll_log(),
                 Pause::Asleep { thread } => {
                     self.poll_log();
                     if thread {
                         self.diagnostics.copy_from(&self.cpu);
-                        self.cpu.set_armed(self.diagnostics.armed());
+                        self.ticks.set_armed(self.diagnostics.armed());
                     }
                 }
                 Pause::Reset(ResetCause::PowerOn) => {
@@ -206,6 +213,7 @@ impl Machine {
         self.diagnostics.forget();
         self.cpu.with_soc(|soc, now| soc.reset(cause, now));
         self.cpu.reset();
+        self.ticks.rebooted();
     }
 
     fn poll_log(&mut self) {
@@ -254,15 +262,15 @@ impl Machine {
     pub fn stats(&self) -> Stats {
         let run = self.cpu.stats();
         Stats {
-            ticks: run.tick_count(),
-            missed: run.missed_ticks(),
+            ticks: self.ticks.count(),
+            missed: self.ticks.missed(),
             longest_gap_us: LongestGapUs {
-                armed: run.longest_gap().armed as f64 / US as f64,
-                disarmed: run.longest_gap().disarmed as f64 / US as f64,
+                armed: self.ticks.longest_gap().armed as f64 / US as f64,
+                disarmed: self.ticks.longest_gap().disarmed as f64 / US as f64,
             },
-            tick_instructions: run.tick_instructions(),
-            release_jitter_us: run.release_jitter_us(),
-            jitter_bins: run.jitter_bins(),
+            tick_instructions: self.ticks.instructions(),
+            release_jitter_us: self.ticks.release_jitter_us(),
+            jitter_bins: self.ticks.jitter_bins(),
             cpu_load: run.cpu_load(),
             executors: run.shares(),
             stack_peak_bytes: self.stack_peak.max(self.stack.peak(&self.cpu)),
@@ -276,8 +284,8 @@ impl Machine {
         let (run, soc) = (self.cpu.stats(), self.cpu.soc());
         let flash = soc.flash().history().stats();
         Progress {
-            missed: run.missed_ticks(),
-            ticks: run.ticks_so_far(),
+            missed: self.ticks.missed(),
+            ticks: self.ticks.so_far(),
             cpu_load: run.cpu_load(),
             can_busy: [0, 1].map(|bus| soc.can_stats(bus).busy),
             board_errors: soc.errors.list().len(),
@@ -288,7 +296,7 @@ impl Machine {
 
     /// When the last control tick that is over was entered.
     pub fn last_tick(&self) -> Option<Ps> {
-        self.cpu.stats().last_tick(self.cpu.now())
+        self.ticks.last_over(self.cpu.now())
     }
 
     pub fn resets(&self) -> usize {

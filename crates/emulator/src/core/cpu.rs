@@ -110,8 +110,8 @@ pub struct State {
     /// The event register of WFE.
     event: bool,
     stop: Option<Stop>,
-    /// Entry of the function whose calls are counted as control ticks.
-    tick_entry: Option<u32>,
+    /// Address of the function whose entries are recorded.
+    watched_entry: Option<u32>,
     saboteur: Saboteur,
     /// When sabotage last struck.
     struck_at: Option<Ps>,
@@ -132,8 +132,13 @@ const TAIL_CHAIN_CYCLES: u64 = 6;
 const FP_FRAME_CYCLES: u64 = 17;
 
 impl Cpu {
-    /// The chip powered on with `segments` in flash, out of reset.
-    pub fn new(segments: &[Segment], tick_entry: Option<u32>, soc: Soc) -> Result<Self, uc_error> {
+    /// The chip powered on with `segments` in flash, out of reset. Entries of the function at `watched_entry` are
+    /// recorded in [`Self::stats`].
+    pub fn new(
+        segments: &[Segment],
+        watched_entry: Option<u32>,
+        soc: Soc,
+    ) -> Result<Self, uc_error> {
         let state = State {
             clock: CycleClock::new(soc.clocks.hclk_hz),
             soc: Some(Box::new(soc)),
@@ -148,7 +153,7 @@ impl Cpu {
             standstill: Standstill::default(),
             event: false,
             stop: None,
-            tick_entry,
+            watched_entry,
             saboteur: Saboteur::default(),
             struck_at: None,
         };
@@ -215,11 +220,6 @@ impl Cpu {
     /// When sabotage last made the program go wrong.
     pub fn struck_at(&self) -> Option<Ps> {
         self.state().struck_at
-    }
-
-    /// Whether the firmware is armed, as it last said.
-    pub fn set_armed(&mut self, armed: bool) {
-        self.state_mut().stats.set_armed(armed);
     }
 
     pub fn stats(&self) -> &Execution {

@@ -8,7 +8,7 @@ use object::{
     read::elf::{ElfFile, FileHeader, ProgramHeader},
 };
 
-use crate::core::memory::{FLASH, FLASH_ALIAS, PARAMETER_FLASH};
+use crate::core::memory::{DATA_FLASH, FLASH, FLASH_ALIAS};
 
 /// Bytes at their load addresses in flash.
 #[derive(Debug)]
@@ -40,10 +40,8 @@ pub enum ImageError {
     Elf(#[from] object::Error),
     #[error("segment of {size} bytes at 0x{address:08X} is not in the 1 MiB flash")]
     OutsideFlash { address: u32, size: usize },
-    #[error(
-        "segment of {size} bytes at 0x{address:08X} reaches into sectors 1-3, which hold parameters"
-    )]
-    AmongParameters { address: u32, size: usize },
+    #[error("segment of {size} bytes at 0x{address:08X} reaches into sectors 1-3, which hold data")]
+    IntoDataFlash { address: u32, size: usize },
 }
 
 impl Image {
@@ -63,8 +61,8 @@ impl Image {
                     size: data.len(),
                 });
             }
-            if PARAMETER_FLASH.overlaps(address, data.len() as u32) {
-                return Err(ImageError::AmongParameters {
+            if DATA_FLASH.overlaps(address, data.len() as u32) {
+                return Err(ImageError::IntoDataFlash {
                     address,
                     size: data.len(),
                 });

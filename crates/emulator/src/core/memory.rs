@@ -32,13 +32,13 @@ pub const FLASH_ALIAS: Region = Region {
     size: 0x10_0000,
 };
 /// Sectors 1–3: their cells belong to the flash interface, and every access of the core goes there.
-pub const PARAMETER_FLASH: Region = Region {
+pub const DATA_FLASH: Region = Region {
     base: 0x0800_4000,
     size: 0xC000,
 };
-pub const PARAMETER_FLASH_ALIAS: Region = Region {
+pub const DATA_FLASH_ALIAS: Region = Region {
     base: 0x4000,
-    ..PARAMETER_FLASH
+    ..DATA_FLASH
 };
 pub const CCM: Region = Region {
     base: 0x1000_0000,
@@ -76,10 +76,7 @@ pub fn map<D>(engine: &mut Unicorn<'_, D>) -> Result<(), uc_error> {
     ] {
         engine.mem_map(region.base.into(), region.size.into(), rights)?;
     }
-    for (flash, hole) in [
-        (FLASH, PARAMETER_FLASH),
-        (FLASH_ALIAS, PARAMETER_FLASH_ALIAS),
-    ] {
+    for (flash, hole) in [(FLASH, DATA_FLASH), (FLASH_ALIAS, DATA_FLASH_ALIAS)] {
         for part in around(flash, hole) {
             engine.mem_map(part.base.into(), part.size.into(), Prot::READ | Prot::EXEC)?;
             engine.mem_write(part.base.into(), &vec![0xFF; part.size as usize])?;
@@ -137,7 +134,7 @@ pub fn power_on_noise(region: Region) -> Vec<u8> {
         .collect()
 }
 
-/// The memories as DMA reaches them through the engine: not the parameters.
+/// The memories as DMA reaches them through the engine, without sectors 1–3.
 pub struct EngineMemory<'u, 'a, D>(pub &'u mut Unicorn<'a, D>);
 
 impl<D> GuestMemory for EngineMemory<'_, '_, D> {
@@ -157,5 +154,5 @@ fn is_memory(addr: u32, len: usize) -> bool {
     let in_memory = [FLASH, SRAM, CCM, SYSTEM_MEMORY]
         .iter()
         .any(|r| r.contains(addr, len));
-    in_memory && !PARAMETER_FLASH.overlaps(addr, len)
+    in_memory && !DATA_FLASH.overlaps(addr, len)
 }

@@ -125,8 +125,8 @@ impl Soc {
         self.blocks.pwr.set_vdd_mv(vdd_mv);
     }
 
-    /// A load of the core from the sectors of flash that hold parameters.
-    pub fn load_parameters(
+    /// A load of the core from flash sectors 1–3.
+    pub fn load_data_flash(
         &mut self,
         addr: u32,
         size: u8,
@@ -139,7 +139,7 @@ impl Soc {
     }
 
     /// A store of the core to them.
-    pub fn store_parameters(
+    pub fn store_data_flash(
         &mut self,
         addr: u32,
         size: u8,

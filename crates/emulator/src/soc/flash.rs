@@ -1,4 +1,4 @@
-//! Flash interface (RM0090 3.9): wait states, caches, lock, and programming and erasing of the parameter sectors.
+//! Flash interface (RM0090 3.9): wait states, caches, lock, and programming and erasing of sectors 1–3.
 //!
 //! The core runs from the one bank there is: it stands still while the flash works. The other sectors hold the image
 //! and are never written.

@@ -1,4 +1,4 @@
-//! I2C3 as the only master of its bus (RM0090 chapter 27); the IST8310 hangs on it.
+//! I2C3 as the only master of its bus (RM0090 chapter 27).
 
 use crate::soc::{
     access::Access,

@@ -1,4 +1,4 @@
-//! SPI1 as a full-duplex master (RM0090 chapter 28); the BMI088 hangs on it.
+//! SPI1 as a full-duplex master (RM0090 chapter 28).
 
 use crate::{
     soc::{

@@ -83,7 +83,7 @@ impl Usart {
         }
     }
 
-    /// The C board routes no USART3_TX.
+    /// USART3_TX is not modelled as a signal.
     fn tx_signal(&self) -> Option<Signal> {
         match self.number {
             1 => Some(Signal::Usart1Tx),

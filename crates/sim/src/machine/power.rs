@@ -48,5 +48,6 @@ impl Machine {
         self.resets.push(format!("{:?}", ResetCause::PowerOn));
         self.with_world(|world| world.set_board_supply(true));
         self.cpu.power_up();
+        self.ticks.rebooted();
     }
 }

@@ -6,7 +6,7 @@ use super::{Block, State, Stop, alignment, context, it_state, sabotage};
 use crate::{
     core::{
         faults::Fault,
-        memory::{CCM, EngineMemory, PARAMETER_FLASH, PARAMETER_FLASH_ALIAS, Region, SRAM},
+        memory::{CCM, DATA_FLASH, DATA_FLASH_ALIAS, EngineMemory, Region, SRAM},
         system::{Surroundings, System},
     },
     soc::{bus::Soc, guest_memory::GuestMemory, peripheral::Unmodelled, reset::ResetCause},
@@ -21,9 +21,9 @@ pub(super) fn install(engine: &mut Unicorn<'static, State>) -> Result<(), uc_err
     engine.mmio_map(base, size, Some(read_peripheral), Some(write_peripheral))?;
     let (base, size) = PRIVATE_PERIPHERALS;
     engine.mmio_map(base, size, Some(read_private), Some(write_private))?;
-    for region in [PARAMETER_FLASH, PARAMETER_FLASH_ALIAS] {
+    for region in [DATA_FLASH, DATA_FLASH_ALIAS] {
         let (base, size) = (region.base.into(), region.size.into());
-        engine.mmio_map(base, size, Some(load_parameters), Some(store_parameters))?;
+        engine.mmio_map(base, size, Some(load_data_flash), Some(store_data_flash))?;
     }
     engine.ctl_set_tlb_type(TlbType::VIRTUAL)?;
     engine.add_tlb_hook(0, u64::from(u32::MAX), page_rights)?;
@@ -108,10 +108,10 @@ fn block_begins(engine: &mut Unicorn<'_, State>, address: u64, size: u32) {
         return;
     }
     state.event |= cost.sends_event;
-    if state.tick_entry == Some(start) {
+    if state.watched_entry == Some(start) {
         state
             .stats
-            .tick_entered(state.clock.now(), state.system.nvic.current());
+            .entered(state.clock.now(), state.system.nvic.current());
     }
     state.block = Block {
         start,
@@ -144,7 +144,7 @@ fn boundary(engine: &mut Unicorn<'_, State>) {
     }
 }
 
-/// Lets chip, world and SysTick come up to the present.
+/// Lets chip, board and SysTick come up to the present.
 pub(super) fn run_due(engine: &mut Unicorn<'_, State>) {
     let state = engine.get_data_mut();
     if state.clock.cycles < state.due_cycle {
@@ -258,20 +258,20 @@ fn write_peripheral(engine: &mut Unicorn<'_, State>, offset: u64, size: usize, v
     stored(engine, done);
 }
 
-fn load_parameters(engine: &mut Unicorn<'_, State>, offset: u64, size: usize) -> u64 {
+fn load_data_flash(engine: &mut Unicorn<'_, State>, offset: u64, size: usize) -> u64 {
     it_state::mend(engine);
-    let addr = PARAMETER_FLASH.base + offset as u32;
+    let addr = DATA_FLASH.base + offset as u32;
     let value = with_soc(engine, |soc, now, memory| {
-        soc.load_parameters(addr, size as u8, now, memory)
+        soc.load_data_flash(addr, size as u8, now, memory)
     });
     loaded(engine, value)
 }
 
-fn store_parameters(engine: &mut Unicorn<'_, State>, offset: u64, size: usize, value: u64) {
+fn store_data_flash(engine: &mut Unicorn<'_, State>, offset: u64, size: usize, value: u64) {
     it_state::mend(engine);
-    let addr = PARAMETER_FLASH.base + offset as u32;
+    let addr = DATA_FLASH.base + offset as u32;
     let done = with_soc(engine, |soc, now, memory| {
-        soc.store_parameters(addr, size as u8, value as u32, now, memory)
+        soc.store_data_flash(addr, size as u8, value as u32, now, memory)
     });
     stored(engine, done);
 }

@@ -68,7 +68,7 @@ impl Cpu {
         }
     }
 
-    /// What chip or world did while no code ran.
+    /// What chip or board did while no code ran.
     pub(super) fn ended_by_chip(&mut self) -> Result<Option<Pause>, Halt> {
         match self.state_mut().stop.take() {
             Some(Stop::Reset(cause)) => Ok(Some(Pause::Reset(cause))),

@@ -66,7 +66,7 @@ impl Cpu {
         self.state().standstill.no_power_until.is_none()
     }
 
-    /// Lets chip and world go on without the core; `None` when it runs again.
+    /// Lets chip and board go on without the core; `None` when it runs again.
     pub(super) fn stand_still(&mut self) -> Result<Option<Pause>, Halt> {
         loop {
             hooks::run_due(&mut self.engine);

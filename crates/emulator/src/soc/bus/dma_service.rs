@@ -1,5 +1,7 @@
 //! Moves what the DMA streams ask for between peripherals and memory.
 
+use std::ops::Range;
+
 use super::Soc;
 use crate::{
     soc::{
@@ -12,6 +14,11 @@ use crate::{
     },
     time::Ps,
 };
+
+/// Memories as the DMA controllers see them (RM0090 2.3).
+const SRAM: Range<u32> = 0x2000_0000..0x2002_0000;
+const FLASH: Range<u32> = 0x0800_0000..0x0810_0000;
+const CCM: Range<u32> = 0x1000_0000..0x1001_0000;
 
 /// More items than any peripheral takes at one instant: the request never falls.
 const STUCK: usize = 1000;
@@ -134,11 +141,12 @@ fn problem(beat: &Beat) -> Option<String> {
             "memory address {memory_addr:#010x} is not aligned to {size} bytes"
         ));
     }
+    let reads = beat.item.direction == Direction::MemoryToPeripheral;
     match memory_addr {
-        0x2000_0000..0x2002_0000 => None,
+        _ if SRAM.contains(&memory_addr) => None,
         // Flash can be read only.
-        0x0800_0000..0x0810_0000 if beat.item.direction == Direction::MemoryToPeripheral => None,
-        0x1000_0000..0x1001_0000 => Some(format!(
+        _ if FLASH.contains(&memory_addr) && reads => None,
+        _ if CCM.contains(&memory_addr) => Some(format!(
             "memory address {memory_addr:#010x} is in CCM, which DMA cannot reach"
         )),
         _ => Some(format!(

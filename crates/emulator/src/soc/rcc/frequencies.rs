@@ -1,6 +1,6 @@
 //! From register values to frequencies, and what RM0090 7.3 and datasheet table 14 forbid on the way.
 
-/// The C board's crystal, Hz.
+/// The board's crystal, Hz.
 pub const HSE_HZ: u32 = 12_000_000;
 pub const HSI_HZ: u32 = 16_000_000;
 

@@ -55,7 +55,7 @@ fn a_store_to_flash_stops_the_core_for_16_us_and_interrupts_wait() {
     assert_eq!(traced(&cpu)[..4], [1, 9, 5, 2]);
     assert!(!traced(&cpu)[4..].contains(&5));
     let loaded = with_soc(&mut cpu.engine, |soc, now, memory| {
-        soc.load_parameters(WORD, 4, now, memory)
+        soc.load_data_flash(WORD, 4, now, memory)
     });
     assert_eq!(loaded, Ok(5));
     let stalled = cpu.soc().flash().history().stats().longest_stall;
