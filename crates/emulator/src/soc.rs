@@ -2,41 +2,41 @@
 //!
 //! What the wires lead to is behind [`board::Board`].
 
-pub mod access;
-pub mod adc;
-pub mod blocks;
+pub(crate) mod access;
+pub(crate) mod adc;
+pub(crate) mod blocks;
 pub mod board;
 pub mod board_errors;
 pub mod bus;
-pub mod can;
+pub(crate) mod can;
 pub mod can_bus;
-pub mod clocks;
-pub mod dma;
-pub mod dma_request;
-pub mod exti;
+pub(crate) mod clocks;
+pub(crate) mod dma;
+pub(crate) mod dma_request;
+pub(crate) mod exti;
 pub mod flash;
 pub mod flash_cells;
-pub mod gpio;
+pub(crate) mod gpio;
 pub mod guest_memory;
-pub mod i2c;
-pub mod irq;
-pub mod iwdg;
-pub mod memory_map;
+pub(crate) mod i2c;
+pub(crate) mod irq;
+pub(crate) mod iwdg;
+pub(crate) mod memory_map;
 pub mod peripheral;
 pub mod pins;
-pub mod pwr;
-pub mod rcc;
+pub(crate) mod pwr;
+pub(crate) mod rcc;
 mod registers;
 pub mod reset;
-pub mod routing;
-pub mod scheduler;
+pub(crate) mod routing;
+pub(crate) mod scheduler;
 pub mod signals;
-pub mod spi;
-pub mod syscfg;
+pub(crate) mod spi;
+pub(crate) mod syscfg;
 #[cfg(test)]
 mod test_bench;
 #[cfg(test)]
 pub(crate) mod test_board;
-pub mod timer;
-pub mod usart;
+pub(crate) mod timer;
+pub(crate) mod usart;
 pub mod wave;

@@ -8,7 +8,9 @@
 /// What one run through a block costs and does that the engine cannot tell us.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BlockCost {
+    /// Instructions that the core issues, those of a failed IT condition included.
     pub instructions: u16,
+    /// Core cycles that they take with no wait state.
     pub cycles: u16,
     /// Holds a SEV.
     pub sends_event: bool,

@@ -17,7 +17,7 @@ use crate::{
         stats::Execution,
         system::System,
     },
-    soc::{bus::Soc, peripheral::Unmodelled, reset::ResetCause},
+    soc::{bus::Soc, guest_memory::GuestMemory, peripheral::Unmodelled, reset::ResetCause},
     time::Ps,
 };
 
@@ -46,7 +46,10 @@ pub enum Pause {
     /// The asked-for time is reached.
     Limit,
     /// WFE or WFI found nothing to do; `thread` when no handler is active.
-    Asleep { thread: bool },
+    Asleep {
+        /// No handler is active.
+        thread: bool,
+    },
     /// The chip must be reset, then `Cpu::reset` called; after `PowerOn`, which is the loss of power, `power_off`.
     Reset(ResetCause),
     /// The board was without power long enough: `Cpu::power_up` must be called.
@@ -56,7 +59,9 @@ pub enum Pause {
 /// The run cannot go on.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Halt {
+    /// Why, with the register or the fault.
     pub what: String,
+    /// Address of the instruction, or of its block.
     pub pc: u32,
 }
 
@@ -92,7 +97,7 @@ struct Block {
 }
 
 /// What the engine's hooks share with the run loop.
-pub struct State {
+pub(crate) struct State {
     clock: CycleClock,
     /// Out only while it works on the memories through the engine.
     soc: Option<Box<Soc>>,
@@ -201,10 +206,12 @@ impl Cpu {
         }
     }
 
+    /// Simulated time since power-on, ps.
     pub fn now(&self) -> Ps {
         self.state().clock.now()
     }
 
+    /// The chip without its core.
     pub fn soc(&self) -> &Soc {
         self.state()
             .soc
@@ -222,6 +229,7 @@ impl Cpu {
         self.state().struck_at
     }
 
+    /// What the run has measured so far.
     pub fn stats(&self) -> &Execution {
         &self.state().stats
     }
@@ -231,7 +239,8 @@ impl Cpu {
         self.engine.mem_read(addr.into(), out).is_ok()
     }
 
-    pub fn memory(&mut self) -> EngineMemory<'_, 'static, State> {
+    /// The memories as DMA reaches them.
+    pub fn memory(&mut self) -> impl GuestMemory {
         EngineMemory(&mut self.engine)
     }
 

@@ -13,7 +13,9 @@ use crate::core::memory::{DATA_FLASH, FLASH, FLASH_ALIAS};
 /// Bytes at their load addresses in flash.
 #[derive(Debug)]
 pub struct Segment {
+    /// Load address in flash.
     pub address: u32,
+    /// What is loaded there.
     pub data: Vec<u8>,
 }
 
@@ -28,23 +30,39 @@ struct Item {
 /// A parsed ELF file.
 #[derive(Debug)]
 pub struct Image {
+    /// What goes into flash, in the order of the file.
     pub segments: Vec<Segment>,
     symbols: BTreeMap<String, u32>,
     functions: Vec<Item>,
     statics: Vec<Item>,
 }
 
+/// Why an image cannot be loaded.
 #[derive(Debug, thiserror::Error)]
 pub enum ImageError {
+    /// The file is no such ELF.
     #[error("not a 32-bit little-endian ELF file: {0}")]
     Elf(#[from] object::Error),
     #[error("segment of {size} bytes at 0x{address:08X} is not in the 1 MiB flash")]
-    OutsideFlash { address: u32, size: usize },
+    /// A segment lies outside main memory.
+    OutsideFlash {
+        /// Load address.
+        address: u32,
+        /// Bytes.
+        size: usize,
+    },
     #[error("segment of {size} bytes at 0x{address:08X} reaches into sectors 1-3, which hold data")]
-    IntoDataFlash { address: u32, size: usize },
+    /// A segment reaches into [`DATA_FLASH`].
+    IntoDataFlash {
+        /// Load address.
+        address: u32,
+        /// Bytes.
+        size: usize,
+    },
 }
 
 impl Image {
+    /// Reads an ELF file for this chip.
     pub fn parse(elf: &[u8]) -> Result<Self, ImageError> {
         let file = ElfFile::<FileHeader32<object::Endianness>>::parse(elf)?;
         let mut segments = Vec::new();

@@ -4,24 +4,30 @@ use unicorn_engine::{Prot, Unicorn, uc_error};
 
 use crate::soc::{adc::vrefint_counts, guest_memory::GuestMemory};
 
+/// A range of the address space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Region {
+    /// First address.
     pub base: u32,
+    /// Bytes.
     pub size: u32,
 }
 
 impl Region {
+    /// Whether all `len` bytes from `addr` on lie in it.
     pub fn contains(self, addr: u32, len: u32) -> bool {
         addr >= self.base
             && u64::from(addr) + u64::from(len) <= u64::from(self.base) + u64::from(self.size)
     }
 
+    /// Whether one of the `len` bytes from `addr` on lies in it.
     pub fn overlaps(self, addr: u32, len: u32) -> bool {
         u64::from(addr) < u64::from(self.base) + u64::from(self.size)
             && u64::from(addr) + u64::from(len) > u64::from(self.base)
     }
 }
 
+/// Main memory, 1 MiB in one bank (RM0090 3.3).
 pub const FLASH: Region = Region {
     base: 0x0800_0000,
     size: 0x10_0000,
@@ -36,10 +42,12 @@ pub const DATA_FLASH: Region = Region {
     base: 0x0800_4000,
     size: 0xC000,
 };
+/// [`DATA_FLASH`] as seen at address 0.
 pub const DATA_FLASH_ALIAS: Region = Region {
     base: 0x4000,
     ..DATA_FLASH
 };
+/// Core-coupled memory, out of reach of DMA.
 pub const CCM: Region = Region {
     base: 0x1000_0000,
     size: 0x1_0000,

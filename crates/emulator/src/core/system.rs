@@ -20,7 +20,7 @@ use debug_registers::Debug;
 
 /// What the registers of the private peripheral bus hold.
 #[derive(Debug)]
-pub struct System {
+pub(crate) struct System {
     pub nvic: Nvic,
     pub systick: SysTick,
     pub faults: FaultStatus,
@@ -64,7 +64,7 @@ impl Default for System {
 }
 
 /// What an access needs to know of the rest of the machine.
-pub struct Surroundings<'a> {
+pub(crate) struct Surroundings<'a> {
     pub cycles: u64,
     /// Level of each interrupt's request line.
     pub line_high: &'a dyn Fn(u8) -> bool,

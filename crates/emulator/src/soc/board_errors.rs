@@ -2,11 +2,14 @@
 
 use crate::time::Ps;
 
+/// One wrong setting or access.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BoardError {
     /// When it was first seen.
     pub at: Ps,
+    /// How often it was seen.
     pub count: u64,
+    /// What is wrong, and what it breaks.
     pub message: String,
 }
 
@@ -33,6 +36,7 @@ impl BoardErrors {
         &self.failing
     }
 
+    /// What works on some specimens only, or with less accuracy.
     pub fn suspicions(&self) -> &[BoardError] {
         &self.suspicious
     }

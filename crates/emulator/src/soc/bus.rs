@@ -25,18 +25,22 @@ use crate::{
 /// Overrides bits in every write the image makes to one register: one wrong line of the image, for tests.
 #[derive(Clone, Copy, Debug)]
 pub struct RegisterPatch {
+    /// Address of the register.
     pub address: u32,
+    /// Bits that are replaced.
     pub mask: u32,
+    /// What they become.
     pub value: u32,
 }
 
 /// Everything of the chip but the CPU, its private peripherals and the memories, with the board around it.
 pub struct Soc {
-    pub irq: IrqLines,
-    pub clocks: ClockTree,
+    pub(crate) irq: IrqLines,
+    pub(crate) clocks: ClockTree,
+    /// What silicon would punish, as filed so far.
     pub errors: BoardErrors,
     board: Box<dyn Board>,
-    pub pins: PinBank,
+    pub(crate) pins: PinBank,
     scheduler: Scheduler,
     dma_requests: DmaRequests,
     blocks: Blocks,
@@ -112,10 +116,12 @@ impl Soc {
         self.blocks.take_reset_request()
     }
 
+    /// The flash interface.
     pub fn flash(&self) -> &Flash {
         &self.blocks.flash
     }
 
+    /// The flash interface, to be set up for a test.
     pub fn flash_mut(&mut self) -> &mut Flash {
         &mut self.blocks.flash
     }
@@ -158,6 +164,7 @@ impl Soc {
         self.blocks.can_stats(bus)
     }
 
+    /// A load of the core or of a test, at `now`, of 1, 2 or 4 bytes.
     pub fn read(
         &mut self,
         addr: u32,
@@ -176,6 +183,7 @@ impl Soc {
         Ok(value)
     }
 
+    /// A store of the core or of a test, at `now`, of 1, 2 or 4 bytes.
     pub fn write(
         &mut self,
         addr: u32,

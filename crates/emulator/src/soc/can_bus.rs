@@ -74,7 +74,7 @@ enum Phase {
 
 /// The bus of one controller.
 #[derive(Debug)]
-pub struct CanBus {
+pub(crate) struct CanBus {
     id: CanPort,
     phase: Phase,
     phase_ends_at: Ps,

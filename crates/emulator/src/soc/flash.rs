@@ -61,7 +61,8 @@ enum Lock {
     UntilReset,
 }
 
-#[derive(Debug)]
+/// The flash interface and what is under way in it.
+#[derive(Debug, Default)]
 pub struct Flash {
     acr: u32,
     lock: Lock,
@@ -85,34 +86,18 @@ const CACHE_LOOK: u32 = u32::MAX;
 /// A boot may take its time.
 const CACHES_ON_WITHIN: Ps = 100 * MS;
 
-impl Default for Flash {
-    fn default() -> Self {
-        Self {
-            acr: 0,
-            lock: Lock::default(),
-            cr: 0,
-            sr: 0,
-            cache: DataCache::default(),
-            times: FlashTimes::default(),
-            under_way: None,
-            history: History::default(),
-            planned_cut: None,
-            power_fails: false,
-            generation: 0,
-            caches_due: None,
-        }
-    }
-}
-
 impl Flash {
+    /// What was done to the cells.
     pub fn history(&self) -> &History {
         &self.history
     }
 
+    /// Programs and erases take the times of that column from now on.
     pub fn set_times(&mut self, times: FlashTimes) {
         self.times = times;
     }
 
+    /// The board loses its power at a step of the flash.
     pub fn plan_cut(&mut self, cut: PlannedCut) {
         self.planned_cut = Some(cut);
     }
@@ -205,7 +190,7 @@ impl Flash {
     }
 
     /// Files a board error where `hclk_hz` asks for more wait states than set.
-    pub fn check_speed(&mut self, ctx: &mut Ctx<'_>) {
+    pub(crate) fn check_speed(&mut self, ctx: &mut Ctx<'_>) {
         let needed = ctx
             .clocks
             .hclk_hz

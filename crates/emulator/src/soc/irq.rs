@@ -23,11 +23,6 @@ impl IrqLines {
         }
     }
 
-    /// A request of one clock's length (EXTI-like edges that need no level).
-    pub fn pulse(&mut self, irq: Irq) {
-        self.risen |= 1u128 << irq;
-    }
-
     pub fn level(&self, irq: Irq) -> bool {
         self.level >> irq & 1 == 1
     }

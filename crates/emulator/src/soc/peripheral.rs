@@ -19,7 +19,7 @@ pub struct Unmodelled {
 }
 
 /// Everything a peripheral may touch besides its own registers.
-pub struct Ctx<'a> {
+pub(crate) struct Ctx<'a> {
     pub now: Ps,
     pub scheduler: &'a mut Scheduler,
     pub irq: &'a mut IrqLines,
@@ -31,7 +31,7 @@ pub struct Ctx<'a> {
 }
 
 /// A register block. Offsets are from its base address; narrower accesses come with their size in bytes.
-pub trait Peripheral {
+pub(crate) trait Peripheral {
     fn read(&mut self, offset: u32, size: u8, ctx: &mut Ctx<'_>) -> Result<u32, Unmodelled>;
     fn write(
         &mut self,

@@ -3,7 +3,9 @@
 /// Port A = 0 … I = 8, and the pin number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Pin {
+    /// Port A = 0 … I = 8.
     pub port: u8,
+    /// 0 … 15.
     pub number: u8,
 }
 
@@ -23,11 +25,16 @@ impl std::fmt::Display for Pin {
     }
 }
 
+/// What a pin does (MODER and AFR).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PinMode {
+    /// Digital input.
     Input,
+    /// The output register drives it.
     Output,
+    /// A peripheral has it, by number of the alternate function.
     Alternate(u8),
+    /// Analogue input or output.
     Analog,
 }
 
@@ -45,17 +52,22 @@ impl std::fmt::Display for PinMode {
 /// The chip's own resistor of some 40 kΩ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pull {
+    /// No resistor.
     None,
+    /// To VDD.
     Up,
+    /// To ground.
     Down,
 }
 
 /// What the port's registers make of a pin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PinSettings {
+    /// MODER, with AFR.
     pub mode: PinMode,
     /// The output stage pulls down only.
     pub open_drain: bool,
+    /// PUPDR.
     pub pull: Pull,
     /// OSPEEDR, 0 … 3.
     pub speed: u8,
@@ -108,22 +120,27 @@ impl Default for PinBank {
 }
 
 impl PinBank {
+    /// What the port has made of the pin.
     pub fn settings(&self, pin: Pin) -> PinSettings {
         self.settings[usize::from(pin.port)][usize::from(pin.number)]
     }
 
+    /// The port has set the pin up anew.
     pub fn set(&mut self, pin: Pin, settings: PinSettings) {
         self.settings[usize::from(pin.port)][usize::from(pin.number)] = settings;
     }
 
+    /// What the pin does.
     pub fn mode(&self, pin: Pin) -> PinMode {
         self.settings(pin).mode
     }
 
+    /// What the board has on the pin.
     pub fn outside(&self, pin: Pin) -> Outside {
         self.outside[usize::from(pin.port)][usize::from(pin.number)]
     }
 
+    /// The board has something else on the pin from now on.
     pub fn set_outside(&mut self, pin: Pin, outside: Outside) {
         self.outside[usize::from(pin.port)][usize::from(pin.number)] = outside;
     }

@@ -22,10 +22,12 @@ pub enum Harm {
     ReturnAtOnce,
 }
 
+/// A function, and what goes wrong when it is entered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sabotage {
     /// Address of the function, without the Thumb bit.
     pub entry: u32,
+    /// What it does instead.
     pub harm: Harm,
 }
 

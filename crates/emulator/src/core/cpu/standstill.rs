@@ -62,6 +62,7 @@ impl Cpu {
         self.reset();
     }
 
+    /// Whether the board has power.
     pub fn is_powered(&self) -> bool {
         self.state().standstill.no_power_until.is_none()
     }

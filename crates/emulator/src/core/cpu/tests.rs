@@ -83,6 +83,14 @@ fn irq(number: u8) -> Exception {
     Exception::from_irq(number)
 }
 
+/// Raises the request line of an interrupt and lowers it again.
+fn pulse(cpu: &mut Cpu, irq: u8) {
+    cpu.with_soc(|soc, _| {
+        soc.irq.set(irq, true);
+        soc.irq.set(irq, false);
+    });
+}
+
 fn set_priority(cpu: &mut Cpu, number: u8, priority: u8) {
     cpu.state_mut()
         .system
@@ -215,7 +223,7 @@ fn wfe_passes_once_after_sev_then_sleeps_until_an_interrupt() {
     run_until(&mut cpu, 100 * US).expect("no fault");
     assert_eq!(traced(&cpu), [1]);
     assert!(cpu.stats().idle_cycles > cpu.stats().busy_cycles);
-    cpu.with_soc(|soc, _| soc.irq.pulse(5));
+    pulse(&mut cpu, 5);
     run_until(&mut cpu, 200 * US).expect("no fault");
     assert_eq!(traced(&cpu), [1, 9, 2]);
 }
@@ -235,7 +243,7 @@ fn wfi_wakes_for_a_masked_interrupt_without_taking_it() {
     let mut cpu = board(&thread, &[(irq(5), handler)]);
     run_until(&mut cpu, 100 * US).expect("no fault");
     assert!(traced(&cpu).is_empty());
-    cpu.with_soc(|soc, _| soc.irq.pulse(5));
+    pulse(&mut cpu, 5);
     run_until(&mut cpu, 200 * US).expect("no fault");
     assert_eq!(traced(&cpu), [1, 9, 2]);
 }

@@ -7,7 +7,9 @@ use crate::core::exception::Exception;
 const DHCSR_C_DEBUGEN: u32 = 1;
 const DHCSR_S_REGRDY: u32 = 1 << 16;
 const DEMCR_TRCENA: u32 = 1 << 24;
+/// DEMCR.VC_CORERESET: the core halts at the reset vector.
 pub const DEMCR_VC_CORERESET: u32 = 1;
+/// DEMCR.VC_HARDERR: the core halts at HardFault.
 pub const DEMCR_VC_HARDERR: u32 = 1 << 10;
 /// All catch bits, VC_CORERESET to VC_HARDERR.
 const DEMCR_VC_ALL: u32 = 0x7F1;
@@ -29,6 +31,7 @@ const APB1_FZ_IWDG: u32 = 1 << 12;
 /// Past the last register of the flash patch and breakpoint unit.
 const FPB_END: u32 = reg::FP_CTRL + 0x1000;
 
+/// The debug registers of the core and of DBGMCU.
 #[derive(Debug, Default)]
 pub struct Debug {
     /// C_DEBUGEN: halts are possible. Only a probe writes it.
@@ -36,6 +39,7 @@ pub struct Debug {
     demcr: u32,
     /// A probe sets these bits of DEMCR again at once when they are cleared.
     insisted: u32,
+    /// The comparators of the FPB.
     pub breakpoints: Breakpoints,
     counting: bool,
     /// CYCCNT while it stands still, else its value when it started.
@@ -63,6 +67,7 @@ impl Debug {
         self.dbgmcu[1] |= APB1_FZ_IWDG | 1 << 11;
     }
 
+    /// Whether a probe has enabled halting debug (DHCSR.C_DEBUGEN).
     pub fn is_enabled(&self) -> bool {
         self.enabled
     }
@@ -83,6 +88,7 @@ impl Debug {
         self.enabled && self.breakpoints.any_in(start, end)
     }
 
+    /// Whether the watchdog stands while the core is halted (DBG_IWDG_STOP).
     pub fn stops_watchdog(&self) -> bool {
         self.dbgmcu[1] & APB1_FZ_IWDG != 0
     }

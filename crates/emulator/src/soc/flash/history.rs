@@ -9,14 +9,18 @@ use crate::time::Ps;
 pub struct FlashStep {
     /// When it began; the core stood still from then on.
     pub at: Ps,
+    /// What was done.
     pub kind: FlashStepKind,
     /// Of the word, or of the sector's first one.
     pub address: u32,
 }
 
+/// What a step does to the cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FlashStepKind {
+    /// A word, half-word or byte is programmed.
     Program,
+    /// A sector is erased.
     Erase,
 }
 

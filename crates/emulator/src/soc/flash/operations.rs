@@ -14,7 +14,7 @@ use crate::{
 
 impl Flash {
     /// A load from sectors 1–3, of 1, 2 or 4 bytes.
-    pub fn load(&mut self, address: u32, size: u8, ctx: &mut Ctx<'_>) -> u32 {
+    pub(crate) fn load(&mut self, address: u32, size: u8, ctx: &mut Ctx<'_>) -> u32 {
         if self.under_way.as_ref().is_some_and(|w| w.cut.is_none()) {
             // The bus holds the load until the cells have it.
             self.reach_the_cells(ctx);
@@ -25,7 +25,7 @@ impl Flash {
     }
 
     /// A store to sectors 1–3.
-    pub fn store(&mut self, address: u32, size: u8, value: u32, ctx: &mut Ctx<'_>) {
+    pub(crate) fn store(&mut self, address: u32, size: u8, value: u32, ctx: &mut Ctx<'_>) {
         let Some(parallelism) = self.programs(address, ctx) else {
             return;
         };

@@ -5,8 +5,10 @@ use crate::time::{MS, Ps, US};
 /// Which column of the datasheet the chip takes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FlashTimes {
+    /// Typical times.
     #[default]
     Typical,
+    /// Maximum times.
     Max,
 }
 

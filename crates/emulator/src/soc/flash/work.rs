@@ -65,6 +65,7 @@ pub enum CutPhase {
 pub struct PlannedCut {
     /// Counted from 0 at power-on, as in the history.
     pub step: usize,
+    /// Where within the step.
     pub phase: CutPhase,
     /// What a torn word or sector looks like.
     pub seed: u64,

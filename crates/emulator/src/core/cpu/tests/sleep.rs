@@ -25,7 +25,7 @@ fn with_sleep_on_exit_the_interrupted_code_does_not_go_on() {
     let mut cpu = board(&thread, &[(irq(5), handler)]);
     run_until(&mut cpu, 100 * US).expect("no fault");
     assert_eq!(traced(&cpu), [1, 9]);
-    cpu.with_soc(|soc, _| soc.irq.pulse(5));
+    pulse(&mut cpu, 5);
     run_until(&mut cpu, 200 * US).expect("no fault");
     assert_eq!(traced(&cpu), [1, 9, 9]);
 }
