@@ -16,6 +16,19 @@ pub struct Expectation {
     pub because: Option<String>,
 }
 
+/// Why a named flag cannot be judged.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum FlagError {
+    #[error("the image names no flags of `{0}`; write `has_bit` or `lacks_bit`")]
+    NoNames(String),
+    #[error("`{signal}` has no flag `{flag}`; it has {known}")]
+    Unknown {
+        signal: String,
+        flag: String,
+        known: String,
+    },
+}
+
 /// A flag that must be set, or clear, throughout.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NamedFlag {
@@ -24,20 +37,21 @@ pub struct NamedFlag {
 }
 
 impl NamedFlag {
-    /// The bound on the signal whose values have this `meaning`; `Err` says why there is none.
-    pub fn bound(&self, signal: &str, meaning: Option<&Meaning>) -> Result<Bound, String> {
+    /// The bound on the signal whose values have this `meaning`; an error says why there is none.
+    pub fn bound(&self, signal: &str, meaning: Option<&Meaning>) -> Result<Bound, FlagError> {
         let Some(Meaning::Flags(names)) = meaning else {
-            return Err(format!(
-                "the image names no flags of `{signal}`; write `has_bit` or `lacks_bit`"
-            ));
+            return Err(FlagError::NoNames(signal.to_owned()));
         };
         match names.iter().find(|(_, name)| **name == self.name) {
             Some((bit, _)) if self.set => Ok(Bound::HasBit(*bit)),
             Some((bit, _)) => Ok(Bound::LacksBit(*bit)),
             None => {
                 let known: Vec<&str> = names.values().map(String::as_str).collect();
-                let (flag, known) = (&self.name, known.join(", "));
-                Err(format!("`{signal}` has no flag `{flag}`; it has {known}"))
+                Err(FlagError::Unknown {
+                    signal: signal.to_owned(),
+                    flag: self.name.clone(),
+                    known: known.join(", "),
+                })
             }
         }
     }

@@ -7,9 +7,9 @@ use crate::machine::{
     faults::{self, FaultError},
 };
 
-/// A deed that cannot be done.
+/// A event that cannot be done.
 #[derive(Debug, thiserror::Error)]
-pub enum DeedError {
+pub enum EventError {
     #[error(transparent)]
     World(#[from] WorldError),
     #[error(transparent)]
@@ -23,7 +23,7 @@ pub fn all() -> impl Iterator<Item = &'static FaultInfo> {
 }
 
 /// Starts or ends a fault by its name.
-pub fn set(machine: &mut Machine, name: &str, active: bool) -> Result<(), DeedError> {
+pub fn set(machine: &mut Machine, name: &str, active: bool) -> Result<(), EventError> {
     if faults::all().any(|fault| fault.name == name) {
         machine.set_fault(name, active)?;
     } else {

@@ -9,7 +9,7 @@ use std::{
 use robot_plant::world::{CanBusId, World, WorldConfig, WorldError};
 
 use super::{
-    faults::DeedError,
+    faults::EventError,
     recording::{Recording, RecordingError},
     report::{self, Report},
     runner::{self, Observer, RunResult},
@@ -48,7 +48,7 @@ pub enum JobError {
     #[error("cannot open a pseudo-terminal: {0}")]
     Port(io::Error),
     #[error(transparent)]
-    Deed(#[from] DeedError),
+    Event(#[from] EventError),
     #[error(transparent)]
     Recording(#[from] RecordingError),
     #[error(transparent)]

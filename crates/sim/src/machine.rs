@@ -1,11 +1,14 @@
 //! CPU, chip, board and world as one deterministic machine.
 
-use std::{collections::BTreeMap, path::Path};
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
 
 use robot_emulator::{
     core::{
-        cpu::{Cpu, Halt, Pause},
-        image::Image,
+        cpu::{Cpu, EngineError, Halt, Pause},
+        image::{Image, ImageError},
     },
     soc::{board_errors::BoardError, bus::Soc, reset::ResetCause},
 };
@@ -26,7 +29,7 @@ mod rtt;
 mod stack;
 mod tick_stats;
 
-use diagnostics::{Diagnostics, meaning::Meaning};
+use diagnostics::{Diagnostics, LayoutError, meaning::Meaning};
 use log::DefmtLog;
 use rtt::Rtt;
 use stack::StackWatch;
@@ -41,8 +44,19 @@ const RTT_CONTROL_BLOCK: &str = "_SEGGER_RTT";
 
 #[derive(Debug, thiserror::Error)]
 pub enum MachineError {
+    #[error("cannot load the image: {path}: {source}", path = .path.display())]
+    Read {
+        path: PathBuf,
+        source: std::io::Error,
+    },
     #[error("cannot load the image: {0}")]
-    Image(String),
+    Image(#[from] ImageError),
+    #[error("cannot load the image: its log cannot be decoded: {0}")]
+    Log(String),
+    #[error("cannot load the image: its diagnostics cannot be read: {0}")]
+    Diagnostics(#[from] LayoutError),
+    #[error("the engine refuses the image: {0:?}")]
+    Engine(EngineError),
     /// Unmodelled register, bus fault outside the map, lock-up: the text names register, PC and function.
     #[error("{0}")]
     Stopped(String),
@@ -143,20 +157,22 @@ const LOG_POLL: Ps = MS;
 impl Machine {
     /// Powers the board on at time 0 with `elf` in flash.
     pub fn new(elf: &Path, world: World) -> Result<Self, MachineError> {
-        let bytes = std::fs::read(elf)
-            .map_err(|e| MachineError::Image(format!("{}: {e}", elf.display())))?;
-        let image = Image::parse(&bytes).map_err(|e| MachineError::Image(e.to_string()))?;
+        let bytes = std::fs::read(elf).map_err(|source| MachineError::Read {
+            path: elf.to_owned(),
+            source,
+        })?;
+        let image = Image::parse(&bytes)?;
         let cpu = Cpu::new(
             &image.segments,
             image.symbol(CONTROL_TICK),
             Soc::new(Box::new(CBoard::new(world))),
         )
-        .map_err(|e| MachineError::Image(format!("the engine refuses: {e:?}")))?;
+        .map_err(MachineError::Engine)?;
         Ok(Self {
             rtt: image.symbol(RTT_CONTROL_BLOCK).map(Rtt::new),
             log: DefmtLog::new(&bytes)?,
             log_is_read: true,
-            diagnostics: Diagnostics::find(&bytes, &image).map_err(MachineError::Image)?,
+            diagnostics: Diagnostics::find(&bytes, &image)?,
             stack: StackWatch::of(&image),
             ticks: TickStats::default(),
             stack_peak: 0,

@@ -10,7 +10,7 @@ use robot_plant::{
 use super::{
     attitude_score::AttitudeScore,
     expectation::{self, Judge, Verdict},
-    faults::DeedError,
+    faults::EventError,
     run_signals::RunSignals,
     scenario::Scenario,
     signals::{SignalTable, Values},
@@ -79,24 +79,24 @@ pub fn run<B: Simulation>(
     scenario: &Scenario,
     ports: &mut [CanPort],
     observers: &mut [&mut dyn Observer],
-) -> Result<RunResult, DeedError> {
+) -> Result<RunResult, EventError> {
     for port in ports.iter() {
         for observer in observers.iter_mut() {
             observer.can_port(port.bus(), port.path());
         }
     }
     let mut run = Run::new(board, scenario);
-    let mut actions = scenario.actions.iter().peekable();
+    let mut events = scenario.events.iter().peekable();
     let mut now = 0;
     let mut stopped = None;
     run.sample(now, scenario.length == 0, observers);
     while now < scenario.length {
-        while let Some(action) = actions.next_if(|a| a.at <= now) {
-            run.board.act(&action.what)?;
+        while let Some(timed) = events.next_if(|a| a.at <= now) {
+            run.board.apply(&timed.event)?;
         }
         let next_sample = (now / SAMPLE_PERIOD + 1) * SAMPLE_PERIOD;
-        let next_action = actions.peek().map_or(Ps::MAX, |a| a.at);
-        let until = next_sample.min(next_action).min(scenario.length);
+        let next_event_at = events.peek().map_or(Ps::MAX, |a| a.at);
+        let until = next_sample.min(next_event_at).min(scenario.length);
         if let Err(why) = run.board.run_until(until) {
             stopped = Some(why.to_string());
             run.drain_log(observers);
@@ -150,7 +150,10 @@ impl Watched {
                         place,
                         judge: Judge::new(bound, wanted.window),
                     }),
-                    (Some(_), Err(why)) => Err(Unjudgeable { expected, why }),
+                    (Some(_), Err(error)) => Err(Unjudgeable {
+                        expected,
+                        why: error.to_string(),
+                    }),
                     (None, _) => {
                         let why = table.missing(&wanted.signal);
                         Err(Unjudgeable { expected, why })

@@ -2,6 +2,8 @@
 
 mod file;
 
+pub use file::Problem;
+
 use std::path::{Path, PathBuf};
 
 use robot_plant::{
@@ -33,7 +35,7 @@ pub struct Scenario {
     pub seed: u64,
     pub flash: FlashSetup,
     /// In order of time; what was written first comes first at equal times.
-    pub actions: Vec<Action>,
+    pub events: Vec<TimedEvent>,
     pub expectations: Vec<Expectation>,
     /// Board errors whose message contains one of these do not fail the run.
     pub allow_board_errors: Vec<String>,
@@ -58,14 +60,16 @@ pub enum FlashContents {
     Records(Vec<Record>),
 }
 
+/// Something that happens to the robot at a certain time.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Action {
+pub struct TimedEvent {
     pub at: Ps,
-    pub what: Deed,
+    pub event: Event,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub enum Deed {
+pub enum Event {
+    /// The pilot moves sticks or switches.
     Remote(RemoteInput),
     /// The PC's adapter sends a frame.
     Can(CanBusId, CanFrame),
@@ -81,11 +85,11 @@ pub enum ScenarioError {
         path: PathBuf,
         source: std::io::Error,
     },
-    #[error("{file}:{line}: {what}")]
+    #[error("{file}:{line}: {problem}")]
     Wrong {
         file: String,
         line: usize,
-        what: String,
+        problem: Problem,
     },
 }
 

@@ -5,8 +5,8 @@ use std::io;
 use robot_plant::{can_adapter::AdapterMode, time::Ps, world::WireEvent};
 
 use super::{
-    faults::{self, DeedError},
-    scenario::Deed,
+    faults::{self, EventError},
+    scenario::Event,
 };
 use crate::{
     machine::{LogLine, Machine, MachineError, Progress, Stats, diagnostics::meaning::Meaning},
@@ -17,7 +17,7 @@ use robot_emulator::soc::board_errors::BoardError;
 /// A board with a world around it that advances in simulated time.
 pub trait Simulation {
     fn run_until(&mut self, until: Ps) -> Result<(), MachineError>;
-    fn act(&mut self, deed: &Deed) -> Result<(), DeedError>;
+    fn apply(&mut self, event: &Event) -> Result<(), EventError>;
     /// Lets the PCs on `ports` send to the world and hear from it.
     fn serve(&mut self, ports: &mut [CanPort]) -> io::Result<()>;
     fn world_names(&mut self) -> Vec<String>;
@@ -46,13 +46,13 @@ impl Simulation for Machine {
         Machine::run_until(self, until)
     }
 
-    fn act(&mut self, deed: &Deed) -> Result<(), DeedError> {
-        match deed {
-            Deed::Remote(input) => {
+    fn apply(&mut self, event: &Event) -> Result<(), EventError> {
+        match event {
+            Event::Remote(input) => {
                 self.with_world(|world| world.set_remote(*input));
                 Ok(())
             }
-            Deed::Can(bus, frame) => {
+            Event::Can(bus, frame) => {
                 let taken = self.with_world(|world| {
                     let adapter = world.can_adapter(*bus);
                     if adapter.mode() != AdapterMode::Active {
@@ -60,10 +60,10 @@ impl Simulation for Machine {
                     }
                     adapter.send(*frame)
                 });
-                taken.then_some(()).ok_or(DeedError::AdapterFull)
+                taken.then_some(()).ok_or(EventError::AdapterFull)
             }
-            Deed::StartFault(name) => faults::set(self, name, true),
-            Deed::EndFault(name) => faults::set(self, name, false),
+            Event::StartFault(name) => faults::set(self, name, true),
+            Event::EndFault(name) => faults::set(self, name, false),
         }
     }
 

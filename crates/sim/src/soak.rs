@@ -1,15 +1,15 @@
-//! The robot for hours: a pilot, faults and frames from a seed, and rules that must hold at every instant.
+//! Runs the robot for hours with pilot input, faults and frames drawn from a seed, and checks invariants at every instant.
 
-mod dice;
-mod duty;
-mod full_sectors;
-mod harmless;
-mod kept;
+mod flash_at_rest;
+mod initial_flash;
+mod invariants;
 mod plan;
 mod reproduction;
-mod settings;
-mod still_flash;
-mod watch;
+mod rng;
+mod saved_settings;
+mod settings_check;
+mod stop_deadlines;
+mod tuning_frames;
 
 use std::path::PathBuf;
 
@@ -19,21 +19,21 @@ use robot_plant::{
 };
 
 use crate::{
-    faults::DeedError,
+    faults::EventError,
     machine::{Machine, MachineError, faults::FaultError},
-    scenario::Action,
+    scenario::TimedEvent,
     simulation::Simulation,
 };
 
-pub use kept::KeptTally;
+use invariants::{Invariants, MissingSignal};
+pub use invariants::{Tally, Violation};
 use plan::Plan;
-use watch::Watch;
-pub use watch::{Tally, Violation};
+pub use saved_settings::SettingsTally;
 
-/// Rules are checked, and the pilot and the faults act, on this grid.
+/// Invariants are checked, and events happen, on this grid.
 const STEP: Ps = MS;
-/// Deeds that a reproduction holds.
-const RETOLD: Ps = 30 * SECOND;
+/// The reproduction of a violation repeats the events of this time before it.
+const REPRODUCED: Ps = 30 * SECOND;
 
 #[derive(Clone, Debug)]
 pub struct Soak {
@@ -50,12 +50,12 @@ pub enum SoakError {
     #[error(transparent)]
     Machine(#[from] MachineError),
     #[error(transparent)]
-    Deed(#[from] DeedError),
+    Event(#[from] EventError),
     #[error("the image lacks what the soak watches: {0}")]
-    Blind(String),
+    MissingSignal(#[from] MissingSignal),
 }
 
-/// How far it got, and what broke first.
+/// How long the run was, and the first violation.
 #[derive(Clone, Debug)]
 pub struct Outcome {
     pub ran: Ps,
@@ -66,12 +66,12 @@ pub struct Outcome {
 #[derive(Clone, Debug)]
 pub struct Failure {
     pub violation: Violation,
-    /// A scenario that does again what was done in the last seconds before.
+    /// A scenario that repeats the events before the violation.
     pub scenario: String,
 }
 
 impl Soak {
-    /// Runs to the end or to the first rule broken; `watch` hears every simulated second how far it is.
+    /// Runs to the end or to the first violation; calls `progress` every simulated second.
     pub fn run(&self, mut progress: impl FnMut(Ps)) -> Result<Outcome, SoakError> {
         let world = World::new(WorldConfig {
             seed: self.seed,
@@ -79,22 +79,22 @@ impl Soak {
         })?;
         let mut machine = Machine::new(&self.elf, world)?;
         machine.set_flash_seed(self.seed);
-        machine.set_parameter_flash(&full_sectors::contents());
-        let mut watch = Watch::new(&mut machine).map_err(SoakError::Blind)?;
+        machine.set_parameter_flash(&initial_flash::contents());
+        let mut invariants = Invariants::new(&mut machine)?;
         let mut plan = Plan::new(self.seed, self.length);
-        let mut done: Vec<Action> = Vec::new();
+        let mut done: Vec<TimedEvent> = Vec::new();
         let mut now = 0;
         while now < self.length {
-            while let Some(action) = plan.next_until(now) {
-                match Simulation::act(&mut machine, &action.what) {
-                    // The chip is just booting.
-                    Err(DeedError::Machine(FaultError::NotThere { .. })) => continue,
-                    // The bus is down for long.
-                    Err(DeedError::AdapterFull) => continue,
+            while let Some(timed) = plan.next_until(now) {
+                match Simulation::apply(&mut machine, &timed.event) {
+                    // The chip is booting: there is no task to fail yet.
+                    Err(EventError::Machine(FaultError::NotThere { .. })) => continue,
+                    // The bus has been down for so long that the adapter's queue is full.
+                    Err(EventError::AdapterFull) => continue,
                     other => other?,
                 }
-                watch.did(&action);
-                done.push(action);
+                invariants.record(&timed);
+                done.push(timed);
             }
             now += STEP;
             let stopped = machine.run_until(now).err();
@@ -103,28 +103,28 @@ impl Soak {
                     at: now,
                     what: why.to_string(),
                 }),
-                None => watch.look(&mut machine, now),
+                None => invariants.check(&mut machine, now),
             };
             if let Some(violation) = broken {
-                let scenario = reproduction::scenario(&done, &violation, self.seed, RETOLD);
+                let scenario = reproduction::scenario(&done, &violation, self.seed, REPRODUCED);
                 let failure = Some(Failure {
                     violation,
                     scenario,
                 });
-                return Ok(self.outcome(now, watch, failure));
+                return Ok(self.outcome(now, invariants, failure));
             }
             if now.is_multiple_of(SECOND) {
                 machine.take_log();
                 progress(now);
             }
         }
-        Ok(self.outcome(now, watch, None))
+        Ok(self.outcome(now, invariants, None))
     }
 
-    fn outcome(&self, ran: Ps, watch: Watch, failure: Option<Failure>) -> Outcome {
+    fn outcome(&self, ran: Ps, invariants: Invariants, failure: Option<Failure>) -> Outcome {
         Outcome {
             ran,
-            tally: watch.tally(),
+            tally: invariants.tally(),
             failure,
         }
     }

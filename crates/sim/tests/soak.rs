@@ -21,7 +21,7 @@ fn every_rule_holds_for_two_minutes() {
     println!("{tally:?}");
     assert!(tally.armings >= 3 && tally.stops >= 10, "{tally:?}");
     assert!(
-        tally.settings.changes >= 10 && tally.settings.found_again >= 6,
+        tally.settings.changes >= 10 && tally.settings.restored >= 6,
         "{tally:?}"
     );
     assert!(tally.flash_erases >= 1, "{tally:?}");

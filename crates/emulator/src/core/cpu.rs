@@ -25,20 +25,22 @@ mod alignment;
 mod block_costs;
 mod context;
 mod debug_halt;
+mod fault_injection;
 mod hooks;
 mod it_state;
-mod sabotage;
 mod sleep;
 mod standstill;
 #[cfg(test)]
 mod tests;
 
 use block_costs::BlockCosts;
+use fault_injection::Injector;
+pub use fault_injection::{Effect, Injection};
 use hooks::with_soc;
-use sabotage::Saboteur;
-pub use sabotage::{Harm, Sabotage};
 use sleep::SleepKind;
 use standstill::Standstill;
+/// What the engine under the CPU reports.
+pub use unicorn_engine::uc_error as EngineError;
 
 /// Why `Cpu::run` came back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,7 +79,7 @@ enum Stop {
     Reset(ResetCause),
     Unmodelled(Unmodelled),
     Engine(String),
-    Sabotaged(Sabotage),
+    Injected(Injection),
     /// A BKPT instruction or a breakpoint, and a debugger that wants to hear of it.
     Breakpoint,
     /// The function at this address may go on after all.
@@ -117,8 +119,8 @@ pub(crate) struct State {
     stop: Option<Stop>,
     /// Address of the function whose entries are recorded.
     watched_entry: Option<u32>,
-    saboteur: Saboteur,
-    /// When sabotage last struck.
+    injector: Injector,
+    /// When injection last struck.
     struck_at: Option<Ps>,
 }
 
@@ -159,7 +161,7 @@ impl Cpu {
             event: false,
             stop: None,
             watched_entry,
-            saboteur: Saboteur::default(),
+            injector: Injector::default(),
             struck_at: None,
         };
         let mut engine = Unicorn::new_with_data(Arch::ARM, Mode::THUMB, state)?;
@@ -195,7 +197,7 @@ impl Cpu {
         state.attention = false;
         state.event = false;
         state.stop = None;
-        state.saboteur = Saboteur::default();
+        state.injector = Injector::default();
         // C_HALT does not outlive a reset.
         state.standstill.halted_until(None);
         let caught = state.system.debug.catches_reset();
@@ -224,7 +226,7 @@ impl Cpu {
         with_soc(&mut self.engine, |soc, now, _| change(soc, now))
     }
 
-    /// When sabotage last made the program go wrong.
+    /// When injection last made the program go wrong.
     pub fn struck_at(&self) -> Option<Ps> {
         self.state().struck_at
     }
@@ -305,7 +307,7 @@ impl Cpu {
                 Ok(None)
             }
             (Some(Stop::Fault(fault)), _) => self.raise(fault).map(|()| None),
-            (Some(Stop::Sabotaged(sabotage)), _) => self.suffer(sabotage).map(|()| None),
+            (Some(Stop::Injected(injection)), _) => self.take_effect(injection).map(|()| None),
             (Some(Stop::Breakpoint), _) => {
                 self.enter_debug_state("a breakpoint");
                 Ok(None)

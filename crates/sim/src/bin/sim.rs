@@ -163,10 +163,10 @@ fn list_signals(job: &Job) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn parse_patch(text: &str) -> Result<RegisterPatch, String> {
+fn parse_patch(text: &str) -> anyhow::Result<RegisterPatch> {
     let number = |part: &str| {
         let digits = part.trim_start_matches("0x").replace('_', "");
-        u32::from_str_radix(&digits, 16).map_err(|e| format!("{part}: {e}"))
+        u32::from_str_radix(&digits, 16).with_context(|| part.to_owned())
     };
     match text.split(':').collect::<Vec<_>>()[..] {
         [address, mask, value] => Ok(RegisterPatch {
@@ -174,6 +174,6 @@ fn parse_patch(text: &str) -> Result<RegisterPatch, String> {
             mask: number(mask)?,
             value: number(value)?,
         }),
-        _ => Err("write ADDR:MASK:VALUE in hexadecimal".into()),
+        _ => bail!("write ADDR:MASK:VALUE in hexadecimal"),
     }
 }

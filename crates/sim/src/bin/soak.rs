@@ -8,7 +8,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 use robot_plant::time;
 use robot_sim::soak::{Outcome, Soak};
 
-/// Boot the firmware in the emulated board and let a pilot, faults and frames from a seed have their way with it.
+/// Boot the firmware in the emulated board, drive it for hours with random pilot input, faults and frames from a seed,
+/// and check invariants at every instant.
 #[derive(Parser)]
 #[command(name = "soak")]
 struct Args {
@@ -21,7 +22,7 @@ struct Args {
     /// Seed of everything that happens.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Folder for the scenario that shows a broken rule again.
+    /// Folder for the scenario that reproduces a violation.
     #[arg(long, default_value = "target/soak")]
     out: PathBuf,
 }
@@ -45,7 +46,7 @@ fn main() -> anyhow::Result<ExitCode> {
     bar.finish_and_clear();
     summary(&outcome, started.elapsed().as_secs_f64());
     let Some(failure) = &outcome.failure else {
-        println!("seed {}: every rule held", args.seed);
+        println!("seed {}: every invariant held", args.seed);
         return Ok(ExitCode::SUCCESS);
     };
     std::fs::create_dir_all(&args.out)
@@ -53,8 +54,8 @@ fn main() -> anyhow::Result<ExitCode> {
     let file = args.out.join(format!("seed-{}.toml", args.seed));
     std::fs::write(&file, &failure.scenario)
         .with_context(|| format!("cannot write {}", file.display()))?;
-    println!("seed {}: BROKEN {failure}", args.seed);
-    println!("its last deeds: cargo xtask sim {}", file.display());
+    println!("seed {}: VIOLATION {failure}", args.seed);
+    println!("its last events: cargo xtask sim {}", file.display());
     println!(
         "exactly again:  cargo xtask soak --seed {} --hours {}",
         args.seed, args.hours
@@ -83,8 +84,8 @@ fn summary(outcome: &Outcome, wall_s: f64) {
         ("stops checked", tally.stops.to_string()),
         ("resets", tally.resets.to_string()),
         ("settings changed", tally.settings.changes.to_string()),
-        ("found after a boot", tally.settings.found_again.to_string()),
-        ("lost as told", tally.settings.lost_and_told.to_string()),
+        ("restored at a boot", tally.settings.restored.to_string()),
+        ("lost as reported", tally.settings.reported_lost.to_string()),
         ("flash words", tally.flash_words.to_string()),
         ("flash erases", tally.flash_erases.to_string()),
         ("most current", format!("{:.0} mA", tally.most_current_ma)),

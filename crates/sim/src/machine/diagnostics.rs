@@ -5,6 +5,7 @@ use robot_emulator::core::{cpu::Cpu, image::Image};
 mod layout;
 pub mod meaning;
 
+pub use layout::LayoutError;
 use layout::Leaf;
 use meaning::Meaning;
 
@@ -28,7 +29,7 @@ pub struct Diagnostics {
 }
 
 impl Diagnostics {
-    pub fn find(elf: &[u8], image: &Image) -> Result<Self, String> {
+    pub fn find(elf: &[u8], image: &Image) -> Result<Self, LayoutError> {
         let Some(base) = image.symbol(STATIC) else {
             return Ok(Self::default());
         };

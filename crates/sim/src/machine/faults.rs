@@ -5,7 +5,7 @@ use robot_plant::{time::MS, world::FaultInfo};
 
 use super::{CONTROL_TICK, Machine};
 use robot_emulator::core::{
-    cpu::{Cpu, Harm, Sabotage},
+    cpu::{Cpu, Effect, Injection},
     image::Image,
 };
 
@@ -112,11 +112,11 @@ impl Machine {
             .ok_or_else(|| FaultError::Unknown(name.to_owned()))?;
         match entry.kind {
             Kind::Program(place, failure) => {
-                let sabotage = entry.sabotage(place, failure, &self.image, &self.cpu)?;
+                let injection = entry.inject(place, failure, &self.image, &self.cpu)?;
                 if active {
-                    self.cpu.sabotage(sabotage);
+                    self.cpu.inject(injection);
                 } else {
-                    self.cpu.end_sabotage(sabotage);
+                    self.cpu.end_injection(injection);
                 }
             }
             Kind::PowerCut => self.switch_power(!active),
@@ -135,15 +135,15 @@ impl Machine {
 }
 
 impl Entry {
-    fn sabotage(
+    fn inject(
         &self,
         place: Place,
         failure: Failure,
         image: &Image,
         cpu: &Cpu,
-    ) -> Result<Sabotage, FaultError> {
+    ) -> Result<Injection, FaultError> {
         let symbol = |name: &str| self.present(image.symbol(name), name);
-        Ok(Sabotage {
+        Ok(Injection {
             entry: match place {
                 Place::ControlTick => symbol(CONTROL_TICK)?,
                 Place::Task(task) => {
@@ -151,12 +151,12 @@ impl Entry {
                     self.present(poll, &format!("task {task}, spawned"))?
                 }
             },
-            harm: match failure {
-                Failure::Panic => Harm::GoTo(symbol("_defmt_panic")?),
-                Failure::HardFault => Harm::Undefined,
-                Failure::StackOverflow => Harm::StackAt(symbol("_stack_end")?),
-                Failure::Stuck => Harm::Hang,
-                Failure::Asleep => Harm::ReturnAtOnce,
+            effect: match failure {
+                Failure::Panic => Effect::GoTo(symbol("_defmt_panic")?),
+                Failure::HardFault => Effect::Undefined,
+                Failure::StackOverflow => Effect::StackAt(symbol("_stack_end")?),
+                Failure::Stuck => Effect::Hang,
+                Failure::Asleep => Effect::ReturnAtOnce,
             },
         })
     }

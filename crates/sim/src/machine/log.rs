@@ -15,11 +15,10 @@ pub struct DefmtLog {
 impl DefmtLog {
     /// `None` for an image that does not log.
     pub fn new(elf: &[u8]) -> Result<Option<Self>, MachineError> {
-        let table =
-            Table::parse(elf).map_err(|e| MachineError::Image(format!("defmt table: {e:#}")))?;
+        let table = Table::parse(elf).map_err(|e| MachineError::Log(format!("{e:#}")))?;
         let Some(table) = table else { return Ok(None) };
         if table.encoding() != Encoding::Rzcobs {
-            return Err(MachineError::Image(
+            return Err(MachineError::Log(
                 "defmt frames are not rzcobs-encoded".to_owned(),
             ));
         }

@@ -44,7 +44,7 @@ const JOINTS: [(usize, &str, RGBColor); 4] = [
 pub fn all(report: &Report) -> Result<Vec<Figure>, ChartError> {
     let marks: Vec<f64> = report
         .scenario
-        .actions
+        .events
         .iter()
         .map(|a| time::to_seconds(a.at))
         .collect();

@@ -9,11 +9,11 @@ use robot_plant::{
 
 use super::*;
 use crate::{
-    faults::DeedError,
+    faults::EventError,
     machine::{CanStats, LogLine, MachineError, Progress, Stats},
     pty::CanPort,
     runner,
-    scenario::{Deed, Scenario},
+    scenario::{Event, Scenario},
     simulation::Simulation,
     summary::Summary,
     trace::Traces,
@@ -60,7 +60,7 @@ impl Simulation for Waves {
         self.now = until;
         Ok(())
     }
-    fn act(&mut self, _: &Deed) -> Result<(), DeedError> {
+    fn apply(&mut self, _: &Event) -> Result<(), EventError> {
         Ok(())
     }
     fn serve(&mut self, _: &mut [CanPort]) -> std::io::Result<()> {

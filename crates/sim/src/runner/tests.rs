@@ -5,22 +5,22 @@ use robot_plant::time::{MS, US};
 use super::*;
 use crate::{
     machine::{MachineError, Progress, diagnostics::meaning::Meaning},
-    scenario::Deed,
+    scenario::Event,
 };
 
 /// Current 100 mA from the moment the switch goes on; one command frame 300 µs past each millisecond.
 #[derive(Default)]
-struct Double {
+struct FakeBoard {
     now: Ps,
     current_ma: f64,
     events: Vec<WireEvent>,
     stop_at: Option<Ps>,
     errors: Vec<BoardError>,
     suspicions: Vec<BoardError>,
-    acted: Vec<(Ps, Deed)>,
+    acted: Vec<(Ps, Event)>,
 }
 
-impl Simulation for Double {
+impl Simulation for FakeBoard {
     fn run_until(&mut self, until: Ps) -> Result<(), MachineError> {
         assert!(until > self.now, "time goes forward");
         if self.stop_at.is_some_and(|t| t <= until) {
@@ -38,15 +38,15 @@ impl Simulation for Double {
         Ok(())
     }
 
-    fn act(&mut self, deed: &Deed) -> Result<(), DeedError> {
-        if let Deed::Remote(input) = deed {
+    fn apply(&mut self, event: &Event) -> Result<(), EventError> {
+        if let Event::Remote(input) = event {
             self.current_ma = if input.enable == Some(true) {
                 100.0
             } else {
                 0.0
             };
         }
-        self.acted.push((self.now, deed.clone()));
+        self.acted.push((self.now, event.clone()));
         Ok(())
     }
 
@@ -111,7 +111,7 @@ impl Simulation for Double {
     }
 }
 
-fn run_double(board: &mut Double, body: &str) -> RunResult {
+fn run_double(board: &mut FakeBoard, body: &str) -> RunResult {
     let text = format!("name = \"n\"\nseconds = 0.05\nplant = \"stand\"\n{body}");
     let scenario = Scenario::parse(&text, "t.toml").unwrap();
     run(board, &scenario, &mut [], &mut []).unwrap()
@@ -128,7 +128,7 @@ const PULSE: &str = "
 
 #[test]
 fn deeds_are_done_at_their_instant_and_in_order() {
-    let mut board = Double::default();
+    let mut board = FakeBoard::default();
     run_double(&mut board, PULSE);
     let times: Vec<Ps> = board.acted.iter().map(|(t, _)| *t).collect();
     assert_eq!(times, [10_200 * US, 10_400 * US]);
@@ -143,11 +143,11 @@ fn a_pulse_between_two_samples_is_judged_by_its_frame() {
         to = 0.05
         max_abs = 0.0
     ";
-    let result = run_double(&mut Double::default(), &format!("{PULSE}{expect}"));
+    let result = run_double(&mut FakeBoard::default(), &format!("{PULSE}{expect}"));
     assert!(!result.ok());
     let seen = result.verdicts[0].decisive.unwrap();
     assert_eq!((seen.at, seen.value), (10_300 * US, 100.0));
-    assert!(run_double(&mut Double::default(), expect).ok());
+    assert!(run_double(&mut FakeBoard::default(), expect).ok());
 }
 
 #[test]
@@ -155,7 +155,7 @@ fn diagnostics_that_are_not_there_or_stale_never_pass() {
     let expect = |from: f64, to: f64| {
         format!("[[expect]]\nsignal = \"diag.safety.flags\"\nfrom = {from}\nto = {to}\nmax = 4\n")
     };
-    let ok = |from, to| run_double(&mut Double::default(), &expect(from, to)).ok();
+    let ok = |from, to| run_double(&mut FakeBoard::default(), &expect(from, to)).ok();
     assert!(ok(0.0, 0.01));
     assert!(!ok(0.0, 0.001), "before the firmware is up");
     assert!(!ok(0.04, 0.05), "long after it hung");
@@ -163,7 +163,7 @@ fn diagnostics_that_are_not_there_or_stale_never_pass() {
 
 #[test]
 fn safety_flags_are_gathered_over_the_run() {
-    let result = run_double(&mut Double::default(), "");
+    let result = run_double(&mut FakeBoard::default(), "");
     assert_eq!(result.safety_flags_seen, 0b110);
 }
 
@@ -173,7 +173,7 @@ fn flags_are_judged_by_their_names() {
         let expect = format!(
             "[[expect]]\nsignal = \"diag.safety.flags\"\nfrom = 0.006\nto = 0.009\n{flag}\n"
         );
-        let result = run_double(&mut Double::default(), &expect);
+        let result = run_double(&mut FakeBoard::default(), &expect);
         (result.ok(), result.verdicts[0].clone())
     };
     assert!(judged("has_flag = \"lost\"").0);
@@ -187,16 +187,16 @@ fn flags_are_judged_by_their_names() {
 #[test]
 fn an_unknown_signal_fails_and_suggests() {
     let body = "[[expect]]\nsignal = \"can.curent_ma\"\nat = 0.01\nmax = 1\n";
-    let result = run_double(&mut Double::default(), body);
+    let result = run_double(&mut FakeBoard::default(), body);
     let why = result.verdicts[0].failure.clone().unwrap();
     assert!(why.contains("did you mean `can.current_ma`"), "{why}");
 }
 
 #[test]
 fn a_stopped_machine_fails_the_run_and_open_windows() {
-    let mut board = Double {
+    let mut board = FakeBoard {
         stop_at: Some(20 * MS),
-        ..Double::default()
+        ..FakeBoard::default()
     };
     let body = "[[expect]]\nsignal = \"can.current_ma\"\nfrom = 0\nto = 0.05\nmax_abs = 0\n";
     let result = run_double(&mut board, body);
@@ -221,9 +221,9 @@ fn complaint() -> BoardError {
 
 #[test]
 fn suspicions_are_kept_and_fail_nothing() {
-    let mut board = Double {
+    let mut board = FakeBoard {
         suspicions: vec![complaint()],
-        ..Double::default()
+        ..FakeBoard::default()
     };
     let result = run_double(&mut board, "");
     assert!(result.ok());
@@ -232,15 +232,15 @@ fn suspicions_are_kept_and_fail_nothing() {
 
 #[test]
 fn board_errors_fail_unless_allowed() {
-    let mut board = Double {
+    let mut board = FakeBoard {
         errors: vec![complaint()],
-        ..Double::default()
+        ..FakeBoard::default()
     };
     assert!(!run_double(&mut board, "").ok());
     let allowed = run_double(
-        &mut Double {
+        &mut FakeBoard {
             errors: board.errors,
-            ..Double::default()
+            ..FakeBoard::default()
         },
         "allow_board_errors = [\"bit timing\"]",
     );

@@ -1,4 +1,4 @@
-//! What the pilot, the world and a PC do, and when.
+//! Draws what the pilot, the world and a PC do, and when.
 
 use std::{cmp::Reverse, collections::BinaryHeap};
 
@@ -9,21 +9,21 @@ use robot_plant::{
 };
 
 use super::{
-    dice::Dice,
-    harmless::{self, READ, WRITE},
+    rng::Rng,
+    tuning_frames::{self, READ, WRITE},
 };
 use crate::{
     machine::faults,
-    scenario::{Action, Deed},
+    scenario::{Event, TimedEvent},
 };
 
-/// Calibration and set-up are over, as a rule.
+/// By this time calibration and set-up are over, unless a fault delays them.
 const BOOTED: Ps = 2_500 * MS;
 
-/// Between two requests on one bus: the robot answers one in 4 ms.
+/// Time between two requests on one bus: the robot answers one in 4 ms.
 const NEXT_REQUEST: Ps = 7 * MS;
 
-/// Who acts next.
+/// Who causes an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Actor {
     Pilot,
@@ -33,15 +33,15 @@ enum Actor {
     Tuner,
 }
 
-/// Deeds in order of time, drawn as they are needed.
+/// Events in order of time. They are drawn as they are needed.
 pub struct Plan {
-    dice: Dice,
-    /// The image and its supply fail only up to here: afterwards the uptime grows past every counter's end.
+    rng: Rng,
+    /// The image and its supply fail only until then. Afterwards the uptime grows until every counter has wrapped.
     chip_fails_until: Ps,
     due: BinaryHeap<Reverse<(Ps, Actor)>>,
-    /// Drawn, not yet handed out; by time and order of drawing.
+    /// Events that were drawn and not yet returned, by time and order of drawing.
     waiting: BinaryHeap<Reverse<(Ps, u64)>>,
-    deeds: std::collections::HashMap<u64, Deed>,
+    events: std::collections::HashMap<u64, Event>,
     drawn: u64,
 }
 
@@ -55,17 +55,17 @@ impl Plan {
             (SECOND, Actor::Tuner),
         ];
         Self {
-            dice: Dice::new(seed),
+            rng: Rng::new(seed),
             chip_fails_until: length / 3,
             due: actors.into_iter().map(Reverse).collect(),
             waiting: BinaryHeap::new(),
-            deeds: Default::default(),
+            events: Default::default(),
             drawn: 0,
         }
     }
 
-    /// The next deed due at or before `now`.
-    pub fn next_until(&mut self, now: Ps) -> Option<Action> {
+    /// The next event due at or before `now`.
+    pub fn next_until(&mut self, now: Ps) -> Option<TimedEvent> {
         while let Some(Reverse((at, actor))) = self.due.peek().copied()
             && at <= now
         {
@@ -77,7 +77,7 @@ impl Plan {
                 Actor::Pc => self.pc(at),
                 Actor::Tuner => {
                     self.tune(at);
-                    at + self.dice.time(500.0, 10_000.0)
+                    at + self.rng.time(500.0, 10_000.0)
                 }
             };
             self.due.push(Reverse((next, actor)));
@@ -87,59 +87,60 @@ impl Plan {
             return None;
         }
         let Reverse((at, number)) = self.waiting.pop()?;
-        let what = self.deeds.remove(&number)?;
-        Some(Action { at, what })
+        let event = self.events.remove(&number)?;
+        Some(TimedEvent { at, event })
     }
 
-    fn then(&mut self, at: Ps, what: Deed) {
+    /// The event happens at `at`.
+    fn then(&mut self, at: Ps, event: Event) {
         self.waiting.push(Reverse((at, self.drawn)));
-        self.deeds.insert(self.drawn, what);
+        self.events.insert(self.drawn, event);
         self.drawn += 1;
     }
 
     fn remote(&mut self, at: Ps, input: RemoteInput) {
-        self.then(at, Deed::Remote(input));
+        self.then(at, Event::Remote(input));
     }
 
-    /// One turn at the radio: clear what is latched, arm, drive, stop. Returns when the next begins.
+    /// The pilot clears what is latched, arms, drives and stops. Returns when the next turn begins.
     fn pilot(&mut self, start: Ps) -> Ps {
         let mut at = start;
         self.remote(at, switches(false, false));
-        at += self.dice.time(50.0, 500.0);
+        at += self.rng.time(50.0, 500.0);
         let bring_up = self.bring_up();
-        self.then(at, Deed::Can(CanBusId::Can1, bring_up));
-        if self.dice.chance(0.7) {
+        self.then(at, Event::Can(CanBusId::Can1, bring_up));
+        if self.rng.chance(0.7) {
             self.remote(at, switches(false, true));
-            at += self.dice.time(1_100.0, 1_500.0);
+            at += self.rng.time(1_100.0, 1_500.0);
             self.remote(at, switches(false, false));
-            at += self.dice.time(50.0, 300.0);
+            at += self.rng.time(50.0, 300.0);
         }
-        while self.dice.chance(0.5) {
+        while self.rng.chance(0.5) {
             at = self.rest(at);
         }
         self.remote(at, switches(true, false));
-        at += self.dice.time(100.0, 600.0);
-        let end = at + self.dice.time(1_000.0, 12_000.0);
+        at += self.rng.time(100.0, 600.0);
+        let end = at + self.rng.time(1_000.0, 12_000.0);
         while at < end {
             let sticks = self.sticks();
             self.remote(at, sticks);
-            at += self.dice.time(20.0, 2_000.0);
+            at += self.rng.time(20.0, 2_000.0);
         }
-        if self.dice.chance(0.3) {
+        if self.rng.chance(0.3) {
             self.remote(at, switches(true, true));
-            at += self.dice.time(20.0, 1_000.0);
+            at += self.rng.time(20.0, 1_000.0);
         }
         at
     }
 
-    /// Time to tune and to save, which ends at any moment of that. Returns when.
+    /// The robot rests, is tuned and saves, until a power cut or the end of the rest. Returns when that is.
     fn rest(&mut self, start: Ps) -> Ps {
-        let changes = start + self.dice.time(50.0, 800.0);
+        let changes = start + self.rng.time(50.0, 800.0);
         self.tune(changes);
-        let end = changes + self.dice.time(300.0, 5_000.0);
-        if changes < self.chip_fails_until && self.dice.chance(0.7) {
-            let cut = changes + self.dice.time(400.0, 1_500.0);
-            let back = cut + self.dice.time(10.0, 250.0);
+        let end = changes + self.rng.time(300.0, 5_000.0);
+        if changes < self.chip_fails_until && self.rng.chance(0.7) {
+            let cut = changes + self.rng.time(400.0, 1_500.0);
+            let back = cut + self.rng.time(10.0, 250.0);
             self.fault("power-cut", cut, back);
             self.ask(back + 300 * MS);
             return end.max(back + 600 * MS);
@@ -147,50 +148,50 @@ impl Plan {
         end
     }
 
-    /// A PC changes some settings, asks whether they are saved, and what they are. Flash may fail at that.
+    /// A PC changes some settings, then asks whether they are saved and reads them. Flash may fail meanwhile.
     fn tune(&mut self, start: Ps) {
         let bus = self.bus();
         let mut at = start;
-        for _ in 0..1 + self.dice.bits() % 4 {
-            let change = harmless::change(&mut self.dice);
-            self.then(at, Deed::Can(bus, change));
-            at += NEXT_REQUEST + self.dice.time(1.0, 100.0);
+        for _ in 0..1 + self.rng.bits() % 4 {
+            let change = tuning_frames::random_write(&mut self.rng);
+            self.then(at, Event::Can(bus, change));
+            at += NEXT_REQUEST + self.rng.time(1.0, 100.0);
         }
-        if self.dice.chance(0.15) {
+        if self.rng.chance(0.15) {
             let faults = ["flash-stuck-bits", "flash-erase-fails"];
-            let name = self.dice.pick(&faults).copied().unwrap_or_default();
-            let begins = at + self.dice.time(1.0, 800.0);
-            let ends = begins + self.dice.time(50.0, 4_000.0);
+            let name = self.rng.pick(&faults).copied().unwrap_or_default();
+            let begins = at + self.rng.time(1.0, 800.0);
+            let ends = begins + self.rng.time(50.0, 4_000.0);
             self.fault(name, begins, ends);
         }
-        at += self.dice.time(400.0, 1_500.0);
-        self.then(at, Deed::Can(bus, harmless::store_question()));
+        at += self.rng.time(400.0, 1_500.0);
+        self.then(at, Event::Can(bus, tuning_frames::store_status_request()));
         self.ask(at + NEXT_REQUEST);
     }
 
     fn ask(&mut self, start: Ps) {
         let bus = self.bus();
-        for (question, n) in harmless::questions().zip(0..) {
-            self.then(start + n * NEXT_REQUEST, Deed::Can(bus, question));
+        for (request, n) in tuning_frames::read_requests().zip(0..) {
+            self.then(start + n * NEXT_REQUEST, Event::Can(bus, request));
         }
     }
 
     fn fault(&mut self, name: &str, begins: Ps, ends: Ps) {
-        self.then(begins, Deed::StartFault(name.to_owned()));
-        self.then(ends, Deed::EndFault(name.to_owned()));
+        self.then(begins, Event::StartFault(name.to_owned()));
+        self.then(ends, Event::EndFault(name.to_owned()));
     }
 
     fn bus(&mut self) -> CanBusId {
-        if self.dice.chance(0.5) {
+        if self.rng.chance(0.5) {
             CanBusId::Can1
         } else {
             CanBusId::Can2
         }
     }
 
-    /// Off, mostly: else one of the three steps, with one motor to try out and how.
+    /// A request of bring-up: mostly off, else one of the three steps, with the motor to try and its command.
     fn bring_up(&mut self) -> CanFrame {
-        let step = match self.dice.unit() {
+        let step = match self.rng.unit() {
             u if u < 0.7 => 0,
             u if u < 0.75 => 1,
             u if u < 0.8 => 2,
@@ -199,11 +200,11 @@ impl Plan {
         let (motor, action, value) = if step < 3 {
             (0, 0, 0)
         } else {
-            let motor = (self.dice.bits() % 6) as u8;
+            let motor = (self.rng.bits() % 6) as u8;
             let most = if motor < 2 { 1_100.0 } else { 550.0 };
-            let value = self.dice.between(-most, most) as i16;
+            let value = self.rng.between(-most, most) as i16;
             let kinds = [(0, value), (0, 0), (1, 0)];
-            let (action, value) = self.dice.pick(&kinds).copied().unwrap_or_default();
+            let (action, value) = self.rng.pick(&kinds).copied().unwrap_or_default();
             (motor, action, value)
         };
         let [low, high] = value.to_le_bytes();
@@ -217,16 +218,16 @@ impl Plan {
     }
 
     fn sticks(&mut self) -> RemoteInput {
-        let mut axis = || match self.dice.unit() {
+        let mut axis = || match self.rng.unit() {
             u if u < 0.2 => 0.0,
             u if u < 0.3 => 1.0,
             u if u < 0.4 => -1.0,
-            _ => self.dice.between(-1.0, 1.0),
+            _ => self.rng.between(-1.0, 1.0),
         };
         let (vx, wz) = (axis(), axis());
         // The dead-man stick of bring-up.
-        let left_x = self.dice.chance(0.5);
-        let mode = self.dice.chance(0.1).then(|| (self.dice.bits() % 3) as u8);
+        let left_x = self.rng.chance(0.5);
+        let mode = self.rng.chance(0.1).then(|| (self.rng.bits() % 3) as u8);
         RemoteInput {
             vx: Some(vx),
             wz: Some(wz),
@@ -236,23 +237,23 @@ impl Plan {
         }
     }
 
-    /// A fault of a device, wire or radio, or a burst of a rogue node.
+    /// Starts and ends a fault of a device, wire or radio, or a burst of a rogue node. Returns when the next begins.
     fn world(&mut self, at: Ps) -> Ps {
         let names: Vec<&str> = World::faults().iter().map(|fault| fault.name).collect();
-        let Some(name) = self.dice.pick(&names).map(|name| (*name).to_owned()) else {
+        let Some(name) = self.rng.pick(&names).map(|name| (*name).to_owned()) else {
             return Ps::MAX;
         };
         let lasts = if name.starts_with("rogue") {
-            self.dice.time(1.0, 300.0)
+            self.rng.time(1.0, 300.0)
         } else if name.ends_with("-gone") || name.ends_with("-wrong-id") {
-            // What has no supply, or gets another identifier, takes its time to boot.
-            self.dice.time(100.0, 4_000.0)
+            // A device that was without supply, or has a new identifier, takes this time to boot.
+            self.rng.time(100.0, 4_000.0)
         } else {
-            self.dice.time(10.0, 4_000.0)
+            self.rng.time(10.0, 4_000.0)
         };
         self.fault(&name, at, at + lasts);
-        // Often alone, at times together.
-        at + self.dice.time(300.0, 20_000.0)
+        // Most faults are alone, some overlap.
+        at + self.rng.time(300.0, 20_000.0)
     }
 
     fn chip(&mut self, at: Ps) -> Ps {
@@ -260,38 +261,38 @@ impl Plan {
             return Ps::MAX;
         }
         let names: Vec<&str> = faults::all().map(|fault| fault.name).collect();
-        if let Some(name) = self.dice.pick(&names) {
-            self.then(at, Deed::StartFault((*name).to_owned()));
+        if let Some(name) = self.rng.pick(&names) {
+            self.then(at, Event::StartFault((*name).to_owned()));
             let ends_by_reset = faults::of_the_program().any(|fault| fault.name == *name);
             if !ends_by_reset {
-                let end = at + self.dice.time(10.0, 250.0);
-                self.then(end, Deed::EndFault((*name).to_owned()));
+                let end = at + self.rng.time(10.0, 250.0);
+                self.then(end, Event::EndFault((*name).to_owned()));
             }
         }
-        at + self.dice.time(20_000.0, 120_000.0)
+        at + self.rng.time(20_000.0, 120_000.0)
     }
 
-    /// Requests on the tuning channel: those that change nothing, and those that must be refused.
+    /// Sends a request on the tuning channel that changes nothing or must be refused. Returns when the next is due.
     fn pc(&mut self, at: Ps) -> Ps {
         let bus = self.bus();
         let frame = self.request();
-        self.then(at, Deed::Can(bus, frame));
-        at + self.dice.time(5.0, 2_000.0)
+        self.then(at, Event::Can(bus, frame));
+        at + self.rng.time(5.0, 2_000.0)
     }
 
     fn request(&mut self) -> CanFrame {
-        let junk = self.dice.bits().to_le_bytes();
+        let junk = self.rng.bits().to_le_bytes();
         let [group, index, .., length] = junk;
-        let (id, data, dlc) = match self.dice.bits() % 6 {
+        let (id, data, dlc) = match self.rng.bits() % 6 {
             0 => (READ, [0x11, 0, 0, 0, 0, 0, 0, 0], 1),
             1 => (READ, [0x21, group % 10, index % 24, 0, 0, 0, 0, 0], 3),
-            // Not a number: no setting may become that.
+            // NaN: no setting may take this value.
             2 => (
                 WRITE,
                 [0x20, group % 10, index % 24, 0, 0, 0, 0xC0, 0x7F],
                 8,
             ),
-            // Wheel geometry of another robot's size, and too short.
+            // A wheel geometry request that is too short.
             3 => (WRITE, [0x10, 200, 0, 0xB8, 0x0B, 0, 0, 0], 5),
             4 => (READ, junk, length % 9),
             // An unknown command.
@@ -307,7 +308,7 @@ impl Plan {
     }
 }
 
-/// With the sticks let go.
+/// The switches, with the sticks centred.
 fn switches(enable: bool, e_stop: bool) -> RemoteInput {
     RemoteInput {
         enable: Some(enable),
@@ -323,37 +324,38 @@ fn switches(enable: bool, e_stop: bool) -> RemoteInput {
 mod tests {
     use super::*;
 
-    fn deeds(seed: u64) -> Vec<Action> {
+    fn events(seed: u64) -> Vec<TimedEvent> {
         let mut plan = Plan::new(seed, 600 * SECOND);
         let mut all = Vec::new();
         for ms in 0..300_000 {
-            while let Some(action) = plan.next_until(ms * MS) {
-                assert!(action.at <= ms * MS);
-                all.push(action);
+            while let Some(timed) = plan.next_until(ms * MS) {
+                assert!(timed.at <= ms * MS);
+                all.push(timed);
             }
         }
         all
     }
 
     #[test]
-    fn a_seed_is_one_story_told_in_order() {
-        let story = deeds(1);
-        assert_eq!(story, deeds(1));
-        assert_ne!(story, deeds(2));
-        assert!(story.is_sorted_by_key(|action| action.at));
-        let count = |is: fn(&Deed) -> bool| story.iter().filter(|a| is(&a.what)).count();
-        assert!(count(|d| matches!(d, Deed::Remote(r) if r.enable == Some(true))) > 20);
-        assert!(count(|d| matches!(d, Deed::StartFault(_))) > 30);
-        assert!(count(|d| matches!(d, Deed::Can(..))) > 300);
+    fn a_seed_gives_one_sequence_of_events_in_order_of_time() {
+        let sequence = events(1);
+        assert_eq!(sequence, events(1));
+        assert_ne!(sequence, events(2));
+        assert!(sequence.is_sorted_by_key(|timed| timed.at));
+        let count = |is: fn(&Event) -> bool| sequence.iter().filter(|a| is(&a.event)).count();
+        assert!(count(|d| matches!(d, Event::Remote(r) if r.enable == Some(true))) > 20);
+        assert!(count(|d| matches!(d, Event::StartFault(_))) > 30);
+        assert!(count(|d| matches!(d, Event::Can(..))) > 300);
     }
 
     #[test]
     fn faults_of_the_world_end() {
-        let story = deeds(3);
+        let sequence = events(3);
         for info in World::faults() {
-            let starts = |d: &Deed| matches!(d, Deed::StartFault(n) if n == info.name);
-            let ends = |d: &Deed| matches!(d, Deed::EndFault(n) if n == info.name);
-            let count = |is: &dyn Fn(&Deed) -> bool| story.iter().filter(|a| is(&a.what)).count();
+            let starts = |d: &Event| matches!(d, Event::StartFault(n) if n == info.name);
+            let ends = |d: &Event| matches!(d, Event::EndFault(n) if n == info.name);
+            let count =
+                |is: &dyn Fn(&Event) -> bool| sequence.iter().filter(|a| is(&a.event)).count();
             assert!(count(&starts) <= count(&ends) + 1, "{}", info.name);
         }
     }

@@ -1,4 +1,4 @@
-//! A scenario that does the last deeds before a broken rule again.
+//! A scenario that repeats the last events before a violation.
 
 use std::{collections::BTreeSet, fmt::Write};
 
@@ -7,46 +7,46 @@ use robot_plant::{
     world::{CanBusId, RemoteInput},
 };
 
-use super::watch::Violation;
-use crate::scenario::{Action, Deed};
+use super::invariants::Violation;
+use crate::scenario::{Event, TimedEvent};
 
-/// Boot, calibration and set-up before the first deed.
+/// Time for boot, calibration and set-up before the first event.
 const BOOT: Ps = 3 * SECOND;
 
-/// The deeds of the last `retold` before the violation, after a boot with the switches and faults as they were then.
-pub fn scenario(done: &[Action], violation: &Violation, seed: u64, retold: Ps) -> String {
-    let from = violation.at.saturating_sub(retold);
-    let (earlier, retold): (Vec<_>, Vec<_>) = done.iter().partition(|action| action.at < from);
+/// The events of the time `replayed` before the violation. At its start, switches and faults are as they were then.
+pub fn scenario(done: &[TimedEvent], violation: &Violation, seed: u64, replayed: Ps) -> String {
+    let from = violation.at.saturating_sub(replayed);
+    let (earlier, replayed): (Vec<_>, Vec<_>) = done.iter().partition(|timed| timed.at < from);
     let shift = |at: Ps| to_seconds((at + BOOT).saturating_sub(from));
     let mut text = String::new();
     let what = violation.what.replace(['"', '\\'], "'");
     let seconds = shift(violation.at) + 1.0;
     let at = to_seconds(violation.at);
-    // A String takes everything.
+    // Writing to a String cannot fail.
     let _ = writeln!(
         text,
-        "# The last deeds of a soak with seed {seed}, which found at {at:.3} s: {what}."
+        "# The last events of a soak with seed {seed}, which found at {at:.3} s: {what}."
     );
     let _ = writeln!(
         text,
         "name = \"soak, seed {seed}\"\nseconds = {seconds:.3}\nplant = \"stand\"\nseed = {seed}"
     );
-    for deed in state(&earlier) {
-        deed_text(&mut text, shift(from), &deed);
+    for event in state(&earlier) {
+        event_text(&mut text, shift(from), &event);
     }
-    for action in retold {
-        deed_text(&mut text, shift(action.at), &action.what);
+    for timed in replayed {
+        event_text(&mut text, shift(timed.at), &timed.event);
     }
     text
 }
 
-/// The shortest deeds that lead where all of these led.
-fn state(earlier: &[&Action]) -> Vec<Deed> {
+/// The fewest events that lead to the same switches and faults as all of these.
+fn state(earlier: &[&TimedEvent]) -> Vec<Event> {
     let mut pilot = RemoteInput::default();
     let mut faults = BTreeSet::new();
-    for action in earlier {
-        match &action.what {
-            Deed::Remote(input) => {
+    for timed in earlier {
+        match &timed.event {
+            Event::Remote(input) => {
                 pilot = RemoteInput {
                     enable: input.enable.or(pilot.enable),
                     e_stop: input.e_stop.or(pilot.e_stop),
@@ -57,13 +57,13 @@ fn state(earlier: &[&Action]) -> Vec<Deed> {
                     left_y: input.left_y.or(pilot.left_y),
                 };
             }
-            Deed::StartFault(name) => {
+            Event::StartFault(name) => {
                 faults.insert(name.clone());
             }
-            Deed::EndFault(name) => {
+            Event::EndFault(name) => {
                 faults.remove(name);
             }
-            Deed::Can(..) => {}
+            Event::Can(..) => {}
         }
     }
     let is_of_world = |name: &String| {
@@ -71,14 +71,16 @@ fn state(earlier: &[&Action]) -> Vec<Deed> {
         all.any(|fault| fault.name == name)
     };
     let faults = faults.into_iter().filter(is_of_world);
-    let faults = faults.map(Deed::StartFault);
-    std::iter::once(Deed::Remote(pilot)).chain(faults).collect()
+    let faults = faults.map(Event::StartFault);
+    std::iter::once(Event::Remote(pilot))
+        .chain(faults)
+        .collect()
 }
 
-fn deed_text(text: &mut String, at: f64, deed: &Deed) {
-    let what = match deed {
-        Deed::Remote(input) => format!("remote = {{ {} }}", remote_text(input)),
-        Deed::Can(bus, frame) => {
+fn event_text(text: &mut String, at: f64, event: &Event) {
+    let what = match event {
+        Event::Remote(input) => format!("remote = {{ {} }}", remote_text(input)),
+        Event::Can(bus, frame) => {
             let bus = match bus {
                 CanBusId::Can1 => 1,
                 CanBusId::Can2 => 2,
@@ -87,8 +89,8 @@ fn deed_text(text: &mut String, at: f64, deed: &Deed) {
             let id = frame.id;
             format!("can = {{ bus = {bus}, id = {id:#x}, data = {data:?} }}")
         }
-        Deed::StartFault(name) => format!("fault = \"{name}\""),
-        Deed::EndFault(name) => format!("end_fault = \"{name}\""),
+        Event::StartFault(name) => format!("fault = \"{name}\""),
+        Event::EndFault(name) => format!("end_fault = \"{name}\""),
     };
     let _ = write!(text, "\n[[at]]\nt = {at:.6}\n{what}\n");
 }
@@ -116,23 +118,23 @@ mod tests {
     #[test]
     fn the_last_deeds_are_a_scenario_with_the_state_before_them() {
         let remote = |enable, vx| {
-            Deed::Remote(RemoteInput {
+            Event::Remote(RemoteInput {
                 enable,
                 vx,
                 ..RemoteInput::default()
             })
         };
-        let action = |s: u64, what| Action {
+        let timed = |s: u64, what| TimedEvent {
             at: s * SECOND,
-            what,
+            event: what,
         };
-        let fault = |name: &str| Deed::StartFault(name.to_owned());
+        let fault = |name: &str| Event::StartFault(name.to_owned());
         let done = [
-            action(10, remote(Some(true), Some(0.5))),
-            action(11, fault("mag-gone")),
-            action(12, fault("imu-gone")),
-            action(13, Deed::EndFault("imu-gone".to_owned())),
-            action(50, remote(None, Some(-1.0))),
+            timed(10, remote(Some(true), Some(0.5))),
+            timed(11, fault("mag-gone")),
+            timed(12, fault("imu-gone")),
+            timed(13, Event::EndFault("imu-gone".to_owned())),
+            timed(50, remote(None, Some(-1.0))),
         ];
         let violation = Violation {
             at: 52 * SECOND,
@@ -143,9 +145,9 @@ mod tests {
         assert_eq!((read.seed, read.length), (7, 14 * SECOND));
         let at = |s: u64| s * SECOND;
         let told: Vec<_> = read
-            .actions
+            .events
             .iter()
-            .map(|a| (a.at, a.what.clone()))
+            .map(|a| (a.at, a.event.clone()))
             .collect();
         assert_eq!(
             told,

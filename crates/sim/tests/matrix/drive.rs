@@ -7,7 +7,7 @@ use robot_plant::{
 use robot_sim::{
     faults,
     machine::{Machine, diagnostics::meaning::Meaning},
-    scenario::{Deed, Scenario},
+    scenario::{Event, Scenario},
     simulation::Simulation,
 };
 
@@ -152,8 +152,8 @@ impl Drive {
     }
 
     fn pilot(&mut self, input: RemoteInput) {
-        let deed = Deed::Remote(input);
-        Simulation::act(&mut self.machine, &deed).expect("a pilot can always act");
+        let event = Event::Remote(input);
+        Simulation::apply(&mut self.machine, &event).expect("a pilot can always act");
     }
 
     fn centre(&mut self) {

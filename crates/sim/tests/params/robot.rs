@@ -11,7 +11,7 @@ use robot_plant::{
 use robot_sim::{
     faults,
     machine::{Machine, diagnostics::meaning::Meaning},
-    scenario::{Deed, Scenario},
+    scenario::{Event, Scenario},
     simulation::Simulation,
 };
 
@@ -206,7 +206,8 @@ impl Robot {
     }
 
     pub fn pilot(&mut self, input: RemoteInput) {
-        Simulation::act(&mut self.machine, &Deed::Remote(input)).expect("a pilot can always act");
+        Simulation::apply(&mut self.machine, &Event::Remote(input))
+            .expect("a pilot can always act");
     }
 
     pub fn enable(&mut self, on: bool) {

@@ -2,7 +2,7 @@
 
 use unicorn_engine::{HookType, MemType, Prot, RegisterARM, TlbEntry, TlbType, Unicorn, uc_error};
 
-use super::{Block, State, Stop, alignment, context, it_state, sabotage};
+use super::{Block, State, Stop, alignment, context, fault_injection, it_state};
 use crate::{
     core::{
         faults::Fault,
@@ -74,7 +74,7 @@ fn block_begins(engine: &mut Unicorn<'_, State>, address: u64, size: u32) {
         }
     }
     let start = address as u32;
-    if sabotage::strikes(engine, start) {
+    if fault_injection::strikes(engine, start) {
         leave(engine);
         return;
     }

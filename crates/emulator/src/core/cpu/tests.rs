@@ -4,8 +4,8 @@ use super::*;
 use crate::{soc::test_board::NoBoard, time::US};
 
 mod debug;
+mod fault_injection;
 mod refused;
-mod sabotage;
 mod sleep;
 mod standstill;
 

@@ -15,6 +15,32 @@ mod meanings;
 type Slice<'d> = EndianSlice<'d, LittleEndian>;
 type Die<'d> = DebuggingInformationEntry<Slice<'d>, usize>;
 
+/// Why the image's debug information does not tell the record's layout.
+#[derive(Debug, thiserror::Error)]
+pub enum LayoutError {
+    #[error("{0}")]
+    Object(#[from] object::Error),
+    #[error("{0}")]
+    Dwarf(#[from] gimli::Error),
+    #[error("`{0}` has no debug information")]
+    NoDebugInformation(String),
+    #[error("`{name}` holds no `{record}`")]
+    NoRecord { name: String, record: String },
+    #[error("a type has no size")]
+    NoSize,
+    #[error("{field}: {found} cannot be read as numbers")]
+    NoNumber { field: String, found: String },
+}
+
+impl LayoutError {
+    fn no_number(field: &str, found: impl std::fmt::Display) -> Self {
+        Self::NoNumber {
+            field: field.to_owned(),
+            found: found.to_string(),
+        }
+    }
+}
+
 /// One number of the record.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Leaf {
@@ -63,24 +89,27 @@ impl Leaf {
 }
 
 /// The record of type `record` inside the static `name`, through whatever cells wrap it.
-pub fn of_static(elf: &[u8], name: &str, record: &str) -> Result<Record, String> {
-    let file = object::File::parse(elf).map_err(|e| e.to_string())?;
+pub fn of_static(elf: &[u8], name: &str, record: &str) -> Result<Record, LayoutError> {
+    let file = object::File::parse(elf)?;
     let section = |id: gimli::SectionId| -> Result<Cow<'_, [u8]>, gimli::Error> {
         let data = file
             .section_by_name(id.name())
             .and_then(|s| s.uncompressed_data().ok());
         Ok(data.unwrap_or_default())
     };
-    let sections = gimli::DwarfSections::load(section).map_err(|e| e.to_string())?;
+    let sections = gimli::DwarfSections::load(section)?;
     let dwarf = sections.borrow(|bytes| EndianSlice::new(bytes, LittleEndian));
-    let types = Types::load(&file, &dwarf).map_err(|e| e.to_string())?;
+    let types = Types::load(&file, &dwarf)?;
     let variable = types
-        .variable(name)
-        .map_err(|e| e.to_string())?
-        .ok_or_else(|| format!("`{name}` has no debug information"))?;
-    let (place, offset) = types
-        .find(variable, record, 0)?
-        .ok_or_else(|| format!("`{name}` holds no `{record}`"))?;
+        .variable(name)?
+        .ok_or_else(|| LayoutError::NoDebugInformation(name.to_owned()))?;
+    let (place, offset) =
+        types
+            .find(variable, record, 0)?
+            .ok_or_else(|| LayoutError::NoRecord {
+                name: name.to_owned(),
+                record: record.to_owned(),
+            })?;
     let mut leaves = Vec::new();
     types.flatten(place, 0, "", &mut leaves)?;
     Ok(Record {
@@ -155,31 +184,26 @@ impl<'d> Types<'d> {
         }
     }
 
-    fn entry(&self, place: Place) -> Result<Die<'d>, String> {
-        self.units[place.unit]
-            .entry(place.entry)
-            .map_err(|e| e.to_string())
+    fn entry(&self, place: Place) -> Result<Die<'d>, LayoutError> {
+        Ok(self.units[place.unit].entry(place.entry)?)
     }
 
-    fn size(&self, place: Place) -> Result<u32, String> {
-        number(&self.entry(place)?, constants::DW_AT_byte_size)
-            .ok_or_else(|| "a type has no size".to_owned())
+    fn size(&self, place: Place) -> Result<u32, LayoutError> {
+        number(&self.entry(place)?, constants::DW_AT_byte_size).ok_or(LayoutError::NoSize)
     }
 
-    fn children(&self, place: Place) -> Result<Vec<Die<'d>>, String> {
+    fn children(&self, place: Place) -> Result<Vec<Die<'d>>, LayoutError> {
         let unit = &self.units[place.unit];
-        let mut tree = unit
-            .entries_tree(Some(place.entry))
-            .map_err(|e| e.to_string())?;
-        let mut children = tree.root().map_err(|e| e.to_string())?.children();
+        let mut tree = unit.entries_tree(Some(place.entry))?;
+        let mut children = tree.root()?.children();
         let mut all = Vec::new();
-        while let Some(child) = children.next().map_err(|e| e.to_string())? {
+        while let Some(child) = children.next()? {
             all.push(child.entry().clone());
         }
         Ok(all)
     }
 
-    fn members(&self, place: Place) -> Result<Vec<Member>, String> {
+    fn members(&self, place: Place) -> Result<Vec<Member>, LayoutError> {
         let children = self.children(place)?;
         let members = children
             .iter()
@@ -200,7 +224,7 @@ impl<'d> Types<'d> {
         place: Place,
         record: &str,
         offset: u32,
-    ) -> Result<Option<(Place, u32)>, String> {
+    ) -> Result<Option<(Place, u32)>, LayoutError> {
         let entry = self.entry(place)?;
         if !matches!(
             entry.tag(),
@@ -228,13 +252,14 @@ impl<'d> Types<'d> {
         offset: u32,
         name: &str,
         leaves: &mut Vec<Leaf>,
-    ) -> Result<(), String> {
+    ) -> Result<(), LayoutError> {
         let entry = self.entry(place)?;
         match entry.tag() {
             constants::DW_TAG_structure_type => self.flatten_struct(place, offset, name, leaves),
             constants::DW_TAG_array_type => self.flatten_array(place, &entry, offset, name, leaves),
             constants::DW_TAG_base_type | constants::DW_TAG_enumeration_type => {
-                let kind = scalar(&entry).ok_or_else(|| format!("{name}: no plain number"))?;
+                let kind = scalar(&entry)
+                    .ok_or_else(|| LayoutError::no_number(name, "what is no plain number"))?;
                 leaves.push(Leaf {
                     name: name.to_owned(),
                     offset,
@@ -246,7 +271,7 @@ impl<'d> Types<'d> {
                 });
                 Ok(())
             }
-            tag => Err(format!("{name}: {tag} cannot be read as numbers")),
+            tag => Err(LayoutError::no_number(name, tag)),
         }
     }
 
@@ -256,15 +281,13 @@ impl<'d> Types<'d> {
         offset: u32,
         name: &str,
         leaves: &mut Vec<Leaf>,
-    ) -> Result<(), String> {
+    ) -> Result<(), LayoutError> {
         if self
             .children(place)?
             .iter()
             .any(|c| c.tag() == constants::DW_TAG_variant_part)
         {
-            return Err(format!(
-                "{name}: an enum with fields cannot be read as numbers"
-            ));
+            return Err(LayoutError::no_number(name, "an enum with fields"));
         }
         let members = self.members(place)?;
         let is_newtype = members.len() == 1 && members[0].name == "__0";
@@ -289,10 +312,10 @@ impl<'d> Types<'d> {
         offset: u32,
         name: &str,
         leaves: &mut Vec<Leaf>,
-    ) -> Result<(), String> {
+    ) -> Result<(), LayoutError> {
         let element = self
             .type_of(place.unit, entry)
-            .ok_or_else(|| format!("{name}: array of nothing"))?;
+            .ok_or_else(|| LayoutError::no_number(name, "an array of nothing"))?;
         let stride = self.size(element)?;
         for i in 0..self.element_count(place)? {
             self.flatten(
@@ -307,7 +330,7 @@ impl<'d> Types<'d> {
 }
 
 impl Types<'_> {
-    fn element_count(&self, array: Place) -> Result<u32, String> {
+    fn element_count(&self, array: Place) -> Result<u32, LayoutError> {
         let ranges = self.children(array)?;
         let count = ranges.iter().find_map(|range| {
             number(range, constants::DW_AT_count)

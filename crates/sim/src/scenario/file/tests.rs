@@ -1,6 +1,16 @@
-use robot_plant::time::{MS, SECOND};
+use robot_plant::{
+    time::{MS, SECOND},
+    wire::CanFrame,
+    world::{CanBusId, RemoteInput},
+};
 
 use super::*;
+use crate::{
+    expectation::Bound,
+    machine::flash::FlashTimes,
+    parameter_sectors::Record,
+    scenario::{Event, FlashContents},
+};
 
 const HEAD: &str = "name = \"n\"\nseconds = 4.0\nplant = \"stand\"\n";
 
@@ -32,10 +42,10 @@ fn reads_the_example_of_the_design() {
     let s = Scenario::parse(text, "s.toml").unwrap();
     assert_eq!(s.length, 4 * SECOND);
     assert_eq!((s.plant, s.radio), (PlantKind::Rolling, RadioKind::Dbus));
-    assert_eq!(s.actions[0].at, 500 * MS, "sorted by time");
+    assert_eq!(s.events[0].at, 500 * MS, "sorted by time");
     assert_eq!(
-        s.actions[0].what,
-        Deed::Remote(RemoteInput {
+        s.events[0].event,
+        Event::Remote(RemoteInput {
             enable: Some(true),
             vx: Some(0.4),
             ..RemoteInput::default()
@@ -140,7 +150,7 @@ fn a_pc_sends_frames() {
         dlc: 5,
         data: [0x10, 200, 0, 0xB8, 0x0B, 0, 0, 0],
     };
-    assert_eq!(s.actions[0].what, Deed::Can(CanBusId::Can2, frame));
+    assert_eq!(s.events[0].event, Event::Can(CanBusId::Can2, frame));
     for (can, part) in [
         ("{ bus = 3, id = 1, data = [] }", "1 and 2"),
         ("{ bus = 1, id = 0x800, data = [] }", "0x7FF"),

@@ -6,11 +6,11 @@ use std::collections::BTreeMap;
 use gimli::{AttributeValue, DebuggingInformationEntry, EndianSlice, LittleEndian, constants};
 use object::{Object, ObjectSection};
 
-use super::{Place, Types};
+use super::{LayoutError, Place, Types};
 use crate::machine::diagnostics::meaning::Meaning;
 
 impl Types<'_> {
-    pub(super) fn states(&self, enumeration: Place) -> Result<Meaning, String> {
+    pub(super) fn states(&self, enumeration: Place) -> Result<Meaning, LayoutError> {
         let variants = self.children(enumeration)?;
         let names = variants.iter().filter_map(|variant| {
             let value = variant.attr_value(constants::DW_AT_const_value)?;
@@ -21,7 +21,7 @@ impl Types<'_> {
     }
 
     /// `None` for a newtype whose bits the image does not name.
-    pub(super) fn flags(&self, newtype: Place) -> Result<Option<Meaning>, String> {
+    pub(super) fn flags(&self, newtype: Place) -> Result<Option<Meaning>, LayoutError> {
         let entry = self.entry(newtype)?;
         let Some(name) = self.text(newtype.unit, &entry, constants::DW_AT_name) else {
             return Ok(None);
@@ -33,11 +33,11 @@ impl Types<'_> {
     }
 
     /// Element type and address of the static array of `(…::flags, &str)`.
-    fn table_of(&self, flags: &str) -> Result<Option<(Table, u32)>, String> {
+    fn table_of(&self, flags: &str) -> Result<Option<(Table, u32)>, LayoutError> {
         let ends = [format!("::{flags}, &str)"), format!("({flags}, &str)")];
         for (index, unit) in self.units.iter().enumerate() {
             let mut entries = unit.entries();
-            while let Some(entry) = entries.next_dfs().map_err(|e| e.to_string())? {
+            while let Some(entry) = entries.next_dfs()? {
                 if entry.tag() != constants::DW_TAG_variable {
                     continue;
                 }
@@ -67,7 +67,7 @@ impl Types<'_> {
         &self,
         table: Table,
         address: u32,
-    ) -> Result<Option<BTreeMap<u8, String>>, String> {
+    ) -> Result<Option<BTreeMap<u8, String>>, LayoutError> {
         let stride = self.size(table.element)?;
         let members = self.members(table.element)?;
         let at = |name: &str| members.iter().find(|m| m.name == name);

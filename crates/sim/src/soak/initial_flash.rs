@@ -1,19 +1,19 @@
-//! Parameter sectors that are nearly full: it takes few saves to begin another one.
+//! Parameter sectors at the start: nearly full, so that few saves begin another sector.
 
-use super::harmless::START;
+use super::tuning_frames::INITIAL_VALUES;
 use crate::{
     machine::flash::PARAMETER_FLASH_BYTES,
     parameter_sectors::{self, Record, SECTOR_BYTES},
 };
 
-/// In sector 0, of 127; the first of them hold [`FOREIGN`] records.
+/// Slots in use in sector 0, of 127. The first of them hold [`FOREIGN`] records.
 const USED: usize = 125;
-/// Of groups that this firmware does not have. Each change of sectors takes them along, so the next one is near again.
+/// Records of groups that this firmware does not have. Each change of sectors copies them, so the next one comes soon.
 const FOREIGN: usize = 56;
 const FIRST_FOREIGN: u8 = 100;
 const GENERATION: u32 = 7;
 
-/// Sector 0 in use, sector 1 clean, sector 2 the one before, which is to be erased next.
+/// Sector 0 is in use, sector 1 is clean, and sector 2 was used before and is to be erased next.
 pub fn contents() -> [u8; PARAMETER_FLASH_BYTES] {
     let mut bytes = parameter_sectors::clean();
     let records = records();
@@ -30,7 +30,10 @@ pub fn contents() -> [u8; PARAMETER_FLASH_BYTES] {
 
 fn records() -> Vec<Record> {
     let foreign = (0..FOREIGN).map(|n| Record::first(FIRST_FOREIGN + n as u8, &[n as f32]));
-    let own = START.iter().cycle().skip(FOREIGN % START.len());
+    let own = INITIAL_VALUES
+        .iter()
+        .cycle()
+        .skip(FOREIGN % INITIAL_VALUES.len());
     let own = own.map(|(group, values)| Record::first(*group, values));
     foreign.chain(own).take(USED).collect()
 }

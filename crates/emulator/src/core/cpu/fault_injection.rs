@@ -9,14 +9,14 @@ use crate::core::{faults::Fault, memory::HANG};
 
 /// What the function does instead of its work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Harm {
+pub enum Effect {
     /// Once: goes to another function, with the arguments it got.
     GoTo(u32),
     /// Once: its first instruction is undefined.
     Undefined,
     /// Once: finds the stack pointer here.
     StackAt(u32),
-    /// Once: does not come back, until the harm ends.
+    /// Once: does not come back, until the effect ends.
     Hang,
     /// Every time: comes back at once.
     ReturnAtOnce,
@@ -24,23 +24,23 @@ pub enum Harm {
 
 /// A function, and what goes wrong when it is entered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Sabotage {
+pub struct Injection {
     /// Address of the function, without the Thumb bit.
     pub entry: u32,
     /// What it does instead.
-    pub harm: Harm,
+    pub effect: Effect,
 }
 
-/// Harm that waits for its function, and functions that hang.
+/// Effect that waits for its function, and functions that hang.
 #[derive(Debug, Default)]
-pub(super) struct Saboteur {
-    waiting: Vec<Sabotage>,
-    hanging: Option<Sabotage>,
+pub(super) struct Injector {
+    waiting: Vec<Injection>,
+    hanging: Option<Injection>,
     /// A function that hung and may go on.
     released: Option<u32>,
 }
 
-impl Saboteur {
+impl Injector {
     pub(super) fn is_idle(&self) -> bool {
         self.waiting.is_empty() && self.released.is_none()
     }
@@ -49,57 +49,57 @@ impl Saboteur {
 /// True if the block at `start` must not run as it stands.
 pub(super) fn strikes(engine: &mut Unicorn<'_, State>, start: u32) -> bool {
     let state = engine.get_data_mut();
-    if state.saboteur.is_idle() {
+    if state.injector.is_idle() {
         return false;
     }
     if start == HANG.base
-        && let Some(entry) = state.saboteur.released.take()
+        && let Some(entry) = state.injector.released.take()
     {
         state.stop = Some(Stop::Released(entry));
         return true;
     }
-    let waiting = &mut state.saboteur.waiting;
+    let waiting = &mut state.injector.waiting;
     let Some(place) = waiting.iter().position(|s| s.entry == start) else {
         return false;
     };
-    let sabotage = waiting[place];
-    if sabotage.harm != Harm::ReturnAtOnce {
+    let injection = waiting[place];
+    if injection.effect != Effect::ReturnAtOnce {
         waiting.remove(place);
         state.struck_at = Some(state.clock.now());
     }
-    state.stop = Some(Stop::Sabotaged(sabotage));
+    state.stop = Some(Stop::Injected(injection));
     true
 }
 
 impl Cpu {
-    /// The harm waits from now on for its function to be called.
-    pub fn sabotage(&mut self, sabotage: Sabotage) {
-        let waiting = &mut self.state_mut().saboteur.waiting;
-        if !waiting.contains(&sabotage) {
-            waiting.push(sabotage);
+    /// The effect waits from now on for its function to be called.
+    pub fn inject(&mut self, injection: Injection) {
+        let waiting = &mut self.state_mut().injector.waiting;
+        if !waiting.contains(&injection) {
+            waiting.push(injection);
         }
     }
 
-    /// Harm that has not struck will not; a function that hangs does its work now.
-    pub fn end_sabotage(&mut self, sabotage: Sabotage) {
-        let saboteur = &mut self.state_mut().saboteur;
-        saboteur.waiting.retain(|s| *s != sabotage);
-        if saboteur.hanging == Some(sabotage) {
-            saboteur.hanging = None;
-            saboteur.released = Some(sabotage.entry);
+    /// Effect that has not struck will not; a function that hangs does its work now.
+    pub fn end_injection(&mut self, injection: Injection) {
+        let injector = &mut self.state_mut().injector;
+        injector.waiting.retain(|s| *s != injection);
+        if injector.hanging == Some(injection) {
+            injector.hanging = None;
+            injector.released = Some(injection.entry);
         }
     }
 
-    pub(super) fn suffer(&mut self, sabotage: Sabotage) -> Result<(), Halt> {
-        match sabotage.harm {
-            Harm::GoTo(target) => self.set_register(RegisterARM::PC, target | 1),
-            Harm::Undefined => return self.raise(Fault::UndefinedInstruction),
-            Harm::StackAt(address) => self.set_register(RegisterARM::SP, address),
-            Harm::Hang => {
-                self.state_mut().saboteur.hanging = Some(sabotage);
+    pub(super) fn take_effect(&mut self, injection: Injection) -> Result<(), Halt> {
+        match injection.effect {
+            Effect::GoTo(target) => self.set_register(RegisterARM::PC, target | 1),
+            Effect::Undefined => return self.raise(Fault::UndefinedInstruction),
+            Effect::StackAt(address) => self.set_register(RegisterARM::SP, address),
+            Effect::Hang => {
+                self.state_mut().injector.hanging = Some(injection);
                 self.set_register(RegisterARM::PC, HANG.base | 1);
             }
-            Harm::ReturnAtOnce => {
+            Effect::ReturnAtOnce => {
                 let back = self.register(RegisterARM::LR);
                 self.set_register(RegisterARM::PC, back | 1);
             }

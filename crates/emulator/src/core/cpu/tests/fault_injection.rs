@@ -27,10 +27,10 @@ fn calling_board() -> Cpu {
     cpu
 }
 
-fn harm(harm: Harm) -> Sabotage {
-    Sabotage {
+fn effect(effect: Effect) -> Injection {
+    Injection {
         entry: FUNCTION,
-        harm,
+        effect,
     }
 }
 
@@ -38,12 +38,12 @@ fn harm(harm: Harm) -> Sabotage {
 #[test]
 fn a_function_that_hangs_does_its_work_when_the_harm_ends() {
     let mut cpu = calling_board();
-    cpu.sabotage(harm(Harm::Hang));
+    cpu.inject(effect(Effect::Hang));
     run_until(&mut cpu, 650 * US).expect("no fault");
     assert_eq!(traced(&cpu).len(), 3);
     let struck = cpu.struck_at().expect("it struck");
     assert!((400 * US..402 * US).contains(&struck));
-    cpu.end_sabotage(harm(Harm::Hang));
+    cpu.end_injection(effect(Effect::Hang));
     run_until(&mut cpu, 1_050 * US).expect("no fault");
     assert_eq!(traced(&cpu).len(), 3 + 2 + 4);
 }
@@ -51,18 +51,18 @@ fn a_function_that_hangs_does_its_work_when_the_harm_ends() {
 #[test]
 fn calls_that_return_at_once_are_lost() {
     let mut cpu = calling_board();
-    cpu.sabotage(harm(Harm::ReturnAtOnce));
+    cpu.inject(effect(Effect::ReturnAtOnce));
     run_until(&mut cpu, 650 * US).expect("no fault");
-    cpu.end_sabotage(harm(Harm::ReturnAtOnce));
+    cpu.end_injection(effect(Effect::ReturnAtOnce));
     run_until(&mut cpu, 1_050 * US).expect("no fault");
     assert_eq!(traced(&cpu).len(), 10 - 3);
 }
 
 #[test]
 fn an_undefined_instruction_and_a_jump_to_nowhere_are_hard_faults() {
-    for what in [Harm::Undefined, Harm::GoTo(0x0900_0000)] {
+    for what in [Effect::Undefined, Effect::GoTo(0x0900_0000)] {
         let mut cpu = calling_board();
-        cpu.sabotage(harm(what));
+        cpu.inject(effect(what));
         run_until(&mut cpu, 650 * US).expect("the handler runs");
         assert_eq!(traced(&cpu), [1, 1, 1, 9], "{what:?}");
     }
@@ -71,7 +71,7 @@ fn an_undefined_instruction_and_a_jump_to_nowhere_are_hard_faults() {
 #[test]
 fn a_reset_ends_all_harm() {
     let mut cpu = calling_board();
-    cpu.sabotage(harm(Harm::Undefined));
+    cpu.inject(effect(Effect::Undefined));
     cpu.reset();
-    assert!(cpu.state().saboteur.is_idle());
+    assert!(cpu.state().injector.is_idle());
 }

@@ -1,8 +1,8 @@
-//! Settings that a robot drives with whatever the soak makes of them, and the frames for them (docs/tuning.md).
+//! The settings that the soak may change while the robot goes on driving, and the frames for them (docs/tuning.md).
 
 use robot_plant::wire::CanFrame;
 
-use super::dice::Dice;
+use super::rng::Rng;
 
 /// Identifiers of the tuning channel.
 pub const WRITE: u32 = 0x7A0;
@@ -16,7 +16,7 @@ pub const READ_STORE: u8 = 0x31;
 /// Group and index.
 pub type Setting = (u8, u8);
 
-/// Changed in the soak, within these limits.
+/// The settings that the soak changes, with their limits.
 pub const RANGES: [(Setting, f64, f64); 6] = [
     ((1, 1), 0.4, 0.45),
     ((2, 1), 3.5, 4.5),
@@ -26,8 +26,8 @@ pub const RANGES: [(Setting, f64, f64); 6] = [
     ((7, 2), 0.005, 0.02),
 ];
 
-/// What these groups begin with: the emulated robot's measures, and nobody's defaults where the soak changes them.
-pub const START: [(u8, &[f32]); 4] = [
+/// The values that these groups begin with: the emulated robot's own, and no defaults where the soak changes them.
+pub const INITIAL_VALUES: [(u8, &[f32]); 4] = [
     (1, &[0.06, 0.43, 3591.0 / 187.0, 1.0, -1.0]),
     (2, &[1.5, 3.75, 60_000.0, 8_000.0, 1_000.0, 50_000.0]),
     (6, &[0.5, -0.5, 0.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0]),
@@ -35,42 +35,43 @@ pub const START: [(u8, &[f32]); 4] = [
 ];
 
 /// Bits of the `f32` that the setting begins with.
-pub fn start((group, index): Setting) -> Option<u32> {
-    let (_, values) = START.iter().find(|(number, _)| *number == group)?;
+pub fn initial((group, index): Setting) -> Option<u32> {
+    let (_, values) = INITIAL_VALUES.iter().find(|(number, _)| *number == group)?;
     values.get(usize::from(index)).map(|value| value.to_bits())
 }
 
-/// A request to set one of them to something.
-pub fn change(dice: &mut Dice) -> CanFrame {
-    let [n, ..] = dice.bits().to_le_bytes();
+/// A request to set one of them to a random value.
+pub fn random_write(rng: &mut Rng) -> CanFrame {
+    let [n, ..] = rng.bits().to_le_bytes();
     let ((group, index), low, high) = RANGES[usize::from(n) % RANGES.len()];
-    let [a, b, c, d] = (dice.between(low, high) as f32).to_le_bytes();
+    let [a, b, c, d] = (rng.between(low, high) as f32).to_le_bytes();
     frame(WRITE, [WRITE_SETTING, group, index, 0, a, b, c, d])
 }
 
-/// Requests for the values of all of them.
-pub fn questions() -> impl Iterator<Item = CanFrame> {
+/// Requests to read all of them.
+pub fn read_requests() -> impl Iterator<Item = CanFrame> {
     let settings = RANGES.into_iter().map(|(setting, ..)| setting);
     settings.map(|(group, index)| frame(READ, [READ_SETTING, group, index, 0, 0, 0, 0, 0]))
 }
 
-/// Is everything saved?
-pub fn store_question() -> CanFrame {
+/// A request for the number of unsaved groups.
+pub fn store_status_request() -> CanFrame {
     frame(READ, [READ_STORE, 0, 0, 0, 0, 0, 0, 0])
 }
 
-/// The setting and the bits, if the frame is a request for such a change.
-pub fn as_change(frame: &CanFrame) -> Option<(Setting, u32)> {
+/// The setting and its new bits, if the frame is a request to write one of them.
+pub fn parse_write(frame: &CanFrame) -> Option<(Setting, u32)> {
     let asks = frame.id == WRITE && frame.dlc == 8 && !frame.remote && !frame.extended;
     let of_reply = CanFrame {
         id: REPLY,
         ..*frame
     };
-    as_value(&of_reply, WRITE_SETTING).filter(|(_, bits)| asks && f32::from_bits(*bits).is_finite())
+    parse_value(&of_reply, WRITE_SETTING)
+        .filter(|(_, bits)| asks && f32::from_bits(*bits).is_finite())
 }
 
-/// The setting and the bits that a reply tells.
-pub fn as_value(frame: &CanFrame, command: u8) -> Option<(Setting, u32)> {
+/// The setting and its bits, if the frame is a reply to `command`.
+pub fn parse_value(frame: &CanFrame, command: u8) -> Option<(Setting, u32)> {
     let [first, group, index, _, a, b, c, d] = frame.data;
     let known = RANGES
         .iter()
@@ -79,8 +80,8 @@ pub fn as_value(frame: &CanFrame, command: u8) -> Option<(Setting, u32)> {
     fits.then_some(((group, index), u32::from_le_bytes([a, b, c, d])))
 }
 
-/// How many groups are not saved, if the reply tells that.
-pub fn as_unsaved(frame: &CanFrame) -> Option<u8> {
+/// The number of unsaved groups, if the frame is a reply with it.
+pub fn parse_unsaved(frame: &CanFrame) -> Option<u8> {
     let [first, _, _, unsaved, ..] = frame.data;
     (frame.id == REPLY && first == READ_STORE).then_some(unsaved)
 }

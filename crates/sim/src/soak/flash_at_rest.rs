@@ -1,4 +1,4 @@
-//! Flash is left alone while the robot is armed or may be in a moment.
+//! No flash step may begin while the robot is armed or about to arm.
 
 use robot_plant::time::{MS, Ps, to_seconds};
 
@@ -7,38 +7,39 @@ use crate::machine::{
     flash::{FlashStep, FlashStepKind},
 };
 
-/// Rest before a step: half a second, of which the soak's grid hides a little.
+/// Least time at rest before a step: half a second, less what the soak's grid hides.
 const REST: Ps = 490 * MS;
-/// From the reset on, what a power cut left half programmed is made to last.
+/// Time after a reset in which the image may program again what a power cut has left half programmed.
 const BOOT_WORK: Ps = 100 * MS;
-/// The switch's way to the firmware, and a record that has begun.
+/// Time until the firmware has seen the switch and has ended a record that had begun.
 const SWITCH_SEEN: Ps = 40 * MS;
 
 /// An erase takes a quarter of a second; then its sector is read and marked, which is the same step.
 const ERASE_STEP: Ps = 300 * MS;
 
-/// What the rule looks at besides the flash.
+/// The state of the robot that decides whether flash may be written.
 #[derive(Clone, Copy, Debug)]
-pub struct Rest {
-    /// By the firmware's word, a millisecond ago and now.
+pub struct RobotState {
+    /// The firmware reported to be armed, a millisecond ago and now.
     pub armed: bool,
     pub last_armed: Option<Ps>,
     pub booted: Ps,
-    /// The pilot wants to drive since then, and the firmware hears it.
+    /// When the enable switch went on, if the firmware receives it.
     pub enabled: Option<Ps>,
 }
 
+/// Checks each flash step once.
 #[derive(Debug, Default)]
-pub struct StillFlash {
-    /// Steps.
+pub struct FlashAtRest {
+    /// Number of steps that were checked.
     judged: usize,
-    /// When the last one began.
+    /// When the last erase began.
     erase: Option<Ps>,
 }
 
-impl StillFlash {
-    /// The first new step that had to wait.
-    pub fn look(&mut self, machine: &Machine, rest: &Rest) -> Option<String> {
+impl FlashAtRest {
+    /// The violation by the first new step that should have waited.
+    pub fn check(&mut self, machine: &Machine, state: &RobotState) -> Option<String> {
         let steps = machine.flash_steps();
         let new = steps.get(self.judged..).unwrap_or_default();
         self.judged = steps.len();
@@ -46,7 +47,7 @@ impl StillFlash {
             if step.kind == FlashStepKind::Erase {
                 self.erase = Some(step.at);
             }
-            Some((step, objection(step, self.erase, rest)?))
+            Some((step, violation(step, self.erase, state)?))
         });
         wrong.map(|(step, why)| {
             let FlashStep { at, kind, address } = step;
@@ -56,23 +57,23 @@ impl StillFlash {
     }
 }
 
-fn objection(step: &FlashStep, erase: Option<Ps>, rest: &Rest) -> Option<&'static str> {
+fn violation(step: &FlashStep, erase: Option<Ps>, state: &RobotState) -> Option<&'static str> {
     let within = |from: Ps, time: Ps| (from..from + time).contains(&step.at);
     let programs = step.kind == FlashStepKind::Program;
-    if rest.armed {
+    if state.armed {
         return Some("armed");
     }
-    if programs && within(rest.booted, BOOT_WORK) {
+    if programs && within(state.booted, BOOT_WORK) {
         return None;
     }
-    if within(rest.booted, REST) {
+    if within(state.booted, REST) {
         return Some("right after the boot");
     }
-    let armed = rest.last_armed.filter(|at| *at > rest.booted);
+    let armed = state.last_armed.filter(|at| *at > state.booted);
     if armed.is_some_and(|armed| step.at < armed + REST) {
         return Some("armed a moment ago");
     }
-    let enabled = rest.enabled.filter(|at| *at > rest.booted);
+    let enabled = state.enabled.filter(|at| *at > state.booted);
     let begun = erase.filter(|erase| step.at < erase + ERASE_STEP);
     enabled
         .is_some_and(|at| begun.unwrap_or(step.at) > at + SWITCH_SEEN)
@@ -83,42 +84,42 @@ fn objection(step: &FlashStep, erase: Option<Ps>, rest: &Rest) -> Option<&'stati
 mod tests {
     use super::*;
 
-    const CALM: Rest = Rest {
+    const RESTING: RobotState = RobotState {
         armed: false,
         last_armed: Some(1_000 * MS),
         booted: 0,
         enabled: None,
     };
 
-    fn is_fine(kind: FlashStepKind, ms: Ps, rest: Rest) -> bool {
+    fn is_fine(kind: FlashStepKind, ms: Ps, state: RobotState) -> bool {
         let step = FlashStep {
             at: ms * MS,
             kind,
             address: 0x0800_4000,
         };
-        objection(&step, Some(2_950 * MS), &rest).is_none()
+        violation(&step, Some(2_950 * MS), &state).is_none()
     }
 
     #[test]
     fn flash_is_worked_on_after_half_a_second_of_rest_only() {
         use FlashStepKind::{Erase, Program};
-        assert!(is_fine(Program, 1_500, CALM));
-        assert!(!is_fine(Program, 1_400, CALM));
-        let armed = Rest {
+        assert!(is_fine(Program, 1_500, RESTING));
+        assert!(!is_fine(Program, 1_400, RESTING));
+        let armed = RobotState {
             armed: true,
-            ..CALM
+            ..RESTING
         };
         assert!(!is_fine(Program, 9_000, armed));
-        let booted = Rest {
+        let booted = RobotState {
             booted: 2_000 * MS,
-            ..CALM
+            ..RESTING
         };
         assert!(is_fine(Program, 2_050, booted));
         assert!(!is_fine(Erase, 2_050, booted));
         assert!(!is_fine(Program, 2_200, booted));
-        let enabled = Rest {
+        let enabled = RobotState {
             enabled: Some(3_000 * MS),
-            ..CALM
+            ..RESTING
         };
         assert!(
             is_fine(Program, 3_210, enabled),

@@ -1,4 +1,4 @@
-//! The rules that must hold at every instant, checked on the wires and by the firmware's own account.
+//! What must hold at every instant, checked on the wires and in the firmware's diagnostics.
 
 use robot_plant::{
     time::{MS, Ps, SECOND},
@@ -7,69 +7,78 @@ use robot_plant::{
 
 use super::{
     STEP,
-    duty::{self, Duty, Group},
-    kept::KeptTally,
-    settings::Settings,
-    still_flash::{Rest, StillFlash},
+    flash_at_rest::{FlashAtRest, RobotState},
+    saved_settings::SettingsTally,
+    settings_check::SettingsCheck,
+    stop_deadlines::{self, Group, StopDeadline},
 };
 use crate::{
     machine::Machine,
-    scenario::{Action, Deed},
+    scenario::{Event, TimedEvent},
     simulation::Simulation,
 };
 
-/// The firmware's word is a sample old, and a command is on its way for a millisecond.
+/// The diagnostics are one sample old, and a command takes a millisecond to reach the wire.
 const SLACK: Ps = 5 * MS;
-/// From a failure of the image to the reset and the first frames of the next boot.
+/// Time from a failure of the image to the reset and the first frames of the next boot.
 const AFTER_CHIP_FAULT: Ps = 300 * MS;
-/// A controller that went off its bus comes back so late.
+/// Time until a CAN controller that went bus-off takes part again.
 const BUS_BACK: Ps = 2 * SECOND;
-/// What the radio says is late while frames are lost, and so long after.
+/// Time after a fault of the radio until its switches arrive without delay again.
 const RADIO_BACK: Ps = SECOND;
-/// An armed robot asks for no more: 8 A on a wheel; 3 N·m on a joint, and what a leg may have moved since its report.
+/// Limits of an armed robot's commands: 8 A for a wheel; for a joint 3 N·m and what the leg may have moved since its
+/// report.
 const MOST_CURRENT_MA: f64 = 8_000.0;
 const MOST_TORQUE_NM: f64 = 3.3;
-/// Chip complaints that a fault explains: bit errors on the radio line.
+/// Board errors that a fault explains: bit errors on the radio line.
 const EXPLAINED: [&str; 1] = ["USART3"];
 
-/// A rule broken.
+/// An invariant did not hold.
 #[derive(Clone, Debug)]
 pub struct Violation {
     pub at: Ps,
     pub what: String,
 }
 
-/// Numbers of a run.
+/// The image or the world does not show a signal of this name.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct MissingSignal(pub String);
+
+/// Totals of a run.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Tally {
+    /// Faults that were started.
     pub faults: u64,
+    /// Tuning frames that were sent.
     pub frames: u64,
     pub armings: u64,
     pub resets: u64,
-    /// Times that something had to be without torque, and was.
+    /// How often actuators had to be without torque by a deadline, and were.
     pub stops: u64,
-    pub settings: KeptTally,
+    pub settings: SettingsTally,
     pub flash_words: u64,
     pub flash_erases: u64,
     pub most_current_ma: f64,
     pub most_torque_nm: f64,
 }
 
-/// Something to be without torque at a certain time.
+/// Actuators that must be without torque by a certain time.
 #[derive(Clone, Debug)]
-struct Debt {
+struct PendingStop {
     group: Group,
     due: Ps,
     cause: String,
 }
 
-/// A fault that is there, or was a short time ago.
+/// A fault that is active or ended a short time ago.
 #[derive(Clone, Debug)]
-struct Trouble {
+struct ActiveFault {
     name: String,
     ended: Option<Ps>,
 }
 
+/// Positions of the signals.
 struct Places {
     currents: [usize; 2],
     enabled: [usize; 4],
@@ -77,42 +86,43 @@ struct Places {
     arming: usize,
 }
 
-pub struct Watch {
+/// The invariants, with what they need to know of the past.
+pub struct Invariants {
     places: Places,
     tally: Tally,
-    troubles: Vec<Trouble>,
-    debts: Vec<Debt>,
+    faults: Vec<ActiveFault>,
+    pending_stops: Vec<PendingStop>,
     chip_fault: Option<Ps>,
-    /// The pilot's switches, and when enable went on last.
+    /// The pilot's switches, and when the enable switch last went on.
     e_stop: bool,
     enable: bool,
     enabled_at: Option<Ps>,
     armed: bool,
     last_armed: Option<Ps>,
-    /// Torque on a wire that is not yet known to be an armed robot's.
-    suspects: Vec<Ps>,
+    /// Times of torque on a wire for which the diagnostics have not yet shown that the robot was armed.
+    unconfirmed: Vec<Ps>,
     missed: u64,
-    complaints: usize,
-    settings: Settings,
-    flash: StillFlash,
+    board_errors_seen: usize,
+    settings: SettingsCheck,
+    flash: FlashAtRest,
     events: Vec<WireEvent>,
     world: Vec<f64>,
     diag: Vec<f64>,
 }
 
-impl Watch {
-    /// `Err` names what the image or the world does not show.
-    pub fn new(machine: &mut Machine) -> Result<Self, String> {
+impl Invariants {
+    /// Finds the signals that the invariants need.
+    pub fn new(machine: &mut Machine) -> Result<Self, MissingSignal> {
         let world = machine.world_names();
         let diag = Simulation::diag_names(machine);
         let place = |names: &[String], name: String| {
             let found = names.iter().position(|n| *n == name);
-            found.ok_or(name)
+            found.ok_or(MissingSignal(name))
         };
         let joint = |n: usize, part: &str| place(&world, format!("can.joint.{n}.{part}"));
         let current = |n: usize| place(&world, format!("can.m3508.{n}.current_ma"));
         let of_all = |part: &str| {
-            Ok::<_, String>([
+            Ok::<_, MissingSignal>([
                 joint(0, part)?,
                 joint(1, part)?,
                 joint(2, part)?,
@@ -127,19 +137,19 @@ impl Watch {
                 arming: place(&diag, "diag.arming.state".to_owned())?,
             },
             tally: Tally::default(),
-            troubles: Vec::new(),
-            debts: Vec::new(),
+            faults: Vec::new(),
+            pending_stops: Vec::new(),
             chip_fault: None,
             e_stop: false,
             enable: false,
             enabled_at: None,
             armed: false,
             last_armed: None,
-            suspects: Vec::new(),
+            unconfirmed: Vec::new(),
             missed: 0,
-            complaints: 0,
-            settings: Settings::new(|name| place(&diag, name.to_owned()))?,
-            flash: StillFlash::default(),
+            board_errors_seen: 0,
+            settings: SettingsCheck::new(|name| place(&diag, name.to_owned()))?,
+            flash: FlashAtRest::default(),
             events: Vec::new(),
             world: Vec::new(),
             diag: Vec::new(),
@@ -153,24 +163,24 @@ impl Watch {
         }
     }
 
-    /// Takes note of what was done to the robot.
-    pub fn did(&mut self, action: &Action) {
-        let at = action.at;
-        match &action.what {
-            Deed::Remote(input) => self.pilot(at, input.enable, input.e_stop),
-            Deed::Can(bus, frame) => {
+    /// Takes an event that has happened.
+    pub fn record(&mut self, timed: &TimedEvent) {
+        let at = timed.at;
+        match &timed.event {
+            Event::Remote(input) => self.pilot(at, input.enable, input.e_stop),
+            Event::Can(bus, frame) => {
                 self.tally.frames += 1;
                 self.settings.sent(*bus, frame);
             }
-            Deed::StartFault(name) => self.begin(at, name),
-            Deed::EndFault(name) => {
+            Event::StartFault(name) => self.begin(at, name),
+            Event::EndFault(name) => {
                 self.settings.fault(name, false, at);
                 if is_of_the_machine(name) {
                     self.chip_fault = Some(at);
                 }
-                self.debts.retain(|debt| debt.cause != *name);
-                let there = self.troubles.iter_mut().filter(|t| t.name == *name);
-                there.for_each(|trouble| trouble.ended = Some(at));
+                self.pending_stops.retain(|stop| stop.cause != *name);
+                let there = self.faults.iter_mut().filter(|t| t.name == *name);
+                there.for_each(|fault| fault.ended = Some(at));
             }
         }
     }
@@ -186,17 +196,17 @@ impl Watch {
             ("enable switch off", !enable, !self.enable),
         ] {
             if on && !was {
-                self.owe(at + duty::SWITCH, cause, Group::Wheels);
-                self.owe(at + duty::SWITCH, cause, Group::Joints);
+                self.expect_stop(at + stop_deadlines::AFTER_SWITCH, cause, Group::Wheels);
+                self.expect_stop(at + stop_deadlines::AFTER_SWITCH, cause, Group::Joints);
             } else if !on {
-                self.debts.retain(|debt| debt.cause != cause);
+                self.pending_stops.retain(|stop| stop.cause != cause);
             }
         }
         (self.enable, self.e_stop) = (enable, e_stop);
     }
 
-    fn owe(&mut self, due: Ps, cause: &str, group: Group) {
-        self.debts.push(Debt {
+    fn expect_stop(&mut self, due: Ps, cause: &str, group: Group) {
+        self.pending_stops.push(PendingStop {
             group,
             due,
             cause: cause.to_owned(),
@@ -210,36 +220,36 @@ impl Watch {
             self.chip_fault = Some(at);
             return;
         }
-        self.troubles.retain(|trouble| trouble.name != name);
-        self.troubles.push(Trouble {
+        self.faults.retain(|fault| fault.name != name);
+        self.faults.push(ActiveFault {
             name: name.to_owned(),
             ended: None,
         });
-        for Duty { group, within } in duty::of(name) {
-            self.owe(at + within, name, group);
+        for StopDeadline { group, within } in stop_deadlines::after(name) {
+            self.expect_stop(at + within, name, group);
         }
     }
 
-    /// Looks at everything; the first rule that does not hold.
-    pub fn look(&mut self, machine: &mut Machine, now: Ps) -> Option<Violation> {
-        self.troubles
+    /// Checks everything; returns the first invariant that does not hold.
+    pub fn check(&mut self, machine: &mut Machine, now: Ps) -> Option<Violation> {
+        self.faults
             .retain(|t| t.ended.is_none_or(|ended| ended + BUS_BACK > now));
-        self.hear(machine);
+        self.read_wire_events(machine);
         machine.sample_world(&mut self.world);
         let known = machine.sample_diag(&mut self.diag);
         let armed = known && self.diag[self.places.arming] == 1.0;
-        let settings = self.settings_rule(machine, known, now);
+        let settings = self.check_settings(machine, known, now);
         let broken = settings
-            .or_else(|| self.flash_rule(machine, armed))
-            .or_else(|| self.arming_rule(armed, now))
-            .or_else(|| self.unarmed_rule(now))
-            .or_else(|| self.limit_rule())
-            .or_else(|| self.stop_rule(now))
-            .or_else(|| self.machine_rule(machine, now));
+            .or_else(|| self.check_flash(machine, armed))
+            .or_else(|| self.check_arming(armed, now))
+            .or_else(|| self.check_no_torque_unarmed(now))
+            .or_else(|| self.check_limits())
+            .or_else(|| self.check_stops(now))
+            .or_else(|| self.check_machine(machine, now));
         broken.map(|what| Violation { at: now, what })
     }
 
-    fn hear(&mut self, machine: &mut Machine) {
+    fn read_wire_events(&mut self, machine: &mut Machine) {
         self.events.clear();
         machine.drain_wire_events(&mut self.events);
         for event in &self.events {
@@ -247,7 +257,7 @@ impl Watch {
             let joint = self.places.enabled.contains(&event.signal);
             let surely_armed = self.last_armed.is_some_and(|t| event.at <= t + SLACK);
             if (wheel || joint) && event.value != 0.0 && !surely_armed {
-                self.suspects.push(event.at);
+                self.unconfirmed.push(event.at);
             }
             if wheel {
                 self.tally.most_current_ma = self.tally.most_current_ma.max(event.value.abs());
@@ -255,39 +265,39 @@ impl Watch {
         }
     }
 
-    fn settings_rule(&mut self, machine: &mut Machine, known: bool, now: Ps) -> Option<String> {
+    fn check_settings(&mut self, machine: &mut Machine, known: bool, now: Ps) -> Option<String> {
         let diag = known.then_some(self.diag.as_slice());
-        let troubled = |bus| {
+        let disturbed = |bus| {
             let group = match bus {
                 CanBusId::Can1 => Group::Wheels,
                 CanBusId::Can2 => Group::Joints,
             };
-            let mut troubles = self.troubles.iter();
-            troubles.any(|trouble| duty::disturbs(&trouble.name, group))
+            let mut faults = self.faults.iter();
+            faults.any(|fault| stop_deadlines::disturbs(&fault.name, group))
         };
-        self.settings.look(machine, diag, troubled, now)
+        self.settings.check(machine, diag, disturbed, now)
     }
 
-    fn flash_rule(&mut self, machine: &Machine, armed: bool) -> Option<String> {
+    fn check_flash(&mut self, machine: &Machine, armed: bool) -> Option<String> {
         let progress = machine.progress();
         self.tally.flash_words = progress.flash_programs;
         self.tally.flash_erases = progress.flash_erases;
-        let radio = |trouble: &Trouble| trouble.name.starts_with("sbus");
-        let heard = self.enable && !self.troubles.iter().any(radio);
-        self.flash.look(
+        let radio = |fault: &ActiveFault| fault.name.starts_with("sbus");
+        let heard = self.enable && !self.faults.iter().any(radio);
+        self.flash.check(
             machine,
-            &Rest {
+            &RobotState {
                 armed: armed && self.armed,
                 last_armed: self.last_armed,
-                // Looked at every millisecond, it is known so late.
+                // A boot is noticed up to one step late.
                 booted: self.settings.booted().saturating_sub(STEP),
                 enabled: self.enabled_at.filter(|_| heard),
             },
         )
     }
 
-    /// Armed only by a switch that went on after the robot was last armed.
-    fn arming_rule(&mut self, armed: bool, now: Ps) -> Option<String> {
+    /// The robot arms only by a switch that went on after it was last armed.
+    fn check_arming(&mut self, armed: bool, now: Ps) -> Option<String> {
         let rose = armed && !self.armed;
         let before = self.last_armed;
         self.armed = armed;
@@ -307,17 +317,17 @@ impl Watch {
         }
     }
 
-    fn unarmed_rule(&mut self, now: Ps) -> Option<String> {
+    fn check_no_torque_unarmed(&mut self, now: Ps) -> Option<String> {
         let sure = now.saturating_sub(SLACK);
         if self.armed {
-            self.suspects.retain(|at| *at < sure);
+            self.unconfirmed.retain(|at| *at < sure);
         }
-        let guilty = self.suspects.extract_if(.., |at| *at < sure).next()?;
-        let at = guilty as f64 / SECOND as f64;
+        let violating = self.unconfirmed.extract_if(.., |at| *at < sure).next()?;
+        let at = violating as f64 / SECOND as f64;
         Some(format!("torque left the board unarmed at {at:.4} s"))
     }
 
-    fn limit_rule(&mut self) -> Option<String> {
+    fn check_limits(&mut self) -> Option<String> {
         let torques = self
             .places
             .torques
@@ -332,13 +342,16 @@ impl Watch {
         (torque > MOST_TORQUE_NM).then(|| format!("a joint was asked for {torque:.3} N·m"))
     }
 
-    fn stop_rule(&mut self, now: Ps) -> Option<String> {
-        let due: Vec<Debt> = self.debts.extract_if(.., |debt| debt.due <= now).collect();
-        for debt in due {
-            if self.is_excused(&debt, now) {
+    fn check_stops(&mut self, now: Ps) -> Option<String> {
+        let due: Vec<PendingStop> = self
+            .pending_stops
+            .extract_if(.., |stop| stop.due <= now)
+            .collect();
+        for stop in due {
+            if self.is_excused(&stop, now) {
                 continue;
             }
-            let (group, cause) = (debt.group, &debt.cause);
+            let (group, cause) = (stop.group, &stop.cause);
             let places = match group {
                 Group::Wheels => &self.places.currents[..],
                 Group::Joints => &self.places.enabled[..],
@@ -351,23 +364,23 @@ impl Watch {
         None
     }
 
-    /// Another fault keeps the stop's cause from the firmware, or its frames from the motors.
-    fn is_excused(&self, debt: &Debt, now: Ps) -> bool {
-        let by_pilot = duty::of(&debt.cause).is_empty();
-        let of_bus = duty::disturbs(&debt.cause, debt.group);
+    /// Whether another fault hides the stop's cause from the firmware, or keeps its frames from the motors.
+    fn is_excused(&self, stop: &PendingStop, now: Ps) -> bool {
+        let by_pilot = stop_deadlines::after(&stop.cause).is_empty();
+        let of_bus = stop_deadlines::disturbs(&stop.cause, stop.group);
         self.chip_fault
             .is_some_and(|at| now < at + AFTER_CHIP_FAULT)
-            || self.troubles.iter().any(|trouble| {
-                let name = trouble.name.as_str();
-                let recently = trouble.ended.is_none_or(|ended| now < ended + RADIO_BACK);
-                let other = name != debt.cause;
-                other && duty::disturbs(name, debt.group) && !of_bus
-                    || other && duty::hides(name, &debt.cause)
+            || self.faults.iter().any(|fault| {
+                let name = fault.name.as_str();
+                let recently = fault.ended.is_none_or(|ended| now < ended + RADIO_BACK);
+                let other = name != stop.cause;
+                other && stop_deadlines::disturbs(name, stop.group) && !of_bus
+                    || other && stop_deadlines::hides(name, &stop.cause)
                     || by_pilot && recently && name.starts_with("sbus")
             })
     }
 
-    fn machine_rule(&mut self, machine: &mut Machine, now: Ps) -> Option<String> {
+    fn check_machine(&mut self, machine: &mut Machine, now: Ps) -> Option<String> {
         let struck = self
             .chip_fault
             .is_some_and(|at| now < at + AFTER_CHIP_FAULT);
@@ -383,15 +396,18 @@ impl Watch {
         if progress.missed > missed && self.armed && !struck {
             return Some("a control tick was missed while armed".into());
         }
-        if progress.board_errors == self.complaints {
+        if progress.board_errors == self.board_errors_seen {
             return None;
         }
         let errors = Machine::board_errors(machine);
-        let new = errors.into_iter().skip(self.complaints).map(|e| e.message);
-        self.complaints = progress.board_errors;
+        let new = errors
+            .into_iter()
+            .skip(self.board_errors_seen)
+            .map(|e| e.message);
+        self.board_errors_seen = progress.board_errors;
         new.into_iter()
             .find(|message| !EXPLAINED.iter().any(|part| message.contains(part)))
-            .map(|message| format!("the board complains: {message}"))
+            .map(|message| format!("board error: {message}"))
     }
 }
 

@@ -1,4 +1,4 @@
-//! Which faults must stop what, and how soon (design, section 3; `tests/matrix` measures each of them alone).
+//! Which faults must stop which actuators, and how soon (`tests/matrix` measures each of them alone).
 
 use robot_plant::time::{MS, Ps};
 
@@ -11,18 +11,19 @@ pub enum Group {
     Joints,
 }
 
-/// Zero torque on all of the group, so long after the start.
+/// All actuators of the group must be without torque that long after the fault has begun.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Duty {
+pub struct StopDeadline {
     pub group: Group,
     pub within: Ps,
 }
 
-/// A radio frame every 7 ms takes 3 ms; two on the way to be believed; then 3 ms to zero.
-pub const SWITCH: Ps = (2 * 7 + 3 + 3) * MS;
+/// After a switch of the pilot: two radio frames, 7 ms apart and 3 ms long, then 3 ms to zero torque.
+pub const AFTER_SWITCH: Ps = (2 * 7 + 3 + 3) * MS;
 
-pub fn of(fault: &str) -> Vec<Duty> {
-    let all = |ms: Ps| vec![duty(Group::Wheels, ms), duty(Group::Joints, ms)];
+/// The deadlines that follow from a fault; none for a fault that must stop nothing.
+pub fn after(fault: &str) -> Vec<StopDeadline> {
+    let all = |ms: Ps| vec![deadline(Group::Wheels, ms), deadline(Group::Joints, ms)];
     match fault {
         "sbus-silent" | "sbus-frame-lost" => return all(106),
         "sbus-failsafe" => return all(20),
@@ -31,33 +32,35 @@ pub fn of(fault: &str) -> Vec<Duty> {
         "battery-empty" => return all(1_100),
         "tilted" => return all(600),
         // The drives' own time limit.
-        "can2-broken" | "can2-empty" | "rogue-node-can2" => return vec![duty(Group::Joints, 105)],
+        "can2-broken" | "can2-empty" | "rogue-node-can2" => {
+            return vec![deadline(Group::Joints, 105)];
+        }
         _ => {}
     }
     match motor(fault) {
-        Some((0 | 1, "hot")) => vec![duty(Group::Wheels, 600)],
-        Some((2.., "hot")) => vec![duty(Group::Joints, 600)],
-        Some((2.., "gone")) => vec![duty(Group::Joints, 60)],
-        Some((2.., "wrong-id")) => vec![duty(Group::Joints, 110)],
-        Some((2.., "fault")) => vec![duty(Group::Joints, 10)],
+        Some((0 | 1, "hot")) => vec![deadline(Group::Wheels, 600)],
+        Some((2.., "hot")) => vec![deadline(Group::Joints, 600)],
+        Some((2.., "gone")) => vec![deadline(Group::Joints, 60)],
+        Some((2.., "wrong-id")) => vec![deadline(Group::Joints, 110)],
+        Some((2.., "fault")) => vec![deadline(Group::Joints, 10)],
         _ => Vec::new(),
     }
 }
 
-fn duty(group: Group, ms: Ps) -> Duty {
-    Duty {
+fn deadline(group: Group, ms: Ps) -> StopDeadline {
+    StopDeadline {
         group,
         within: ms * MS,
     }
 }
 
-/// Motor and kind of a motor's fault: wheels are 0 and 1, joints follow.
+/// Motor and kind of a motor's fault. Wheels are 0 and 1, joints follow.
 pub fn motor(fault: &str) -> Option<(usize, &str)> {
     let (number, kind) = fault.strip_prefix("motor-")?.split_once('-')?;
     Some((number.parse().ok()?, kind))
 }
 
-/// True where the fault keeps the group's frames off its bus.
+/// Whether the fault keeps the group's frames off its bus.
 pub fn disturbs(fault: &str, group: Group) -> bool {
     let bus = match group {
         Group::Wheels => "can1",
@@ -66,7 +69,7 @@ pub fn disturbs(fault: &str, group: Group) -> bool {
     fault.contains(bus)
 }
 
-/// True where the fault hides what the other one does: a frozen report tells no temperature.
+/// Whether the fault hides the effect of the other one: a frozen report shows no temperature.
 pub fn hides(fault: &str, other: &str) -> bool {
     match (motor(fault), motor(other)) {
         (Some((a, "frozen" | "gone" | "wrong-id")), Some((b, _))) => a == b,
@@ -89,10 +92,10 @@ mod tests {
     }
 
     #[test]
-    fn every_duty_is_of_a_fault_that_exists() {
+    fn every_deadline_belongs_to_a_fault_that_exists() {
         let names = robot_plant::world::World::faults().iter().map(|f| f.name);
-        let duties = names.map(|name| of(name).len()).sum::<usize>();
+        let deadlines = names.map(|name| after(name).len()).sum::<usize>();
         // 8 of everything, 3 of CAN2, 2 hot wheels, 4 joints in 4 ways.
-        assert_eq!(duties, 8 * 2 + 3 + 2 + 4 * 4);
+        assert_eq!(deadlines, 8 * 2 + 3 + 2 + 4 * 4);
     }
 }

@@ -1,4 +1,4 @@
-//! Hears what the robot says of its settings, on CAN and in its own account.
+//! Feeds [`SavedSettings`] with the frames on CAN and with the firmware's own status.
 
 use robot_plant::{
     time::{MS, Ps},
@@ -7,38 +7,41 @@ use robot_plant::{
 };
 
 use super::{
-    harmless,
-    kept::{Account, Kept, KeptTally, Letter},
+    invariants::MissingSignal,
+    saved_settings::{ReceivedFrame, SavedSettings, SettingsTally, StoreStatus},
+    tuning_frames,
 };
 use crate::machine::Machine;
 
-/// Cells stick at 1 while it lasts.
+/// The fault that makes cells stick at 1.
 const STUCK_BITS: &str = "flash-stuck-bits";
-/// The image reads its settings in this time after a reset.
+/// The image has read its settings within this time after a reset.
 const SETTINGS_READ: Ps = 100 * MS;
 
-/// Where in the diagnostics.
+/// Positions in the diagnostics.
 struct Places {
     unsaved: usize,
     seen: usize,
     revision: usize,
     generation: usize,
-    /// Each tells what the boot could not use.
+    /// Counters of what the boot could not use.
     losses: [usize; 3],
 }
 
-pub struct Settings {
+pub struct SettingsCheck {
     places: Places,
-    kept: Kept,
+    saved: SavedSettings,
     boots: usize,
     booted: Ps,
-    /// Until when cells stick, as far as known.
+    /// Until when cells stick, as far as is known.
     worn_until: Ps,
 }
 
-impl Settings {
-    /// `place` finds a name in the diagnostics.
-    pub fn new(place: impl Fn(&str) -> Result<usize, String>) -> Result<Self, String> {
+impl SettingsCheck {
+    /// `place` finds the position of a name in the diagnostics.
+    pub fn new(
+        place: impl Fn(&str) -> Result<usize, MissingSignal>,
+    ) -> Result<Self, MissingSignal> {
         Ok(Self {
             places: Places {
                 unsaved: place("diag.params.unsaved")?,
@@ -51,24 +54,24 @@ impl Settings {
                     place("diag.params.refused")?,
                 ],
             },
-            kept: Kept::new(),
+            saved: SavedSettings::new(),
             boots: 0,
             booted: 0,
             worn_until: 0,
         })
     }
 
-    pub fn tally(&self) -> KeptTally {
-        self.kept.tally()
+    pub fn tally(&self) -> SettingsTally {
+        self.saved.tally()
     }
 
-    /// When the run of the image began.
+    /// When the image last booted.
     pub fn booted(&self) -> Ps {
         self.booted
     }
 
     pub fn sent(&mut self, bus: CanBusId, frame: &CanFrame) {
-        self.kept.sent(bus, frame);
+        self.saved.sent(bus, frame);
     }
 
     pub fn fault(&mut self, name: &str, begins: bool, now: Ps) {
@@ -77,54 +80,55 @@ impl Settings {
         }
         self.worn_until = if begins { Ps::MAX } else { now + SETTINGS_READ };
         if begins && now < self.booted + SETTINGS_READ {
-            self.kept.booted(true, self.booted);
+            self.saved.booted(true, self.booted);
         }
     }
 
-    /// The rule broken. `diag` is there while the image runs; `troubled` are buses on which replies may be late.
-    pub fn look(
+    /// Returns the violation found, if any. `diag` is `None` while the image does not run; on buses that are `disturbed`
+    /// replies may be late.
+    pub fn check(
         &mut self,
         machine: &mut Machine,
         diag: Option<&[f64]>,
-        troubled: impl Fn(CanBusId) -> bool,
+        disturbed: impl Fn(CanBusId) -> bool,
         now: Ps,
     ) -> Option<String> {
-        let (delivered, letters) = post(machine);
-        self.kept.delivered(delivered, now);
-        let wrong = letters.iter().find_map(|(at, bus, frame)| {
-            self.kept.heard(&Letter {
+        let (delivered, frames) = drain_adapters(machine);
+        self.saved.delivered(delivered, now);
+        let wrong = frames.iter().find_map(|(at, bus, frame)| {
+            self.saved.received(&ReceivedFrame {
                 at: *at,
                 bus: *bus,
                 frame,
-                troubled: troubled(*bus),
+                disturbed: disturbed(*bus),
             })
         });
         let boots = machine.resets();
         let worn = now < self.worn_until;
         if boots != std::mem::replace(&mut self.boots, boots) {
             self.booted = now;
-            self.kept.booted(worn, now);
+            self.saved.booted(worn, now);
         } else if let Some(diag) = diag {
-            let account = self.places.account(diag);
-            self.kept.account(account, worn, now);
+            let status = self.places.status(diag);
+            self.saved.status(status, worn, now);
         }
         wrong
     }
 }
 
 impl Places {
-    fn account(&self, diag: &[f64]) -> Account {
+    fn status(&self, diag: &[f64]) -> StoreStatus {
         let knows_all = diag[self.seen] == diag[self.revision];
-        Account {
+        StoreStatus {
             all_saved: knows_all && diag[self.unsaved] == 0.0,
             generation: diag[self.generation] as u32,
-            told_loss: self.losses.iter().any(|place| diag[*place] != 0.0),
+            reported_loss: self.losses.iter().any(|place| diag[*place] != 0.0),
         }
     }
 }
 
-/// Frames that went out on each bus since the start, and replies that came in.
-fn post(machine: &mut Machine) -> ([u64; 2], Vec<(Ps, CanBusId, CanFrame)>) {
+/// The number of frames sent on each bus since the start, and the replies received since the last call.
+fn drain_adapters(machine: &mut Machine) -> ([u64; 2], Vec<(Ps, CanBusId, CanFrame)>) {
     let mut delivered = [0; 2];
     let mut replies = Vec::new();
     machine.with_world(|world| {
@@ -132,7 +136,7 @@ fn post(machine: &mut Machine) -> ([u64; 2], Vec<(Ps, CanBusId, CanFrame)>) {
             let adapter = world.can_adapter(bus);
             delivered[bus as usize] = adapter.sent();
             while let Some((at, frame)) = adapter.take() {
-                replies.extend((frame.id == harmless::REPLY).then_some((at, bus, frame)));
+                replies.extend((frame.id == tuning_frames::REPLY).then_some((at, bus, frame)));
             }
         }
     });
