@@ -1,6 +1,6 @@
 //! The STM32F407's peripherals: registers in, wires out. One file a peripheral.
 //!
-//! What the wires lead to is behind [`board::Board`].
+//! The devices at the other ends of the wires are behind [`board::Board`].
 
 pub(crate) mod access;
 pub(crate) mod adc;
@@ -9,7 +9,6 @@ pub mod board;
 pub mod board_errors;
 pub mod bus;
 pub(crate) mod can;
-pub mod can_bus;
 pub(crate) mod clocks;
 pub(crate) mod dma;
 pub(crate) mod dma_request;

@@ -1,4 +1,4 @@
-//! What crosses a wire between the chip and its board.
+//! Frames and characters on the wires between the chip and its board.
 
 use crate::time::Ps;
 
@@ -42,7 +42,7 @@ pub enum Parity {
 pub struct LineFormat {
     /// Bits a second.
     pub baud: u32,
-    /// Without the parity bit.
+    /// Number of data bits, the parity bit not counted.
     pub data_bits: u8,
     /// The parity bit that follows the data.
     pub parity: Parity,

@@ -30,7 +30,7 @@ pub struct CBoard {
     pub world: World,
     /// Sectors 1–3.
     pub flash: FlashChip,
-    /// What the chip last drove onto the devices, so that they hear of changes only.
+    /// The levels that the devices were last told, so that they are told of changes only.
     levels: Option<Levels>,
 }
 

@@ -8,9 +8,9 @@ use crate::machine::diagnostics::meaning::Meaning;
 pub struct Expectation {
     pub signal: String,
     pub window: Window,
-    /// All of them and of the flags must hold; one of the two is not empty.
+    /// Every bound and every flag must hold; there is at least one of either.
     pub bounds: Vec<Bound>,
-    /// Flags of the signal by the image's own names.
+    /// Flags of the signal, named as in the image.
     pub flags: Vec<NamedFlag>,
     /// Why this is expected, shown in the report.
     pub because: Option<String>,
@@ -72,7 +72,7 @@ pub struct Window {
 }
 
 impl Window {
-    /// One instant: judged at the first sample at or after it.
+    /// A single instant. It is judged at the first sample at or after it.
     pub fn instant(at: Ps) -> Self {
         Self { start: at, end: at }
     }
@@ -137,7 +137,7 @@ impl Bound {
         }
     }
 
-    /// As `Display`, with the firmware's own name of a state or flag.
+    /// The text of `Display`, with the firmware's name of the state or flag.
     fn in_words(self, meaning: Option<&Meaning>) -> String {
         let words = meaning.and_then(|meaning| match self {
             Self::Equals(value) => meaning.words(value),

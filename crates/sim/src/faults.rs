@@ -1,4 +1,4 @@
-//! All faults a scenario can start and end: the world's and the machine's.
+//! All faults that a scenario can start and end: those of the world and those of the machine.
 
 use robot_plant::world::{FaultInfo, World, WorldError};
 
@@ -7,7 +7,7 @@ use crate::machine::{
     faults::{self, FaultError},
 };
 
-/// A event that cannot be done.
+/// An event that cannot be applied.
 #[derive(Debug, thiserror::Error)]
 pub enum EventError {
     #[error(transparent)]

@@ -64,7 +64,7 @@ pub enum JobError {
 pub struct Outcome {
     pub result: RunResult,
     pub summary: Summary,
-    /// What was written, in the order a user reads it.
+    /// The files that were written, in the order in which a user reads them.
     pub files: Vec<PathBuf>,
 }
 

@@ -38,7 +38,7 @@ use tick_stats::TickStats;
 pub use robot_emulator::soc::bus::RegisterPatch;
 pub use tick_stats::Distribution;
 
-/// Symbols of the image that the machine looks for.
+/// Symbols that the machine looks up in the image.
 const CONTROL_TICK: &str = "robotapp_control_tick";
 const RTT_CONTROL_BLOCK: &str = "_SEGGER_RTT";
 
@@ -70,7 +70,7 @@ pub struct LogLine {
     pub text: String,
 }
 
-/// Measured on the run itself.
+/// Measurements of a run.
 #[derive(Clone, Debug, Default, serde::Serialize)]
 pub struct Stats {
     pub ticks: u64,
@@ -90,7 +90,7 @@ pub struct Stats {
     pub flash: FlashUse,
 }
 
-/// Longest time from one control tick to the next, by what the firmware last said of itself before it.
+/// Longest time from one control tick to the next, by the arming state that the firmware last reported.
 #[derive(Clone, Copy, Debug, Default, serde::Serialize)]
 pub struct LongestGapUs {
     pub armed: f64,
@@ -116,24 +116,24 @@ pub struct CanStats {
     pub errors: u64,
 }
 
-/// How the run goes, cheap to ask for at any time.
+/// Figures that are cheap to read at any time of a run.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Progress {
     /// Control ticks.
     pub missed: u64,
-    /// How many control ticks there were, and when the last one was entered.
+    /// Number of control ticks, and when the last one was entered.
     pub ticks: Option<(u64, Ps)>,
-    /// As in `Stats`.
+    /// Busy share of the CPU, as in `Stats`.
     pub cpu_load: f64,
     /// How long each CAN bus was busy since power-on.
     pub can_busy: [Ps; 2],
-    /// Different ones that fail on silicon.
+    /// Number of distinct board errors that fail on silicon.
     pub board_errors: usize,
     pub flash_erases: u64,
     pub flash_programs: u64,
 }
 
-/// CPU, chip, board and world, and what is known of the image that runs on them.
+/// CPU, chip, board and world, with the firmware image that runs on them.
 pub struct Machine {
     cpu: Cpu,
     image: Image,
@@ -264,7 +264,7 @@ impl Machine {
         self.diagnostics.names()
     }
 
-    /// What the values of each of `diag_names` stand for, where the image says so.
+    /// The meaning of the values of each of `diag_names`, where the image tells it.
     pub fn diag_meanings(&self) -> Vec<Option<Meaning>> {
         self.diagnostics.meanings()
     }
@@ -338,7 +338,7 @@ impl Machine {
         }
     }
 
-    /// What fails on silicon.
+    /// Errors that fail on silicon.
     pub fn board_errors(&self) -> Vec<BoardError> {
         self.cpu.soc().errors.list().to_vec()
     }

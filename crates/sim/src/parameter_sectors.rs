@@ -1,10 +1,10 @@
-//! Parameter sectors as docs/parameters.md lays them out, written without the firmware's code.
+//! Parameter sectors in the layout of docs/parameters.md, written without the firmware's code.
 
 use crate::machine::flash::PARAMETER_FLASH_BYTES;
 
 pub const SECTOR_BYTES: usize = PARAMETER_FLASH_BYTES / 3;
 const SLOT: usize = 128;
-/// One slot is the head.
+/// Records that a sector holds; its first slot is the head.
 pub const SLOTS: usize = SECTOR_BYTES / SLOT - 1;
 /// Words of a slot between its header and its proof.
 pub const MAX_VALUES: usize = 28;
@@ -17,14 +17,14 @@ const MAGIC: u32 = u32::from_le_bytes(*b"PRM1");
 pub struct Record {
     pub group: u8,
     pub version: u8,
-    /// Of a joint, the make of its motor; 0 else.
+    /// The make of a joint's motor; 0 for other groups.
     pub variant: u8,
-    /// In the order of their indices, at most [`MAX_VALUES`].
+    /// At most [`MAX_VALUES`] values, in the order of their indices.
     pub values: Vec<f32>,
 }
 
 impl Record {
-    /// For every robot, as the first firmware had it.
+    /// A record in the first version of its group, which suits every robot.
     pub fn first(group: u8, values: &[f32]) -> Self {
         Self {
             group,
@@ -94,7 +94,7 @@ fn put(bytes: &mut [u8], word: usize, value: u32) {
     }
 }
 
-/// As in zip.
+/// CRC-32 as in zip files.
 fn crc32(bytes: impl IntoIterator<Item = u8>) -> u32 {
     let crc = bytes.into_iter().fold(u32::MAX, |crc, byte| {
         (0..8).fold(crc ^ u32::from(byte), |crc, _| {

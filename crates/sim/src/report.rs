@@ -13,7 +13,7 @@ use robot_chart::ChartError;
 
 use super::{runner::RunResult, scenario::Scenario, summary::Summary, trace::Traces};
 
-/// What a report is made of.
+/// Everything that goes into a report.
 pub struct Report<'a> {
     pub scenario: &'a Scenario,
     pub result: &'a RunResult,

@@ -1,4 +1,4 @@
-//! Runs a scenario on a board: acts on time, samples at 1 kHz, judges every expectation.
+//! Runs a scenario: applies its events, samples signals at 1 kHz and judges every expectation.
 
 use std::path::Path;
 
@@ -25,10 +25,10 @@ use robot_emulator::soc::board_errors::BoardError;
 /// Signals are sampled and expectations judged this often.
 pub const SAMPLE_PERIOD: Ps = time::MS;
 
-/// Diagnostics older than this are no diagnostics: the firmware hangs or restarts.
+/// Diagnostics older than this are ignored: the firmware hangs or restarts.
 const DIAG_HOLD: Ps = 20 * time::MS;
 
-/// Watches a run while it goes: terminal, recording, traces.
+/// Receives samples and log lines during a run: terminal, recording, traces.
 pub trait Observer {
     fn sample(&mut self, at: Ps, table: &SignalTable, values: &Values);
     fn log(&mut self, line: &LogLine);
@@ -37,7 +37,7 @@ pub trait Observer {
     fn can_port(&mut self, _bus: CanBusId, _device: &Path) {}
 }
 
-/// Everything a run leaves behind.
+/// The result of a run.
 pub struct RunResult {
     pub table: SignalTable,
     pub verdicts: Vec<Verdict>,
@@ -46,13 +46,13 @@ pub struct RunResult {
     /// Board errors that the scenario does not allow.
     pub board_errors: Vec<BoardError>,
     pub allowed_board_errors: Vec<BoardError>,
-    /// What the board found suspicious; it fails no run.
+    /// Suspicious settings and accesses; they fail no run.
     pub suspicions: Vec<BoardError>,
     pub stats: Stats,
     /// Simulated time really run.
     pub ran: Ps,
     pub last_values: Values,
-    /// Every bit that `diag.safety.flags` had at some sample.
+    /// All bits that `diag.safety.flags` has had at any sample.
     pub safety_flags_seen: u64,
     pub attitude: AttitudeScore,
     /// Buses a PC took part in.
@@ -60,8 +60,8 @@ pub struct RunResult {
 }
 
 impl RunResult {
-    /// True only if the run went to its end, every expectation held and the board had nothing to complain of but
-    /// suspicions.
+    /// True if the run went to its end, every expectation held and there was no board error but suspicions and allowed
+    /// ones.
     pub fn ok(&self) -> bool {
         self.stopped.is_none()
             && self.board_errors.is_empty()
@@ -119,7 +119,7 @@ pub fn run<B: Simulation>(
 
 /// One bound or flag of one expectation.
 struct Watched {
-    /// Its place in the scenario.
+    /// Position of the expectation in the scenario.
     expectation: usize,
     judged: Result<Judged, Unjudgeable>,
 }

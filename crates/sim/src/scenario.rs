@@ -25,16 +25,17 @@ pub struct Scenario {
     pub plant: PlantKind,
     pub radio: RadioKind,
     pub joints: JointKind,
-    /// What somebody has set as the RS00's CAN time-out; 0 = off.
+    /// CAN time-out that is set in the RS00 drives; 0 = off.
     pub rs00_timeout: Ps,
-    /// Of the IMU's package at power-on; unset, the board has been on before.
+    /// Temperature of the IMU's package at power-on, °C; `None` for a board that has been on before.
     pub imu_temperature_c: Option<f64>,
-    /// Of the board in the robot, and of the magnetometer beside the IMU.
+    /// Orientation of the board in the robot.
     pub mounting: Mounting,
+    /// Orientation of the magnetometer against the IMU.
     pub mag_mounting: Mounting,
     pub seed: u64,
     pub flash: FlashSetup,
-    /// In order of time; what was written first comes first at equal times.
+    /// Sorted by time; events of the same time keep their order in the file.
     pub events: Vec<TimedEvent>,
     pub expectations: Vec<Expectation>,
     /// Board errors whose message contains one of these do not fail the run.
@@ -46,7 +47,7 @@ pub struct Scenario {
 pub struct FlashSetup {
     pub contents: FlashContents,
     pub times: FlashTimes,
-    /// Of what torn words and sectors look like; unset, the scenario's.
+    /// Seed of the contents of torn words and sectors; `None` for the scenario's own.
     pub seed: Option<u64>,
 }
 
@@ -54,9 +55,9 @@ pub struct FlashSetup {
 pub enum FlashContents {
     #[default]
     Erased,
-    /// 48 KiB.
+    /// The contents of a file of 48 KiB.
     Image(PathBuf),
-    /// Saved by an earlier run, and nothing else.
+    /// Records as an earlier run has saved them.
     Records(Vec<Record>),
 }
 
@@ -77,7 +78,7 @@ pub enum Event {
     EndFault(String),
 }
 
-/// What is wrong with a scenario file, where, and what to write instead.
+/// A scenario file cannot be read, or something in it is wrong.
 #[derive(Debug, thiserror::Error)]
 pub enum ScenarioError {
     #[error("cannot read the scenario {path}: {source}")]

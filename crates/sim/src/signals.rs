@@ -8,11 +8,11 @@ pub struct SignalTable {
     names: Vec<String>,
     world: usize,
     diag: usize,
-    /// Of the diagnostics, in their order; may be shorter.
+    /// Meanings of the diagnostics' values, in the same order; may be shorter.
     meanings: Vec<Option<Meaning>>,
 }
 
-/// One value of each signal; `None` where it has none at this instant (firmware not up, gap of a reference).
+/// One value of each signal; `None` while it has none: the firmware is not up, or a reference has a gap.
 pub type Values = Vec<Option<f64>>;
 
 impl SignalTable {
@@ -33,7 +33,7 @@ impl SignalTable {
         self
     }
 
-    /// What the values of a signal stand for, where the firmware says so.
+    /// The meaning of a signal's values, where the firmware tells it.
     pub fn meaning(&self, place: usize) -> Option<&Meaning> {
         let diag = place.checked_sub(self.world)?;
         self.meanings.get(diag)?.as_ref()
@@ -47,12 +47,12 @@ impl SignalTable {
         self.names.iter().position(|n| n == name)
     }
 
-    /// Where the firmware's diagnostics stand.
+    /// Positions of the firmware's diagnostics.
     pub fn diag_range(&self) -> std::ops::Range<usize> {
         self.world..self.world + self.diag
     }
 
-    /// Where the run's own signals begin.
+    /// Position of the first of the run's own signals.
     pub fn run_start(&self) -> usize {
         self.world + self.diag
     }

@@ -1,4 +1,4 @@
-//! What the runner needs of an emulated board.
+//! The interface between the runner and the emulated board.
 
 use std::io;
 
@@ -18,25 +18,25 @@ use robot_emulator::soc::board_errors::BoardError;
 pub trait Simulation {
     fn run_until(&mut self, until: Ps) -> Result<(), MachineError>;
     fn apply(&mut self, event: &Event) -> Result<(), EventError>;
-    /// Lets the PCs on `ports` send to the world and hear from it.
+    /// Exchanges frames between the world and the PCs on `ports`.
     fn serve(&mut self, ports: &mut [CanPort]) -> io::Result<()>;
     fn world_names(&mut self) -> Vec<String>;
     fn sample_world(&mut self, out: &mut Vec<f64>);
     fn drain_wire_events(&mut self, out: &mut Vec<WireEvent>);
     fn diag_names(&mut self) -> Vec<String>;
-    /// What the values of each of them stand for, where the firmware says so.
+    /// The meaning of the values of each of them, where the firmware tells it.
     fn diag_meanings(&mut self) -> Vec<Option<Meaning>>;
-    /// False while the firmware's diagnostics cannot be read whole.
+    /// Returns false while the firmware's diagnostics cannot be read consistently.
     fn sample_diag(&mut self, out: &mut Vec<f64>) -> bool;
     /// Total, heading and inclination error of the last tick's estimate in degrees; `None` in a gap of the reference.
     fn attitude_error_deg(&mut self, q_wxyz: [f64; 4]) -> Option<[f64; 3]>;
     fn take_log(&mut self) -> Vec<LogLine>;
-    /// All that was measured; takes its time in a long run.
+    /// All measurements; this takes a while for a long run.
     fn stats(&mut self) -> Stats;
     fn progress(&mut self) -> Progress;
     /// Resets since power-on.
     fn resets(&mut self) -> usize;
-    /// What fails on silicon.
+    /// Errors that fail on silicon.
     fn board_errors(&mut self) -> Vec<BoardError>;
     fn suspicions(&mut self) -> Vec<BoardError>;
 }

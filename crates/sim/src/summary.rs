@@ -29,7 +29,7 @@ pub struct Summary {
     pub expectations: usize,
     /// Why the machine stopped before the end.
     pub stopped: Option<String>,
-    /// What fails on silicon, and so failed the run.
+    /// Board errors that fail on silicon, and so have failed the run.
     pub board_errors: Vec<BoardErrorEntry>,
     pub allowed_board_errors: Vec<BoardErrorEntry>,
     /// Suspicious only.
@@ -108,7 +108,7 @@ pub struct Final {
     pub joints: Value,
 }
 
-/// What depends on the computer the run was made on.
+/// Figures that depend on the computer on which the run was made.
 #[derive(Debug, Serialize)]
 pub struct Wall {
     pub wall_seconds: f64,

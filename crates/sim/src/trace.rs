@@ -11,7 +11,7 @@ use crate::machine::LogLine;
 /// Points over the width of a plot.
 const POINTS: u64 = 2_000;
 
-/// Every signal of a run, and its log.
+/// The signals and the log of a run.
 pub struct Traces {
     period: Ps,
     table: Option<SignalTable>,
@@ -41,7 +41,7 @@ impl Traces {
         &self.log
     }
 
-    /// One value for each of `times_s`; `None` if there is no such signal.
+    /// The values of a signal at `times_s`; `None` if there is no signal of this name.
     pub fn signal(&self, name: &str) -> Option<Vec<Option<f64>>> {
         let place = self.table.as_ref()?.index(name)?;
         Some(self.samples.iter().map(|values| values[place]).collect())

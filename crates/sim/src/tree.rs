@@ -80,7 +80,7 @@ impl Serialize for Filled<'_> {
     }
 }
 
-/// Whole numbers without a fraction, so that counters read as counters.
+/// Writes whole numbers without a fraction, so that counters look like counters.
 fn number<S: Serializer>(value: f64, to: S) -> Result<S::Ok, S::Error> {
     if value.fract() == 0.0 && value.abs() < 1e15 {
         to.serialize_i64(value as i64)

@@ -28,12 +28,12 @@ struct Pc {
     script: Vec<(Ps, String)>,
     reads: bool,
     device: Option<File>,
-    heard: String,
+    received: String,
 }
 
 impl Pc {
     fn frames(&self, start: &str) -> usize {
-        let lines = self.heard.split('\r');
+        let lines = self.received.split('\r');
         lines.filter(|line| line.starts_with(start)).count()
     }
 }
@@ -52,7 +52,7 @@ impl Observer for Pc {
             let mut bytes = [0; 4096];
             match device.read(&mut bytes) {
                 Ok(count) => self
-                    .heard
+                    .received
                     .push_str(&String::from_utf8_lossy(&bytes[..count])),
                 Err(e) => assert_eq!(e.kind(), ErrorKind::WouldBlock),
             }
@@ -98,7 +98,7 @@ fn injection() -> Vec<(Ps, String)> {
 }
 
 #[test]
-fn a_pc_hears_the_commands_and_is_heard_by_the_firmware() {
+fn a_pc_receives_the_commands_and_its_frames_reach_the_firmware() {
     let open = (100 * MS, "S8\rZ1\rO\r".to_owned());
     let mut silent = Pc {
         script: vec![open.clone()],
@@ -114,7 +114,7 @@ fn a_pc_hears_the_commands_and_is_heard_by_the_firmware() {
     let with = run(&mut talking, BEFORE_ERASE_S);
 
     assert!(
-        talking.heard.starts_with("\r\r\r"),
+        talking.received.starts_with("\r\r\r"),
         "settings are acknowledged"
     );
     assert_eq!(talking.frames("z"), 80, "every frame was taken");
@@ -132,7 +132,7 @@ fn a_pc_hears_the_commands_and_is_heard_by_the_firmware() {
         let count = talking.frames(start);
         assert!((390..=402).contains(&count), "{count} {what}");
     }
-    let command = silent.heard.split('\r').find(|l| l.starts_with("t200"));
+    let command = silent.received.split('\r').find(|l| l.starts_with("t200"));
     let stamp = command.and_then(|l| l.strip_prefix("t2008")?.strip_prefix("0000000000000000"));
     let stamp = u16::from_str_radix(stamp.expect("unarmed: all zero"), 16);
     assert!((100..=103).contains(&stamp.expect("milliseconds")));

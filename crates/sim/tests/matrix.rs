@@ -69,9 +69,9 @@ fn every_fault_in_every_phase_ends_as_it_must() {
         for phase in Phase::ALL {
             let seen = &cells[&(index, phase)];
             println!("{}", document::line(row, phase, seen));
-            let complaints = judge::complaints(row, phase, seen).into_iter();
+            let violations = judge::violations(row, phase, seen).into_iter();
             let fault = row.fault;
-            wrong.extend(complaints.map(|what| format!("{fault}, {phase}: {what}")));
+            wrong.extend(violations.map(|what| format!("{fault}, {phase}: {what}")));
         }
     }
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
@@ -81,7 +81,7 @@ fn every_fault_in_every_phase_ends_as_it_must() {
 }
 
 #[test]
-fn every_fault_there_is_has_a_row() {
+fn every_fault_has_a_row() {
     let rows = expected::rows();
     let missing: Vec<_> = faults::all()
         .map(|fault| fault.name)

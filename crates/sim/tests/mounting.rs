@@ -67,7 +67,7 @@ const UNSET: u8 = 24;
 
 /// Names, and their numbers in docs/mounting.md: each axis of board and magnetometer points each way at least once.
 #[test]
-fn a_robot_that_is_told_how_its_sensors_sit_drives_as_ever() {
+fn a_robot_that_knows_how_its_sensors_sit_drives_as_before() {
     for (board, number, mag, mag_number) in [
         ("x-backward-z-down", 5, "x-left-z-up", 8),
         ("x-right-z-up", 12, "x-down-z-right", 23),
@@ -85,7 +85,7 @@ fn a_robot_that_is_told_how_its_sensors_sit_drives_as_ever() {
 
 /// Every other setting that leaves the board's z axis level shows the robot on its side or its head.
 #[test]
-fn a_robot_that_is_told_otherwise_does_not_arm() {
+fn a_robot_with_wrong_sensor_mountings_does_not_arm() {
     let body = "
 [[at]]
 t = 2.5

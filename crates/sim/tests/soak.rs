@@ -7,7 +7,7 @@ use robot_plant::time::SECOND;
 use robot_sim::soak::Soak;
 
 #[test]
-fn every_rule_holds_for_two_minutes() {
+fn every_invariant_holds_for_two_minutes() {
     let soak = Soak {
         elf: support::image(),
         length: 120 * SECOND,

@@ -16,21 +16,21 @@ t = 0.4
 remote = { e_stop = true }
 ";
 
-/// What a run complains of.
+/// The board errors and suspicions of a run.
 #[derive(Debug, Default, PartialEq)]
-struct Complaints {
+struct Reported {
     failing: Vec<String>,
     suspicious: Vec<String>,
 }
 
-/// All that a run with these register bits overridden complains of.
-fn complaints(patches: &[RegisterPatch]) -> Complaints {
+/// Runs the image with these register bits overridden.
+fn reported(patches: &[RegisterPatch]) -> Reported {
     let mut job = support::job(Scenario::parse(QUIET, "strictness").expect("it parses"));
     job.patches = patches.to_vec();
     let summary = job.run(&mut []).expect("the machine starts").summary;
     let errors = summary.board_errors.into_iter().map(|e| e.message);
     let doubts = summary.suspicions.into_iter().map(|e| e.message);
-    let all = Complaints {
+    let all = Reported {
         failing: errors.chain(summary.stopped).collect(),
         suspicious: doubts.collect(),
     };
@@ -59,26 +59,26 @@ fn must_name(messages: &[String], parts: &[&str]) {
     let telling = |message: &String| parts.iter().all(|part| message.contains(part));
     assert!(
         messages.iter().any(telling),
-        "no complaint names {parts:?}: {messages:#?}"
+        "no message names {parts:?}: {messages:#?}"
     );
 }
 
-/// The run fails, and one complaint has all of `parts` in it.
-fn must_complain(patch: RegisterPatch, parts: &[&str]) {
-    must_name(&complaints(&[patch]).failing, parts);
+/// The run fails, and one message contains all of `parts`.
+fn must_report(patch: RegisterPatch, parts: &[&str]) {
+    must_name(&reported(&[patch]).failing, parts);
 }
 
-/// The run does not fail, and one complaint has all of `parts` in it.
+/// The run does not fail, and one message contains all of `parts`.
 fn must_doubt(patch: RegisterPatch, parts: &[&str]) {
-    let all = complaints(&[patch]);
+    let all = reported(&[patch]);
     assert_eq!(all.failing, Vec::<String>::new());
     must_name(&all.suspicious, parts);
 }
 
 /// The same for several at once: each has its bits set to the value, and is named by all of its parts.
-fn must_complain_of_all(wrong: &[(u32, u32, u32, &[&str])]) {
+fn must_report_all(wrong: &[(u32, u32, u32, &[&str])]) {
     let patches: Vec<_> = wrong.iter().map(|w| patch(w.0, w.1, w.2)).collect();
-    let failing = complaints(&patches).failing;
+    let failing = reported(&patches).failing;
     wrong.iter().for_each(|w| must_name(&failing, w.3));
 }
 
@@ -91,8 +91,8 @@ fn patch(address: u32, mask: u32, value: u32) -> RegisterPatch {
 }
 
 #[test]
-fn the_image_as_shipped_gives_no_complaint() {
-    assert_eq!(complaints(&[]), Complaints::default());
+fn the_shipped_image_causes_no_board_error() {
+    assert_eq!(reported(&[]), Reported::default());
 }
 
 /// PB3 on AF6 (SPI3) instead of AF5 (SPI1): GPIOB_AFRL bits 15:12.
@@ -103,7 +103,7 @@ fn wrong_alternate_function_of_the_imu_clock() {
         mask: 0xF000,
         value: 0x6000,
     };
-    must_complain(patch, &["SPI1_SCK: PB3 is AF6, needs AF5"]);
+    must_report(patch, &["SPI1_SCK: PB3 is AF6, needs AF5"]);
 }
 
 /// USART3_RX sits on DMA1 stream 1 channel 4; channel 5 is TIM2's there: DMA1_S1CR bits 27:25.
@@ -114,7 +114,7 @@ fn wrong_dma_channel_of_the_radio() {
         mask: 7 << 25,
         value: 5 << 25,
     };
-    must_complain(patch, &["USART3_RX", "DMA1 stream 1", "set to channel 5"]);
+    must_report(patch, &["USART3_RX", "DMA1 stream 1", "set to channel 5"]);
 }
 
 /// Prescaler 6 instead of 3 halves the bit rate: CAN1_BTR bits 9:0.
@@ -125,7 +125,7 @@ fn wrong_can_bit_timing() {
         mask: 0x3FF,
         value: 5,
     };
-    must_complain(patch, &["CAN1: 500000 bit/s on a 1000000 bit/s bus"]);
+    must_report(patch, &["CAN1: 500000 bit/s on a 1000000 bit/s bus"]);
 }
 
 /// N = 100 instead of 168 gives 100 MHz: APB1 runs at 25 MHz. RCC_PLLCFGR bits 14:6.
@@ -136,7 +136,7 @@ fn wrong_pll_multiplier() {
         mask: 0x1FF << 6,
         value: 100 << 6,
     };
-    must_complain(patch, &["pclk1 runs at 25 MHz"]);
+    must_report(patch, &["pclk1 runs at 25 MHz"]);
 }
 
 /// 8N1 instead of 8E2: USART3_CR1 bits M (12) and PCE (10) cleared.
@@ -147,7 +147,7 @@ fn radio_without_parity() {
         mask: 1 << 12 | 1 << 10,
         value: 0,
     };
-    must_complain(patch, &["USART3", "8E2", "8N2"]);
+    must_report(patch, &["USART3", "8E2", "8N2"]);
 }
 
 /// Odd parity where the receiver sends even: USART3_CR1 bit PS (9).
@@ -158,7 +158,7 @@ fn radio_with_the_wrong_parity() {
         mask: 1 << 9,
         value: 1 << 9,
     };
-    must_complain(patch, &["USART3", "8E2", "8O2"]);
+    must_report(patch, &["USART3", "8E2", "8O2"]);
 }
 
 /// PLLP = 4 instead of 2 halves every clock: RCC_PLLCFGR bits 17:16.
@@ -169,7 +169,7 @@ fn wrong_pll_divider() {
         mask: 3 << 16,
         value: 1 << 16,
     };
-    must_complain(patch, &["pclk1 runs at 21 MHz"]);
+    must_report(patch, &["pclk1 runs at 21 MHz"]);
 }
 
 /// APB1 at 84 MHz, its limit is 42 MHz: RCC_CFGR bits 12:10.
@@ -180,7 +180,7 @@ fn wrong_apb1_prescaler() {
         mask: 7 << 10,
         value: 0b100 << 10,
     };
-    must_complain(patch, &["PCLK1 is 84000000 Hz"]);
+    must_report(patch, &["PCLK1 is 84000000 Hz"]);
 }
 
 /// Port B without its clock: RCC_AHB1ENR bit 1.
@@ -191,7 +191,7 @@ fn unclocked_port() {
         mask: 1 << 1,
         value: 0,
     };
-    must_complain(patch, &["GPIOB", "AHB1ENR.GPIOBEN is 0"]);
+    must_report(patch, &["GPIOB", "AHB1ENR.GPIOBEN is 0"]);
 }
 
 /// PCLK2/4 = 21 MHz, the BMI088 takes 10 MHz: SPI1_CR1 bits 5:3.
@@ -202,7 +202,7 @@ fn imu_clock_above_its_limit() {
         mask: 7 << 3,
         value: 1 << 3,
     };
-    must_complain(patch, &["BMI088: SCK at 21000000 Hz"]);
+    must_report(patch, &["BMI088: SCK at 21000000 Hz"]);
 }
 
 /// PCLK2/8 = 10.5 MHz, as DJI's own programs have it.
@@ -224,7 +224,7 @@ fn magnetometer_clock_above_its_limit() {
         mask: 0xFFF,
         value: 30,
     };
-    must_complain(patch, &["I2C3: SCL at 466666 Hz"]);
+    must_report(patch, &["I2C3: SCL at 466666 Hz"]);
 }
 
 /// A push-pull SDA: GPIOC_OTYPER bit 9.
@@ -235,7 +235,7 @@ fn push_pull_i2c_line() {
         mask: 1 << 9,
         value: 0,
     };
-    must_complain(patch, &["I2C3_SDA: PC9 is push-pull, needs open-drain"]);
+    must_report(patch, &["I2C3_SDA: PC9 is push-pull, needs open-drain"]);
 }
 
 /// TIM2, the time base, at 84 MHz / 83: every tick is 1.2 % short. TIM2_PSC.
@@ -275,7 +275,7 @@ fn open_drain(port: char, pin: u32) -> (u32, u32, u32) {
     (address, 1 << pin, 1 << pin)
 }
 
-fn must_complain_of_open_drains(pins: &[(char, u32, &[&str])]) {
+fn must_report_open_drains(pins: &[(char, u32, &[&str])]) {
     let wrong: Vec<_> = pins
         .iter()
         .map(|&(port, pin, parts)| {
@@ -283,19 +283,19 @@ fn must_complain_of_open_drains(pins: &[(char, u32, &[&str])]) {
             (address, mask, value, parts)
         })
         .collect();
-    must_complain_of_all(&wrong);
+    must_report_all(&wrong);
 }
 
 /// The clock idles high in mode 3, for which the HAL switches its pull-up on.
 #[test]
 fn open_drain_outputs_without_a_pull_up_never_rise() {
     let never = "open-drain without a pull-up and never rises";
-    must_complain_of_open_drains(&[
+    must_report_open_drains(&[
         ('B', 3, &["SPI1_SCK: PB3", "rises too slowly by a resistor"]),
         ('D', 1, &["CAN1_TX: PD1", never]),
         ('B', 6, &["CAN2_TX: PB6", never]),
     ]);
-    must_complain_of_open_drains(&[
+    must_report_open_drains(&[
         ('A', 7, &["SPI1_MOSI: PA7", never]),
         (
             'A',
@@ -315,7 +315,7 @@ fn open_drain_outputs_without_a_pull_up_never_rise() {
 
 #[test]
 fn open_drain_outputs_open_no_mosfet() {
-    must_complain_of_open_drains(&[
+    must_report_open_drains(&[
         ('F', 6, &["PF6 is open-drain", "heater stays off"]),
         ('H', 11, &["PH11 is open-drain", "green LED stays off"]),
         ('H', 12, &["PH12 is open-drain", "red LED stays off"]),
@@ -348,14 +348,14 @@ fn an_open_drain_reset_of_the_magnetometer_is_suspicious() {
 #[test]
 fn wrong_alternate_function_of_the_heater() {
     let patch = patch(0x4002_1420, 0xF << 24, 2 << 24);
-    must_complain(patch, &["TIM10_CH1: PF6 is AF2, needs AF3: the heater"]);
+    must_report(patch, &["TIM10_CH1: PF6 is AF2, needs AF3: the heater"]);
 }
 
 /// GPIOC_MODER bits 23:22: PC11 drives against the radio's inverter.
 #[test]
 fn an_output_where_the_radio_comes_in() {
     let patch = patch(0x4002_0800, 3 << 22, 1 << 22);
-    must_complain(patch, &["PC11 is an output, and so is"]);
+    must_report(patch, &["PC11 is an output, and so is"]);
 }
 
 /// GPIOB_OSPEEDR bits 7:6: the slowest stage is made for 4 MHz, the clock has 5.25 MHz.
@@ -372,7 +372,7 @@ fn a_slow_output_stage_on_the_imu_clock() {
 fn can_bits_sampled_where_no_other_device_does() {
     let early = 5 << 20 | 6 << 16;
     let late = 11 << 16;
-    must_complain_of_all(&[
+    must_report_all(&[
         (0x4000_641C, 0x7F << 16, early, &["CAN1: samples at 57.1 %"]),
         (0x4000_681C, 0x7F << 16, late, &["CAN2: samples at 92.8 %"]),
     ]);
@@ -386,7 +386,7 @@ fn can_bits_sampled_where_no_other_device_does() {
 #[test]
 fn a_can_jump_width_past_the_end_of_the_bit() {
     let patch = patch(0x4000_641C, 3 << 24, 3 << 24);
-    must_complain(patch, &["CAN1: SJW of 4 quanta, with 3 after the sample"]);
+    must_report(patch, &["CAN1: SJW of 4 quanta, with 3 after the sample"]);
 }
 
 /// GPIOH_MODER bits 23:22 and GPIOG_MODER bits 13:12: what drives nothing.
@@ -394,7 +394,7 @@ fn a_can_jump_width_past_the_end_of_the_bit() {
 fn pins_that_were_never_made_outputs() {
     let led = (0x4002_1C00, 3 << 22, 0);
     let reset = (0x4002_1800, 3 << 12, 0);
-    let found = complaints(&[led, reset].map(|p| patch(p.0, p.1, p.2)));
+    let found = reported(&[led, reset].map(|p| patch(p.0, p.1, p.2)));
     must_name(
         &found.failing,
         &["PH11 is an input, needs an output: the green LED"],
@@ -405,7 +405,7 @@ fn pins_that_were_never_made_outputs() {
 /// FLASH_ACR bits 8 to 10. Nothing fails, but the times of the run are not those of the board.
 #[test]
 fn flash_without_prefetch_and_caches() {
-    let found = complaints(&[patch(0x4002_3C00, 7 << 8, 0)]);
+    let found = reported(&[patch(0x4002_3C00, 7 << 8, 0)]);
     assert_eq!(found.failing, Vec::<String>::new());
     for what in ["prefetch", "instruction cache", "data cache"] {
         must_name(&found.suspicious, &["FLASH:", what, "off at 5 wait states"]);

@@ -4,7 +4,7 @@
 //! What a base register holds at its access is followed through the block, as far as its two lowest bits go. Where that
 //! fails, the register is looked at after the block, if it is still what it was.
 
-/// What one run through a block needs.
+/// Registers that must hold aligned addresses in one run through a block.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct WordAccesses {
     /// Bit 4·r + n: register r plus n must be a multiple of four before the block.

@@ -38,7 +38,7 @@ impl CycleClock {
             .saturating_add(u64::try_from(cycles).unwrap_or(u64::MAX))
     }
 
-    /// From now on a cycle lasts 1/`hz`.
+    /// Changes the clock's frequency: from now on a cycle lasts 1/`hz`.
     pub fn set_hz(&mut self, hz: u32) {
         self.anchor_ps = self.now();
         self.anchor_cycles = self.cycles;

@@ -5,7 +5,7 @@
 //! buffer); multiple transfers 1 + registers; taken branches three (two for conditional ones, which half the time are
 //! not taken); SDIV/UDIV seven (2 to 12); VDIV and VSQRT 14; VMLA and VFMA three.
 
-/// What one run through a block costs and does that the engine cannot tell us.
+/// Cost of one run through a block, and effects of it that the engine does not report.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BlockCost {
     /// Instructions that the core issues, those of a failed IT condition included.

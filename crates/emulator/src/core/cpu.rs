@@ -39,7 +39,7 @@ pub use fault_injection::{Effect, Injection};
 use hooks::with_soc;
 use sleep::SleepKind;
 use standstill::Standstill;
-/// What the engine under the CPU reports.
+/// Error of the engine under the CPU.
 pub use unicorn_engine::uc_error as EngineError;
 
 /// Why `Cpu::run` came back.
@@ -91,14 +91,14 @@ enum Stop {
 struct Block {
     start: u32,
     end: u32,
-    /// Not yet added to the counters.
+    /// Instructions and cycles that are not yet added to the counters.
     instructions: u16,
     cycles: u16,
     /// Registers that must be multiples of four when it has run, a bit each.
     aligned_after: u16,
 }
 
-/// What the engine's hooks share with the run loop.
+/// State that the engine's hooks share with the run loop.
 pub(crate) struct State {
     clock: CycleClock,
     /// Out only while it works on the memories through the engine.
@@ -120,7 +120,7 @@ pub(crate) struct State {
     /// Address of the function whose entries are recorded.
     watched_entry: Option<u32>,
     injector: Injector,
-    /// When injection last struck.
+    /// When an injected fault last took effect.
     struck_at: Option<Ps>,
 }
 
@@ -130,7 +130,7 @@ pub struct Cpu {
     asleep: Option<SleepKind>,
 }
 
-/// Past every address: the engine would stop where it is told to end as if there were a WFI.
+/// An end address past every address. The engine takes its end address for a WFI.
 const NOWHERE: u64 = 1 << 32;
 const ENTRY_CYCLES: u64 = 12;
 const RETURN_CYCLES: u64 = 12;
@@ -226,12 +226,12 @@ impl Cpu {
         with_soc(&mut self.engine, |soc, now, _| change(soc, now))
     }
 
-    /// When injection last made the program go wrong.
+    /// When an injected fault last took effect.
     pub fn struck_at(&self) -> Option<Ps> {
         self.state().struck_at
     }
 
-    /// What the run has measured so far.
+    /// Measurements of the run so far.
     pub fn stats(&self) -> &Execution {
         &self.state().stats
     }

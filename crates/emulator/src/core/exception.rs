@@ -45,7 +45,7 @@ impl Exception {
         self.0.checked_sub(16)
     }
 
-    /// As in the reference manual's vector table (RM0090 table 62); `thread` for thread mode.
+    /// Name in the reference manual's vector table (RM0090 table 62); `thread` for thread mode.
     pub fn name(self) -> &'static str {
         match self.irq() {
             Some(irq) => IRQ_NAMES[usize::from(irq)],

@@ -2,7 +2,7 @@
 
 use crate::core::exception::Exception;
 
-/// What went wrong, with the address where the hardware reports one.
+/// Cause of a fault, with the address where the hardware reports one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
     /// Load or store where nothing answers. Stores are reported as precisely as loads, which a real write buffer

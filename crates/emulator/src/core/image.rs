@@ -1,4 +1,4 @@
-//! The firmware image: what goes into flash, and the symbols that name what runs.
+//! The firmware image: its segments in flash and its symbols.
 
 use std::collections::BTreeMap;
 
@@ -15,7 +15,7 @@ use crate::core::memory::{DATA_FLASH, FLASH, FLASH_ALIAS};
 pub struct Segment {
     /// Load address in flash.
     pub address: u32,
-    /// What is loaded there.
+    /// Bytes that are loaded there.
     pub data: Vec<u8>,
 }
 
@@ -30,7 +30,7 @@ struct Item {
 /// A parsed ELF file.
 #[derive(Debug)]
 pub struct Image {
-    /// What goes into flash, in the order of the file.
+    /// Loadable segments, in the order of the file.
     pub segments: Vec<Segment>,
     symbols: BTreeMap<String, u32>,
     functions: Vec<Item>,

@@ -101,7 +101,7 @@ pub fn map<D>(engine: &mut Unicorn<'_, D>) -> Result<(), uc_error> {
     engine.mem_write(VREFIN_CAL.into(), &vrefint_counts(3.3).to_le_bytes())
 }
 
-/// What lies below and above `hole`.
+/// The parts of `whole` below and above `hole`.
 fn around(whole: Region, hole: Region) -> [Region; 2] {
     let (hole_end, end) = (hole.base + hole.size, whole.base + whole.size);
     [

@@ -200,7 +200,7 @@ impl Nvic {
             .min_by_key(|&e| (self.priority_of(e), self.priority[e.index()], e.number()))
     }
 
-    /// What the processor takes now.
+    /// The exception that the processor takes now.
     pub fn deliverable(&self, masks: Masks) -> Option<Exception> {
         self.first_pending()
             .filter(|&e| self.priority_of(e) < self.execution_priority(masks))
@@ -211,7 +211,7 @@ impl Nvic {
         self.deliverable(Masks::default()).is_some()
     }
 
-    /// What ends a WFI: a pending exception that PRIMASK alone may hold back (ARMv7-M ARM B1.5.19).
+    /// Whether a WFI ends: an exception is pending that PRIMASK alone may hold back (ARMv7-M ARM B1.5.19).
     pub fn wakes_from_wfi(&self, masks: Masks) -> bool {
         self.deliverable(Masks {
             primask: false,

@@ -1,4 +1,4 @@
-//! What a run measures of itself: instructions by context, entries of a watched function, busy and idle cycles.
+//! Measurements of a run: instructions by context, entries of a watched function, busy and idle cycles.
 
 use std::collections::BTreeMap;
 

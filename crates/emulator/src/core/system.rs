@@ -18,7 +18,7 @@ mod scb_registers;
 
 use debug_registers::Debug;
 
-/// What the registers of the private peripheral bus hold.
+/// Registers of the private peripheral bus.
 #[derive(Debug)]
 pub(crate) struct System {
     pub nvic: Nvic,
@@ -63,7 +63,7 @@ impl Default for System {
     }
 }
 
-/// What an access needs to know of the rest of the machine.
+/// State of the rest of the machine that an access needs.
 pub(crate) struct Surroundings<'a> {
     pub cycles: u64,
     /// Level of each interrupt's request line.
@@ -163,7 +163,7 @@ impl System {
         self.scr & SCR_SLEEPDEEP != 0
     }
 
-    /// Without privilege only STIR may be written, and that if CCR allows it (ARMv7-M ARM B3.2.26).
+    /// Whether unprivileged code may write there: only STIR, if CCR allows it (ARMv7-M ARM B3.2.26).
     pub fn may_be_written_unprivileged(&self, addr: u32) -> bool {
         addr == reg::STIR && self.ccr & CCR_USERSETMPEND != 0
     }

@@ -1,6 +1,6 @@
 //! Byte, half-word and word accesses to 32-bit registers.
 
-/// Where an access falls: the register's word offset and the bits of it.
+/// The register and the bits of it that an access reaches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Access {
     pub register: u32,

@@ -1,5 +1,5 @@
-//! ADC1 and ADC3 with the registers common to the three converters (RM0090 chapter 13): single conversions of the
-//! battery and of the internal reference voltage.
+//! ADC1 and ADC3 with the registers common to the three converters (RM0090 chapter 13): single conversions of
+//! IN8 and of the internal reference voltage.
 
 mod converter;
 
@@ -32,7 +32,7 @@ const VREFINT_V: f64 = 1.217;
 /// The reference after TSVREFE (DS8626, embedded reference voltage).
 const VREFINT_START: Ps = 10 * US;
 
-/// What a 12-bit converter makes of the reference where the supply is `vdda_v`.
+/// The internal reference in counts of 12 bits, where the supply is `vdda_v`.
 pub fn vrefint_counts(vdda_v: f64) -> u16 {
     (VREFINT_V / vdda_v * 4095.0).round() as u16
 }
@@ -42,7 +42,7 @@ mod ccr {
     pub const TSVREFE: u32 = 1 << 23;
 }
 
-/// What the converters share.
+/// Registers that the converters share.
 #[derive(Debug, Default)]
 struct Common {
     ccr: u32,

@@ -6,7 +6,7 @@ use crate::{
         board::{Outputs, Waves},
         board_errors::BoardErrors,
         can::Can,
-        can_bus::CanBusStats,
+        can::bus::CanBusStats,
         dma::{Beat, Dma, request_map::RequestLine, unserved::Unserved},
         dma_request::DmaRequests,
         exti::Exti,

@@ -1,4 +1,4 @@
-//! What the chip's pins and buses lead to.
+//! The interface to the board at the chip's pins and buses.
 
 use std::any::Any;
 
@@ -27,13 +27,13 @@ pub trait Board: Any {
     /// Brings the board up to `now`.
     fn advance(&mut self, _now: Ps) {}
 
-    /// Files what the chip has asked of the board's devices beyond their limits since the last call.
+    /// Files the accesses beyond the limits of the board's devices since the last call.
     fn file_errors(&mut self, _errors: &mut BoardErrors, _now: Ps) {}
 
-    /// Gives the pins what the board has on them at power-on.
+    /// Sets the pins' connections on the board at power-on.
     fn connect(&self, _pins: &mut PinBank) {}
 
-    /// Gives the pins the levels that the board's devices drive now.
+    /// Sets the levels that the board's devices drive now.
     fn drive_pins(&self, _pins: &mut PinBank) {}
 
     /// Whether a device on the board ever drives the pin.
@@ -49,7 +49,7 @@ pub trait Board: Any {
         None
     }
 
-    /// What an analogue input sees.
+    /// The source at an analogue input.
     fn analog(&self, _signal: Signal) -> AnalogSource {
         AnalogSource::default()
     }
@@ -110,7 +110,7 @@ pub trait Board: Any {
         false
     }
 
-    /// Whether the node hears frames: a present one, or one that only listens.
+    /// Whether the node receives frames: a present one does, and one that only listens.
     fn can_hears(&self, port: CanPort, node: usize) -> bool {
         self.can_present(port, node)
     }
@@ -123,11 +123,11 @@ pub trait Board: Any {
     /// The node's pending frame went out and was acknowledged.
     fn can_sent(&mut self, _port: CanPort, _node: usize, _now: Ps) {}
 
-    /// A frame of another node ended without error; called for each node that hears.
+    /// A frame of another node ended without error; called for each node that receives it.
     fn can_received(&mut self, _port: CanPort, _node: usize, _frame: &CanFrame, _now: Ps) {}
 }
 
-/// What the chip drives onto its pins.
+/// Outputs of the chip on its pins.
 pub struct Outputs<'a> {
     /// Modes and levels as the ports have them.
     pub pins: &'a PinBank,

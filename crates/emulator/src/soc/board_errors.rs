@@ -1,15 +1,15 @@
-//! What real silicon would punish silently, said aloud: each entry names the wrong setting and what it breaks.
+//! Settings and accesses that fail silently on silicon. Each entry names the error and its consequence.
 
 use crate::time::Ps;
 
-/// One wrong setting or access.
+/// A wrong setting or access.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BoardError {
     /// When it was first seen.
     pub at: Ps,
     /// How often it was seen.
     pub count: u64,
-    /// What is wrong, and what it breaks.
+    /// The error and its consequence.
     pub message: String,
 }
 
@@ -21,22 +21,22 @@ pub struct BoardErrors {
 }
 
 impl BoardErrors {
-    /// Fails on silicon.
+    /// Files an error that fails on silicon.
     pub fn report(&mut self, at: Ps, message: impl Into<String>) {
         note(&mut self.failing, at, message.into());
     }
 
-    /// Suspicious only.
+    /// Files what is only suspicious.
     pub fn suspect(&mut self, at: Ps, message: impl Into<String>) {
         note(&mut self.suspicious, at, message.into());
     }
 
-    /// What fails on silicon, and so fails the run.
+    /// Errors that fail on silicon, and so fail the run.
     pub fn list(&self) -> &[BoardError] {
         &self.failing
     }
 
-    /// What works on some specimens only, or with less accuracy.
+    /// Settings and accesses that work on some specimens only, or with less accuracy.
     pub fn suspicions(&self) -> &[BoardError] {
         &self.suspicious
     }

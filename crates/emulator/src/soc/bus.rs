@@ -7,7 +7,7 @@ use crate::{
         blocks::Blocks,
         board::Board,
         board_errors::BoardErrors,
-        can_bus::CanBusStats,
+        can::bus::CanBusStats,
         clocks::ClockTree,
         dma_request::DmaRequests,
         flash::Flash,
@@ -22,14 +22,14 @@ use crate::{
     time::Ps,
 };
 
-/// Overrides bits in every write the image makes to one register: one wrong line of the image, for tests.
+/// Replaces bits in every write of the image to one register. Tests use it in place of a wrong line of code.
 #[derive(Clone, Copy, Debug)]
 pub struct RegisterPatch {
     /// Address of the register.
     pub address: u32,
     /// Bits that are replaced.
     pub mask: u32,
-    /// What they become.
+    /// Their value after the replacement.
     pub value: u32,
 }
 
@@ -37,7 +37,7 @@ pub struct RegisterPatch {
 pub struct Soc {
     pub(crate) irq: IrqLines,
     pub(crate) clocks: ClockTree,
-    /// What silicon would punish, as filed so far.
+    /// Wrong settings and accesses so far.
     pub errors: BoardErrors,
     board: Box<dyn Board>,
     pub(crate) pins: PinBank,
@@ -93,7 +93,7 @@ impl Soc {
         board.downcast_mut()
     }
 
-    /// From now on every write of the image to the patch's address has the masked bits replaced.
+    /// Replaces the masked bits in every later write of the image to the patch's address.
     pub fn add_patch(&mut self, patch: RegisterPatch) {
         self.patches.push(patch);
     }
@@ -126,7 +126,7 @@ impl Soc {
         &mut self.blocks.flash
     }
 
-    /// Of the chip, which runs on from 1.8 V.
+    /// Sets the chip's supply. The chip works from 1.8 V on.
     pub fn set_vdd_mv(&mut self, vdd_mv: u32) {
         self.blocks.pwr.set_vdd_mv(vdd_mv);
     }
@@ -261,7 +261,7 @@ impl Soc {
         self.after_access(block, now, mem)
     }
 
-    /// What an access or event of one block means for the others.
+    /// Passes the effects of an access or event of one block to the others.
     fn after_access(
         &mut self,
         block: Block,
@@ -360,7 +360,7 @@ impl Soc {
         false
     }
 
-    /// What a write of `value` to `addr` becomes by the patches.
+    /// `value`, written to `addr`, with the patches applied.
     pub fn patched(&self, addr: u32, value: u32) -> u32 {
         self.patches
             .iter()

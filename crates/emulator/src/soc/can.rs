@@ -10,7 +10,7 @@ use self::{
 use crate::{
     soc::{
         access::Access,
-        can_bus::{CanBus, CanBusStats},
+        can::bus::{CanBus, CanBusStats},
         peripheral::{Ctx, Peripheral, Unmodelled},
         registers::registers,
         scheduler::Target,
@@ -20,10 +20,12 @@ use crate::{
 };
 
 mod bit_timing;
+pub mod bus;
 pub mod controller;
 pub mod errors;
 mod fifo;
 pub mod filter;
+mod frame_bits;
 mod mailboxes;
 
 registers! {
@@ -48,10 +50,10 @@ registers! {
 /// Four words each: identifier, length and time, data. Three transmit mailboxes, two FIFOs.
 const MAILBOXES: Range<u32> = reg::TI0R..reg::RI0R;
 const FIFOS: Range<u32> = reg::RI0R..reg::RI0R + 0x20;
-/// From CAN1's registers to CAN2's.
+/// Offset of CAN2's registers from those of CAN1.
 const CAN2: u32 = 0x400;
 
-/// What an event is for, above the bus number in bit 0.
+/// Tags of scheduled events, above the bus number in bit 0.
 const BUS_PHASE: u32 = 0;
 const QUIET_BUS: u32 = 1;
 

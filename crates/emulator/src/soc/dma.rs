@@ -198,7 +198,7 @@ impl Dma {
     }
 }
 
-/// Where the registers of stream 0 begin, and how many bytes those of one stream take.
+/// Offset of stream 0's registers, and bytes of one stream's registers.
 const STREAMS: u32 = 0x10;
 const STREAM_BYTES: u32 = 0x18;
 

@@ -87,7 +87,7 @@ const CACHE_LOOK: u32 = u32::MAX;
 const CACHES_ON_WITHIN: Ps = 100 * MS;
 
 impl Flash {
-    /// What was done to the cells.
+    /// Programs and erases since power-on.
     pub fn history(&self) -> &History {
         &self.history
     }
@@ -107,7 +107,7 @@ impl Flash {
         std::mem::take(&mut self.power_fails)
     }
 
-    /// Until when no fetch is served.
+    /// When fetches are served again, while the flash works.
     pub fn stalled_until(&self) -> Option<Ps> {
         self.under_way.as_ref().map(|under_way| under_way.time.end)
     }

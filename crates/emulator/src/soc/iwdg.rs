@@ -33,7 +33,7 @@ const RELOAD_AFTER_RESET: u32 = 0xFFF;
 #[derive(Clone, Copy, Debug)]
 struct Crossing {
     value: u32,
-    /// Until when `value` is still on its way (for ever while the LSI stands), and what counts until then.
+    /// When `value` takes effect (never while the LSI stands), and the value that counts until then.
     pending: Option<(Ps, u32)>,
 }
 
@@ -81,7 +81,7 @@ pub struct Iwdg {
     expires_at: Option<Ps>,
     /// When the next look at the counter comes; it moves itself on when the counter was reloaded meanwhile.
     watched_at: Option<Ps>,
-    /// Since when DBG_IWDG_STOP holds the counter, while the core is halted.
+    /// When DBG_IWDG_STOP stopped the counter, while the core is halted.
     frozen_since: Option<Ps>,
     bitten: bool,
 }
@@ -131,7 +131,7 @@ impl Iwdg {
         self.expire_after(u64::from(from) + 1, ctx);
     }
 
-    /// So many periods of the prescaler from now, which may change its divider on the way.
+    /// Expires after that many periods of the prescaler, whose divider may change meanwhile.
     fn expire_after(&mut self, periods: u64, ctx: &mut Ctx<'_>) {
         let now = period(self.prescaler.effective(ctx.now));
         let change = self.prescaler.pending.map(|(at, _)| at);
@@ -261,7 +261,7 @@ impl Peripheral for Iwdg {
     }
 }
 
-/// One count at that value of PR.
+/// Duration of one count at this value of PR.
 fn period(prescaler: u32) -> Ps {
     cycles_to_ps(4 << prescaler.min(6), LSI_HZ)
 }

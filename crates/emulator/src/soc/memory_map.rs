@@ -177,7 +177,7 @@ pub fn reset_bit(block: Block, offset: u32) -> Option<(Bus, u8)> {
 /// RCC reset bits of CAN1 and CAN2, which are one block here.
 pub const CAN_RESETS: [(Bus, u8); 2] = [(Bus::Apb1, 25), (Bus::Apb1, 26)];
 
-/// What to call an address no modelled block answers at.
+/// Name of an address at which no modelled block answers.
 pub fn unmodelled_name(addr: u32) -> String {
     UNMODELLED
         .iter()

@@ -1,4 +1,4 @@
-//! What every register block is to the bus, and what it may reach while it works.
+//! The interface of a register block, and what the block may access.
 
 use crate::{
     soc::{

@@ -25,7 +25,7 @@ impl std::fmt::Display for Pin {
     }
 }
 
-/// What a pin does (MODER and AFR).
+/// Function of a pin (MODER and AFR).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PinMode {
     /// Digital input.
@@ -60,7 +60,7 @@ pub enum Pull {
     Down,
 }
 
-/// What the port's registers make of a pin.
+/// Settings of a pin in its port's registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PinSettings {
     /// MODER, with AFR.
@@ -71,7 +71,7 @@ pub struct PinSettings {
     pub pull: Pull,
     /// OSPEEDR, 0 … 3.
     pub speed: u8,
-    /// What the output register asks for (seen outside only in output mode).
+    /// ODR: the level that the pin drives in output mode.
     pub high: bool,
 }
 
@@ -86,10 +86,10 @@ impl PinSettings {
     };
 }
 
-/// What the board has on a pin.
+/// Connection of a pin on the board.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Outside {
-    /// Nothing that gives it a level.
+    /// Nothing gives the pin a level.
     #[default]
     Nothing,
     /// A resistor of some kΩ to 3.3 V, which wins over the chip's own.
@@ -120,27 +120,27 @@ impl Default for PinBank {
 }
 
 impl PinBank {
-    /// What the port has made of the pin.
+    /// The pin's settings.
     pub fn settings(&self, pin: Pin) -> PinSettings {
         self.settings[usize::from(pin.port)][usize::from(pin.number)]
     }
 
-    /// The port has set the pin up anew.
+    /// Sets the pin up as the port's registers say.
     pub fn set(&mut self, pin: Pin, settings: PinSettings) {
         self.settings[usize::from(pin.port)][usize::from(pin.number)] = settings;
     }
 
-    /// What the pin does.
+    /// The pin's function.
     pub fn mode(&self, pin: Pin) -> PinMode {
         self.settings(pin).mode
     }
 
-    /// What the board has on the pin.
+    /// The pin's connection on the board.
     pub fn outside(&self, pin: Pin) -> Outside {
         self.outside[usize::from(pin.port)][usize::from(pin.number)]
     }
 
-    /// The board has something else on the pin from now on.
+    /// Changes the pin's connection on the board.
     pub fn set_outside(&mut self, pin: Pin, outside: Outside) {
         self.outside[usize::from(pin.port)][usize::from(pin.number)] = outside;
     }

@@ -22,9 +22,9 @@ const RESERVED_VOS: u32 = 1 << 15;
 const VOSRDY: u32 = 1 << 14;
 /// Read-only: VDD is below the level of PLS.
 const PVDO: u32 = 1 << 2;
-/// Of PLS 0 to 7, nominal.
+/// Nominal levels of PLS 0 to 7.
 const PVD_LEVELS_MV: [u32; 8] = [2_000, 2_100, 2_300, 2_500, 2_600, 2_700, 2_800, 2_900];
-/// Of the board's regulator.
+/// Supply at power-on.
 const VDD_MV: u32 = 3_300;
 
 #[derive(Debug)]

@@ -30,7 +30,7 @@ pub fn check(signal: Signal, ctx: &mut Ctx<'_>) -> bool {
     false
 }
 
-/// What the output stage is and should be, where it cannot drive the signal. 40 kΩ and the 30 pF of a pin, its track and
+/// The present and the needed output stage, where the present one cannot drive the signal. 40 kΩ and the 30 pF of a pin, its track and
 /// an input make edges of more than a µs.
 fn stage_misfit(
     stage: Stage,

@@ -1,10 +1,10 @@
-//! What happens later: events in order of time, first asked first served.
+//! Events in order of time; those of the same time in the order in which they were requested.
 
 use std::{cmp::Reverse, collections::BinaryHeap};
 
 use crate::time::Ps;
 
-/// Who is woken. One variant for each thing that acts by itself.
+/// Receiver of an event: one variant for each block that acts by itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Target {
     Rcc,

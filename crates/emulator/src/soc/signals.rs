@@ -1,4 +1,4 @@
-//! Peripherals' signals, and where a board wants them.
+//! Signals of the peripherals, and their connections on a board.
 
 use crate::soc::pins::{Pin, PinMode};
 
@@ -66,7 +66,7 @@ impl Signal {
     }
 }
 
-/// What a signal asks of its pin's output stage.
+/// Requirement of a signal on its pin's output stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
     /// The board drives the pin.
@@ -79,13 +79,13 @@ pub enum Stage {
     Shared,
 }
 
-/// Where a board wants a signal, and what is missing when it is not there.
+/// The board's connection of a signal.
 #[derive(Clone, Copy, Debug)]
 pub struct Route {
     /// The pin that the board has connected.
     pub pin: Pin,
-    /// What drives the line well enough.
+    /// The output stage that can drive the line.
     pub stage: Stage,
-    /// What the board suffers when the signal does not get through, as the end of a sentence.
+    /// The consequence when the signal does not get through, as the end of an error message.
     pub consequence: &'static str,
 }

@@ -161,11 +161,11 @@ impl Spi {
         }
     }
 
-    /// One byte over the wires, as far as they are connected.
+    /// Exchanges one byte, as far as the wires are connected.
     fn exchange(&self, byte: u8, ctx: &mut Ctx<'_>) -> u8 {
         let clocked = routing::check(Signal::Spi1Sck, ctx);
         let sends = routing::check(Signal::Spi1Mosi, ctx);
-        let hears = routing::check(Signal::Spi1Miso, ctx);
+        let receives = routing::check(Signal::Spi1Miso, ctx);
         let in_order = |b: u8| {
             if self.cr1 & cr1::LSBFIRST != 0 {
                 b.reverse_bits()
@@ -182,7 +182,7 @@ impl Spi {
         let miso = ctx
             .board
             .spi_transfer(mosi, self.sck_hz(ctx), mode, ctx.now);
-        if hears { in_order(miso) } else { 0 }
+        if receives { in_order(miso) } else { 0 }
     }
 
     fn write_cr1(&mut self, value: u32, ctx: &mut Ctx<'_>) -> Result<(), Unmodelled> {

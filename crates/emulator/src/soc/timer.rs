@@ -92,7 +92,7 @@ impl Timer {
         }
     }
 
-    /// What channel 0–3 drives onto its pin; none while its output is off.
+    /// The wave on the pin of channel 0–3; `None` while its output is off.
     pub fn wave(&self, channel: usize) -> Option<Wave> {
         let enable = self.ccer >> (4 * channel);
         (enable & 1 == 1).then(|| {

@@ -22,12 +22,12 @@ mod waveform;
 
 use registers::{cr1, cr3, reg, sr};
 
-/// What an event is for; anything else it might have been asked for is out of date.
+/// Tags of scheduled events. An event that is not due any more is ignored.
 const RECEIVED: u32 = 0;
 const IDLE: u32 = 1;
 const SENT: u32 = 2;
 
-/// One USART with the wires it has on the board.
+/// One USART.
 #[derive(Debug)]
 pub struct Usart {
     number: u8,

@@ -1,6 +1,6 @@
 //! A rectangular wave on a pin.
 
-/// What a timer channel drives onto its pin.
+/// Output of a timer channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wave {
     /// Frequency, Hz.

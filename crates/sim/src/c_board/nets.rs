@@ -1,4 +1,4 @@
-//! What gives the chip's pins a level from outside.
+//! Resistors and devices that give the chip's pins a level.
 
 use robot_emulator::soc::pins::{Outside, Pin, PinBank};
 use robot_plant::world::World;
@@ -18,7 +18,7 @@ const PULLED_UP: [Pin; 5] = [
 /// The radio's inverter (4.7 kΩ to 3.3 V) and both CAN transceivers: high while their lines rest.
 const RESTING_HIGH: [Pin; 3] = [Pin::new('C', 11), Pin::new('D', 0), Pin::new('B', 5)];
 
-/// Solders the board.
+/// Connects everything that gives a pin its level from power-on.
 pub fn connect(pins: &mut PinBank) {
     for pin in PULLED_UP {
         pins.set_outside(pin, Outside::PullUp);
@@ -28,12 +28,12 @@ pub fn connect(pins: &mut PinBank) {
     }
 }
 
-/// True where a device of the model drives the pin. The BMI088's interrupt pins (PC4, PC5) are not modelled.
+/// Whether a device of the model drives the pin. The BMI088's interrupt pins (PC4, PC5) are not modelled.
 pub fn drives_input(pin: Pin) -> bool {
     matches!(pin, MAG_DRDY | USER_KEY)
 }
 
-/// Levels that devices drive onto the chip's pins.
+/// Sets the levels that devices drive onto the chip's pins now.
 pub fn drive_inputs(pins: &mut PinBank, world: &World) {
     pins.set_outside(MAG_DRDY, Outside::Drives(world.mag_drdy_pin()));
     let key = if world.user_key_pin() {

@@ -24,7 +24,7 @@ struct Gate {
     timer: u8,
     /// Counted from 1.
     channel: u8,
-    /// Of the pin, which leads to the channel.
+    /// Alternate function of the pin that connects it to the channel.
     alternate_function: u8,
 }
 
@@ -52,7 +52,7 @@ const LEDS: [Gate; 3] = [
     gate("red LED", Pin::new('H', 12), (5, 3), 2),
 ];
 
-/// The IST8310 is talked to.
+/// A transfer with the IST8310 begins: its reset must not float.
 pub(super) fn check_mag_reset(pins: &PinBank, errors: &mut BoardErrors, now: Ps) {
     if pins.mode(MAG_RESET) != PinMode::Output && pins.level(MAG_RESET).is_none() {
         let message = format!("{MAG_RESET} floats: whether the IST8310 leaves its reset is chance");
@@ -60,7 +60,7 @@ pub(super) fn check_mag_reset(pins: &PinBank, errors: &mut BoardErrors, now: Ps)
     }
 }
 
-/// What the chip drives onto the devices.
+/// The levels that the chip drives onto the devices.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Levels {
     accel_selected: bool,
@@ -71,7 +71,7 @@ pub(super) struct Levels {
     buzzer: Wave,
 }
 
-/// Where the pins are read, and where is complained of what cannot work.
+/// Reads the pins, and files errors of what cannot work.
 struct Reader<'a> {
     pins: &'a PinBank,
     waves: &'a dyn Waves,
@@ -158,7 +158,7 @@ impl Reader<'_> {
         self.pins.level(MAG_RESET).unwrap_or(true)
     }
 
-    /// What a MOSFET's gate sees: its pull-down keeps it off while the pin drives no high level.
+    /// The wave at a MOSFET's gate. Its pull-down keeps it off while the pin drives no high level.
     fn drive(&mut self, gate: &Gate) -> Wave {
         let settings = self.pins.settings(gate.pin);
         let by_timer = self.waves.wave(gate.timer, gate.channel).unwrap_or(OFF);

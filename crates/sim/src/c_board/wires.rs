@@ -1,4 +1,4 @@
-//! The chip's and the world's words for the same frames, characters and cells.
+//! Conversions between the frames, characters and flash cells of the chip and those of the world.
 
 use robot_emulator::{
     soc::flash_cells::FlashCells,

@@ -12,7 +12,7 @@ use meaning::Meaning;
 /// The static that holds the record, and the record's type.
 const STATIC: &str = "g_robotapp_diag";
 const RECORD: &str = "DiagnosticsSnapshot";
-/// What the record says of arming, and its value while armed.
+/// The field with the arming state, and its value while armed.
 const ARMING_STATE: &str = "arming.state";
 const ARMED: f64 = 1.0;
 
@@ -52,7 +52,7 @@ impl Diagnostics {
         &self.names
     }
 
-    /// In the order of `names`.
+    /// Meanings of the values, in the order of `names`.
     pub fn meanings(&self) -> Vec<Option<Meaning>> {
         self.leaves
             .iter()
@@ -60,18 +60,18 @@ impl Diagnostics {
             .collect()
     }
 
-    /// Called where the record cannot be half-written.
+    /// Copies the record. It must be called only where the record cannot be half-written.
     pub fn copy_from(&mut self, cpu: &Cpu) {
         self.copied = !self.copy.is_empty() && cpu.read_memory(self.address, &mut self.copy);
     }
 
-    /// What the last copy says of arming; false for an image that does not say.
+    /// Whether the last copy shows an armed robot; false for an image without an arming state.
     pub fn armed(&self) -> bool {
         let arming = self.arming.and_then(|place| self.leaves.get(place));
         self.copied && arming.is_some_and(|leaf| leaf.read(&self.copy) == ARMED)
     }
 
-    /// After a reset the record is not the new boot's.
+    /// Discards the copy: after a reset the record is that of the boot before.
     pub fn forget(&mut self) {
         self.copied = false;
     }

@@ -1,5 +1,5 @@
-//! What can go wrong on the board itself, by name: the program fails, which a reset ends; the flash; the supply; a debug
-//! probe.
+//! Named faults of the board itself: failures of the program, which a reset ends, of the flash and of the supply, and the
+//! effects of a debug probe.
 
 use robot_plant::{time::MS, world::FaultInfo};
 
@@ -44,7 +44,7 @@ enum Kind {
     ProbeAttached,
     ProbeInsists,
     ProbeBreakpoints,
-    /// For so many ms.
+    /// A probe halts the core for that many ms.
     ProbeHalts(u64),
 }
 
@@ -90,12 +90,12 @@ const ENTRIES: &[Entry] = &[
     board("probe-halts-100ms", Kind::ProbeHalts(100), "a debug probe halts the core for 100 ms"),
 ];
 
-/// Every fault of the machine.
+/// All faults of the machine.
 pub fn all() -> impl Iterator<Item = &'static FaultInfo> {
     ENTRIES.iter().map(|entry| &entry.info)
 }
 
-/// Those after which the program no longer does its work, until a reset.
+/// The faults after which the program no longer does its work, until a reset.
 pub fn of_the_program() -> impl Iterator<Item = &'static FaultInfo> {
     let failures = ENTRIES.iter();
     let failures = failures.filter(|entry| matches!(entry.kind, Kind::Program(..)));

@@ -14,7 +14,7 @@ pub const PARAMETER_FLASH_BYTES: usize = 0xC000;
 const FIRST: u32 = 0x0800_4000;
 
 impl Machine {
-    /// What sectors 1–3 read as now.
+    /// The present contents of sectors 1–3.
     pub fn parameter_flash(&mut self) -> Vec<u8> {
         let mut bytes = vec![0; PARAMETER_FLASH_BYTES];
         self.with_flash(|flash| flash.read(FIRST, &mut bytes))
@@ -22,13 +22,13 @@ impl Machine {
         bytes
     }
 
-    /// Puts that into sectors 1–3, as if it had been there before power-on.
+    /// Sets the contents of sectors 1–3, as if they had been there before power-on.
     pub fn set_parameter_flash(&mut self, bytes: &[u8; PARAMETER_FLASH_BYTES]) {
         self.with_flash(|flash| flash.set_contents(FIRST, bytes))
             .expect("the chip holds these sectors");
     }
 
-    /// Everything random in the cells follows from it, from now on.
+    /// Seeds whatever is random in the cells from now on.
     pub fn set_flash_seed(&mut self, seed: u64) {
         self.with_flash(|flash| flash.reseed(seed));
     }
@@ -66,7 +66,7 @@ impl Machine {
         self.with_flash(|flash| flash.set_erase_fault(sector, fault));
     }
 
-    /// One bit of every word of sectors 1–3 stays 1, or all are well.
+    /// Makes one bit of every word of sectors 1–3 stick at 1, or mends all of them.
     pub(super) fn set_worn_words(&mut self, worn: bool) {
         self.with_flash(|flash| {
             if !worn {

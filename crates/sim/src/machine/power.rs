@@ -6,7 +6,7 @@ use robot_plant::time::{MS, Ps};
 use super::Machine;
 use robot_emulator::soc::reset::ResetCause;
 
-/// How long a power cut at a step of the flash lasts unless told otherwise.
+/// Default length of a power cut at a step of the flash.
 pub(super) const OFF_TIME: Ps = 100 * MS;
 
 impl Machine {
@@ -20,12 +20,12 @@ impl Machine {
         self.power_off(self.cpu.now().saturating_add(off_time));
     }
 
-    /// The chip's supply is that from now on, 3300 before; it runs on from 1.8 V.
+    /// Sets the chip's supply, which is 3300 mV at first. The chip works from 1.8 V on.
     pub fn set_vdd_mv(&mut self, vdd_mv: u32) {
         self.cpu.with_soc(|soc, _| soc.set_vdd_mv(vdd_mv));
     }
 
-    /// Off until told otherwise, or on.
+    /// Switches the board off until it is switched on again, or on.
     pub(super) fn switch_power(&mut self, on: bool) {
         if !on {
             self.power_off(Ps::MAX);

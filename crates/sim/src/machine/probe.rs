@@ -5,13 +5,13 @@ use robot_plant::time::Ps;
 use super::Machine;
 use robot_emulator::core::system::debug_registers::{DEMCR_VC_CORERESET, DEMCR_VC_HARDERR};
 
-/// What `probe-rs run` and `attach` 0.28 to 0.32 catch unless told not to (docs/hardware.md#debug-probes).
+/// The catch bits that `probe-rs run` and `attach` 0.28 to 0.32 set by default (docs/hardware.md#debug-probes).
 const CAUGHT_BY_DEFAULT: u32 = DEMCR_VC_CORERESET | DEMCR_VC_HARDERR;
-/// Where debuggers are told to stop: `openocd.gdb` of the Cortex-M quickstart of Rust, and who panics here.
+/// Functions with breakpoints in the `openocd.gdb` of Rust's Cortex-M quickstart, and the panic handler.
 const BROKEN_AT: [&str; 4] = ["HardFault", "DefaultHandler", "main", "_defmt_panic"];
 
 impl Machine {
-    /// As `probe-rs run` leaves the core when it lets it go on, with the log to be waited for.
+    /// Sets the core up as `probe-rs run` does before it resumes it; the image waits for the reader of its log.
     pub fn attach_probe(&mut self) {
         self.cpu.debug().attach(CAUGHT_BY_DEFAULT);
         self.log_is_read = true;
@@ -26,7 +26,8 @@ impl Machine {
         self.log_is_read = false;
     }
 
-    /// As a session of OpenOCD and gdb that was killed: breakpoints, and watchdogs that stand in every halt.
+    /// Leaves the core as a killed session of OpenOCD and gdb does: with breakpoints, and with watchdogs that stop in
+    /// every halt.
     pub(super) fn leave_breakpoints(&mut self) {
         let addresses = BROKEN_AT.map(|name| self.image.symbol(name));
         let addresses: Vec<u32> = addresses.into_iter().flatten().collect();

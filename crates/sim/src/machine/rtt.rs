@@ -24,7 +24,7 @@ impl Rtt {
         Self { control_block }
     }
 
-    /// What a reader asks for that wants to lose nothing; the next boot forgets it.
+    /// Asks the image to wait when the ring is full, as a reader does that wants to lose nothing. The next boot clears it.
     pub fn ask_to_block(&self, cpu: &mut Cpu) {
         let flags = self.control_block + UP_FLAGS;
         cpu.memory().write(flags, &BLOCK_IF_FULL.to_le_bytes());

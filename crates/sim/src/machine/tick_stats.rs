@@ -25,7 +25,7 @@ pub(super) struct LongestGap {
     pub disarmed: Ps,
 }
 
-/// Every control tick of the run. The flash may stall the core: a stall is a gap, and no missed tick.
+/// The control ticks of a run. A stall of the core by the flash counts as a gap, and not as missed ticks.
 #[derive(Debug, Default)]
 pub(super) struct TickStats {
     ticks: Vec<FunctionEntry>,

@@ -26,7 +26,7 @@ const STAMP_MS: Ps = 60_000;
 pub struct PortStats {
     pub to_pc: u64,
     pub from_pc: u64,
-    /// Heard on the bus while the PC did not read.
+    /// Frames received while the PC did not read.
     pub dropped: u64,
 }
 

@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_frame_is_refused() {
+    fn lines_that_are_no_frame_are_refused() {
         let wrong: [&[u8]; 11] = [
             b"",
             b"t",

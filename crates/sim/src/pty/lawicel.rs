@@ -21,7 +21,7 @@ const SJA1000_HZ: u32 = 16_000_000;
 /// Longest line: an extended frame of eight bytes.
 const LONGEST: usize = 1 + 8 + 1 + 16;
 
-/// What a line from the PC asks of the adapter; the reply depends on whether it can be done.
+/// A request of the PC to the adapter. The reply depends on whether it can be done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Request {
     /// The reply stands already.
@@ -116,7 +116,7 @@ pub fn sent_reply(frame: &CanFrame, taken: bool) -> &'static str {
 
 /// Status bits of `F` that this adapter can raise.
 pub mod flags {
-    /// Frames heard were lost because the PC did not take them.
+    /// Received frames were lost because the PC did not read them.
     pub const RECEIVE_FULL: u8 = 1 << 0;
     /// A frame of the PC was refused because too many wait.
     pub const TRANSMIT_FULL: u8 = 1 << 1;

@@ -127,7 +127,7 @@ const PULSE: &str = "
 ";
 
 #[test]
-fn deeds_are_done_at_their_instant_and_in_order() {
+fn events_are_applied_at_their_time_and_in_order() {
     let mut board = FakeBoard::default();
     run_double(&mut board, PULSE);
     let times: Vec<Ps> = board.acted.iter().map(|(t, _)| *t).collect();
@@ -211,7 +211,7 @@ fn a_stopped_machine_fails_the_run_and_open_windows() {
     assert_eq!(result.ran, 19 * MS);
 }
 
-fn complaint() -> BoardError {
+fn board_error() -> BoardError {
     BoardError {
         at: MS,
         count: 1,
@@ -222,18 +222,18 @@ fn complaint() -> BoardError {
 #[test]
 fn suspicions_are_kept_and_fail_nothing() {
     let mut board = FakeBoard {
-        suspicions: vec![complaint()],
+        suspicions: vec![board_error()],
         ..FakeBoard::default()
     };
     let result = run_double(&mut board, "");
     assert!(result.ok());
-    assert_eq!(result.suspicions, [complaint()]);
+    assert_eq!(result.suspicions, [board_error()]);
 }
 
 #[test]
 fn board_errors_fail_unless_allowed() {
     let mut board = FakeBoard {
-        errors: vec![complaint()],
+        errors: vec![board_error()],
         ..FakeBoard::default()
     };
     assert!(!run_double(&mut board, "").ok());

@@ -283,7 +283,7 @@ impl Invariants {
         self.tally.flash_words = progress.flash_programs;
         self.tally.flash_erases = progress.flash_erases;
         let radio = |fault: &ActiveFault| fault.name.starts_with("sbus");
-        let heard = self.enable && !self.faults.iter().any(radio);
+        let received = self.enable && !self.faults.iter().any(radio);
         self.flash.check(
             machine,
             &RobotState {
@@ -291,7 +291,7 @@ impl Invariants {
                 last_armed: self.last_armed,
                 // A boot is noticed up to one step late.
                 booted: self.settings.booted().saturating_sub(STEP),
-                enabled: self.enabled_at.filter(|_| heard),
+                enabled: self.enabled_at.filter(|_| received),
             },
         )
     }

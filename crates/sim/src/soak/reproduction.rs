@@ -116,7 +116,7 @@ mod tests {
     use crate::scenario::Scenario;
 
     #[test]
-    fn the_last_deeds_are_a_scenario_with_the_state_before_them() {
+    fn the_last_events_become_a_scenario_that_starts_with_the_state_before_them() {
         let remote = |enable, vx| {
             Event::Remote(RemoteInput {
                 enable,
@@ -144,13 +144,13 @@ mod tests {
         let read = Scenario::parse(&text, "soak.toml").expect("it parses");
         assert_eq!((read.seed, read.length), (7, 14 * SECOND));
         let at = |s: u64| s * SECOND;
-        let told: Vec<_> = read
+        let repeated: Vec<_> = read
             .events
             .iter()
             .map(|a| (a.at, a.event.clone()))
             .collect();
         assert_eq!(
-            told,
+            repeated,
             [
                 (at(3), remote(Some(true), Some(0.5))),
                 (at(3), fault("mag-gone")),

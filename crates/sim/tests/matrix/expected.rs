@@ -76,8 +76,8 @@ pub struct Row {
     pub back_within_ms: f64,
     /// The chip is reset.
     pub resets: bool,
-    /// Parts of what the board complains of, because the fault makes it.
-    pub complaints: &'static [&'static str],
+    /// Parts of the board errors that the fault causes.
+    pub board_errors: &'static [&'static str],
 }
 
 fn flags(must: &[&'static str], may: &[&'static str]) -> Flags {
@@ -106,7 +106,7 @@ fn row(fault: &'static str, wheels: Group, joints: Group, flags: Flags, after: A
         },
         back_within_ms: 1_000.0,
         resets: false,
-        complaints: &[],
+        board_errors: &[],
     }
 }
 
@@ -156,8 +156,8 @@ impl Row {
         self
     }
 
-    fn complaining(mut self, of: &'static [&'static str]) -> Self {
-        self.complaints = of;
+    fn causing_board_errors(mut self, of: &'static [&'static str]) -> Self {
+        self.board_errors = of;
         self
     }
 
@@ -209,7 +209,7 @@ fn radio() -> Vec<Row> {
             1_000.0,
             flags(&["remote-quality"], &["remote-lost"]),
         )
-        .complaining(&["USART3"])
+        .causing_board_errors(&["USART3"])
         .arms_during(Arms::Either),
     ];
     // Fewer than half of the last 64 frames good: too bad to drive.
@@ -264,7 +264,7 @@ fn buses() -> Vec<Row> {
         )
         .waiting(After::WheelsWait)
     };
-    // A DM4310 that hears nothing for 100 ms goes limp by itself and says so until it is cleared.
+    // A DM4310 that receives nothing for 100 ms goes limp by itself and reports that until it is cleared.
     let can2 = |fault, must: &[&'static str], may: &[&'static str]| {
         row(
             fault,
@@ -323,13 +323,13 @@ fn wheels() -> Vec<Row> {
         ],
     ] {
         // Control of a silent wheel falls back to open loop.
-        let heard_before = |fault, silent| harmless(fault, flags(&[silent], &[]));
-        rows.push(heard_before(gone, silent).waiting(After::WheelsWait));
-        rows.push(heard_before(wrong_id, silent).waiting(After::WheelsWait));
+        let received_before = |fault, silent| harmless(fault, flags(&[silent], &[]));
+        rows.push(received_before(gone, silent).waiting(After::WheelsWait));
+        rows.push(received_before(wrong_id, silent).waiting(After::WheelsWait));
         // The other wheel has this one's number: its own is silent, and this one's reports contradict each other.
-        let doubled = heard_before(doubled, silent_other).waiting(After::WheelsWait);
+        let doubled = received_before(doubled, silent_other).waiting(After::WheelsWait);
         let twice = &["two nodes send identifier"];
-        rows.push(doubled.arms_during(Arms::No).complaining(twice));
+        rows.push(doubled.arms_during(Arms::No).causing_board_errors(twice));
         let stopped = row(
             frozen,
             Group::Zero(110.0),
@@ -429,7 +429,7 @@ fn power_and_pose() -> Vec<Row> {
 
 /// Nothing is saved while armed, and a robot whose settings cannot be kept drives all the same.
 fn supply_and_flash() -> Vec<Row> {
-    // The motors have power of their own: a DM4310 that hears nothing for 100 ms goes limp by itself. The board boots
+    // The motors have power of their own: a DM4310 that receives nothing for 100 ms goes limp by itself. The board boots
     // disarmed, and takes the sensors' calibration and the motors' set-up first.
     let power_cut = row(
         "power-cut",

@@ -11,7 +11,7 @@ use crate::{
 const LATELY: Ps = 200 * MS;
 
 /// What is not as it must be, in words.
-pub fn complaints(row: &Row, phase: Phase, seen: &Observed) -> Vec<String> {
+pub fn violations(row: &Row, phase: Phase, seen: &Observed) -> Vec<String> {
     let mut all = match phase {
         Phase::Driving => armed(&row.driving, seen, true),
         Phase::Idle => armed(&row.idle, seen, false),
@@ -27,7 +27,7 @@ pub fn complaints(row: &Row, phase: Phase, seen: &Observed) -> Vec<String> {
     if seen.resets != resets {
         all.push(format!("{} resets instead of {resets}", seen.resets));
     }
-    let is_expected = |error: &&String| !row.complaints.iter().any(|part| error.contains(part));
+    let is_expected = |error: &&String| !row.board_errors.iter().any(|part| error.contains(part));
     let errors = seen.board_errors.iter().filter(is_expected);
     all.extend(errors.map(|error| format!("board error: {error}")));
     all
@@ -114,7 +114,7 @@ fn group(
     let end = seen.fault_ended;
     let ms = |at: Ps| at as f64 / MS as f64;
     let zero = zero_from(wires, seen).map(ms);
-    let complaint = match (wanted, zero) {
+    let violation = match (wanted, zero) {
         (Group::Zero(limit), None) => {
             format!("{name} have torque, and should not after {limit} ms")
         }
@@ -130,18 +130,18 @@ fn group(
         }
         _ => return Vec::new(),
     };
-    vec![complaint]
+    vec![violation]
 }
 
 fn after(name: &str, moves: bool, moved: impl Fn(Ps, Ps) -> bool, seen: &Observed) -> Vec<String> {
-    let complaint = if moves && !moved(seen.ended - LATELY, seen.ended) {
+    let violation = if moves && !moved(seen.ended - LATELY, seen.ended) {
         format!("{name} do not come back after the fault")
     } else if !moves && moved(seen.fault_ended, seen.ended) {
         format!("{name} move by themselves after the fault")
     } else {
         return Vec::new();
     };
-    vec![complaint]
+    vec![violation]
 }
 
 fn disarmed(wanted: &Disarmed, seen: &Observed) -> Vec<String> {

@@ -28,7 +28,7 @@ impl std::fmt::Display for Phase {
     }
 }
 
-/// What the wire of one motor last said of its torque: the commanded current of a wheel (mA), the state of a joint
+/// The last torque on the wire of one motor: the commanded current of a wheel (mA), the state of a joint
 /// (1 = enabled). Times since the fault started; nothing before it.
 #[derive(Clone, Debug, Default)]
 pub struct Wire {
@@ -64,7 +64,7 @@ impl Wire {
         zero
     }
 
-    /// Told to give torque, not only left with an old command.
+    /// A new command asks for torque; an old one that is still in force does not count.
     pub fn told_torque_in(&self, from: Ps, to: Ps) -> bool {
         let inside = self
             .changes
@@ -77,7 +77,7 @@ impl Wire {
         self.at(from) != 0.0 || self.told_torque_in(from, to)
     }
 
-    /// True where something was said.
+    /// Whether there was any message.
     pub fn spoke_in(&self, from: Ps, to: Ps) -> bool {
         self.changes.iter().any(|(at, _)| (from..=to).contains(at))
     }

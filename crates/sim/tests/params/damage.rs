@@ -150,10 +150,10 @@ fn run(damaged: &Damaged, defaults: &Settings) -> Vec<String> {
         });
     let damaged = active.filter(|sector| matches!(sector.state, SectorState::Headed { .. }));
     let damaged = damaged.map_or(0, |sector| sector.damaged) as f64;
-    let told = robot.diag("params.damaged");
+    let reported = robot.diag("params.damaged");
     demand(
-        told == Some(damaged),
-        format!("{told:?} of {damaged} damaged places told"),
+        reported == Some(damaged),
+        format!("{reported:?} of {damaged} damaged places reported"),
     );
 
     robot.set((1, 1), 0.47);

@@ -20,7 +20,7 @@ const NOMINAL_MV: u32 = 3_300;
 const FLASH_ERROR: f64 = 1.0;
 
 #[test]
-fn a_robot_with_refused_settings_is_not_armed_until_they_are_saved_anew() {
+fn a_robot_with_refused_settings_is_not_armed_until_they_are_saved_again() {
     // A zero that is no number.
     let broken = Stored::of(1, &[1.0, f32::NAN, -1.25, 1.25, 3.0, 8.0, 90.0, 2.0]);
     let make = Make::Dm4310;

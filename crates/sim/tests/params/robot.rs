@@ -195,7 +195,7 @@ impl Robot {
         states(&self.machine.parameter_flash()).contains(&SectorState::Clean)
     }
 
-    /// What the board complained of.
+    /// Board errors of the run.
     pub fn board_errors(&self) -> Vec<String> {
         let errors = Machine::board_errors(&self.machine).into_iter();
         errors.map(|error| error.message).collect()
@@ -292,7 +292,7 @@ impl Robot {
         assert!(taken, "the adapter has room");
     }
 
-    /// The answer on CAN1. What a robot hears while it stands still for an erase it forgets, so it is asked again.
+    /// The answer on CAN1. The robot drops what arrives during the stall of an erase, so the request is repeated.
     fn exchange(&mut self, id: u32, data: [u8; 8]) -> [u8; 8] {
         self.replies[0].clear();
         for _ in 0..TRIES {

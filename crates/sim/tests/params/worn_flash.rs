@@ -96,7 +96,7 @@ fn erases_that_fail_are_tried_again_after_ever_longer_pauses() {
 
 /// One sector that cannot be erased is left out; the others do.
 #[test]
-fn a_sector_that_cannot_be_erased_is_passed_over() {
+fn a_sector_that_cannot_be_erased_is_skipped() {
     let mut robot = Robot::with_flash(
         Make::Dm4310,
         &before_a_rotation(Make::Dm4310).garbage(1, || 0x77),
@@ -122,7 +122,7 @@ fn a_sector_that_cannot_be_erased_is_passed_over() {
 
 /// The next two places have a cell each that cannot be cleared.
 #[test]
-fn a_place_that_cannot_be_written_is_passed_over() {
+fn a_slot_that_cannot_be_written_is_skipped() {
     let mut robot = Robot::with_flash(Make::Dm4310, &image(Make::Dm4310, 50));
     for slot in [51, 52] {
         robot.machine.stick_flash_bit(StuckBit {
@@ -166,7 +166,7 @@ fn a_place_that_cannot_be_written_is_passed_over() {
 
 /// Nothing can be written anywhere, and then it can again.
 #[test]
-fn worn_out_flash_is_told_and_stops_nobody() {
+fn worn_out_flash_is_reported_and_stops_nothing() {
     let mut robot = Robot::with_flash(Make::Dm4310, &image(Make::Dm4310, 50));
     robot.until(2_500 * MS);
     robot.fault("flash-stuck-bits", true);

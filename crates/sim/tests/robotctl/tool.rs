@@ -16,7 +16,7 @@ use robotctl::{
     tuning::{Patience, TuningClient},
 };
 
-/// The board has booted and hears the bus by then.
+/// The board has booted and receives frames by then.
 const START: Ps = 200 * MS;
 /// The board runs faster than real time: it waits this long each millisecond while the tool works, so that the tool is
 /// done long before the run ends.

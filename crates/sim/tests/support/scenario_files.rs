@@ -24,18 +24,18 @@ pub fn must_hold(folder: &Path, elf: &Path) {
         for _ in 0..workers {
             scope.spawn(|| {
                 while let Some(path) = { queue.lock().unwrap().next() } {
-                    let complaints = run(path, elf);
+                    let problems = run(path, elf);
                     let name = path.file_name().unwrap_or_default().to_string_lossy();
                     println!(
                         "{name}: {}",
-                        if complaints.is_empty() {
+                        if problems.is_empty() {
                             "held"
                         } else {
                             "FAILED"
                         }
                     );
                     let mut failures = failures.lock().unwrap();
-                    failures.extend(complaints.iter().map(|c| format!("{name}: {c}")));
+                    failures.extend(problems.iter().map(|c| format!("{name}: {c}")));
                 }
             });
         }
@@ -64,13 +64,13 @@ fn run(path: &Path, elf: &Path) -> Vec<String> {
         ..support::job(scenario)
     };
     match job.run(&mut []) {
-        Ok(outcome) => complaints(&outcome),
+        Ok(outcome) => problems(&outcome),
         Err(error) => vec![error.to_string()],
     }
 }
 
 /// What went wrong, one line each.
-fn complaints(outcome: &Outcome) -> Vec<String> {
+fn problems(outcome: &Outcome) -> Vec<String> {
     let summary = &outcome.summary;
     let stopped = summary.stopped.iter().map(|why| format!("stopped: {why}"));
     let errors = summary.board_errors.iter();

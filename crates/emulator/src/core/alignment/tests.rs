@@ -21,7 +21,7 @@ const WRONG: WordAccesses = WordAccesses {
 const LDRD: [u16; 2] = [0xE9D2, 0x0100];
 
 #[test]
-fn the_base_register_is_looked_at_before_the_block() {
+fn the_base_register_is_checked_before_the_block() {
     for code in [
         &LDRD[..],
         &[0xE9C2, 0x0102],         // strd r0, r1, [r2, #8]
@@ -38,7 +38,7 @@ fn the_base_register_is_looked_at_before_the_block() {
 }
 
 #[test]
-fn what_is_added_to_it_before_counts() {
+fn an_addition_before_the_access_counts() {
     for (code, plus) in [
         (&[0x3201][..], 1),     // adds r2, #1
         (&[0x1E92], 2),         // subs r2, r2, #2
@@ -75,7 +75,7 @@ fn a_constant_address_is_judged_at_once() {
 }
 
 #[test]
-fn what_cannot_be_followed_is_looked_at_after_the_block_if_it_is_still_there() {
+fn a_register_that_cannot_be_followed_is_checked_after_the_block() {
     let after = WordAccesses {
         after: 1 << 2,
         ..WordAccesses::default()

@@ -1,4 +1,4 @@
-//! What is known of the blocks seen so far, looked up on every block: cost, and accesses that must be aligned.
+//! Cost and aligned accesses of the blocks seen so far. They are looked up on every block.
 
 use crate::core::{
     alignment::{WordAccesses, word_accesses},
@@ -14,7 +14,7 @@ struct Slot {
     start: u32,
     size: u32,
     cost: BlockCost,
-    /// Where its accesses stand among all; 0 for none.
+    /// Position of its accesses in the list of all; 0 for none.
     accesses: u16,
 }
 

@@ -11,7 +11,7 @@ use crate::core::{
 };
 
 const XPSR_THUMB: u32 = 1 << 24;
-/// In a stacked xPSR: the frame starts four bytes below the old stack pointer's word.
+/// Bit of a stacked xPSR: the frame starts four bytes below the old stack pointer's word.
 const XPSR_PADDED: u32 = 1 << 9;
 const XPSR_FLAGS: u32 = 0xF80F_0000;
 const CONTROL_NPRIV: u32 = 1;

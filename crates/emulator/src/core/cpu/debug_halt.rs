@@ -4,7 +4,7 @@ use super::Cpu;
 use crate::{core::system::debug_registers::Debug, time::Ps};
 
 impl Cpu {
-    /// What a probe may change while the core runs.
+    /// The debug registers, which a probe may change while the core runs.
     pub fn debug(&mut self) -> &mut Debug {
         &mut self.state_mut().system.debug
     }

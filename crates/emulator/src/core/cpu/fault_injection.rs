@@ -1,4 +1,4 @@
-//! Code made to go wrong at the entry of a function: how a run shows that the image survives its own failure.
+//! Faults injected at the entry of a function, to show that the image survives its own failures.
 //!
 //! Nothing is patched: the program is caught where the function begins, before its first instruction.
 
@@ -7,27 +7,27 @@ use unicorn_engine::{RegisterARM, Unicorn};
 use super::{Cpu, Halt, State, Stop};
 use crate::core::{faults::Fault, memory::HANG};
 
-/// What the function does instead of its work.
+/// Effect of an injected fault, in place of the function's work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effect {
-    /// Once: goes to another function, with the arguments it got.
+    /// Once: execution goes on in another function, with the same arguments.
     GoTo(u32),
     /// Once: its first instruction is undefined.
     Undefined,
-    /// Once: finds the stack pointer here.
+    /// Once: the stack pointer has this value.
     StackAt(u32),
-    /// Once: does not come back, until the effect ends.
+    /// Once: the function does not return until the injection ends.
     Hang,
-    /// Every time: comes back at once.
+    /// Every time: the function returns at once.
     ReturnAtOnce,
 }
 
-/// A function, and what goes wrong when it is entered.
+/// A fault to inject when a function is entered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Injection {
     /// Address of the function, without the Thumb bit.
     pub entry: u32,
-    /// What it does instead.
+    /// Effect in place of the function's work.
     pub effect: Effect,
 }
 
@@ -46,8 +46,8 @@ impl Injector {
     }
 }
 
-/// True if the block at `start` must not run as it stands.
-pub(super) fn strikes(engine: &mut Unicorn<'_, State>, start: u32) -> bool {
+/// Whether a fault is injected at the block at `start`, which then must not run.
+pub(super) fn is_due(engine: &mut Unicorn<'_, State>, start: u32) -> bool {
     let state = engine.get_data_mut();
     if state.injector.is_idle() {
         return false;
@@ -72,7 +72,7 @@ pub(super) fn strikes(engine: &mut Unicorn<'_, State>, start: u32) -> bool {
 }
 
 impl Cpu {
-    /// The effect waits from now on for its function to be called.
+    /// Injects the fault the next time its function is called.
     pub fn inject(&mut self, injection: Injection) {
         let waiting = &mut self.state_mut().injector.waiting;
         if !waiting.contains(&injection) {
@@ -80,7 +80,7 @@ impl Cpu {
         }
     }
 
-    /// Effect that has not struck will not; a function that hangs does its work now.
+    /// Withdraws a fault that was not injected yet; a function that hangs does its work now.
     pub fn end_injection(&mut self, injection: Injection) {
         let injector = &mut self.state_mut().injector;
         injector.waiting.retain(|s| *s != injection);

@@ -1,4 +1,4 @@
-//! What the engine calls back: block boundaries, register accesses, faults and engine-internal exceptions.
+//! Callbacks of the engine: block boundaries, register accesses, faults and engine-internal exceptions.
 
 use unicorn_engine::{HookType, MemType, Prot, RegisterARM, TlbEntry, TlbType, Unicorn, uc_error};
 
@@ -74,7 +74,7 @@ fn block_begins(engine: &mut Unicorn<'_, State>, address: u64, size: u32) {
         }
     }
     let start = address as u32;
-    if fault_injection::strikes(engine, start) {
+    if fault_injection::is_due(engine, start) {
         leave(engine);
         return;
     }

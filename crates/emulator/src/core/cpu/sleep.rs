@@ -3,7 +3,7 @@
 use super::{Cpu, Halt, Pause, State, Stop, context, hooks};
 use crate::core::{exception::Exception, nvic::Masks};
 
-/// What ends the sleep: WFE waits for an event, WFI for an interrupt.
+/// Kind of sleep: WFE waits for an event, WFI for an interrupt.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum SleepKind {
     Event,
@@ -68,7 +68,7 @@ impl Cpu {
         }
     }
 
-    /// What chip or board did while no code ran.
+    /// Takes over what chip and board have done while no code ran.
     pub(super) fn ended_by_chip(&mut self) -> Result<Option<Pause>, Halt> {
         match self.state_mut().stop.take() {
             Some(Stop::Reset(cause)) => Ok(Some(Pause::Reset(cause))),

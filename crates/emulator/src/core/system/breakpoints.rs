@@ -22,7 +22,7 @@ pub struct Breakpoints {
 }
 
 impl Breakpoints {
-    /// As a debugger sets them; those past the sixth address are left out.
+    /// Sets breakpoints as a debugger does, at up to six addresses.
     pub fn set(&mut self, addresses: &[u32]) {
         self.enabled = true;
         let places = self.comparators.iter_mut().take(FOR_CODE);

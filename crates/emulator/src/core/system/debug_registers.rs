@@ -56,13 +56,13 @@ impl Debug {
         self.demcr |= catches;
     }
 
-    /// As long as a probe insists on catch bits, clearing them does nothing.
+    /// Sets catch bits that a probe sets again as soon as they are cleared.
     pub fn insist(&mut self, catches: u32) {
         self.insisted = catches;
         self.demcr |= catches;
     }
 
-    /// What OpenOCD's target script for this chip does: the watchdogs stand while the core is halted.
+    /// Stops the watchdogs while the core is halted, as OpenOCD's target script for this chip does.
     pub fn freeze_watchdogs(&mut self) {
         self.dbgmcu[1] |= APB1_FZ_IWDG | 1 << 11;
     }

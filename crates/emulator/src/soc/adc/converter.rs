@@ -61,7 +61,7 @@ mod cr2 {
     pub const MODELLED: u32 = ADON | DMA | DDS | EOCS | ALIGN | SWSTART;
 }
 
-/// What a channel leads to.
+/// Source of a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Input {
     /// ADC3_IN8.
@@ -70,7 +70,7 @@ enum Input {
     Vrefint,
 }
 
-/// Its registers lie at 0x100 times `index`.
+/// One converter; its registers lie at 0x100 times `index`.
 #[derive(Debug, Default)]
 pub struct Converter {
     index: u32,
@@ -234,7 +234,7 @@ impl Converter {
         self.cr2 & cr2::DMA != 0 && self.sr & sr::EOC != 0
     }
 
-    /// As CSR shows it.
+    /// Status as shown in CSR.
     pub fn status(&self) -> u32 {
         self.sr & sr::ALL
     }

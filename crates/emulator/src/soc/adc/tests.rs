@@ -109,7 +109,7 @@ fn a_pin_left_digital_reads_nothing() {
 }
 
 #[test]
-fn limits_of_the_converter_are_said_aloud() {
+fn exceeded_limits_of_the_converter_are_reported() {
     let (mut bench, mut adc) = ready();
     bench.write(&mut adc, CCR, 0);
     bench.write(&mut adc, CR2, 0);

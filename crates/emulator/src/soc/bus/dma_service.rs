@@ -122,7 +122,7 @@ impl Soc {
     }
 }
 
-/// What keeps this item from being moved on silicon.
+/// The reason why silicon would not move this item.
 fn problem(beat: &Beat) -> Option<String> {
     let Item {
         peripheral_addr,

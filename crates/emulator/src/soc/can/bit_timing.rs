@@ -4,10 +4,10 @@ use std::ops::RangeInclusive;
 
 use crate::{soc::clocks::cycles_to_ps, time::Ps};
 
-/// Rate of every device on the board's buses.
+/// Bit rate of the nodes on both buses.
 pub const BUS_HZ: u32 = 1_000_000;
 
-/// Where devices of different makers sample at 1 Mbit/s so that they understand each other, in per mille of the bit
+/// Sample points at 1 Mbit/s with which devices of different makers understand each other, in per mille of the bit
 /// (table of recommended bit timings, CANpie; CiA recommends 875).
 const RECOMMENDED_PERMILLE: RangeInclusive<u32> = 750..=900;
 /// Earlier, the acknowledge of a node with slow transceivers has not arrived: twice 250 ns from TXD to RXD (TJA1051
@@ -81,7 +81,7 @@ impl BitTiming {
         }
     }
 
-    /// What others advise against.
+    /// The reason why this timing is not recommended, if it is not.
     pub fn doubt(self) -> Option<String> {
         let sample = self.sample_permille();
         (!RECOMMENDED_PERMILLE.contains(&sample)).then(|| sample_text(sample))
@@ -105,7 +105,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_timings_of_the_c_board_fit_the_bus() {
+    fn timings_of_one_megabit_fit_the_bus() {
         // docs/hardware.md#can-bit-timing: 42 MHz, prescaler 3, 10 + 3 quanta; prescaler 6, 5 + 1 quanta.
         for btr in [0x0029_0002, 0x0004_0005] {
             let timing = BitTiming(btr);

@@ -51,7 +51,7 @@ pub mod ier {
     pub const ALL: u32 = 0x0003_8F7F;
 }
 
-/// What the controller does on the bus.
+/// Operating mode of the controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
     Sleep,
@@ -119,7 +119,7 @@ impl Controller {
         self.mcr & mcr::TXFP != 0
     }
 
-    /// Hears every frame of the bus, and sends unless silent.
+    /// Receives every frame of the bus, and sends unless silent.
     pub fn on_bus(&self) -> bool {
         self.mode == Mode::Normal && !self.errors.is_bus_off()
     }
@@ -138,7 +138,7 @@ impl Controller {
         !self.timing.silent() && routing::check(signal, ctx)
     }
 
-    fn hears_bus(&self, ctx: &mut Ctx<'_>) -> bool {
+    fn receives_bus(&self, ctx: &mut Ctx<'_>) -> bool {
         routing::check([Signal::Can1Rx, Signal::Can2Rx][self.index], ctx)
     }
 
@@ -174,7 +174,7 @@ impl Controller {
             msr::INAK
         };
         // Without its RX pin the controller sees a dominant line forever.
-        let until = if self.hears_bus(ctx) {
+        let until = if self.receives_bus(ctx) {
             ctx.now + 11 * self.bit(ctx)
         } else {
             Ps::MAX

@@ -9,7 +9,7 @@ const BANKS: usize = 28;
 const FMR_RESERVED: u32 = 0x2A1C_0000;
 const ALL_BANKS: u32 = 0x0FFF_FFFF;
 
-/// Where an accepted frame goes.
+/// Destination of an accepted frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Accepted {
     pub fifo: usize,

@@ -1,6 +1,6 @@
 //! The three transmit mailboxes and CAN_TSR (RM0090 32.7.1, 32.9.2).
 
-use crate::{soc::can_bus::frame_bits, wire::CanFrame};
+use crate::{soc::can::frame_bits, wire::CanFrame};
 
 pub const COUNT: usize = 3;
 

@@ -49,7 +49,7 @@ macro_rules! line {
     };
 }
 
-/// In the order of `DmaRequest`.
+/// Request lines in the order of `DmaRequest`.
 pub const LINES: [RequestLine; 11] = [
     line!(Spi1Rx, "SPI1_RX", 0x4001_300C, [dma2(0, 3), dma2(2, 3)]),
     line!(Spi1Tx, "SPI1_TX", 0x4001_300C, [dma2(3, 3), dma2(5, 3)]),

@@ -176,7 +176,7 @@ impl Stream {
         1 << (self.cr >> 11 & 3).min(2)
     }
 
-    /// What the next request moves. In direct mode MSIZE counts for nothing: both sides move PSIZE (RM0090 10.3.12).
+    /// The item that the next request moves. In direct mode MSIZE counts for nothing: both sides move PSIZE (RM0090 10.3.12).
     pub fn next_item(&self) -> Item {
         let size = self.item_size();
         let done = (self.reload - self.ndtr) * u32::from(size);

@@ -46,7 +46,7 @@ impl Unserved {
             } else if !waiting.served_before {
                 let since = *waiting.since.get_or_insert(now);
                 if now - since >= PATIENCE {
-                    errors.report(now, complaint(line, dma));
+                    errors.report(now, message(line, dma));
                     waiting.since = Some(now);
                 }
             }
@@ -54,7 +54,7 @@ impl Unserved {
     }
 }
 
-fn complaint(line: &RequestLine, dma: [&Dma; 2]) -> String {
+fn message(line: &RequestLine, dma: [&Dma; 2]) -> String {
     let places: Vec<_> = line
         .slots
         .iter()

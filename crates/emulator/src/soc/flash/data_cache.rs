@@ -24,7 +24,7 @@ impl DataCache {
         self.may_hold = false;
     }
 
-    /// What the core gets instead of the cells' word at `address`.
+    /// The cached word at `address`, which the core reads instead of the cells' word.
     pub fn word(&self, address: u32) -> Option<u32> {
         self.stale.get(&address).copied().filter(|_| self.on)
     }

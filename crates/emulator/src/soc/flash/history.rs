@@ -1,4 +1,4 @@
-//! What was done to the flash since power-on.
+//! Programs and erases since power-on.
 
 use std::ops::Range;
 
@@ -9,13 +9,13 @@ use crate::time::Ps;
 pub struct FlashStep {
     /// When it began; the core stood still from then on.
     pub at: Ps,
-    /// What was done.
+    /// Program or erase.
     pub kind: FlashStepKind,
-    /// Of the word, or of the sector's first one.
+    /// Address of the word, or of the sector's first word.
     pub address: u32,
 }
 
-/// What a step does to the cells.
+/// Kind of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FlashStepKind {
     /// A word, half-word or byte is programmed.

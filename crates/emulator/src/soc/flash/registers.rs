@@ -29,7 +29,7 @@ pub mod cr {
     pub const EOPIE: u32 = 1 << 24;
     pub const ERRIE: u32 = 1 << 25;
     pub const LOCK: u32 = 1 << 31;
-    /// All that can be written and read back while nothing is under way.
+    /// Bits that can be written and read back while nothing is under way.
     pub const KEPT: u32 = 0x0300_037F;
 
     pub fn sector(control: u32) -> u8 {

@@ -108,7 +108,7 @@ fn an_erase_takes_what_the_parallelism_says() {
 }
 
 #[test]
-fn what_was_done_is_listed_and_survives_a_reset_with_the_contents() {
+fn steps_are_listed_and_survive_a_reset_with_the_contents() {
     let (mut bench, mut flash) = unlocked();
     erase_sector_1(&mut bench, &mut flash);
     program(&mut bench, &mut flash, WORD + 8, 7);

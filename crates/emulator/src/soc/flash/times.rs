@@ -42,7 +42,7 @@ impl Parallelism {
 }
 
 impl FlashTimes {
-    /// One store, whatever its width.
+    /// Time of one store, whatever its width.
     pub fn program(self) -> Ps {
         match self {
             Self::Typical => 16 * US,
@@ -50,7 +50,7 @@ impl FlashTimes {
         }
     }
 
-    /// One of the sectors of 16 KiB.
+    /// Time of erasing a sector of 16 KiB.
     pub fn erase(self, parallelism: Parallelism) -> Ps {
         let typical = match parallelism {
             Parallelism::X8 => 400 * MS,

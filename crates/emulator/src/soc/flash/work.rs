@@ -40,7 +40,7 @@ impl Work {
         }
     }
 
-    /// What a reset or the loss of power in the middle of it leaves.
+    /// Leaves the cells as a reset or the loss of power in the middle of the work does.
     pub fn tear(self, cells: &mut dyn FlashCells) {
         match self {
             Self::Program { address, word, .. } => cells.tear_word(address, word),
@@ -49,14 +49,14 @@ impl Work {
     }
 }
 
-/// Where within a step of the flash the power goes.
+/// Instant of a power cut within a step of the flash.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CutPhase {
     /// Nothing has happened yet.
     Before,
     /// The word or the sector is torn.
     Middle,
-    /// All is done, but the image has not seen it.
+    /// The work is done, but the image has not seen it.
     After,
 }
 
@@ -65,16 +65,16 @@ pub enum CutPhase {
 pub struct PlannedCut {
     /// Counted from 0 at power-on, as in the history.
     pub step: usize,
-    /// Where within the step.
+    /// Instant within the step.
     pub phase: CutPhase,
-    /// What a torn word or sector looks like.
+    /// Seed of the contents of a torn word or sector.
     pub seed: u64,
 }
 
 #[derive(Clone, Debug)]
 pub struct UnderWay {
     pub time: Range<Ps>,
-    /// None once the cells have it.
+    /// `None` once it has reached the cells.
     pub work: Option<Work>,
     pub cut: Option<PlannedCut>,
 }

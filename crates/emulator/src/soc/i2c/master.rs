@@ -14,10 +14,10 @@ const BYTE_BITS: u64 = 9;
 /// How often a held bus is looked at again, in bit times.
 const HELD_BUS_LOOKS: u64 = 50;
 
-/// What the bus is doing.
+/// State of the bus.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Phase {
-    /// Not ours.
+    /// No transfer of this master is under way.
     #[default]
     Idle,
     /// START under way, or waiting for a held bus.
@@ -289,7 +289,7 @@ impl Master {
         (u64::from(ctx.clocks.pclk1_hz) / self.clocks_per_bit()) as u32
     }
 
-    /// What RM0090 27.6.2, 27.6.8 and 27.6.9 ask of FREQ, CCR and TRISE.
+    /// Checks FREQ, CCR and TRISE against RM0090 27.6.2, 27.6.8 and 27.6.9.
     fn check_timing(&self, ctx: &mut Ctx<'_>) {
         let told_mhz = self.cr2 & cr2::FREQ;
         let pclk1_mhz = ctx.clocks.pclk1_hz / 1_000_000;

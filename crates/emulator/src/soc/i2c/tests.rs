@@ -182,7 +182,7 @@ fn the_event_interrupt_follows_its_flags() {
 }
 
 #[test]
-fn wrong_wiring_and_a_wrong_clock_are_said_aloud() {
+fn wrong_wiring_and_a_wrong_clock_are_reported() {
     let (mut bench, mut i2c) = ready();
     bench.write(&mut i2c, CR2, 16);
     bench.change_pin(Pin::new('C', 9), |pin| pin.mode = PinMode::Input);
@@ -194,7 +194,7 @@ fn wrong_wiring_and_a_wrong_clock_are_said_aloud() {
 }
 
 #[test]
-fn a_push_pull_stage_on_the_bus_is_said_aloud() {
+fn a_push_pull_stage_on_the_bus_is_reported() {
     let (mut bench, mut i2c) = ready();
     bench.change_pin(Pin::new('A', 8), |pin| pin.open_drain = false);
     address(&mut bench, &mut i2c, DEVICE << 1, 0);
@@ -204,7 +204,7 @@ fn a_push_pull_stage_on_the_bus_is_said_aloud() {
 }
 
 #[test]
-fn wrong_timing_is_said_aloud() {
+fn wrong_timing_is_reported() {
     let (mut bench, mut i2c) = ready();
     // 42 MHz / (3 × 34) = 411.8 kHz.
     bench.write(&mut i2c, CCR, 1 << 15 | 34);

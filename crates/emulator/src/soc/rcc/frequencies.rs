@@ -66,7 +66,7 @@ impl Pll {
         (self.vco_hz() / u64::from(self.p)).min(u64::from(u32::MAX)) as u32
     }
 
-    /// What keeps this setting from working on silicon.
+    /// Reasons why this setting does not work on silicon.
     pub fn problems(self) -> Vec<String> {
         let vco_in_khz = self.input_hz() / 1000 / self.m.max(1);
         let vco_mhz = self.vco_hz() / 1_000_000;

@@ -1,4 +1,4 @@
-//! What starts up and becomes ready by itself: the oscillators and the PLL.
+//! The oscillators and the PLL, which become ready some time after they were switched on.
 
 use crate::time::{MS, Ps, US};
 
@@ -15,7 +15,7 @@ pub enum Oscillator {
 impl Oscillator {
     pub const ALL: [Self; 4] = [Self::Hsi, Self::Hse, Self::Pll, Self::Lsi];
 
-    /// From on to ready, datasheet STM32F407 section 5.3.8–5.3.10: typical values, a PLL lock in the middle of its
+    /// Time from on to ready, datasheet STM32F407 section 5.3.8–5.3.10: typical values, a PLL lock in the middle of its
     /// range.
     pub fn startup(self) -> Ps {
         match self {

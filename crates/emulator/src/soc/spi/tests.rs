@@ -79,7 +79,7 @@ fn dma_requests_follow_txe_and_rxne() {
 }
 
 #[test]
-fn a_frame_written_over_another_is_said_aloud() {
+fn a_frame_written_over_another_is_reported() {
     let (mut bench, mut spi) = ready();
     for byte in [1, 2] {
         bench.write(&mut spi, DR, byte);
@@ -90,7 +90,7 @@ fn a_frame_written_over_another_is_said_aloud() {
 }
 
 #[test]
-fn a_new_rate_in_the_middle_of_a_frame_is_said_aloud() {
+fn a_new_rate_in_the_middle_of_a_frame_is_reported() {
     let (mut bench, mut spi) = ready();
     bench.write(&mut spi, DR, 1);
     bench.write(&mut spi, CR1, MODE_3_MASTER ^ 1 << 3);
@@ -121,7 +121,7 @@ fn software_nss_low_is_a_mode_fault() {
 }
 
 #[test]
-fn what_is_not_modelled_is_refused() {
+fn unmodelled_settings_are_refused() {
     let (mut bench, mut spi) = (Bench::new(), Spi::new());
     let bidirectional = spi.write(CR1, 4, MODE_3_MASTER | 1 << 15, &mut bench.ctx());
     assert!(bidirectional.is_err());

@@ -168,7 +168,7 @@ impl Counter {
         flags | self.matches(0, 0)
     }
 
-    /// From the start of a period: as many periods alike as fit before `cycle`.
+    /// Skips as many whole periods as fit before `cycle`, from the start of one.
     fn skip_whole_periods(&mut self, cycle: u64) -> u32 {
         if !self.running() {
             return 0;

@@ -1,4 +1,4 @@
-//! What a channel's output stage drives onto its pin (RM0090 18.3.9, 18.4.7–18.4.9).
+//! The output stage of a channel (RM0090 18.3.9, 18.4.7–18.4.9).
 
 use super::counter::Counter;
 use crate::soc::wave::Wave;

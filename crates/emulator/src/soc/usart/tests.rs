@@ -129,7 +129,7 @@ fn a_sender_at_even_parity_gives_parity_errors_at_odd_parity_and_says_why() {
 }
 
 #[test]
-fn a_character_written_over_another_is_said_aloud() {
+fn a_character_written_over_another_is_reported() {
     let (mut bench, mut usart) = configured(1 << 13 | 1 << 3, 0);
     for byte in [1, 2] {
         bench.write(&mut usart, DR, byte);

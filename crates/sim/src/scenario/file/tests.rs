@@ -21,7 +21,7 @@ fn error_of(body: &str) -> String {
 }
 
 #[test]
-fn reads_the_example_of_the_design() {
+fn reads_an_example() {
     let text = r#"
         name = "remote loss stops the wheels"
         seconds = 4
@@ -109,7 +109,7 @@ fn errors_name_the_line() {
 }
 
 #[test]
-fn what_cannot_be_judged_is_refused() {
+fn expectations_that_cannot_be_judged_are_refused() {
     for (body, part) in [
         (
             "[[expect]]\nsignal = \"x\"\nfrom = 0\nmin = 1\n",

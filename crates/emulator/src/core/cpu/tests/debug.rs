@@ -11,13 +11,13 @@ fn faulting_board(thread: &[u16]) -> Cpu {
     board(thread, &[(Exception::HARD_FAULT, handler)])
 }
 
-/// What it has left behind, and whether it complains of this.
+/// The trace of the program, and whether there is a board error with `part` in it.
 fn run_and_hear(cpu: &mut Cpu, part: &str) -> (Vec<u32>, bool) {
     let until = cpu.now() + 100 * US;
     run_until(cpu, until).expect("no fault of the model");
-    let mut complaints = cpu.soc().errors.list().iter();
-    let complains = complaints.any(|error| error.message.contains(part));
-    (traced(cpu), complains)
+    let mut errors = cpu.soc().errors.list().iter();
+    let is_reported = errors.any(|error| error.message.contains(part));
+    (traced(cpu), is_reported)
 }
 
 #[test]

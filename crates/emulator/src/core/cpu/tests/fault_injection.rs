@@ -1,4 +1,4 @@
-//! A handler calls a function every 100 µs, and the function is sabotaged.
+//! A handler calls a function every 100 µs, and a fault is injected into the function.
 
 use super::*;
 
@@ -36,7 +36,7 @@ fn effect(effect: Effect) -> Injection {
 
 /// Times 400, 500 and 600 µs fall into the hang: the first call goes on at its end, one more was pending.
 #[test]
-fn a_function_that_hangs_does_its_work_when_the_harm_ends() {
+fn a_function_that_hangs_does_its_work_when_the_injection_ends() {
     let mut cpu = calling_board();
     cpu.inject(effect(Effect::Hang));
     run_until(&mut cpu, 650 * US).expect("no fault");
@@ -69,7 +69,7 @@ fn an_undefined_instruction_and_a_jump_to_nowhere_are_hard_faults() {
 }
 
 #[test]
-fn a_reset_ends_all_harm() {
+fn a_reset_ends_every_injection() {
     let mut cpu = calling_board();
     cpu.inject(effect(Effect::Undefined));
     cpu.reset();

@@ -74,7 +74,7 @@ fn a_store_to_the_image_itself_stops_the_run() {
 }
 
 #[test]
-fn without_power_nothing_runs_and_afterwards_all_begins_anew() {
+fn without_power_nothing_runs_and_the_chip_boots_afterwards() {
     let thread = program(&[&trace(1), &[STAY]]);
     let mut cpu = board(&thread, &[]);
     run_until(&mut cpu, 20 * US).expect("no fault");

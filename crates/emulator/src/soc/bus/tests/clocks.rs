@@ -51,7 +51,7 @@ fn wait_states_and_regulator_scale_are_checked() {
 }
 
 #[test]
-fn an_unclocked_block_is_deaf_and_named() {
+fn an_unclocked_block_ignores_accesses_and_is_reported() {
     let mut bench = Bench::new();
     let usart3_brr = 0x4000_4808;
     bench.write(usart3_brr, 420);
@@ -87,7 +87,7 @@ fn a_reset_bit_brings_back_the_reset_values() {
 }
 
 #[test]
-fn a_block_held_in_reset_is_deaf_and_named() {
+fn a_block_held_in_reset_ignores_accesses_and_is_reported() {
     let mut bench = Bench::new();
     bench.set_bits(APB1ENR, 1);
     // TIM2RST set and never cleared.

@@ -6,14 +6,13 @@ use crate::{
             controller::{Controller, Mode, mcr, msr},
             errors::ErrorCode,
             filter::Filters,
+            frame_bits,
         },
         peripheral::Ctx,
     },
     time::{Ps, US},
     wire::{CanFrame, CanPort},
 };
-
-pub mod frame_bits;
 
 /// Bit time of the nodes.
 const NODE_BIT: Ps = US;
@@ -51,7 +50,7 @@ enum Outcome {
     Delivered,
     NotAcknowledged,
     /// The sender's dominant bits do not reach the bus.
-    Unheard,
+    NotDriven,
     /// Sender and hearers do not share a bit rate.
     Misread,
 }
@@ -98,7 +97,7 @@ impl CanBus {
         matches!(self.phase, Phase::Frame(_))
     }
 
-    /// The board's controller was reset: what it was sending ends unheard.
+    /// The board's controller was reset: what it was sending ends as an error.
     pub fn board_reset(&mut self) {
         if let Phase::Frame(transmission) = &mut self.phase
             && matches!(transmission.sender, Sender::Board { .. })
@@ -236,7 +235,7 @@ impl CanBus {
         let nodes = self.present_nodes(ctx);
         match sender {
             Sender::Board { .. } if ctx.board.can_broken(self.id) || !board.drives_bus(ctx) => {
-                Outcome::Unheard
+                Outcome::NotDriven
             }
             Sender::Board { .. } if nodes.is_empty() => Outcome::NotAcknowledged,
             Sender::Board { .. } if misfit => Outcome::Misread,
@@ -262,7 +261,7 @@ impl CanBus {
             Sender::Node(node) => !ctx.board.can_present(self.id, node),
         };
         if ctx.board.can_broken(self.id) || sender_gone {
-            transmission.outcome = Outcome::Unheard;
+            transmission.outcome = Outcome::NotDriven;
         }
     }
 
@@ -304,7 +303,7 @@ impl CanBus {
         let result = match transmission.outcome {
             Outcome::Delivered => Ok(()),
             Outcome::NotAcknowledged => Err(ErrorCode::Acknowledgement),
-            Outcome::Unheard => Err(ErrorCode::BitDominant),
+            Outcome::NotDriven => Err(ErrorCode::BitDominant),
             Outcome::Misread => Err(ErrorCode::BitRecessive),
         };
         board.attempt_ended(mailbox, result, ctx);
@@ -354,7 +353,7 @@ fn bits_until_end(transmission: &Transmission) -> Ps {
     match transmission.outcome {
         Outcome::Delivered => whole,
         Outcome::NotAcknowledged => whole - AFTER_ACK_BITS + ERROR_FRAME_BITS,
-        Outcome::Unheard => 1 + ERROR_FRAME_BITS,
+        Outcome::NotDriven => 1 + ERROR_FRAME_BITS,
         Outcome::Misread => MISREAD_BITS + ERROR_FRAME_BITS,
     }
 }

@@ -167,7 +167,7 @@ fn a_shorted_bus_leads_to_bus_off_and_back_after_128_times_11_bits() {
 }
 
 #[test]
-fn half_the_bit_rate_destroys_the_traffic_and_is_said_aloud() {
+fn half_the_bit_rate_destroys_the_traffic_and_is_reported() {
     let (mut bench, mut can) = (Bench::new(), Can::new());
     enable(&mut bench, &mut can, CAN1, 0x0029_0005);
     run_for(&mut bench, &mut can, 20 * MS);
@@ -195,7 +195,7 @@ fn a_node_with_a_lower_identifier_keeps_the_bus() {
 }
 
 #[test]
-fn without_its_pins_a_controller_neither_joins_nor_is_heard() {
+fn without_its_pins_a_controller_neither_joins_nor_drives_the_bus() {
     let (mut bench, mut can) = (Bench::new(), Can::new());
     bench.change_pin(Pin::new('D', 0), |pin| pin.mode = PinMode::Input);
     enable(&mut bench, &mut can, CAN1, ONE_MEGABIT);
@@ -267,7 +267,7 @@ fn a_frame_on_the_bus_wakes_a_sleeping_controller_that_asked_for_it() {
 }
 
 #[test]
-fn bus_off_recovers_by_itself_where_abom_is_set_and_tells_by_interrupt() {
+fn bus_off_recovers_by_itself_where_abom_is_set_and_interrupts() {
     let (mut bench, mut can) = ready(CAN2);
     bench.write(&mut can, CAN2 + MCR, 1 << 6);
     // ERRIE, BOFIE.
