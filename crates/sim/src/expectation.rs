@@ -1,4 +1,4 @@
-//! What must hold in a run, judged sample by sample while it runs.
+//! Conditions on signals that must hold in a run. They are judged sample by sample while it runs.
 
 use robot_plant::time::{self, Ps};
 
@@ -12,11 +12,11 @@ pub struct Expectation {
     pub bounds: Vec<Bound>,
     /// Flags of the signal, named as in the image.
     pub flags: Vec<NamedFlag>,
-    /// Why this is expected, shown in the report.
+    /// The reason for the expectation, shown in the report.
     pub because: Option<String>,
 }
 
-/// Why a named flag cannot be judged.
+/// A named flag cannot be judged.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FlagError {
     #[error("the image names no flags of `{0}`; write `has_bit` or `lacks_bit`")]
@@ -115,7 +115,7 @@ impl Bound {
         }
     }
 
-    /// How far `value` oversteps this bound: 0 where it holds, infinite for what is not a number.
+    /// How far `value` exceeds this bound: 0 where it holds, infinite for NaN.
     fn excess(self, value: f64) -> f64 {
         let excess = match self {
             Self::MaxAbs(limit) => value.abs() - limit,
@@ -203,7 +203,7 @@ pub struct Verdict {
     pub decisive: Option<Reading>,
     /// Readings judged.
     pub readings: u64,
-    /// `None` = held; else the reason in words.
+    /// The reason in words; `None` if the bound held.
     pub failure: Option<String>,
 }
 
@@ -278,7 +278,7 @@ impl Judge {
         margin(a) < margin(b)
     }
 
-    /// `end` is when the run really ended: a window that was cut off has not been kept.
+    /// `end` is when the run really ended: a bound whose window was cut off has not held.
     pub fn finish(
         self,
         signal: &str,
@@ -322,7 +322,7 @@ impl Judge {
     }
 }
 
-/// Six significant digits are enough to see what is wrong; what would need many zeros takes an exponent.
+/// Six significant digits are enough to see what is wrong; very large and very small numbers get an exponent.
 pub fn readable(value: f64) -> String {
     let rounded = format!("{value:.5e}").parse().unwrap_or(value);
     if rounded == 0.0 || (1e-6..1e9).contains(&rounded.abs()) || !rounded.is_finite() {
@@ -332,7 +332,7 @@ pub fn readable(value: f64) -> String {
     }
 }
 
-/// The verdict on what cannot be judged: a signal or flag that does not exist.
+/// The verdict on an expectation of a signal or flag that does not exist.
 pub fn unjudgeable(expectation: &Expectation, expected: String, why: String) -> Verdict {
     Verdict {
         signal: expectation.signal.clone(),

@@ -1,4 +1,4 @@
-//! One run from files to files: image and scenario in; summary, recording and report out.
+//! One run from files to files: it reads an image and a scenario, and writes summary, recording and report.
 
 use std::{
     io,
@@ -129,7 +129,7 @@ impl Job {
         })
     }
 
-    /// Runs without writing anything but the kept flash.
+    /// Runs and writes nothing but the flash file.
     pub fn run(&self, observers: &mut [&mut dyn Observer]) -> Result<Outcome, JobError> {
         let mut machine = self.machine()?;
         let ports: Result<Vec<_>, _> = self.can_on_pty.iter().copied().map(CanPort::open).collect();

@@ -187,12 +187,12 @@ impl Machine {
         self.cpu.with_soc(|soc, _| soc.add_patch(patch));
     }
 
-    /// When a fault of the machine last struck.
+    /// When an injected fault last took effect.
     pub fn fault_struck_at(&self) -> Option<Ps> {
         self.cpu.struck_at()
     }
 
-    /// Runs on until `until`; a block of code may carry it a fraction of a microsecond past it.
+    /// Runs until `until`. The last block of code may end a fraction of a microsecond later.
     pub fn run_until(&mut self, until: Ps) -> Result<(), MachineError> {
         while self.cpu.now() < until {
             let step = until.min((self.cpu.now() / LOG_POLL + 1) * LOG_POLL);
@@ -241,7 +241,7 @@ impl Machine {
         log.received(&bytes, self.cpu.now());
     }
 
-    /// Lets the caller look at the world or change it; the chip notices what changed.
+    /// Gives access to the world. The chip notices what has changed.
     pub fn with_world<R>(&mut self, f: impl FnOnce(&mut World) -> R) -> R {
         self.with_board(|board| f(&mut board.world))
     }

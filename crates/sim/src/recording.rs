@@ -32,7 +32,7 @@ pub enum RecordingError {
     Mcap(#[from] McapError),
 }
 
-/// One topic a first part of the signals' names: `/truth`, `/can`, `/radio`, `/diag`, `/emu`.
+/// One topic for each first part of the signals' names: `/truth`, `/can`, `/radio`, `/diag`, `/emu`.
 struct Topic {
     channel: u16,
     tree: Tree,
@@ -43,7 +43,7 @@ pub struct Recording {
     topics: Vec<Topic>,
     log_channel: Option<u16>,
     sequence: u32,
-    /// The first thing that went wrong; nothing is written after it.
+    /// The first error; nothing is written after it.
     failed: Option<McapError>,
 }
 

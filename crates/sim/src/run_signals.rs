@@ -1,4 +1,4 @@
-//! `emu.*`: what the emulator itself knows about the run.
+//! `emu.*`: the emulator's own measurements of the run.
 
 use robot_plant::time::{self, Ps};
 
@@ -23,14 +23,14 @@ const NAMES: [&str; 12] = [
     "emu.att_error.inclination_deg",
 ];
 
-/// How the run goes is looked at this often, and at the end.
+/// Interval at which the measurements are taken; they are taken at the end too.
 const PERIOD: Ps = 100 * time::MS;
 
 /// Keeps the `emu.*` values up to date.
 pub struct RunSignals {
     due: Ps,
     counters: [Option<f64>; 8],
-    /// When that was last, and how long each CAN bus had been busy by then.
+    /// When they were last taken, and how long each CAN bus had been busy by then.
     can_busy: (Ps, [Ps; 2]),
     /// Control ticks by then, and when the last of them was entered.
     ticks: Option<(u64, Ps)>,
@@ -90,7 +90,7 @@ impl RunSignals {
         values.extend((0..3).map(|i| error.map(|e| e[i])));
     }
 
-    /// Busy share of each bus since the last look.
+    /// Busy share of each bus since the last measurement.
     fn can_load(&mut self, progress: &Progress, now: Ps) -> [Option<f64>; 2] {
         let (before, busy_before) = self.can_busy;
         self.can_busy = (now, progress.can_busy);
@@ -98,7 +98,7 @@ impl RunSignals {
         [0, 1].map(|bus| Some((progress.can_busy[bus] - busy_before[bus]) as f64 / elapsed?))
     }
 
-    /// Mean time from tick to tick since the last look, by the crystal's time.
+    /// Mean time from tick to tick since the last measurement, by the crystal's time.
     fn tick_period_us(&mut self, progress: &Progress) -> Option<f64> {
         let before = std::mem::replace(&mut self.ticks, progress.ticks);
         let ((ticks_before, from), (ticks, to)) = (before?, progress.ticks?);

@@ -1,4 +1,4 @@
-//! The names of everything a scenario can look at, and the values at one instant.
+//! The names of all signals of a run, and their values at one instant.
 
 use crate::machine::diagnostics::meaning::Meaning;
 
@@ -26,7 +26,7 @@ impl SignalTable {
         }
     }
 
-    /// Takes what the values of the diagnostics stand for.
+    /// Adds the meanings of the diagnostics' values.
     #[must_use]
     pub fn with_meanings(mut self, diag: Vec<Option<Meaning>>) -> Self {
         self.meanings = diag;
@@ -57,7 +57,7 @@ impl SignalTable {
         self.world + self.diag
     }
 
-    /// Says that a signal does not exist, and which one may have been meant.
+    /// The message that a signal does not exist, with the name that may have been meant.
     pub fn missing(&self, name: &str) -> String {
         let hint = nearest(name, self.names.iter().map(String::as_str))
             .map_or(String::new(), |n| format!("; did you mean `{n}`?"));

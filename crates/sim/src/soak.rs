@@ -3,6 +3,7 @@
 mod flash_at_rest;
 mod initial_flash;
 mod invariants;
+mod missing_signal;
 mod plan;
 mod reproduction;
 mod rng;
@@ -25,8 +26,9 @@ use crate::{
     simulation::Simulation,
 };
 
-use invariants::{Invariants, MissingSignal};
+use invariants::Invariants;
 pub use invariants::{Tally, Violation};
+use missing_signal::MissingSignal;
 use plan::Plan;
 pub use saved_settings::SettingsTally;
 

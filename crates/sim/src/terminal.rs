@@ -1,4 +1,4 @@
-//! What a user sees of a run: the firmware's log, a progress bar, then the verdict.
+//! A run on the terminal: the firmware's log, a progress bar, then the verdict.
 
 use std::{
     io::IsTerminal,

@@ -25,12 +25,12 @@ impl Tree {
         into_arrays(root)
     }
 
-    /// Present values; what has none is left out of objects and null in arrays.
+    /// The present values; a missing one is left out of an object and null in an array.
     pub fn with<'a>(&'a self, values: &'a Values) -> impl Serialize + 'a {
         Filled { tree: self, values }
     }
 
-    /// False for what an object leaves out.
+    /// Whether an object contains it.
     pub fn has_value(&self, values: &Values) -> bool {
         match self {
             Self::Leaf(place) => values[*place].is_some_and(f64::is_finite),
@@ -39,7 +39,7 @@ impl Tree {
         }
     }
 
-    /// JSON schema of what `json` gives.
+    /// JSON schema of the output of `json`.
     pub fn schema(&self) -> Value {
         match self {
             Self::Leaf(_) => json!({ "type": "number" }),

@@ -89,7 +89,8 @@ fn received(outcome: &Outcome) -> f64 {
 /// A new chip's flash gets its first erase later.
 const BEFORE_ERASE_S: f64 = 0.5;
 
-/// 20 ms apart so that a burst fits into the firmware's queue: 0x7A1, which it knows, and 0x3FF, which nobody owns.
+/// Frames 20 ms apart, so that a burst fits into the firmware's queue: 0x7A1, which it knows, and 0x3FF, which nobody
+/// uses.
 fn injection() -> Vec<(Ps, String)> {
     let burst = "t7A180102030405060708\rt3FF0\r".repeat(4);
     (0..10)

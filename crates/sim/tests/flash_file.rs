@@ -1,10 +1,10 @@
-//! `sim --flash FILE`: the parameter sectors live on from run to run.
+//! `sim --flash FILE`: the contents of the parameter sectors are kept from run to run.
 
 mod support;
 
 use robot_sim::{job::Job, machine::flash::PARAMETER_FLASH_BYTES, scenario::Scenario};
 
-/// Long enough for a new chip, of which a sector is erased once the robot has rested.
+/// Long enough for a new chip to erase a sector once the robot has rested.
 const QUIET: &str = "name = \"kept\"\nseconds = 1.5\nplant = \"stand\"\n";
 
 fn job(name: &str) -> Job {

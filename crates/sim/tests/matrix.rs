@@ -1,9 +1,8 @@
 //! Every fault in every phase of a drive, on the shipped image: what stops, how soon, under which flags, and what
 //! happens when the fault is gone.
 //!
-//! What must happen is written down in `matrix/expected.rs`; `docs/safety.md` shows it, with the times measured when
-//! it was written (`ROBOT_WRITE_MATRIX=1` writes it again). `ROBOT_MATRIX=motor-3` runs the faults whose name holds
-//! that only.
+//! `matrix/expected.rs` holds what must happen. `docs/safety.md` shows it, with the times measured when it was written
+//! (`ROBOT_WRITE_MATRIX=1` writes it again). `ROBOT_MATRIX=motor-3` runs only the faults whose names contain that.
 
 mod support;
 
@@ -28,10 +27,10 @@ use expected::Row;
 use observed::{Observed, Phase};
 use robot_sim::faults;
 
-/// What was seen, by the place of the row and the phase.
+/// Observations by row and phase.
 type Cells = BTreeMap<(usize, Phase), Observed>;
 
-/// Every cell of the rows, on all cores.
+/// Runs every cell of the rows on all cores.
 fn run_all(rows: &[Row]) -> Cells {
     let all = (0..rows.len()).flat_map(|row| Phase::ALL.map(|phase| (row, phase)));
     let queue = Mutex::new(all);

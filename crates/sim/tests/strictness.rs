@@ -1,4 +1,4 @@
-//! One wrong line of `board.rs`, and the run must fail and say what is wrong (register addresses: RM0090).
+//! A wrong line of `board.rs` must fail the run, and the message must name the error (register addresses: RM0090).
 
 mod support;
 
@@ -38,7 +38,8 @@ fn reported(patches: &[RegisterPatch]) -> Reported {
     all
 }
 
-/// What the first seconds of the default drive miss with these register bits overridden; the board itself sees nothing.
+/// The expectations of the default drive's first seconds that fail with these register bits overridden, where the board
+/// itself reports nothing.
 fn drive_fails(patch: RegisterPatch) -> Vec<String> {
     let path = support::repository().join("scenarios/drive.toml");
     let mut drive = Scenario::read(&path).expect("the default drive");
@@ -54,7 +55,7 @@ fn drive_fails(patch: RegisterPatch) -> Vec<String> {
     failed.map(|f| format!("{}: {}", f.signal, f.why)).collect()
 }
 
-/// One message has all of `parts` in it.
+/// Asserts that one message contains all of `parts`.
 fn must_name(messages: &[String], parts: &[&str]) {
     let telling = |message: &String| parts.iter().all(|part| message.contains(part));
     assert!(
@@ -63,19 +64,19 @@ fn must_name(messages: &[String], parts: &[&str]) {
     );
 }
 
-/// The run fails, and one message contains all of `parts`.
+/// Asserts that the run fails and that one message contains all of `parts`.
 fn must_report(patch: RegisterPatch, parts: &[&str]) {
     must_name(&reported(&[patch]).failing, parts);
 }
 
-/// The run does not fail, and one message contains all of `parts`.
+/// Asserts that the run does not fail and that one suspicion contains all of `parts`.
 fn must_doubt(patch: RegisterPatch, parts: &[&str]) {
     let all = reported(&[patch]);
     assert_eq!(all.failing, Vec::<String>::new());
     must_name(&all.suspicious, parts);
 }
 
-/// The same for several at once: each has its bits set to the value, and is named by all of its parts.
+/// The same for several patches in one run: address, mask, value and the parts of its message.
 fn must_report_all(wrong: &[(u32, u32, u32, &[&str])]) {
     let patches: Vec<_> = wrong.iter().map(|w| patch(w.0, w.1, w.2)).collect();
     let failing = reported(&patches).failing;
@@ -260,7 +261,7 @@ fn a_magnetometer_that_never_gets_ready_fails_the_default_drive() {
     must_name(&drive_fails(patch), &["diag.mag_health.ready"]);
 }
 
-/// GPIOx_OTYPER, a bit a pin; 1 is open-drain.
+/// GPIOx_OTYPER has one bit for each pin; 1 is open-drain.
 const OTYPER: [(char, u32); 6] = [
     ('A', 0x4002_0004),
     ('B', 0x4002_0404),
@@ -322,7 +323,7 @@ fn open_drain_outputs_open_no_mosfet() {
     ]);
 }
 
-/// PD14, which beeps when the e-stop is thrown.
+/// PD14 drives the buzzer, which sounds when the e-stop is thrown.
 #[test]
 fn an_open_drain_buzzer_is_mute() {
     let (address, mask, value) = open_drain('D', 14);
@@ -337,7 +338,7 @@ fn an_open_drain_buzzer_is_mute() {
     must_name(&errors, &["PD14 is open-drain", "buzzer stays off"]);
 }
 
-/// The reset of the magnetometer, PG6: nobody says whether it has a pull-up of its own.
+/// PG6 resets the magnetometer. No source says whether the magnetometer has a pull-up of its own.
 #[test]
 fn an_open_drain_reset_of_the_magnetometer_is_suspicious() {
     let (address, mask, value) = open_drain('G', 6);
@@ -389,7 +390,7 @@ fn a_can_jump_width_past_the_end_of_the_bit() {
     must_report(patch, &["CAN1: SJW of 4 quanta, with 3 after the sample"]);
 }
 
-/// GPIOH_MODER bits 23:22 and GPIOG_MODER bits 13:12: what drives nothing.
+/// GPIOH_MODER bits 23:22 and GPIOG_MODER bits 13:12: pins that are inputs and drive nothing.
 #[test]
 fn pins_that_were_never_made_outputs() {
     let led = (0x4002_1C00, 3 << 22, 0);
@@ -418,7 +419,7 @@ fn a_battery_sampled_too_shortly() {
     let patch = patch(0x4001_2210, 7 << 24, 0);
     must_doubt(
         patch,
-        &["ADC3: the battery's divider is sampled for 142 ns"],
+        &["ADC3: a source of 19820 ohms is sampled for 142 ns"],
     );
 }
 

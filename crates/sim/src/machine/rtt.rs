@@ -8,7 +8,7 @@ const UP_SIZE: u32 = 24 + 8;
 const UP_WRITE: u32 = 24 + 12;
 const UP_READ: u32 = 24 + 16;
 const UP_FLAGS: u32 = 24 + 20;
-/// The image waits for the reader when the ring is full, if it heeds that.
+/// The image waits for the reader when the ring is full, if it implements that.
 const BLOCK_IF_FULL: u32 = 2;
 /// More than any ring on a chip with 192 KiB of RAM; a control block that says more is not initialised yet.
 const LARGEST_RING: u32 = 0x1_0000;

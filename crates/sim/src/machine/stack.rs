@@ -1,4 +1,4 @@
-//! How deep the stack ever was: RAM that no longer holds its power-on noise.
+//! Deepest use of the stack, found by RAM that no longer holds its power-on noise.
 
 use robot_emulator::core::{
     cpu::Cpu,

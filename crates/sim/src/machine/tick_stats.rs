@@ -34,7 +34,7 @@ pub(super) struct TickStats {
     /// Index of the first tick of each grid but the first: a boot starts one, and a stall of a period and more.
     grids: Vec<usize>,
     missed: u64,
-    /// Whether the firmware last said that it is armed.
+    /// Whether the firmware last reported to be armed.
     armed: bool,
     longest_gap: LongestGap,
 }

@@ -70,7 +70,7 @@ impl CanPort {
         self.stats
     }
 
-    /// Does what the PC asked since the last visit and passes on what the bus carried. Never waits.
+    /// Carries out the PC's requests since the last call and passes frames of the bus on. It never waits.
     pub fn serve(&mut self, world: &mut World) -> io::Result<()> {
         let adapter = world.can_adapter(self.bus);
         self.terminal.read(&mut self.arrived, READ)?;

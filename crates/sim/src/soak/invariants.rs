@@ -8,6 +8,7 @@ use robot_plant::{
 use super::{
     STEP,
     flash_at_rest::{FlashAtRest, RobotState},
+    missing_signal::MissingSignal,
     saved_settings::SettingsTally,
     settings_check::SettingsCheck,
     stop_deadlines::{self, Group, StopDeadline},
@@ -39,11 +40,6 @@ pub struct Violation {
     pub at: Ps,
     pub what: String,
 }
-
-/// The image or the world does not show a signal of this name.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{0}")]
-pub struct MissingSignal(pub String);
 
 /// Totals of a run.
 #[derive(Clone, Copy, Debug, Default)]

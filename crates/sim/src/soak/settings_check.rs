@@ -7,7 +7,7 @@ use robot_plant::{
 };
 
 use super::{
-    invariants::MissingSignal,
+    missing_signal::MissingSignal,
     saved_settings::{ReceivedFrame, SavedSettings, SettingsTally, StoreStatus},
     tuning_frames,
 };

@@ -22,7 +22,7 @@ const QUIET: &str = "name = \"matrix\"\nseconds = 10.0\nplant = \"stand\"\n";
 /// Calibration and set-up of the motors are over.
 const READY: Ps = 2_500 * MS;
 const DRIVES: Ps = 2_700 * MS;
-/// Not on a round millisecond: a fault asks no tick for its turn.
+/// Start of the fault. It is no whole millisecond, as a fault is not synchronous to the control tick.
 const FAULT: Ps = 3_300 * MS + 370_000_000;
 const FAULT_LASTS: Ps = 2_000 * MS;
 const SAMPLE: Ps = MS;
@@ -30,7 +30,7 @@ const SAMPLE: Ps = MS;
 const CENTRED: Ps = 300 * MS;
 const PUSHED: Ps = 500 * MS;
 
-/// Faults that are no fault of a device but of the pilot.
+/// Faults that the pilot causes, and no device.
 pub const E_STOP: &str = "e-stop";
 
 /// The run of one cell.
@@ -88,7 +88,7 @@ fn stick(vx: f64) -> RemoteInput {
     }
 }
 
-/// Places of signals.
+/// Positions of signals.
 struct Places {
     currents: [usize; 2],
     enabled: [usize; 4],
@@ -104,7 +104,7 @@ struct Drive {
     events: Vec<WireEvent>,
     world: Vec<f64>,
     diag: Vec<f64>,
-    /// Instants of torque not yet known to be of an armed robot.
+    /// Times of torque for which the diagnostics have not yet shown an armed robot.
     suspects: Vec<Ps>,
     last_armed: Option<Ps>,
     flags_now: u64,
@@ -213,7 +213,7 @@ impl Drive {
         }
     }
 
-    /// Takes what happened on the wires.
+    /// Takes the events on the wires.
     fn hear(&mut self) {
         let mut events = std::mem::take(&mut self.events);
         self.machine.drain_wire_events(&mut events);
@@ -255,7 +255,7 @@ impl Drive {
         }
     }
 
-    /// Takes what the firmware says of itself.
+    /// Takes the firmware's diagnostics.
     fn ask(&mut self) {
         let known = self.machine.sample_diag(&mut self.diag);
         let sure = self.now.saturating_sub(ARMED_SLACK);

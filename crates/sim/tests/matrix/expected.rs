@@ -1,20 +1,20 @@
-//! What must happen, from the design's safety rules, the seed's section 0.6 and the devices' datasheets; nothing here
-//! is taken from what the firmware does. Times count from the start of the fault.
+//! Expected outcome of every fault, from the rules of docs/safety.md and the devices' datasheets. Nothing here is taken
+//! from what the firmware does. Times count from the start of the fault.
 
-/// What the actuators of one kind do while the fault is there.
+/// Reaction of the actuators of one kind while the fault is there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Group {
     /// No torque from this many ms on.
     Zero(f64),
-    /// Obeys as before.
+    /// The actuator obeys as before.
     Runs,
-    /// Runs on or stops: the fault is at the edge of a limit.
+    /// The actuator runs on or stops: the fault is at the edge of a limit.
     Either,
-    /// No frame can get there; the device itself decides.
+    /// No frame reaches the actuator; the device itself decides.
     Unreachable,
 }
 
-/// What moves without the pilot's doing anything but keep pushing the stick, when the fault is gone.
+/// Actuators that move when the fault is gone, while the pilot only keeps pushing the stick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum After {
     /// Nothing.
@@ -25,11 +25,11 @@ pub enum After {
     WheelsOnly,
     /// Joints only.
     JointsOnly,
-    /// What the fault stopped stays off, the rest drives on.
+    /// Actuators that the fault stopped stay off, the others drive on.
     WhatRan,
     /// The wheels stay off until the stick has been centred, then all drives; the joints go on at once.
     WheelsWait,
-    /// The same the other way round.
+    /// The joints stay off until the stick has been centred, then all drives; the wheels go on at once.
     JointsWait,
 }
 
@@ -57,12 +57,12 @@ pub enum Arms {
     Either,
 }
 
-/// Safety flags that rise.
+/// Safety flags that the fault raises.
 #[derive(Clone, Debug, Default)]
 pub struct Flags {
-    /// Every one of them.
+    /// All of these must rise.
     pub must: Vec<&'static str>,
-    /// Any of them besides; no other.
+    /// Any of these may rise as well; no other may.
     pub may: Vec<&'static str>,
 }
 
@@ -87,7 +87,7 @@ fn flags(must: &[&'static str], may: &[&'static str]) -> Flags {
     }
 }
 
-/// The same in both armed phases; disarmed, it forbids arming as long as it is there.
+/// A fault with the same outcome in both armed phases; while it is there, a disarmed robot cannot be armed.
 fn row(fault: &'static str, wheels: Group, joints: Group, flags: Flags, after: After) -> Row {
     let armed = Armed {
         wheels,
@@ -110,13 +110,13 @@ fn row(fault: &'static str, wheels: Group, joints: Group, flags: Flags, after: A
     }
 }
 
-/// Everything stops within these ms and stays so until the pilot arms again.
+/// Everything stops within these milliseconds and stays off until the pilot arms again.
 fn global(fault: &'static str, within_ms: f64, flags: Flags) -> Row {
     let zero = Group::Zero(within_ms);
     row(fault, zero, zero, flags, After::Off)
 }
 
-/// Nothing needs it.
+/// A fault of something that is not needed.
 fn harmless(fault: &'static str, flags: Flags) -> Row {
     row(fault, Group::Runs, Group::Runs, flags, After::Drives).arms_during(Arms::Yes)
 }
@@ -188,7 +188,7 @@ pub fn rows() -> Vec<Row> {
     .concat()
 }
 
-/// A frame every 7 ms takes 3 ms; then 3 ms to zero on both buses (design, section 6).
+/// A frame every 7 ms takes 3 ms; then 3 ms to zero on both buses (docs/safety.md#reaction-times).
 const NEXT_FRAME_MS: f64 = 7.0 + 3.0 + 3.0;
 /// The last good frame may be 100 ms old, and ended up to 7 ms before the fault or up to 3 ms after its start.
 const REMOTE_LOST_MS: f64 = 100.0 + 3.0 + 3.0;
@@ -445,8 +445,8 @@ fn supply_and_flash() -> Vec<Row> {
     ]
 }
 
-/// The image undoes what a probe leaves, or does not arm. A halt longer than the short watchdog period (18 ms at the
-/// nominal 32 kHz) ends in a reset, and then as after every other.
+/// The image undoes what a probe has left, or does not arm. A halt longer than the short watchdog period (18 ms at the
+/// nominal 32 kHz) ends in a reset like any other.
 fn debug_probe() -> Vec<Row> {
     let insists = harmless("probe-insists", Flags::default());
     let mut rows = vec![
@@ -462,7 +462,7 @@ fn debug_probe() -> Vec<Row> {
     rows
 }
 
-/// Design, section 6: panic 1 ms; hang: reset within 60 ms, zero within 20 ms of it.
+/// docs/safety.md#reaction-times: panic 1 ms; hang: reset within 60 ms, zero within 20 ms of it.
 fn image() -> Vec<Row> {
     let mut rows = Vec::new();
     for fault in ["panic", "panic-thread", "hard-fault", "stack-overflow"] {

@@ -1,10 +1,10 @@
-//! What a run showed, on the wire and by the firmware's own account.
+//! Observations of a run, on the wires and in the firmware's diagnostics.
 
 use std::collections::BTreeSet;
 
 use robot_plant::time::{MS, Ps};
 
-/// What the robot is doing when the fault starts.
+/// State of the robot when the fault starts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Phase {
     /// Armed, wheels turning, legs held.

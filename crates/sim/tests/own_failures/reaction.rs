@@ -1,4 +1,4 @@
-//! A robot that drives, fails, and is watched on the wires.
+//! A robot that drives and then fails; its reaction is measured on the wires.
 
 use robot_plant::{
     time::{MS, Ps, US, from_seconds},
@@ -9,12 +9,12 @@ use robot_sim::{machine::Machine, scenario::Scenario, simulation::Simulation};
 use crate::support;
 
 const QUIET: &str = "name = \"own failure\"\nseconds = 5.0\nplant = \"stand\"\n";
-/// The instant of a reset is seen this exactly.
+/// Resolution at which a reset is noticed.
 const STEP: Ps = 50 * US;
 const INDEPENDENT_WATCHDOG: f64 = 5.0;
 const DISARMED: f64 = 0.0;
 
-/// Times after the failure; the last two after the reset.
+/// Times after the failure; the last two count from the reset.
 #[derive(Debug)]
 pub struct Reaction {
     pub zero: [Option<Ps>; 2],
@@ -22,23 +22,23 @@ pub struct Reaction {
     pub zero_after_reset: [Option<Ps>; 2],
 }
 
-/// What a debug probe has done before.
+/// State that a debug probe has left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Debugger {
     Never,
-    /// It flashed and started the image, and still catches what it catches by default.
+    /// The probe has flashed and started the image, and still catches what it catches by default.
     Attached,
     AttachedWhileArmed,
-    /// It came and went by this fault, a while after the boot.
+    /// The probe came and went by this fault, a while after the boot.
     LeftBehind(&'static str),
 }
 
-/// A board that drives at `t = 4 s` and a bit, and what it sent since.
+/// A board that drives a little after `t = 4 s`, and what it has sent since.
 struct Run {
     machine: Machine,
-    /// Places of the two wheel currents.
+    /// Positions of the two wheel currents.
     currents: Vec<usize>,
-    /// Of each joint's count of disable frames, and of whether it is enabled.
+    /// Positions of each joint's count of disable frames, and of whether it is enabled.
     joint_stops: Vec<usize>,
     joint_enabled: Vec<usize>,
     events: Vec<WireEvent>,
@@ -136,7 +136,7 @@ impl Run {
     }
 }
 
-/// Fails so while it drives.
+/// Lets the robot fail in this way while it drives.
 pub fn reaction(fault: &str, debugger: Debugger) -> Reaction {
     let mut run = Run::driving(debugger);
     run.set_fault(fault, true);
@@ -176,13 +176,13 @@ pub fn reaction(fault: &str, debugger: Debugger) -> Reaction {
 }
 
 impl Reaction {
-    /// Design, section 6: hang → watchdog reset ≤ 60 ms, zero torque ≤ 20 ms after it.
+    /// docs/safety.md#reaction-times: a hang ends in a reset within 60 ms, and zero torque follows within 20 ms.
     pub fn resets_to_zero(&self) -> bool {
         let zero = self.zero_after_reset.map(|at| within(at, 20 * MS));
         self.reset <= 60 * MS && zero == [true; 2]
     }
 
-    /// Panic → zero torque frames ≤ 1 ms.
+    /// docs/safety.md#reaction-times: zero torque within 1 ms of a panic.
     pub fn is_zero_at_once(&self) -> bool {
         self.zero.map(|at| within(at, MS)) == [true; 2]
     }

@@ -1,4 +1,4 @@
-//! The pilot wants to drive while a sector is being erased, and what else goes on in that time.
+//! The pilot wants to drive while a sector is being erased, and other things that happen in that time.
 
 use robot_plant::time::{MS, Ps, SECOND, US};
 use robot_sim::machine::flash::{FlashStepKind, FlashTimes};
@@ -15,7 +15,7 @@ const READY: Ps = 2_400 * MS;
 const FLASH_BUSY: &str = "flash-busy";
 const REMOTE_NOT_FRESH: &str = "remote-not-fresh";
 const SILENT: &str = "sbus-silent";
-/// Of the radio: the firmware's own limit is 100 ms.
+/// Time until a silent radio must stop the robot: the firmware's own limit is 100 ms.
 const REMOTE_TIMEOUT: Ps = 100 * MS;
 
 /// A robot whose erase began within the last millisecond, and when it ends.
@@ -86,7 +86,7 @@ fn clean_after(robot: &mut Robot, make: Make, lag_before: Ps) -> Vec<String> {
 struct Cell {
     make: Make,
     times: FlashTimes,
-    /// After the erase began.
+    /// Time since the erase began.
     asked: Ps,
 }
 
@@ -151,7 +151,7 @@ fn arming_waits_for_the_erase_and_then_happens() {
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
 }
 
-/// The radio goes silent during the erase: what it said before must not count as fresh afterwards.
+/// The radio goes silent during the erase: what it sent before must not count as fresh afterwards.
 #[test]
 fn a_radio_that_dies_during_an_erase_is_missed_in_time() {
     let makes = [Make::Dm4310, Make::Rs00];

@@ -1,4 +1,4 @@
-//! While armed flash is left alone; what a save costs a robot at rest.
+//! Flash is not written while armed; the cost of a save at rest.
 
 use robot_plant::time::{MS, Ps, SECOND};
 use robot_sim::machine::flash::{FlashStepKind, FlashTimes};
@@ -108,11 +108,11 @@ fn saved_once_at_rest(robot: &mut Robot, make: Make) {
     assert_eq!(stored[&(1, 0)].values[1], 0.44_f32.to_bits());
 }
 
-/// It is looked so often whether the robot is armed: a record that was written just before is none of its business.
+/// Interval at which the test looks whether the robot is armed. A record that was written just before arming is allowed.
 const LOOK: Ps = MS / 20;
 
-/// The switch goes on so long after the change: around the end of the 500 ms, in the middle of the records' move to
-/// another sector, right before the erase.
+/// Times from the change to the switch: around the end of the 500 ms, in the middle of the records' move to another
+/// sector, and right before the erase.
 fn arm_into_a_save(after: Ps) -> Vec<String> {
     let mut robot = Robot::with_flash(Make::Dm4310, &before_a_rotation(Make::Dm4310));
     robot.until(READY);

@@ -1,4 +1,4 @@
-//! How long a boot takes with what the store may hold.
+//! Duration of a boot with every possible contents of the store.
 
 use robot_plant::time::{MS, Ps, SECOND, US};
 

@@ -1,11 +1,11 @@
-//! Many runs that know nothing of each other, on all cores.
+//! Independent runs on all cores.
 
 use std::{
     sync::{Mutex, PoisonError},
     thread,
 };
 
-/// What `run` makes of each cell, in the order of the cells.
+/// The results of `run` for each cell, in the order of the cells.
 pub fn run_all<C: Sync, R: Send>(cells: &[C], run: impl Fn(&C) -> R + Sync) -> Vec<R> {
     let queue = Mutex::new(cells.iter().enumerate());
     let next = || queue.lock().unwrap_or_else(PoisonError::into_inner).next();

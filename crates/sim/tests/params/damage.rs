@@ -31,7 +31,7 @@ struct Damaged {
     flash: Image,
 }
 
-/// One bit in each word of the newest copy of a record, and in each word of the head.
+/// Flips one bit in each word of the newest copy of a record, and in each word of the head.
 fn flips() -> Vec<Damaged> {
     let start = image(Make::Dm4310, 60);
     let slot_of_group_4 = 60 - GROUPS + 4;

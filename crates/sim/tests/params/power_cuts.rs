@@ -1,4 +1,4 @@
-//! The power goes at steps of the flash, before, in the middle and after, and once more in what follows.
+//! Power cuts before, in and after steps of the flash, and second cuts in the recovery.
 
 use std::fmt;
 
@@ -15,16 +15,16 @@ use crate::{
 };
 
 const PHASES: [Phase; 3] = [Phase::Before, Phase::Middle, Phase::After];
-/// What the user changes, all at once: each is a record of its own.
+/// Changes that the user makes together; each is a record of its own.
 const CHANGES: [(Setting, f32); 3] = [((2, 0), 1.125), ((4, 0), 90_000.0), ((7, 0), 43.5)];
-/// What is saved after the cuts.
+/// The change that is saved after the cuts.
 const NEXT: (Setting, f32) = ((5, 3), 1.03);
 const FOREIGN: [((u8, u8), u8); 2] = [((16, 2), 1), ((77, 3), 9)];
 const OFF_TIME: Ps = 5 * MS;
 const RUNS: usize = 400;
 const PATIENCE: Ps = 4 * SECOND;
 
-/// What runs into the cut.
+/// The work that the cut interrupts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Work {
     /// The sector's last slot, the move to the next sector, two more records, and the erase of the oldest sector.
@@ -82,14 +82,14 @@ fn foreign_record((key, variant): (u8, u8), version: u8) -> Stored {
     }
 }
 
-/// Of the work without a cut.
+/// Figures of the work without a cut.
 fn steps(work: Work) -> usize {
     let mut robot = Robot::with_flash(Make::Dm4310, &start(work));
     do_work(&mut robot, work, &mut Vec::new(), |_| false);
     robot.machine.flash_steps().len()
 }
 
-/// Works until all is done or `cut` says so; `acknowledged` gets the changes the robot said it had saved.
+/// Works until all is done or `cut` says so; `acknowledged` collects the changes that the robot reported as saved.
 fn do_work(
     robot: &mut Robot,
     work: Work,
@@ -127,7 +127,7 @@ fn do_work(
     });
 }
 
-/// Of a group's bit in `diag.params.unsaved`.
+/// The bit of a group in `diag.params.unsaved`.
 fn position(group: u8) -> u8 {
     if group < 16 {
         group - 1
@@ -204,10 +204,10 @@ fn next_save(robot: &mut Robot, known: &mut Known, seen: &mut Seen) {
     }
 }
 
-/// What each setting may be.
+/// The values that each setting may have.
 struct Known {
     settings: Settings,
-    /// Another value it may have as well.
+    /// Another value that it may have.
     or: Settings,
 }
 
@@ -236,7 +236,7 @@ impl Known {
         self.or.insert(setting, value.to_bits());
     }
 
-    /// Compares, and from now on nothing may change again.
+    /// Compares all settings. From now on no value may change again.
     fn look(&mut self, robot: &mut Robot, seen: &mut Seen, when: &str) {
         let settings = robot.settings();
         for (setting, bits) in &settings {
@@ -256,7 +256,7 @@ impl Known {
     }
 }
 
-/// Evenly over all there are: `RUNS` of them, or as many as `ROBOT_POWER_CUTS` says.
+/// A selection spread evenly over all cuts: `RUNS` of them, or as many as `ROBOT_POWER_CUTS` says.
 fn chosen(cells: &[Cell]) -> Vec<Cell> {
     let said = std::env::var("ROBOT_POWER_CUTS").ok();
     let wanted = said.and_then(|said| said.parse().ok()).unwrap_or(RUNS);

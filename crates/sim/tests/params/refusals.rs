@@ -1,4 +1,4 @@
-//! What forbids arming, and what forbids to touch flash.
+//! Conditions that forbid arming, and conditions that forbid writing to flash.
 
 use robot_plant::time::{MS, SECOND};
 

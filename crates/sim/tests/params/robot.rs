@@ -30,9 +30,9 @@ const READ_STORE: u8 = 0x31;
 const REFUSED: u8 = 0xEE;
 
 const BUSES: [CanBusId; 2] = [CanBusId::Can1, CanBusId::Can2];
-/// The robot answers within six milliseconds.
+/// Time within which the robot answers a request.
 const REPLY_WITHIN: Ps = 50 * MS;
-/// It may stand still for half a second.
+/// Time limit for a reply when the robot may stall for half a second.
 const TRIES: usize = 14;
 
 /// A request to a board without power is lost.
@@ -53,7 +53,7 @@ pub struct Robot {
     /// When `diag` was read, and whether there was something to read.
     sampled_at: Ps,
     known: bool,
-    /// On CAN1, CAN2; taken by whoever waits for them.
+    /// Frames received on CAN1 and CAN2 that no one has waited for yet.
     replies: [Vec<[u8; 8]>; 2],
     pub events: Vec<WireEvent>,
 }
@@ -184,13 +184,13 @@ impl Robot {
         (0..2).all(|wheel| self.world(&format!("truth.wheel.{wheel}.speed_mps")) > 0.1)
     }
 
-    /// The robot knows of this many changes since it booted and has saved all it has to.
+    /// Whether the robot has seen this many changes since it booted, and has saved all.
     pub fn is_saved(&mut self, changes: usize) -> bool {
         let seen = self.diag("params.seen");
         seen.is_some_and(|seen| seen >= changes as f64) && self.diag("params.unsaved") == Some(0.0)
     }
 
-    /// A sector is ready to be begun.
+    /// Whether a sector is clean and ready to be used.
     pub fn is_tidy(&mut self) -> bool {
         states(&self.machine.parameter_flash()).contains(&SectorState::Clean)
     }
@@ -228,12 +228,12 @@ impl Robot {
         faults::set(&mut self.machine, name, on).expect("the fault exists");
     }
 
-    /// Asks for a change and does not wait for the answer.
+    /// Requests a change and does not wait for the reply.
     pub fn ask_to_set(&mut self, setting: Setting, value: f32) {
         self.send(0, WRITE_ID, to_set(setting, value));
     }
 
-    /// Changes a setting of a robot that must take it.
+    /// Changes a setting. The robot must accept it.
     pub fn set(&mut self, setting: Setting, value: f32) {
         let reply = self.exchange(WRITE_ID, to_set(setting, value));
         assert_eq!(
@@ -243,7 +243,7 @@ impl Robot {
         );
     }
 
-    /// The robot's answer to the question whether everything is saved: state, error, unsaved groups.
+    /// The robot's reply to the request for the store's status: state, error, unsaved groups.
     pub fn store_state(&mut self) -> [u8; 3] {
         let question = [READ_STORE, 0, 0, 0, 0, 0, 0, 0];
         let [_, state, error, unsaved, ..] = self.exchange(READ_ID, question);

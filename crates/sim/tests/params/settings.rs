@@ -1,4 +1,4 @@
-//! The settings of the robot as `docs/tuning.md` numbers them, and one set of values that is nobody's default.
+//! The settings of the robot as `docs/tuning.md` numbers them, and a set of values that differ from all defaults.
 
 use std::collections::BTreeMap;
 
@@ -10,10 +10,10 @@ pub type Setting = (u8, u8);
 /// Bits of the `f32` of every setting.
 pub type Settings = BTreeMap<Setting, u32>;
 
-/// Settings of all groups together.
+/// Number of settings in all groups.
 pub const COUNT: usize = 124;
 
-/// A record each.
+/// Number of groups; each is a record.
 pub const GROUPS: usize = CALIBRATED.len();
 
 /// Groups from here on are joints and belong to a make of motor.
@@ -33,7 +33,8 @@ const TRAVEL: [f32; 21] = [
     992.0, 1801.0, 182.0, 992.0, 1801.0, 182.0, 992.0, 1801.0,
 ];
 
-/// Allowed values that differ from the defaults, directions and what the pilot needs aside. The robot drives with them.
+/// Allowed values with which the robot drives. They differ from the defaults, except for directions and what the pilot
+/// needs.
 #[rustfmt::skip] // One line a group.
 const CALIBRATED: [(u8, &[f32]); 14] = [
     (1, &[0.07, 0.45, 17.5, 1.0, -1.0]),
@@ -85,12 +86,12 @@ pub fn in_flash(stored: &BTreeMap<Id, Stored>, make: Make) -> Settings {
         .collect()
 }
 
-/// What a record of this group is filed under.
+/// Group, version and variant of a record of this group.
 pub fn id(group: u8, make: Make) -> Id {
     (group, variant(group, make))
 }
 
-/// Of the group's record.
+/// Version of the group's record.
 fn version(group: u8) -> u8 {
     match group {
         3 | 4 => 2,
@@ -102,8 +103,8 @@ fn variant(group: u8, make: Make) -> u8 {
     if group < FIRST_JOINT { 0 } else { make as u8 }
 }
 
-/// A robot in use: everything in sector 0, of generation 7, the others clean. The slots before the newest copies, up to
-/// `used`, hold older ones.
+/// The flash of a robot in use. Everything is in sector 0, of generation 7; the other sectors are clean. The slots before
+/// the newest copies, up to `used`, hold older ones.
 pub fn image(make: Make, used: usize) -> Image {
     let records = records(make);
     assert!((records.len()..=LAST_SLOT).contains(&used));

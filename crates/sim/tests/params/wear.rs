@@ -1,4 +1,4 @@
-//! What a tuning session costs the flash.
+//! The wear of a tuning session.
 
 use robot_plant::time::{MS, SECOND};
 use robot_sim::machine::flash::FlashStepKind;
@@ -16,7 +16,7 @@ fn erases(robot: &Robot) -> usize {
         .count()
 }
 
-/// Twelve records move to each new sector and leave 115 places: 1,000 saves fill nine sectors.
+/// Twelve records move to each new sector and leave 115 slots: 1,000 saves fill nine sectors.
 #[test]
 fn a_thousand_changes_saved_one_by_one_cost_nine_erases() {
     let mut robot = Robot::with_flash(Make::Dm4310, &image(Make::Dm4310, GROUPS));

@@ -1,4 +1,4 @@
-//! Cells that stick and sectors that do not erase: pauses, a visible fault, and a robot that drives all the same.
+//! Cells that stick and sectors that do not erase: the store pauses, the fault is shown, and the robot still drives.
 
 use robot_plant::{
     flash_chip::{EraseFault, StuckBit},
@@ -94,7 +94,7 @@ fn erases_that_fail_are_tried_again_after_ever_longer_pauses() {
     assert_eq!(robot.machine.stats().missed, 0);
 }
 
-/// One sector that cannot be erased is left out; the others do.
+/// A sector that cannot be erased is skipped; the others suffice.
 #[test]
 fn a_sector_that_cannot_be_erased_is_skipped() {
     let mut robot = Robot::with_flash(
@@ -120,7 +120,7 @@ fn a_sector_that_cannot_be_erased_is_skipped() {
     assert_eq!(robot.settings()[&TRACK], 0.5_f32.to_bits());
 }
 
-/// The next two places have a cell each that cannot be cleared.
+/// Each of the next two slots has a cell that cannot be cleared.
 #[test]
 fn a_slot_that_cannot_be_written_is_skipped() {
     let mut robot = Robot::with_flash(Make::Dm4310, &image(Make::Dm4310, 50));
@@ -164,7 +164,7 @@ fn a_slot_that_cannot_be_written_is_skipped() {
     assert!(took < 600 * MS, "{took}");
 }
 
-/// Nothing can be written anywhere, and then it can again.
+/// Nothing can be written at first, and later it can again.
 #[test]
 fn worn_out_flash_is_reported_and_stops_nothing() {
     let mut robot = Robot::with_flash(Make::Dm4310, &image(Make::Dm4310, 50));

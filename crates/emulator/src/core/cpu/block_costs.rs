@@ -6,7 +6,7 @@ use crate::core::{
     memory::FLASH,
 };
 
-/// One for each halfword of the largest image the design allows, and twice that: no two blocks of it share one.
+/// One slot for each halfword of 256 KiB: no two blocks of an image of that size share a slot.
 const SLOTS: usize = 1 << 17;
 
 #[derive(Clone, Copy, Default)]
