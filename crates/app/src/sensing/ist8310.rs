@@ -57,17 +57,31 @@ pub enum InitCheck {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum InitStep {
     /// Set the level of the RSTN pin. Low holds the sensor in reset.
-    ResetPin { high: bool },
+    ResetPin {
+        /// True for the high level.
+        high: bool,
+    },
     /// Write one register.
-    Write { register: u8, value: u8 },
+    Write {
+        /// Address of the register.
+        register: u8,
+        /// Its new value.
+        value: u8,
+    },
     /// Read one register. If it does not hold `expected`, the bring-up has failed.
     Check {
+        /// Address of the register.
         register: u8,
+        /// The value that it must hold.
         expected: u8,
+        /// What another value means.
         failure: InitCheck,
     },
     /// Leave the sensor alone for this long.
-    Wait { us: u32 },
+    Wait {
+        /// Time in µs.
+        us: u32,
+    },
 }
 
 /// The bring-up, to be carried out in order. It takes about 100 ms, nearly all of it waiting.

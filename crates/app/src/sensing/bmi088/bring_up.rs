@@ -38,22 +38,37 @@ pub enum InitCheck {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum InitStep {
     /// Read a register and ignore the value. The rising chip select switches the accelerometer from I2C to SPI.
-    DummyRead { target: SpiTarget, register: u8 },
+    DummyRead {
+        /// The die to read.
+        target: SpiTarget,
+        /// Address of the register.
+        register: u8,
+    },
     /// Send [`write_command`].
     Write {
+        /// The die to write to.
         target: SpiTarget,
+        /// Address of the register.
         register: u8,
+        /// Its new value.
         value: u8,
     },
     /// Send [`read_command`]. If the last byte received is not `expected`, the bring-up has failed.
     Check {
+        /// The die to read.
         target: SpiTarget,
+        /// Address of the register.
         register: u8,
+        /// The value that it must hold.
         expected: u8,
+        /// What another value means.
         failure: InitCheck,
     },
     /// Leave the sensor alone for this long.
-    Wait { us: u32 },
+    Wait {
+        /// Time in µs.
+        us: u32,
+    },
 }
 
 /// Bytes to send for a register write.

@@ -51,7 +51,10 @@ const MAX_DIFFERENCE: u16 = 16;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GyroBuffer {
     /// Exchange the first `bytes` of [`BUFFER_READ`].
-    Frames { bytes: usize },
+    Frames {
+        /// Number of bytes, the address included.
+        bytes: usize,
+    },
     /// Its frames are too old. Send [`BUFFER_RESET`].
     Stale,
 }
