@@ -10,7 +10,5 @@ mod magnetic;
 mod measurement;
 mod motion;
 mod strapdown;
-#[cfg(test)]
-pub(crate) mod testing;
 
 pub use ins_estimator::{HeadingSource, InsEstimator};

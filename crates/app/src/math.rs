@@ -3,6 +3,8 @@
 
 pub mod quaternion;
 pub mod scalar;
+#[cfg(test)]
+pub mod testing;
 pub mod vector;
 
 pub use quaternion::Quaternion;

@@ -77,14 +77,14 @@ mod tests {
 
     #[test]
     fn it_must_begin_at_manual_and_go_back_there() {
-        assert_eq!(completed(&[Custom, Manual, Custom], 300), []);
-        assert_eq!(completed(&[Manual, Custom, Pc, Custom], 300), []);
+        assert!(completed(&[Custom, Manual, Custom], 300).is_empty());
+        assert!(completed(&[Manual, Custom, Pc, Custom], 300).is_empty());
     }
 
     #[test]
     fn too_slow_is_no_gesture() {
         assert_eq!(completed(&[Manual, Custom, Manual, Custom], 2_000), [3]);
-        assert_eq!(completed(&[Manual, Custom, Manual, Custom], 2_001), []);
+        assert!(completed(&[Manual, Custom, Manual, Custom], 2_001).is_empty());
     }
 
     #[test]

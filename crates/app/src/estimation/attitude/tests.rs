@@ -1,7 +1,8 @@
 //! The complete attitude filter over hours of rest and motion.
 
 use super::{covariance::Covariance, error_state::STATES, *};
-use crate::estimation::testing::{Random, Rotation, to_f32};
+use crate::math::testing::{rotation_of, to_f32};
+use robot_test_support::{Random, Rotation};
 
 const DT_S: f64 = 0.005;
 const HOURS: u32 = 2;
@@ -39,18 +40,17 @@ impl World {
             self.choose_rate(resting);
             self.imu(filter, resting);
             if self.sample.is_multiple_of(4) {
-                let noise = self.random.normals(0.3);
+                let noise = self.random.vector(0.3);
                 let seen = self.attitude.seen_from_body(EARTH_UT);
                 let seen = std::array::from_fn(|axis| seen[axis] + noise[axis]);
                 filter.feed_mag(to_f32(seen), 0.0);
             }
         }
-        self.attitude = unit(self.attitude);
     }
 
     /// A random rate of about 1 rad/s with a correlation time of half a second.
     fn choose_rate(&mut self, resting: bool) {
-        let push = self.random.normals(if resting { 0.0 } else { 0.14 });
+        let push = self.random.vector(if resting { 0.0 } else { 0.14 });
         self.rate_rps = std::array::from_fn(|axis| 0.99 * self.rate_rps[axis] + push[axis]);
     }
 
@@ -59,8 +59,8 @@ impl World {
         let middle = self.attitude.then_in_body(half);
         self.attitude = middle.then_in_body(half);
         let [noise, shake] = [
-            self.random.normals(0.05_f64.to_radians()),
-            self.random.normals(if resting { 0.02 } else { 1.0 }),
+            self.random.vector(0.05_f64.to_radians()),
+            self.random.vector(if resting { 0.02 } else { 1.0 }),
         ];
         let gyro_rps: [f64; 3] = std::array::from_fn(|axis| {
             self.rate_rps[axis] * (1.0 + SCALE[axis]) + BIAS_DPS[axis].to_radians() + noise[axis]
@@ -76,19 +76,6 @@ impl World {
 /// True rate = measured − bias − scale · measured, to first order.
 const BIAS_DPS: [f64; 3] = [0.3, -0.5, 0.2];
 const SCALE: [f64; 3] = [0.003, -0.002, 0.001];
-
-/// Removes the rounding errors of a million rotations (Gram-Schmidt).
-fn unit(attitude: Rotation) -> Rotation {
-    use crate::estimation::testing::rotation::{cross, dot};
-    let scaled = |row: [f64; 3]| row.map(|x| x / dot(row, row).sqrt());
-    let [x, y, _] = attitude.rows;
-    let x = scaled(x);
-    let along = dot(x, y);
-    let y = scaled(std::array::from_fn(|axis| y[axis] - along * x[axis]));
-    Rotation {
-        rows: [x, y, cross(x, y)],
-    }
-}
 
 fn bias_error_dps(filter: &AttitudeFilter) -> f64 {
     let errors = filter.bias_rps().into_iter().zip(BIAS_DPS);
@@ -138,8 +125,8 @@ fn hours_of_rest_and_motion_keep_the_covariance_valid() {
         let sure = variances.iter().all(|variance| variance.sqrt() < 0.5 * DEG);
         assert!(sure, "minute {minute}: reset: {variances:?}");
         if minute > 3 {
-            let attitude = Rotation::of(filter.orientation(0.0));
-            worst_deg = worst_deg.max(attitude.angle_deg(world.attitude));
+            let attitude = rotation_of(filter.orientation(0.0));
+            worst_deg = worst_deg.max(attitude.angle_to_deg(world.attitude));
             worst_bias_dps = worst_bias_dps.max(bias_error_dps(&filter));
         }
     }
@@ -182,7 +169,7 @@ impl Turntable {
     }
 
     fn error_deg(&self) -> f64 {
-        Rotation::of(self.filter.orientation(0.0)).angle_deg(self.truth())
+        rotation_of(self.filter.orientation(0.0)).angle_to_deg(self.truth())
     }
 }
 

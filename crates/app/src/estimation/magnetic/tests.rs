@@ -4,12 +4,13 @@ mod moving;
 
 use super::*;
 use crate::{
-    estimation::{
-        strapdown::Strapdown,
-        testing::{Rotation, to_f32},
+    estimation::strapdown::Strapdown,
+    math::{
+        Quaternion,
+        testing::{rotation_of, to_f32},
     },
-    math::Quaternion,
 };
+use robot_test_support::Rotation;
 
 const WINDOW_S: f32 = 0.2;
 const RAD: f64 = std::f64::consts::PI / 180.0;
@@ -32,7 +33,7 @@ impl Robot {
         let mut strapdown = Strapdown::new();
         strapdown.attitude = Quaternion::from_rotation([0.1, -0.2, 0.8]);
         Self {
-            attitude: Rotation::of(strapdown.attitude),
+            attitude: rotation_of(strapdown.attitude),
             strapdown,
             magnetic: MagneticHeading::new(),
         }
@@ -55,7 +56,7 @@ impl Robot {
 
     /// Feeds ten samples of a field whose north is rotated to the left by `north_deg`.
     fn window(&mut self, north_deg: f64, known: AttitudeVariance) -> HeadingReport {
-        let field = Rotation::by([0.0, 0.0, north_deg * RAD]).apply(EARTH_UT);
+        let field = Rotation::by([0.0, 0.0, north_deg * RAD]).turn(EARTH_UT);
         self.window_of(field, known)
     }
 
@@ -86,7 +87,7 @@ fn the_first_sample_and_the_first_window_align_the_heading() {
     let mut robot = Robot::new();
     let seen = robot
         .attitude
-        .seen_from_body(Rotation::by([0.0, 0.0, -100.0 * RAD]).apply(EARTH_UT));
+        .seen_from_body(Rotation::by([0.0, 0.0, -100.0 * RAD]).turn(EARTH_UT));
     // North seems to lie 100° to the right, so the robot must turn by that to the left.
     let turn = robot.magnetic.feed(to_f32(seen), &robot.strapdown, 0.0);
     assert!((turn.expect("a turn").to_degrees() - 100.0).abs() < 0.01);

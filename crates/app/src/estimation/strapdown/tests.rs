@@ -1,8 +1,9 @@
 //! Rotations worked out by hand, and coning motion with rates in closed form.
 
 use super::*;
-use crate::estimation::testing::{Rotation, to_f32};
+use crate::math::testing::{rotation_of, to_f32};
 use core::f32::consts::FRAC_PI_2;
+use robot_test_support::Rotation;
 
 fn assert_near(got: Vector3, expected: Vector3, limit: f32) {
     for (got, expected) in got.iter().zip(expected) {
@@ -11,7 +12,7 @@ fn assert_near(got: Vector3, expected: Vector3, limit: f32) {
 }
 
 fn angle_deg(strapdown: &Strapdown, truth: Rotation) -> f64 {
-    Rotation::of(strapdown.attitude).angle_deg(truth)
+    rotation_of(strapdown.attitude).angle_to_deg(truth)
 }
 
 #[test]
@@ -23,10 +24,10 @@ fn a_quarter_turn_to_the_left_in_a_second() {
     let left = Rotation::by([0.0, 0.0, std::f64::consts::FRAC_PI_2]);
     assert!(angle_deg(&strapdown, left) < 1e-3);
     // Extrapolated by 0.1 s forward and back.
-    let ahead = Rotation::of(strapdown.attitude_at(0.1));
-    assert!(ahead.angle_deg(Rotation::by([0.0, 0.0, 99_f64.to_radians()])) < 1e-3);
-    let back = Rotation::of(strapdown.attitude_at(-0.1));
-    assert!(back.angle_deg(Rotation::by([0.0, 0.0, 81_f64.to_radians()])) < 1e-3);
+    let ahead = rotation_of(strapdown.attitude_at(0.1));
+    assert!(ahead.angle_to_deg(Rotation::by([0.0, 0.0, 99_f64.to_radians()])) < 1e-3);
+    let back = rotation_of(strapdown.attitude_at(-0.1));
+    assert!(back.angle_to_deg(Rotation::by([0.0, 0.0, 81_f64.to_radians()])) < 1e-3);
 }
 
 /// First about x, then about the body's own y.
@@ -111,11 +112,11 @@ fn a_gap_is_bridged_by_linear_interpolation() {
     let growth_rps2 = 10.0;
     let mut strapdown = Strapdown::new();
     strapdown.integrate_rate([0.0, 0.0, 1.0], 0.005);
-    let before = Rotation::of(strapdown.attitude);
+    let before = rotation_of(strapdown.attitude);
     let mid_sample = strapdown.integrate_rate([0.0, 0.0, 1.0 + growth_rps2 * 0.040], 0.040);
     // From the end of the first sample, 2.5 ms after its middle, the rate grows from 1.025 rad/s for 40 ms.
     let turned = 1.025 * 0.040 + 0.5 * f64::from(growth_rps2) * 0.040 * 0.040;
-    let [_, _, z] = before.to(Rotation::of(strapdown.attitude));
+    let [_, _, z] = before.to(rotation_of(strapdown.attitude));
     assert!((z - turned).abs() < 1e-6, "{z}, not {turned}");
     // The interpolated part: half the change of 0.4 rad/s over 35 ms, 7 mrad.
     assert!((mid_sample.gap_error_rad2 - 0.007 * 0.007).abs() < 1e-8);
@@ -125,9 +126,9 @@ fn a_gap_is_bridged_by_linear_interpolation() {
 fn a_late_sample_is_no_gap() {
     let mut strapdown = Strapdown::new();
     strapdown.integrate_rate([0.0, 0.0, 1.0], 0.005);
-    let before = Rotation::of(strapdown.attitude);
+    let before = rotation_of(strapdown.attitude);
     let mid_sample = strapdown.integrate_rate([0.0, 0.0, 2.0], 0.007);
-    let [_, _, z] = before.to(Rotation::of(strapdown.attitude));
+    let [_, _, z] = before.to(rotation_of(strapdown.attitude));
     assert!((z - 0.014).abs() < 1e-6 && mid_sample.gap_error_rad2 == 0.0);
 }
 

@@ -1,7 +1,8 @@
 //! Rotations known by hand, and the limits of accuracy.
 
 use super::*;
-use crate::estimation::testing::Rotation;
+use crate::math::testing::rotation_of;
+use robot_test_support::Rotation;
 
 fn rotate(q: Quaternion, v: Vector3) -> Vector3 {
     q.rotation_matrix().map(|row| vector::dot(row, v))
@@ -43,8 +44,8 @@ fn nose_up_is_negative_pitch_about_left_axis() {
 }
 /// Error in rad against Rodrigues' formula in double precision.
 fn error(angle_rad: Vector3) -> f64 {
-    let got = Rotation::of(Quaternion::from_rotation(angle_rad));
-    got.angle_deg(Rotation::by(angle_rad.map(f64::from)))
+    let got = rotation_of(Quaternion::from_rotation(angle_rad));
+    got.angle_to_deg(Rotation::by(angle_rad.map(f64::from)))
         .to_radians()
 }
 
@@ -117,7 +118,7 @@ fn nearly_unit_quaternions_become_unit() {
         ] {
             let off = length(result) - 1.0;
             assert!(off.abs() < 2e-6, "{name} {factor}: {off}");
-            let turned = Rotation::of(result).angle_deg(Rotation::of(unit));
+            let turned = rotation_of(result).angle_to_deg(rotation_of(unit));
             assert!(turned < 1e-4, "{name} {factor}: {turned}");
         }
     }
@@ -134,9 +135,9 @@ fn a_product_is_one_rotation_after_the_other() {
     let product = Quaternion::from_rotation(second).after(Quaternion::from_rotation(first));
     let expected =
         Rotation::by(second.map(f64::from)).then_in_body(Rotation::by(first.map(f64::from)));
-    assert!(Rotation::of(product).angle_deg(expected) < 1e-4);
+    assert!(rotation_of(product).angle_to_deg(expected) < 1e-4);
     let rows = product.rotation_matrix();
-    for (row, expected) in rows.iter().zip(expected.rows) {
+    for (row, expected) in rows.iter().zip(expected.rows()) {
         for (got, expected) in row.iter().zip(expected) {
             assert!((f64::from(*got) - expected).abs() < 1e-6);
         }

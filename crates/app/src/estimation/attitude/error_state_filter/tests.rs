@@ -9,10 +9,13 @@ use crate::{
     estimation::{
         attitude::error_state::{GYRO_PARAMETERS, STATES},
         strapdown::MidSample,
-        testing::{Random, Rotation, to_f32},
     },
-    math::Quaternion,
+    math::{
+        Quaternion,
+        testing::{rotation_of, to_f32},
+    },
 };
+use robot_test_support::{Random, Rotation};
 
 const DT_S: f32 = 0.005;
 const GRAVITY_MPS2: f64 = 9.806_65;

@@ -1,8 +1,8 @@
 //! When a rest is detected, and what is no rest.
 
 use super::*;
-use crate::estimation::testing::Random;
 use core::f32::consts::TAU;
+use robot_test_support::Random;
 
 const GRAVITY: Vector3 = [0.0, 0.0, 9.806_65];
 const SAMPLES: u8 = 40;
@@ -88,7 +88,7 @@ fn noise_of_the_field_is_no_rotation() {
     let noise = core::cell::RefCell::new(Random::new(5));
     let field = |_: f32| {
         // The mean of ten samples with a noise of 0.3 µT.
-        let [x, y, z] = noise.borrow_mut().normals(0.1).map(|x| x as f32);
+        let [x, y, z] = noise.borrow_mut().vector(0.1).map(|x| x as f32);
         Some(vector::add(FIELD_UT, [x, y, z]))
     };
     assert_eq!(first_rest(30, still, upright, field), Some(20));

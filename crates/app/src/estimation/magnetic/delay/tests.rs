@@ -1,7 +1,8 @@
 //! A delayed magnetometer on a robot whose attitude is known exactly.
 
 use super::*;
-use crate::estimation::testing::{Random, Rotation, to_f32};
+use crate::math::testing::to_f32;
+use robot_test_support::{Random, Rotation};
 
 const EARTH_UT: [f64; 3] = [0.0, 20.0, -45.0];
 
@@ -22,14 +23,14 @@ fn found_s(late_s: f64, seconds: f64, noise_ut: f64, attitude: impl Fn(f64) -> R
     for sample in 0..samples {
         let t = 1.0 + f64::from(sample) * 0.02;
         let seen = attitude(t - late_s).seen_from_body(EARTH_UT);
-        let noise = random.normals(noise_ut);
+        let noise = random.vector(noise_ut);
         let seen = std::array::from_fn(|axis| seen[axis] + noise[axis]);
         let estimated = attitude(t - f64::from(delay.seconds()));
         let step = 1e-4;
         let rate = estimated
             .to(attitude(t - f64::from(delay.seconds()) + step))
             .map(|angle| angle / step);
-        delay.update(to_f32(estimated.apply(seen)), to_f32(rate));
+        delay.update(to_f32(estimated.turn(seen)), to_f32(rate));
         assert!((0.0..=MAX_DELAY_S).contains(&delay.seconds()));
     }
     f64::from(delay.seconds())

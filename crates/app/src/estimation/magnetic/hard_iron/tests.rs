@@ -1,7 +1,8 @@
 //! Hard iron is told from magnets in the room by rotating the robot.
 
 use super::*;
-use crate::estimation::testing::{Random, Rotation, to_f32};
+use crate::math::testing::to_f32;
+use robot_test_support::{Random, Rotation};
 
 const EARTH_UT: [f64; 3] = [0.0, 20.0, -45.0];
 const WINDOW_S: f32 = 0.2;
@@ -34,8 +35,8 @@ impl Robot {
             let attitude = attitude(self.time_s);
             let applied = self.hard_iron.compensation_ut().map(f64::from);
             let left_in = std::array::from_fn(|axis| self.carried_ut[axis] - applied[axis]);
-            let turned = attitude.apply(left_in);
-            let noise = self.random.normals(0.2);
+            let turned = attitude.turn(left_in);
+            let noise = self.random.vector(0.2);
             let field: [f64; 3] = std::array::from_fn(|axis| {
                 EARTH_UT[axis] + self.passing_ut[axis] + turned[axis] + noise[axis]
             });
@@ -43,7 +44,7 @@ impl Robot {
             self.hard_iron.update(
                 to_f32(field),
                 level as f32,
-                attitude.rows.map(to_f32),
+                attitude.rows().map(to_f32),
                 WINDOW_S,
             );
         }
@@ -113,8 +114,8 @@ fn too_little_rotation_shows_next_to_nothing() {
     let mut places = Random::new(7);
     let mut worst_ut = 0.0_f64;
     for _ in 0..60 {
-        robot.passing_ut = places.normals(1.5);
-        let [roll, pitch, _] = places.normals(0.04);
+        robot.passing_ut = places.vector(1.5);
+        let [roll, pitch, _] = places.vector(0.04);
         robot.run(10.0, |t| Rotation::by([roll, pitch + 0.04 * t.sin(), 0.0]));
         worst_ut = worst_ut.max(robot.error_ut());
     }

@@ -1,7 +1,7 @@
 //! Delay and hard iron of a robot in motion whose attitude is known exactly.
 
 use super::*;
-use crate::estimation::testing::Random;
+use robot_test_support::Random;
 
 struct Moving {
     magnetic: MagneticHeading,
@@ -56,7 +56,7 @@ impl Moving {
         strapdown.attitude = quaternion(Rotation::by([0.0, 0.0, self.world_rad]).then_in_body(now));
         strapdown.rate_rps = to_f32(rate_rps);
         let field = Self::attitude(t - self.late_s).seen_from_body(EARTH_UT);
-        let noise = self.random.normals(0.3);
+        let noise = self.random.vector(0.3);
         let seen = std::array::from_fn(|axis| field[axis] + self.carried_ut[axis] + noise[axis]);
         if let Some(turn_rad) = self.magnetic.feed(to_f32(seen), &strapdown, 0.0) {
             // The heading is aligned: the attitude is the truth from here on.
@@ -70,14 +70,9 @@ impl Moving {
     }
 }
 
-/// From the rotation vector, in four parts small enough for the series.
 fn quaternion(attitude: Rotation) -> Quaternion {
-    let part = Rotation::by([0.0; 3])
-        .to(attitude)
-        .map(|angle| 0.25 * angle);
-    let quarter = Quaternion::from_rotation(to_f32(part));
-    let half = quarter.after(quarter);
-    half.after(half).normalised()
+    let [w, x, y, z] = to_f32(attitude.to_wxyz());
+    Quaternion { w, x, y, z }
 }
 
 #[test]

@@ -2,7 +2,7 @@
 //! P·hᵀ / (h·P·hᵀ + r), P − K·h·P.
 
 use super::*;
-use crate::estimation::testing::rotation::cross;
+use robot_test_support::cross;
 
 const DEG: f64 = std::f64::consts::PI / 180.0;
 const INITIAL_BIAS: f64 = (3.0 * DEG) * (3.0 * DEG);
@@ -36,10 +36,10 @@ impl World {
     fn window(&mut self, resting: bool) -> Recording {
         let random = &mut self.random;
         let dt_s = f64::from(DT_S);
-        let jerky = random.share() < 0.1;
+        let jerky = random.unit() < 0.1;
         let samples = (0..40)
             .map(|_| {
-                let push = random.normals(0.3);
+                let push = random.vector(0.3);
                 self.rate_rps = if resting {
                     [0.0; 3]
                 } else {
@@ -48,16 +48,16 @@ impl World {
                 let half = Rotation::by(self.rate_rps.map(|rate| 0.5 * rate * dt_s));
                 let middle = self.attitude.then_in_body(half);
                 self.attitude = middle.then_in_body(half);
-                let [x, y, z] = random.normals(if resting { 0.02 } else { 3.0 });
+                let [x, y, z] = random.vector(if resting { 0.02 } else { 3.0 });
                 Sample {
                     attitude: middle,
                     gyro_rps: self.rate_rps,
                     accel_enu_mps2: [x, y, z + GRAVITY_MPS2],
-                    gap_error_rad2: if jerky { 1e-6 * random.share() } else { 0.0 },
+                    gap_error_rad2: if jerky { 1e-6 * random.unit() } else { 0.0 },
                 }
             })
             .collect();
-        let blind = random.share() < 0.05;
+        let blind = random.unit() < 0.05;
         Recording {
             samples,
             accel_clipped_s: if blind { 0.01 } else { 0.0 },
@@ -66,11 +66,7 @@ impl World {
 
     /// A measurement with a random innovation of the expected size. One in twenty is an outlier.
     fn measurement(&mut self, variance: f64, noise: f64) -> Measurement {
-        let outlier = if self.random.share() < 0.05 {
-            20.0
-        } else {
-            1.0
-        };
+        let outlier = if self.random.unit() < 0.05 { 20.0 } else { 1.0 };
         let innovation = outlier * self.random.normal() * (variance + noise).sqrt();
         Measurement {
             innovation: innovation as f32,
@@ -83,7 +79,7 @@ fn to_window(recording: &Recording) -> Window {
     let mut window = Window::new();
     for sample in &recording.samples {
         let mid_sample = MidSample {
-            rotation: sample.attitude.rows.map(to_f32),
+            rotation: sample.attitude.rows().map(to_f32),
             gap_error_rad2: sample.gap_error_rad2 as f32,
         };
         let gyro_rps = to_f32(sample.gyro_rps);
@@ -171,7 +167,7 @@ fn angle_jacobian(recording: &Recording) -> [[f64; GYRO_PARAMETERS]; 3] {
     let dt_s = f64::from(DT_S);
     let mut phi = [[0.0; GYRO_PARAMETERS]; 3];
     for sample in &recording.samples {
-        for (row, turned) in phi.iter_mut().zip(sample.attitude.rows) {
+        for (row, turned) in phi.iter_mut().zip(sample.attitude.rows()) {
             for (axis, part) in turned.into_iter().enumerate() {
                 row[axis] -= part * dt_s;
                 for (by, rate_rps) in sample.gyro_rps.into_iter().enumerate() {
@@ -250,7 +246,7 @@ fn hundreds_of_windows_agree_with_the_textbook() {
             0.2 * world.random.between(1.0, 8.0)
         };
         let north_noise = (20.0 * DEG) * (20.0 * DEG) / 0.2;
-        let heading_known = world.random.share() < 0.7;
+        let heading_known = world.random.unit() < 0.7;
         let measured = [
             (3, speed_noise, true),
             (4, speed_noise, true),

@@ -33,7 +33,7 @@ impl Pair {
     }
 
     fn sample(&mut self) {
-        let push = self.random.normals(0.2);
+        let push = self.random.vector(0.2);
         self.rate_rps = std::array::from_fn(|axis| self.rate_rps[axis] + push[axis]);
         let gyro_rps = to_f32(self.rate_rps);
         let before = self.truth.integrate_rate(gyro_rps, DT_S);
@@ -58,7 +58,7 @@ fn compare(correction: &Correction, samples: usize, angle_limit: f64, speed_limi
     for _ in 0..samples {
         pair.sample();
     }
-    let truth = Rotation::of(pair.estimated.attitude).to(Rotation::of(pair.truth.attitude));
+    let truth = rotation_of(pair.estimated.attitude).to(rotation_of(pair.truth.attitude));
     let (angle, speed) = correction.propagated_through(&pair.window);
     for axis in 0..3 {
         let off = f64::from(angle[axis]) - truth[axis];
