@@ -1,4 +1,4 @@
-//! The developer commands: `cargo xtask sim`, `soak`, `replay`, `bench`, `run` and `test`.
+//! The developer commands: `cargo xtask sim`, `soak`, `replay`, `data`, `bench`, `run` and `test`.
 
 mod bench;
 mod board;
@@ -35,6 +35,8 @@ enum Command {
     Soak(PassedOn),
     /// Run the estimator over recorded trials: attitude at 1 kHz, its errors, plots.
     Replay(PassedOn),
+    /// Prepare the recorded motion that tests and replay use, or say where to get it.
+    Data(PassedOn),
     /// What the release image costs, and its estimator beside others, against their limits.
     Bench(PassedOn),
     /// Flash an image with probe-rs, run it, show its log: what `cargo run --release` calls.
@@ -47,7 +49,8 @@ fn main() -> ExitCode {
     let outcome = match Args::parse().command {
         Command::Sim(args) => emulator::run("sim", &args),
         Command::Soak(args) => emulator::run("soak", &args),
-        Command::Replay(args) => replay::run(&args),
+        Command::Replay(args) => replay::run("replay", &args),
+        Command::Data(args) => replay::run("data", &args),
         Command::Bench(args) => bench::run(&args),
         Command::Run(args) => board::run(&args),
         Command::Test => test::run(),

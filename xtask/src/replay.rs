@@ -1,12 +1,12 @@
-//! `cargo xtask replay`: recorded trials through the estimator, on this machine.
+//! `cargo xtask replay` and `cargo xtask data`: recorded motion, on this machine.
 
 use std::process::{Command, ExitCode};
 
 use crate::{host_program, job, passed_on::PassedOn, tool};
 
-/// Builds `replay` if it is out of date and runs it; its exit code becomes ours. Needs neither image nor emulator.
-pub fn run(args: &PassedOn) -> anyhow::Result<ExitCode> {
-    let (build, path) = host_program::build("robot-replay", "replay")?;
+/// Builds `program` if it is out of date and runs it; its exit code becomes ours. Needs neither image nor emulator.
+pub fn run(program: &str, args: &PassedOn) -> anyhow::Result<ExitCode> {
+    let (build, path) = host_program::build("robot-replay", program)?;
     job::run_all(vec![build])?;
     let mut command = Command::new(path);
     command.args(&args.words);

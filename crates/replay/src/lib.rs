@@ -11,6 +11,7 @@
 //! # }
 //! ```
 
+pub mod broad;
 mod reference;
 mod resample;
 mod run;

@@ -116,7 +116,7 @@ const WORSE_MEAN_DEG: f64 = 0.1;
 fn the_attitude_follows_every_recorded_trial_as_on_the_host() {
     let Some(trials) = recordings() else {
         println!(
-            "skipped: no recorded trials at ../shared/data/broad (set ROBOT_DATA to their folder)"
+            "skipped: no recorded trials at ROBOT_DATA or ../shared/data/broad: `cargo xtask data` says how to get them"
         );
         return;
     };

@@ -14,7 +14,7 @@ const NO_OFFSET: [f32; 3] = [0.0; 3];
 #[test]
 #[cfg_attr(
     not(recorded_motion),
-    ignore = "no recorded motion: set ROBOT_DATA to its folder"
+    ignore = "no recorded motion: `cargo xtask data` says how to get it"
 )]
 fn attitude_follows_the_optical_reference() -> anyhow::Result<()> {
     let with = errors_of_all(Mode::NineAxis, NO_OFFSET)?;
@@ -62,7 +62,7 @@ fn a_start_up_bias_costs_next_to_nothing(mode: Mode) -> anyhow::Result<()> {
 #[test]
 #[cfg_attr(
     not(recorded_motion),
-    ignore = "no recorded motion: set ROBOT_DATA to its folder"
+    ignore = "no recorded motion: `cargo xtask data` says how to get it"
 )]
 fn a_start_up_bias_is_found_with_magnetometer() -> anyhow::Result<()> {
     a_start_up_bias_costs_next_to_nothing(Mode::NineAxis)
@@ -71,7 +71,7 @@ fn a_start_up_bias_is_found_with_magnetometer() -> anyhow::Result<()> {
 #[test]
 #[cfg_attr(
     not(recorded_motion),
-    ignore = "no recorded motion: set ROBOT_DATA to its folder"
+    ignore = "no recorded motion: `cargo xtask data` says how to get it"
 )]
 fn a_start_up_bias_is_found_without_magnetometer() -> anyhow::Result<()> {
     a_start_up_bias_costs_next_to_nothing(Mode::SixAxis)

@@ -77,7 +77,7 @@ fn print(all: &[Compared]) {
 #[test]
 #[cfg_attr(
     not(recorded_motion),
-    ignore = "no recorded motion: set ROBOT_DATA to its folder"
+    ignore = "no recorded motion: `cargo xtask data` says how to get it"
 )]
 fn the_sensors_cost_no_accuracy() -> anyhow::Result<()> {
     let all = compare_all(Wheels::Silent)?;
@@ -90,7 +90,7 @@ fn the_sensors_cost_no_accuracy() -> anyhow::Result<()> {
 #[test]
 #[cfg_attr(
     not(recorded_motion),
-    ignore = "no recorded motion: set ROBOT_DATA to its folder"
+    ignore = "no recorded motion: `cargo xtask data` says how to get it"
 )]
 fn standing_wheels_do_not_tilt_a_carried_robot() -> anyhow::Result<()> {
     let all = compare_all(Wheels::Standing)?;

@@ -18,7 +18,8 @@ pub fn find(asked: Option<&Path>) -> anyhow::Result<PathBuf> {
     };
     if !folder.is_dir() {
         bail!(
-            "there is no folder {} ({said_by}); name the folder of recordings with --data DIR",
+            "there is no folder {} ({said_by}); name the folder of recordings with --data DIR, or get some: `cargo xtask \
+             data` says how",
             folder.display()
         );
     }
