@@ -54,15 +54,16 @@ impl Handler<interrupt::typelevel::USART3> for RadioInterrupt {
     }
 }
 
-/// Unused peripherals lend their interrupts to the executors.
+/// Interrupt of the control executor, borrowed from an unused peripheral.
 pub const CONTROL_EXECUTOR_IRQ: interrupt::Interrupt = interrupt::UART5;
+/// Interrupt of the sensor executor, borrowed from an unused peripheral.
 pub const SENSOR_EXECUTOR_IRQ: interrupt::Interrupt = interrupt::UART4;
 
-/// The receiver's UART.
+/// UART of the radio receiver.
 const RADIO_UART: pac::usart::Usart = pac::USART3;
 /// Channel of USART3_RX on DMA1 stream 1 (RM0090 table 42).
 const RADIO_DMA_REQUEST: Request = 4;
-/// Five SBUS frames.
+/// Room for five SBUS frames.
 const RADIO_BUFFER_LEN: usize = 128;
 
 /// Alternate function of the CAN pins.
@@ -70,8 +71,8 @@ const CAN_AF: u8 = 9;
 /// Alternate function of USART3.
 const USART3_AF: u8 = 7;
 
-/// The time driver releases the control tick, so nothing may delay it. CAN receive comes next because the hardware
-/// holds three frames. Transfers of the sensor executor may wait for a control tick, but not for that executor.
+/// The time driver releases the control tick, so nothing may delay it. CAN receive comes next, because each hardware FIFO
+/// holds only three frames. Sensor transfers may wait for a control tick, but not for the sensor executor.
 const PRIORITIES: [(interrupt::Interrupt, Priority); 10] = [
     (interrupt::TIM2, Priority::P0),
     (interrupt::CAN1_RX0, Priority::P1),
@@ -123,7 +124,7 @@ pub struct MagBus {
 }
 
 impl Board {
-    /// Starts clocks, CAN and the receiver. `p` exists once, so this runs once.
+    /// Starts CAN, the radio receiver, heater, buzzer and battery measurement. `p` exists once, so this runs once.
     pub fn start(p: Peripherals, remote_format: RemoteFormat) -> Self {
         enable_flash_caches();
         watch_supply();
@@ -253,7 +254,7 @@ pub fn clocks() -> Config {
     config
 }
 
-/// The HAL leaves them off, which at five wait states makes code from flash several times slower.
+/// Turns on the flash caches, which the HAL leaves off. Without them, code runs several times slower at five wait states.
 fn enable_flash_caches() {
     pac::FLASH.acr().modify(|w| {
         w.set_icen(true);
@@ -262,7 +263,7 @@ fn enable_flash_caches() {
     });
 }
 
-/// Detects a supply below 2.9 V, its highest level (RM0090 5.4.1): `drivers/param_flash.rs` asks before it writes.
+/// Sets the supply detector to 2.9 V, its highest level (RM0090 5.4.1). `drivers/param_flash.rs` asks it before it writes.
 fn watch_supply() {
     pac::PWR.cr1().modify(|w| {
         w.set_pls(7);
@@ -270,7 +271,7 @@ fn watch_supply() {
     });
 }
 
-/// VREFIN_CAL: the internal reference in counts, measured by the maker at 3.3 V and 30 °C.
+/// The internal reference in counts, as the maker measured it at 3.3 V and 30 °C (VREFIN_CAL).
 fn reference_calibration() -> u16 {
     const VREFIN_CAL: *const u16 = 0x1FFF_7A2A as *const u16;
     // SAFETY: a half-word of the chip's own read-only memory (STM32F405/407 datasheet, internal reference voltage
@@ -278,7 +279,7 @@ fn reference_calibration() -> u16 {
     unsafe { VREFIN_CAL.read_volatile() }
 }
 
-/// 1 kHz, which the copper cannot follow.
+/// PWM of the heater at 1 kHz, which its temperature cannot follow.
 fn start_heater(
     timer: Peri<'static, peripherals::TIM10>,
     pin: Peri<'static, peripherals::PF6>,
@@ -294,7 +295,7 @@ fn start_heater(
     ))
 }
 
-/// 4 kHz, the buzzer's rated pitch.
+/// PWM of the buzzer at 4 kHz, its rated pitch.
 fn start_buzzer(
     timer: Peri<'static, peripherals::TIM4>,
     pin: Peri<'static, peripherals::PD14>,
@@ -310,7 +311,7 @@ fn start_buzzer(
     ))
 }
 
-/// For the fault handlers: takes the heater's pin from its timer and drives it low.
+/// Takes the heater's pin from its timer and drives it low. For the fault handlers.
 pub fn force_heater_off() {
     if pac::RCC.ahb1enr().read().gpiofen() {
         pac::GPIOF.bsrr().write(|w| w.set_br(6, true));
@@ -380,7 +381,7 @@ fn start_radio(
     radio
 }
 
-/// Gives a pin to a peripheral for good: dropping the handle would disconnect it.
+/// Connects a pin to a peripheral for good. Dropping the handle would disconnect it, so it is forgotten.
 fn lend(mut pin: Flex<'static>, alternate_function: u8, kind: AfType) {
     pin.set_as_af_unchecked(alternate_function, kind);
     core::mem::forget(pin);

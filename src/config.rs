@@ -1,10 +1,10 @@
-//! What a user chooses at build time.
+//! Choices at build time.
 
 use robot_app::domain::{BusId, CanFrame};
 use robot_app::input::RemoteFormat;
 use robot_app::motor::layout::{MotorLayout, ROBOT_LAYOUT, RS00_LAYOUT};
 
-/// The receiver plugged into the board's DBUS connector: SBUS, or what the environment variable `ROBOT_REMOTE` says.
+/// The receiver on the board's DBUS connector: SBUS, unless the environment variable `ROBOT_REMOTE` names another.
 pub const REMOTE_FORMAT: RemoteFormat = match option_env!("ROBOT_REMOTE") {
     None => RemoteFormat::Sbus,
     Some(name) => remote_format(name),
@@ -18,16 +18,16 @@ const fn remote_format(name: &str) -> RemoteFormat {
     }
 }
 
-/// DM4310 joints, or what the environment variable `ROBOT_JOINTS` says.
+/// The layout with DM4310 joints, unless the environment variable `ROBOT_JOINTS` names another motor.
 const CHOSEN_LAYOUT: MotorLayout = match option_env!("ROBOT_JOINTS") {
     None => ROBOT_LAYOUT,
     Some(name) => layout(name),
 };
 
-/// Which motor sits where.
+/// Which motor sits where, with which number and direction.
 pub static LAYOUT: MotorLayout = CHOSEN_LAYOUT;
 
-/// What boot, panic and fault handlers send: it stops every motor.
+/// The frames that stop every motor. Boot and the fault handlers send them.
 pub static SAFE_FRAMES: [(BusId, CanFrame); 5] = CHOSEN_LAYOUT.safe_frames();
 
 const fn layout(name: &str) -> MotorLayout {

@@ -1,11 +1,12 @@
-//! Every task checks in; while one is late the control tick stops the robot and starves the watchdog.
+//! Deadlines of the tasks. Every task checks in; while one is late, the control tick stops the robot and does not feed the
+//! watchdog.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
 use embassy_time::{Duration, Instant, Timer};
 use robot_app::domain::LateTasks;
 
-/// Tasks below the control tick.
+/// The tasks below the control tick, which it watches.
 #[derive(Clone, Copy)]
 pub enum Watched {
     Imu,
@@ -43,7 +44,7 @@ impl Watched {
         }
     }
 
-    /// The task is alive.
+    /// Notes that the task is alive.
     pub fn check_in(self) {
         self.last_check_in().store(now_us(), Ordering::Relaxed);
     }
@@ -55,11 +56,11 @@ impl Watched {
     }
 }
 
-/// Every watched task runs at least each 10 ms. With the short period of `drivers/watchdog.rs`, which is in force
-/// whenever the robot is armed, a late task leads to a reset within 60 ms.
+/// Longest time between two check-ins. Every watched task runs at least once in 10 ms. With the short period of
+/// `drivers/watchdog.rs`, which is in force while the robot is armed, a late task leads to a reset within 60 ms.
 const DEADLINE_US: u32 = 25_000;
 
-/// Gives every task a first deadline, counted from now: at boot and after a stall.
+/// Starts all deadlines from now, at boot and after a stall.
 #[inline(never)]
 pub fn start() {
     for task in Watched::ALL {
@@ -88,7 +89,7 @@ pub fn late_tasks(now_us: u64) -> LateTasks {
     }
 }
 
-/// Sleeps in steps short enough for the deadline.
+/// Sleeps in steps, with a check-in at least every 10 ms.
 pub async fn sleep_checking_in(task: Watched, duration: Duration) {
     const STEP: Duration = Duration::from_millis(10);
     let mut left = duration;
@@ -101,7 +102,7 @@ pub async fn sleep_checking_in(task: Watched, duration: Duration) {
     task.check_in();
 }
 
-/// The low half of the microsecond clock: deadlines are far shorter than its 71 minutes.
+/// The low half of the clock in µs. It wraps after 71 minutes, far longer than a deadline.
 fn now_us() -> u32 {
     Instant::now().as_micros() as u32
 }

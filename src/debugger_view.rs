@@ -1,4 +1,4 @@
-//! The diagnostics under a stable symbol, for LiveWatch in a debugger.
+//! The diagnostics under a stable symbol, for live views in a debugger.
 
 use core::cell::UnsafeCell;
 use core::mem::MaybeUninit;
@@ -6,7 +6,7 @@ use core::sync::atomic::{AtomicBool, Ordering};
 
 use robot_app::diagnostics::DiagnosticsSnapshot;
 
-/// The control tick's own diagnostics; a debugger may look at any time.
+/// The report of the control tick, which a debugger may read at any time.
 #[repr(transparent)]
 pub struct DebuggerView(UnsafeCell<DiagnosticsSnapshot>);
 

@@ -1,4 +1,4 @@
-//! Drivers: they move bytes by the tables of `robot_app` and know no formulas.
+//! Drivers. They move bytes according to the tables of `robot_app`, which has the formulas.
 
 pub mod battery;
 pub mod bmi088;

@@ -1,4 +1,4 @@
-//! Every static through which tasks meet.
+//! Every static through which tasks exchange data.
 //!
 //! | where | written by | read by | rate |
 //! |---|---|---|---|
@@ -14,7 +14,7 @@
 //! | [`RADIO_LINE`] | radio UART interrupt | sbus, status | each radio frame |
 //! | `drivers/can/receive.rs`, queues | CAN receive interrupts | control | each CAN frame |
 //! | `deadlines.rs`, check-ins | every task below control | control | at least 100 Hz |
-//! | `stall.rs`, stalls | params task, while no other can run | every task that ticks, `radio_uart.rs` | each erase |
+//! | `stall.rs`, stalls | params task, while no other task can run | every task with a ticker, `radio_uart.rs` | each erase |
 //! | `debugger_view.rs` | control task | a debugger | 1 kHz |
 
 use robot_app::diagnostics::DiagnosticsSnapshot;
@@ -26,7 +26,7 @@ use static_cell::StaticCell;
 
 use crate::drivers::radio_uart::RadioLine;
 
-/// The newest IMU sample and how the sensor fares.
+/// The newest IMU sample with the health of the sensor.
 #[derive(Clone, Copy, Default)]
 pub struct ImuReport {
     pub state: ImuState,
@@ -34,7 +34,7 @@ pub struct ImuReport {
     pub status: ImuStatus,
 }
 
-/// The newest magnetometer sample and how the sensor fares.
+/// The newest magnetometer sample with the health of the sensor.
 #[derive(Clone, Copy, Default)]
 pub struct MagReport {
     pub state: MagState,
@@ -51,15 +51,15 @@ pub struct ConfigUpdate {
     pub restored: u32,
 }
 
-/// What the parameter store is about.
+/// State of the parameter store.
 #[derive(Clone, Copy, Default)]
 pub struct ParamsReport {
     pub status: ParamStatus,
-    /// What it would do to flash.
+    /// The flash operation for which it asks permission.
     pub request: FlashRequest,
 }
 
-/// What the control tick lets the parameter store do to flash.
+/// The flash operation that the control tick permits.
 #[derive(Clone, Copy, Default)]
 #[repr(align(4))]
 pub struct FlashPermission(pub FlashRequest);
@@ -70,7 +70,7 @@ pub struct Exchange {
     pub mag: Snapshot<MagReport>,
     pub remote: Snapshot<RemoteUpdate>,
     pub logic_bus: Snapshot<LogicBus>,
-    /// 0 while not measured.
+    /// Battery voltage, V; 0 while it is not measured.
     pub battery_v: Snapshot<f32>,
     pub config: Snapshot<ConfigUpdate>,
     pub params: Snapshot<ParamsReport>,
@@ -80,7 +80,7 @@ pub struct Exchange {
 
 static EXCHANGE: StaticCell<Exchange> = StaticCell::new();
 
-/// Events of the receiver's line.
+/// Events on the line of the radio receiver.
 pub static RADIO_LINE: RadioLine = RadioLine::new();
 
 /// The one writing end of each snapshot.
@@ -102,8 +102,10 @@ pub struct ControlWriters {
 }
 
 impl Exchange {
-    /// Call once, at boot: a second call panics. `config` are the settings at boot; every other message starts with its
-    /// default, which stops the robot.
+    /// Makes the one exchange with the settings at boot. Every other message starts with its default, which stops the robot.
+    ///
+    /// # Panics
+    /// On a second call.
     pub fn init(config: RobotConfig) -> &'static Self {
         EXCHANGE.init_with(|| Self {
             imu: Snapshot::new(ImuReport::default()),

@@ -25,8 +25,8 @@ const ROUND_CYCLES: u32 = 168_000;
 /// Rounds after which the chip resets itself, in case the watchdog was not running yet.
 const ROUNDS: u32 = 100;
 
-// The vector of every CPU fault. After a stack overflow the stack pointer is below CCM, where the first push would
-// lock the core up; near the bottom there is no room for the handler either. Then the stack starts anew at the top.
+// The vector of every CPU fault. After a stack overflow the stack pointer is below CCM, where the first push would lock the
+// core up; near the bottom of CCM there is no room for the handler either. In both cases the stack restarts at the top.
 global_asm!(
     ".section .HardFault.user, \"ax\"",
     ".global HardFault",
@@ -131,15 +131,15 @@ fn stop_everything() {
     debug_probe::undo();
 }
 
-/// Leaves `words` for the next run. False if this run has failed before: a fault on the way to the reset keeps the
-/// first words.
-fn write_crash_record(words: CrashCause) -> bool {
+/// Records the cause for the next run. False if this run has failed before: a fault on the way to the reset keeps the
+/// first cause.
+fn write_crash_record(cause: CrashCause) -> bool {
     static HAS_FAILED: AtomicBool = AtomicBool::new(false);
     if HAS_FAILED.swap(true, Ordering::Relaxed) {
         return false;
     }
     // SAFETY: a fault handler, and interrupts are disabled until the reset.
-    unsafe { crash_record::write(words) };
+    unsafe { crash_record::write(cause) };
     true
 }
 

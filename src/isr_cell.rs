@@ -1,4 +1,4 @@
-//! A value handed to exactly one interrupt handler.
+//! A value that belongs to one interrupt handler.
 
 use core::cell::UnsafeCell;
 

@@ -45,9 +45,10 @@ use drivers::watchdog::Watchdog;
 use exchange::Exchange;
 use tasks::control::ControlContext;
 
-/// A bus is idle for 11 bits within one frame time of at most 0.14 ms; a dead bus must not stop the boot.
+/// Longest wait for an idle bus. A working bus is idle for 11 bits within one frame of at most 0.14 ms, and a dead one must
+/// not stop the boot.
 const CAN_JOIN_TIMEOUT: Duration = Duration::from_millis(1);
-/// Five frames of one bus take 0.7 ms.
+/// Longest time for the safe frames. Five frames on one bus take 0.7 ms.
 const SAFE_FRAMES_TIMEOUT: Duration = Duration::from_millis(3);
 
 #[cortex_m_rt::entry]
@@ -56,7 +57,7 @@ fn main() -> ! {
     let last_run = LastRun {
         reset_cause: reset_cause::take(),
         // SAFETY: nothing else runs yet.
-        last_words: unsafe { crash_record::take() },
+        crash_cause: unsafe { crash_record::take() },
     };
     let peripherals = embassy_stm32::init(board::clocks());
     let board = Board::start(peripherals, config::REMOTE_FORMAT);
@@ -123,7 +124,7 @@ fn main() -> ! {
         })
 }
 
-/// Programs a few words at most: motors may still turn, as whatever happened before left them.
+/// Loads the settings from flash. It programs a few words at most, because motors may still be turning.
 fn load_settings(flash: ParamFlash) -> (ParamService<ParamFlash>, RobotConfig) {
     let start = Instant::now();
     let (mut service, config) = ParamService::boot(flash, &config::LAYOUT);
@@ -155,18 +156,18 @@ fn load_settings(flash: ParamFlash) -> (ParamService<ParamFlash>, RobotConfig) {
 fn log_boot(last_run: LastRun) {
     let LastRun {
         reset_cause,
-        last_words,
+        crash_cause,
     } = last_run;
-    match (reset_cause, last_words) {
+    match (reset_cause, crash_cause) {
         (ResetCause::IndependentWatchdog, CrashCause::Silent) => {
             defmt::error!("boot, reset by watchdog: the control tick hung");
         }
         (cause, CrashCause::Silent) => defmt::info!("boot, reset cause {}", cause),
-        (cause, words) => defmt::error!("boot, reset cause {}: {}", cause, words),
+        (reset, crash) => defmt::error!("boot, reset cause {}: {}", reset, crash),
     }
 }
 
-/// Motors that were left turning by whatever happened before stop before anything else starts.
+/// Stops motors that were left turning, before anything else starts.
 fn send_zero_torque(ports: &mut [CanPort; 2]) {
     let start = Instant::now();
     while ports.iter().any(|port| !port.is_on_bus()) && start.elapsed() < CAN_JOIN_TIMEOUT {

@@ -1,4 +1,4 @@
-//! One file a task; `executors.rs` says who preempts whom.
+//! The tasks, one per file. `executors.rs` says which preempts which.
 
 pub mod control;
 pub mod imu;

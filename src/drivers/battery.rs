@@ -5,7 +5,7 @@ use embassy_stm32::peripherals::{ADC1, ADC3};
 use embassy_stm32::{Peri, pac};
 use robot_app::sensing::BatteryMonitor;
 
-/// 23 µs at 21 MHz: the divider is slow to charge the sampling capacitor, and the reference needs 10 µs.
+/// 23 µs at 21 MHz. The divider charges the sampling capacitor slowly, and the reference needs 10 µs.
 const SAMPLE_TIME: SampleTime = SampleTime::CYCLES480;
 
 /// Both converters, each set to one input.
@@ -16,7 +16,8 @@ pub struct Battery {
 }
 
 impl Battery {
-    /// Waits some 60 µs for the first conversions. `reference_counts` is the maker's calibration word.
+    /// Sets up both converters and waits some 60 µs for their first conversions. `reference_counts` is the maker's
+    /// calibration word.
     pub fn new(
         battery: (Peri<'static, ADC3>, pac::adc::Adc),
         mut channel: AnyAdcChannel<'static, ADC3>,
@@ -33,27 +34,27 @@ impl Battery {
         }
     }
 
-    /// Takes what the last call began, and begins anew. To be called every 5 ms.
+    /// Takes the conversions that the last call began, and begins the next. To be called every 5 ms.
     pub fn sample(&mut self) {
         self.monitor
             .feed(self.battery.take(), self.reference.take());
     }
 
-    /// See [`BatteryMonitor::volts`].
+    /// Battery voltage, V, as [`BatteryMonitor::volts`].
     pub fn volts(&self) -> f32 {
         self.monitor.volts()
     }
 }
 
-/// Converts the same input again and again.
+/// One converter, which converts the same input again and again.
 struct Converter<T: Instance> {
     registers: pac::adc::Adc,
-    /// Dropped it would switch itself off.
+    /// Kept, because it switches the converter off when it is dropped.
     _adc: Adc<'static, T>,
 }
 
 impl<T: Instance<Regs = pac::adc::Adc>> Converter<T> {
-    /// One reading through the HAL sets up pin, sequence and sampling time; what follows repeats it.
+    /// One reading through the HAL sets up pin, sequence and sampling time. Later conversions reuse them.
     fn new(
         mut adc: Adc<'static, T>,
         registers: pac::adc::Adc,

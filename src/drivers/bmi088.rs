@@ -15,10 +15,10 @@ use crate::deadlines::{Watched, sleep_checking_in};
 /// The longest transfer takes 75 µs on the wire.
 const TRANSFER_TIMEOUT: Duration = Duration::from_millis(1);
 
-/// A die wants 2 µs after a register write. At 168 MHz; too short for a timer to be worth its while.
+/// A die needs 2 µs after a register write, in cycles at 168 MHz. A timer would take longer to set up.
 const WRITE_PAUSE_CYCLES: u32 = 2 * 168;
 
-/// Why the sensor did not do what it was told.
+/// Why the sensor could not be brought up or read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, defmt::Format)]
 pub enum Bmi088Error {
     /// The DMA transfer did not finish.
@@ -44,7 +44,7 @@ pub struct Bmi088Answers {
 }
 
 impl Bmi088Answers {
-    /// Of the gyro's buffer, without the echo of the address.
+    /// The bytes of the gyro's buffer, without the echo of the address.
     pub fn gyro_frames(&self) -> &[u8] {
         self.buffer.get(1..self.buffer_bytes).unwrap_or_default()
     }
@@ -64,7 +64,7 @@ impl<'d> Bmi088<'d> {
         }
     }
 
-    /// Walks the bring-up sequence, which takes about 130 ms.
+    /// Runs the bring-up sequence, which takes about 130 ms.
     pub async fn bring_up(&mut self) -> Result<(), Bmi088Error> {
         for &step in INIT {
             match step {
@@ -97,7 +97,7 @@ impl<'d> Bmi088<'d> {
         Ok(())
     }
 
-    /// Reads one sample of both dies, and all that the gyro has measured since the last.
+    /// Reads one sample of both dies, and all samples of the gyro since the last call.
     pub async fn read_sample(&mut self) -> Result<Bmi088Answers, Bmi088Error> {
         let mut answers = Bmi088Answers {
             accel: ACCEL_READ,
@@ -119,7 +119,7 @@ impl<'d> Bmi088<'d> {
         Ok(answers)
     }
 
-    /// The gyro measures on, and fills its buffer from now.
+    /// Empties the buffer of the gyro, which goes on measuring.
     pub async fn reset_gyro_buffer(&mut self) -> Result<(), Bmi088Error> {
         for mut bytes in BUFFER_RESET {
             self.exchange(SpiTarget::Gyro, &mut bytes).await?;

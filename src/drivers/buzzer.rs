@@ -1,14 +1,15 @@
-//! The board's passive buzzer on a PWM channel at its rated pitch.
+//! The board's passive buzzer on a PWM channel, at its rated pitch.
 
 use embassy_stm32::peripherals::TIM4;
 use embassy_stm32::timer::simple_pwm::SimplePwm;
 
+/// The buzzer, either silent or sounding.
 pub struct Buzzer {
     pwm: SimplePwm<'static, TIM4>,
 }
 
 impl Buzzer {
-    /// Silent until told otherwise. The pitch is that of the timer.
+    /// Takes over the timer, which sets the pitch. The buzzer is silent.
     pub fn new(pwm: SimplePwm<'static, TIM4>) -> Self {
         let mut buzzer = Self { pwm };
         buzzer.sound(false);
@@ -16,6 +17,7 @@ impl Buzzer {
         buzzer
     }
 
+    /// Turns the sound on or off.
     pub fn sound(&mut self, on: bool) {
         let mut channel = self.pwm.ch3();
         if on {

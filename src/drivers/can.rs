@@ -1,7 +1,7 @@
 //! CAN1 and CAN2: the bxCAN peripherals at 1 Mb/s.
 //!
-//! Receive interrupts move frames into queues, the control tick drains them and fills the transmit
-//! mailboxes. Nothing here waits for the bus.
+//! Receive interrupts move frames into queues. The control tick drains them and fills the transmit mailboxes. Nothing here
+//! waits for the bus.
 
 mod bring_up;
 mod link;

@@ -1,5 +1,5 @@
-//! How regularly something runs, by the core's own cycle counter: independent of the clock that wakes it, and 168 times
-//! as fine.
+//! Jitter of the control tick, measured with the cycle counter of the core. The counter is independent of the timer that
+//! releases the tick, and 168 times as fine.
 
 use cortex_m::peripheral::DWT;
 
@@ -8,9 +8,9 @@ use crate::stall::clock_repair;
 /// The system clock.
 const CYCLES_A_MS: u32 = 168_000;
 
-/// Of the control tick, once a millisecond.
+/// Measures the jitter of the control tick.
 pub struct CycleJitter {
-    /// `None` if the tick before is not to be compared with.
+    /// Cycle count of the last tick, or `None` if it must not be compared.
     last: Option<u32>,
     max_cycles: u32,
 }
@@ -18,7 +18,7 @@ pub struct CycleJitter {
 impl CycleJitter {
     /// Starts the counter.
     pub fn start() -> Self {
-        // Where it cannot be started it stands still, which `tick` sees.
+        // If it cannot be started, it stands still, which `tick` notices.
         clock_repair::start_cycle_counter();
         Self {
             last: None,
@@ -26,11 +26,12 @@ impl CycleJitter {
         }
     }
 
-    /// The chip stood still.
+    /// Skips the next interval, because the chip stood still in it.
     pub fn restart(&mut self) {
         self.last = None;
     }
 
+    /// Notes the start of a tick.
     pub fn tick(&mut self) {
         let now = DWT::cycle_count();
         if let Some(last) = self.last.replace(now)
@@ -41,7 +42,7 @@ impl CycleJitter {
         }
     }
 
-    /// Largest distance of two ticks from a millisecond, since boot; 0 if the counter stands still.
+    /// Largest deviation of the tick interval from 1 ms since boot, in cycles; 0 if the counter stands still.
     pub fn max_cycles(&self) -> u32 {
         self.max_cycles
     }

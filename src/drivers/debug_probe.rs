@@ -1,21 +1,22 @@
-//! What a debug probe leaves in the core, and its undoing.
+//! Undoes what a debug probe leaves in the core.
 //!
-//! A debugger can have the core halt by itself: at a fault, at the reset vector, at a breakpoint. Nobody sends zero
-//! frames then, and after a reset not even the watchdog runs. probe-rs sets such catches unless told not to, and on this
-//! chip takes nothing back when it ends; nor does a pulled cable, and no reset but power-on clears them (ARMv7-M ARM
-//! C1.6). Software may: all but the enable bit itself. A halted watchdog is undone too, so a breakpoint ends in a reset.
+//! A debugger can set the core to halt at a fault, at the reset vector or at a breakpoint. A halted core sends no zero frames,
+//! and after a reset not even the watchdog runs. probe-rs sets such catches by default and leaves them when it ends. A pulled
+//! cable leaves them too, and only power-on clears them (ARMv7-M ARM C1.6). Software can clear all but the enable bit itself.
+//! A watchdog that stops while the core is halted is undone as well, so that a breakpoint ends in a reset.
 
 use cortex_m::peripheral::{DCB, DWT, FPB};
 use embassy_stm32::pac::DBGMCU;
 use robot_app::domain::DebugProbe;
 
-/// The one bit of DEMCR that stays: the cycle counter needs it.
+/// The bit of DEMCR that stays set, because the cycle counter needs it.
 const DEMCR_TRCENA: u32 = 1 << 24;
-/// FP_CTRL: a write counts with KEY only.
+/// FP_CTRL accepts a write only with KEY set.
 const FP_CTRL_KEY: u32 = 1 << 1;
 const FP_CTRL_ENABLE: u32 = 1;
 
-/// Cheap while no debugger is or was attached: nothing of it has any effect then.
+/// Undoes catches, breakpoints and watchpoints, and reports what was found. Cheap if no debugger was attached since
+/// power-on.
 pub fn undo() -> DebugProbe {
     if DCB::is_debugger_attached() {
         undo_all()

@@ -3,13 +3,14 @@
 use embassy_stm32::peripherals::TIM10;
 use embassy_stm32::timer::simple_pwm::SimplePwm;
 
-/// 58 °C at full duty in a warm room, so a duty that is left alone does no harm until the watchdog's reset ends it.
+/// The heater. At full duty in a warm room it reaches 58 °C, so a duty that stays on does no harm until the watchdog's reset
+/// ends it.
 pub struct Heater {
     pwm: SimplePwm<'static, TIM10>,
 }
 
 impl Heater {
-    /// Off until told otherwise.
+    /// Takes over the timer. The heater is off.
     pub fn new(pwm: SimplePwm<'static, TIM10>) -> Self {
         let mut heater = Self { pwm };
         heater.set_duty(0.0);
@@ -17,7 +18,7 @@ impl Heater {
         heater
     }
 
-    /// 0 … 1; anything else, NaN too, counts as the nearest of both ends or as off.
+    /// Sets the duty, clamped to 0 … 1. NaN turns the heater off.
     pub fn set_duty(&mut self, duty: f32) {
         let mut channel = self.pwm.ch1();
         let steps = channel.max_duty_cycle();

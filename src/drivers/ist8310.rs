@@ -16,7 +16,7 @@ const TRANSFER_TIMEOUT: Duration = Duration::from_millis(2);
 /// A STOP takes one bit of 2.5 µs, after the byte under way of 23 µs.
 const STOP_TIME: Duration = Duration::from_micros(50);
 
-/// Why the sensor did not do what it was told.
+/// Why the sensor could not be brought up or read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, defmt::Format)]
 pub enum Ist8310Error {
     /// The bus hangs: a line is held low or a transfer stopped half way.
@@ -43,8 +43,8 @@ impl<'d> Ist8310<'d> {
         }
     }
 
-    /// Walks the bring-up sequence, which takes about 100 ms. It starts with a reset by pin, so that a sensor that
-    /// held the bus lets go.
+    /// Runs the bring-up sequence, which takes about 100 ms. It starts with a reset by pin, which also frees a bus that the
+    /// sensor holds.
     pub async fn bring_up(&mut self) -> Result<(), Ist8310Error> {
         for &step in INIT {
             match step {
@@ -92,8 +92,9 @@ impl<'d> Ist8310<'d> {
         Ok(answer)
     }
 
-    /// The HAL returns when it has asked for a STOP. A START asked for before that is out is cut off by it and hangs the
-    /// bus (RM0090 27.6.1 forbids it; stm32f4xx-hal, pull request 737, shows it).
+    /// Waits until the STOP of the last transfer has been sent. The HAL returns when it has requested the STOP, and a START
+    /// that is requested before the STOP is out hangs the bus (RM0090 27.6.1 forbids it; stm32f4xx-hal, pull request 737,
+    /// shows it).
     async fn last_transfer_out(&self) -> Result<(), Ist8310Error> {
         let pending = || {
             let cr1 = self.registers.cr1().read();

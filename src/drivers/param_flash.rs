@@ -21,11 +21,11 @@ const KEYS: [u32; 2] = [0x4567_0123, 0xCDEF_89AB];
 /// Why flash was not read, written or erased.
 #[derive(Clone, Copy, Debug, defmt::Format)]
 pub enum FlashError {
-    /// As the flash controller or the HAL tells it.
+    /// An error of the flash controller or the HAL.
     Chip(Error),
-    /// Below what 32 bits at a time need.
+    /// The supply is too low to program 32 bits at a time.
     SupplyLow,
-    /// The clock would be wrong after an erase.
+    /// The clock could not be corrected after an erase.
     ClockUnkept,
 }
 
@@ -38,7 +38,8 @@ impl NorFlashError for FlashError {
     }
 }
 
-/// While a word is programmed or a sector erased the CPU stands still as soon as it needs the flash, which is at once.
+/// The parameter sectors. While a word is programmed or a sector erased, the CPU stands still, because its code is in flash
+/// too.
 pub struct ParamFlash(Bank1Region1<'static, Blocking>);
 
 impl ParamFlash {
@@ -70,7 +71,7 @@ impl NorFlash for ParamFlash {
     const WRITE_SIZE: usize = 4;
     const ERASE_SIZE: usize = 0x4000;
 
-    /// Word by word; interrupts run in between.
+    /// Programs word by word; interrupts run in between.
     #[inline(never)]
     fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), FlashError> {
         let from = place(offset, bytes.len())?;
@@ -129,8 +130,8 @@ fn place(offset: u32, len: usize) -> Result<u32, FlashError> {
     Ok(offset.saturating_add(SECTOR_1))
 }
 
-/// 32 bits at a time halve the time of an erase. The HAL leaves the width as it finds it when it erases, and at 8 bits
-/// when it has written.
+/// Sets the width to 32 bits, which halves the time of an erase. The HAL does not set it before it erases, and leaves it at
+/// 8 bits after it has written.
 fn use_full_width() {
     if FLASH.cr().read().lock() {
         for key in KEYS {
@@ -140,7 +141,7 @@ fn use_full_width() {
     FLASH.cr().modify(|w| w.set_psize(Psize::PSIZE32));
 }
 
-/// The data cache does not notice what happens to the cells (RM0090 3.5.4), and can only be reset while it is off.
+/// Clears the data cache, which does not notice changes of the cells (RM0090 3.5.4). It can only be reset while it is off.
 fn forget_cached_data() {
     FLASH.acr().modify(|w| w.set_dcen(false));
     FLASH.acr().modify(|w| w.set_dcrst(true));

@@ -1,7 +1,7 @@
-//! The receiver input: USART3, receive only, by circular DMA with an idle-line interrupt.
+//! The input of the radio receiver: a UART with circular DMA and an idle-line interrupt.
 //!
-//! The HAL's ring-buffered receiver stops on every line error and throws the buffer away; a radio link has
-//! errors all day. Here an error spoils the bytes it came with, and reception goes on.
+//! The HAL's ring-buffered receiver stops on every line error and drops its buffer. Errors are common on a radio line, so
+//! here an error costs only the bytes that it came with, and reception goes on.
 
 use core::future::poll_fn;
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -18,7 +18,7 @@ use crate::stall::StallWatch;
 /// SBUS and DBUS both run at 100 kBd.
 const BAUD: u32 = 100_000;
 
-/// Line events since boot. Errors and idle are written by the interrupt, the rest by the task.
+/// Line events since boot. The interrupt writes errors and idle, the task the rest.
 pub struct RadioLine {
     idle: AtomicBool,
     waker: AtomicWaker,
@@ -44,6 +44,7 @@ impl RadioLine {
         }
     }
 
+    /// The counters since boot.
     pub fn health(&self) -> RadioLineHealth {
         RadioLineHealth {
             rx_events: self.rx_events.load(Ordering::Relaxed),
@@ -82,7 +83,7 @@ impl RadioLine {
 
     fn count_burst(&self, bytes: usize) {
         increment(&self.rx_events);
-        // No more than the ring holds.
+        // The count fits: it is no more than the ring holds.
         self.rx_bytes.fetch_add(bytes as u32, Ordering::Relaxed);
     }
 }
@@ -95,18 +96,17 @@ fn increment(counter: &AtomicU32) {
 pub struct RadioUart {
     line: &'static RadioLine,
     ring: ReadableRingBuffer<'static, u8>,
-    /// Errors that spoilt a burst already.
+    /// Errors that have damaged an earlier burst.
     reported: u32,
     stalls: StallWatch,
 }
 
 /// What arrived since the last read.
 pub enum Burst<'a> {
+    /// Bytes without a line error.
     Clean(&'a [u8]),
-    /// The UART flagged a character of this burst or lost one.
-    Damaged {
-        count: usize,
-    },
+    /// So many bytes of which the UART flagged or lost at least one.
+    Damaged { count: usize },
 }
 
 impl RadioUart {
@@ -149,7 +149,7 @@ impl RadioUart {
         loop {
             self.wait().await;
             if self.stalls.take().is_some() {
-                // Of what came meanwhile the ring holds the end, and not from the start of a frame.
+                // The ring holds only the end of what came meanwhile, which need not begin with a frame.
                 self.ring.clear();
                 continue;
             }
@@ -158,7 +158,7 @@ impl RadioUart {
             let errors = self.line.health().errors();
             if errors != self.reported {
                 self.reported = errors;
-                // The flagged one may be among those that found no room.
+                // The flagged byte may be among those that did not fit into `bytes`.
                 while left > 0 {
                     let (more, rest) = self.read_ring(bytes);
                     count = count.saturating_add(more);

@@ -3,7 +3,7 @@
 use embassy_stm32::gpio::Output;
 use robot_app::indication::Colour;
 
-/// Three outputs, high = on.
+/// The three outputs of the LED; high is on.
 pub struct StatusLed {
     pub red: Output<'static>,
     pub green: Output<'static>,
@@ -11,6 +11,7 @@ pub struct StatusLed {
 }
 
 impl StatusLed {
+    /// Shows a colour.
     pub fn show(&mut self, colour: Colour) {
         let [red, green, blue] = colour.red_green_blue();
         self.red.set_level(red.into());

@@ -13,22 +13,23 @@ struct Period {
     reload: u16,
 }
 
-/// 12 to 34 ms. Together with the deadlines of `deadlines.rs` (25 ms) a hang ends in a reset within 60 ms.
+/// 12 to 34 ms. With the deadlines of `deadlines.rs` (25 ms) a hang ends in a reset within 60 ms.
 const SHORT: Period = Period {
     prescaler: Pr::DIVIDE_BY4,
     reload: 143,
 };
-/// 0.68 to 1.88 s: a 16 KiB sector takes at most 0.5 s to erase. Around an erase and at boot, always disarmed, a hang
-/// ends within 1.9 s.
+/// 0.68 to 1.88 s, because a sector of 16 KiB takes up to 0.5 s to erase. It is in force at boot and around an erase, when the
+/// robot is always disarmed; a hang then ends within 1.9 s.
 const LONG: Period = Period {
     prescaler: Pr::DIVIDE_BY32,
     reload: 998,
 };
 
+/// The running watchdog.
 pub struct Watchdog {
     _token: Peri<'static, IWDG>,
     period: WatchdogPeriod,
-    /// What it changes to.
+    /// The period to which it is changing.
     becomes: WatchdogPeriod,
 }
 
@@ -45,12 +46,12 @@ impl Watchdog {
         }
     }
 
-    /// What is in force.
+    /// The period in force.
     pub fn period(&self) -> WatchdogPeriod {
         self.period
     }
 
-    /// Begins a change of the period, if it is not as wanted; a later [`feed`](Self::feed) ends it.
+    /// Begins a change of the period if another one is wanted. A later [`feed`](Self::feed) completes it.
     pub fn set_long(&mut self, long: bool) {
         let (wanted, period) = if long {
             (WatchdogPeriod::Long, &LONG)
@@ -65,6 +66,7 @@ impl Watchdog {
         self.period = WatchdogPeriod::Changing;
     }
 
+    /// Restarts the count, and completes a change of the period that has arrived.
     pub fn feed(&mut self) {
         // The registers arrive in the watchdog's clock domain within six cycles of the slower of both divided clocks
         // (ST's stm32f4xx_hal_iwdg.c): 4 to 12 ms. They count from the next feed on.

@@ -1,7 +1,7 @@
-//! The clock, right even after the chip stood still.
+//! Corrects the clock after the chip stood still.
 //!
-//! The time driver counts half turns of a 16-bit timer (32.768 ms each) in its interrupt. Of those that pass while no
-//! interrupt can run it sees at most two. The cycle counter of the core goes on and tells how many there were.
+//! The time driver counts half turns of a 16-bit timer (32.768 ms each) in its interrupt. While no interrupt can run, it
+//! misses all but two of them. The cycle counter of the core goes on counting and tells how many there were.
 
 use cortex_m::Peripherals;
 use cortex_m::peripheral::DWT;
@@ -13,22 +13,22 @@ use embassy_time::Instant;
 const BELOW_TIME_DRIVER: u8 = 0x10;
 /// The system clock.
 const CYCLES_PER_US: u32 = 168;
-/// Half a turn, in µs, is two to the power of this.
+/// Half a turn is two to this power, in µs.
 const HALF_TURN_BITS: u32 = 15;
 const HALF_TURN: u16 = 1 << HALF_TURN_BITS;
-/// Keeps this far from the timer's events, in µs: after one, until its interrupt has run; before the next, until the
-/// missing ones are made up for.
+/// Distances from the timer's events, in µs: after one until its interrupt has run, and before the next until the missing ones
+/// have been added.
 const AFTER_EVENT: u16 = 64;
 const BEFORE_EVENT: u16 = 256;
 
-/// Runs `work`, during which no interrupt can run, then `repaired` with the time that passed in µs, once the clock is
-/// right again and before any other interrupt runs. Only for thread mode. `None`, and nothing done, if nothing would
-/// tell how long it took.
+/// Runs `work`, during which no interrupt can run, and corrects the clock. Then it calls `repaired` with the time that
+/// passed in µs, before any other interrupt runs. Thread mode only. Returns `None` without running `work` if the cycle
+/// counter does not run.
 pub fn keep_time<R>(work: impl FnOnce() -> R, repaired: impl FnOnce(u32)) -> Option<R> {
     if !start_cycle_counter() {
         return None;
     }
-    // First with all interrupts, so that hardly any time is left to wait without them.
+    // Waits with interrupts first, so that the wait without them is short.
     wait_between_events();
     // SAFETY: postpones interrupts until the same function lets them in again; no lock relies on them running.
     unsafe { basepri::write(BELOW_TIME_DRIVER) };
@@ -50,7 +50,7 @@ pub fn keep_time<R>(work: impl FnOnce() -> R, repaired: impl FnOnce(u32)) -> Opt
     Some(result)
 }
 
-/// A debugger stops the counter when it goes. False if the counter stands still all the same.
+/// Starts the cycle counter, which a debugger stops when it detaches. False if the counter still does not run.
 pub fn start_cycle_counter() -> bool {
     // SAFETY: nobody else owns these two, and all their writers run in thread mode: at boot, and for an erase.
     let mut core = unsafe { Peripherals::steal() };
@@ -77,12 +77,12 @@ impl Moment {
 
 struct Gap {
     elapsed_us: u32,
-    /// That the driver's interrupt will not count by itself.
+    /// Half turns that the driver's interrupt will not count by itself.
     missing_half_turns: u64,
 }
 
 impl Gap {
-    /// While the driver's interrupt is held back, after a wait between events.
+    /// To be called while the driver's interrupt is held back, after a wait between events.
     fn since(before: &Moment) -> Self {
         let (status, counter) = (TIM2.sr().read(), TIM2.cnt().read() as u16);
         let cycles = DWT::cycle_count().wrapping_sub(before.cycles);
@@ -108,7 +108,7 @@ fn wait_between_events() {
     while !safe.contains(&(TIM2.cnt().read() as u16 % HALF_TURN)) {}
 }
 
-/// Raises the event of channel 1 (RM0090 18.4.6), which is the driver's half turn, and lets its interrupt count it.
+/// Raises the event of channel 1 (RM0090 18.4.6), which is the driver's half turn, so that its interrupt counts one more.
 fn make_up_for_half_turn() {
     TIM2.egr().write(|w| w.set_ccg(0, true));
     while TIM2.sr().read().ccif(0) {}

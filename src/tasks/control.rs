@@ -1,4 +1,4 @@
-//! 1 kHz: CAN frames and snapshots in, CAN frames out. The one task that feeds the watchdog.
+//! The control task, 1 kHz: CAN frames and snapshots in, CAN frames out. It alone feeds the watchdog.
 
 use embassy_time::{Duration, Instant};
 use robot_app::diagnostics::DiagnosticsSnapshot;
@@ -34,7 +34,7 @@ struct Inputs {
 }
 
 impl Inputs {
-    /// Looks for newer values, and passes on what they say of the sensors' health.
+    /// Copies newer values and notes the health of the sensors.
     fn follow(&mut self, health: &mut SystemHealth) {
         if let Some(imu) = self.imu.changed() {
             health.imu = imu.health;
@@ -68,9 +68,9 @@ pub struct ControlContext {
 /// What this task publishes.
 struct Output {
     writers: ControlWriters,
-    /// Of the configuration last published.
+    /// Revision of the configuration that was last published.
     config_revision: u32,
-    /// As last published.
+    /// The permission that was last published.
     granted: FlashRequest,
 }
 
@@ -96,7 +96,7 @@ impl Output {
     }
 }
 
-/// Rare, and out of the way of what runs in every tick.
+/// Out of line, since it is rare and the tick is not.
 #[cold]
 #[inline(never)]
 fn publish_config(writer: &mut Writer<'static, ConfigUpdate>, outputs: &ControlOutputs<'_>) {
@@ -137,7 +137,7 @@ impl ControlContext {
             watchdog,
             health: SystemHealth {
                 reset_cause: last_run.reset_cause,
-                last_words: last_run.last_words,
+                last_words: last_run.crash_cause,
                 ..SystemHealth::default()
             },
             stalls: StallWatch::new(),
@@ -161,7 +161,7 @@ pub async fn run(mut context: ControlContext) -> ! {
     }
 }
 
-/// One tick. A symbol of its own, so that tools can find its entry.
+/// One control tick. It has a symbol of its own, so that tools can find its entry.
 // SAFETY: no other symbol of the image has this name.
 #[unsafe(no_mangle)]
 #[inline(never)]
@@ -227,14 +227,14 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
     }
 }
 
-/// A late task stops the robot in this tick.
+/// Notes late tasks, which stop the robot in this tick.
 fn note_late_tasks(noted: &mut LateTasks, now_us: u64) {
     if deadlines::any_late(now_us) || noted.any() {
         renew_late_tasks(noted, now_us);
     }
 }
 
-/// Logged from here, because the status task may be the late one.
+/// Logs here, because the status task may be the late one.
 #[cold]
 #[inline(never)]
 fn renew_late_tasks(noted: &mut LateTasks, now_us: u64) {

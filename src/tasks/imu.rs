@@ -1,4 +1,4 @@
-//! 200 Hz: BMI088 → calibrated IMU samples, and its heater. A lost sensor is brought up again for as long as it takes.
+//! The IMU task, 200 Hz: samples of the BMI088, calibrated, and its heater. A lost sensor is brought up again until it works.
 
 use embassy_time::{Duration, Instant};
 use robot_app::sensing::ImuPipeline;
@@ -70,7 +70,7 @@ impl ImuTask {
         }
     }
 
-    /// Reads and publishes one sample; false if there was none. Without one the heater is off.
+    /// Reads and publishes one sample; false if there was none, which also turns the heater off.
     async fn sample(&mut self, sensor: &mut Bmi088<'_>) -> bool {
         let read_us = Instant::now().as_micros();
         let state = if let Ok(answers) = sensor.read_sample().await {

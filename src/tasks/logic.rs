@@ -1,4 +1,4 @@
-//! 100 Hz: remote, PC or the user's own logic → command on the logic bus.
+//! The logic task, 100 Hz: a command from the remote, the PC or the user's own logic to the logic bus.
 
 use embassy_time::{Duration, Instant};
 use robot_app::safety::ArmingState;

@@ -1,4 +1,4 @@
-//! 50 Hz: IST8310 → calibrated magnetometer samples. A lost sensor is brought up again for as long as it takes.
+//! The magnetometer task, 50 Hz: samples of the IST8310, calibrated. A lost sensor is brought up again until it works.
 
 use embassy_time::{Duration, Instant};
 use robot_app::sensing::MagPipeline;
@@ -10,7 +10,7 @@ use crate::drivers::ist8310::Ist8310;
 use crate::exchange::{Exchange, MagReport};
 use crate::stall::SteadyTicker;
 
-/// 50 Hz in two halves, so that the task meets its deadline in between.
+/// Half of the 50 Hz period, so that the task can check in between.
 const HALF_PERIOD: Duration = Duration::from_millis(10);
 /// Bad samples in a row after which the sensor counts as lost.
 const LOST_AFTER: u32 = 5;
@@ -38,7 +38,7 @@ pub async fn run(
     loop {
         let mut sensor = bus.open();
         if sensor.bring_up().await.is_ok() {
-            task.say_if_unused();
+            task.log_if_unused();
             task.sample_until_lost(&mut sensor).await;
         } else {
             task.report.health.count_error();
@@ -50,7 +50,7 @@ pub async fn run(
 }
 
 impl MagTask {
-    fn say_if_unused(&self) {
+    fn log_if_unused(&self) {
         if self.exchange.config.latest().config.mounting.mag.is_none() {
             defmt::info!("the heading goes without the magnetometer: mounting.mag is unset");
         }

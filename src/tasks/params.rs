@@ -1,4 +1,4 @@
-//! Settings to flash, in small steps, each with the control tick's permission.
+//! The parameter task, 1 kHz: saves settings to flash in small steps, each with the control tick's permission.
 
 use embassy_time::{Duration, Instant};
 use robot_app::{domain::FlashRequest, params::ParamService};
@@ -10,7 +10,7 @@ use crate::exchange::{ConfigUpdate, Exchange, FlashPermission, ParamsReport};
 use crate::stall::{StallWatch, SteadyTicker};
 
 const PERIOD: Duration = Duration::from_hz(1_000);
-/// The service announces a step before it takes it.
+/// Calls of the service per permission: it announces a step in one and takes it in the next.
 const STEPS_A_GRANT: u32 = 2;
 
 struct ParamsTask {
@@ -49,8 +49,8 @@ pub async fn run(
 }
 
 impl ParamsTask {
-    /// Asks, waits for the grant, uses it, takes the request back, waits until the grant is gone, and only then asks
-    /// anew: so the control tick decides about each step.
+    /// Asks for permission, uses it, withdraws the request, and waits until the permission is gone before it asks again. So
+    /// the control tick decides about each step.
     fn step(&mut self) {
         let grant = self.grant.latest().0;
         let granted = if grant == self.asked {

@@ -1,4 +1,4 @@
-//! Radio bytes → remote state, as each frame arrives.
+//! The radio task: decodes the bytes of the receiver as each frame arrives.
 
 use embassy_time::{Duration, Instant, with_timeout};
 use robot_app::domain::RemoteUpdate;
@@ -9,7 +9,7 @@ use crate::deadlines::Watched;
 use crate::drivers::radio_uart::{Burst, RadioUart};
 use crate::exchange::Exchange;
 
-/// Silence is no error here (its age speaks for itself), but the task must show that it lives.
+/// Longest wait for bytes. Silence is no error here, since the age of the last frame shows it, but the task must check in.
 const CHECK_IN_PERIOD: Duration = Duration::from_millis(10);
 
 #[embassy_executor::task]

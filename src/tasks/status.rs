@@ -1,5 +1,5 @@
-//! LED, buzzer, battery voltage and the log. Measures the battery at 200 Hz, checks for changes of state at 100 Hz, sums
-//! up at 4 Hz.
+//! The status task: LED, buzzer, battery voltage and the log. It measures the battery at 200 Hz, checks for changes at 100 Hz
+//! and logs a summary at 4 Hz.
 
 use embassy_time::{Duration, Instant};
 use robot_app::diagnostics::DiagnosticsSnapshot;
@@ -25,7 +25,7 @@ mod radio_log;
 mod summary;
 
 const PERIOD: Duration = Duration::from_hz(200);
-/// Periods between two looks at the diagnostics, 10 ms.
+/// Periods between two checks of the diagnostics, 10 ms.
 const CHANGES_DIVIDER: u32 = 2;
 /// Periods between two summaries, 0.25 s.
 const SUMMARY_DIVIDER: u32 = 50;

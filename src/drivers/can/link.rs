@@ -5,7 +5,7 @@ use embassy_stm32::pac::can::Can;
 /// First wait before rejoining after bus-off, doubled each time the link fails again.
 const FIRST_BACK_OFF_US: u64 = 50_000;
 const LONGEST_BACK_OFF_US: u64 = 1_600_000;
-/// A link that held this long is trusted again: the next bus-off starts with the first wait.
+/// After this time on the bus, the next bus-off starts with the first wait again.
 const TRUSTED_AFTER_US: u64 = 5_000_000;
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -15,18 +15,19 @@ enum State {
     Up {
         since_us: u64,
     },
-    /// Off the bus by its error counters; frames are refused until the back-off is over.
+    /// Off the bus because of its error counters. Frames are refused until the back-off is over.
     BusOff {
         retry_at_us: u64,
     },
-    /// Asked for initialisation mode, which resets the error counters.
+    /// Initialisation mode was requested, which resets the error counters.
     Resetting,
-    /// Left initialisation mode: the hardware counts 128 × 11 recessive bits.
+    /// Initialisation mode was left; the hardware counts 128 × 11 recessive bits.
     Rejoining,
-    /// Back on the bus, but still reported as off, so that only zero torque is sent until a frame got through.
+    /// On the bus, but still reported as off, so that only zero torque is sent until a frame is acknowledged.
     OnTrial,
 }
 
+/// The link state machine of one CAN peripheral.
 pub struct Link {
     can: Can,
     state: State,
@@ -54,24 +55,24 @@ impl Link {
         matches!(self.state, State::Up { .. } | State::OnTrial)
     }
 
-    /// From bus-off until a frame proved that the bus works again.
+    /// True from bus-off until a frame has shown that the bus works again.
     pub fn is_bus_off(&self) -> bool {
         !matches!(self.state, State::Up { .. } | State::Joining)
     }
 
-    /// A frame was sent and acknowledged.
+    /// Notes that a frame was sent and acknowledged.
     pub fn frame_got_through(&mut self, now_us: u64) {
         if self.state == State::OnTrial {
             self.state = State::Up { since_us: now_us };
         }
     }
 
-    /// Times the link went bus-off since boot.
+    /// How often the link went bus-off since boot.
     pub fn bus_off_count(&self) -> u32 {
         self.bus_off_count
     }
 
-    /// Looks at the hardware once and takes the next step, if one is due. Never waits.
+    /// Reads the hardware state and takes the next step if one is due. Never waits.
     pub fn step(&mut self, now_us: u64) {
         let can = self.can;
         match self.state {

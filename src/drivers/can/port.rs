@@ -40,7 +40,7 @@ impl CanPort {
         self.link.is_on_bus()
     }
 
-    /// Advances the link, takes back the last tick's leftovers and reads the error state. Never waits.
+    /// Aborts frames of the last tick that still wait, advances the link and reads the error state. Never waits.
     pub fn begin_tick(&mut self, now_us: u64) {
         let outcomes = transmit::retire_old_frames(self.can);
         if outcomes.sent > 0 {
@@ -51,7 +51,7 @@ impl CanPort {
         self.read_error_state();
     }
 
-    /// After a stall of the whole chip: what is in the queues came at unknown times, and what is missing is no fault.
+    /// Empties the queues after a stall of the whole chip: the arrival times are unknown, and lost frames are no fault.
     #[cold]
     #[inline(never)]
     pub fn drop_backlog(&mut self) {
@@ -76,12 +76,12 @@ impl CanPort {
         }
     }
 
-    /// Whether a frame would find a place now.
+    /// Whether a mailbox is free.
     pub fn has_room(&self) -> bool {
         transmit::has_room(self.can)
     }
 
-    /// Queues a frame for this tick; one that finds no place counts as taken back.
+    /// Sends a frame in this tick. One that finds no free mailbox counts as expired.
     pub fn send(&mut self, frame: &CanFrame) {
         if !self.link.is_on_bus() || transmit::send(self.can, frame).is_err() {
             self.count_outcomes(Outcomes {
@@ -118,7 +118,7 @@ impl CanPort {
         (self.health.rx_overruns, self.health.rx_queue_full) = self.losses();
     }
 
-    /// Of both FIFOs, in hardware and in the queue.
+    /// Overruns of the hardware and of the queue, summed over both FIFOs.
     fn losses(&self) -> (u32, u32) {
         let [fifo0, fifo1] = &self.sources;
         let (fifo0, fifo1) = (fifo0.losses(), fifo1.losses());

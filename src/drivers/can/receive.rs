@@ -1,4 +1,4 @@
-//! Receive interrupts: hardware FIFO → single-producer queue. They move frames and nothing else.
+//! Receive interrupts, which only move frames from a hardware FIFO to a single-producer queue.
 
 use core::marker::PhantomData;
 use core::sync::atomic::{AtomicU32, Ordering};
@@ -13,10 +13,10 @@ use static_cell::StaticCell;
 use super::peripherals::{Can1, Can2};
 use crate::isr_cell::IsrCell;
 
-/// Places in each queue, one of them unused: a 1 Mb/s bus carries at most some 20 frames a tick.
+/// Places in each queue, of which one stays unused. A bus at 1 Mb/s carries at most about 20 frames per tick.
 const QUEUE_LEN: usize = 32;
 
-/// A frame with the time its interrupt ran.
+/// A frame with the time of its interrupt.
 #[derive(Clone, Copy)]
 pub struct ReceivedFrame {
     pub frame: CanFrame,
@@ -47,7 +47,7 @@ impl FrameSource {
         }
     }
 
-    /// Takes losses that were nobody's fault off the counters.
+    /// Subtracts losses that do not count as faults.
     pub fn forgive(&self, losses: &Losses) {
         let counters = self.losses;
         counters
@@ -64,7 +64,7 @@ struct LossCounters {
     queue_full: AtomicU32,
 }
 
-/// What one FIFO's handler works on.
+/// The data of one FIFO's interrupt handler.
 struct FifoIsr<R> {
     fifo: R,
     queue: Producer<'static, ReceivedFrame>,
@@ -178,7 +178,7 @@ impl<R: ReceiveFifo> FifoIsr<R> {
 }
 
 fn count(counter: &AtomicU32) {
-    // Nobody who writes the counter can preempt this handler, so load and store need no exchange.
+    // No other writer of the counter can preempt this handler, so load and store need no atomic exchange.
     counter.store(
         counter.load(Ordering::Relaxed).wrapping_add(1),
         Ordering::Relaxed,

@@ -1,4 +1,4 @@
-//! Transmit mailboxes: a frame goes out within its control tick or not at all.
+//! Transmit mailboxes. A frame is sent within its control tick or not at all.
 
 use embassy_stm32::pac::can::{Can, regs};
 use robot_app::domain::CanFrame;
@@ -6,20 +6,20 @@ use robot_app::domain::CanFrame;
 /// Mailboxes of a bxCAN peripheral (RM0090 32.7.1).
 const MAILBOXES: core::ops::Range<usize> = 0..3;
 
-/// What became of the frames of earlier ticks.
+/// The outcome of frames of earlier ticks.
 #[derive(Clone, Copy, Default)]
 pub struct Outcomes {
     pub sent: u32,
-    /// Taken back because their tick was over. One that was on the wire at that moment may still count as sent later.
+    /// Aborted because their tick was over. One that was being sent at that moment may count as sent later.
     pub expired: u32,
 }
 
 /// Every mailbox was still occupied.
 pub struct MailboxesFull;
 
-/// Collects the outcome of earlier frames and asks for the abortion of those still waiting.
+/// Collects the outcome of earlier frames and aborts those that still wait.
 ///
-/// Does not wait: the hardware drops a waiting frame at once and lets a frame that is on the wire finish.
+/// It does not wait: the hardware drops a waiting frame at once and finishes a frame that is being sent.
 pub fn retire_old_frames(can: Can) -> Outcomes {
     let status = can.tsr().read();
     let mut outcomes = Outcomes::default();
@@ -39,7 +39,7 @@ pub fn retire_old_frames(can: Can) -> Outcomes {
     outcomes
 }
 
-/// Hands a frame to a free mailbox. The bus picks among waiting frames by identifier.
+/// Puts a frame into a free mailbox. The hardware sends waiting frames in the order of their identifiers.
 pub fn send(can: Can, frame: &CanFrame) -> Result<(), MailboxesFull> {
     let status = can.tsr().read();
     let mailbox = MAILBOXES
@@ -65,7 +65,7 @@ pub fn send(can: Can, frame: &CanFrame) -> Result<(), MailboxesFull> {
     Ok(())
 }
 
-/// Whether a frame would find a place now.
+/// Whether a mailbox is free.
 pub fn has_room(can: Can) -> bool {
     let status = can.tsr().read();
     MAILBOXES.into_iter().any(|mailbox| status.tme(mailbox))

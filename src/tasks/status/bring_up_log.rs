@@ -1,4 +1,4 @@
-//! What one reads while bringing up hardware: the step, the motor on trial, and how the joints are being turned.
+//! Log lines of the bring-up: the step, the motor under test, and how the joints are turned by hand.
 
 use robot_app::bring_up::{BringUpStatus, BringUpStep, JointReading, JointWatch, Turn};
 use robot_app::diagnostics::{ChangeNotice, DiagnosticsSnapshot};
@@ -40,7 +40,7 @@ impl BringUpLog {
         }
     }
 
-    /// A few times a second.
+    /// Logs the joint angles; to be called a few times a second.
     pub fn report_joints(&mut self, d: &DiagnosticsSnapshot) {
         if d.bring_up.step == BringUpStep::Off {
             return;

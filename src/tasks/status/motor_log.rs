@@ -1,26 +1,26 @@
-//! Which motor keeps the robot from being armed, and what is heard instead of it.
+//! Log lines about motors that block arming, and about frames that belong to no motor.
 
 use robot_app::diagnostics::{BusStrangers, ChangeNotice, DiagnosticsSnapshot};
 use robot_app::domain::{BusId, JointConfig};
 use robot_app::motor::layout::MotorLayout;
 use robot_app::safety::{ArmingState, MotorReadiness};
 
-/// In the order of `ChassisCommand`.
+/// Names in the order of `ChassisCommand`.
 const WHEEL_NAMES: [&str; 2] = ["left", "right"];
 pub const JOINT_NAMES: [&str; 4] = ["left front", "left rear", "right front", "right rear"];
-/// Motors start and are set up in this time.
+/// Time in which motors start and are set up.
 const SETTLED_US: u64 = 1_000_000;
 
 /// What was logged last.
 #[derive(Default)]
 pub struct MotorLog {
     findings: ChangeNotice<MotorReadiness>,
-    /// Of each bus: the identifier last told, and that of a speed controller.
+    /// Per bus: the identifier that was last logged, and that of a speed controller.
     strangers: [ChangeNotice<(u16, u16)>; 2],
 }
 
 impl MotorLog {
-    /// Silent while the robot is armed.
+    /// Logs changes; nothing while the robot is armed.
     pub fn report(
         &mut self,
         d: &DiagnosticsSnapshot,

@@ -1,4 +1,4 @@
-//! Why no frame of the radio arrives, once a second.
+//! A log line when the reason changes why no radio frames arrive, checked once a second.
 
 use robot_app::diagnostics::DiagnosticsSnapshot;
 use robot_app::input::{LineCounters, LineDiagnosis};
@@ -7,12 +7,12 @@ use crate::config::REMOTE_FORMAT;
 
 const PERIOD_US: u64 = 1_000_000;
 
-/// What was seen and logged last.
+/// The last observation and the last log line.
 #[derive(Default)]
 pub struct RadioLog {
     look: LineCounters,
     looked_us: u64,
-    told: LineDiagnosis,
+    logged: LineDiagnosis,
 }
 
 impl RadioLog {
@@ -24,10 +24,10 @@ impl RadioLog {
         let now = LineCounters::new(&d.radio_line, &d.remote_diag);
         let before = core::mem::replace(&mut self.look, now);
         let found = LineDiagnosis::between(&before, &now, REMOTE_FORMAT);
-        if found == self.told {
+        if found == self.logged {
             return;
         }
-        self.told = found;
+        self.logged = found;
         match found {
             LineDiagnosis::Frames => defmt::info!("radio: frames arrive"),
             LineDiagnosis::Quiet => defmt::warn!(

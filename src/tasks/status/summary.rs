@@ -1,8 +1,8 @@
-//! The line that is logged a few times a second.
+//! The summary that is logged a few times a second.
 
 use robot_app::diagnostics::DiagnosticsSnapshot;
 
-/// Whole thousandths and degrees: a decimal fraction of a float would print nine digits.
+/// Logs whole thousandths and degrees, because a fraction of a float would print nine digits.
 pub fn log(d: &DiagnosticsSnapshot) {
     let [roll_rad, pitch_rad, yaw_rad] = d.estimate.rpy_rad;
     let [left, right] = &d.sensors.motor.wheels;
