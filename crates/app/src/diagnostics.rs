@@ -1,11 +1,11 @@
-//! The state of the whole robot in one place, for debugger, log and recordings.
+//! The diagnostics stage: the state of the whole robot in one place, for debugger, log and recordings.
 
-mod change_notice;
+mod change_throttle;
 mod snapshot;
-mod strangers;
 mod tick_stats;
+mod unknown_frames;
 
-pub use change_notice::ChangeNotice;
+pub use change_throttle::ChangeThrottle;
 pub use snapshot::DiagnosticsSnapshot;
-pub use strangers::{BusStrangers, Strangers};
 pub use tick_stats::TickStats;
+pub use unknown_frames::{BusUnknownFrames, UnknownFrames};

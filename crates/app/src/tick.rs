@@ -1,4 +1,4 @@
-//! The 1 kHz tick: CAN frames and snapshots in, CAN frames and snapshots out, nothing else.
+//! The 1 kHz tick: CAN frames and snapshots in, CAN frames and snapshots out.
 
 mod control_loop;
 mod inputs;

@@ -1,7 +1,7 @@
-//! Settings over CAN while the robot is disarmed (docs/tuning.md).
+//! The tuning channel: reads and changes settings over CAN while the robot is disarmed (docs/tuning.md).
 //!
-//! A request comes on [`WRITE_ID`] or [`READ_ID`] of either bus and is answered on [`REPLY_ID`] of the same bus.
-//! [`PARAMETERS`] lists everything that can be changed.
+//! A request arrives with [`WRITE_ID`] or [`READ_ID`] on either bus and is answered with [`REPLY_ID`] on the same
+//! bus. [`PARAMETERS`] lists all settings.
 
 mod channel;
 pub(crate) mod consistency;

@@ -1,13 +1,13 @@
 //! Log lines of the bring-up: the step, the motor under test, and how the joints are turned by hand.
 
-use robot_app::bring_up::{BringUpStatus, BringUpStep, JointReading, JointWatch, Turn};
-use robot_app::diagnostics::{ChangeNotice, DiagnosticsSnapshot};
+use robot_app::bring_up::{BringUpStatus, BringUpStep, JointMotionMonitor, JointReading, Turn};
+use robot_app::diagnostics::{ChangeThrottle, DiagnosticsSnapshot};
 
 /// Silent while bring-up is off.
 #[derive(Default)]
 pub struct BringUpLog {
-    status: ChangeNotice<BringUpStatus>,
-    watch: JointWatch,
+    status: ChangeThrottle<BringUpStatus>,
+    watch: JointMotionMonitor,
 }
 
 impl BringUpLog {
@@ -46,7 +46,7 @@ impl BringUpLog {
             return;
         }
         let [left_front, left_rear, right_front, right_rear] =
-            self.watch.look(&d.sensors.motor.joints);
+            self.watch.update(&d.sensors.motor.joints);
         defmt::info!(
             "joints: left front {=i32} mrad {=str}, left rear {=i32} mrad {=str}, right front {=i32} mrad {=str}, right rear {=i32} mrad {=str}",
             left_front.pos_mrad,

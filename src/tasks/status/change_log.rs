@@ -1,6 +1,6 @@
 //! Log lines for changes of state, at most four a second for each.
 
-use robot_app::diagnostics::{ChangeNotice, DiagnosticsSnapshot};
+use robot_app::diagnostics::{ChangeThrottle, DiagnosticsSnapshot};
 use robot_app::domain::{
     BusErrorState, BusId, CalibrationState, DebugProbe, HeaterState, RadioLineHealth, Warmth,
 };
@@ -11,21 +11,21 @@ use super::motor_log::JOINT_NAMES;
 /// What was logged last.
 #[derive(Default)]
 pub struct ChangeLog {
-    arming: ChangeNotice<ArmingState>,
-    blockers: ChangeNotice<ArmingBlockers>,
-    refused: ChangeNotice<ArmingBlockers>,
-    flags: ChangeNotice<SafetyFlags>,
+    arming: ChangeThrottle<ArmingState>,
+    blockers: ChangeThrottle<ArmingBlockers>,
+    refused: ChangeThrottle<ArmingBlockers>,
+    flags: ChangeThrottle<SafetyFlags>,
     /// Fault code of each joint.
-    joint_faults: [ChangeNotice<u32>; 4],
-    buses: [ChangeNotice<BusErrorState>; 2],
-    imu_ready: ChangeNotice<bool>,
-    mag_ready: ChangeNotice<bool>,
-    calibration: ChangeNotice<CalibrationState>,
-    heater: ChangeNotice<HeaterState>,
-    line_errors: ChangeNotice<u32>,
-    debug_probe: ChangeNotice<DebugProbe>,
-    ticks_missed: ChangeNotice<u32>,
-    tuning_revision: ChangeNotice<u32>,
+    joint_faults: [ChangeThrottle<u32>; 4],
+    buses: [ChangeThrottle<BusErrorState>; 2],
+    imu_ready: ChangeThrottle<bool>,
+    mag_ready: ChangeThrottle<bool>,
+    calibration: ChangeThrottle<CalibrationState>,
+    heater: ChangeThrottle<HeaterState>,
+    line_errors: ChangeThrottle<u32>,
+    debug_probe: ChangeThrottle<DebugProbe>,
+    ticks_missed: ChangeThrottle<u32>,
+    tuning_revision: ChangeThrottle<u32>,
 }
 
 impl ChangeLog {

@@ -1,6 +1,6 @@
 //! Log lines about motors that block arming, and about frames that belong to no motor.
 
-use robot_app::diagnostics::{BusStrangers, ChangeNotice, DiagnosticsSnapshot};
+use robot_app::diagnostics::{BusUnknownFrames, ChangeThrottle, DiagnosticsSnapshot};
 use robot_app::domain::{BusId, JointConfig};
 use robot_app::motor::layout::MotorLayout;
 use robot_app::safety::{ArmingState, MotorReadiness};
@@ -14,9 +14,9 @@ const SETTLED_US: u64 = 1_000_000;
 /// What was logged last.
 #[derive(Default)]
 pub struct MotorLog {
-    findings: ChangeNotice<MotorReadiness>,
+    findings: ChangeThrottle<MotorReadiness>,
     /// Per bus: the identifier that was last logged, and that of a speed controller.
-    strangers: [ChangeNotice<(u16, u16)>; 2],
+    strangers: [ChangeThrottle<(u16, u16)>; 2],
 }
 
 impl MotorLog {
@@ -39,7 +39,7 @@ impl MotorLog {
         }
         let buses = BusId::ALL.into_iter().zip(&mut self.strangers);
         for ((bus, notice), heard) in buses.zip(&d.strangers.buses) {
-            let BusStrangers {
+            let BusUnknownFrames {
                 frames,
                 last_id,
                 esc_id,

@@ -1,11 +1,11 @@
-//! The stick and switch movement that starts bring-up: nobody makes it by accident.
+//! The stick and switch gesture that starts bring-up. It cannot be made by accident.
 
 use crate::domain::DriveMode;
 
-/// From the first time the mode switch stands at its far end to the second.
+/// Time from the first position at custom to the second.
 const TIME_LIMIT_US: u64 = 4_000_000;
 
-/// Where the mode switch has been, in this order. The middle does not count.
+/// Positions of the mode switch so far, in this order. The middle does not count.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Progress {
     #[default]
@@ -19,15 +19,15 @@ enum Progress {
     },
 }
 
-/// Mode switch from manual to custom and back and to custom again within 4 s, all the while with the `other_controls`
-/// as they must be.
+/// Detects the mode switch going from manual to custom, back, and to custom again within 4 s, while the
+/// `other_controls` are in place.
 #[derive(Clone, Debug, Default)]
 pub struct RadioGesture {
     progress: Progress,
 }
 
 impl RadioGesture {
-    /// True once, in the call in which the gesture is complete.
+    /// Returns true once, when the gesture is complete.
     pub fn step(&mut self, other_controls: bool, mode: DriveMode, now_us: u64) -> bool {
         if !other_controls || self.too_slow(now_us) {
             self.progress = Progress::Nothing;
@@ -61,7 +61,8 @@ mod tests {
     use super::*;
     use DriveMode::{Custom, Manual, Pc};
 
-    /// One call for each mode, `pause_ms` apart; the indices of the calls that completed it.
+    /// Makes one call for each mode, `pause_ms` apart, and returns the indices of the calls that completed the
+    /// gesture.
     fn completed(modes: &[DriveMode], pause_ms: u64) -> Vec<usize> {
         let mut gesture = RadioGesture::default();
         (0..modes.len())
@@ -70,25 +71,25 @@ mod tests {
     }
 
     #[test]
-    fn twice_to_the_far_end_starts_once() {
+    fn two_moves_to_the_far_end_start_bring_up_once() {
         let modes = [Manual, Pc, Custom, Pc, Manual, Pc, Custom, Custom, Custom];
         assert_eq!(completed(&modes, 300), [6]);
     }
 
     #[test]
-    fn it_must_begin_at_manual_and_go_back_there() {
+    fn the_gesture_begins_at_manual_and_returns_there() {
         assert!(completed(&[Custom, Manual, Custom], 300).is_empty());
         assert!(completed(&[Manual, Custom, Pc, Custom], 300).is_empty());
     }
 
     #[test]
-    fn too_slow_is_no_gesture() {
+    fn a_slow_gesture_does_not_count() {
         assert_eq!(completed(&[Manual, Custom, Manual, Custom], 2_000), [3]);
         assert!(completed(&[Manual, Custom, Manual, Custom], 2_001).is_empty());
     }
 
     #[test]
-    fn another_control_moved_meanwhile_starts_it_over() {
+    fn moving_another_control_restarts_the_gesture() {
         let mut gesture = RadioGesture::default();
         let mut done = false;
         for (index, mode) in [Manual, Custom, Manual, Custom].into_iter().enumerate() {

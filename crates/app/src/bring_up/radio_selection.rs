@@ -1,8 +1,8 @@
-//! Flicks of the left stick, up or down.
+//! Detects flicks of the left stick up or down.
 
-/// Beyond this the stick is flicked.
+/// A stick beyond this position is flicked.
 const FLICKED: f32 = 0.7;
-/// Inside this it is ready for the next one.
+/// A stick inside this range is ready for the next flick.
 const CENTRED: f32 = 0.5;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,14 +11,14 @@ pub enum Flick {
     Down,
 }
 
-/// Counts a flick only from the centre, so that a throttle stick without a spring, at rest at its end, flicks nothing.
+/// Detects a flick only from the centre. A throttle stick without a spring, at rest at its end, does not count.
 #[derive(Clone, Debug, Default)]
 pub struct FlickDetector {
     centred: bool,
 }
 
 impl FlickDetector {
-    /// `stick`: −1 … 1, up positive.
+    /// Takes the position of the stick, −1…1, up positive.
     pub fn step(&mut self, stick: f32) -> Option<Flick> {
         if stick.abs() < CENTRED {
             self.centred = true;
@@ -37,7 +37,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn one_flick_each_way_out_of_the_centre() {
+    fn a_flick_counts_once_from_the_centre() {
         let mut detector = FlickDetector::default();
         let flicks: Vec<_> = [
             -1.0,

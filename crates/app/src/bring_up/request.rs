@@ -1,20 +1,20 @@
-//! What the tuning channel can ask of bring-up.
+//! Requests to bring-up from the tuning channel.
 
 use super::limits;
 
-/// One of the six motors: 0 and 1 the wheels, 2 to 5 the joints, each in the order of `ChassisCommand`.
+/// One of the six motors: 0 and 1 are the wheels, 2 to 5 the joints, each in the order of `ChassisCommand`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TestMotor {
     /// 0 = left, 1 = right.
     Wheel(u8),
-    /// 0 to 3.
+    /// 0 to 3, in the order of `ChassisCommand`.
     Joint(u8),
 }
 
 impl TestMotor {
     pub(super) const FIRST: Self = Self::Wheel(0);
 
-    /// `None` above 5.
+    /// Returns `None` above 5.
     pub const fn from_number(number: u8) -> Option<Self> {
         match number {
             0 | 1 => Some(Self::Wheel(number)),
@@ -23,6 +23,7 @@ impl TestMotor {
         }
     }
 
+    /// Its number, 0 to 5.
     pub const fn number(self) -> u8 {
         match self {
             Self::Wheel(index) => index,
@@ -38,7 +39,7 @@ impl TestMotor {
         Self::from_number(self.number().wrapping_sub(1)).unwrap_or(Self::Joint(3))
     }
 
-    /// Most a trial may ask of it, in mN·m of a joint or mA of a wheel.
+    /// Limit of a trial, in mN·m for a joint or mA for a wheel.
     fn limit_milli(self) -> f32 {
         match self {
             Self::Wheel(_) => limits::WHEEL_CURRENT_MA,
@@ -47,37 +48,43 @@ impl TestMotor {
     }
 }
 
-/// What the motor on trial does while the dead-man stick is held.
+/// What the selected motor does while the dead-man stick is held.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TrialAction {
-    /// As far as the drive stick is pushed; full stick is the hard limit.
+    /// The drive stick sets the torque; full stick is the limit of bring-up.
     StickTorque,
-    /// Always the same share of the hard limit, −1 … 1.
+    /// A fixed fraction of the limit, −1…1.
     FixedTorque(f32),
-    /// A joint stays, softly, where it was when the stick was taken; a wheel is braked.
+    /// A joint is held softly where it was when the dead-man stick was taken; a wheel is braked.
     Hold,
 }
 
-/// One motor and what it does.
+/// One motor and its action.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trial {
+    /// The motor.
     pub motor: TestMotor,
+    /// Its action.
     pub action: TrialAction,
 }
 
-/// A step of bring-up, with all that it needs.
+/// A step of bring-up and its arguments.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BringUpRequest {
+    /// Ends bring-up.
     Off,
+    /// First step: nothing may be armed.
     ReadOnly,
+    /// Second step: motors are enabled without torque.
     ZeroTorque,
+    /// Third step: one motor gives a little torque.
     OneMotor(Trial),
 }
 
 impl BringUpRequest {
-    /// From the fields of a tuning frame. `value` is in mN·m for a joint and mA for a wheel; 0 lets the drive stick
-    /// decide. Fields that a step does not use must be 0. `None` for anything that is not a request, a value past the
-    /// hard limit included.
+    /// Decodes the fields of a tuning frame. `value` is in mN·m for a joint and mA for a wheel; with 0 the drive
+    /// stick decides. Fields that a step does not use must be 0. Returns `None` for an invalid request, including a
+    /// value beyond the limit.
     pub fn from_fields(step: u8, motor: u8, action: u8, value: i16) -> Option<Self> {
         match (step, motor, action, value) {
             (0, 0, 0, 0) => Some(Self::Off),
@@ -112,7 +119,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn six_motors_in_a_ring() {
+    fn the_six_motors_form_a_ring() {
         let mut motor = TestMotor::FIRST;
         let numbers: Vec<u8> = (0..7)
             .map(|_| {
@@ -128,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn torque_up_to_half_a_newton_metre_or_one_ampere() {
+    fn torque_is_accepted_up_to_the_bring_up_limit() {
         let share = |motor, value| match BringUpRequest::from_fields(3, motor, 0, value) {
             Some(BringUpRequest::OneMotor(Trial {
                 action: TrialAction::FixedTorque(share),
@@ -145,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn no_torque_leaves_it_to_the_stick_and_one_motor_may_be_held() {
+    fn zero_torque_selects_the_stick_and_one_motor_may_be_held() {
         for (action, expected) in [(0, TrialAction::StickTorque), (1, TrialAction::Hold)] {
             for motor in 0..6 {
                 let trial = Trial {
@@ -159,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_request_is_none() {
+    fn invalid_requests_are_rejected() {
         let nonsense = [
             (4, 0, 0, 0),
             (3, 6, 0, 0),

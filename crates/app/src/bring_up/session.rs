@@ -1,4 +1,4 @@
-//! Which step bring-up is in, who picks it, and the command that replaces the pilot's.
+//! The bring-up session: its step, who selects it, and the command that replaces the pilot's.
 
 use super::{
     limits,
@@ -15,18 +15,23 @@ use crate::{
     safety::ArmingState,
 };
 
-/// Steering stick beyond this for the gesture: all the way to the left.
+/// The gesture needs the steering stick beyond this position, fully to the left.
 const GESTURE_STICK: f32 = 0.9;
 
-/// All that bring-up looks at in one tick.
+/// Inputs of bring-up in one tick.
 #[derive(Clone, Copy, Debug)]
 pub struct BringUpInputs<'a> {
+    /// The pilot's sticks.
     pub remote: &'a RemoteState,
+    /// The pilot's switches.
     pub operator: &'a OperatorState,
-    /// Age of the last frame that came over the air.
+    /// Age of the last frame received over the air, in µs.
     pub remote_age_us: u32,
+    /// Whether the robot is armed.
     pub arming: ArmingState,
+    /// Feedback of all motors.
     pub motor: &'a MotorFeedback,
+    /// Geometry of the wheels.
     pub wheel_odom: &'a WheelOdomConfig,
 }
 
@@ -39,34 +44,54 @@ impl BringUpInputs<'_> {
         match (self.fresh(), self.operator.dead_man) {
             (false, _) => DeadMan::Unknown,
             (true, true) => DeadMan::Held,
-            (true, false) => DeadMan::LetGo,
+            (true, false) => DeadMan::Released,
         }
     }
 
-    /// Step and motor change only while no motor can move.
+    /// Whether step and motor may change, which needs that no motor can move.
     fn may_change(&self) -> bool {
         self.fresh() && self.operator.disabled && self.arming == ArmingState::Disarmed
     }
 }
 
-/// Who picks step and motor.
+/// Who selects step and motor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Control {
     TuningChannel,
-    /// The mode switch counts from when it has been back at its near end: the gesture ends at the far one.
+    /// The gesture ends with the mode switch at custom. The switch counts once it has been back at manual.
     Radio {
         switch_counts: bool,
     },
 }
 
-/// Off after every boot.
+/// A bring-up session. It is off after every boot.
+///
+/// ```
+/// use robot_app::bring_up::{BringUp, BringUpInputs, BringUpRequest};
+/// use robot_app::domain::{ChassisCommand, MotorFeedback, OperatorState, RemoteState, WheelOdomConfig};
+/// use robot_app::safety::ArmingState;
+///
+/// let inputs = BringUpInputs {
+///     remote: &RemoteState::default(),
+///     operator: &OperatorState::default(),
+///     remote_age_us: 0,
+///     arming: ArmingState::Disarmed,
+///     motor: &MotorFeedback::default(),
+///     wheel_odom: &WheelOdomConfig::default(),
+/// };
+/// let mut bring_up = BringUp::default();
+/// assert_eq!(bring_up.step(&inputs, 1_000), None);
+/// bring_up.request(BringUpRequest::ReadOnly);
+/// assert_eq!(bring_up.step(&inputs, 2_000), Some(ChassisCommand::STOP));
+/// assert!(bring_up.blocks_arming());
+/// ```
 #[derive(Clone, Debug)]
 pub struct BringUp {
     stage: BringUpRequest,
     control: Control,
     gesture: RadioGesture,
     flicks: FlickDetector,
-    /// Picked by the radio.
+    /// The motor selected by the radio.
     motor: TestMotor,
     trial: TrialRun,
     status: BringUpStatus,
@@ -87,14 +112,14 @@ impl Default for BringUp {
 }
 
 impl BringUp {
-    /// From the tuning channel, which makes sure that the robot is disarmed.
+    /// Takes a request from the tuning channel, which ensures that the robot is disarmed.
     pub fn request(&mut self, request: BringUpRequest) {
         self.control = Control::TuningChannel;
         self.stage = request;
     }
 
-    /// Before `Arming` in each tick. The command that goes to the motors in place of any other, with the permit and the
-    /// limits that every command needs; `None` while bring-up is off.
+    /// Advances by one tick, before `Arming`. Returns the command that replaces any other, or `None` while bring-up
+    /// is off. The command is subject to the usual permit and limits.
     pub fn step(&mut self, inputs: &BringUpInputs<'_>, now_us: u64) -> Option<ChassisCommand> {
         self.follow_radio(inputs, now_us);
         let command = self.command(inputs, now_us);
@@ -102,16 +127,17 @@ impl BringUp {
         command
     }
 
-    /// In the first step nothing may be armed.
+    /// Whether the session is in its first step, which blocks arming.
     pub fn blocks_arming(&self) -> bool {
         self.stage == BringUpRequest::ReadOnly
     }
 
-    /// In the other steps motors are enabled as soon as the robot is armed.
-    pub fn tries_motors(&self) -> bool {
+    /// Whether the session is in a step that enables motors when the robot is armed.
+    pub fn tests_motors(&self) -> bool {
         !matches!(self.stage, BringUpRequest::Off | BringUpRequest::ReadOnly)
     }
 
+    /// State of the session, for diagnostics.
     pub fn status(&self) -> &BringUpStatus {
         &self.status
     }

@@ -1,49 +1,54 @@
-//! Bring-up for diagnostics.
+//! State of bring-up, for diagnostics.
 
-/// How far bring-up has been taken.
+/// Step of bring-up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
 pub enum BringUpStep {
+    /// Bring-up is off.
     #[default]
     Off = 0,
-    /// Arming is blocked; turn the joints by hand and watch the log.
+    /// Arming is blocked. The joints are turned by hand, and the log shows their angles.
     ReadOnly = 1,
-    /// Once armed, motors are enabled and told to give nothing.
+    /// When armed, motors are enabled without torque.
     ZeroTorque = 2,
-    /// Once armed, one motor gives a little torque while the dead-man stick is held.
+    /// When armed, one motor gives a little torque while the dead-man stick is held.
     OneMotor = 3,
 }
 
-/// What the motor on trial does, and why it gives nothing.
+/// State of the selected motor.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
 pub enum TrialState {
-    /// Not the third step.
+    /// Bring-up is not in its third step.
     #[default]
     Idle = 0,
-    /// The dead-man stick must be let go first.
+    /// The dead-man stick must be released first.
     ReleaseFirst = 1,
-    /// Waits for the dead-man stick.
+    /// The motor waits for the dead-man stick.
     Ready = 2,
+    /// The motor has torque.
     Active = 3,
-    /// Let go: it turned too fast.
+    /// Released because it turned too fast.
     TooFast = 4,
-    /// Let go: it pushed for too long.
+    /// Released because the torque lasted too long.
     TooLong = 5,
-    /// Let go: it does not report.
+    /// Released because it does not report.
     Silent = 6,
 }
 
+/// State of bring-up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C)]
 pub struct BringUpStatus {
+    /// Present step.
     pub step: BringUpStep,
-    /// Chosen motor, 0 to 5; counts in the third step only.
+    /// Selected motor, 0 to 5. It matters only in the third step.
     pub motor: u8,
+    /// State of the selected motor.
     pub trial: TrialState,
-    /// The radio picks step and motor; otherwise the tuning channel.
+    /// The radio selects step and motor; otherwise the tuning channel does.
     pub by_radio: bool,
 }

@@ -1,4 +1,4 @@
-//! One motor under the dead-man stick, inside hard limits.
+//! A trial of one motor under the dead-man stick, within the limits of bring-up.
 
 use core::f32::consts::TAU;
 
@@ -14,30 +14,30 @@ use crate::{
     math::scalar,
 };
 
-/// All that a trial looks at in one tick.
+/// Inputs of a trial in one tick.
 #[derive(Clone, Copy, Debug)]
 pub struct TrialInputs<'a> {
     pub dead_man: DeadMan,
-    /// Drive stick, −1 … 1.
+    /// Drive stick, −1…1.
     pub drive: f32,
     pub motor: &'a MotorFeedback,
     pub wheel_odom: &'a WheelOdomConfig,
 }
 
-/// The dead-man stick of a fresh frame; an old frame says neither.
+/// The dead-man stick of a fresh frame; unknown with an old one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DeadMan {
     Held,
-    LetGo,
+    Released,
     Unknown,
 }
 
 /// The motor's last report.
 #[derive(Clone, Copy, Debug)]
 struct Motion {
-    /// Of a joint; 0 for a wheel.
+    /// Angle of a joint; 0 for a wheel.
     pos_rad: f32,
-    /// At the shaft of joint or wheel.
+    /// Speed at the shaft of joint or wheel.
     vel_rps: f32,
     max_rps: f32,
     age_us: u32,
@@ -45,25 +45,25 @@ struct Motion {
 
 #[derive(Clone, Copy, Debug)]
 enum Phase {
-    /// Until the stick has been let go for a while; `why` is what stopped it.
+    /// The stick must be released for a while. `why` is what ended the torque.
     Locked {
         why: TrialState,
-        let_go_since_us: Option<u64>,
+        released_since_us: Option<u64>,
     },
     Ready,
     Active {
         since_us: u64,
-        /// Where a joint was when the stick was taken.
+        /// Angle of a joint when the stick was taken.
         pose_rad: f32,
     },
 }
 
 const LOCKED: Phase = Phase::Locked {
     why: TrialState::ReleaseFirst,
-    let_go_since_us: None,
+    released_since_us: None,
 };
 
-/// Starts locked: the stick must be seen let go while the robot is armed.
+/// Controls the trial. It starts locked: the stick must be seen released while the robot is armed.
 #[derive(Clone, Debug)]
 pub struct TrialRun {
     phase: Phase,
@@ -88,7 +88,7 @@ impl TrialRun {
         }
     }
 
-    /// All zero except, while the stick is held, for the motor on trial.
+    /// Returns the command: zero except for the selected motor while the stick is held.
     pub fn step(&mut self, trial: &Trial, inputs: &TrialInputs<'_>, now_us: u64) -> ChassisCommand {
         let motion = motion(trial.motor, inputs);
         self.phase = self.advance(inputs.dead_man, &motion, now_us);
@@ -102,21 +102,25 @@ impl TrialRun {
         match self.phase {
             Phase::Locked {
                 why,
-                let_go_since_us,
-            } => wait_for_release(why, let_go_since_us, dead_man, now_us),
-            Phase::Ready if dead_man == DeadMan::Held => match too_risky(motion, now_us, now_us) {
-                Some(why) => locked(why),
-                None => Phase::Active {
-                    since_us: now_us,
-                    pose_rad: motion.pos_rad,
-                },
-            },
+                released_since_us,
+            } => wait_for_release(why, released_since_us, dead_man, now_us),
+            Phase::Ready if dead_man == DeadMan::Held => {
+                match release_reason(motion, now_us, now_us) {
+                    Some(why) => locked(why),
+                    None => Phase::Active {
+                        since_us: now_us,
+                        pose_rad: motion.pos_rad,
+                    },
+                }
+            }
             Phase::Ready => Phase::Ready,
             Phase::Active { .. } if dead_man != DeadMan::Held => locked(TrialState::ReleaseFirst),
-            Phase::Active { since_us, pose_rad } => match too_risky(motion, since_us, now_us) {
-                Some(why) => locked(why),
-                None => Phase::Active { since_us, pose_rad },
-            },
+            Phase::Active { since_us, pose_rad } => {
+                match release_reason(motion, since_us, now_us) {
+                    Some(why) => locked(why),
+                    None => Phase::Active { since_us, pose_rad },
+                }
+            }
         }
     }
 }
@@ -124,31 +128,31 @@ impl TrialRun {
 const fn locked(why: TrialState) -> Phase {
     Phase::Locked {
         why,
-        let_go_since_us: None,
+        released_since_us: None,
     }
 }
 
 fn wait_for_release(
     why: TrialState,
-    let_go_since_us: Option<u64>,
+    released_since_us: Option<u64>,
     dead_man: DeadMan,
     now_us: u64,
 ) -> Phase {
-    if dead_man != DeadMan::LetGo {
+    if dead_man != DeadMan::Released {
         return locked(why);
     }
-    let since_us = let_go_since_us.unwrap_or(now_us);
+    let since_us = released_since_us.unwrap_or(now_us);
     if now_us.saturating_sub(since_us) >= limits::RELEASE_US {
         return Phase::Ready;
     }
     Phase::Locked {
         why,
-        let_go_since_us: Some(since_us),
+        released_since_us: Some(since_us),
     }
 }
 
-/// Why the motor must be let go, if it must. A speed that is no number counts as too fast.
-fn too_risky(motion: &Motion, since_us: u64, now_us: u64) -> Option<TrialState> {
+/// Returns why the motor must be released, if it must. A NaN speed counts as too fast.
+fn release_reason(motion: &Motion, since_us: u64, now_us: u64) -> Option<TrialState> {
     if motion.age_us > limits::FEEDBACK_AGE_US {
         Some(TrialState::Silent)
     } else if !(-motion.max_rps..=motion.max_rps).contains(&motion.vel_rps) {
@@ -160,7 +164,7 @@ fn too_risky(motion: &Motion, since_us: u64, now_us: u64) -> Option<TrialState> 
     }
 }
 
-/// A motor that does not exist is silent.
+/// Motion of the selected motor. A motor that does not exist is silent.
 fn motion(motor: TestMotor, inputs: &TrialInputs<'_>) -> Motion {
     let nothing = Motion {
         pos_rad: 0.0,
@@ -207,7 +211,7 @@ fn command(trial: &Trial, motion: &Motion, pose_rad: f32, drive: f32) -> Chassis
     command
 }
 
-/// Share of the hard limit, or `None` for a motor to be held.
+/// Fraction of the limit, or `None` for a motor to be held.
 fn torque_share(action: TrialAction, drive: f32) -> Option<f32> {
     match action {
         TrialAction::StickTorque => Some(drive.clamp(-1.0, 1.0)),
@@ -229,8 +233,8 @@ fn wheel_command(action: TrialAction, motion: &Motion, drive: f32) -> WheelComma
     WheelCommand { current_ma }
 }
 
-/// The motor itself computes stiffness and damping. Its target stays so near to the present angle that the two together
-/// cannot exceed the limit.
+/// Computes a joint's command. The motor itself computes stiffness and damping, so the target stays close enough to
+/// the present angle that both together cannot exceed the limit.
 fn joint_command(action: TrialAction, motion: &Motion, pose_rad: f32, drive: f32) -> JointCommand {
     let off = JointCommand {
         mode: JointMode::Mit,

@@ -30,10 +30,10 @@ pub struct ChassisControllerInput<'a> {
 
 /// What a controller returns.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-/// The actuator commands.
 pub struct ChassisControllerOutput {
-    /// Whether `cmd` is valid. If not, every actuator gets zero.
+    /// The actuator commands.
     pub cmd: ChassisCommand,
+    /// Whether `cmd` is valid. If not, every actuator gets zero.
     pub cmd_valid: bool,
 }
 

@@ -1,6 +1,6 @@
-//! `DiagnosticsSnapshot`: everything about the robot, for a debugger that shows live values.
+//! The report about the whole robot, for a debugger that shows live values.
 
-use super::{Strangers, TickStats};
+use super::{TickStats, UnknownFrames};
 use crate::{
     bring_up::BringUpStatus,
     domain::{
@@ -11,43 +11,64 @@ use crate::{
     safety::{ArmingStatus, MotorReadiness, SafetyStatus},
 };
 
-/// Plain data, so that a debugger or the emulator can read every field by its name.
+/// The state of the robot in one tick. It is plain data, so a debugger or the emulator can read every field by name.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct DiagnosticsSnapshot {
+    /// Time of the tick.
     pub ts_us: u64,
+    /// Sticks and channels.
     pub remote: RemoteState,
+    /// The pilot's switches.
     pub operator: OperatorState,
+    /// Quality of the radio link.
     pub remote_diag: RemoteDiagnostics,
+    /// Measurements of all sensors and motors.
     pub sensors: SensorsSnapshot,
+    /// Attitude and motion.
     pub estimate: StateEstimate,
+    /// The last decision of the logic stage.
     pub logic: LogicBus,
-    /// What left the board in this tick, after limits and safety.
+    /// The commands sent in this tick, after limits and safety.
     pub command: ChassisCommand,
+    /// State of arming.
     pub arming: ArmingStatus,
+    /// Flags and stops of the safety policy.
     pub safety: SafetyStatus,
+    /// Timing of the tick.
     pub tick: TickStats,
+    /// State of bring-up.
     pub bring_up: BringUpStatus,
+    /// Tasks that missed their deadline.
     pub late_tasks: LateTasks,
+    /// State of the tuning channel.
     pub tuning: TuningStatus,
-    /// Index = `BusId`.
+    /// State of each bus. Index = `BusId`.
     pub can: [BusHealth; 2],
+    /// Health of the IMU.
     pub imu_health: SensorHealth,
+    /// Health of the magnetometer.
     pub mag_health: SensorHealth,
+    /// Counters of the radio's UART.
     pub radio_line: RadioLineHealth,
-    /// Heater, start-up calibration, rejected samples.
+    /// Heater, start-up calibration and rejected samples.
     pub imu_status: ImuStatus,
+    /// State of the parameter store.
     pub params: ParamStatus,
+    /// Battery voltage, 0 while not measured.
     pub battery_v: f32,
-    /// Of the run before this one.
+    /// How the previous run ended.
     pub last_words: CrashCause,
+    /// Why the chip started.
     pub reset_cause: ResetCause,
+    /// The start-up gyro calibration has finished.
     pub imu_calibrated: bool,
+    /// State of the debug interface.
     pub debug_probe: DebugProbe,
-    /// Which motors keep the robot from being armed.
+    /// Motors that block arming.
     pub motors: MotorReadiness,
-    /// Frames on the buses that nobody here knows.
-    pub strangers: Strangers,
-    /// See `RemoteUpdate`.
+    /// Frames with unknown identifiers.
+    pub strangers: UnknownFrames,
+    /// Raw channels: see `RemoteUpdate`.
     pub remote_raw: [u16; 16],
 }

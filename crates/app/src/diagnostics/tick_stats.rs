@@ -1,40 +1,44 @@
-//! How regularly the control tick runs.
+//! Timing statistics of the control tick.
 
 use crate::domain::age_us;
 
 /// The tick's nominal period.
 const PERIOD_US: u32 = 1_000;
 
-/// Times as the control task sees them.
+/// Timing as measured by the control task.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(C)]
 pub struct TickStats {
-    /// Ticks since boot; wraps.
+    /// Number of ticks since boot; it wraps.
     pub count: u32,
-    /// Since the tick before.
+    /// Time since the previous tick.
     pub dt_us: u32,
-    /// Distance of `dt_us` from the period.
+    /// Deviation of `dt_us` from the period.
     pub jitter_us: u32,
+    /// Largest `jitter_us` since boot.
     pub max_jitter_us: u32,
-    /// The same by the core's cycle counter (DWT), 168 a microsecond, and of the task's entry; 0 if that does not run.
+    /// Largest jitter of the task's entry by the core's cycle counter (DWT), 168 counts per µs; 0 if the counter does
+    /// not run.
     pub max_jitter_cycles: u32,
-    /// Whole periods in which no tick ran.
+    /// Number of periods in which no tick ran.
     pub missed: u32,
-    /// Times the whole chip stood still for a flash erase.
+    /// Number of times the whole chip stood still for a flash erase.
     pub stalls: u32,
+    /// Duration of the longest stall.
     pub longest_stall_us: u32,
+    /// Time of the last tick.
     pub ts_us: u64,
 }
 
 impl TickStats {
-    /// The chip stood still since the last tick: the next one is the first of a new series, neither late nor missed.
+    /// Records a stall of the chip. The next tick starts a new series and counts as neither late nor missed.
     pub fn stalled(&mut self, stall_us: u32) {
         self.stalls = self.stalls.saturating_add(1);
         self.longest_stall_us = self.longest_stall_us.max(stall_us);
         self.ts_us = 0;
     }
 
-    /// Time that runs backwards counts as standing still.
+    /// Records a tick. A time that runs backwards counts as no progress.
     pub fn tick(&mut self, now_us: u64) {
         if self.ts_us > 0 {
             self.dt_us = age_us(self.ts_us, now_us);
@@ -64,7 +68,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stall_is_neither_missed_nor_jitter() {
+    fn a_stall_counts_neither_as_missed_nor_as_jitter() {
         let mut stats = TickStats::default();
         stats.tick(1_000);
         stats.stalled(250_700);

@@ -9,10 +9,10 @@ use super::{CrashCause, ImuStatus, LateTasks};
 pub enum BusErrorState {
     /// Error active.
     #[default]
-    /// Error passive.
     Active = 0,
-    /// Bus-off.
+    /// Error passive.
     Passive = 1,
+    /// Bus-off.
     BusOff = 2,
 }
 
@@ -121,20 +121,20 @@ pub struct DebugProbe {
 pub enum ResetCause {
     /// No known flag was set.
     #[default]
-    /// Power-on.
     Unknown = 0,
-    /// Reset pin.
+    /// Power-on.
     PowerOn = 1,
-    /// Supply voltage too low.
+    /// Reset pin.
     Pin = 2,
-    /// Reset by software.
+    /// Supply voltage too low.
     BrownOut = 3,
-    /// Independent watchdog.
+    /// Reset by software.
     Software = 4,
-    /// Window watchdog.
+    /// Independent watchdog.
     IndependentWatchdog = 5,
-    /// Low-power reset.
+    /// Window watchdog.
     WindowWatchdog = 6,
+    /// Low-power reset.
     LowPower = 7,
 }
 

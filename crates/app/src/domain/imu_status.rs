@@ -33,8 +33,8 @@ pub struct HeaterStatus {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
 pub enum CalibrationState {
-    #[default]
     /// The temperature has not settled.
+    #[default]
     WaitingForTemperature = 0,
     /// The robot moves, or has only just stopped.
     WaitingForStillness = 1,
@@ -52,8 +52,8 @@ pub enum CalibrationState {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
 pub enum Warmth {
-    #[default]
     /// The temperature is changing.
+    #[default]
     Unsettled = 0,
     /// Within 3 K of the heater's target.
     AtTarget = 1,

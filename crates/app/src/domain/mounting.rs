@@ -18,7 +18,7 @@ macro_rules! orientations {
         #[repr(u32)]
         pub enum Orientation {
             #[default]
-            $($variant = $number),*
+            $(#[doc = $name] $variant = $number),*
         }
 
         impl Orientation {

@@ -17,8 +17,8 @@ const SETTINGS_LAG_US: u64 = 5_000;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
 pub enum ArmingState {
-    #[default]
     /// No torque leaves the board.
+    #[default]
     Disarmed = 0,
     /// Torque may leave the board as far as the safety policy allows.
     Armed = 1,
@@ -173,7 +173,7 @@ pub struct ArmingInputs<'a> {
     /// Bring-up is in its read-only step.
     pub read_only: bool,
     /// Bring-up is in a step that tests motors.
-    pub tries_motors: bool,
+    pub tests_motors: bool,
     /// See `FlashPermit`, which grants nothing to an armed robot.
     pub flash_busy: bool,
     /// State of the parameter store.
@@ -361,7 +361,7 @@ fn arming_only_blockers(inputs: &ArmingInputs<'_>) -> ArmingBlockers {
     );
     blockers.add_if(
         ArmingBlockers::JOINT_OUT_OF_LIMITS,
-        motor.joints_outside != 0 && !inputs.tries_motors,
+        motor.joints_outside != 0 && !inputs.tests_motors,
     );
     blockers.add_if(ArmingBlockers::FLASH_BUSY, inputs.flash_busy);
     blockers.add_if(ArmingBlockers::SETTINGS_REFUSED, inputs.params.refused != 0);

@@ -45,7 +45,7 @@ pub struct FlashPermitInputs<'a> {
     /// The pilot's enable switch is on.
     pub enabled: bool,
     /// Bring-up is in a step that tests motors.
-    pub tries_motors: bool,
+    pub tests_motors: bool,
     /// Feedback of all motors.
     pub motor: &'a MotorFeedback,
     /// The bus of each motor.
@@ -114,7 +114,7 @@ impl FlashPermit {
 
     fn is_allowed(&mut self, inputs: &FlashPermitInputs<'_>, now_us: u64) -> bool {
         let disarmed = inputs.arming == ArmingState::Disarmed;
-        if !disarmed || inputs.enabled || inputs.tries_motors {
+        if !disarmed || inputs.enabled || inputs.tests_motors {
             self.rest = None;
             return false;
         }

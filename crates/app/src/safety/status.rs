@@ -12,8 +12,8 @@ pub enum SafetyVerdict {
     Run = 0,
     /// Only the wheels, the joints, or the actuators of one bus are stopped; see `SafetyStatus`.
     PartialStop = 1,
-    #[default]
     /// Every actuator is stopped.
+    #[default]
     GlobalStop = 2,
 }
 

@@ -1,7 +1,7 @@
-//! All stages in the order in which data flows.
+//! The control loop runs all stages in the order in which data flows.
 
 mod act;
-mod judge;
+mod permit;
 mod record;
 mod tune;
 
@@ -22,14 +22,14 @@ use crate::{
     tuning::TuningChannel,
 };
 
-/// Ticks between two looks at what changes slowly or interests only who watches: that part of the diagnostics is
-/// renewed in the ticks whose count is a multiple of this.
+/// Period of the slow part of diagnostics, in ticks: what changes slowly or only matters to an observer is updated
+/// when the tick count is a multiple of it.
 pub const DIAGNOSTICS_PERIOD_TICKS: u32 = 10;
 
-/// In which of them sticks and motors are looked at: not the one in which diagnostics are renewed.
-const LOOK_PHASE: u32 = 5;
+/// The tick of this period in which sticks and motors are checked. It differs from the one that updates diagnostics.
+const ARMING_CONDITIONS_PHASE: u32 = 5;
 
-/// A magnetometer that sits nobody knows how shows nothing.
+/// A magnetometer with an unknown mounting is not used.
 fn heading_source(mounting: &MountingConfig) -> HeadingSource {
     match mounting.mag {
         Some(_) => HeadingSource::Magnetometer,
@@ -37,7 +37,34 @@ fn heading_source(mounting: &MountingConfig) -> HeadingSource {
     }
 }
 
-/// State of all stages of the tick. Same calls, same results, bit for bit.
+/// State of all stages of the tick. The same calls give the same results, bit for bit.
+///
+/// ```
+/// use robot_app::control::UserController;
+/// use robot_app::diagnostics::DiagnosticsSnapshot;
+/// use robot_app::domain::*;
+/// use robot_app::motor::layout::ROBOT_LAYOUT;
+/// use robot_app::safety::{ArmingState, WatchdogPeriod};
+/// use robot_app::tick::{ControlInputs, ControlLoop};
+///
+/// let mut control = ControlLoop::new(ROBOT_LAYOUT.default_config(), UserController::default());
+/// let mut diagnostics = DiagnosticsSnapshot::default();
+/// let inputs = ControlInputs {
+///     remote: &RemoteUpdate::default(),
+///     imu: &ImuState::default(),
+///     mag: &MagState::default(),
+///     logic: &LogicBus::default(),
+///     health: &SystemHealth::default(),
+///     params: &ParamStatus::default(),
+///     flash_request: FlashRequest::None,
+///     watchdog: WatchdogPeriod::Short,
+/// };
+/// let outputs = control.tick(&inputs, 1_000, &mut diagnostics);
+/// // Without radio and sensors nothing arms, and the wheels get zero current.
+/// assert_eq!(outputs.diagnostics.arming.state, ArmingState::Disarmed);
+/// let (bus, frame) = outputs.frames[0];
+/// assert_eq!((bus, frame.id().raw(), frame.payload()), (BusId::Can1, 0x200, &[0; 8][..]));
+/// ```
 #[derive(Clone, Debug)]
 pub struct ControlLoop<C: ChassisController = UserController> {
     config: RobotConfig,
@@ -47,14 +74,14 @@ pub struct ControlLoop<C: ChassisController = UserController> {
     timeout_by_hand: bool,
     estimator: InsEstimator,
     policy: SafetyPolicy,
-    /// Of the period in which diagnostics are renewed.
+    /// Tick within the period of slow diagnostics.
     phase: u32,
     centred_sticks: CentredSticks,
     attitude_settling: AttitudeSettling,
     arming: Arming,
     flash: FlashPermit,
     tuning: TuningChannel,
-    /// Of the tuning channel, for its next slot: one a bus.
+    /// Replies of the tuning channel for its next slot, one for each bus.
     replies: Vec<(BusId, CanFrame), 2>,
     bring_up: BringUp,
     state: TickState,
@@ -62,11 +89,12 @@ pub struct ControlLoop<C: ChassisController = UserController> {
 }
 
 impl<C: ChassisController> ControlLoop<C> {
-    /// For the robot with DM4310 joints.
+    /// A loop for the robot with DM4310 joints.
     pub fn new(config: RobotConfig, controller: C) -> Self {
         Self::with_layout(&ROBOT_LAYOUT, config, controller)
     }
 
+    /// A loop for the robot with this motor layout.
     pub fn with_layout(layout: &'static MotorLayout, config: RobotConfig, controller: C) -> Self {
         let mut estimator = InsEstimator::new(config.wheel_odom);
         estimator.set_heading_source(heading_source(&config.mounting));
@@ -90,8 +118,8 @@ impl<C: ChassisController> ControlLoop<C> {
         }
     }
 
-    /// Every frame received since the last tick, in order of arrival. `diagnostics` is the report of the last tick, for
-    /// who asks for it over CAN.
+    /// Takes a frame received since the last tick, in order of arrival. `diagnostics` is the report of the last tick,
+    /// for requests over CAN.
     pub fn on_can_frame(
         &mut self,
         bus: BusId,
@@ -104,8 +132,8 @@ impl<C: ChassisController> ControlLoop<C> {
         }
     }
 
-    /// Before the first tick after the whole chip stood still for `stall_us` (a flash erase): nobody else is to blame
-    /// for what did not happen meanwhile.
+    /// Tells the stages that the whole chip stood still for `stall_us` (a flash erase), before the next tick. What
+    /// did not happen meanwhile is no fault.
     #[cold]
     #[inline(never)]
     pub fn after_stall(&mut self, stall_us: u32, now_us: u64) {
@@ -114,8 +142,8 @@ impl<C: ChassisController> ControlLoop<C> {
         self.centred_sticks.after_stall(now_us);
     }
 
-    /// One tick; `now_us` is when it began. Writes its report into `diagnostics`, always the same one, and reads nothing
-    /// in it.
+    /// Runs one tick, which began at `now_us`. It writes its report into `diagnostics`, always the same snapshot, and
+    /// reads nothing from it.
     pub fn tick<'a>(
         &'a mut self,
         inputs: &ControlInputs<'_>,
@@ -126,12 +154,12 @@ impl<C: ChassisController> ControlLoop<C> {
         stats.tick(now_us);
         self.phase = stats.count % DIAGNOSTICS_PERIOD_TICKS;
         self.sense(inputs, now_us);
-        let trial = self.try_out(inputs, now_us);
-        self.guard_flash(inputs, now_us);
-        if self.phase == LOOK_PHASE {
-            self.look_at_what_must_rest(inputs, now_us);
+        let trial = self.step_bring_up(inputs, now_us);
+        self.update_flash_permit(inputs, now_us);
+        if self.phase == ARMING_CONDITIONS_PHASE {
+            self.update_arming_conditions(inputs, now_us);
         }
-        let permit = self.judge(inputs, now_us);
+        let permit = self.decide_permit(inputs, now_us);
         self.act(inputs, permit.as_ref(), trial.as_ref(), now_us);
         self.reply();
         self.record(inputs, now_us, diagnostics);
@@ -166,8 +194,8 @@ impl<C: ChassisController> ControlLoop<C> {
             .step(imu, mag, &sensors.motor, now_us, estimate);
     }
 
-    /// The command of bring-up, which replaces any other.
-    fn try_out(&mut self, inputs: &ControlInputs<'_>, now_us: u64) -> Option<ChassisCommand> {
+    /// Returns the command of bring-up, which replaces any other.
+    fn step_bring_up(&mut self, inputs: &ControlInputs<'_>, now_us: u64) -> Option<ChassisCommand> {
         let state = &mut self.state;
         let link = &inputs.remote.diagnostics;
         let known = &state.link;
@@ -175,7 +203,7 @@ impl<C: ChassisController> ControlLoop<C> {
         if news || self.phase == 0 {
             state.link = link.at(now_us);
         } else {
-            // The rate falls slowly; the age stops the robot.
+            // The rate falls slowly, and the age stops the robot.
             state.link.age_us = age_us(link.good_ts_us, now_us);
         }
         self.bring_up.step(

@@ -1,4 +1,4 @@
-//! What a tick gives.
+//! The outputs of a tick.
 
 use crate::{
     diagnostics::DiagnosticsSnapshot,
@@ -6,14 +6,17 @@ use crate::{
     safety::FlashGrant,
 };
 
-/// What one tick produced.
+/// The outputs of one tick.
 #[derive(Clone, Copy, Debug)]
 pub struct ControlOutputs<'a> {
-    /// To be sent now, or never: the next tick brings newer ones.
+    /// Frames to send now. A frame that cannot be sent is dropped, as the next tick brings newer ones.
     pub frames: &'a [(BusId, CanFrame)],
+    /// Attitude and motion.
     pub estimate: &'a StateEstimate,
+    /// The report.
     pub diagnostics: &'a DiagnosticsSnapshot,
-    /// As `diagnostics.tuning.revision` counts it.
+    /// The settings in use, with revision `diagnostics.tuning.revision`.
     pub config: &'a RobotConfig,
+    /// What the parameter task may do to flash.
     pub flash: FlashGrant,
 }

@@ -1,4 +1,5 @@
-//! The loop as the firmware runs it. It is compiled here, for speed; the crate of the firmware is compiled for size.
+//! The loop as the firmware runs it. It is compiled in this crate for speed, as the firmware's crate is compiled for
+//! size.
 
 use super::{ControlInputs, ControlLoop, ControlOutputs};
 use crate::{
@@ -8,7 +9,7 @@ use crate::{
     motor::layout::MotorLayout,
 };
 
-/// The loop with the place where its report goes, which a debugger knows.
+/// The control loop together with its report, whose address a debugger knows.
 #[derive(Debug)]
 pub struct RobotLoop {
     control_loop: ControlLoop,
@@ -16,6 +17,7 @@ pub struct RobotLoop {
 }
 
 impl RobotLoop {
+    /// A loop for the robot with this motor layout, writing its report into `diagnostics`.
     pub fn new(
         layout: &'static MotorLayout,
         config: RobotConfig,
@@ -27,19 +29,19 @@ impl RobotLoop {
         }
     }
 
-    /// [`ControlLoop::on_can_frame`].
+    /// See [`ControlLoop::on_can_frame`].
     #[inline(never)]
     pub fn on_can_frame(&mut self, bus: BusId, frame: &CanFrame, now_us: u64) {
         self.control_loop
             .on_can_frame(bus, frame, now_us, self.diagnostics);
     }
 
-    /// [`ControlLoop::after_stall`].
+    /// See [`ControlLoop::after_stall`].
     pub fn after_stall(&mut self, stall_us: u32, now_us: u64) {
         self.control_loop.after_stall(stall_us, now_us);
     }
 
-    /// [`ControlLoop::tick`].
+    /// See [`ControlLoop::tick`].
     #[inline(never)]
     pub fn tick(&mut self, inputs: &ControlInputs<'_>, now_us: u64) -> ControlOutputs<'_> {
         self.control_loop.tick(inputs, now_us, self.diagnostics)

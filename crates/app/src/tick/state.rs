@@ -1,27 +1,28 @@
-//! What the stages of the tick leave for each other.
+//! The state that the stages of the tick share.
 
 use crate::{
-    diagnostics::{Strangers, TickStats},
+    diagnostics::{TickStats, UnknownFrames},
     domain::{OperatorState, RemoteDiagnostics, SensorsSnapshot, StateEstimate},
     safety::{ArmingStatus, MotorReadiness, SafetyStatus},
 };
 
-/// The results of the stages, each written by one of them and read by those after it, in this tick or the next.
+/// The results of the stages. Each field is written by one stage and read by those after it, in this tick or the
+/// next.
 #[derive(Clone, Debug, Default)]
 pub struct TickState {
     pub stats: TickStats,
     pub sensors: SensorsSnapshot,
     pub estimate: StateEstimate,
     pub operator: OperatorState,
-    /// The radio link, its age as of this tick.
+    /// The radio link, with its age as of this tick.
     pub link: RemoteDiagnostics,
-    /// The sticks have been centred long enough to arm.
+    /// The sticks have been centred for long enough.
     pub sticks_centred: bool,
-    /// The attitude has been undisturbed long enough to arm.
+    /// The attitude has been undisturbed for long enough.
     pub attitude_settled: bool,
-    /// Renewed while the robot is disarmed.
+    /// Updated while the robot is disarmed.
     pub motors: MotorReadiness,
     pub safety: SafetyStatus,
     pub arming: ArmingStatus,
-    pub strangers: Strangers,
+    pub strangers: UnknownFrames,
 }

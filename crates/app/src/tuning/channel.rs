@@ -1,4 +1,4 @@
-//! Requests in, at most one reply a slot and bus out.
+//! Executes requests. In each slot there is at most one reply on a bus.
 
 use super::{
     LiveSource, PARAMETERS, ParameterGroup, Recorder, Refusal, TuningGate, bit, consistency, live,
@@ -18,25 +18,31 @@ pub type StationaryAngle<'a> = &'a dyn Fn(usize) -> Option<Result<f32, NotStatio
 
 /// What requests read and change.
 pub struct TuningAccess<'a> {
+    /// The settings.
     pub config: &'a mut RobotConfig,
+    /// Bring-up.
     pub bring_up: &'a mut BringUp,
+    /// The newest measurements.
     pub sensors: &'a SensorsSnapshot,
     /// The report that live pages show.
     pub diagnostics: &'a DiagnosticsSnapshot,
+    /// Source of stationary joint angles.
     pub stationary_angle_rad: StationaryAngle<'a>,
 }
 
+/// Executes tuning requests.
 #[derive(Clone, Debug)]
 pub struct TuningChannel {
-    /// Says what the defaults are.
+    /// Provides the defaults.
     layout: &'static MotorLayout,
-    /// Index = `BusId`: a reply was made in this slot.
+    /// A reply has been made in this slot. Index = `BusId`.
     replied: [bool; 2],
     status: TuningStatus,
     recorder: Recorder,
 }
 
 impl TuningChannel {
+    /// A channel for the robot with this layout.
     pub fn new(layout: &'static MotorLayout) -> Self {
         Self {
             layout,
@@ -46,13 +52,14 @@ impl TuningChannel {
         }
     }
 
-    /// Every `motor::layout::REPLY_PERIOD_TICKS`, after the replies of the slot before went out.
+    /// Begins a slot. Called every `motor::layout::REPLY_PERIOD_TICKS`, after the replies of the previous slot have
+    /// been sent.
     pub fn begin_slot(&mut self) {
         self.replied = [false; 2];
     }
 
-    /// Takes any received frame and gives the reply, for the same bus. A client that waits for each reply always gets
-    /// one; of more requests in one slot all but the first are left undone, so that replies never fill a bus.
+    /// Takes any received frame and returns the reply for the same bus. A client that waits for each reply always
+    /// gets one. If several requests arrive in one slot, only the first is executed, so replies never overload a bus.
     pub fn on_frame(
         &mut self,
         bus: BusId,
@@ -124,18 +131,20 @@ impl TuningChannel {
                 Ok(protocol::echo(frame))
             }
         });
-        Some(self.conclude(frame, done))
+        Some(self.finish(frame, done))
     }
 
+    /// The recorder of sensor samples.
     pub fn recorder(&mut self) -> &mut Recorder {
         &mut self.recorder
     }
 
+    /// Counters for diagnostics.
     pub fn status(&self) -> &TuningStatus {
         &self.status
     }
 
-    /// All of a change or, if any of it is refused, nothing.
+    /// Applies a change as a whole. If any part of it is refused, nothing changes.
     #[inline(never)]
     fn change(
         &mut self,
@@ -147,7 +156,7 @@ impl TuningChannel {
         self.adopt(config, &candidate, 0)
     }
 
-    /// Joint angle = direction · (motor angle − zero): moves the zero.
+    /// Moves the zero of a joint, by joint angle = direction · (motor angle − zero).
     #[inline(never)]
     fn zero_joint(
         &mut self,
@@ -191,7 +200,7 @@ impl TuningChannel {
         restored: u32,
     ) -> Result<(), Refusal> {
         consistency::check(candidate)?;
-        consistency::check_turn(config, candidate)?;
+        consistency::check_reorientation(config, candidate)?;
         let is_same = |group: &ParameterGroup| group.is_same(config, candidate);
         let restored = self.status.restored | restored;
         if restored != self.status.restored || !PARAMETERS.iter().all(is_same) {
@@ -202,7 +211,7 @@ impl TuningChannel {
         Ok(())
     }
 
-    fn conclude(&mut self, request: &CanFrame, done: Result<CanFrame, Refusal>) -> CanFrame {
+    fn finish(&mut self, request: &CanFrame, done: Result<CanFrame, Refusal>) -> CanFrame {
         let status = &mut self.status;
         match done {
             Ok(reply) => {

@@ -1,4 +1,4 @@
-//! Settings that must fit each other.
+//! Checks that settings fit each other.
 
 use super::Refusal;
 use crate::domain::{
@@ -6,16 +6,16 @@ use crate::domain::{
     RemoteChannel, RemoteMapping, RobotConfig, SafetyConfig,
 };
 
-/// Least distance of a joint's two soft limits.
+/// Smallest distance between a joint's two soft limits.
 const LEAST_TRAVEL_RAD: f32 = 0.01;
-/// Least distance of a channel's centre from its ends, in counts: less would make a stick jump.
+/// Smallest distance between a channel's centre and its ends, in counts. With less, a stick would jump.
 const LEAST_SPAN: u32 = 200;
 
 #[inline(never)]
 pub fn check(config: &RobotConfig) -> Result<(), Refusal> {
     let fits = config.joints.iter().all(joint_can_move)
         && battery_limits_in_order(&config.safety)
-        && keeps_directions(&config.mag)
+        && preserves_directions(&config.mag)
         && config.radio.all().into_iter().all(ends_in_order)
         && each_channel_once(&config.radio);
     if fits {
@@ -25,22 +25,22 @@ pub fn check(config: &RobotConfig) -> Result<(), Refusal> {
     }
 }
 
-/// Calibrations are in the robot's axes. One that was found with other axes would shift and stretch the wrong ones, so it
-/// must be gone before its sensor is turned.
-pub fn check_turn(now: &RobotConfig, wanted: &RobotConfig) -> Result<(), Refusal> {
+/// Checks a change of mounting. Calibrations are in the robot's axes. One measured with other axes would correct the
+/// wrong ones, so it must be cleared before its sensor is reoriented.
+pub fn check_reorientation(now: &RobotConfig, wanted: &RobotConfig) -> Result<(), Refusal> {
     let (old, new) = (&now.mounting, &wanted.mounting);
-    let turns_imu = old.board != new.board;
-    let turns_mag = turns_imu || mag_axes(old) != mag_axes(new);
-    let spoils_imu = turns_imu && wanted.imu != ImuCalibration::default();
-    let spoils_mag = turns_mag && wanted.mag != MagCalibration::default();
-    if spoils_imu || spoils_mag {
+    let reorients_imu = old.board != new.board;
+    let reorients_mag = reorients_imu || mag_axes(old) != mag_axes(new);
+    let invalidates_imu = reorients_imu && wanted.imu != ImuCalibration::default();
+    let invalidates_mag = reorients_mag && wanted.mag != MagCalibration::default();
+    if invalidates_imu || invalidates_mag {
         Err(Refusal::Calibrated)
     } else {
         Ok(())
     }
 }
 
-/// As long as nobody knows, the magnetometer is shown in these.
+/// While the mounting is unknown, the magnetometer is shown in these axes.
 fn mag_axes(mounting: &MountingConfig) -> Orientation {
     mounting.mag.unwrap_or_default()
 }
@@ -64,13 +64,14 @@ fn each_channel_once(radio: &RemoteMapping) -> bool {
     })
 }
 
-/// Low 0 switches both off, whatever the other is.
+/// A low limit of 0 disables both, whatever the other value is.
 fn battery_limits_in_order(safety: &SafetyConfig) -> bool {
     safety.battery_low_v == 0.0 || safety.battery_empty_v <= safety.battery_low_v
 }
 
-/// Positive definite, by its leading minors: no direction of the field vanishes or turns round.
-fn keeps_directions(mag: &MagCalibration) -> bool {
+/// Whether the soft-iron matrix is positive definite, by its leading minors, so that no direction of the field
+/// vanishes or is reversed.
+fn preserves_directions(mag: &MagCalibration) -> bool {
     let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = mag.soft_iron;
     let minor = xx * yy - xy * xy;
     let determinant =
@@ -89,12 +90,12 @@ mod tests {
     }
 
     #[test]
-    fn the_default_fits() {
+    fn the_defaults_are_consistent() {
         assert_eq!(check(&RobotConfig::default()), Ok(()));
     }
 
     #[test]
-    fn a_joint_needs_room_to_move() {
+    fn a_joint_needs_travel_between_its_limits() {
         assert!(refused(
             |config| config.joints[3].max_rad = config.joints[3].min_rad
         ));
@@ -102,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stick_has_room_on_both_sides_of_its_centre() {
+    fn a_channel_needs_travel_on_both_sides_of_its_centre() {
         assert!(!refused(|config| config.radio.drive.low = 792));
         assert!(refused(|config| config.radio.drive.low = 793));
         assert!(!refused(|config| config.radio.e_stop.high = 1192));
@@ -122,13 +123,13 @@ mod tests {
     }
 
     #[test]
-    fn an_empty_battery_is_emptier_than_a_low_one() {
+    fn the_empty_limit_must_not_exceed_the_low_limit() {
         assert!(refused(|config| config.safety.battery_empty_v = 21.5));
         assert!(refused(|config| config.safety.battery_low_v = 18.9));
         assert!(!refused(|config| config.safety.battery_low_v = 0.0));
     }
 
-    /// `change` from a robot that was calibrated by `calibrate`.
+    /// Applies `change` to a robot that was calibrated by `calibrate`.
     fn turned(
         calibrate: impl Fn(&mut RobotConfig),
         change: impl FnOnce(&mut RobotConfig),
@@ -137,11 +138,11 @@ mod tests {
         calibrate(&mut now);
         let mut wanted = now;
         change(&mut wanted);
-        check_turn(&now, &wanted)
+        check_reorientation(&now, &wanted)
     }
 
     #[test]
-    fn no_sensor_is_turned_under_its_calibration() {
+    fn a_calibrated_sensor_is_not_reoriented() {
         let nothing = |_: &mut RobotConfig| ();
         let imu = |config: &mut RobotConfig| config.imu.accel_bias_mps2[1] = 0.1;
         let mag = |config: &mut RobotConfig| config.mag.bias_ut[2] = 30.0;
@@ -155,18 +156,18 @@ mod tests {
         assert_eq!(turned(imu, mag_turned), Ok(()));
         assert_eq!(turned(mag, board), refused);
         assert_eq!(turned(mag, mag_turned), refused);
-        // What was shown as if it sat so, sits so.
+        // The magnetometer was shown as if mounted like this, so its calibration stays valid.
         let as_shown =
             |config: &mut RobotConfig| config.mounting.mag = Some(Orientation::XForwardZUp);
         assert_eq!(turned(mag, as_shown), Ok(()));
-        // A new calibration may come, and an old one may go with the turn.
+        // A new calibration may be set, and an old one may be cleared together with the change.
         assert_eq!(turned(imu, mag), Ok(()));
         let all = |config: &mut RobotConfig| *config = RobotConfig::default();
         assert_eq!(turned(|config| (imu(config), board(config)).1, all), Ok(()));
     }
 
     #[test]
-    fn a_soft_iron_matrix_that_mirrors_is_refused() {
+    fn a_mirroring_soft_iron_matrix_is_refused() {
         let set_xy = |config: &mut RobotConfig, value| {
             config.mag.soft_iron[0][1] = value;
             config.mag.soft_iron[1][0] = value;
@@ -176,11 +177,12 @@ mod tests {
         assert!(refused(|config| {
             config.mag.soft_iron = [[1.0, 0.8, 0.8], [0.8, 1.0, -0.8], [0.8, -0.8, 1.0]];
         }));
-        // Mirroring: the determinant is 0.05 − 0.125; its leading parts are fine, and so is each pair of axes with y.
+        // This matrix mirrors: the determinant is 0.05 − 0.125, although its leading parts and each pair of axes with
+        // y are fine.
         assert!(refused(|config| {
             config.mag.soft_iron = [[1.0, 0.0, 0.5], [0.0, 0.5, 0.0], [0.5, 0.0, 0.1]];
         }));
-        // By hand 0.5 · 0.1 − 0.2² = 0.01, and the same about each axis: the least that stretches still stands.
+        // 0.5 · 0.1 − 0.2² = 0.01 about each axis, the smallest stretch that is still allowed.
         for [x, y, z] in [[0, 1, 2], [1, 2, 0], [2, 0, 1]] {
             let of_pair = |shear: f32| {
                 let mut matrix = [[0.0; 3]; 3];
@@ -196,7 +198,7 @@ mod tests {
             assert!(refused(|config| config.mag.soft_iron = of_pair(0.24)));
             assert!(refused(|config| config.mag.soft_iron = of_pair(-0.24)));
         }
-        // By hand: 1 · (1 − 0.25) − 0.5 · (0.5 − 0.25 s) + 0.5 s · (0.25 − 0.5 s), with s = 1 or −1: 0.5 and 0.
+        // 1 · (1 − 0.25) − 0.5 · (0.5 − 0.25 s) + 0.5 s · (0.25 − 0.5 s) is 0.5 for s = 1 and 0 for s = −1.
         let all = |sign: f32| {
             [
                 [1.0, 0.5, 0.5 * sign],
@@ -206,7 +208,7 @@ mod tests {
         };
         assert!(!refused(|config| config.mag.soft_iron = all(1.0)));
         assert!(refused(|config| config.mag.soft_iron = all(-1.0)));
-        // Two axes mirrored: the determinant, 0.25, does not show it.
+        // Two axes are mirrored, which the determinant of 0.25 does not show.
         assert!(refused(|config| {
             config.mag.soft_iron = [[0.5, 1.0, 1.0], [1.0, 0.5, 1.0], [1.0, 1.0, 1.0]];
         }));

@@ -1,16 +1,18 @@
-//! When the tuning channel may change anything.
+//! Decides whether the tuning channel may change anything.
 
 use crate::{domain::OperatorState, safety::ArmingState};
 
-/// Whether requests that change something are carried out (docs/safety.md#the-rules, 6).
+/// Whether writes are executed (docs/safety.md#the-rules, 6).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TuningGate {
+    /// Writes are executed.
     Open,
-    /// Armed, or the pilot is about to.
+    /// The robot is armed, or the enable switch is on. Writes are refused.
     Shut,
 }
 
 impl TuningGate {
+    /// The gate's state for the present state of arming and switches.
     pub fn of(arming: ArmingState, operator: &OperatorState) -> Self {
         if arming == ArmingState::Disarmed && !operator.enabled {
             Self::Open

@@ -1,7 +1,7 @@
-//! Live values over the tuning channel: pages of six bytes that anyone may read at any time, armed too.
+//! Live values: pages of six bytes that can be read at any time, even while armed.
 //!
-//! [`LIVE_PAGES`] lists them. A page is its fields packed one after the other from the lowest bit up, so what fills whole
-//! bytes is little-endian; bits of no field are 0. The same table packs on the robot and unpacks on the PC.
+//! [`LIVE_PAGES`] lists them. The fields of a page are packed one after the other from the lowest bit up, so fields
+//! of whole bytes are little-endian. Unused bits are 0. The same table packs on the robot and unpacks on the PC.
 
 mod packing;
 mod pages;
@@ -11,76 +11,88 @@ pub use pages::{JOINTS, LIVE_PAGES, WHEELS};
 use super::Refusal;
 use crate::{diagnostics::DiagnosticsSnapshot, motor::layout::MotorLayout};
 
-/// Bytes of a page.
+/// Size of a page in bytes.
 pub const PAGE_BYTES: usize = 6;
 
-/// What pages show.
+/// The data that pages show.
 #[derive(Clone, Copy, Debug)]
 pub struct LiveSource<'a> {
+    /// The report of the last tick.
     pub diagnostics: &'a DiagnosticsSnapshot,
+    /// The motors of the robot.
     pub layout: &'static MotorLayout,
 }
 
 /// A page, or one for each of several equal parts of the robot.
 #[derive(Debug)]
 pub struct LivePage {
-    /// Number of the first part's page; the others follow. Never changes.
+    /// Number of the first part's page; the others follow. It never changes.
     pub first: u8,
+    /// Name of the page.
     pub name: &'static str,
-    /// Names of the parts; one without a name if the page is about the whole robot.
+    /// Names of the parts; a single empty name if the page is about the whole robot.
     pub parts: &'static [&'static str],
-    /// From the lowest bit up. Never changed once released; new ones take bits that were free.
+    /// The fields from the lowest bit up. Released fields never change; new ones use free bits.
     pub fields: &'static [LiveField],
 }
 
 /// One value of a page.
 #[derive(Debug)]
 pub struct LiveField {
-    /// Inside its page.
+    /// Name within its page.
     pub name: &'static str,
-    /// Empty for a pure number, a choice or a set.
+    /// Unit, empty for a pure number, a choice or a set.
     pub unit: &'static str,
-    /// 1 to 32.
+    /// Width in bits, 1…32.
     pub bits: u8,
+    /// Type and source of the value.
     pub kind: LiveKind,
 }
 
-/// What a field is, and where the robot takes it from; the number is that of the part.
+/// Type of a field, and its source on the robot. The second argument of a source is the number of the part.
 #[derive(Debug)]
 pub enum LiveKind {
-    /// A whole number from 0 up. The highest stands for itself and all beyond.
+    /// A whole number from 0. Larger values saturate.
     Count(fn(&LiveSource<'_>, usize) -> u32),
-    /// Two's complement, in so many steps a unit. Stays at the ends; the lowest number stands for "not known" (NaN).
+    /// A two's complement number. Values saturate, and the lowest number means "unknown" (NaN).
     Measure {
+        /// Steps per unit.
         steps: u16,
+        /// Source of the value.
         get: fn(&LiveSource<'_>, usize) -> f32,
     },
-    /// One of these, by its place.
+    /// One of several names, by its index.
     Choice {
+        /// The names.
         names: &'static [&'static str],
+        /// Source of the index.
         get: fn(&LiveSource<'_>, usize) -> u32,
     },
-    /// Any of these: whether each bit is set.
+    /// A set of bits.
     Set {
+        /// Name of a bit.
         name_of: fn(u8) -> Option<&'static str>,
+        /// Source of the bits.
         get: fn(&LiveSource<'_>, usize) -> u32,
     },
 }
 
-/// A field as the PC has it.
+/// A field's value on the PC.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LiveValue {
+    /// A whole number.
     Count(u32),
-    /// In the field's unit; `None`: the robot does not know it.
+    /// A value in the field's unit; `None` if the robot does not know it.
     Measure(Option<f64>),
-    /// `Err`: a number this table has no name for.
+    /// A name, or `Err` with a number that this table does not name.
     Choice(Result<&'static str, u32>),
+    /// The bits of a set.
     Set(u32),
 }
 
-/// The reply to a request for page `number`.
+/// Returns the bytes of page `number`.
 pub(super) fn read(number: u8, source: &LiveSource<'_>) -> Result<[u8; PAGE_BYTES], Refusal> {
-    // The control tick pays for it: no search through the whole table.
+    // The control tick pays for this, so it does not search the whole table.
     let after = LIVE_PAGES.partition_point(|page| page.first <= number);
     let page = after.checked_sub(1).and_then(|place| LIVE_PAGES.get(place));
     let found = page.and_then(|page| Some((page, page.part(number)?)));
@@ -89,7 +101,7 @@ pub(super) fn read(number: u8, source: &LiveSource<'_>) -> Result<[u8; PAGE_BYTE
 }
 
 impl LivePage {
-    /// The number of a part's page.
+    /// Number of a part's page.
     pub fn number(&self, part: usize) -> Option<u8> {
         let part = u8::try_from(part).ok()?;
         (usize::from(part) < self.parts.len()).then(|| self.first.wrapping_add(part))

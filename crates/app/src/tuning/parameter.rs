@@ -1,59 +1,67 @@
-//! One setting: its number, its name, what it may be.
+//! A setting: its number, name and range.
 
 use super::Refusal;
 use crate::domain::RobotConfig;
 
-/// Which of the numbers between its limits a setting may take.
+/// Which numbers between its limits a setting may take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ParameterKind {
+    /// Any number.
     Float,
+    /// Whole numbers.
     Integer,
     /// Only +1 and −1.
     Sign,
-    /// The place of one of these names.
+    /// The index of one of these names.
     Choice(&'static [&'static str]),
 }
 
-/// A setting of `RobotConfig`. All travel as `f32`, which is exact for the integers here.
+/// A setting of `RobotConfig`. All values are transferred as `f32`, which is exact for the integers in use.
 #[derive(Debug)]
 pub struct Parameter {
-    /// Inside its group; never changes.
+    /// Number within its group. It never changes.
     pub index: u8,
-    /// Inside its group.
+    /// Name within its group.
     pub name: &'static str,
-    /// Empty for a pure number.
+    /// Unit, empty for a pure number.
     pub unit: &'static str,
+    /// Smallest value.
     pub min: f32,
+    /// Largest value.
     pub max: f32,
+    /// Values allowed between the limits.
     pub kind: ParameterKind,
     pub(super) get: fn(&RobotConfig) -> f32,
     pub(super) set: fn(&mut RobotConfig, f32),
 }
 
-/// What the values of a group are true for.
+/// What the values of a group apply to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scope {
+    /// The whole robot.
     Robot,
-    /// The joint with this position in the motor layout, with the make of motor it has now: zeros and limits of another
-    /// make would be wrong.
+    /// The joint at this index of the motor layout, with its present make of motor: zeros and limits do not apply to
+    /// another make.
     Joint(usize),
 }
 
-/// Settings that belong together. They are saved together (docs/parameters.md).
+/// Settings that belong together and are saved together (docs/parameters.md).
 #[derive(Debug)]
 pub struct ParameterGroup {
-    /// Never changes.
+    /// Number of the group. It never changes.
     pub number: u8,
+    /// Name of the group.
     pub name: &'static str,
-    /// Grows by one with every firmware that appends settings to the group.
+    /// Version, increased by every firmware that appends settings to the group.
     pub version: u8,
+    /// What the values apply to.
     pub scope: Scope,
-    /// In the order of their indices, which begin at 0 and leave none out.
+    /// The settings in the order of their indices, which begin at 0 without gaps.
     pub parameters: &'static [Parameter],
 }
 
 impl ParameterGroup {
-    /// Makes this group in `to` what it is in `from`. Out of line, as more here: flash is scarce.
+    /// Copies this group from one configuration to another. It is out of line, as flash is scarce.
     #[inline(never)]
     pub fn copy(&self, from: &RobotConfig, to: &mut RobotConfig) {
         for parameter in self.parameters {
@@ -61,7 +69,7 @@ impl ParameterGroup {
         }
     }
 
-    /// True if each value is the same, bit for bit.
+    /// Whether all values of this group are equal, bit for bit.
     #[inline(never)]
     pub fn is_same(&self, one: &RobotConfig, other: &RobotConfig) -> bool {
         self.parameters
@@ -71,11 +79,12 @@ impl ParameterGroup {
 }
 
 impl Parameter {
+    /// Reads the setting.
     pub fn read(&self, config: &RobotConfig) -> f32 {
         (self.get)(config)
     }
 
-    /// Unchanged unless `value` is one this setting may take by itself.
+    /// Writes the setting if `value` is allowed by itself; otherwise `config` stays unchanged.
     pub(crate) fn write(&self, config: &mut RobotConfig, value: f32) -> Result<(), Refusal> {
         if !value.is_finite() {
             return Err(Refusal::NotFinite);

@@ -1,4 +1,4 @@
-//! Everything that can be tuned. Numbers of groups and settings are on the wire: add, never renumber.
+//! All settings. Numbers of groups and settings are on the wire: add new ones, never renumber old ones.
 
 use super::{Parameter, ParameterGroup, Refusal, Scope};
 
@@ -9,7 +9,7 @@ mod safety;
 mod sensors;
 mod wheels;
 
-/// By group.
+/// All groups, by number.
 pub static PARAMETERS: [ParameterGroup; 14] = [
     ParameterGroup {
         number: WHEEL_GEOMETRY,
@@ -113,21 +113,21 @@ pub static PARAMETERS: [ParameterGroup; 14] = [
 
 pub(super) const WHEEL_GEOMETRY: u8 = 1;
 
-/// Groups of the other joints follow in the order of the motor layout.
+/// The other joints' groups follow in the order of the motor layout.
 const FIRST_JOINT: u8 = 16;
 const JOINT_ZERO: u8 = 1;
 
-/// The setting for where the zero of a joint is in its motor's coordinates.
+/// The setting for the zero of a joint in motor coordinates.
 pub(super) fn joint_zero(joint: u8) -> Result<&'static Parameter, Refusal> {
     find(FIRST_JOINT.saturating_add(joint), JOINT_ZERO)
 }
 
-/// Of the group at this position of [`PARAMETERS`], in a mask of groups.
+/// The bit of the group at this index of [`PARAMETERS`] in a mask of groups.
 pub(crate) const fn bit(position: usize) -> u32 {
     1u32.wrapping_shl(position as u32)
 }
 
-/// The setting with these numbers.
+/// Finds the setting with these numbers.
 pub(super) fn find(group: u8, index: u8) -> Result<&'static Parameter, Refusal> {
     PARAMETERS
         .iter()

@@ -1,4 +1,4 @@
-//! The bytes of requests and replies, all little-endian.
+//! Encoding of requests and replies, all little-endian.
 
 use super::{
     MAX_RECORDING_S, PARAMETERS, ParameterGroup, RecordingStatus, Refusal, bit,
@@ -31,20 +31,20 @@ pub enum Request {
     RestoreDefaults(Restored),
     ReadStore,
     ReadFindings,
-    /// The page with this number.
+    /// Reads the page with this number.
     ReadLive(u8),
     BringUp(BringUpRequest),
-    /// Where this joint stands now is to be called this angle.
+    /// Moves the zero of a joint so that its present angle becomes this angle.
     ZeroJoint {
         joint: u8,
         angle_rad: f32,
     },
-    /// For so many seconds; 0 ends a recording.
+    /// Records for this number of seconds; 0 ends a recording.
     Record(u16),
     ReadRecording,
 }
 
-/// What gets its defaults back.
+/// What is set to its defaults.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Restored {
     AllGroups,
@@ -61,13 +61,13 @@ impl Restored {
     }
 }
 
-/// True for frames that are for the tuning channel.
+/// Whether a frame is for the tuning channel.
 pub fn is_request(frame: &CanFrame) -> bool {
     frame.id() == WRITE_ID || frame.id() == READ_ID
 }
 
 impl Request {
-    /// `None` for a frame that is not for the tuning channel.
+    /// Decodes a request. Returns `None` for a frame that is not for the tuning channel.
     pub fn decode(frame: &CanFrame) -> Option<Result<Self, Refusal>> {
         let id = frame.id();
         if id == WRITE_ID {
@@ -79,7 +79,7 @@ impl Request {
         }
     }
 
-    /// Writes have eight bytes.
+    /// Writes must have eight bytes.
     fn decode_write(frame: &CanFrame) -> Result<Self, Refusal> {
         let known = matches!(
             frame.payload(),
@@ -128,7 +128,7 @@ impl Request {
         }
     }
 
-    /// Reads may be longer than they need: many tools always send eight bytes.
+    /// Reads may be longer than needed, as many tools always send eight bytes.
     fn decode_read(payload: &[u8]) -> Result<Self, Refusal> {
         match *payload {
             [READ_GEOMETRY, ..] => Ok(Self::ReadGeometry),
@@ -153,7 +153,8 @@ pub fn parameter_reply(group: u8, index: u8, value: f32) -> CanFrame {
     CanFrame::new(REPLY_ID, [READ_PARAMETER, group, index, 0, a, b, c, d])
 }
 
-/// `revision` is `TuningStatus::revision` now: what the store has not seen yet counts as one more unsaved group.
+/// State of the parameter store. `revision` is the present `TuningStatus::revision`; a revision that the store has
+/// not seen yet counts as one more unsaved group.
 pub fn store_reply(params: &ParamStatus, revision: u32) -> CanFrame {
     let overtaken = params.seen != revision;
     let state = if overtaken {
@@ -179,7 +180,7 @@ pub fn store_reply(params: &ParamStatus, revision: u32) -> CanFrame {
     )
 }
 
-/// What boot found in the store. Bits of the mask are the numbers of groups.
+/// What boot found in the store. Bits of the mask are group numbers.
 pub fn findings_reply(params: &ParamStatus) -> CanFrame {
     let mut refused: u32 = 0;
     for (position, group) in PARAMETERS.iter().enumerate() {
@@ -220,7 +221,7 @@ fn saturated(count: u32) -> [u8; 2] {
     u16::try_from(count).unwrap_or(u16::MAX).to_le_bytes()
 }
 
-/// A write that was done is answered with its own bytes.
+/// An executed write is answered with its own bytes.
 pub fn echo(request: &CanFrame) -> CanFrame {
     let mut data = [0; 8];
     for (byte, sent) in data.iter_mut().zip(request.payload()) {
@@ -229,7 +230,7 @@ pub fn echo(request: &CanFrame) -> CanFrame {
     CanFrame::new(REPLY_ID, data)
 }
 
-/// Says which request it was: its command, and group and index, or page, if it has them.
+/// Names the refused request by its command, and group and index or page if it has them.
 pub fn refusal_reply(request: &CanFrame, reason: Refusal) -> CanFrame {
     let byte = |place| request.payload().get(place).copied().unwrap_or(0);
     let command = byte(0);

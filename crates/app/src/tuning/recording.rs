@@ -1,7 +1,7 @@
-//! The sensors' samples as they come, each in a frame of its own, for so many seconds while the robot is disarmed.
+//! Records sensor samples: each sample is sent in a frame of its own for a given time while the robot is disarmed.
 //!
-//! The frame of a sample has x, y and z in whole steps as `i16` and the low 16 bits of its time in units of 100 µs as
-//! `u16`, all little-endian. Frames leave in ticks without a reply, one a tick, in the mailbox that motors leave free.
+//! A sample's frame holds x, y and z in steps as `i16`, and the low 16 bits of its time in units of 100 µs as `u16`,
+//! all little-endian. Frames are sent in ticks without a reply, one a tick, in the mailbox that motors leave free.
 
 use super::{
     TuningGate,
@@ -9,23 +9,24 @@ use super::{
 };
 use crate::domain::{BusId, CanFrame, SensorsSnapshot, StandardId};
 
-/// Longest recording.
+/// Longest recording in s.
 pub const MAX_RECORDING_S: u16 = 600;
 
-/// Who measured a recorded sample.
+/// Source of a recorded sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RecordedSensor {
-    /// m/s².
+    /// Accelerometer, in m/s².
     Accel,
-    /// deg/s.
+    /// Gyro, in °/s.
     Gyro,
-    /// µT.
+    /// Magnetometer, in µT.
     Mag,
 }
 
 impl RecordedSensor {
     const ALL: [Self; 3] = [Self::Accel, Self::Gyro, Self::Mag];
 
+    /// Identifier of the sensor's frames.
     pub const fn frame_id(self) -> StandardId {
         match self {
             Self::Accel => ACCEL_ID,
@@ -34,7 +35,7 @@ impl RecordedSensor {
         }
     }
 
-    /// Steps a unit: about those of the sensor itself, and its whole range fits.
+    /// Steps per unit: about the resolution of the sensor, with room for its whole range.
     const fn steps(self) -> f32 {
         match self {
             Self::Accel => 256.0,
@@ -55,18 +56,19 @@ impl RecordedSensor {
     }
 }
 
-/// A sample as the PC gets it.
+/// A sample as received by the PC.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RecordedSample {
+    /// Source of the sample.
     pub sensor: RecordedSensor,
-    /// As in the firmware's diagnostics.
+    /// Value in the sensor's unit, as in diagnostics.
     pub value: [f32; 3],
-    /// 100 µs; wraps.
+    /// Time in units of 100 µs; it wraps.
     pub time: u16,
 }
 
 impl RecordedSample {
-    /// `None` for any other frame.
+    /// Decodes a sample. Returns `None` for any other frame.
     pub fn decode(frame: &CanFrame) -> Option<Self> {
         let mut sensors = RecordedSensor::ALL.into_iter();
         let sensor = sensors.find(|sensor| sensor.frame_id() == frame.id())?;
@@ -82,23 +84,27 @@ impl RecordedSample {
     }
 }
 
-/// How the recording goes, or how the last one ended. The numbers are on the wire and never change.
+/// State of the present or the last recording. The numbers are on the wire and never change.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum RecordingState {
-    /// None since boot, or it ended when it was to end.
+    /// No recording since boot, or the last one ended regularly.
     #[default]
     Ended = 0,
+    /// A recording is running.
     Running = 1,
-    /// The robot was armed, or the enable switch went on.
+    /// The recording ended early because the robot was armed or the enable switch went on.
     CutShort = 2,
 }
 
+/// State of a recording.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RecordingStatus {
+    /// Whether it is running.
     pub state: RecordingState,
-    /// Samples of the IMU sent, each as a frame of the accelerometer and one of the gyro.
+    /// Number of IMU samples sent, each with a frame of the accelerometer and one of the gyro.
     pub imu: u32,
+    /// Number of magnetometer samples sent.
     pub mag: u32,
 }
 
@@ -106,14 +112,14 @@ pub struct RecordingStatus {
 struct Running {
     bus: BusId,
     until_us: u64,
-    /// Of the last samples sent.
+    /// Times of the last samples sent.
     imu_ts_us: u64,
     mag_ts_us: u64,
-    /// The other half of an IMU sample, for the next tick.
+    /// The gyro's part of an IMU sample, for the next tick.
     gyro: Option<CanFrame>,
 }
 
-/// Sends nothing until it is started.
+/// Records sensor samples after it has been started.
 #[derive(Clone, Debug, Default)]
 pub struct Recorder {
     running: Option<Running>,
@@ -121,7 +127,7 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// A new recording in the place of any other; 0 s only ends that one.
+    /// Starts a recording and ends any other; 0 s only ends the other one.
     pub fn start(&mut self, bus: BusId, seconds: u16, sensors: &SensorsSnapshot) {
         let duration_us = u64::from(seconds).saturating_mul(1_000_000);
         self.running = (seconds != 0).then(|| Running {
@@ -140,15 +146,17 @@ impl Recorder {
         };
     }
 
+    /// Whether a recording is running.
     pub const fn is_running(&self) -> bool {
         self.running.is_some()
     }
 
+    /// State of the recording.
     pub const fn status(&self) -> &RecordingStatus {
         &self.status
     }
 
-    /// In each tick without a reply while it is running.
+    /// Returns the next frame. Called in each tick without a reply while a recording is running.
     #[cold]
     #[inline(never)]
     pub fn next(
@@ -192,7 +200,7 @@ impl Recorder {
 impl RecordingState {
     const ALL: [Self; 3] = [Self::Ended, Self::Running, Self::CutShort];
 
-    /// `None` for a number that stands for none.
+    /// Decodes a state. Returns `None` for an unknown number.
     pub fn from_code(code: u8) -> Option<Self> {
         Self::ALL.into_iter().find(|state| *state as u8 == code)
     }
@@ -202,7 +210,7 @@ impl RecordingState {
 mod tests {
     use super::*;
 
-    /// 1 s into a run, sensors just sampled.
+    /// A recorder started 1 s after boot, with sensors just sampled.
     fn start(seconds: u16) -> (Recorder, SensorsSnapshot) {
         let mut sensors = SensorsSnapshot {
             ts_us: 1_000_000,
@@ -221,10 +229,10 @@ mod tests {
         (frame.id().raw(), frame.full_payload().unwrap())
     }
 
-    /// 9.8125 m/s² = 2512 = 0x09D0, −1 = −256 = 0xFF00; −2.5 deg/s = −40 = 0xFFD8; 48.1 µT = 481 = 0x01E1. Times
+    /// 9.8125 m/s² = 2512 = 0x09D0, −1 = −256 = 0xFF00; −2.5 °/s = −40 = 0xFFD8; 48.1 µT = 481 = 0x01E1. Times:
     /// 1.0041 s = 10,041 = 0x2739, 1.0032 s = 10,032 = 0x2730.
     #[test]
-    fn each_sample_is_sent_once_in_steps_with_its_time() {
+    fn each_sample_is_sent_once_with_its_time() {
         let (mut recorder, mut sensors) = start(1);
         assert_eq!(recorder.next(TuningGate::Open, &sensors), None);
         let imu = &mut sensors.imu;
@@ -257,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn it_ends_by_itself_or_when_the_robot_may_move() {
+    fn a_recording_ends_at_its_time_or_when_the_gate_shuts() {
         for (gate, at_us, state) in [
             (TuningGate::Open, 1_999_999, RecordingState::Running),
             (TuningGate::Open, 2_000_000, RecordingState::Ended),

@@ -1,30 +1,32 @@
-//! Why a request changed nothing.
+//! The reasons for refusing a request.
 
 use crate::motor::NotStationary;
 
-/// The numbers are on the wire and never change.
+/// Why a request was refused. The numbers are on the wire and never change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
 pub enum Refusal {
-    /// The frame is shorter or longer than its command.
+    /// The frame's length does not fit its command.
     WrongLength = 1,
+    /// The command is unknown.
     UnknownCommand = 2,
+    /// There is no setting, page or joint with this number.
     UnknownParameter = 3,
-    /// Not a value this field may take.
+    /// The field does not allow this value.
     OutOfRange = 4,
     /// The robot is armed or the enable switch is on.
     Armed = 5,
-    /// NaN or infinite.
+    /// The value is NaN or infinite.
     NotFinite = 6,
-    /// Fits alone but not together with another setting.
+    /// The value does not fit another setting.
     Inconsistent = 7,
-    /// A sensor would be turned whose calibration is for how it was.
+    /// A sensor with a calibration would be reoriented, which would invalidate the calibration.
     Calibrated = 8,
     /// The joint does not report, repeats an old report, or is not set up.
     JointNotReady = 9,
-    /// The joint turns.
-    JointTurns = 10,
+    /// The joint is turning.
+    JointMoving = 10,
 }
 
 impl Refusal {
@@ -38,14 +40,15 @@ impl Refusal {
         Self::Inconsistent,
         Self::Calibrated,
         Self::JointNotReady,
-        Self::JointTurns,
+        Self::JointMoving,
     ];
 
+    /// Its number on the wire.
     pub const fn code(self) -> u8 {
         self as u8
     }
 
-    /// `None` unless `code` is one that [`code`](Self::code) gives.
+    /// Returns `None` unless `code` comes from [`code`](Self::code).
     pub fn from_code(code: u8) -> Option<Self> {
         Self::ALL.into_iter().find(|reason| reason.code() == code)
     }
@@ -55,7 +58,7 @@ impl From<NotStationary> for Refusal {
     fn from(reason: NotStationary) -> Self {
         match reason {
             NotStationary::Unknown => Self::JointNotReady,
-            NotStationary::Moving => Self::JointTurns,
+            NotStationary::Moving => Self::JointMoving,
         }
     }
 }

@@ -1,19 +1,20 @@
-//! The wheel geometry frames of ROBOT_CPP (docs/port.md#parameters-and-tuning), kept to the byte for its clients.
+//! The wheel geometry frames of ROBOT_CPP (docs/port.md#parameters-and-tuning), identical to the byte for its
+//! clients.
 
 use super::{Refusal, parameters};
 use crate::domain::{RobotConfig, WheelOdomConfig};
 
-/// Byte 7.
+/// Bits of byte 7.
 const LEFT_REVERSED: u8 = 1 << 0;
 const RIGHT_REVERSED: u8 = 1 << 1;
 
 /// The seven bytes after the command: radius and track in mm and a hundred times the gear ratio as little-endian
-/// `u16`, then the signs.
+/// `u16`, followed by the signs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WheelGeometry(pub [u8; 7]);
 
 impl WheelGeometry {
-    /// What old clients read: rounded to whole mm and hundredths.
+    /// Encodes the geometry, rounded to whole mm and hundredths.
     pub fn of(odom: &WheelOdomConfig) -> Self {
         let [radius_l, radius_h] = rounded(odom.wheel_radius_m * 1_000.0);
         let [track_l, track_h] = rounded(odom.wheel_track_m * 1_000.0);
@@ -26,7 +27,7 @@ impl WheelGeometry {
         ])
     }
 
-    /// All five settings or, on an error, perhaps some of them: for a copy of the configuration only.
+    /// Applies all five settings. On an error some may have been applied, so use it on a copy of the configuration.
     pub fn apply(self, config: &mut RobotConfig) -> Result<(), Refusal> {
         let Self(
             [

@@ -93,7 +93,7 @@ fn explain(reason: Result<Refusal, u8>, allowed: Option<&str>) -> String {
             "refused, the joint does not report or is not set up yet: is its motor powered and on the bus? \
              (`robotctl status` shows its state)"
         }
-        Ok(Refusal::JointTurns) => "refused, the joint turns: hold it still",
+        Ok(Refusal::JointMoving) => "refused, the joint turns: hold it still",
         Err(code) => {
             return format!("refused for reason {code}, which this robotctl does not know");
         }

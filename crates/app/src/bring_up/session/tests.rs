@@ -70,7 +70,7 @@ impl Bench {
         self.bring_up.status().step
     }
 
-    /// The gesture, then the stick back and the e-stop off.
+    /// The gesture was made, the stick is back and the e-stop off.
     fn started() -> Self {
         let mut bench = Self::new();
         assert_eq!(bench.gesture(), BringUpStep::ReadOnly);
@@ -94,21 +94,21 @@ impl Bench {
 }
 
 #[test]
-fn off_until_somebody_asks() {
+fn bring_up_is_off_until_requested() {
     let mut bench = Bench::new();
     assert_eq!(bench.run_ms(10_000), None);
     assert_eq!(*bench.bring_up.status(), BringUpStatus::default());
     assert!(!bench.bring_up.blocks_arming());
 }
 
-/// The first step blocks arming, the others try motors, which flash must not interrupt.
+/// The first step blocks arming. The others test motors, which flash must not interrupt.
 #[test]
-fn each_step_either_blocks_arming_or_tries_motors() {
+fn each_step_either_blocks_arming_or_tests_motors() {
     let trial = Trial {
         motor: TestMotor::Wheel(0),
         action: TrialAction::StickTorque,
     };
-    for (request, blocks_arming, tries_motors) in [
+    for (request, blocks_arming, tests_motors) in [
         (BringUpRequest::Off, false, false),
         (BringUpRequest::ReadOnly, true, false),
         (BringUpRequest::ZeroTorque, false, true),
@@ -117,12 +117,12 @@ fn each_step_either_blocks_arming_or_tries_motors() {
         let mut bring_up = BringUp::default();
         bring_up.request(request);
         assert_eq!(bring_up.blocks_arming(), blocks_arming, "{request:?}");
-        assert_eq!(bring_up.tries_motors(), tries_motors, "{request:?}");
+        assert_eq!(bring_up.tests_motors(), tests_motors, "{request:?}");
     }
 }
 
 #[test]
-fn the_gesture_starts_reading_only() {
+fn the_gesture_starts_the_read_only_step() {
     let mut bench = Bench::new();
     assert_eq!(bench.gesture(), BringUpStep::ReadOnly);
     assert!(bench.bring_up.blocks_arming() && bench.bring_up.status().by_radio);
@@ -130,7 +130,7 @@ fn the_gesture_starts_reading_only() {
 }
 
 #[test]
-fn without_every_control_in_its_place_the_gesture_is_none() {
+fn the_gesture_needs_every_control_in_place() {
     let spoilt: [fn(&mut Bench); 6] = [
         |bench| bench.operator.e_stop = false,
         |bench| bench.operator.disabled = false,
@@ -146,9 +146,9 @@ fn without_every_control_in_its_place_the_gesture_is_none() {
     }
 }
 
-/// The gesture ends with the switch at custom, which later means the third step.
+/// The gesture ends with the mode switch at custom, which later selects the third step.
 #[test]
-fn after_the_gesture_the_switch_must_come_home_before_it_counts() {
+fn after_the_gesture_the_switch_must_return_to_manual() {
     let mut bench = Bench::started();
     assert_eq!(bench.mode(DriveMode::Pc).step, BringUpStep::ReadOnly);
     assert_eq!(bench.mode(DriveMode::Manual).step, BringUpStep::ReadOnly);
@@ -159,7 +159,7 @@ fn after_the_gesture_the_switch_must_come_home_before_it_counts() {
 }
 
 #[test]
-fn armed_neither_step_nor_motor_change() {
+fn step_and_motor_do_not_change_while_armed() {
     let mut bench = Bench::started();
     bench.mode(DriveMode::Manual);
     bench.mode(DriveMode::Custom);
@@ -169,7 +169,7 @@ fn armed_neither_step_nor_motor_change() {
 }
 
 #[test]
-fn flicks_of_the_left_stick_pick_the_motor() {
+fn flicks_of_the_left_stick_select_the_motor() {
     let mut bench = Bench::started();
     bench.mode(DriveMode::Manual);
     assert_eq!(bench.flick(1.0), 1);
@@ -179,9 +179,9 @@ fn flicks_of_the_left_stick_pick_the_motor() {
     assert_eq!([bench.flick(-1.0), bench.flick(-1.0)], [0, 5]);
 }
 
-/// Joint 3 is motor 5; stick half forward is half of 0.5 N·m.
+/// Joint 3 is motor 5. A stick half forward gives half of 0.5 N·m.
 #[test]
-fn one_motor_moves_while_the_dead_man_stick_is_held() {
+fn one_motor_has_torque_while_the_dead_man_stick_is_held() {
     let mut bench = Bench::started();
     bench.mode(DriveMode::Manual);
     bench.flick(-1.0);
@@ -198,7 +198,7 @@ fn one_motor_moves_while_the_dead_man_stick_is_held() {
 }
 
 #[test]
-fn a_dead_man_stick_held_while_arming_gives_nothing() {
+fn a_dead_man_stick_held_while_arming_gives_no_torque() {
     let mut bench = Bench::started();
     bench.mode(DriveMode::Manual);
     bench.mode(DriveMode::Custom);
@@ -209,7 +209,7 @@ fn a_dead_man_stick_held_while_arming_gives_nothing() {
 }
 
 #[test]
-fn a_lost_radio_is_no_letting_go() {
+fn a_lost_radio_is_not_a_release() {
     let mut bench = Bench::started();
     bench.mode(DriveMode::Manual);
     bench.mode(DriveMode::Custom);
@@ -225,7 +225,7 @@ fn a_lost_radio_is_no_letting_go() {
 }
 
 #[test]
-fn being_disarmed_locks_the_trial_again() {
+fn disarming_locks_the_trial() {
     let mut bench = Bench::started();
     bench.mode(DriveMode::Manual);
     bench.mode(DriveMode::Custom);
@@ -241,14 +241,14 @@ fn being_disarmed_locks_the_trial_again() {
 }
 
 #[test]
-fn the_tuning_channel_picks_step_motor_and_torque() {
+fn the_tuning_channel_selects_step_motor_and_torque() {
     let mut bench = Bench::new();
     let trial = Trial {
         motor: TestMotor::Joint(2),
         action: TrialAction::FixedTorque(-0.5),
     };
     bench.bring_up.request(BringUpRequest::OneMotor(trial));
-    // The mode switch stands at manual and means nothing here.
+    // The mode switch at manual has no effect here.
     bench.run_ms(300);
     assert_eq!(bench.bring_up.status().motor, 4);
     bench.arm();

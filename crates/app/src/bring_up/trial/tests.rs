@@ -27,13 +27,13 @@ impl Bench {
                 action,
             },
             motor,
-            dead_man: DeadMan::LetGo,
+            dead_man: DeadMan::Released,
             drive: DRIVE,
             now_us: 5_000_000,
         }
     }
 
-    /// Let go for long enough, then held.
+    /// The stick was released for long enough and is held now.
     fn held(number: u8, action: TrialAction) -> Self {
         let mut bench = Self::new(number, action);
         bench.run_ms(201);
@@ -57,7 +57,7 @@ impl Bench {
         self.run.step(&self.trial, &inputs, self.now_us)
     }
 
-    /// Ticks until the first that commands nothing, at most `ticks`.
+    /// Runs until a tick commands nothing, at most `ticks`, and returns their number.
     fn run_ms(&mut self, ticks: u32) -> u32 {
         let mut active = 0;
         for _ in 0..ticks {
@@ -68,7 +68,7 @@ impl Bench {
 }
 
 #[test]
-fn the_stick_gives_torque_to_the_chosen_joint_only() {
+fn the_stick_gives_torque_to_the_selected_joint_only() {
     let command = Bench::held(3, TrialAction::StickTorque).tick();
     let mut expected = ChassisCommand::default();
     expected.joints[1].mode = JointMode::Mit;
@@ -77,7 +77,7 @@ fn the_stick_gives_torque_to_the_chosen_joint_only() {
 }
 
 #[test]
-fn the_stick_gives_current_to_the_chosen_wheel_only() {
+fn the_stick_gives_current_to_the_selected_wheel_only() {
     let command = Bench::held(1, TrialAction::StickTorque).tick();
     let mut expected = ChassisCommand::default();
     expected.wheels[1].current_ma = 0.4 * 1_000.0;
@@ -97,8 +97,8 @@ fn half_a_newton_metre_and_one_ampere_are_never_exceeded() {
 }
 
 #[test]
-fn letting_go_or_an_old_frame_is_zero_in_the_same_tick() {
-    for end in [DeadMan::LetGo, DeadMan::Unknown] {
+fn a_release_or_an_old_frame_gives_zero_in_the_same_tick() {
+    for end in [DeadMan::Released, DeadMan::Unknown] {
         let mut bench = Bench::held(2, TrialAction::FixedTorque(1.0));
         assert_ne!(bench.tick(), ChassisCommand::default());
         bench.dead_man = end;
@@ -109,24 +109,24 @@ fn letting_go_or_an_old_frame_is_zero_in_the_same_tick() {
 }
 
 #[test]
-fn a_stick_held_from_the_start_gives_nothing() {
+fn a_stick_held_from_the_start_gives_no_torque() {
     let mut bench = Bench::new(2, TrialAction::FixedTorque(1.0));
     bench.dead_man = DeadMan::Held;
     assert_eq!(bench.run_ms(1_000), 0);
     assert_eq!(bench.run.state(), TrialState::ReleaseFirst);
-    // Lost frames are no letting go.
+    // Lost frames do not count as a release.
     bench.dead_man = DeadMan::Unknown;
     bench.run_ms(1_000);
     bench.dead_man = DeadMan::Held;
     assert_eq!(bench.run_ms(1_000), 0);
-    bench.dead_man = DeadMan::LetGo;
+    bench.dead_man = DeadMan::Released;
     bench.run_ms(201);
     bench.dead_man = DeadMan::Held;
     assert_eq!(bench.run_ms(10), 10);
 }
 
 #[test]
-fn letting_go_takes_a_fifth_of_a_second() {
+fn a_release_must_last_a_fifth_of_a_second() {
     for (ms, active) in [(199, 0), (202, 10)] {
         let mut bench = Bench::new(2, TrialAction::FixedTorque(1.0));
         bench.run_ms(ms);
@@ -136,18 +136,18 @@ fn letting_go_takes_a_fifth_of_a_second() {
 }
 
 #[test]
-fn three_seconds_of_torque_are_enough() {
+fn torque_ends_after_three_seconds() {
     let mut bench = Bench::held(2, TrialAction::StickTorque);
     assert_eq!(bench.run_ms(10_000), 3_001);
     assert_eq!(bench.run.state(), TrialState::TooLong);
-    bench.dead_man = DeadMan::LetGo;
+    bench.dead_man = DeadMan::Released;
     bench.run_ms(201);
     bench.dead_man = DeadMan::Held;
     assert_eq!(bench.run_ms(10), 10);
 }
 
 #[test]
-fn a_joint_faster_than_three_radians_a_second_is_let_go() {
+fn a_joint_faster_than_three_radians_a_second_is_released() {
     for (vel_rps, free) in [
         (3.0, true),
         (-3.0, true),
@@ -164,9 +164,9 @@ fn a_joint_faster_than_three_radians_a_second_is_let_go() {
     }
 }
 
-/// 10 rad/s at the shaft of a 20:1 gear are 1909.9 rpm at the rotor.
+/// 10 rad/s at the shaft of a 20:1 gear is 1909.9 rpm at the rotor.
 #[test]
-fn a_wheel_faster_than_ten_radians_a_second_is_let_go() {
+fn a_wheel_faster_than_ten_radians_a_second_is_released() {
     for (rpm, state) in [
         (1_909, TrialState::Active),
         (-1_909, TrialState::Active),
@@ -181,7 +181,7 @@ fn a_wheel_faster_than_ten_radians_a_second_is_let_go() {
 }
 
 #[test]
-fn a_silent_motor_gets_nothing() {
+fn a_silent_motor_gets_no_torque() {
     let mut bench = Bench::held(4, TrialAction::StickTorque);
     bench.motor.joints[2].age_us = 50_000;
     assert_ne!(bench.tick(), ChassisCommand::default());
@@ -194,7 +194,7 @@ fn a_silent_motor_gets_nothing() {
     assert_eq!(moving.tick(), ChassisCommand::default());
 }
 
-/// What the motor computes: kp·(p − q) − kd·v.
+/// The torque that the motor computes: kp·(p − q) − kd·v.
 fn motor_torque_nm(command: &JointCommand, pos_rad: f32, vel_rps: f32) -> f32 {
     command.kp * (command.pos_rad - pos_rad)
         + command.kd * (command.vel_rps - vel_rps)
@@ -208,11 +208,11 @@ fn a_held_joint_pulls_back_softly() {
     let held = bench.tick().joints[0];
     assert_eq!(motor_torque_nm(&held, 0.7, 0.0), 0.0);
     assert!(held.kp <= 5.0 && held.kd <= 0.5);
-    // Pushed 0.05 rad forward: 5 N·m/rad pull back with 0.25 N·m.
+    // Pushed 0.05 rad forward, 5 N·m/rad pull back with 0.25 N·m.
     bench.motor.joints[0].pos_rad = 0.75;
     let torque_nm = motor_torque_nm(&bench.tick().joints[0], 0.75, 0.0);
     assert!((torque_nm + 0.25).abs() < 1e-3, "{torque_nm}");
-    // However far, it pulls with what it may, either way.
+    // At any distance it pulls with its limit, in either direction.
     for (pos_rad, expected_nm) in [(12.0, -0.45), (-12.0, 0.45)] {
         bench.motor.joints[0].pos_rad = pos_rad;
         let torque_nm = motor_torque_nm(&bench.tick().joints[0], pos_rad, 0.0);
@@ -221,7 +221,7 @@ fn a_held_joint_pulls_back_softly() {
 }
 
 #[test]
-fn a_held_joint_never_pulls_with_more_than_half_a_newton_metre() {
+fn a_held_joint_stays_below_half_a_newton_metre() {
     for pos_rad in [-12.0, -0.3, 0.0, 0.3, 12.0] {
         for vel_rps in [-3.0, -1.0, 0.0, 1.0, 3.0] {
             let mut bench = Bench::held(2, TrialAction::Hold);
@@ -229,7 +229,7 @@ fn a_held_joint_never_pulls_with_more_than_half_a_newton_metre() {
             let joint = &mut bench.motor.joints[0];
             (joint.pos_rad, joint.vel_rps) = (pos_rad, vel_rps);
             let command = bench.tick().joints[0];
-            // As far as it gets until the next command, 2 ms later.
+            // The joint moves on until the next command, 2 ms later.
             for ms in 0..=2 {
                 let moved_rad = pos_rad + vel_rps * 0.001 * ms as f32;
                 let torque_nm = motor_torque_nm(&command, moved_rad, vel_rps);
@@ -239,9 +239,9 @@ fn a_held_joint_never_pulls_with_more_than_half_a_newton_metre() {
     }
 }
 
-/// Where a soft limit keeps the target from following the joint outwards, no stiffness makes up for the damping.
+/// Where a soft limit keeps the target from following the joint outwards, no stiffness compensates the damping.
 #[test]
-fn damping_alone_is_not_more_than_half_a_newton_metre() {
+fn damping_alone_stays_below_half_a_newton_metre() {
     let mut bench = Bench::held(2, TrialAction::Hold);
     bench.motor.joints[0].vel_rps = 3.0;
     let held = bench.tick().joints[0];
@@ -249,7 +249,7 @@ fn damping_alone_is_not_more_than_half_a_newton_metre() {
     assert_ne!(held.kd, 0.0);
 }
 
-/// 600 rpm at the rotor of a 20:1 gear are 3.1416 rad/s, times 200 mA.
+/// 600 rpm at the rotor of a 20:1 gear is 3.1416 rad/s, times 200 mA.
 #[test]
 fn a_held_wheel_is_braked() {
     let mut bench = Bench::held(0, TrialAction::Hold);
@@ -263,7 +263,7 @@ fn a_held_wheel_is_braked() {
 }
 
 #[test]
-fn a_clock_that_jumps_back_ends_nothing_and_breaks_nothing() {
+fn a_clock_that_jumps_back_does_not_end_the_trial() {
     let mut bench = Bench::held(2, TrialAction::StickTorque);
     bench.tick();
     bench.now_us = 0;

@@ -44,6 +44,7 @@ pub enum Reply {
 }
 
 impl JointMotor {
+    /// Disables the motor.
     pub const fn disable(&self) -> CanFrame {
         match self {
             Self::Dm4310(motor) => motor.disable(),
@@ -51,6 +52,7 @@ impl JointMotor {
         }
     }
 
+    /// Enables the motor.
     pub fn enable(&self) -> CanFrame {
         match self {
             Self::Dm4310(motor) => motor.enable(),
@@ -58,6 +60,7 @@ impl JointMotor {
         }
     }
 
+    /// Clears a fault.
     pub fn clear_fault(&self) -> CanFrame {
         match self {
             Self::Dm4310(motor) => motor.clear_fault(),

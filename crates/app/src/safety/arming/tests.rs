@@ -9,7 +9,7 @@ struct Bench {
     disabled: bool,
     calibrated: bool,
     read_only: bool,
-    tries_motors: bool,
+    tests_motors: bool,
     flash_busy: bool,
     params: ParamStatus,
     debugger_catches: bool,
@@ -40,7 +40,7 @@ impl Bench {
             disabled: true,
             calibrated: true,
             read_only: false,
-            tries_motors: false,
+            tests_motors: false,
             flash_busy: false,
             params: ParamStatus::default(),
             debugger_catches: false,
@@ -82,7 +82,7 @@ impl Bench {
                 calibrated: self.calibrated,
                 motor: &MotorReadiness::assess(&self.motor, &RobotConfig::default().joints),
                 read_only: self.read_only,
-                tries_motors: self.tries_motors,
+                tests_motors: self.tests_motors,
                 flash_busy: self.flash_busy,
                 params: &self.params,
                 debugger_catches: self.debugger_catches,
@@ -374,7 +374,7 @@ fn a_joint_beyond_its_limits_blocks_arming_but_does_not_disarm() {
 fn a_joint_beyond_its_limits_may_be_tested_in_bring_up() {
     let result = with_wrong(|bench| {
         bench.motor.joints[1].pos_rad = 6.3;
-        bench.tries_motors = true;
+        bench.tests_motors = true;
     });
     assert_eq!(result, (ArmingBlockers::NONE, ArmingState::Armed));
 }

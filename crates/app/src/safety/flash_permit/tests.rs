@@ -13,7 +13,7 @@ struct Bench {
     watchdog: WatchdogPeriod,
     arming: ArmingState,
     enabled: bool,
-    tries_motors: bool,
+    tests_motors: bool,
     motor: MotorFeedback,
     can: [BusHealth; 2],
 }
@@ -28,7 +28,7 @@ impl Bench {
             watchdog: WatchdogPeriod::Short,
             arming: ArmingState::Disarmed,
             enabled: false,
-            tries_motors: false,
+            tests_motors: false,
             motor: MotorFeedback::default(),
             can: Default::default(),
         }
@@ -41,7 +41,7 @@ impl Bench {
             watchdog: self.watchdog,
             arming: self.arming,
             enabled: self.enabled,
-            tries_motors: self.tries_motors,
+            tests_motors: self.tests_motors,
             motor: &self.motor,
             buses: &BUSES,
             can: &self.can,
@@ -169,9 +169,9 @@ fn motor_tests_block_programming_and_erasing() {
     for (request, ticks) in [(FlashRequest::Program, 1), (FlashRequest::Erase, 501)] {
         let mut bench = Bench::new(request);
         bench.watchdog = WatchdogPeriod::Long;
-        bench.tries_motors = true;
+        bench.tests_motors = true;
         assert_eq!(bench.ticks_to_grant(), None);
-        bench.tries_motors = false;
+        bench.tests_motors = false;
         assert_eq!(bench.ticks_to_grant(), Some(ticks));
     }
 }
@@ -201,7 +201,7 @@ fn instead_of_erase(on: bool, other: FlashRequest) -> FlashRequest {
 fn rest_counts_anew_after_enabling_or_another_request() {
     for disturb in [
         |bench: &mut Bench, on: bool| bench.enabled = on,
-        |bench: &mut Bench, on: bool| bench.tries_motors = on,
+        |bench: &mut Bench, on: bool| bench.tests_motors = on,
         |bench: &mut Bench, on: bool| bench.request = instead_of_erase(on, FlashRequest::None),
         |bench: &mut Bench, on: bool| bench.request = instead_of_erase(on, FlashRequest::Program),
     ] {

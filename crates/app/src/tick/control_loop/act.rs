@@ -1,4 +1,4 @@
-//! Whose command counts, and the frames that carry it to the motors.
+//! Selects the command of this tick and sends it to the motors.
 
 use super::{ControlInputs, ControlLoop};
 use crate::{
@@ -7,16 +7,16 @@ use crate::{
     safety::TorquePermit,
 };
 
-/// Who decides the commands of this tick.
+/// The source of this tick's commands.
 enum Demand<'a> {
-    /// Nobody: no motor may move, or no command is fresh and valid.
+    /// No motor may move, or no command is fresh and valid.
     Stop,
-    /// The logic bus or bring-up, past the controller.
+    /// The logic bus or bring-up, bypassing the controller.
     Direct(&'a ChassisCommand),
     Control(HighLevelCommand),
 }
 
-/// What no command reaches in this tick.
+/// What is stopped in this tick.
 struct Stopped {
     wheels: bool,
     joints: bool,

@@ -1,4 +1,4 @@
-//! The report about a tick: the only place that writes it.
+//! Writes the report about a tick. No other code writes it.
 
 use super::{ControlInputs, ControlLoop};
 use crate::{
@@ -38,7 +38,7 @@ impl<C: ChassisController> ControlLoop<C> {
     }
 }
 
-/// What changes slowly or interests only who watches.
+/// Records what changes slowly or only matters to an observer.
 fn record_slow(inputs: &ControlInputs<'_>, diagnostics: &mut DiagnosticsSnapshot) {
     let health = inputs.health;
     diagnostics.remote_raw = inputs.remote.raw;
@@ -69,7 +69,7 @@ impl TickState {
     }
 }
 
-/// Piece by piece: whole, the copy would cost a loop over its words in each tick.
+/// Copies field by field. Copying the whole struct would cost a loop over its words in each tick.
 fn record_sensors(found: &SensorsSnapshot, sensors: &mut SensorsSnapshot) {
     if sensors.imu.ts_us != found.imu.ts_us {
         sensors.imu = found.imu;
@@ -84,7 +84,7 @@ fn record_sensors(found: &SensorsSnapshot, sensors: &mut SensorsSnapshot) {
     sensors.ts_us = found.ts_us;
 }
 
-/// See [`record_sensors`].
+/// Copies field by field, as [`record_sensors`] does.
 fn record_estimate(found: &StateEstimate, estimate: &mut StateEstimate) {
     estimate.q_wxyz = found.q_wxyz;
     estimate.rpy_rad = found.rpy_rad;

@@ -94,7 +94,7 @@ impl Bench {
 const TWICE_AS_LARGE: [u8; 8] = [0x10, 120, 0, 0xA4, 0x01, 0x80, 0x07, 0x02];
 
 #[test]
-fn new_settings_are_answered_and_published() {
+fn new_settings_are_acknowledged_and_published() {
     let mut bench = Bench::new();
     assert_eq!(bench.run(8).diagnostics.tuning.revision, 0);
     bench.hear(BusId::Can2, 0x7A0, TWICE_AS_LARGE);
@@ -127,7 +127,7 @@ fn the_estimator_takes_new_wheels() {
 }
 
 #[test]
-fn diagnostics_show_the_newest_of_every_producer() {
+fn diagnostics_show_the_newest_value_of_each_producer() {
     let mut bench = Bench::new();
     for ts_us in 1..=3 {
         bench.remote.state.ts_us = ts_us;
@@ -148,7 +148,7 @@ fn diagnostics_show_the_newest_of_every_producer() {
 }
 
 #[test]
-fn what_changes_slowly_is_renewed_every_tenth_tick() {
+fn slow_diagnostics_are_updated_every_tenth_tick() {
     let mut bench = Bench::new();
     while !bench.tick().diagnostics.tick.count.is_multiple_of(10) {}
     bench.health.battery_v = 25.0;

@@ -1,4 +1,4 @@
-//! Requests over CAN and their answers.
+//! Handles requests over CAN and their replies.
 
 use super::{ControlLoop, heading_source};
 use crate::{
@@ -10,7 +10,7 @@ use crate::{
 };
 
 impl<C: ChassisController> ControlLoop<C> {
-    /// Rare, and never mixed into the code that runs for the frames of motors.
+    /// Kept out of line and apart from the code for motor frames, as other frames are rare.
     #[cold]
     #[inline(never)]
     pub(super) fn on_other_frame(
@@ -21,7 +21,7 @@ impl<C: ChassisController> ControlLoop<C> {
         diagnostics: &DiagnosticsSnapshot,
     ) {
         if !is_request(frame) {
-            return self.state.strangers.note(bus, frame.id());
+            return self.state.strangers.count(bus, frame.id());
         }
         let gate = self.gate();
         let Self {
@@ -41,7 +41,7 @@ impl<C: ChassisController> ControlLoop<C> {
             stationary_angle_rad: &|joint| motors.stationary_angle_rad(joint),
         };
         if let Some(reply) = tuning.on_frame(bus, frame, gate, access) {
-            // The channel gives one a bus and tick.
+            // The channel returns at most one reply for each bus and slot.
             let _ = self.replies.push((bus, reply));
         }
         let (mounting, revision) = before;
@@ -51,12 +51,12 @@ impl<C: ChassisController> ControlLoop<C> {
                 .restart(&self.config.wheel_odom, source, now_us);
         }
         if self.tuning.status().revision != revision {
-            self.take_config(now_us);
+            self.apply_config(now_us);
         }
     }
 
-    /// Settings have changed. The estimator keeps what it makes of its own; all other stages read them in each tick.
-    fn take_config(&mut self, now_us: u64) {
+    /// Applies changed settings. The estimator converts them once; all other stages read them in each tick.
+    fn apply_config(&mut self, now_us: u64) {
         self.estimator.set_odometry(&self.config.wheel_odom);
         self.centred_sticks.restart();
         self.arming.settings_changed(now_us);
@@ -69,18 +69,18 @@ impl<C: ChassisController> ControlLoop<C> {
             }
             return;
         }
-        // Motors take two of three mailboxes (layout), a reply the third.
+        // By the layout, motors take two of three mailboxes and a reply the third.
         let _ = self.frames.extend_from_slice(&self.replies);
         self.replies.clear();
         self.tuning.begin_slot();
     }
 
-    /// Rare.
+    /// Kept out of line, as recordings are rare.
     #[cold]
     #[inline(never)]
     fn send_recorded(&mut self) {
         let gate = self.gate();
-        // Motors take two of three mailboxes (layout), and no reply goes out in this tick.
+        // By the layout, motors take two of three mailboxes, and no reply is sent in this tick.
         self.frames
             .extend(self.tuning.recorder().next(gate, &self.state.sensors));
     }

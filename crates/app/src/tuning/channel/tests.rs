@@ -16,8 +16,8 @@ struct Bench {
     config: RobotConfig,
     bring_up: BringUp,
     diagnostics: DiagnosticsSnapshot,
-    /// Of the motor of joint 1 … 4.
-    standing: [Result<f32, NotStationary>; 4],
+    /// Stationary angles of the joint motors.
+    stationary: [Result<f32, NotStationary>; 4],
 }
 
 impl Default for Bench {
@@ -27,7 +27,7 @@ impl Default for Bench {
             config: RobotConfig::default(),
             bring_up: BringUp::default(),
             diagnostics: DiagnosticsSnapshot::default(),
-            standing: [Err(NotStationary::Unknown); 4],
+            stationary: [Err(NotStationary::Unknown); 4],
         }
     }
 }
@@ -45,12 +45,12 @@ impl Bench {
             bring_up: &mut self.bring_up,
             sensors: &self.diagnostics.sensors,
             diagnostics: &self.diagnostics,
-            stationary_angle_rad: &|joint| self.standing.get(joint).copied(),
+            stationary_angle_rad: &|joint| self.stationary.get(joint).copied(),
         };
         self.channel.on_frame(bus, frame, gate, access)
     }
 
-    /// The reply to the first request of a tick.
+    /// Returns the reply to the first request of a slot.
     fn reply(&mut self, gate: TuningGate, id: u16, payload: &[u8]) -> [u8; 8] {
         self.channel.begin_slot();
         let reply = self.ask(gate, id, payload).unwrap();
@@ -74,7 +74,7 @@ impl Bench {
 }
 
 #[test]
-fn an_old_client_writes_the_wheel_geometry_and_gets_its_own_bytes() {
+fn an_old_client_writes_the_wheel_geometry_and_gets_an_echo() {
     let mut bench = Bench::default();
     assert_eq!(bench.write(&GEOMETRY), GEOMETRY);
     let expected = WheelOdomConfig {
@@ -101,9 +101,9 @@ fn an_old_client_reads_the_defaults() {
     assert_eq!(bench.reply(TuningGate::Shut, 0x7A1, &[0x11]), expected);
 }
 
-/// 60.6 mm and 19.206 are nearer to 61 and 1921.
+/// 60.6 mm and 19.206 round to 61 and 1921.
 #[test]
-fn what_an_old_client_reads_is_rounded() {
+fn geometry_is_rounded_for_old_clients() {
     let mut bench = Bench::default();
     bench.config.wheel_odom.wheel_radius_m = 0.0606;
     bench.config.wheel_odom.gear_ratio = 19.206;
@@ -111,9 +111,9 @@ fn what_an_old_client_reads_is_rounded() {
     assert_eq!(bench.read(&[0x11]), expected);
 }
 
-/// IEEE 754 by hand: 30,000 = 0x46EA6000, 8,000 = 0x45FA0000.
+/// In IEEE 754, 30,000 is 0x46EA6000 and 8,000 is 0x45FA0000.
 #[test]
-fn any_setting_is_written_and_read() {
+fn every_setting_can_be_written_and_read() {
     let mut bench = Bench::default();
     let write = [0x20, 2, 2, 0, 0x00, 0x60, 0xEA, 0x46];
     assert_eq!(bench.write(&write), write);
@@ -130,11 +130,11 @@ fn any_setting_is_written_and_read() {
 
 /// A refusal never begins with the command of a reply that an old client knows.
 #[test]
-fn every_refusal_says_why_and_changes_nothing() {
+fn every_refusal_names_its_reason_and_changes_nothing() {
     const NAN: [u8; 4] = [0x00, 0x00, 0xC0, 0x7F];
     let [n0, n1, n2, n3] = NAN;
     let writes: [(&[u8], [u8; 5]); 18] = [
-        // No command, a short, an unknown one, a read on the identifier of writes.
+        // An empty, a short and an unknown command, and a read with the identifier of writes.
         (&[], [0xEE, 0x00, 1, 0, 0]),
         (
             &[0x10, 75, 0, 0xC2, 0x01, 0x10, 0x0E],
@@ -150,7 +150,7 @@ fn every_refusal_says_why_and_changes_nothing() {
         (&[0x20, 99, 1, 0, 0, 0, 0, 0], [0xEE, 0x20, 3, 99, 1]),
         (&[0x30, 99, 0, 0, 0, 0, 0, 0], [0xEE, 0x30, 3, 0, 0]),
         (&[0x30, 2, 0, 0, 0, 0, 0, 1], [0xEE, 0x30, 4, 0, 0]),
-        // Ratio 0, radius 0, a bit that has no meaning, a byte that must be 0, -1.0 mA as current limit.
+        // Ratio 0, radius 0, an undefined bit, a byte that must be 0, −1.0 mA as current limit.
         (&[0x10, 75, 0, 0xC2, 0x01, 0, 0, 0], [0xEE, 0x10, 4, 0, 0]),
         (
             &[0x10, 0, 0, 0xC2, 0x01, 0x10, 0x0E, 0],
@@ -163,7 +163,7 @@ fn every_refusal_says_why_and_changes_nothing() {
         (&[0x20, 2, 2, 1, 0, 0x60, 0xEA, 0x46], [0xEE, 0x20, 4, 2, 2]),
         (&[0x20, 2, 3, 0, 0, 0, 0x80, 0xBF], [0xEE, 0x20, 4, 2, 3]),
         (&[0x20, 2, 2, 0, n0, n1, n2, n3], [0xEE, 0x20, 6, 2, 2]),
-        // Lower limit of joint 0 at 2.0 rad, its upper one is 1.5.
+        // The lower limit of joint 0 at 2.0 rad would be above its upper one at 1.5.
         (&[0x20, 16, 2, 0, 0, 0, 0, 0x40], [0xEE, 0x20, 7, 16, 2]),
     ];
     for (payload, expected) in writes {
@@ -214,14 +214,14 @@ fn nothing_is_written_while_armed() {
 
 /// The geometry is one change: an impossible ratio keeps the radius that came with it out, too.
 #[test]
-fn a_write_is_done_whole_or_not_at_all() {
+fn a_write_is_applied_entirely_or_not_at_all() {
     let mut bench = Bench::default();
     bench.write(&[0x10, 75, 0, 0xC2, 0x01, 0, 0, 0]);
     assert!(bench.unchanged());
 }
 
 #[test]
-fn one_request_a_slot_and_bus() {
+fn one_request_is_executed_per_slot_and_bus() {
     let mut bench = Bench::default();
     bench.channel.begin_slot();
     assert!(bench.ask(TuningGate::Open, 0x7A1, &[0x11]).is_some());
@@ -236,7 +236,7 @@ fn one_request_a_slot_and_bus() {
 }
 
 #[test]
-fn other_frames_are_nobody_s_business() {
+fn other_frames_are_ignored() {
     let mut bench = Bench::default();
     for id in [0x7A2, 0x79F, 0x201, 0x000] {
         assert_eq!(bench.ask(TuningGate::Open, id, &GEOMETRY), None);
@@ -254,9 +254,9 @@ fn the_revision_counts_changes_only() {
     assert_eq!((status.accepted, status.revision), (3, 1));
 }
 
-/// Third step, motor 2 (joint 0), torque, 300 mN·m = 0x012C; then 501 mN·m = 0x01F5.
+/// Third step, motor 2 (joint 0), torque 300 mN·m = 0x012C; then 501 mN·m = 0x01F5.
 #[test]
-fn bring_up_is_asked_for_and_echoed() {
+fn bring_up_requests_are_executed_and_echoed() {
     let mut bench = Bench::default();
     let start = [0x40, 3, 2, 0, 0x2C, 0x01, 0, 0];
     assert_eq!(bench.write(&start), start);
@@ -273,7 +273,7 @@ fn bring_up_is_asked_for_and_echoed() {
     assert!(!bench.bring_up.blocks_arming());
 }
 
-/// Speed 3.5 m/s = 0x40600000, target 30 °C = 0x41F00000; both are other groups than 16.
+/// Speed 3.5 m/s = 0x40600000 and target 30 °C = 0x41F00000. Neither is in group 16.
 fn tuned() -> Bench {
     let mut bench = Bench::default();
     bench.write(&[0x20, 2, 0, 0, 0x00, 0x00, 0x60, 0x40]);
@@ -284,7 +284,7 @@ fn tuned() -> Bench {
 }
 
 #[test]
-fn one_group_gets_its_defaults_back_or_all_do() {
+fn one_group_or_all_groups_are_set_to_defaults() {
     let mut bench = tuned();
     let one = [0x30, 2, 0, 0, 0, 0, 0, 0];
     assert_eq!(bench.write(&one), one);
@@ -297,7 +297,7 @@ fn one_group_gets_its_defaults_back_or_all_do() {
     assert_eq!(bench.channel.status().revision, 4);
 }
 
-/// As `ROBOT_LAYOUT`, but for the left rear joint.
+/// `ROBOT_LAYOUT` with another left rear joint.
 static OTHER_ROBOT: MotorLayout = {
     let mut joints = *ROBOT_LAYOUT.joints();
     joints[1].config.max_kp = 50.0;
@@ -305,7 +305,7 @@ static OTHER_ROBOT: MotorLayout = {
 };
 
 #[test]
-fn the_defaults_are_those_of_the_robot_s_motor_layout() {
+fn the_defaults_come_from_the_motor_layout() {
     let mut bench = Bench {
         channel: TuningChannel::new(&OTHER_ROBOT),
         ..Bench::default()
@@ -319,9 +319,10 @@ fn the_defaults_are_those_of_the_robot_s_motor_layout() {
     assert_eq!(bench.config.joints[1].max_kp, 50.0);
 }
 
-/// State 5 = backing off, error 2 = read back differently, groups 1 and 4 of the table; 300 = 0x012C.
+/// State 5 is backing off, error 2 a record that read back differently; groups 1 and 4 of the table are unsaved; 300
+/// = 0x012C.
 #[test]
-fn anyone_may_ask_whether_everything_is_saved() {
+fn the_store_state_can_be_read_while_armed() {
     let mut bench = Bench::default();
     assert_eq!(bench.read(&[0x31]), [0x31, 0, 0, 0, 0, 0, 0, 0]);
     bench.diagnostics.params = ParamStatus {
@@ -337,7 +338,7 @@ fn anyone_may_ask_whether_everything_is_saved() {
     assert_eq!(bench.reply(TuningGate::Shut, 0x7A1, &[0x31]), expected);
 }
 
-/// Its bit in a mask by place in the table.
+/// The bit of a group in a mask by table index.
 fn place(number: u8) -> u32 {
     let mut groups = crate::tuning::PARAMETERS.iter();
     1 << groups.position(|group| group.number == number).unwrap()
@@ -345,7 +346,7 @@ fn place(number: u8) -> u32 {
 
 /// Groups 7 and 16 were refused: bits 7 and 16 of the reply.
 #[test]
-fn anyone_may_ask_what_boot_found_in_the_store() {
+fn the_boot_findings_can_be_read_while_armed() {
     let mut bench = Bench::default();
     assert_eq!(bench.read(&[0x32]), [0x32, 0, 0, 0, 0, 0, 0, 0]);
     bench.diagnostics.params = ParamStatus {
@@ -360,9 +361,9 @@ fn anyone_may_ask_what_boot_found_in_the_store() {
     assert_eq!(bench.reply(TuningGate::Shut, 0x7A1, &[0x32]), expected);
 }
 
-/// Page 7, battery: 24.5 V in steps of 2 mV are 12,250 = 0x2FDA. Page 0x71 is none.
+/// Page 7, battery: 24.5 V in steps of 2 mV is 12,250 = 0x2FDA. Page 0x71 does not exist.
 #[test]
-fn anyone_may_look_at_any_time() {
+fn live_pages_can_be_read_while_armed() {
     let mut bench = Bench::default();
     bench.diagnostics.battery_v = 24.5;
     let expected = [0x33, 7, 0xDA, 0x2F, 0, 0, 0, 0];
@@ -377,12 +378,12 @@ fn anyone_may_look_at_any_time() {
     assert!(bench.unchanged());
 }
 
-/// Joints 0 (forward) and 2 (mirrored), each with its motor at 0.75 rad (0x3F400000). As 0 rad, the zeros are there; as
-/// 0.5 rad (0x3F000000) the forward joint's zero is at 0.25, the mirrored one's at 1.25.
+/// The motors of joints 0 (forward) and 2 (mirrored) are at 0.75 rad (0x3F400000). Set to 0 rad, the zeros are there.
+/// Set to 0.5 rad (0x3F000000), the forward joint's zero is at 0.25 and the mirrored one's at 1.25.
 #[test]
-fn where_a_joint_stands_gets_the_angle_that_is_asked_for() {
+fn the_present_angle_of_a_joint_is_set_as_requested() {
     let mut bench = Bench {
-        standing: [
+        stationary: [
             Ok(0.75),
             Err(NotStationary::Unknown),
             Ok(0.75),
@@ -399,19 +400,19 @@ fn where_a_joint_stands_gets_the_angle_that_is_asked_for() {
     for joint in [0, 2] {
         let request = [0x41, joint, 0, 0, 0x00, 0x00, 0x00, 0x3F];
         assert_eq!(bench.write(&request), request);
-        // As after a reply that was lost.
+        // The request is repeated, as after a lost reply.
         assert_eq!(bench.write(&request), request);
     }
     assert_eq!((zero(&bench, 0), zero(&bench, 2)), (0.25, 1.25));
     assert_eq!(bench.channel.status().revision, 4);
 }
 
-/// 13 rad (0x41500000) is beyond any joint; NaN is 0x7FC00000. The motor at 12.5 rad as −1 rad (0xBF800000): a zero at
-/// 13.5.
+/// 13 rad (0x41500000) is beyond any joint, and NaN is 0x7FC00000. A motor at 12.5 rad set to −1 rad (0xBF800000)
+/// would have its zero at 13.5.
 #[test]
-fn a_zero_is_refused_where_it_would_be_wrong() {
+fn an_invalid_zero_is_refused() {
     let mut bench = Bench {
-        standing: [
+        stationary: [
             Ok(12.5),
             Err(NotStationary::Unknown),
             Ok(0.0),
@@ -437,9 +438,9 @@ fn a_zero_is_refused_where_it_would_be_wrong() {
     assert!(bench.unchanged());
 }
 
-/// 600 s = 0x0258; state 1, no samples yet.
+/// 600 s = 0x0258. State 1 without samples.
 #[test]
-fn a_recording_is_started_followed_and_ended() {
+fn a_recording_can_be_started_observed_and_ended() {
     let mut bench = Bench::default();
     assert_eq!(bench.read(&[0x43]), [0x43, 0, 0, 0, 0, 0, 0, 0]);
     let start = [0x42, 0x58, 0x02, 0, 0, 0, 0, 0];
@@ -465,9 +466,9 @@ fn a_recording_is_started_followed_and_ended() {
     assert!(bench.unchanged());
 }
 
-/// The store saves such a group even if it looks the same: flash may hold a record that was refused.
+/// The store saves this group although it looks unchanged, as flash may hold a refused record.
 #[test]
-fn defaults_that_change_nothing_are_told_to_the_store() {
+fn unchanged_defaults_are_reported_to_the_store() {
     let mut bench = Bench::default();
     let all = (1 << crate::tuning::PARAMETERS.len()) - 1;
     bench.write(&[0x30, 7, 0, 0, 0, 0, 0, 0]);
@@ -482,9 +483,9 @@ fn defaults_that_change_nothing_are_told_to_the_store() {
     assert_eq!((status.restored, status.revision), (all, 3));
 }
 
-/// The store looks at the settings only now and then: a change it has not seen yet is not called saved.
+/// The store reads the settings only now and then. A change it has not seen yet must not count as saved.
 #[test]
-fn a_change_is_unsaved_from_the_moment_of_its_reply() {
+fn a_change_counts_as_unsaved_from_its_reply_on() {
     let mut bench = tuned();
     assert_eq!(bench.read(&[0x31])[..4], [0x31, 1, 0, 1]);
     bench.diagnostics.params.seen = 2;
@@ -496,9 +497,9 @@ fn a_change_is_unsaved_from_the_moment_of_its_reply() {
 }
 
 proptest::proptest! {
-    /// Mostly real requests, each with any value: whatever the channel let in is in range and fits together.
+    /// Most requests are valid, with any value. Whatever the channel accepts must be in range and consistent.
     #[test]
-    fn no_sequence_of_requests_makes_a_configuration_that_is_none(
+    fn no_sequence_of_requests_makes_an_invalid_configuration(
         requests in proptest::collection::vec(
             (
                 proptest::prelude::prop_oneof![8 => 1u8..20, 1 => proptest::prelude::any::<u8>()],

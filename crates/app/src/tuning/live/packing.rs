@@ -1,4 +1,4 @@
-//! Fields ↔ the bits of a page.
+//! Packs fields into the bits of a page and unpacks them.
 
 use super::{LiveField, LiveKind, LivePage, LiveSource, LiveValue, PAGE_BYTES};
 
@@ -15,7 +15,7 @@ impl LivePage {
         [a, b, c, d, e, f]
     }
 
-    /// Each field with its value, in their order.
+    /// Returns each field with its value, in order.
     pub fn unpack(
         &self,
         bytes: [u8; PAGE_BYTES],
@@ -36,12 +36,12 @@ impl LiveField {
         u32::MAX.wrapping_shr(self.unused_bits())
     }
 
-    /// Fields have 1 to 32 bits, so this is a shift that there is.
+    /// Fields have 1 to 32 bits, so the shift is valid.
     fn unused_bits(&self) -> u32 {
         32_u32.wrapping_sub(self.bits.into())
     }
 
-    /// Of a measure: the lowest number.
+    /// The lowest number of a measured value, which means "unknown".
     fn unknown(&self) -> u32 {
         (self.mask() >> 1).wrapping_add(1)
     }

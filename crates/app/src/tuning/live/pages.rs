@@ -1,6 +1,6 @@
-//! Everything that can be watched. Numbers of pages and places of fields are on the wire: add, never move.
+//! All live pages. Page numbers and positions of fields are on the wire: add new ones, never move old ones.
 //!
-//! To add a page: an entry with the next free number here, and a line in the table of docs/tuning.md.
+//! A new page needs an entry with the next free number here and a line in the table of docs/tuning.md.
 
 use super::{
     LiveField,
@@ -14,16 +14,16 @@ mod radio;
 mod sensors;
 mod system;
 
-/// In the order of `ChassisCommand`.
+/// Names of the wheels, in the order of `ChassisCommand`.
 pub const WHEELS: [&str; 2] = ["left", "right"];
-/// In the order of `ChassisCommand`.
+/// Names of the joints, in the order of `ChassisCommand`.
 pub const JOINTS: [&str; 4] = ["left-front", "left-rear", "right-front", "right-rear"];
 const BUSES: [&str; 2] = ["can1", "can2"];
 const ROBOT: [&str; 1] = [""];
-/// Numbered as in docs/driving.md.
+/// Channel numbers as in docs/driving.md.
 const CHANNELS: [&str; 4] = ["0-3", "4-7", "8-11", "12-15"];
 
-/// By number.
+/// All pages, by number.
 pub static LIVE_PAGES: [LivePage; 36] = [
     page(0x00, "version", &ROBOT, &system::VERSION),
     page(0x01, "run", &ROBOT, &system::RUN),
@@ -136,7 +136,7 @@ macro_rules! set {
 
 use {choice, count, measure, set};
 
-/// Marks as a set, bit 0 first.
+/// Packs marks into a set, bit 0 first.
 fn marks<const N: usize>(marks: [bool; N]) -> u32 {
     let bits = marks.into_iter().zip(0_u32..);
     bits.fold(0, |set, (mark, bit)| {
@@ -144,7 +144,7 @@ fn marks<const N: usize>(marks: [bool; N]) -> u32 {
     })
 }
 
-/// For the names of a set.
+/// Name of a bit by its index.
 fn named(names: &[&'static str], bit: u8) -> Option<&'static str> {
     names.get(usize::from(bit)).copied()
 }

@@ -1,4 +1,4 @@
-//! Bytes by hand from the table in docs/tuning.md.
+//! Bytes written by hand from the table in docs/tuning.md.
 
 use super::*;
 use crate::{
@@ -54,7 +54,7 @@ fn numbers_and_names_are_unique_and_fields_fit() {
 
 /// Blockers 0 and 11 = 0x801; state 1.
 #[test]
-fn a_set_and_a_choice_lie_side_by_side() {
+fn a_set_and_a_choice_are_packed_side_by_side() {
     let bytes = read_of(0x03, |diagnostics| {
         diagnostics.arming.state = ArmingState::Armed;
     });
@@ -99,9 +99,9 @@ fn a_joint_is_shown_with_sign_and_state() {
     assert_eq!(value(joint, bytes, "marks"), LiveValue::Set(0b10));
 }
 
-/// 0.1 rad = 5.73 deg.
+/// 0.1 rad = 5.73°.
 #[test]
-fn each_axis_shows_its_own_measurement_once_there_is_one() {
+fn each_axis_shows_its_measurement_after_the_first_sample() {
     for (name, expected) in [
         ("accel", [1.0, -2.0, 3.0]),
         ("gyro", [10.0, -20.0, 30.0]),
@@ -130,9 +130,9 @@ fn each_axis_shows_its_own_measurement_once_there_is_one() {
     }
 }
 
-/// −500 rpm = 0xFE0C, 41 °C, 7 ms; angle 8,191 = 0x1FFF, 2,000 mA = 0x07D0. 0x8000 and 0x100: not known.
+/// −500 rpm = 0xFE0C, 41 °C, 7 ms; angle 8,191 = 0x1FFF, 2,000 mA = 0x07D0. 0x8000 and 0x100 mean unknown.
 #[test]
-fn a_wheel_is_shown_once_it_was_heard() {
+fn a_wheel_is_shown_after_its_first_report() {
     let shown = |page: u8, side: usize, ts_us| {
         read_of(page, |diagnostics| {
             let wheel = &mut diagnostics.sensors.motor.wheels[side];
@@ -147,9 +147,9 @@ fn a_wheel_is_shown_once_it_was_heard() {
     assert_eq!(shown(0x2A, 0, 0), [0xFF, 0x1F, 0x00, 0x80, 0, 0]);
 }
 
-/// The lowest number of its bits: −128 °C.
+/// The lowest number of eight bits is −128 °C.
 #[test]
-fn a_joint_that_is_silent_has_no_temperature() {
+fn a_silent_joint_has_an_unknown_temperature() {
     for (state, ts_us, byte) in [
         (JointState::Disabled, 1, 25),
         (JointState::Silent, 1, 0x80),
@@ -177,7 +177,7 @@ fn marks_have_their_names() {
 }
 
 #[test]
-fn a_page_has_a_number_for_each_part_and_no_more() {
+fn each_part_of_a_page_has_a_number() {
     let joint = page("joint");
     let numbers = [0, 3, 4, 256].map(|part| joint.number(part));
     assert_eq!(numbers, [Some(0x20), Some(0x23), None, None]);
@@ -190,9 +190,9 @@ fn channels_are_unknown_before_the_first_frame() {
     assert!(values.all(|(_, value)| value == LiveValue::Measure(None)));
 }
 
-/// The lowest number, 0x8000, is kept for that.
+/// The lowest number, 0x8000, is reserved for unknown values.
 #[test]
-fn what_is_not_known_is_not_a_number() {
+fn unknown_values_are_decoded_as_none() {
     let bytes = read_of(0x22, |_| {});
     assert_eq!(bytes, [0x00, 0x80, 0x00, 0x80, 0, 0]);
     let joint = page("joint");
@@ -204,9 +204,9 @@ fn what_is_not_known_is_not_a_number() {
     );
 }
 
-/// 40 rad is beyond 32.767; 300,000 ms beyond 255; 5,000 errors beyond 12 bits.
+/// 40 rad is beyond 32.767, 300,000 ms beyond 255, and 5,000 errors beyond 12 bits.
 #[test]
-fn what_is_too_large_stays_at_the_end() {
+fn values_out_of_range_saturate() {
     let bytes = read_of(0x20, |diagnostics| {
         let joint = &mut diagnostics.sensors.motor.joints[0];
         (joint.pos_rad, joint.vel_rps) = (40.0, -400.0);
@@ -224,9 +224,9 @@ fn what_is_too_large_stays_at_the_end() {
     assert_eq!(bytes, [0x00, 0xF0, 0xFF, 0x01, 0x00, 0x00]);
 }
 
-/// Version 0.2.0 of the workspace; make 1 of DM4310, 2 of RS00 (docs/parameters.md); 3,661 s = 0x0E4D.
+/// Version 0.2.0 of the workspace; make 1 is the DM4310 and 2 the RS00 (docs/parameters.md); 3,661 s = 0x0E4D.
 #[test]
-fn the_firmware_says_what_it_is_and_how_long_it_runs() {
+fn version_and_uptime_are_shown() {
     assert_eq!(read_of(0x00, |_| {}), [0, 2, 0, 1, 0, 0]);
     let diagnostics = DiagnosticsSnapshot::default();
     let rs00 = LiveSource {
@@ -242,7 +242,7 @@ fn the_firmware_says_what_it_is_and_how_long_it_runs() {
 }
 
 #[test]
-fn names_of_choices_are_those_of_the_firmware() {
+fn choices_have_the_firmware_s_names() {
     let boot = page("boot");
     for code in 0..=255 {
         let bytes = [code << 4, code >> 4, 0, 0, 0, 0];
@@ -260,7 +260,7 @@ fn names_of_choices_are_those_of_the_firmware() {
     );
 }
 
-/// Flags 1 and 25; wheels and CAN2 stopped.
+/// Flags 1 and 25 are set, and wheels and CAN2 stopped.
 #[test]
 fn stops_are_shown() {
     let bytes = read_of(0x04, |diagnostics| {
@@ -283,7 +283,7 @@ fn channels_are_four_a_page() {
 }
 
 #[test]
-fn a_page_that_is_none_is_refused() {
+fn unknown_pages_are_refused() {
     let diagnostics = DiagnosticsSnapshot::default();
     let source = LiveSource {
         diagnostics: &diagnostics,
@@ -295,9 +295,9 @@ fn a_page_that_is_none_is_refused() {
 }
 
 proptest::proptest! {
-    /// Whatever a table's own numbers are, they come back from their bits.
+    /// Whatever numbers a table has, they are recovered from their bits.
     #[test]
-    fn every_page_is_unpacked_whole(bytes in proptest::prelude::any::<[u8; 6]>()) {
+    fn every_page_is_unpacked_completely(bytes in proptest::prelude::any::<[u8; 6]>()) {
         for page in &LIVE_PAGES {
             proptest::prop_assert_eq!(page.unpack(bytes).count(), page.fields.len());
         }

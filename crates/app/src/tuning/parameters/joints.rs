@@ -1,11 +1,11 @@
-//! The joint controller and each joint's place and limits.
+//! The joint controller, and the place and limits of each joint.
 
 use crate::tuning::parameter::{Parameter, ParameterKind, float, integer, sign};
 
-/// What an MIT frame can say (DM4310 and RS00 alike, docs/hardware.md#mit-frames).
+/// Limits of an MIT frame, the same for DM4310 and RS00 (docs/hardware.md#mit-frames).
 const MAX_KP: f32 = 500.0;
 const MAX_KD: f32 = 5.0;
-/// The wider of the two motors' ranges (RS00: 4π rad, 33 rad/s, 14 N·m); a motor's own range still clamps.
+/// The wider of both motors' ranges (RS00: 4π rad, 33 rad/s, 14 N·m). Each motor's own range applies as well.
 const MAX_RAD: f32 = 12.57;
 const MAX_RPS: f32 = 33.0;
 const MAX_NM: f32 = 14.0;

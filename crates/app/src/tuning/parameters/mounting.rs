@@ -1,4 +1,4 @@
-//! How board and magnetometer sit.
+//! Mounting of the board and the magnetometer.
 
 use crate::{
     domain::Orientation,
@@ -7,13 +7,13 @@ use crate::{
 
 const COUNT: usize = Orientation::ALL.len();
 
-/// In the order of their numbers.
+/// Names by number.
 static BOARD: [&str; COUNT] = names();
-/// `UNSET` after the others.
+/// Names by number, followed by `UNSET`.
 static MAG: [&str; COUNT + 1] = names();
 const UNSET: &str = "unset";
 
-/// Those of the orientations; what is left over is `UNSET`.
+/// The names of the orientations, filled up with `UNSET`.
 const fn names<const N: usize>() -> [&'static str; N] {
     let mut names = [UNSET; N];
     let (mut left, mut all) = (names.as_mut_slice(), Orientation::ALL.as_slice());
@@ -24,7 +24,7 @@ const fn names<const N: usize>() -> [&'static str; N] {
     names
 }
 
-/// Their places.
+/// Largest index of each.
 const BOARD_MAX: f32 = (COUNT - 1) as f32;
 const MAG_MAX: f32 = COUNT as f32;
 

@@ -1,8 +1,8 @@
-//! The channels of an SBUS transmitter. Groups of a joint's kind would be more settings than a record holds.
+//! The channels of an SBUS transmitter. One group for each channel would hold more settings than fit into a record.
 
 use crate::tuning::parameter::{Parameter, ParameterKind, integer};
 
-/// Channel numbers from 0; 16 is none.
+/// Channel numbers from 0; 16 means no channel.
 #[rustfmt::skip] // One line a setting.
 pub static CHANNELS: [Parameter; 14] = [
     integer!(0, "steering-channel", "", 0.0, 16.0, radio.steering.index),

@@ -1,4 +1,5 @@
-//! Thresholds of `SafetyPolicy` and `Arming`. No limit here lets a rule be switched off, the battery's aside.
+//! Thresholds of `SafetyPolicy` and `Arming`. Their ranges do not allow disabling a rule, except for the battery
+//! limits.
 
 use crate::tuning::parameter::{Parameter, ParameterKind, float, integer};
 

@@ -2,13 +2,13 @@
 
 use crate::tuning::parameter::{Parameter, ParameterKind, float};
 
-/// BMI088 datasheet: zero-g offset 20 mg typical; six times that is a broken die.
+/// BMI088 datasheet: zero-g offset 20 mg typical. Six times that means a broken sensor.
 const ACCEL_BIAS_MPS2: f32 = 1.2;
 /// BMI088 datasheet: zero-rate offset ±1 °/s typical.
 const GYRO_BIAS_DPS: f32 = 10.0;
 const MIN_SCALE: f32 = 0.8;
 const MAX_SCALE: f32 = 1.2;
-/// Hard iron of motors nearby; the IST8310 measures up to 1600 µT.
+/// Hard iron of nearby motors. The IST8310 measures up to 1600 µT.
 const MAG_BIAS_UT: f32 = 1_000.0;
 
 #[rustfmt::skip] // One line a setting.
@@ -27,7 +27,7 @@ pub static IMU: [Parameter; 12] = [
     float!(11, "gyro-scale-z", "", MIN_SCALE, MAX_SCALE, imu.gyro_scale[2]),
 ];
 
-/// The two sides of the symmetric matrix are one setting.
+/// Both sides of the symmetric matrix are one setting.
 macro_rules! off_diagonal {
     ($index:literal, $name:literal, $row:literal, $column:literal) => {
         Parameter {
@@ -55,7 +55,7 @@ pub static MAG: [Parameter; 9] = [
 
 #[rustfmt::skip] // One line a setting.
 pub static HEATER: [Parameter; 4] = [
-    // The die is specified up to 85 °C; the board's other parts are nearby.
+    // The sensor is specified up to 85 °C, and other parts of the board are nearby.
     float!(0, "target-c", "degC", 0.0, 55.0, heater.target_c),
     float!(1, "kp", "1/K", 0.0, 10.0, heater.kp),
     float!(2, "ki", "1/(K*s)", 0.0, 10.0, heater.ki),

@@ -10,7 +10,7 @@ fn all() -> impl Iterator<Item = (&'static ParameterGroup, &'static Parameter)> 
         .flat_map(|group| group.parameters.iter().map(move |p| (group, p)))
 }
 
-/// Every field of the configuration is four bytes wide; three of the soft iron matrix are mirror images.
+/// Every field of the configuration has four bytes, and three of the soft-iron matrix are mirror images.
 #[test]
 fn every_field_of_the_configuration_has_a_setting() {
     let fields = size_of::<RobotConfig>() / 4;
@@ -49,7 +49,7 @@ fn a_setting_changes_its_own_field_and_no_other() {
 }
 
 #[test]
-fn the_limits_are_exact_and_the_default_lies_between() {
+fn limits_are_inclusive_and_defaults_lie_between_them() {
     for (group, parameter) in all() {
         let name = (group.name, parameter.name);
         let mut config = RobotConfig::default();
@@ -71,9 +71,9 @@ fn the_limits_are_exact_and_the_default_lies_between() {
     }
 }
 
-/// A stored record is read by position (docs/parameters.md).
+/// A stored record is read by index (docs/parameters.md).
 #[test]
-fn indices_begin_at_zero_and_leave_none_out() {
+fn indices_begin_at_zero_without_gaps() {
     for group in &PARAMETERS {
         let indices: Vec<u8> = group.parameters.iter().map(|p| p.index).collect();
         let expected: Vec<u8> = (0..group.parameters.len() as u8).collect();
@@ -81,8 +81,8 @@ fn indices_begin_at_zero_and_leave_none_out() {
     }
 }
 
-/// Number, version and settings of each group as robots in the field have stored them. A group that grows gets a new
-/// version and a new line; the old lines stay.
+/// Number, version and settings of each group as stored by robots in the field. A group that grows gets a new version
+/// and a new line, and the old lines stay.
 #[test]
 fn a_group_that_grows_gets_a_new_version() {
     let stored: [(u8, u8, usize); 16] = [
@@ -117,7 +117,7 @@ fn a_group_that_grows_gets_a_new_version() {
 
 /// An `f32` holds every integer up to 2^24.
 #[test]
-fn integers_travel_exactly() {
+fn integers_are_transferred_exactly() {
     for (_, parameter) in all() {
         if parameter.kind == ParameterKind::Integer {
             assert!(parameter.min >= 0.0 && parameter.max <= 16_777_216.0);
@@ -137,9 +137,9 @@ fn a_direction_is_forward_or_backward() {
     }
 }
 
-/// Group and index as robots in the field know them.
+/// Group and index as known to robots in the field.
 #[test]
-fn wire_numbers_stay() {
+fn wire_numbers_do_not_change() {
     let default = RobotConfig::default();
     let read = |group, index| find(group, index).unwrap().read(&default);
     assert_eq!(read(1, 0), 0.06);
@@ -167,13 +167,13 @@ fn the_soft_iron_matrix_stays_symmetric() {
     }
 }
 
-/// A reply has a bit for each (docs/tuning.md, `32`).
+/// A reply has one bit for each (docs/tuning.md, `32`).
 #[test]
-fn numbers_of_groups_are_below_32() {
+fn group_numbers_are_below_32() {
     assert!(PARAMETERS.iter().all(|group| group.number < 32));
 }
 
-/// Each name stands at the number that the firmware takes for it.
+/// Each name has the number that the firmware uses for it.
 #[test]
 fn a_choice_has_a_name_for_every_number() {
     for (_, parameter) in all() {

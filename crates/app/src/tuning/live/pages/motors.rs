@@ -1,4 +1,4 @@
-//! Wheels, joints, and their trials.
+//! Pages of wheels, joints, and bring-up.
 
 use super::*;
 use crate::domain::{JointFeedback, JointState, WheelFeedback};
@@ -6,10 +6,10 @@ use crate::domain::{JointFeedback, JointState, WheelFeedback};
 /// Angle and speed are unknown while the motor is silent.
 pub const JOINT: [LiveField; 4] = [
     measure!("angle-rad", "rad", 16, 1_000, |live, part| {
-        heard_joint(live, part).map_or(f32::NAN, |joint| joint.pos_rad)
+        reporting_joint(live, part).map_or(f32::NAN, |joint| joint.pos_rad)
     }),
     measure!("speed-rps", "rad/s", 16, 100, |live, part| {
-        heard_joint(live, part).map_or(f32::NAN, |joint| joint.vel_rps)
+        reporting_joint(live, part).map_or(f32::NAN, |joint| joint.vel_rps)
     }),
     choice!(
         "state",
@@ -30,7 +30,7 @@ pub const JOINT: [LiveField; 4] = [
 
 pub const JOINT_HEALTH: [LiveField; 3] = [
     measure!("temperature-c", "degC", 8, 1, |live, part| {
-        heard_joint(live, part).map_or(f32::NAN, |joint| joint.temperature_c)
+        reporting_joint(live, part).map_or(f32::NAN, |joint| joint.temperature_c)
     }),
     count!("fault-code", "", 32, |live, part| joint(live, part)
         .fault_code),
@@ -38,13 +38,13 @@ pub const JOINT_HEALTH: [LiveField; 3] = [
         / 1_000),
 ];
 
-/// Rotor speed before the gear. Unknown until the motor was heard.
+/// Rotor speed before the gear, unknown until the motor has reported.
 pub const WHEEL: [LiveField; 4] = [
     measure!("rotor-rpm", "rpm", 16, 1, |live, part| {
-        heard_wheel(live, part).map_or(f32::NAN, |wheel| wheel.rpm.into())
+        reporting_wheel(live, part).map_or(f32::NAN, |wheel| wheel.rpm.into())
     }),
     measure!("temperature-c", "degC", 9, 1, |live, part| {
-        heard_wheel(live, part).map_or(f32::NAN, |wheel| wheel.temperature_c.into())
+        reporting_wheel(live, part).map_or(f32::NAN, |wheel| wheel.temperature_c.into())
     }),
     count!("age-ms", "ms", 16, |live, part| wheel(live, part).age_us
         / 1_000),
@@ -60,7 +60,7 @@ pub const WHEEL_MOTOR: [LiveField; 2] = [
     .rotor_angle
     .into()),
     measure!("current-ma", "mA", 16, 1, |live, part| {
-        heard_wheel(live, part).map_or(f32::NAN, |wheel| wheel.current_ma)
+        reporting_wheel(live, part).map_or(f32::NAN, |wheel| wheel.current_ma)
     }),
 ];
 
@@ -87,7 +87,7 @@ pub const BRING_UP: [LiveField; 4] = [
     }),
 ];
 
-/// Which motors keep the robot from being armed; renewed while it is disarmed.
+/// Motors that block arming, updated while the robot is disarmed.
 pub const FINDINGS: [LiveField; 5] = [
     set!(
         "wheels-never-heard",
@@ -144,24 +144,24 @@ const TRIALS: [&str; 7] = [
     "silent",
 ];
 
-/// `part` is one there is.
+/// `part` is a valid index.
 fn joint<'a>(live: &LiveSource<'a>, part: usize) -> &'a JointFeedback {
     let joints = &live.diagnostics.sensors.motor.joints;
     let [first, ..] = joints;
     joints.get(part).unwrap_or(first)
 }
 
-fn heard_joint<'a>(live: &LiveSource<'a>, part: usize) -> Option<&'a JointFeedback> {
+fn reporting_joint<'a>(live: &LiveSource<'a>, part: usize) -> Option<&'a JointFeedback> {
     Some(joint(live, part)).filter(|joint| joint.ts_us != 0 && joint.state != JointState::Silent)
 }
 
-/// `part` is one there is.
+/// `part` is a valid index.
 fn wheel<'a>(live: &LiveSource<'a>, part: usize) -> &'a WheelFeedback {
     let wheels = &live.diagnostics.sensors.motor.wheels;
     let [first, ..] = wheels;
     wheels.get(part).unwrap_or(first)
 }
 
-fn heard_wheel<'a>(live: &LiveSource<'a>, part: usize) -> Option<&'a WheelFeedback> {
+fn reporting_wheel<'a>(live: &LiveSource<'a>, part: usize) -> Option<&'a WheelFeedback> {
     Some(wheel(live, part)).filter(|wheel| wheel.ts_us != 0)
 }

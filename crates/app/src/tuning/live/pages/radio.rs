@@ -1,4 +1,4 @@
-//! The pilot and the way from him to the robot.
+//! Pages of the pilot's switches and the radio link.
 
 use super::*;
 
@@ -78,7 +78,7 @@ pub const ERRORS: [LiveField; 4] = [
         .overrun),
 ];
 
-/// Four channels a page, −1 … 1.
+/// Four channels a page, −1…1.
 pub const CHANNELS: [LiveField; 4] = [
     measure!("first", "", 12, 1_000, |live, part| channel(live, part, 0)),
     measure!("second", "", 12, 1_000, |live, part| channel(live, part, 1)),
@@ -86,7 +86,8 @@ pub const CHANNELS: [LiveField; 4] = [
     measure!("fourth", "", 12, 1_000, |live, part| channel(live, part, 3)),
 ];
 
-/// The same as the receiver sends them: SBUS 0 … 2047; of DBUS five, the others 0. 0 until a frame came.
+/// The same channels in raw counts: SBUS 0…2047; DBUS has five, and the others are 0. All are 0 before the first
+/// frame.
 pub const RAW_CHANNELS: [LiveField; 4] = [
     count!("first", "", 12, |live, part| raw_channel(live, part, 0)),
     count!("second", "", 12, |live, part| raw_channel(live, part, 1)),
@@ -96,7 +97,7 @@ pub const RAW_CHANNELS: [LiveField; 4] = [
 
 const SWITCHES: [&str; 4] = ["enabled", "disabled", "e-stop", "dead-man"];
 
-/// Unknown until a frame came.
+/// NaN before the first frame.
 fn channel(live: &LiveSource<'_>, part: usize, place: usize) -> f32 {
     let remote = &live.diagnostics.remote;
     match remote.channels.get(index_of(part, place)) {

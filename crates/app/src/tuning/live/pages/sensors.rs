@@ -1,4 +1,4 @@
-//! IMU, magnetometer and what is made of them.
+//! Pages of IMU, magnetometer and attitude.
 
 use super::*;
 
@@ -98,7 +98,7 @@ pub const HEALTH: [LiveField; 5] = [
         .reinits),
 ];
 
-/// Samples of the IMU that were not used.
+/// IMU samples that were rejected.
 pub const REJECTS: [LiveField; 4] = [
     count!("absent", "", 12, |live, _| live
         .diagnostics
@@ -122,7 +122,7 @@ pub const REJECTS: [LiveField; 4] = [
         .saturated),
 ];
 
-/// What was wrong with the gyro's buffer.
+/// Faults of the gyro's buffer.
 pub const GYRO_BUFFER: [LiveField; 4] = [
     count!("spikes", "", 12, |live, _| live
         .diagnostics
@@ -146,7 +146,7 @@ pub const GYRO_BUFFER: [LiveField; 4] = [
         .overruns),
 ];
 
-/// The offset that is taken out.
+/// The offset that is removed.
 pub const GYRO_BIAS: [LiveField; 3] = [
     measure!("x-dps", "deg/s", 16, 1_000, |live, _| bias(live, 0)),
     measure!("y-dps", "deg/s", 16, 1_000, |live, _| bias(live, 1)),
@@ -162,7 +162,7 @@ const CALIBRATION: [&str; 5] = [
 ];
 const MARKS: [&str; 3] = ["calibrated", "attitude-valid", "saturated"];
 
-/// Unknown before the first sample, at time 0.
+/// NaN before the first sample, at time 0.
 fn axis(vector: [f32; 3], axis: usize, ts_us: u64) -> f32 {
     match vector.get(axis) {
         Some(value) if ts_us != 0 => *value,

@@ -1,7 +1,7 @@
-//! The firmware, the board, and who may move.
+//! Pages of the firmware, the board, arming and safety.
 
 use super::*;
-use crate::{diagnostics::BusStrangers, domain::BusHealth};
+use crate::{diagnostics::BusUnknownFrames, domain::BusHealth};
 
 pub const VERSION: [LiveField; 4] = [
     count!("major", "", 8, |_, _| number(env!(
@@ -69,7 +69,7 @@ pub const ARMING: [LiveField; 3] = [
     }),
 ];
 
-/// Why the last flip of the enable switch did not arm.
+/// Why the last request to arm was refused.
 pub const REFUSED: [LiveField; 2] = [
     set!("blockers", 32, ArmingBlockers::name_of_bit, |live, _| live
         .diagnostics
@@ -81,13 +81,14 @@ pub const REFUSED: [LiveField; 2] = [
     }),
 ];
 
-/// Frames that nobody here knows; identifiers are 0 until one came.
+/// Frames with unknown identifiers; the identifiers are 0 before the first one.
 pub const STRANGERS: [LiveField; 3] = [
-    count!("frames", "", 16, |live, bus| stranger(live, bus).frames),
-    count!("last-id", "", 12, |live, bus| stranger(live, bus)
+    count!("frames", "", 16, |live, bus| unknown_frames(live, bus)
+        .frames),
+    count!("last-id", "", 12, |live, bus| unknown_frames(live, bus)
         .last_id
         .into()),
-    count!("esc-id", "", 12, |live, bus| stranger(live, bus)
+    count!("esc-id", "", 12, |live, bus| unknown_frames(live, bus)
         .esc_id
         .into()),
 ];
@@ -130,7 +131,7 @@ pub const POWER: [LiveField; 1] = [measure!("battery-v", "V", 16, 500, |live, _|
     }
 })];
 
-/// What boot found in the sectors of the settings.
+/// State of the parameter sectors as found at boot.
 pub const STORE: [LiveField; 3] = [
     count!("lost-sectors", "", 4, |live, _| live
         .diagnostics
@@ -148,7 +149,7 @@ pub const STORE: [LiveField; 3] = [
         .generation),
 ];
 
-/// Jitter by the core's cycle counter, 168 a microsecond.
+/// Jitter by the core's cycle counter, 168 counts per µs.
 pub const TICK: [LiveField; 2] = [
     count!("max-jitter-cycles", "", 24, |live, _| live
         .diagnostics
@@ -197,7 +198,7 @@ pub(super) const RESET_CAUSES: [&str; 8] = [
     "low-power",
 ];
 
-/// As `CrashCause::text`.
+/// The texts of `CrashCause::text`.
 pub(super) const LAST_WORDS: [&str; 10] = [
     "nothing was reported",
     "panic",
@@ -214,13 +215,13 @@ pub(super) const LAST_WORDS: [&str; 10] = [
 const DEBUGGER: [&str; 2] = ["attached", "catches"];
 const STOPPED: [&str; 4] = ["wheels", "joints", "can1", "can2"];
 
-/// `bus` is one there is.
+/// `bus` is a valid index.
 fn health<'a>(live: &LiveSource<'a>, bus: usize) -> &'a BusHealth {
     let [first, second] = &live.diagnostics.can;
     if bus == 0 { first } else { second }
 }
 
-/// As in stored settings; 0 if they differ.
+/// The make of all joint motors by its number in stored settings; 0 if they differ.
 fn make_of_all(live: &LiveSource<'_>, _: usize) -> u32 {
     let mut makes = live.layout.joints().iter().map(|slot| slot.motor.make());
     let first = makes.next().unwrap_or(0);
@@ -231,7 +232,7 @@ fn make_of_all(live: &LiveSource<'_>, _: usize) -> u32 {
     }
 }
 
-/// Decimal digits; anything else ends it.
+/// Parses decimal digits up to the first other character.
 fn number(text: &str) -> u32 {
     let digits = text.bytes().map_while(|byte| char::from(byte).to_digit(10));
     digits.fold(0, |sum: u32, digit| {
@@ -239,7 +240,7 @@ fn number(text: &str) -> u32 {
     })
 }
 
-fn stranger(live: &LiveSource<'_>, bus: usize) -> BusStrangers {
+fn unknown_frames(live: &LiveSource<'_>, bus: usize) -> BusUnknownFrames {
     let buses = &live.diagnostics.strangers.buses;
     buses.get(bus).copied().unwrap_or_default()
 }

@@ -1,36 +1,40 @@
-//! Which way a joint is being turned: what one compares with the model in the first step.
+//! Shows which way a joint is turned by hand in the first step, to compare it with the model.
 
 use crate::domain::JointFeedback;
 
-/// Less than this since the last look is noise.
+/// A smaller change since the last update is noise.
 const STILL_RAD: f32 = 0.02;
 
+/// Direction of a joint's motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Turn {
+    /// The joint does not move.
     #[default]
     Still,
-    /// The angle grows.
+    /// The angle increases.
     Forward,
+    /// The angle decreases.
     Back,
 }
 
+/// Angle and motion of one joint.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct JointReading {
-    /// Angle in joint coordinates.
+    /// Angle in joint coordinates, in mrad.
     pub pos_mrad: i32,
-    /// Since the last look.
+    /// Motion since the last update.
     pub turn: Turn,
 }
 
-/// Remembers the angles of the last look.
+/// Compares the joints' angles with those of the last update.
 #[derive(Clone, Debug, Default)]
-pub struct JointWatch {
+pub struct JointMotionMonitor {
     last_rad: [f32; 4],
 }
 
-impl JointWatch {
-    /// Call a few times a second. A first look at a joint off zero shows a turn.
-    pub fn look(&mut self, joints: &[JointFeedback; 4]) -> [JointReading; 4] {
+impl JointMotionMonitor {
+    /// Takes new angles; call it a few times a second. In the first call a joint off zero appears to turn.
+    pub fn update(&mut self, joints: &[JointFeedback; 4]) -> [JointReading; 4] {
         let mut readings = [JointReading::default(); 4];
         for ((reading, last_rad), joint) in readings.iter_mut().zip(&mut self.last_rad).zip(joints)
         {
@@ -53,7 +57,7 @@ impl JointWatch {
 mod tests {
     use super::*;
 
-    /// The second joint stands there.
+    /// Joint angles with the second joint at `pos_rad`.
     fn at(pos_rad: f32) -> [JointFeedback; 4] {
         let mut joints = [JointFeedback::default(); 4];
         joints[1].pos_rad = pos_rad;
@@ -61,23 +65,23 @@ mod tests {
     }
 
     #[test]
-    fn a_fiftieth_of_a_radian_is_noise() {
+    fn motion_below_a_fiftieth_of_a_radian_is_noise() {
         for (moved_rad, turn) in [
             (0.02, Turn::Still),
             (-0.02, Turn::Still),
             (0.021, Turn::Forward),
             (-0.021, Turn::Back),
         ] {
-            let reading = JointWatch::default().look(&at(moved_rad))[1];
+            let reading = JointMotionMonitor::default().update(&at(moved_rad))[1];
             assert_eq!(reading.turn, turn, "{moved_rad}");
         }
     }
 
     #[test]
-    fn a_turned_joint_shows_which_way() {
-        let mut watch = JointWatch::default();
+    fn a_turned_joint_shows_its_direction() {
+        let mut watch = JointMotionMonitor::default();
         let turns: Vec<_> = [0.0, 0.3, 0.31, 0.1]
-            .map(|pos_rad| watch.look(&at(pos_rad))[1])
+            .map(|pos_rad| watch.update(&at(pos_rad))[1])
             .map(|reading| (reading.pos_mrad, reading.turn))
             .to_vec();
         assert_eq!(

@@ -1,4 +1,4 @@
-//! Whether anything may move in this tick, and whether flash may be written.
+//! Decides whether anything may move in this tick, and whether flash may be written.
 
 use super::{ControlInputs, ControlLoop};
 use crate::{
@@ -10,25 +10,25 @@ use crate::{
 };
 
 impl<C: ChassisController> ControlLoop<C> {
-    pub(super) fn guard_flash(&mut self, inputs: &ControlInputs<'_>, now_us: u64) {
+    pub(super) fn update_flash_permit(&mut self, inputs: &ControlInputs<'_>, now_us: u64) {
         if inputs.flash_request != FlashRequest::None {
-            return self.consider_flash(inputs, now_us);
+            return self.step_flash_permit(inputs, now_us);
         }
         self.flash
             .idle(self.state.arming.state, inputs.watchdog, now_us);
     }
 
-    /// Rare.
+    /// Kept out of line, as requests are rare.
     #[cold]
     #[inline(never)]
-    fn consider_flash(&mut self, inputs: &ControlInputs<'_>, now_us: u64) {
+    fn step_flash_permit(&mut self, inputs: &ControlInputs<'_>, now_us: u64) {
         self.flash.step(
             &FlashPermitInputs {
                 request: inputs.flash_request,
                 watchdog: inputs.watchdog,
                 arming: self.state.arming.state,
                 enabled: inputs.remote.operator.enabled,
-                tries_motors: self.bring_up.tries_motors(),
+                tests_motors: self.bring_up.tests_motors(),
                 motor: &self.state.sensors.motor,
                 buses: &self.motors.layout().buses(),
                 can: &inputs.health.can,
@@ -37,9 +37,9 @@ impl<C: ChassisController> ControlLoop<C> {
         );
     }
 
-    /// What arming looks at and need not be newer than some milliseconds.
+    /// Updates conditions for arming that may be some milliseconds old.
     #[inline(never)]
-    pub(super) fn look_at_what_must_rest(&mut self, inputs: &ControlInputs<'_>, now_us: u64) {
+    pub(super) fn update_arming_conditions(&mut self, inputs: &ControlInputs<'_>, now_us: u64) {
         let (state, config) = (&mut self.state, &self.config);
         let fresh = state.link.age_us <= config.safety.remote_timeout_us;
         state.sticks_centred =
@@ -52,7 +52,7 @@ impl<C: ChassisController> ControlLoop<C> {
         }
     }
 
-    pub(super) fn judge(
+    pub(super) fn decide_permit(
         &mut self,
         inputs: &ControlInputs<'_>,
         now_us: u64,
@@ -84,7 +84,7 @@ impl<C: ChassisController> ControlLoop<C> {
                 calibrated: inputs.health.imu_calibrated,
                 motor: &state.motors,
                 read_only: self.bring_up.blocks_arming(),
-                tries_motors: self.bring_up.tries_motors(),
+                tests_motors: self.bring_up.tests_motors(),
                 flash_busy: self.flash.grant().blocks_arming,
                 params: inputs.params,
                 debugger_catches: inputs.health.debug_probe.catches,
