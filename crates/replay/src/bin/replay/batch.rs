@@ -10,35 +10,15 @@ use std::{
 
 use anyhow::Context;
 use indicatif::{ProgressBar, ProgressStyle};
-use robot_chart::Figure;
-use robot_replay::{At, Figures, Mode, Run, Trial, run as replay};
+use robot_replay::{At, Trial, run as replay};
 
-use crate::{csv, report};
+use crate::{
+    csv,
+    outcome::{self, Outcome, Task},
+    report,
+};
 
-/// What is done with each trial.
-pub struct Task {
-    pub mode: Mode,
-    pub gyro_offset_dps: [f32; 3],
-    pub out: PathBuf,
-}
-
-pub struct Outcome {
-    pub name: String,
-    pub seconds: f64,
-    pub rows_without_motion: usize,
-    pub rows_without_field: usize,
-    /// Samples cut off at the end of the BMI088's range.
-    pub saturated_samples: usize,
-    /// Time without a valid estimate after the first valid one.
-    pub invalid_s: f64,
-    pub gyro_bias_at_end_dps: [f32; 3],
-    /// `None` without reference.
-    pub at_samples: Option<Figures>,
-    pub at_1khz: Option<Figures>,
-    pub plots: Vec<Figure>,
-}
-
-/// In the order of `files`; the first error ends it.
+/// Runs all trials and returns their outcomes in the order of `files`; the first error ends it.
 pub fn run(task: &Task, files: &[PathBuf]) -> anyhow::Result<Vec<Outcome>> {
     let bar = ProgressBar::new(files.len() as u64);
     let style = ProgressStyle::with_template("{bar:40} {pos} of {len} trials, {elapsed}")?;
@@ -81,22 +61,12 @@ fn run_one(task: &Task, file: &Path) -> anyhow::Result<Outcome> {
         seconds: trial.seconds(),
         rows_without_motion: trial.rows_without_motion,
         rows_without_field: trial.rows_without_field,
-        saturated_samples: saturated_samples(&trial),
-        invalid_s: invalid_s(&run),
+        saturated_samples: outcome::saturated_samples(&trial),
+        invalid_s: outcome::invalid_s(&run),
         gyro_bias_at_end_dps: bias_rps.map(f32::to_degrees),
         at_samples: run.score(&trial, At::Samples),
         at_1khz: run.score(&trial, At::EveryTick),
         plots: report::plots(&trial, &run, task.gyro_offset_dps)?,
         name: trial.name,
     })
-}
-
-fn saturated_samples(trial: &Trial) -> usize {
-    let motions = trial.samples.iter().filter_map(|sample| sample.motion);
-    motions.filter(|motion| motion.saturated).count()
-}
-
-fn invalid_s(run: &Run) -> f64 {
-    let settled = run.ticks.iter().skip_while(|tick| !tick.valid);
-    settled.filter(|tick| !tick.valid).count() as f64 * 1e-3
 }

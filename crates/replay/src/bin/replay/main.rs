@@ -3,6 +3,7 @@
 mod batch;
 mod csv;
 mod data_folder;
+mod outcome;
 mod report;
 mod summary;
 mod table;
@@ -17,7 +18,7 @@ use anyhow::{Context, bail, ensure};
 use clap::Parser;
 use robot_replay::{Mode, trial_files};
 
-use batch::Task;
+use outcome::Task;
 
 /// Run the firmware's estimator over recorded trials: one CSV of 1 kHz attitude a trial, a table of errors, a report
 /// with plots.

@@ -8,7 +8,7 @@ use robot_chart::{
 use robot_replay::{At, Figures, Instant, Run, Tick, Trial};
 
 use crate::{
-    batch::{Outcome, Task},
+    outcome::{Outcome, Task},
     table,
 };
 

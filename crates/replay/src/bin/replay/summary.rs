@@ -6,7 +6,7 @@ use robot_replay::{Figures, Mode};
 use serde::Serialize;
 
 use crate::{
-    batch::{Outcome, Task},
+    outcome::{Outcome, Task},
     table,
 };
 

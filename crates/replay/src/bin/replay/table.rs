@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use robot_replay::{Figures, Mode};
 
-use crate::batch::{Outcome, Task};
+use crate::outcome::{Outcome, Task};
 
 /// Errors of each trial and their mean, and a line for each trial in which something was missing.
 pub fn table(task: &Task, outcomes: &[Outcome]) -> String {

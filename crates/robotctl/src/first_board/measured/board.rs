@@ -4,7 +4,7 @@ use super::verdict::{Measured, Verdict, read, vector};
 use crate::tuning::{TuningClient, TuningError};
 
 pub fn boot(client: &mut TuningClient) -> Result<Measured, TuningError> {
-    let mut found = Measured::new();
+    let mut found = Measured::default();
     let version = read(client, "version", 0)?;
     for part in ["major", "minor", "patch"] {
         found.value(&version, part);
@@ -34,7 +34,7 @@ pub fn boot(client: &mut TuningClient) -> Result<Measured, TuningError> {
 }
 
 pub fn battery(client: &mut TuningClient) -> Result<Measured, TuningError> {
-    let mut found = Measured::new();
+    let mut found = Measured::default();
     let volts = found.value(&read(client, "power", 0)?, "battery-v");
     found.must(volts > 0.0, || "no voltage is measured".to_owned());
     if found.verdict == Verdict::AsItMustBe {
@@ -44,7 +44,7 @@ pub fn battery(client: &mut TuningClient) -> Result<Measured, TuningError> {
 }
 
 pub fn jitter(client: &mut TuningClient) -> Result<Measured, TuningError> {
-    let mut found = Measured::new();
+    let mut found = Measured::default();
     let tick = read(client, "tick", 0)?;
     let cycles = found.value(&tick, "max-jitter-cycles");
     found.must(cycles > 0.0, || "the cycle counter does not run".to_owned());
@@ -62,7 +62,7 @@ pub fn jitter(client: &mut TuningClient) -> Result<Measured, TuningError> {
 }
 
 pub fn watchdog(client: &mut TuningClient) -> Result<Measured, TuningError> {
-    let mut found = Measured::new();
+    let mut found = Measured::default();
     let cause = read(client, "boot", 0)?.choice("reset-cause");
     found.must(cause == "watchdog", || {
         format!("the last reset was by {cause}")
@@ -72,7 +72,7 @@ pub fn watchdog(client: &mut TuningClient) -> Result<Measured, TuningError> {
 }
 
 pub fn heater(client: &mut TuningClient) -> Result<Measured, TuningError> {
-    let mut found = Measured::new();
+    let mut found = Measured::default();
     let imu = read(client, "imu", 0)?;
     found.value(&imu, "temperature-c");
     found.value(&imu, "heater-percent");
@@ -88,7 +88,7 @@ pub fn heater(client: &mut TuningClient) -> Result<Measured, TuningError> {
 }
 
 pub fn erase(client: &mut TuningClient) -> Result<Measured, TuningError> {
-    let mut found = Measured::new();
+    let mut found = Measured::default();
     let boot = read(client, "boot", 0)?;
     let stalls = found.value(&boot, "stalls");
     let longest = found.value(&boot, "longest-stall-ms");

@@ -36,7 +36,7 @@ pub fn circle(client: &mut TuningClient) -> Result<Measured, TuningError> {
 }
 
 fn circle_of(path: &[[f64; 3]]) -> Measured {
-    let mut found = Measured::new();
+    let mut found = Measured::default();
     let middle = |axis: usize| {
         let of_axis = || path.iter().map(move |field| field[axis]);
         let (low, high) = (

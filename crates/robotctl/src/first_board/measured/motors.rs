@@ -16,7 +16,7 @@ const LOOK: Duration = if cfg!(test) {
 
 /// Watches all joints while the robot is disarmed.
 pub fn joints_answer(client: &mut TuningClient) -> Result<Measured, TuningError> {
-    let mut found = Measured::new();
+    let mut found = Measured::default();
     let mut oldest_ms = [0.0_f64; JOINTS.len()];
     let end = Instant::now() + LOOK;
     loop {
@@ -45,7 +45,7 @@ pub fn joints_answer(client: &mut TuningClient) -> Result<Measured, TuningError>
 }
 
 pub fn wheels_heard(client: &mut TuningClient) -> Result<Measured, TuningError> {
-    let mut found = Measured::new();
+    let mut found = Measured::default();
     for (part, name) in WHEELS.iter().enumerate() {
         let wheel = read(client, "wheel", part)?;
         let age = wheel.number("age-ms").unwrap_or(f64::INFINITY);

@@ -4,7 +4,7 @@ use super::verdict::{Measured, read};
 use crate::tuning::{TuningClient, TuningError};
 
 pub fn radio(client: &mut TuningClient) -> Result<Measured, TuningError> {
-    let mut found = Measured::new();
+    let mut found = Measured::default();
     let radio = read(client, "radio", 0)?;
     let rate = found.value(&radio, "rate-hz");
     let quality = found.value(&radio, "quality-percent");
@@ -31,7 +31,7 @@ pub fn radio(client: &mut TuningClient) -> Result<Measured, TuningError> {
 }
 
 pub fn radio_off(client: &mut TuningClient) -> Result<Measured, TuningError> {
-    let mut found = Measured::new();
+    let mut found = Measured::default();
     let radio = read(client, "radio", 0)?;
     found.value(&radio, "rate-hz");
     found.value(&radio, "age-ms");

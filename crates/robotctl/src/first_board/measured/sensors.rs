@@ -18,7 +18,7 @@ const PAUSE: Duration = Duration::from_millis(20);
 
 /// Expects gravity along one axis only. The magnetometer's values go into the report for its reader.
 fn gravity_on(client: &mut TuningClient, axis: usize, sign: f64) -> Result<Measured, TuningError> {
-    let mut found = Measured::new();
+    let mut found = Measured::default();
     let accel = vector(&mut found, client, "accel", "mps2")?;
     vector(&mut found, client, "mag", "ut")?;
     let along = sign * accel[axis];
@@ -52,7 +52,7 @@ pub fn left_up(client: &mut TuningClient) -> Result<Measured, TuningError> {
 
 /// Measures the fastest rate of each axis while the board is turned to the left.
 pub fn left_turn(client: &mut TuningClient) -> Result<Measured, TuningError> {
-    let mut found = Measured::new();
+    let mut found = Measured::default();
     let mut fastest = [0.0_f64; 3];
     let end = Instant::now() + TURN;
     loop {
@@ -79,7 +79,7 @@ pub fn left_turn(client: &mut TuningClient) -> Result<Measured, TuningError> {
 }
 
 pub fn after_an_hour(client: &mut TuningClient) -> Result<Measured, TuningError> {
-    let mut found = Measured::new();
+    let mut found = Measured::default();
     let uptime = found.value(&read(client, "run", 0)?, "uptime-s");
     found.must(uptime >= 3_600.0, || {
         "the robot has not run for an hour yet".to_owned()

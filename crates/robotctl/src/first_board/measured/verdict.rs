@@ -2,8 +2,10 @@
 
 use crate::tuning::{LiveReading, TuningClient, TuningError, live_page};
 
-#[derive(Clone, Debug, PartialEq)]
+/// Whether a check passed.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub enum Verdict {
+    #[default]
     AsItMustBe,
     Wrong(String),
     /// Only the user can judge it.
@@ -11,7 +13,7 @@ pub enum Verdict {
 }
 
 /// Values with their names, and the verdict on them.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Measured {
     pub values: Vec<(String, f64)>,
     pub words: Vec<(String, String)>,
@@ -19,14 +21,6 @@ pub struct Measured {
 }
 
 impl Measured {
-    pub fn new() -> Self {
-        Self {
-            values: Vec::new(),
-            words: Vec::new(),
-            verdict: Verdict::AsItMustBe,
-        }
-    }
-
     /// Records a number and returns it: NaN if the robot does not know it.
     pub fn value(&mut self, reading: &LiveReading, field: &str) -> f64 {
         let value = reading.number(field).unwrap_or(f64::NAN);
