@@ -4,11 +4,10 @@ mod receive;
 mod registers;
 
 use super::{
-    actuator::{Actuator, Rating},
-    drive::{Drive, DriveFaults, Reception, Shaft},
+    actuator::Rating,
+    drive::{Drive, DriveFaults, DriveParts, Reception, Shaft},
     mit_frame::MitCommand,
-    reply::ReplyBox,
-    speed_loop::{self, SpeedLoop},
+    speed_loop,
 };
 use crate::{
     time::{Ps, US},
@@ -61,39 +60,26 @@ enum Target {
 }
 
 pub(crate) struct Dm4310 {
+    parts: DriveParts,
     /// The registers as stored, which a power cycle restores.
     stored: Registers,
     registers: Registers,
     state: State,
     target: Target,
-    speed_loop: SpeedLoop,
-    actuator: Actuator,
-    /// Shaft angle that reads as 0, rad.
-    zero_rad: f64,
-    faults: DriveFaults,
-    last_frame_at: Ps,
     /// Deaf and mute while it stores its registers.
     deaf_until: Ps,
-    replies: ReplyBox,
-    stop_frames: u64,
 }
 
 impl Dm4310 {
     pub(crate) fn new(esc_id: u32, mst_id: u32) -> Self {
         let registers = Registers::new(esc_id, mst_id);
         Self {
+            parts: DriveParts::new(&RATING),
             stored: registers,
             registers,
             state: State::Disabled,
             target: Target::None,
-            speed_loop: SpeedLoop::default(),
-            actuator: Actuator::new(&RATING),
-            zero_rad: 0.0,
-            faults: DriveFaults::default(),
-            last_frame_at: 0,
             deaf_until: 0,
-            replies: ReplyBox::default(),
-            stop_frames: 0,
         }
     }
 
@@ -101,23 +87,22 @@ impl Dm4310 {
     fn power_cycle(&mut self, now: Ps) {
         self.registers = self.stored;
         self.deaf_until = now;
-        self.replies.drop_waiting();
+        self.parts.replies.drop_waiting();
         self.switch_off(State::Disabled);
     }
 
     fn switch_off(&mut self, state: State) {
         self.state = state;
         self.target = Target::None;
-        self.speed_loop = SpeedLoop::default();
-        self.actuator.cut();
+        self.parts.cut();
     }
 
     fn esc_id(&self) -> u32 {
-        (self.registers.esc_id + u32::from(self.faults.wrong_id) * WRONG_ID) & STANDARD_ID
+        (self.registers.esc_id + u32::from(self.parts.faults.wrong_id) * WRONG_ID) & STANDARD_ID
     }
 
     fn mst_id(&self) -> u32 {
-        (self.registers.mst_id + u32::from(self.faults.wrong_id) * WRONG_ID) & STANDARD_ID
+        (self.registers.mst_id + u32::from(self.parts.faults.wrong_id) * WRONG_ID) & STANDARD_ID
     }
 
     /// The motor's own protection: time-out and over-temperature.
@@ -126,28 +111,32 @@ impl Dm4310 {
             return;
         }
         let timeout = u64::from(self.registers.timeout) * TIMEOUT_UNIT;
-        if timeout != 0 && now > self.last_frame_at + timeout {
+        if timeout != 0 && now > self.parts.last_frame_at + timeout {
             self.switch_off(State::Tripped(Trip::CommunicationLost));
-        } else if self.actuator.winding_c() > f64::from(self.registers.over_temperature_c) {
+        } else if self.parts.actuator.winding_c() > f64::from(self.registers.over_temperature_c) {
             self.switch_off(State::Tripped(Trip::RotorTemperature));
         }
     }
 }
 
 impl Drive for Dm4310 {
+    fn parts(&self) -> &DriveParts {
+        &self.parts
+    }
+
+    fn parts_mut(&mut self) -> &mut DriveParts {
+        &mut self.parts
+    }
+
     fn set_faults(&mut self, faults: DriveFaults, now: Ps) {
-        if faults.gone || faults.wrong_id != self.faults.wrong_id {
+        if faults.gone || faults.wrong_id != self.parts.faults.wrong_id {
             self.power_cycle(now);
         }
         if faults.tripped {
             self.switch_off(State::Tripped(Trip::OverCurrent));
         }
-        self.actuator.heated = faults.hot;
-        self.faults = faults;
-    }
-
-    fn powered(&self) -> bool {
-        !self.faults.gone
+        self.parts.actuator.heated = faults.hot;
+        self.parts.faults = faults;
     }
 
     fn receive(&mut self, frame: &CanFrame, shaft: Shaft, now: Ps) -> Reception {
@@ -158,47 +147,37 @@ impl Drive for Dm4310 {
         self.state == State::Enabled
     }
 
-    fn stop_frames(&self) -> u64 {
-        self.stop_frames
-    }
-
-    fn actuator(&self) -> &Actuator {
-        &self.actuator
-    }
-
-    fn replies(&self) -> &ReplyBox {
-        &self.replies
-    }
-
-    fn replies_mut(&mut self) -> &mut ReplyBox {
-        &mut self.replies
-    }
-
     fn step(&mut self, shaft: Shaft, supply_v: f64, now: Ps, dt_s: f64) {
         self.watch(now);
         let max_nm = RATING.peak_nm;
         let goal_rps = match self.target {
             Target::None | Target::Mit(_) => None,
             Target::PositionSpeed { pos_rad, max_rps } => {
-                let here_rad = shaft.pos_rad - self.zero_rad;
+                let here_rad = shaft.pos_rad - self.parts.zero_rad;
                 Some(speed_loop::towards(pos_rad, here_rad, max_rps))
             }
             Target::Speed { vel_rps } => Some(vel_rps),
         };
         if let Some(goal_rps) = goal_rps {
-            self.speed_loop.step(goal_rps, shaft.vel_rps, max_nm, dt_s);
+            self.parts
+                .speed_loop
+                .step(goal_rps, shaft.vel_rps, max_nm, dt_s);
         }
         let wanted_nm = self.enabled().then(|| self.commanded_nm(shaft));
-        self.actuator.step(wanted_nm, shaft.vel_rps, supply_v, dt_s);
+        self.parts
+            .actuator
+            .step(wanted_nm, shaft.vel_rps, supply_v, dt_s);
     }
 
     fn commanded_nm(&self, shaft: Shaft) -> f64 {
         match self.target {
             Target::None => 0.0,
             Target::Mit(command) => {
-                command.commanded_nm(shaft.pos_rad - self.zero_rad, shaft.vel_rps)
+                command.commanded_nm(shaft.pos_rad - self.parts.zero_rad, shaft.vel_rps)
             }
-            Target::PositionSpeed { .. } | Target::Speed { .. } => self.speed_loop.commanded_nm(),
+            Target::PositionSpeed { .. } | Target::Speed { .. } => {
+                self.parts.speed_loop.commanded_nm()
+            }
         }
     }
 }

@@ -1,6 +1,10 @@
 //! What every joint motor has in common.
 
-use super::{actuator::Actuator, reply::ReplyBox};
+use super::{
+    actuator::{Actuator, Rating},
+    reply::ReplyBox,
+    speed_loop::SpeedLoop,
+};
 use crate::{time::Ps, wire::CanFrame};
 
 /// Angle and speed of an output shaft, in the motor's own sense of rotation.
@@ -38,12 +42,45 @@ pub(crate) enum Reception {
     NotModelled(String),
 }
 
+/// The parts that every drive has.
+pub(super) struct DriveParts {
+    pub actuator: Actuator,
+    pub speed_loop: SpeedLoop,
+    pub replies: ReplyBox,
+    /// Shaft angle that reads as 0, rad.
+    pub zero_rad: f64,
+    pub faults: DriveFaults,
+    pub last_frame_at: Ps,
+    pub stop_frames: u64,
+}
+
+impl DriveParts {
+    pub fn new(rating: &'static Rating) -> Self {
+        Self {
+            actuator: Actuator::new(rating),
+            speed_loop: SpeedLoop::default(),
+            replies: ReplyBox::default(),
+            zero_rad: 0.0,
+            faults: DriveFaults::default(),
+            last_frame_at: 0,
+            stop_frames: 0,
+        }
+    }
+
+    /// Cuts the torque and resets the speed loop.
+    pub fn cut(&mut self) {
+        self.speed_loop = SpeedLoop::default();
+        self.actuator.cut();
+    }
+}
+
 /// A geared motor with its driver on the CAN bus.
 pub(super) trait Drive: Send {
-    fn set_faults(&mut self, faults: DriveFaults, now: Ps);
+    fn parts(&self) -> &DriveParts;
 
-    /// False while the motor has no supply.
-    fn powered(&self) -> bool;
+    fn parts_mut(&mut self) -> &mut DriveParts;
+
+    fn set_faults(&mut self, faults: DriveFaults, now: Ps);
 
     fn receive(&mut self, frame: &CanFrame, shaft: Shaft, now: Ps) -> Reception;
 
@@ -55,12 +92,25 @@ pub(super) trait Drive: Send {
     /// Torque that the present command asks for, before the limits of motor and supply.
     fn commanded_nm(&self, shaft: Shaft) -> f64;
 
+    /// False while the motor has no supply.
+    fn powered(&self) -> bool {
+        !self.parts().faults.gone
+    }
+
     /// Disable frames received since power-on.
-    fn stop_frames(&self) -> u64;
+    fn stop_frames(&self) -> u64 {
+        self.parts().stop_frames
+    }
 
-    fn replies(&self) -> &ReplyBox;
+    fn actuator(&self) -> &Actuator {
+        &self.parts().actuator
+    }
 
-    fn replies_mut(&mut self) -> &mut ReplyBox;
+    fn replies(&self) -> &ReplyBox {
+        &self.parts().replies
+    }
 
-    fn actuator(&self) -> &Actuator;
+    fn replies_mut(&mut self) -> &mut ReplyBox {
+        &mut self.parts_mut().replies
+    }
 }

@@ -3,11 +3,10 @@
 mod receive;
 
 use super::{
-    actuator::{Actuator, Rating},
-    drive::{Drive, DriveFaults, Reception, Shaft},
+    actuator::Rating,
+    drive::{Drive, DriveFaults, DriveParts, Reception, Shaft},
     mit_frame::{MitCommand, Ranges},
-    reply::ReplyBox,
-    speed_loop::{self, SpeedLoop},
+    speed_loop,
 };
 use crate::{time::Ps, wire::CanFrame};
 
@@ -58,50 +57,36 @@ enum Target {
 /// The motor as shipped holds its last command for ever: its CAN time-out, parameter 0x7028, is off, and the MIT protocol
 /// cannot set it.
 pub(crate) struct Rs00 {
+    parts: DriveParts,
     /// Time without frames after which it returns to reset mode; 0 is never.
     can_timeout: Ps,
-    last_frame_at: Ps,
     motor_id: u32,
     host_id: u32,
     mode: Mode,
     running: bool,
     fault_word: u32,
     target: Target,
-    speed_loop: SpeedLoop,
-    actuator: Actuator,
-    /// Shaft angle that reads as 0, rad.
-    zero_rad: f64,
-    faults: DriveFaults,
-    replies: ReplyBox,
-    stop_frames: u64,
 }
 
 impl Rs00 {
     /// `can_timeout` is what somebody set in the private protocol.
     pub(crate) fn new(motor_id: u32, host_id: u32, can_timeout: Ps) -> Self {
         Self {
+            parts: DriveParts::new(&RATING),
             can_timeout,
-            last_frame_at: 0,
             motor_id,
             host_id,
             mode: Mode::Mit,
             running: false,
             fault_word: 0,
             target: Target::None,
-            speed_loop: SpeedLoop::default(),
-            actuator: Actuator::new(&RATING),
-            zero_rad: 0.0,
-            faults: DriveFaults::default(),
-            replies: ReplyBox::default(),
-            stop_frames: 0,
         }
     }
 
     fn switch_off(&mut self) {
         self.running = false;
         self.target = Target::None;
-        self.speed_loop = SpeedLoop::default();
-        self.actuator.cut();
+        self.parts.cut();
     }
 
     fn trip(&mut self, fault: u32) {
@@ -110,27 +95,31 @@ impl Rs00 {
     }
 
     fn id(&self) -> u32 {
-        self.motor_id + u32::from(self.faults.wrong_id) * WRONG_ID
+        self.motor_id + u32::from(self.parts.faults.wrong_id) * WRONG_ID
     }
 }
 
 impl Drive for Rs00 {
+    fn parts(&self) -> &DriveParts {
+        &self.parts
+    }
+
+    fn parts_mut(&mut self) -> &mut DriveParts {
+        &mut self.parts
+    }
+
     fn set_faults(&mut self, faults: DriveFaults, _now: Ps) {
-        if faults.gone || faults.wrong_id != self.faults.wrong_id {
+        if faults.gone || faults.wrong_id != self.parts.faults.wrong_id {
             self.mode = Mode::Mit;
             self.fault_word = 0;
-            self.replies.drop_waiting();
+            self.parts.replies.drop_waiting();
             self.switch_off();
         }
         if faults.tripped {
             self.trip(DRIVER);
         }
-        self.actuator.heated = faults.hot;
-        self.faults = faults;
-    }
-
-    fn powered(&self) -> bool {
-        !self.faults.gone
+        self.parts.actuator.heated = faults.hot;
+        self.parts.faults = faults;
     }
 
     fn receive(&mut self, frame: &CanFrame, shaft: Shaft, now: Ps) -> Reception {
@@ -141,34 +130,21 @@ impl Drive for Rs00 {
         self.running
     }
 
-    fn stop_frames(&self) -> u64 {
-        self.stop_frames
-    }
-
-    fn actuator(&self) -> &Actuator {
-        &self.actuator
-    }
-
-    fn replies(&self) -> &ReplyBox {
-        &self.replies
-    }
-
-    fn replies_mut(&mut self) -> &mut ReplyBox {
-        &mut self.replies
-    }
-
     fn step(&mut self, shaft: Shaft, supply_v: f64, now: Ps, dt_s: f64) {
         // Assumed: it raises no fault, and may be enabled again at once.
-        if self.running && self.can_timeout != 0 && now > self.last_frame_at + self.can_timeout {
+        if self.running
+            && self.can_timeout != 0
+            && now > self.parts.last_frame_at + self.can_timeout
+        {
             self.switch_off();
         }
-        if self.running && self.actuator.winding_c() > OVER_TEMPERATURE_C {
+        if self.running && self.parts.actuator.winding_c() > OVER_TEMPERATURE_C {
             self.trip(OVER_TEMPERATURE);
         }
         let goal = match self.target {
             Target::None | Target::Mit(_) => None,
             Target::Position { pos_rad, max_rps } => {
-                let here_rad = shaft.pos_rad - self.zero_rad;
+                let here_rad = shaft.pos_rad - self.parts.zero_rad;
                 let goal_rps = speed_loop::towards(pos_rad, here_rad, max_rps);
                 Some((goal_rps, RATING.peak_nm))
             }
@@ -178,19 +154,23 @@ impl Drive for Rs00 {
             }
         };
         if let Some((goal_rps, max_nm)) = goal {
-            self.speed_loop.step(goal_rps, shaft.vel_rps, max_nm, dt_s);
+            self.parts
+                .speed_loop
+                .step(goal_rps, shaft.vel_rps, max_nm, dt_s);
         }
         let wanted_nm = self.running.then(|| self.commanded_nm(shaft));
-        self.actuator.step(wanted_nm, shaft.vel_rps, supply_v, dt_s);
+        self.parts
+            .actuator
+            .step(wanted_nm, shaft.vel_rps, supply_v, dt_s);
     }
 
     fn commanded_nm(&self, shaft: Shaft) -> f64 {
         match self.target {
             Target::None => 0.0,
             Target::Mit(command) => {
-                command.commanded_nm(shaft.pos_rad - self.zero_rad, shaft.vel_rps)
+                command.commanded_nm(shaft.pos_rad - self.parts.zero_rad, shaft.vel_rps)
             }
-            Target::Position { .. } | Target::Speed { .. } => self.speed_loop.commanded_nm(),
+            Target::Position { .. } | Target::Speed { .. } => self.parts.speed_loop.commanded_nm(),
         }
     }
 }

@@ -40,7 +40,7 @@ impl Dm4310 {
         if frame.id & ADDRESS != self.esc_id() {
             return Reception::Ignored;
         }
-        self.last_frame_at = now;
+        self.parts.last_frame_at = now;
         if let Some(tail) = service(frame) {
             self.serve(tail, shaft);
         } else if let Some(target) = self.target_of(frame)
@@ -64,14 +64,16 @@ impl Dm4310 {
         match (tail, self.state) {
             (ENABLE, State::Disabled) => self.state = State::Enabled,
             (DISABLE, state) => {
-                self.stop_frames += 1;
+                self.parts.stop_frames += 1;
                 if state == State::Enabled {
                     self.switch_off(State::Disabled);
                 }
             }
-            (SET_ZERO, _) => self.zero_rad = shaft.pos_rad,
+            (SET_ZERO, _) => self.parts.zero_rad = shaft.pos_rad,
             // A trip whose cause is still there comes back at once.
-            (CLEAR, State::Tripped(_)) if !self.faults.tripped => self.state = State::Disabled,
+            (CLEAR, State::Tripped(_)) if !self.parts.faults.tripped => {
+                self.state = State::Disabled
+            }
             _ => {}
         }
     }
@@ -106,12 +108,12 @@ impl Dm4310 {
         if u32::from(u16::from_le_bytes([low, high])) != self.esc_id() || frame.dlc < 4 {
             return Reception::Ignored;
         }
-        self.last_frame_at = now;
+        self.parts.last_frame_at = now;
         let done = match (request, frame.dlc) {
             (READ, _) => self.answer(frame, now),
             (WRITE, 8) => {
                 let done = self.registers.write(register, value);
-                if self.faults.slow_writes {
+                if self.parts.faults.slow_writes {
                     self.deaf_until = now + STORE_TIME;
                 }
                 done.and_then(|()| self.answer(frame, now.max(self.deaf_until)))
@@ -119,7 +121,8 @@ impl Dm4310 {
             (STORE, _) => {
                 self.stored = self.registers;
                 self.deaf_until = now + STORE_TIME;
-                self.replies
+                self.parts
+                    .replies
                     .other(self.mst_id(), frame.data, self.deaf_until);
                 Ok(())
             }
@@ -140,7 +143,7 @@ impl Dm4310 {
     fn answer(&mut self, frame: &CanFrame, now: Ps) -> Result<(), NotModelled> {
         let mut data = frame.data;
         data[4..].copy_from_slice(&self.registers.read(frame.data[3])?);
-        self.replies.other(self.mst_id(), data, now);
+        self.parts.replies.other(self.mst_id(), data, now);
         Ok(())
     }
 
@@ -151,18 +154,19 @@ impl Dm4310 {
             State::Tripped(trip) => trip as u8,
         };
         let (motion, fed_back) = self.registers.ranges().feedback(
-            shaft.pos_rad - self.zero_rad,
+            shaft.pos_rad - self.parts.zero_rad,
             shaft.vel_rps,
-            self.actuator.torque_nm(),
+            self.parts.actuator.torque_nm(),
         );
         let mut data = [0; 8];
         data[0] = error << 4 | (self.esc_id() & 0xF) as u8;
         data[1..6].copy_from_slice(&motion);
-        data[6] = self.actuator.driver_c().round() as u8;
-        data[7] = self.actuator.winding_c().round() as u8;
+        data[6] = self.parts.actuator.driver_c().round() as u8;
+        data[7] = self.parts.actuator.winding_c().round() as u8;
         let id = self.mst_id();
-        self.replies
-            .feedback(id, data, fed_back, self.faults.frozen, now);
+        self.parts
+            .replies
+            .feedback(id, data, fed_back, self.parts.faults.frozen, now);
     }
 }
 

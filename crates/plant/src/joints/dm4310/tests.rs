@@ -1,7 +1,7 @@
 //! Frames written by hand from docs/hardware.md#dm4310-frames and docs/hardware.md#test-vectors.
 
 use super::*;
-use crate::{physics::physics_step_s, time::MS};
+use crate::{joints::actuator::Actuator, physics::physics_step_s, time::MS};
 
 const ENABLE: [u8; 8] = [0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFC];
 const DISABLE: [u8; 8] = [0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFD];

@@ -20,14 +20,14 @@ impl Rs00 {
         if !self.powered() || !addressed || frame.extended || frame.remote || frame.dlc != 8 {
             return Reception::Ignored;
         }
-        self.last_frame_at = now;
+        self.parts.last_frame_at = now;
         let [service @ .., detail, tail] = frame.data;
         let is_service = frame.id >> 8 == 0 && service == [0xFF; 6];
         match (tail, detail) {
             (ENABLE_OR_MODE, PLAIN) if is_service => self.running = self.fault_word == 0,
             (ENABLE_OR_MODE, mode) if is_service => self.set_mode(mode),
             (STOP, PLAIN) if is_service => {
-                self.stop_frames += 1;
+                self.parts.stop_frames += 1;
                 self.switch_off();
             }
             (SET_ZERO, _) if is_service => self.set_zero(shaft),
@@ -64,7 +64,7 @@ impl Rs00 {
 
     /// The goal becomes 0 with it.
     fn set_zero(&mut self, shaft: Shaft) {
-        self.zero_rad = shaft.pos_rad;
+        self.parts.zero_rad = shaft.pos_rad;
         match &mut self.target {
             Target::Mit(command) => command.pos_rad = 0.0,
             Target::Position { pos_rad, .. } => *pos_rad = 0.0,
@@ -74,7 +74,7 @@ impl Rs00 {
 
     /// A fault whose cause is still there comes back at once.
     fn clear_faults(&mut self) {
-        if !self.faults.tripped {
+        if !self.parts.faults.tripped {
             self.fault_word = 0;
         }
     }
@@ -111,19 +111,20 @@ impl Rs00 {
         const RUN: u16 = 2 << 14;
         const FAULT: u16 = 1 << 13;
         let (motion, fed_back) = RANGES.feedback(
-            shaft.pos_rad - self.zero_rad,
+            shaft.pos_rad - self.parts.zero_rad,
             shaft.vel_rps,
-            self.actuator.torque_nm(),
+            self.parts.actuator.torque_nm(),
         );
         let state = u16::from(self.running) * RUN;
         let fault = u16::from(self.fault_word != 0) * FAULT;
-        let tenths_c = (self.actuator.winding_c() * 10.0).round() as u16 & 0x0FFF;
+        let tenths_c = (self.parts.actuator.winding_c() * 10.0).round() as u16 & 0x0FFF;
         let mut data = [0; 8];
         data[0] = self.id() as u8;
         data[1..6].copy_from_slice(&motion);
         data[6..].copy_from_slice(&(state | fault | tenths_c).to_be_bytes());
-        self.replies
-            .feedback(self.host_id, data, fed_back, self.faults.frozen, now);
+        self.parts
+            .replies
+            .feedback(self.host_id, data, fed_back, self.parts.faults.frozen, now);
     }
 
     /// No source gives the byte order of the fault word: low byte first, as in the private protocol.
@@ -131,6 +132,6 @@ impl Rs00 {
         let mut data = [0; 8];
         data[0] = self.id() as u8;
         data[1..5].copy_from_slice(&self.fault_word.to_le_bytes());
-        self.replies.other(self.host_id, data, now);
+        self.parts.replies.other(self.host_id, data, now);
     }
 }
