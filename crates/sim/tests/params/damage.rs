@@ -1,6 +1,7 @@
 //! Flipped bits, sectors of garbage, random contents: the robot boots, uses what is good, and saves again.
 
 use robot_plant::time::{MS, SECOND};
+use robot_test_support::Random;
 
 use crate::{
     at_rest_only::before_a_rotation,
@@ -9,22 +10,6 @@ use crate::{
     robot::Robot,
     settings::{GROUPS, Make, Settings, image, in_flash},
 };
-
-/// xorshift32.
-struct Noise(u32);
-
-impl Noise {
-    fn word(&mut self) -> u32 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 17;
-        self.0 ^= self.0 << 5;
-        self.0
-    }
-
-    fn byte(&mut self) -> u8 {
-        (self.word() >> 24) as u8
-    }
-}
 
 struct Damaged {
     what: String,
@@ -40,11 +25,11 @@ fn flips() -> Vec<Damaged> {
             .step_by(4)
             .map(move |at| slot * SLOT_BYTES + at)
     };
-    let mut noise = Noise(7);
+    let mut noise = Random::new(7);
     places(0)
         .chain(places(slot_of_group_4))
         .map(|word| {
-            let (place, bit) = (word + noise.word() as usize % 4, noise.byte() % 8);
+            let (place, bit) = (word + noise.below(4), noise.byte() % 8);
             Damaged {
                 what: format!("bit {bit} of byte {place:#x} flipped"),
                 flash: start.clone().flipped(place, bit),
@@ -58,7 +43,7 @@ fn garbage() -> Vec<Damaged> {
     let sectors_of = |choice: u8| (0..3).filter(move |sector| choice >> sector & 1 == 1);
     (1..8)
         .map(|choice| {
-            let mut noise = Noise(u32::from(choice));
+            let mut noise = Random::new(choice.into());
             let start = before_a_rotation(Make::Dm4310);
             let flash = sectors_of(choice).fold(start, |image, sector| {
                 image.garbage(sector, || noise.byte())
@@ -74,9 +59,9 @@ fn garbage() -> Vec<Damaged> {
 
 /// Heads without records, records without a head, half-blank sectors, all zeros.
 fn strange() -> Vec<Damaged> {
-    let mut noise = Noise(99);
+    let mut noise = Random::new(99);
     let full = image(Make::Dm4310, 127);
-    let mut sparse = Noise(3);
+    let mut sparse = Random::new(3);
     let named = |what: &str, flash: Image| Damaged {
         what: what.to_owned(),
         flash,
@@ -104,7 +89,7 @@ fn strange() -> Vec<Damaged> {
         named(
             "one bit in a hundred cleared",
             Image::of(&full.bytes().map(|byte| {
-                if sparse.word().is_multiple_of(12) {
+                if sparse.below(12) == 0 {
                     byte & !(1 << (sparse.byte() % 8))
                 } else {
                     byte

@@ -171,12 +171,8 @@ impl Robot {
 
     /// A value of the world.
     pub fn world(&mut self, name: &str) -> f64 {
-        let mut values = Vec::new();
-        self.machine.with_world(|world| {
-            let place = world.signal_names().iter().position(|n| n == name);
-            world.sample(&mut values);
-            values[place.expect(name)]
-        })
+        self.machine
+            .with_world(|world| world.signal(name).expect(name))
     }
 
     /// Both wheels turn forward.
