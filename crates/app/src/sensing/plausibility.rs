@@ -72,7 +72,7 @@ impl Plausibility {
         } else {
             0
         };
-        let Some(reading) = reading.filter(|_| self.is_sane(&sample, before)) else {
+        let Some(reading) = reading.filter(|_| self.is_plausible(&sample, before)) else {
             self.probation_left = PROBATION;
             return Err(ImuSampleError::Implausible);
         };
@@ -107,19 +107,19 @@ impl Plausibility {
         GyroReading::from_frames(gyro.frames(), end)
     }
 
-    fn is_sane(&mut self, sample: &GyroSample, before: Option<GyroSample>) -> bool {
+    fn is_plausible(&mut self, sample: &GyroSample, before: Option<GyroSample>) -> bool {
         let near = |other: &GyroSample| age_us(other.ts_us, sample.ts_us);
         if let Some(good) = self
             .last_good
             .filter(|good| near(&good.sample) <= MAX_GAP_US)
         {
             // Within a series of frames each step has been checked already.
-            let sane = near(&good.sample) <= MAX_SERIES_GAP_US
+            let plausible = near(&good.sample) <= MAX_SERIES_GAP_US
                 || gyro_series::is_possible_step(sample.counts, good.sample.counts);
-            if sane {
+            if plausible {
                 self.probation_left = 0;
             }
-            return sane;
+            return plausible;
         }
         match before.filter(|before| near(before) <= MAX_GAP_US) {
             Some(before) => gyro_series::is_possible_step(sample.counts, before.counts),

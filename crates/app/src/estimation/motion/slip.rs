@@ -6,11 +6,11 @@
 
 /// Speed error beyond which a wheel slips.
 const SLIP_MPS: f32 = 0.3;
-/// Speed error within which it rolls again …
+/// Speed error within which a slipping wheel may roll again.
 const ROLL_MPS: f32 = 0.05;
-/// … which grows with the time it has slipped, as the inertial speed drifts: a tilt error of 0.3° …
+/// Growth of that tolerance while the wheel slips, because the inertial speed drifts: a tilt error of 0.3°.
 const DRIFT_MPS2: f32 = 0.05;
-/// … after it has stayed within that for this long.
+/// Time within the tolerance after which it rolls.
 const AGREE_S: f32 = 0.1;
 
 /// Whether a wheel rolls or slips.
@@ -20,7 +20,7 @@ pub(super) enum SlipState {
     Slipping {
         /// Time since it began to slip.
         since_s: f32,
-        /// Time within the limit for rolling.
+        /// Time within the tolerance for rolling.
         agreed_s: f32,
     },
 }

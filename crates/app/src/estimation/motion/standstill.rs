@@ -3,17 +3,17 @@
 //! A standstill removes tilt error and accelerometer bias together. For the next seconds the integrated acceleration is
 //! therefore as good a speed as the accelerometer ever gives. Wheels that differ from it spin, on ice or in the air.
 
-/// Time after a standstill for which the inertial speed is used …
+/// Time after a standstill for which the inertial speed is used.
 const VALID_S: f32 = 2.0;
-/// … unless the robot yaws this far before: the bias turns with the body, the tilt error does not.
+/// Yaw angle that uses up the same time: the bias turns with the body, the tilt error does not.
 const VALID_RAD: f32 = 0.35;
-/// Tolerance of a wheel's speed against the inertial one …
+/// Tolerance of a wheel's speed against the inertial one, at the standstill.
 const SPIN_MPS: f32 = 0.15;
-/// … which grows with time: a tilt error of 0.3°.
+/// Growth of that tolerance with time: a tilt error of 0.3°.
 const DRIFT_MPS2: f32 = 0.05;
-/// Largest inertial speed of a robot that still stands …
+/// Largest inertial speed of a robot that still stands.
 const STANDING_MPS: f32 = 0.15;
-/// … and the time constant with which that speed decays while the robot stands and its wheels spin.
+/// Time constant with which the inertial speed decays while the robot stands and its wheels spin.
 const DECAY_S: f32 = 2.0;
 
 /// What is known since the last standstill.

@@ -60,9 +60,9 @@ pub(super) const UP: Gains = Gains {
 
 /// Lever arm from the middle of the axle to the IMU. While the robot turns, the IMU measures LEVER_M · yaw rate².
 const LEVER_M: f32 = 0.05;
-/// The speed gains rise against that, so that the velocity error stays below this …
+/// The speed gains rise against that, so that the velocity error stays below this.
 const LEVER_MPS: f32 = 0.05;
-/// … up to this additional gain, at 7 rad/s.
+/// Largest rise of the speed gains, reached at 7 rad/s.
 const MAX_LEVER_GAIN: f32 = 50.0;
 /// The bias is updated only as far as that acceleration is small against this, the zero-g offset of the BMI088 (20 mg).
 const BIAS_MPS2: f32 = 0.2;

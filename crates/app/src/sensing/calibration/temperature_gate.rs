@@ -5,9 +5,9 @@ use crate::domain::{HeaterState, Warmth, age_us};
 
 /// A heater that has been at a limit for this long cannot reach the target.
 const AT_LIMIT_US: u32 = 15_000_000;
-/// A temperature is steady if it changes by less than this …
+/// Largest change of a steady temperature.
 const STEADY_K: f32 = 0.3;
-/// … within this time.
+/// Time for which it must be steady.
 const STEADY_US: u32 = 5_000_000;
 /// Time without any valid temperature after which the calibration goes on without one.
 const UNKNOWN_AFTER_US: u32 = 20_000_000;

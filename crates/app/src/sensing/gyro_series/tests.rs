@@ -101,7 +101,7 @@ fn two_opposite_impacts_are_used() {
         _ => [0.0; 3],
     };
     let frames = frames(rate, 80);
-    let (sum, outliers) = used_rotation(&frames).expect("sane");
+    let (sum, outliers) = used_rotation(&frames).expect("plausible");
     assert_eq!(outliers, 0);
     assert!((sum[1] - total(&frames)[1]).abs() < 1.0);
 }
@@ -182,9 +182,9 @@ fn the_time_of_saturation_is_counted_by_axis() {
         [0, 25_000, -28_000],
         [0, 18_000, -21_000],
     ];
-    let reading = GyroReading::from_frames(&frames, None).expect("sane");
+    let reading = GyroReading::from_frames(&frames, None).expect("plausible");
     assert_eq!(reading.clipped_ms, [0, 2, 1]);
     assert_eq!(reading.mean_counts[1], (2.0 * 32_767.0 + 53_000.0) / 5.0);
-    let alone = GyroReading::from_frames(&[[0, -32_767, 0]], None).expect("sane");
+    let alone = GyroReading::from_frames(&[[0, -32_767, 0]], None).expect("plausible");
     assert_eq!(alone.clipped_ms, [0, 5, 0]);
 }
