@@ -11,7 +11,7 @@ use robot_bench::{
     report::{EXTRAPOLATION_MEAN, UPDATE_MAX, UPDATE_MEAN},
 };
 
-/// No larger than it is, a tenth of it for blows and for wheels that spin beside a robot at rest; `cargo xtask bench`
+/// No larger than it is, a tenth of it for impacts and for wheels that spin beside a robot at rest; `cargo xtask bench`
 /// shows how far that is from what is wanted.
 const FLASH_BYTES: f64 = 22.5 * 1024.0;
 
