@@ -213,7 +213,16 @@ impl Plan {
             extended: false,
             remote: false,
             dlc: 8,
-            data: [0x40, step, motor, action, low, high, 0, 0],
+            data: [
+                tuning_frames::BRING_UP,
+                step,
+                motor,
+                action,
+                low,
+                high,
+                0,
+                0,
+            ],
         }
     }
 
@@ -284,16 +293,42 @@ impl Plan {
         let junk = self.rng.bits().to_le_bytes();
         let [group, index, .., length] = junk;
         let (id, data, dlc) = match self.rng.bits() % 6 {
-            0 => (READ, [0x11, 0, 0, 0, 0, 0, 0, 0], 1),
-            1 => (READ, [0x21, group % 10, index % 24, 0, 0, 0, 0, 0], 3),
+            0 => (READ, [tuning_frames::READ_GEOMETRY, 0, 0, 0, 0, 0, 0, 0], 1),
+            1 => (
+                READ,
+                [
+                    tuning_frames::READ_SETTING,
+                    group % 10,
+                    index % 24,
+                    0,
+                    0,
+                    0,
+                    0,
+                    0,
+                ],
+                3,
+            ),
             // NaN: no setting may take this value.
             2 => (
                 WRITE,
-                [0x20, group % 10, index % 24, 0, 0, 0, 0xC0, 0x7F],
+                [
+                    tuning_frames::WRITE_SETTING,
+                    group % 10,
+                    index % 24,
+                    0,
+                    0,
+                    0,
+                    0xC0,
+                    0x7F,
+                ],
                 8,
             ),
             // A wheel geometry request that is too short.
-            3 => (WRITE, [0x10, 200, 0, 0xB8, 0x0B, 0, 0, 0], 5),
+            3 => (
+                WRITE,
+                [tuning_frames::WRITE_GEOMETRY, 200, 0, 0xB8, 0x0B, 0, 0, 0],
+                5,
+            ),
             4 => (READ, junk, length % 9),
             // An unknown command.
             _ => (WRITE, [0x80 | group, index, 0, 0, 0, 0, 0, 0], 8),

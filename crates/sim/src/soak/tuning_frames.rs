@@ -8,10 +8,13 @@ use super::rng::Rng;
 pub const WRITE: u32 = 0x7A0;
 pub const READ: u32 = 0x7A1;
 pub const REPLY: u32 = 0x7A2;
-/// First bytes.
+/// First bytes. The simulation takes nothing from the firmware but its image: a test compares them with its table.
+pub const WRITE_GEOMETRY: u8 = 0x10;
+pub const READ_GEOMETRY: u8 = 0x11;
 pub const WRITE_SETTING: u8 = 0x20;
 pub const READ_SETTING: u8 = 0x21;
 pub const READ_STORE: u8 = 0x31;
+pub const BRING_UP: u8 = 0x40;
 
 /// Group and index.
 pub type Setting = (u8, u8);
@@ -93,5 +96,28 @@ fn frame(id: u32, data: [u8; 8]) -> CanFrame {
         remote: false,
         dlc: 8,
         data,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use robot_app::tuning::{READ_ID, REPLY_ID, WRITE_ID, opcode};
+
+    use super::*;
+
+    #[test]
+    fn the_numbers_are_those_of_the_firmware() {
+        let ids = [WRITE_ID, READ_ID, REPLY_ID].map(|id| u32::from(id.raw()));
+        assert_eq!([WRITE, READ, REPLY], ids);
+        for (ours, firmware) in [
+            (WRITE_GEOMETRY, opcode::WRITE_GEOMETRY),
+            (READ_GEOMETRY, opcode::READ_GEOMETRY),
+            (WRITE_SETTING, opcode::WRITE_PARAMETER),
+            (READ_SETTING, opcode::READ_PARAMETER),
+            (READ_STORE, opcode::READ_STORE),
+            (BRING_UP, opcode::BRING_UP),
+        ] {
+            assert_eq!(ours, firmware);
+        }
     }
 }

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use robot_app::tuning::{READ_ID, REPLY_ID, WRITE_ID, opcode};
 use robot_plant::{
     can_adapter::AdapterMode,
     time::{MS, Ps},
@@ -20,14 +21,6 @@ use crate::{
     settings::{COUNT, Make, Setting, Settings, calibrated},
     support,
 };
-
-const WRITE_ID: u32 = 0x7A0;
-const READ_ID: u32 = 0x7A1;
-const REPLY_ID: u32 = 0x7A2;
-const WRITE_SETTING: u8 = 0x20;
-const READ_SETTING: u8 = 0x21;
-const READ_STORE: u8 = 0x31;
-const REFUSED: u8 = 0xEE;
 
 const BUSES: [CanBusId; 2] = [CanBusId::Can1, CanBusId::Can2];
 /// Time within which the robot answers a request.
@@ -65,7 +58,7 @@ pub fn has_image_for(make: Make) -> bool {
 
 fn to_set((group, index): Setting, value: f32) -> [u8; 8] {
     let [a, b, c, d] = value.to_le_bytes();
-    [WRITE_SETTING, group, index, 0, a, b, c, d]
+    [opcode::WRITE_PARAMETER, group, index, 0, a, b, c, d]
 }
 
 impl Robot {
@@ -116,7 +109,7 @@ impl Robot {
         self.machine.with_world(|world| {
             for (bus, replies) in BUSES.into_iter().zip(replies) {
                 while let Some((_, frame)) = world.can_adapter(bus).take() {
-                    if frame.id == REPLY_ID {
+                    if frame.id == u32::from(REPLY_ID.raw()) {
                         replies.push(frame.data);
                     }
                 }
@@ -226,23 +219,23 @@ impl Robot {
 
     /// Requests a change and does not wait for the reply.
     pub fn ask_to_set(&mut self, setting: Setting, value: f32) {
-        self.send(0, WRITE_ID, to_set(setting, value));
+        self.send(0, WRITE_ID.raw().into(), to_set(setting, value));
     }
 
     /// Changes a setting. The robot must accept it.
     pub fn set(&mut self, setting: Setting, value: f32) {
-        let reply = self.exchange(WRITE_ID, to_set(setting, value));
+        let reply = self.exchange(WRITE_ID.raw().into(), to_set(setting, value));
         assert_eq!(
             reply[..3],
-            [WRITE_SETTING, setting.0, setting.1],
+            [opcode::WRITE_PARAMETER, setting.0, setting.1],
             "{reply:?}"
         );
     }
 
     /// The robot's reply to the request for the store's status: state, error, unsaved groups.
     pub fn store_state(&mut self) -> [u8; 3] {
-        let question = [READ_STORE, 0, 0, 0, 0, 0, 0, 0];
-        let [_, state, error, unsaved, ..] = self.exchange(READ_ID, question);
+        let question = [opcode::READ_STORE, 0, 0, 0, 0, 0, 0, 0];
+        let [_, state, error, unsaved, ..] = self.exchange(READ_ID.raw().into(), question);
         [state, error, unsaved]
     }
 
@@ -258,14 +251,18 @@ impl Robot {
             for (bus, asked) in asked.iter_mut().enumerate() {
                 for reply in std::mem::take(&mut self.replies[bus]) {
                     let [command, group, index, _, a, b, c, d] = reply;
-                    assert_ne!(command, REFUSED, "{reply:?}");
+                    assert_ne!(command, opcode::REFUSED, "{reply:?}");
                     read.insert((group, index), u32::from_le_bytes([a, b, c, d]));
                     *asked = None;
                 }
                 let waits = asked.is_some_and(|(_, at)| self.now < at + ASK_AGAIN);
                 let next = asked.map(|(setting, _)| setting).or_else(|| left.pop());
                 if let Some((group, index)) = next.filter(|_| !waits) {
-                    self.send(bus, READ_ID, [READ_SETTING, group, index, 0, 0, 0, 0, 0]);
+                    self.send(
+                        bus,
+                        READ_ID.raw().into(),
+                        [opcode::READ_PARAMETER, group, index, 0, 0, 0, 0, 0],
+                    );
                     *asked = Some(((group, index), self.now));
                 }
             }
