@@ -25,22 +25,22 @@
 //! that; inside a folder it allows no circle of modules.
 //!
 //! # How the firmware uses it
-//! - sbus task: `input::RemoteReceiver::feed(bytes, ts_us, |update| publish)`, or `reject` if the UART flagged one of
-//!   the bytes.
-//! - sensor task: walk `sensing::bmi088::INIT` and `sensing::ist8310::INIT`; then every 5 ms transfer
-//!   `bmi088::GYRO_READ`, what `bmi088::gyro_buffer` asks for and `bmi088::ACCEL_READ`, hand the answers to
-//!   `sensing::ImuPipeline::process`, or say `process_silence`, set the heater to `heater_duty`, and send
-//!   `bmi088::BUFFER_RESET` if `take_buffer_reset` says so; every 20 ms write `ist8310::START_SINGLE_SHOT`, wait
-//!   `ist8310::MEASUREMENT_US`, read `ist8310::READ_LEN` bytes from `ist8310::READ_FROM` and hand them to
+//! - The sbus task calls `input::RemoteReceiver::feed(bytes, ts_us, |update| publish)`, or `reject` if the UART flagged
+//!   one of the bytes.
+//! - The sensor tasks walk through `sensing::bmi088::INIT` and `sensing::ist8310::INIT`. Every 5 ms they transfer
+//!   `bmi088::GYRO_READ`, what `bmi088::gyro_buffer` asks for and `bmi088::ACCEL_READ`, and pass the answers to
+//!   `sensing::ImuPipeline::process`, or call `process_silence`. They set the heater to `heater_duty` and send
+//!   `bmi088::BUFFER_RESET` if `take_buffer_reset` says so. Every 20 ms they write `ist8310::START_SINGLE_SHOT`, wait
+//!   `ist8310::MEASUREMENT_US`, read `ist8310::READ_LEN` bytes from `ist8310::READ_FROM` and pass them to
 //!   `sensing::MagPipeline::process`.
-//! - status task: `sensing::BatteryMonitor::feed` at 200 Hz; at 100 Hz `indication::Indication::select` what diagnostics say, and `indication::IndicationPlayer::step`
-//!   for LED and buzzer.
-//! - logic task, 100 Hz: `logic::LogicStage::step`.
-//! - boot: `params::ParamService::boot` gives the settings; params task, each ms: `ParamService::step` with what the
-//!   tick grants, which gets what it asks for.
-//! - control task, 1 kHz: `tick::RobotLoop::on_can_frame` for each received frame, then
-//!   `tick::RobotLoop::tick`; send `outputs.frames`, publish the rest.
-//! - boot, panic and fault handlers: send the layout's `safe_frames` raw.
+//! - The status task calls `sensing::BatteryMonitor::feed` at 200 Hz. At 100 Hz it selects an
+//!   `indication::Indication` by the diagnostics and plays it with `indication::IndicationPlayer::step`.
+//! - The logic task calls `logic::LogicStage::step` at 100 Hz.
+//! - At boot `params::ParamService::boot` returns the settings. The params task calls `ParamService::step` every
+//!   millisecond with what the tick grants, and gets the next request.
+//! - The control task runs at 1 kHz. It calls `tick::RobotLoop::on_can_frame` for each received frame and then
+//!   `tick::RobotLoop::tick`. It sends `outputs.frames` and publishes the rest.
+//! - Boot, panic and fault handlers send the layout's `safe_frames`.
 
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
