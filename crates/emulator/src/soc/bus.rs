@@ -45,6 +45,8 @@ pub struct Soc {
     dma_requests: DmaRequests,
     blocks: Blocks,
     patches: Vec<RegisterPatch>,
+    /// No event is due before that; 0 once the chip was used since [`Self::next_event`].
+    quiet_until: Ps,
 }
 
 /// Borrows the blocks and everything around them separately.
@@ -81,6 +83,7 @@ impl Soc {
             dma_requests: DmaRequests::default(),
             blocks: Blocks::default(),
             patches: Vec::new(),
+            quiet_until: 0,
         };
         soc.board.connect(&mut soc.pins);
         soc.reset(ResetCause::PowerOn, 0);
@@ -89,6 +92,7 @@ impl Soc {
 
     /// The board as what it is; `None` where it is another.
     pub fn board_as<B: Board>(&mut self) -> Option<&mut B> {
+        self.quiet_until = 0;
         let board: &mut dyn Any = &mut *self.board;
         board.downcast_mut()
     }
@@ -100,6 +104,7 @@ impl Soc {
 
     /// Every register back to its reset value; RCC_CSR remembers `cause`.
     pub fn reset(&mut self, cause: ResetCause, now: Ps) {
+        self.quiet_until = 0;
         let (blocks, mut ctx) = split!(self, now);
         for block in Block::ALL {
             blocks.get(block).reset(&mut ctx);
@@ -205,17 +210,23 @@ impl Soc {
 
     /// DBG_IWDG_STOP: the watchdog stands while a debugger halts the core.
     pub fn freeze_watchdog(&mut self, frozen: bool, now: Ps) {
+        self.quiet_until = 0;
         let (blocks, mut ctx) = split!(self, now);
         blocks.freeze_watchdog(frozen, &mut ctx);
     }
 
-    /// When something happens next without the CPU's doing, the board included.
-    pub fn next_event(&self) -> Ps {
-        self.scheduler.next().min(self.board.next_event())
+    /// When something happens next without the CPU's doing, the board included. Until the chip is used again, the
+    /// answer holds.
+    pub fn next_event(&mut self) -> Ps {
+        self.quiet_until = self.scheduler.next().min(self.board.next_event());
+        self.quiet_until
     }
 
     /// Carries out everything due at or before `now`, in order of time.
     pub fn run_due(&mut self, now: Ps, mem: &mut dyn GuestMemory) -> Result<(), Unmodelled> {
+        if now < std::mem::take(&mut self.quiet_until) {
+            return Ok(());
+        }
         loop {
             let board_at = self.board.next_event();
             if board_at <= now && board_at <= self.scheduler.next() {
