@@ -8,6 +8,12 @@ use crate::{
     tuning::READ_ID,
 };
 
+mod defaults;
+mod joint_zero;
+mod reading;
+mod recording;
+mod wheel_geometry;
+
 /// docs/tuning.md#frames: radius 75 mm, track 450 mm, ratio 36.00, left wheel reversed.
 const GEOMETRY: [u8; 8] = [0x10, 75, 0, 0xC2, 0x01, 0x10, 0x0E, 0x01];
 
@@ -71,44 +77,6 @@ impl Bench {
             && self.channel.status().revision == 0
             && self.bring_up.status().step == BringUpStep::Off
     }
-}
-
-#[test]
-fn an_old_client_writes_the_wheel_geometry_and_gets_an_echo() {
-    let mut bench = Bench::default();
-    assert_eq!(bench.write(&GEOMETRY), GEOMETRY);
-    let expected = WheelOdomConfig {
-        wheel_radius_m: 0.075,
-        wheel_track_m: 0.45,
-        gear_ratio: 36.0,
-        rpm_sign_left: -1.0,
-        rpm_sign_right: 1.0,
-    };
-    assert_eq!(bench.config.wheel_odom, expected);
-    assert_eq!(
-        bench.read(&[0x11]),
-        [0x11, 75, 0, 0xC2, 0x01, 0x10, 0x0E, 0x01]
-    );
-}
-
-/// 60 mm, 420 mm, 3591/187 = 19.203 as 1920, right wheel reversed. The length of a read is free.
-#[test]
-fn an_old_client_reads_the_defaults() {
-    let mut bench = Bench::default();
-    let expected = [0x11, 60, 0, 0xA4, 0x01, 0x80, 0x07, 0x02];
-    assert_eq!(bench.read(&[0x11]), expected);
-    assert_eq!(bench.read(&[0x11, 9, 9, 9, 9, 9, 9, 9]), expected);
-    assert_eq!(bench.reply(TuningGate::Shut, 0x7A1, &[0x11]), expected);
-}
-
-/// 60.6 mm and 19.206 round to 61 and 1921.
-#[test]
-fn geometry_is_rounded_for_old_clients() {
-    let mut bench = Bench::default();
-    bench.config.wheel_odom.wheel_radius_m = 0.0606;
-    bench.config.wheel_odom.gear_ratio = 19.206;
-    let expected = [0x11, 61, 0, 0xA4, 0x01, 0x81, 0x07, 0x02];
-    assert_eq!(bench.read(&[0x11]), expected);
 }
 
 /// In IEEE 754, 30,000 is 0x46EA6000 and 8,000 is 0x45FA0000.
@@ -283,217 +251,10 @@ fn tuned() -> Bench {
     bench
 }
 
-#[test]
-fn one_group_or_all_groups_are_set_to_defaults() {
-    let mut bench = tuned();
-    let one = [0x30, 2, 0, 0, 0, 0, 0, 0];
-    assert_eq!(bench.write(&one), one);
-    assert_eq!(bench.config.wheel_ctrl.max_vx_mps, 1.5);
-    assert_eq!(bench.config.heater.target_c, 30.0);
-    assert_eq!(bench.channel.status().revision, 3);
-    let all = [0x30, 0, 0, 0, 0, 0, 0, 0];
-    assert_eq!(bench.write(&all), all);
-    assert_eq!(bench.config, RobotConfig::default());
-    assert_eq!(bench.channel.status().revision, 4);
-}
-
-/// `ROBOT_LAYOUT` with another left rear joint.
-static OTHER_ROBOT: MotorLayout = {
-    let mut joints = *ROBOT_LAYOUT.joints();
-    joints[1].config.max_kp = 50.0;
-    MotorLayout::new(*ROBOT_LAYOUT.wheels(), joints)
-};
-
-#[test]
-fn the_defaults_come_from_the_motor_layout() {
-    let mut bench = Bench {
-        channel: TuningChannel::new(&OTHER_ROBOT),
-        ..Bench::default()
-    };
-    bench.write(&[0x30, 16, 0, 0, 0, 0, 0, 0]);
-    assert_eq!(bench.config, RobotConfig::default());
-    bench.write(&[0x30, 17, 0, 0, 0, 0, 0, 0]);
-    assert_eq!(bench.config.joints[1].max_kp, 50.0);
-    bench.config = RobotConfig::default();
-    bench.write(&[0x30, 0, 0, 0, 0, 0, 0, 0]);
-    assert_eq!(bench.config.joints[1].max_kp, 50.0);
-}
-
-/// State 5 is backing off, error 2 a record that read back differently; groups 1 and 4 of the table are unsaved; 300
-/// = 0x012C.
-#[test]
-fn the_store_state_can_be_read_while_armed() {
-    let mut bench = Bench::default();
-    assert_eq!(bench.read(&[0x31]), [0x31, 0, 0, 0, 0, 0, 0, 0]);
-    bench.diagnostics.params = ParamStatus {
-        state: ParamState::BackingOff,
-        last_error: ParamError::NotProgrammed,
-        unsaved: 0b1001,
-        save_ok: 300,
-        save_failed: 70_000,
-        ..ParamStatus::default()
-    };
-    let expected = [0x31, 5, 2, 2, 0x2C, 0x01, 0xFF, 0xFF];
-    assert_eq!(bench.read(&[0x31]), expected);
-    assert_eq!(bench.reply(TuningGate::Shut, 0x7A1, &[0x31]), expected);
-}
-
 /// The bit of a group in a mask by table index.
 fn place(number: u8) -> u32 {
     let mut groups = crate::tuning::PARAMETERS.iter();
     1 << groups.position(|group| group.number == number).unwrap()
-}
-
-/// Groups 7 and 16 were refused: bits 7 and 16 of the reply.
-#[test]
-fn the_boot_findings_can_be_read_while_armed() {
-    let mut bench = Bench::default();
-    assert_eq!(bench.read(&[0x32]), [0x32, 0, 0, 0, 0, 0, 0, 0]);
-    bench.diagnostics.params = ParamStatus {
-        lost_sectors: 1,
-        damaged: 300,
-        foreign: 4,
-        refused: place(7) | place(16),
-        ..ParamStatus::default()
-    };
-    let expected = [0x32, 1, 255, 4, 0x80, 0x00, 0x01, 0x00];
-    assert_eq!(bench.read(&[0x32]), expected);
-    assert_eq!(bench.reply(TuningGate::Shut, 0x7A1, &[0x32]), expected);
-}
-
-/// Page 7, battery: 24.5 V in steps of 2 mV is 12,250 = 0x2FDA. Page 0x71 does not exist.
-#[test]
-fn live_pages_can_be_read_while_armed() {
-    let mut bench = Bench::default();
-    bench.diagnostics.battery_v = 24.5;
-    let expected = [0x33, 7, 0xDA, 0x2F, 0, 0, 0, 0];
-    assert_eq!(bench.read(&[0x33, 7]), expected);
-    assert_eq!(bench.reply(TuningGate::Shut, 0x7A1, &[0x33, 7]), expected);
-    assert_eq!(bench.read(&[0x33, 0x71]), [0xEE, 0x33, 3, 0x71, 0, 0, 0, 0]);
-    assert_eq!(bench.read(&[0x33]), [0xEE, 0x33, 1, 0, 0, 0, 0, 0]);
-    assert_eq!(
-        bench.write(&[0x33, 7, 0, 0, 0, 0, 0, 0])[..3],
-        [0xEE, 0x33, 2]
-    );
-    assert!(bench.unchanged());
-}
-
-/// The motors of joints 0 (forward) and 2 (mirrored) are at 0.75 rad (0x3F400000). Set to 0 rad, the zeros are there.
-/// Set to 0.5 rad (0x3F000000), the forward joint's zero is at 0.25 and the mirrored one's at 1.25.
-#[test]
-fn the_present_angle_of_a_joint_is_set_as_requested() {
-    let mut bench = Bench {
-        stationary: [
-            Ok(0.75),
-            Err(NotStationary::Unknown),
-            Ok(0.75),
-            Err(NotStationary::Moving),
-        ],
-        ..Bench::default()
-    };
-    let zero = |bench: &Bench, joint: usize| bench.config.joints[joint].zero_rad;
-    for joint in [0, 2] {
-        let request = [0x41, joint, 0, 0, 0, 0, 0, 0];
-        assert_eq!(bench.write(&request), request);
-        assert_eq!(zero(&bench, joint.into()), 0.75);
-    }
-    for joint in [0, 2] {
-        let request = [0x41, joint, 0, 0, 0x00, 0x00, 0x00, 0x3F];
-        assert_eq!(bench.write(&request), request);
-        // The request is repeated, as after a lost reply.
-        assert_eq!(bench.write(&request), request);
-    }
-    assert_eq!((zero(&bench, 0), zero(&bench, 2)), (0.25, 1.25));
-    assert_eq!(bench.channel.status().revision, 4);
-}
-
-/// 13 rad (0x41500000) is beyond any joint, and NaN is 0x7FC00000. A motor at 12.5 rad set to −1 rad (0xBF800000)
-/// would have its zero at 13.5.
-#[test]
-fn an_invalid_zero_is_refused() {
-    let mut bench = Bench {
-        stationary: [
-            Ok(12.5),
-            Err(NotStationary::Unknown),
-            Ok(0.0),
-            Err(NotStationary::Moving),
-        ],
-        ..Bench::default()
-    };
-    for (request, reason) in [
-        ([0x41, 1, 0, 0, 0, 0, 0, 0], 9),
-        ([0x41, 3, 0, 0, 0, 0, 0, 0], 10),
-        ([0x41, 4, 0, 0, 0, 0, 0, 0], 3),
-        ([0x41, 2, 0, 0, 0x00, 0x00, 0x50, 0x41], 4),
-        ([0x41, 2, 0, 0, 0x00, 0x00, 0xC0, 0x7F], 6),
-        ([0x41, 0, 0, 0, 0x00, 0x00, 0x80, 0xBF], 4),
-        ([0x41, 2, 1, 0, 0, 0, 0, 0], 4),
-    ] {
-        assert_eq!(bench.write(&request), [0xEE, 0x41, reason, 0, 0, 0, 0, 0]);
-        assert!(bench.unchanged());
-    }
-    let request = [0x41, 2, 0, 0, 0, 0, 0, 0];
-    let armed = [0xEE, 0x41, 5, 0, 0, 0, 0, 0];
-    assert_eq!(bench.reply(TuningGate::Shut, 0x7A0, &request), armed);
-    assert!(bench.unchanged());
-}
-
-/// 600 s = 0x0258. State 1 without samples.
-#[test]
-fn a_recording_can_be_started_observed_and_ended() {
-    let mut bench = Bench::default();
-    assert_eq!(bench.read(&[0x43]), [0x43, 0, 0, 0, 0, 0, 0, 0]);
-    let start = [0x42, 0x58, 0x02, 0, 0, 0, 0, 0];
-    assert_eq!(
-        bench.reply(TuningGate::Shut, 0x7A0, &start),
-        [0xEE, 0x42, 5, 0, 0, 0, 0, 0]
-    );
-    assert_eq!(
-        bench.write(&[0x42, 0x59, 0x02, 0, 0, 0, 0, 0]),
-        [0xEE, 0x42, 4, 0, 0, 0, 0, 0]
-    );
-    assert!(!bench.channel.recorder().is_running());
-    assert_eq!(bench.write(&start), start);
-    bench.diagnostics.sensors.mag.ts_us = 1;
-    let recorded = bench
-        .channel
-        .recorder()
-        .next(TuningGate::Open, &bench.diagnostics.sensors);
-    assert!(recorded.is_some_and(|(bus, _)| bus == BusId::Can1));
-    assert_eq!(bench.read(&[0x43]), [0x43, 1, 0, 0, 0, 1, 0, 0]);
-    bench.write(&[0x42, 0, 0, 0, 0, 0, 0, 0]);
-    assert!(!bench.channel.recorder().is_running());
-    assert!(bench.unchanged());
-}
-
-/// The store saves this group although it looks unchanged, as flash may hold a refused record.
-#[test]
-fn unchanged_defaults_are_reported_to_the_store() {
-    let mut bench = Bench::default();
-    let all = (1 << crate::tuning::PARAMETERS.len()) - 1;
-    bench.write(&[0x30, 7, 0, 0, 0, 0, 0, 0]);
-    let status = *bench.channel.status();
-    assert_eq!((status.restored, status.revision), (place(7), 1));
-    bench.write(&[0x30, 0, 0, 0, 0, 0, 0, 0]);
-    let status = *bench.channel.status();
-    assert_eq!((status.restored, status.revision), (all, 2));
-    bench.write(&[0x20, 7, 0, 0, 0x00, 0x00, 0xF0, 0x41]);
-    bench.write(&[0x30, 31, 0, 0, 0, 0, 0, 0]);
-    let status = *bench.channel.status();
-    assert_eq!((status.restored, status.revision), (all, 3));
-}
-
-/// The store reads the settings only now and then. A change it has not seen yet must not count as saved.
-#[test]
-fn a_change_counts_as_unsaved_from_its_reply_on() {
-    let mut bench = tuned();
-    assert_eq!(bench.read(&[0x31])[..4], [0x31, 1, 0, 1]);
-    bench.diagnostics.params.seen = 2;
-    bench.diagnostics.params.unsaved = 0b10;
-    bench.diagnostics.params.state = ParamState::Saving;
-    assert_eq!(bench.read(&[0x31])[..4], [0x31, 3, 0, 1]);
-    bench.write(&[0x20, 7, 0, 0, 0x00, 0x00, 0x00, 0x42]);
-    assert_eq!(bench.read(&[0x31])[..4], [0x31, 1, 0, 2]);
 }
 
 proptest::proptest! {
