@@ -102,7 +102,7 @@ fn ten_million_bytes_without_a_frame_that_the_specification_rejects() {
 
 /// Garbage of any kind, then frames as a radio sends them: the second at the latest is delivered, and all after it.
 #[test]
-fn two_frames_after_any_garbage_it_is_back() {
+fn two_frames_after_any_garbage_the_parser_is_synchronised() {
     let mut random = Random::new(0xBAD);
     for round in 0..20_000 {
         let mut parser = SbusParser::new();
@@ -128,7 +128,7 @@ fn two_frames_after_any_garbage_it_is_back() {
 
 /// The same without any silence between garbage and frames, for frames in which no other place looks like a frame.
 #[test]
-fn two_frames_after_garbage_even_without_silence() {
+fn two_frames_after_garbage_without_idle_lines_the_parser_is_synchronised() {
     let mut random = Random::new(0xCAFE);
     let frame: [u8; FRAME_LEN] = [
         0x0F, 0xE0, 0x03, 0x1F, 0xF8, 0xC0, 0x07, 0x3E, 0xF0, 0x81, 0x0F, 0x7C, 0xE0, 0x03, 0x1F,

@@ -1,5 +1,5 @@
-//! Bytes as receivers of many makes send them, from bug reports of other projects, into the receiver stage: every sound
-//! frame is delivered with the right sticks, and a wrong protocol gives nothing.
+//! Byte streams of receivers of many makes, taken from bug reports of other projects. Every sound frame is delivered
+//! with the right sticks, and a wrong protocol gives nothing.
 
 use robot_app::{
     domain::RemoteUpdate,
@@ -82,7 +82,7 @@ fn every_footer_after_silence_is_a_frame_s_end() {
 
 /// Futaba R7003SB: 30 bytes, the 25th is 0x08 (bolderflight/sbus#79). The five others are no fault of the link.
 #[test]
-fn bytes_behind_a_frame_cost_no_quality() {
+fn bytes_after_a_frame_do_not_reduce_quality() {
     for footer in [0x00, 0x08] {
         let mut frame = sbus(centred(1024), 0, footer);
         frame.extend([0, 3, 0xC0, 0x33, 0]);
@@ -97,9 +97,9 @@ fn bytes_behind_a_frame_cost_no_quality() {
     }
 }
 
-/// A header among them is the start of nothing.
+/// A header among these bytes does not start a frame.
 #[test]
-fn a_header_behind_a_frame_is_none() {
+fn a_header_after_a_frame_is_ignored() {
     let mut frame = sbus(centred(992), 0, 0x08);
     frame.extend([0x0F, 3, 0x0F, 0x33, 0x0F]);
     let updates = SBUS.feed(&vec![frame; 100]);
@@ -107,9 +107,9 @@ fn a_header_behind_a_frame_is_none() {
     assert_eq!(updates[99].diagnostics.quality, 1.0);
 }
 
-/// Nine bytes and more are a frame that was cut.
+/// Nine or more bytes count as a cut frame.
 #[test]
-fn longer_rests_are_lost_frames() {
+fn longer_trailers_count_as_lost_frames() {
     let mut frame = sbus(centred(992), 0, 0x00);
     frame.extend([0x55; 9]);
     let updates = SBUS.feed(&vec![frame; 100]);
@@ -119,7 +119,7 @@ fn longer_rests_are_lost_frames() {
     assert!((0.6..0.8).contains(&quality), "{quality}");
 }
 
-/// 6 ms leave 3 ms of silence; below that there is too little, and a frame must start where the one before ended.
+/// A period of 6 ms leaves 3 ms of idle line. Below that a frame must start where the previous one ended.
 #[test]
 fn every_period_from_3_to_22_ms_is_followed() {
     for period_us in (3_000..=22_000).step_by(500) {
@@ -147,7 +147,7 @@ fn silence_of_three_milliseconds_is_seen_whatever_the_footer() {
     assert_eq!(frames, 100);
 }
 
-/// A byte is lost on the line and another comes in the gap: 25 bytes, and no frame.
+/// A byte is lost on the line and another comes in the gap: 25 bytes that are not a frame.
 #[test]
 fn a_frame_with_a_pause_inside_needs_a_known_footer() {
     for (footer, delivered) in [(0x77, 0), (0x00, 1)] {
@@ -162,7 +162,7 @@ fn a_frame_with_a_pause_inside_needs_a_known_footer() {
 
 /// Without silence the byte before a header is no proof that a frame ends there.
 #[test]
-fn without_silence_an_unknown_footer_is_no_frame() {
+fn without_an_idle_line_an_unknown_footer_is_rejected() {
     let mut receiver = RemoteReceiver::new(RemoteFormat::Sbus, RemoteMapping::default());
     let frame = sbus(centred(992), 0, 0x77);
     let stream = [&frame[10..], &frame[..], &frame[..], &frame[..]].concat();
@@ -210,7 +210,7 @@ fn switches_of_futaba_have_their_three_positions() {
 
 /// Receivers that lost their transmitter and have no flag for it: no channel, or all at one value.
 #[test]
-fn failsafe_presets_without_a_flag_never_let_the_robot_run() {
+fn failsafe_presets_without_a_flag_never_enable_the_robot() {
     for raw in [0, 172, 992, 1024, 1811, 2047] {
         let updates = SBUS.feed(&vec![sbus([raw; 16], 0, 0); 20]);
         let operator = updates[19].operator;
@@ -220,7 +220,7 @@ fn failsafe_presets_without_a_flag_never_let_the_robot_run() {
 
 /// ArduPilot#31088: a receiver that flags every frame from some time on; X4R: every second one.
 #[test]
-fn flagged_frames_bring_no_sticks_and_cost_quality() {
+fn flagged_frames_move_no_stick_and_reduce_quality() {
     let flagged = |count: usize, lost: fn(usize) -> bool| {
         let frames: Vec<_> = (0..count)
             .map(|index| sbus(centred(992), if lost(index) { 4 } else { 0 }, 0))

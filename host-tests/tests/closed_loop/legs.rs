@@ -1,4 +1,4 @@
-//! The joints against the world's DM4310: armed they hold, and what stops them leaves the wheels alone.
+//! The joints with the simulated DM4310. Armed joints hold their pose, and what stops them leaves the wheels running.
 
 use robot_app::{
     domain::{ChassisCommand, JointCommand, JointMode},
@@ -20,7 +20,7 @@ fn assert_limp(robot: &Robot) {
     assert_eq!(enabled(robot), [false; 4], "at {} s", robot.seconds());
 }
 
-/// Milliseconds from now until no joint is enabled any more.
+/// Milliseconds until no joint is enabled.
 fn ms_to_limp(robot: &mut Robot) -> f64 {
     let start = robot.seconds();
     let mut last_enabled = start;
@@ -32,7 +32,7 @@ fn ms_to_limp(robot: &mut Robot) -> f64 {
     (last_enabled - start) * 1_000.0
 }
 
-/// Enable off and e-stop thrown for 1.1 s.
+/// Makes the clearing gesture, enable off and e-stop thrown, for 1.1 s.
 fn clear(robot: &mut Robot) {
     let e_stop = |thrown| RemoteInput {
         e_stop: Some(thrown),
@@ -48,7 +48,7 @@ fn clear(robot: &mut Robot) {
 }
 
 #[test]
-fn joints_are_limp_until_armed_and_hold_their_pose_then() {
+fn joints_are_released_until_armed_and_then_hold_their_pose() {
     let mut robot = Robot::new(PlantKind::Stand, RadioKind::Sbus);
     robot.run_until(2.5, assert_limp);
     robot.remote(ENABLE);
@@ -73,9 +73,9 @@ fn joints_are_limp_until_armed_and_hold_their_pose_then() {
     );
 }
 
-/// `(fault, flag, goes on by itself once the stick is centred)`.
+/// Each case is `(fault, flag, resumes when the stick is centred)`.
 #[test]
-fn a_bad_joint_stops_all_joints_and_the_wheels_go_on() {
+fn a_faulty_joint_stops_all_joints_and_the_wheels_continue() {
     let cases = [
         ("motor-3-fault", SafetyFlags::JOINT_FAULT, false),
         ("motor-4-gone", SafetyFlags::JOINT_SILENT, true),
@@ -110,9 +110,9 @@ fn a_bad_joint_stops_all_joints_and_the_wheels_go_on() {
     }
 }
 
-/// A DM4310 changes its mode while disabled, and may be deaf for 150 ms meanwhile.
+/// A DM4310 changes its mode while disabled, and may not answer for 150 ms meanwhile.
 #[test]
-fn a_new_mode_stops_all_joints_for_a_moment() {
+fn a_mode_change_stops_all_joints_briefly() {
     for slow in [false, true] {
         take_a_new_mode(slow);
     }
@@ -156,7 +156,7 @@ fn take_a_new_mode(slow: bool) {
 }
 
 #[test]
-fn a_fallen_robot_is_limp_until_it_is_up_and_cleared() {
+fn a_fallen_robot_is_released_until_upright_and_cleared() {
     let mut robot = driving(PlantKind::Rolling, RadioKind::Sbus);
     robot.fault("tilted", true);
     robot.run_until(7.0, |_| ());
@@ -185,7 +185,7 @@ fn a_fallen_robot_is_limp_until_it_is_up_and_cleared() {
 }
 
 #[test]
-fn a_low_battery_forbids_the_next_drive_and_an_empty_one_ends_this_one() {
+fn a_low_battery_blocks_the_next_drive_and_an_empty_one_ends_the_present() {
     let mut robot = driving(PlantKind::Stand, RadioKind::Sbus);
     robot.fault("battery-low", true);
     robot.run_until(7.0, |_| ());

@@ -47,7 +47,7 @@ fn assert_still(robot: &Robot) {
     );
 }
 
-/// Enabled at 2.5 s, then forward from 3 s to 5 s.
+/// A robot that was enabled at 2.5 s and driven forward from 3 s to 5 s.
 fn driving(plant: PlantKind, radio: RadioKind) -> Robot {
     let mut robot = Robot::new(plant, radio);
     robot.run_until(2.5, assert_still);
@@ -63,7 +63,7 @@ fn blockers(robot: &Robot) -> Vec<&'static str> {
     robot.diagnostics().arming.blockers.names().collect()
 }
 
-/// Seconds from now until both currents are zero for good, looked at for `for_s`.
+/// Seconds until both currents stay zero, observed for `for_s`.
 fn seconds_to_zero(robot: &mut Robot, for_s: f64) -> f64 {
     let start = robot.seconds();
     let mut last_torque = start;
@@ -111,7 +111,7 @@ fn the_switch_off_cuts_the_current() {
 }
 
 #[test]
-fn the_emergency_stop_cuts_the_current_and_stays() {
+fn the_e_stop_cuts_the_current_until_released() {
     let mut robot = driving(PlantKind::Stand, RadioKind::Sbus);
     let e_stop = |e_stop| RemoteInput {
         e_stop: Some(e_stop),
@@ -133,7 +133,7 @@ fn the_emergency_stop_cuts_the_current_and_stays() {
 
 /// `(fault, time until zero)`: age limit 100 ms for the radio, 25 ms for the IMU, half of 64 frames for quality.
 #[test]
-fn losing_radio_or_imu_cuts_the_current_for_good() {
+fn losing_radio_or_imu_cuts_the_current_until_rearmed() {
     let cases = [
         ("sbus-silent", 0.115, SafetyFlags::REMOTE_LOST),
         ("sbus-failsafe", 0.013, SafetyFlags::REMOTE_FAILSAFE),
@@ -154,7 +154,7 @@ fn losing_radio_or_imu_cuts_the_current_for_good() {
 }
 
 #[test]
-fn one_silent_motor_stops_nobody() {
+fn one_silent_wheel_stops_nothing() {
     let mut robot = driving(PlantKind::Stand, RadioKind::Sbus);
     robot.fault("motor-0-gone", true);
     robot.run_until(6.0, |_| ());
@@ -188,10 +188,10 @@ fn a_stick_off_centre_does_not_arm() {
     );
 }
 
-/// Truth from the plant; what the firmware believes from its estimate. The accelerometer's offset (20 mg by the
-/// datasheet) alone tilts the horizon by 1.1°.
+/// Compares the plant's truth with the firmware's estimate. The accelerometer's offset (20 mg by the datasheet) alone
+/// tilts the horizon by 1.1°.
 #[test]
-fn rolling_covers_the_commanded_way_and_turn() {
+fn rolling_covers_the_commanded_distance_and_turn() {
     let mut robot = Robot::new(PlantKind::Rolling, RadioKind::Sbus);
     robot.run_until(2.5, assert_still);
     robot.remote(ENABLE);

@@ -1,4 +1,4 @@
-//! Velocity and position of the estimate against the world's truth.
+//! Velocity and position of the estimate, compared with the simulated truth.
 //!
 //! The world's IMU sits 5 cm ahead of the axle and 2 cm to the left; its accelerometer has the datasheet's offset.
 
@@ -89,7 +89,7 @@ fn velocity_and_position_follow_a_wild_drive() {
     assert!(z_m.abs() < 0.1, "{z_m} m high");
 }
 
-/// Two minutes of weaving at 1 m/s, ±2.4 rad/s: what the position is off by is the heading's share, 2° of 120 m.
+/// Two minutes of weaving at 1 m/s and ±2.4 rad/s. The position error comes from the heading: 2° of 120 m.
 #[test]
 fn two_minutes_of_weaving_drift_by_the_heading_alone() {
     let mut robot = armed(PlantKind::Rolling);
@@ -111,7 +111,7 @@ fn two_minutes_of_weaving_drift_by_the_heading_alone() {
 }
 
 #[test]
-fn a_robot_at_rest_goes_nowhere() {
+fn a_robot_at_rest_keeps_its_position() {
     let mut robot = driving(PlantKind::Rolling, RadioKind::Sbus);
     robot.remote(sticks(0.0, 0.0));
     robot.run_until(7.0, |_| ());
@@ -133,9 +133,9 @@ fn a_robot_at_rest_goes_nowhere() {
     assert!((0.05..0.25).contains(&z.abs()), "{z} m/s²");
 }
 
-/// The wheels run at 0.58 m/s at once, the robot gains 0.49 m/s each second.
+/// The wheels reach 0.58 m/s at once, while the robot gains 0.49 m/s each second.
 #[test]
-fn spinning_wheels_are_not_believed() {
+fn spinning_wheels_do_not_change_the_velocity() {
     let mut robot = armed(PlantKind::Rolling);
     robot.fault("floor-slippery", true);
     robot.remote(FORWARD);
@@ -149,7 +149,8 @@ fn spinning_wheels_are_not_believed() {
     assert!(worst.inclination_deg < 1.3, "{worst:?}");
 }
 
-/// Full speed to and fro for 20 s on ice: the wheels never roll, so nothing can know the speed; the horizon stays.
+/// Full speed back and forth for 20 s on ice. The wheels never roll, so the speed cannot be known, but the horizon
+/// stays.
 #[test]
 fn wheels_that_never_roll_do_not_tilt_the_horizon() {
     let mut robot = armed(PlantKind::Rolling);
@@ -162,9 +163,10 @@ fn wheels_that_never_roll_do_not_tilt_the_horizon() {
     }
 }
 
-/// From a circle at full speed into reverse on ice: it slides on at up to 1.3 m/s sideways, wheels running backwards.
+/// From a circle at full speed into reverse on ice, the robot slides sideways at up to 1.3 m/s with its wheels
+/// running backwards.
 #[test]
-fn sliding_sideways_is_seen() {
+fn sliding_sideways_is_detected() {
     let mut robot = armed(PlantKind::Rolling);
     robot.remote(sticks(1.0, 1.0));
     robot.run_until(5.0, |_| ());
@@ -205,9 +207,9 @@ fn one_wheel_and_the_gyro_are_enough() {
     }
 }
 
-/// Wheels in the air: what the accelerometer does not feel is no motion, for however long they turn.
+/// The wheels are in the air. Without an acceleration there is no motion, however long they turn.
 #[test]
-fn wheels_that_turn_in_the_air_are_no_motion() {
+fn wheels_turning_in_the_air_are_not_motion() {
     let mut robot = driving(PlantKind::Stand, RadioKind::Sbus);
     for (vx, wz) in [(0.4, 0.0), (0.4, 0.3), (0.0, 0.8), (-1.0, 0.0), (0.1, 0.0)] {
         robot.remote(sticks(vx, wz));

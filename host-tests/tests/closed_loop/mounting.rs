@@ -1,4 +1,4 @@
-//! The board sits in every way there is, and the magnetometer on it in every way there is.
+//! Every mounting of the board, and every mounting of the magnetometer on it.
 
 use robot_app::domain::{MountingConfig, Orientation, RobotConfig};
 use robot_plant::world::{PlantKind, WorldConfig};
@@ -21,7 +21,7 @@ fn robot(board: &str, mag: &str, mounting: MountingConfig) -> Robot {
 }
 
 #[test]
-fn a_robot_that_knows_how_its_sensors_sit_drives_as_ever() {
+fn a_robot_with_known_mounting_drives_as_usual() {
     for (index, board) in Orientation::ALL.into_iter().enumerate() {
         let mag = Orientation::ALL[(7 * index + 5) % 24];
         let name = (board.name(), mag.name());
@@ -54,9 +54,9 @@ fn a_robot_that_knows_how_its_sensors_sit_drives_as_ever() {
     }
 }
 
-/// The field is not used, however wrong it may be: the gyro carries the heading.
+/// The field is not used, even if it is wrong, and the gyro carries the heading.
 #[test]
-fn a_magnetometer_that_sits_nobody_knows_how_turns_no_heading() {
+fn a_magnetometer_of_unknown_mounting_does_not_change_the_heading() {
     let mounting = MountingConfig {
         board: Orientation::XLeftZUp,
         mag: None,

@@ -1,4 +1,4 @@
-//! The whole app without a chip: every wire of the simulated world runs into the app's own decoders.
+//! The whole app without a chip. Every wire of the simulated world leads to the app's own decoders.
 
 use robot_app::{
     control::UserController,
@@ -97,7 +97,7 @@ impl Robot {
         self.now as f64 / (1_000.0 * MS as f64)
     }
 
-    /// Runs until `seconds` after power-on, looking at the robot after each tick.
+    /// Runs until `seconds` after power-on and calls `look` after each tick.
     pub fn run_until(&mut self, seconds: f64, mut look: impl FnMut(&Self)) {
         while self.seconds() < seconds {
             self.tick();
@@ -113,7 +113,7 @@ impl Robot {
         &self.diagnostics
     }
 
-    /// As the speed controllers read it off the wire; in the motors' own sense.
+    /// The currents read from the wire, in the motors' own direction.
     pub fn wheel_currents_ma(&self) -> [f64; 2] {
         self.wheel_currents_ma
     }

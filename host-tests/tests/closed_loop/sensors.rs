@@ -1,4 +1,5 @@
-//! The sensor tasks without a chip: the wires of the simulated world run into the app's own drivers' tables and pipelines.
+//! The sensor tasks without a chip. The wires of the simulated world lead to the app's own drivers' tables and
+//! pipelines.
 
 use robot_app::{
     domain::{HeaterConfig, ImuCalibration, ImuState, MagCalibration, MagState, MountingConfig},
@@ -73,7 +74,7 @@ impl Sensors {
         self.mag_started_at = Some(now);
     }
 
-    /// The measurement under way, once it is over; `Err` if there is no sample in it.
+    /// The result of the running measurement, once it is complete; `Err` if it holds no sample.
     pub fn fetch_mag(&mut self, world: &mut World, now: Ps) -> Option<Result<MagState, ()>> {
         let due = |started: &mut Ps| now - *started >= u64::from(ist8310::MEASUREMENT_US) * US;
         let started = self.mag_started_at.take_if(due)?;

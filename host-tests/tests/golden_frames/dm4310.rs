@@ -67,7 +67,7 @@ fn position_speed_and_speed_commands() {
 }
 
 #[test]
-fn what_is_no_number_or_too_large_is_not_sent() {
+fn nan_and_values_out_of_range_are_not_sent() {
     // 12.5 = 0x41480000, 30 = 0x41F00000.
     let zero = [0; 8];
     assert_eq!(motor().position_speed(f32::NAN, 2.0).payload(), zero);
@@ -122,9 +122,9 @@ fn register_answers() {
     assert_eq!(answer([3, 0, 0x34, 0x15, 0, 0, 0x48, 0x41]), None);
 }
 
-/// Read as a reply, each would be a disabled motor near −12.5 rad.
+/// As a reply, each would mean a disabled motor near −12.5 rad.
 #[test]
-fn a_late_register_answer_is_no_reply() {
+fn a_late_register_answer_is_not_taken_for_a_reply() {
     for order in [0x33, 0x55] {
         for index in [9, 10, 0x15, 0x16, 0x17] {
             let answer = frame(0x13, &[3, 0, order, index, 0xD0, 0x07, 0, 0]);
@@ -171,7 +171,7 @@ fn replies() {
 }
 
 #[test]
-fn replies_of_others_and_broken_ones_are_refused() {
+fn foreign_and_malformed_replies_are_rejected() {
     let payload = [0x13, 0x7F, 0xFF, 0x7F, 0xF7, 0xFF, 41, 52];
     assert!(motor().decode(&frame(0x13, &payload)).is_some());
     assert_eq!(motor().decode(&frame(0x14, &payload)), None);
@@ -186,7 +186,7 @@ fn replies_of_others_and_broken_ones_are_refused() {
 }
 
 #[test]
-fn impossible_motors_are_refused() {
+fn impossible_motors_are_rejected() {
     let none = MitRanges {
         p_max_rad: 0.0,
         ..RANGES

@@ -61,7 +61,7 @@ fn dbus_deflected() {
 }
 
 #[test]
-fn dbus_outside_its_ranges_is_refused() {
+fn dbus_out_of_range_is_rejected() {
     let mut no_switch = DBUS_CENTRED;
     no_switch[5] = 0xC8;
     let mut far_stick = DBUS_CENTRED;
@@ -74,9 +74,9 @@ fn dbus_outside_its_ranges_is_refused() {
     }
 }
 
-/// A transmitter without a wheel leaves zeros or its own bits in bytes 16 and 17.
+/// A transmitter without a wheel sends zeros or its own bits in bytes 16 and 17.
 #[test]
-fn no_value_of_the_dbus_wheel_spoils_a_frame() {
+fn no_value_of_the_dbus_wheel_invalidates_a_frame() {
     let centred = DbusFrame::parse(&DBUS_CENTRED).unwrap();
     for sent in 0..=u16::MAX {
         let mut bytes = DBUS_CENTRED;
@@ -89,7 +89,7 @@ fn no_value_of_the_dbus_wheel_spoils_a_frame() {
     }
 }
 
-/// The frame twice: what it says counts when the next one confirms it.
+/// Feeds the frame twice, as its content counts when the next frame confirms it.
 fn last_update(format: RemoteFormat, bytes: &[u8]) -> Option<RemoteUpdate> {
     let mut receiver = RemoteReceiver::new(format, RemoteMapping::default());
     let mut last = None;
@@ -111,7 +111,7 @@ fn sbus(channels: [u16; 16]) -> [u8; 25] {
 }
 
 #[test]
-fn sbus_sticks_and_switches_mean_what_the_mapping_says() {
+fn sbus_sticks_and_switches_follow_the_mapping() {
     let mut channels = [992; 16];
     channels[0] = 1811; // stick right: turn right
     channels[1] = 1811; // stick forward
@@ -148,7 +148,7 @@ fn channels_are_normalised_to_the_unit_range() {
 }
 
 #[test]
-fn dbus_sticks_and_switches_mean_what_the_mapping_says() {
+fn dbus_sticks_and_switches_follow_the_mapping() {
     let update = last_update(RemoteFormat::Dbus, &DBUS_DEFLECTED).unwrap();
     assert_eq!((update.state.vx, update.state.wz), (1.0, 1.0));
     assert!(update.operator.enabled && !update.operator.e_stop);

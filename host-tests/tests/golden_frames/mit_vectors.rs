@@ -1,4 +1,5 @@
-//! Against `vectors/*.csv`, made by the maker's C code (see `vectors/README.md`), and over all raw codes.
+//! Compares the codecs with `vectors/*.csv`, which come from the maker's C code (see `vectors/README.md`), and over
+//! all raw codes.
 
 use robot_app::motor::{
     mit::{MitCommand, MitRanges, MitReport, MitTargets},
@@ -32,7 +33,7 @@ fn rows(csv: &'static str) -> impl Iterator<Item = Vec<&'static str>> {
 }
 
 #[test]
-fn commands_are_what_the_makers_code_sends() {
+fn commands_equal_those_of_the_makers_code() {
     let mut checked = 0;
     for row in rows(include_str!("vectors/mit_commands.csv")) {
         let [motor, pos, vel, kp, kd, torque, payload] = row[..] else {
@@ -53,7 +54,7 @@ fn commands_are_what_the_makers_code_sends() {
 }
 
 #[test]
-fn reports_are_what_the_makers_code_reads() {
+fn reports_equal_those_of_the_makers_code() {
     let mut checked = 0;
     for row in rows(include_str!("vectors/mit_replies.csv")) {
         let [motor, payload, pos, vel, torque] = row[..] else {

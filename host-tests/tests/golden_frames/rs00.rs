@@ -66,7 +66,7 @@ fn position_and_speed_commands() {
 }
 
 #[test]
-fn what_is_no_number_or_too_large_is_not_sent() {
+fn nan_and_values_out_of_range_are_not_sent() {
     // 33 = 0x42040000.
     let zero = [0; 8];
     assert_eq!(motor().position_speed(f32::NAN, 2.0).payload(), zero);
@@ -99,9 +99,9 @@ fn replies() {
     }
 }
 
-/// All motors answer under one identifier; byte 0 says which.
+/// All motors answer with one identifier, and byte 0 names the motor.
 #[test]
-fn replies_of_others_and_broken_ones_are_refused() {
+fn foreign_and_malformed_replies_are_rejected() {
     let payload = [3, 0x80, 0x00, 0x80, 0x08, 0x00, 0x01, 0x9F];
     assert!(motor().decode(&frame(0xFD, &payload)).is_some());
     assert_eq!(motor().decode(&frame(0xFC, &payload)), None);
@@ -139,9 +139,9 @@ fn the_fault_word_has_the_documented_bits() {
     assert_eq!(word(0, 0, 0, 0), Some(Faults::default()));
 }
 
-/// After a lost answer the next ordinary reply must not pass for a fault word.
+/// After a lost answer the next ordinary reply must not count as a fault word.
 #[test]
-fn an_ordinary_reply_is_no_fault_word() {
+fn an_ordinary_reply_is_not_taken_for_a_fault_word() {
     for velocity in 0x020..=0xFFF_u16 {
         for position in [0_u16, 1, 0x7FFF, 0x8000, 0xFFFF] {
             let [p_high, p_low] = position.to_be_bytes();
@@ -153,7 +153,7 @@ fn an_ordinary_reply_is_no_fault_word() {
 }
 
 #[test]
-fn impossible_motors_are_refused() {
+fn impossible_motors_are_rejected() {
     assert_eq!(Rs00::new(0, 0xFD), None);
     assert_eq!(Rs00::new(128, 0xFD), None);
 }

@@ -1,4 +1,4 @@
-//! Motors that vanish, trip, freeze or answer to another name.
+//! Motors that vanish, report faults, freeze or have another identifier.
 
 use robot_app::domain::{JointCommand, JointMode, JointState};
 use robot_plant::world::JointKind;
@@ -24,7 +24,7 @@ fn armed_holding(kind: JointKind) -> Robot {
     robot
 }
 
-/// Enable switch off and e-stop thrown, held for long enough.
+/// Makes the clearing gesture for long enough.
 fn clear(robot: &mut Robot) {
     robot.enabled = false;
     robot.e_stop = true;
@@ -34,7 +34,7 @@ fn clear(robot: &mut Robot) {
 }
 
 #[test]
-fn a_motor_that_lost_its_supply_is_silent_and_set_up_anew() {
+fn a_motor_that_lost_its_supply_is_silent_and_set_up_again() {
     for kind in BOTH {
         let mut robot = armed_holding(kind);
         robot.fault("motor-2-gone", true);
@@ -89,7 +89,7 @@ fn a_fault_is_named_and_stays_until_the_pilot_clears_it() {
 }
 
 #[test]
-fn a_fault_that_is_still_there_comes_back_at_once() {
+fn a_persisting_fault_returns_at_once() {
     for kind in BOTH {
         let mut robot = armed_holding(kind);
         robot.fault("motor-2-fault", true);
@@ -101,9 +101,9 @@ fn a_fault_that_is_still_there_comes_back_at_once() {
     }
 }
 
-/// Too short to count as silence, but a DM4310's time-out is back at the factory's: none.
+/// The interruption is too short to count as silence, but it resets a DM4310's time-out to the factory setting: none.
 #[test]
-fn a_motor_whose_supply_fails_for_a_moment_is_set_up_anew() {
+fn a_motor_whose_supply_fails_briefly_is_set_up_again() {
     let mut robot = armed_holding(JointKind::Dm4310);
     robot.fault("motor-2-gone", true);
     robot.run(0.03);
@@ -117,9 +117,9 @@ fn a_motor_whose_supply_fails_for_a_moment_is_set_up_anew() {
 const DISABLE: [u8; 8] = [0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFD];
 const ENABLE: [u8; 8] = [0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFC];
 
-/// A motor that was switched off by something else is switched on again, a few times a second at most.
+/// A motor that something else disabled is enabled again, a few times a second at most.
 #[test]
-fn a_motor_that_somebody_disables_is_enabled_again() {
+fn a_motor_disabled_by_another_sender_is_enabled_again() {
     let mut robot = armed_holding(JointKind::Dm4310);
     robot.hear_from_a_stranger(1, DISABLE);
     assert_eq!(robot.joint_signals("can.joint.{}.enabled")[0], 0.0);
@@ -174,9 +174,9 @@ fn a_joint_that_repeats_its_last_reply_in_motion_is_frozen() {
     }
 }
 
-/// Its reported torque no longer fits what it is told.
+/// Its reported torque no longer fits the command.
 #[test]
-fn a_joint_that_repeats_its_last_reply_at_rest_is_frozen_once_it_is_told_to_move() {
+fn a_joint_that_repeats_its_last_reply_at_rest_is_frozen_once_commanded() {
     for kind in BOTH {
         let mut robot = armed_holding(kind);
         robot.run(1.0);
@@ -209,7 +209,7 @@ fn a_wheel_that_repeats_its_last_feedback_is_frozen() {
 }
 
 #[test]
-fn a_wheel_that_repeats_its_last_feedback_at_rest_is_frozen_once_it_is_told_to_move() {
+fn a_wheel_that_repeats_its_last_feedback_at_rest_is_frozen_once_commanded() {
     let mut robot = Robot::armed(JointKind::Dm4310);
     robot.fault("motor-0-frozen", true);
     robot.run(0.3);

@@ -1,4 +1,4 @@
-//! The parameter store asks to write while motors are about.
+//! The parameter store requests writes while motors are present.
 
 use robot_app::{
     domain::{FlashRequest, JointState},
@@ -31,7 +31,7 @@ fn arming_waits_until_the_record_is_written() {
 }
 
 #[test]
-fn nothing_is_granted_from_the_flip_of_the_switch_until_half_a_second_after_disarming() {
+fn nothing_is_granted_from_enabling_until_half_a_second_after_disarming() {
     for kind in BOTH {
         for request in [FlashRequest::Program, FlashRequest::Erase] {
             let mut robot = Robot::armed(kind);

@@ -1,4 +1,4 @@
-//! Nothing that control asks for gets past the joints' limits.
+//! No command of the controller exceeds the joints' limits.
 
 use robot_app::domain::{JointCommand, JointMode};
 use robot_plant::world::JointKind;
@@ -118,7 +118,7 @@ fn beyond_a_soft_limit_nothing_pushes_further_out() {
 }
 
 #[test]
-fn a_command_that_is_no_number_is_no_torque() {
+fn a_nan_command_gives_no_torque() {
     let nan = f32::NAN;
     for kind in BOTH {
         for command in [

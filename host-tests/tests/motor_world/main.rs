@@ -1,4 +1,4 @@
-//! The motors' side of the tick against the world's drives, which are written from the datasheets alone.
+//! The motors' side of the tick with simulated drives, which are written from the datasheets alone.
 
 mod faults;
 mod flash;

@@ -1,4 +1,4 @@
-//! Every control mode moves the leg where the command says, on both sides of the robot.
+//! Every control mode moves the leg as commanded, on both sides of the robot.
 
 use robot_app::domain::{JointCommand, JointMode, JointState};
 use robot_plant::world::JointKind;
@@ -52,7 +52,7 @@ fn torque_and_speed_have_the_sign_of_the_joint() {
 }
 
 #[test]
-fn position_mode_goes_there_no_faster_than_told() {
+fn position_mode_respects_the_commanded_speed_limit() {
     for kind in BOTH {
         let mut robot = Robot::armed(kind);
         robot.command_joints(JointCommand {
@@ -78,7 +78,7 @@ fn position_mode_goes_there_no_faster_than_told() {
 }
 
 #[test]
-fn speed_mode_turns_at_the_speed_told() {
+fn speed_mode_turns_at_the_commanded_speed() {
     for kind in BOTH {
         let mut robot = Robot::armed(kind);
         robot.command_joints(JointCommand {
@@ -100,7 +100,7 @@ fn speed_mode_turns_at_the_speed_told() {
     }
 }
 
-/// `Off` needs an MIT frame, which a motor in speed mode would not understand: it is disabled.
+/// `Off` needs an MIT frame, which a motor in speed mode would not understand, so the motor is disabled.
 #[test]
 fn off_in_another_mode_is_disabled() {
     for kind in BOTH {

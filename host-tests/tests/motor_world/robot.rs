@@ -1,4 +1,4 @@
-//! The control tick with all its motors in the simulated world; radio and IMU are as they should be.
+//! The control tick with all its motors in the simulated world. Radio and IMU are healthy.
 
 use robot_app::{
     control::UserController,
@@ -84,7 +84,7 @@ impl Robot {
         }
     }
 
-    /// The board says nothing; `look` is told the milliseconds gone by.
+    /// Runs the world without frames from the board; `look` gets the milliseconds passed.
     pub fn run_without_board(&mut self, ticks: u64, mut look: impl FnMut(&Self, u64)) {
         for ms in 1..=ticks {
             self.now += MS;
@@ -93,7 +93,7 @@ impl Robot {
         }
     }
 
-    /// The whole board stands still for a flash erase; what the motors say meanwhile is lost.
+    /// Lets the whole board stand still for a flash erase. What the motors send meanwhile is lost.
     pub fn stall(&mut self, ms: u64) {
         self.run_without_board(ms, |_, _| ());
         self.world.take_frames(self.now, |_, _| ());

@@ -61,9 +61,9 @@ fn joints_are_not_set_up_again_because_the_board_stood_still() {
     }
 }
 
-/// A motor from the factory has no time-out; set up by the firmware it lets go 100 ms after the last frame.
+/// A motor from the factory has no time-out. The firmware sets one of 100 ms, after which the motor releases torque.
 #[test]
-fn an_abandoned_dm4310_lets_go() {
+fn an_abandoned_dm4310_releases_torque() {
     let mut robot = Robot::armed(JointKind::Dm4310);
     assert_eq!(robot.joint_signals("can.joint.{}.enabled"), [1.0; 4]);
     let mut let_go_after_ms = 0;
@@ -76,7 +76,7 @@ fn an_abandoned_dm4310_lets_go() {
 }
 
 #[test]
-fn motors_are_enabled_while_armed_and_only_then() {
+fn motors_are_enabled_only_while_armed() {
     for kind in BOTH {
         let mut robot = Robot::armed(kind);
         assert_eq!(robot.joint_signals("can.joint.{}.enabled"), [1.0; 4]);
@@ -119,7 +119,7 @@ fn the_pilots_stop_reaches_every_joint_within_two_ticks() {
 }
 
 #[test]
-fn each_joint_is_told_something_in_every_second_tick() {
+fn each_joint_gets_a_frame_in_every_second_tick() {
     let mut robot = Robot::new(JointKind::Dm4310);
     let mut told = Vec::new();
     robot.run(0.5);

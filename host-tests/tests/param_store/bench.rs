@@ -1,4 +1,4 @@
-//! A chip, the store on it as the firmware uses it, and the ledger of what must be there.
+//! A chip, the store as the firmware uses it, and a ledger of the records that must be there.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use robot_app::{
 };
 use robot_plant::flash_chip::FlashChip;
 
-/// Far more than a save with a change of sector takes.
+/// More steps than a save with a rotation takes.
 const MAX_STEPS: usize = 300;
 
 /// By key and variant.
@@ -38,7 +38,7 @@ pub fn read(store: &mut BootedStore) -> Contents {
     contents
 }
 
-/// As the firmware boots: what a cut left half programmed is settled, then the records are read.
+/// Boots as the firmware does: settles what a cut left half programmed, then reads the records.
 pub fn boot(chip: &mut FlashChip) -> Result<(BootedStore<'_>, Contents), ParamError> {
     let mut store = Store::open(chip);
     for _ in 0..MAX_STEPS {
@@ -64,7 +64,7 @@ pub fn save(store: &mut BootedStore, record: &Record) -> Result<(), ParamError> 
     panic!("saving never ends");
 }
 
-/// What the store asks for while nothing is to be saved.
+/// Does what the store requests while nothing is to be saved.
 pub fn tidy(store: &mut BootedStore) -> Result<(), ParamError> {
     for _ in 0..MAX_STEPS {
         if store.next(false) == FlashRequest::None {
@@ -75,7 +75,7 @@ pub fn tidy(store: &mut BootedStore) -> Result<(), ParamError> {
     panic!("tidying never ends");
 }
 
-/// A chip whose store is new: one sector is clean.
+/// A chip with a new store, in which one sector is clean.
 pub fn new_chip(seed: u64) -> FlashChip {
     let mut chip = FlashChip::parameters(seed);
     tidy(&mut Store::open(&mut chip)).expect("a good chip");
@@ -99,7 +99,7 @@ pub fn save_all(chip: &mut FlashChip, records: &[Record]) -> Contents {
 pub struct Ledger {
     /// Confirmed by the store.
     pub saved: Contents,
-    /// Begun and not confirmed: each may be there or not.
+    /// Records whose save was begun but not confirmed. Each may be there or not.
     pub begun: Vec<Record>,
 }
 
@@ -120,7 +120,7 @@ impl Ledger {
         Ok(())
     }
 
-    /// From now on what a boot found is what every later boot must find.
+    /// Makes what a boot found the contents that every later boot must find.
     pub fn settle(&mut self, found: &Contents) {
         self.saved = found.clone();
         self.begun.clear();
@@ -150,7 +150,7 @@ pub struct Tally {
     pub cuts: u32,
     pub lost: u32,
     pub failed_saves: u32,
-    /// A power cut was taken for damage.
+    /// Number of power cuts that were reported as damage.
     pub false_alarms: u32,
     pub first: Option<String>,
 }

@@ -1,4 +1,4 @@
-//! Flipped bits, garbage, images of anything: a boot always succeeds and the next save works.
+//! Flipped bits, garbage and arbitrary images: a boot always succeeds and the next save works.
 
 use proptest::{prelude::*, test_runner::Config};
 use robot_app::params::Store;
@@ -16,7 +16,7 @@ const ACTIVE_HEAD: usize = SECTOR / SLOT;
 /// From the start of sector 1.
 const SECTOR_1: u32 = 0x0800_4000;
 
-/// All that is asked of a store after damage: it boots, it saves, and later boots find what it saved.
+/// Checks a store after damage: it boots, it saves, and later boots find what it saved.
 fn works_again(chip: &mut FlashChip) {
     let (_, found) = boot(chip).expect("boots whatever there is");
     let mut ledger = Ledger::of(found);
@@ -115,9 +115,9 @@ fn noise(seed: u64, length: usize) -> Vec<u8> {
         .collect()
 }
 
-/// Both heads hurt, all else as it was: that was a store, and its settings are gone.
+/// Both heads are damaged and all else is intact. This was a store, and its settings are lost.
 #[test]
-fn two_hurt_heads_are_no_other_firmware() {
+fn two_damaged_heads_do_not_count_as_another_firmware() {
     let (mut chip, _) = two_sectors_in_use();
     for sector in PARAMETER_SECTORS.take(2) {
         let range = sector_range(sector).expect("a sector");
@@ -133,9 +133,9 @@ fn two_hurt_heads_are_no_other_firmware() {
     assert_eq!((report.lost_sectors, report.strange_sectors), (2, 0));
 }
 
-/// Whichever one, two or three sectors are garbage: the other ones' records are there.
+/// Any one, two or three sectors are garbage, and the records of the others are found.
 #[test]
-fn garbage_in_whole_sectors_costs_what_they_held() {
+fn garbage_in_whole_sectors_loses_only_their_records() {
     for broken in 0..8_u8 {
         let (mut chip, contents) = two_sectors_in_use();
         for (sector, bit) in PARAMETER_SECTORS.zip(0..) {
@@ -170,7 +170,7 @@ fn garbage_in_whole_sectors_costs_what_they_held() {
     }
 }
 
-/// No erase has finished in such a sector, however blank it looks.
+/// No erase has finished in this sector, although it looks blank.
 #[test]
 fn a_sector_that_only_looks_blank_is_erased_before_use() {
     let mut chip = FlashChip::parameters(1);

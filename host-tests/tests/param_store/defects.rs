@@ -1,4 +1,4 @@
-//! Cells and sectors that do not work any more: errors that end, nothing lost, the rest goes on being used.
+//! Cells and sectors that no longer work. Errors end, nothing is lost, and the rest remains in use.
 
 use robot_app::{
     domain::{FlashRequest, ParamError},
@@ -14,7 +14,7 @@ use crate::{
 const SECTOR_1: u32 = 0x0800_4000;
 const SECTOR_BYTES: u32 = 0x4000;
 
-/// Saves as the firmware does, which tries again after an error; gives how many there were.
+/// Saves as the firmware does, with retries after errors, and returns the number of saves.
 fn save_with_retries(
     store: &mut BootedStore,
     ledger: &mut Ledger,
@@ -52,7 +52,7 @@ fn tidy_with_retries(store: &mut BootedStore, errors: &mut Vec<ParamError>) {
 /// Saves from one boot to the next: some sessions outlast several sectors.
 const SESSIONS: [usize; 8] = [50, 30, 10, 300, 50, 1, 150, 60];
 
-/// Five changes of sector, with a boot now and then; gives the errors.
+/// Five rotations with a boot now and then; returns the errors.
 fn use_for_long(chip: &mut FlashChip, contents: Contents) -> Vec<ParamError> {
     let mut ledger = Ledger::of(contents);
     let mut errors = Vec::new();
@@ -107,9 +107,9 @@ fn a_stuck_bit_costs_at_most_a_sector_and_no_record() {
     assert!(errors > 0);
 }
 
-/// A bit of the version in every slot: the sector takes no record at all.
+/// A bit of the version is stuck in every slot, so the sector takes no record.
 #[test]
-fn a_sector_that_takes_no_record_is_done_without() {
+fn a_sector_that_takes_no_record_is_skipped() {
     for sector in 1..3 {
         let (mut chip, contents) = in_use();
         for slot in 1..128 {
@@ -128,9 +128,9 @@ fn a_sector_that_takes_no_record_is_done_without() {
     }
 }
 
-/// Both copies of the head: its sector can never be the active one.
+/// Both copies of the head have a stuck bit, so their sector can never be active.
 #[test]
-fn a_sector_that_takes_no_head_is_done_without() {
+fn a_sector_that_takes_no_head_is_skipped() {
     for sector in 1..3 {
         let (mut chip, contents) = in_use();
         for copy in [8, 24] {
@@ -150,7 +150,7 @@ fn a_sector_that_takes_no_head_is_done_without() {
     }
 }
 
-/// A bit of the mark: each boot would find the sector not clean, and erase it in vain.
+/// A bit of the mark is stuck. Each boot would find the sector not clean, and erase it in vain.
 #[test]
 fn a_sector_that_takes_no_mark_is_not_erased_at_each_boot() {
     for sector in PARAMETER_SECTORS {
@@ -173,7 +173,7 @@ fn a_sector_that_takes_no_mark_is_not_erased_at_each_boot() {
 }
 
 #[test]
-fn a_sector_that_cannot_be_erased_is_done_without() {
+fn a_sector_that_cannot_be_erased_is_skipped() {
     for fault in [EraseFault::DoesNothing, EraseFault::LeavesSomeWords] {
         for sector in PARAMETER_SECTORS {
             let (mut chip, contents) = in_use();
@@ -187,7 +187,7 @@ fn a_sector_that_cannot_be_erased_is_done_without() {
     }
 }
 
-/// Nothing can be erased: what fits is saved, then every attempt says why it fails and the records stay.
+/// Nothing can be erased. What fits is saved; after that every attempt reports why it fails, and the records stay.
 #[test]
 fn with_no_erase_working_the_store_fills_up_and_stays_readable() {
     let (mut chip, contents) = in_use();

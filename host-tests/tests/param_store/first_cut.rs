@@ -1,4 +1,4 @@
-//! The power goes at every step of the workload: before it, in the middle of it, after it.
+//! The power fails at every step of the workload: before it, during it and after it.
 
 use robot_plant::flash_chip::{FlashChip, Phase};
 
@@ -8,7 +8,7 @@ use crate::{
 };
 use robot_app::params::Store;
 
-/// How a word or a sector is torn is drawn; each of these draws differently.
+/// The way a word or a sector is torn is random, and differs for each of these seeds.
 const SEEDS: u64 = 5;
 
 #[test]
@@ -48,7 +48,7 @@ fn look_without_settling(chip: &mut FlashChip, ledger: &Ledger, tally: &mut Tall
     tally.check(ledger, &found, case);
 }
 
-/// What the first boot finds stays; the next saves work, and stay too.
+/// What the first boot finds stays. The next saves work and stay as well.
 pub fn settle_and_go_on(
     mut chip: FlashChip,
     mut ledger: Ledger,
@@ -76,7 +76,7 @@ pub fn settle_and_go_on(
 
 /// The first saves of a new chip have a word of every kind; each is torn in many ways.
 #[test]
-fn however_a_word_is_torn_nothing_is_lost() {
+fn no_torn_word_loses_a_record() {
     const WAYS: u64 = 400;
     let mut tally = Tally::default();
     let mut chip = new_chip(1);

@@ -1,4 +1,4 @@
-//! Records of another firmware are kept, to the bit.
+//! Records of another firmware are kept bit for bit.
 
 use robot_app::params::MAX_RECORDS;
 use robot_plant::flash_chip::FlashChip;
@@ -29,7 +29,7 @@ fn change_sector(chip: &mut FlashChip, times: u32) {
 }
 
 #[test]
-fn foreign_records_move_along_to_the_bit() {
+fn foreign_records_are_rotated_bit_for_bit() {
     let mut chip = new_chip(3);
     let records: Vec<_> = foreign().into_values().collect();
     save_all(&mut chip, &records);
@@ -39,7 +39,7 @@ fn foreign_records_move_along_to_the_bit() {
     assert_eq!(found, foreign());
 }
 
-/// Makes of motors differ in the variant alone: neither overwrites the other.
+/// Records of different motor makes differ in the variant alone, and neither overwrites the other.
 #[test]
 fn variants_of_one_key_are_records_of_their_own() {
     let mut chip = new_chip(4);
@@ -53,7 +53,7 @@ fn variants_of_one_key_are_records_of_their_own() {
 }
 
 #[test]
-fn as_many_records_as_promised_move_along() {
+fn the_promised_number_of_records_is_rotated() {
     let mut chip = new_chip(6);
     let others = 2..MAX_RECORDS as u8 + 1;
     let records: Vec<_> = others.map(|key| record(key, 0, 1, &[key.into()])).collect();

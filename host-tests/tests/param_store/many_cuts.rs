@@ -1,4 +1,4 @@
-//! Cut after cut, at random steps, in sessions that keep the store open over many saves.
+//! Repeated power cuts at random steps, in sessions that keep the store open over many saves.
 
 use proptest::{prelude::*, test_runner::Config};
 use robot_app::params::Store;

@@ -1,4 +1,4 @@
-//! The power goes again while the store recovers from the first cut and saves.
+//! The power fails again while the store recovers from the first cut and saves.
 
 use robot_plant::flash_chip::{FlashChip, Phase};
 

@@ -1,4 +1,4 @@
-//! How many saves the flash stands: 10,000 erases a sector (STM32F407 datasheet, table 42).
+//! The number of saves that the flash endures: 10,000 erases a sector (STM32F407 datasheet, table 42).
 
 use robot_plant::flash_chip::{FlashChip, PARAMETER_SECTORS};
 
@@ -44,7 +44,7 @@ fn a_thousand_changes_cost_nine_erases_at_most() {
     assert_eq!(worst, 1000_u32.div_ceil(SLOTS - GROUPS));
 }
 
-/// Not a sector is spared at the cost of another, and the count fits the computed life of the store.
+/// No sector is spared at the cost of another, and the count fits the computed life of the store.
 #[test]
 fn wear_is_spread_over_the_three_sectors() {
     const SAVES: u32 = 20_000;

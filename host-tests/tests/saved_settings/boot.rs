@@ -1,4 +1,4 @@
-//! What a boot makes of what it finds.
+//! Loading of settings at boot.
 
 use robot_app::{
     domain::{FlashRequest, ParamState, RobotConfig},
@@ -23,7 +23,7 @@ fn bit_of(group: &str) -> u32 {
     1 << place.unwrap()
 }
 
-/// One erase, once the robot rests, makes a sector of which it is known that it is blank.
+/// One erase, once the robot is at rest, produces a sector that is known to be blank.
 #[test]
 fn a_new_chip_has_the_defaults_and_gets_ready_for_a_save_at_rest() {
     let chip = Chip::blank();
@@ -43,7 +43,7 @@ fn a_new_chip_has_the_defaults_and_gets_ready_for_a_save_at_rest() {
     assert_eq!(Robot::ready(&chip).status().erases, 0);
 }
 
-/// Whatever is in flash: joints may still hold a torque from before the reset.
+/// This holds for any contents of the flash, as joints may still have torque from before the reset.
 #[test]
 fn a_boot_erases_nothing() {
     let full_of = |byte| {
@@ -161,7 +161,7 @@ fn others_records() -> [Vec<u8>; 4] {
 }
 
 #[test]
-fn what_is_not_understood_has_defaults_and_is_told() {
+fn unknown_records_are_reported_and_replaced_by_defaults() {
     let robot = Robot::boot(&dump::chip(1, &others_records()));
     assert_eq!(robot.config, RobotConfig::default());
     let status = robot.status();
@@ -172,7 +172,7 @@ fn what_is_not_understood_has_defaults_and_is_told() {
 
 /// 300 saves fill two sectors.
 #[test]
-fn what_is_not_understood_stays_in_flash_bit_for_bit() {
+fn unknown_records_stay_in_flash_bit_for_bit() {
     let chip = dump::chip(1, &others_records());
     let mut robot = Robot::boot(&chip);
     for number in 0..300u16 {
@@ -195,7 +195,7 @@ fn what_is_not_understood_stays_in_flash_bit_for_bit() {
 }
 
 #[test]
-fn a_refused_group_is_saved_once_someone_changes_it() {
+fn a_refused_group_is_saved_once_it_is_changed() {
     let chip = dump::chip(1, &others_records());
     let mut robot = Robot::boot(&chip);
     robot.change(|config| config.safety.stick_centre = 0.1);
@@ -208,7 +208,7 @@ fn a_refused_group_is_saved_once_someone_changes_it() {
 
 const STICK_CENTRE: fn(&RobotConfig) -> f32 = |config| config.safety.stick_centre;
 
-/// They are in use already, but flash still holds the record that was refused.
+/// The defaults are in use already, but flash still holds the refused record.
 #[test]
 fn a_refused_group_is_saved_once_it_is_given_its_defaults() {
     let chip = dump::chip(1, &others_records());
@@ -256,9 +256,9 @@ fn a_refused_group_stays_refused_until_its_defaults_are_really_in_flash() {
     );
 }
 
-/// The newest sector is ruined while another one is clean: no power cut does that.
+/// The newest sector is ruined while another one is clean, which no power cut does.
 #[test]
-fn older_values_after_damage_are_told() {
+fn older_values_after_damage_are_reported() {
     let chip = Chip::blank();
     let mut robot = Robot::boot(&chip);
     for number in 0..200u8 {

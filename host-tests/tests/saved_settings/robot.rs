@@ -75,7 +75,7 @@ impl Chip {
         }
     }
 
-    /// Another chip with the same cells, whose random part goes its own way.
+    /// A copy of the chip with the same cells and another random sequence.
     pub fn copy(&self, seed: u64) -> Self {
         let mut cells = self.cells.borrow().clone();
         cells.reseed(seed);

@@ -91,9 +91,9 @@ fn a_failing_save_is_repeated_after_growing_pauses() {
     assert_eq!(robot.status().save_failed, 8, "the pauses begin anew");
 }
 
-/// A cell that cannot be cleared in the slot that is next: the one after it takes the record.
+/// A cell in the next slot cannot be cleared, so the slot after it takes the record.
 #[test]
-fn a_worn_out_place_costs_a_second() {
+fn a_worn_out_slot_delays_a_save_by_a_second() {
     let chip = Chip::blank();
     let mut robot = Robot::boot(&chip);
     robot.change(|config| config.heater.kp = 1.0);
@@ -114,9 +114,10 @@ fn a_worn_out_place_costs_a_second() {
     assert_eq!(Robot::boot(&chip).config.heater.kp, 2.0);
 }
 
-/// No slot of the active sector takes a record any more: three attempts, the pauses between them, then the next sector.
+/// No slot of the active sector takes a record. After three attempts and the pauses between them, the next sector
+/// does.
 #[test]
-fn a_worn_out_sector_costs_a_minute_not_hours() {
+fn a_worn_out_sector_delays_a_save_by_about_a_minute() {
     let chip = Chip::blank();
     let mut robot = Robot::boot(&chip);
     robot.change(|config| config.heater.kp = 1.0);
@@ -139,7 +140,7 @@ fn a_worn_out_sector_costs_a_minute_not_hours() {
     assert_eq!(Robot::boot(&chip).config.heater.kp, 3.0);
 }
 
-/// Its spare sectors cannot be had, but there is room in the active one.
+/// Its spare sectors cannot be erased, but the active one has room.
 fn chip_that_cannot_be_erased() -> Chip {
     let chip = dump::chip(1, &[]);
     for sector in [2, 3] {
@@ -194,7 +195,7 @@ fn sectors_that_cannot_be_erased_do_not_delay_a_save() {
 }
 
 #[test]
-fn what_is_set_back_in_time_is_not_saved() {
+fn a_change_undone_in_time_is_not_saved() {
     let mut robot = Robot::boot(&Chip::blank());
     robot.change(|config| config.heater.kp = 1.0);
     robot.run_ms(400);
@@ -205,7 +206,7 @@ fn what_is_set_back_in_time_is_not_saved() {
 }
 
 #[test]
-fn whoever_looks_during_an_erase_sees_that_one_goes_on() {
+fn the_status_shows_an_erase_while_it_runs() {
     let mut robot = Robot::boot(&Chip::blank());
     let mut told = Vec::new();
     for number in 0..130u8 {

@@ -1,4 +1,4 @@
-//! From a frame on CAN through the control tick into flash.
+//! The whole way of a setting: from a CAN frame through the control tick into flash.
 
 use robot_app::{
     control::UserController,
@@ -36,7 +36,7 @@ fn step(robot: &mut Robot, control: &mut ControlLoop, diagnostics: &mut Diagnost
 
 /// The heater's target, group 7 index 0, to 30 °C = 0x41F00000; then all groups back to their defaults.
 #[test]
-fn what_is_set_over_can_is_saved_and_there_after_a_reboot() {
+fn a_setting_written_over_can_survives_a_reboot() {
     let chip = Chip::blank();
     let mut robot = Robot::ready(&chip);
     let mut control = ControlLoop::new(robot.config, UserController::default());

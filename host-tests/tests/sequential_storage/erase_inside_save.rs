@@ -1,4 +1,4 @@
-//! The crate erases when it likes: inside a save, twice in the save after a cut, and inside a read at boot.
+//! The crate erases at any time: inside a save, twice in the save after a cut, and inside a read at boot.
 
 use robot_plant::flash_chip::{FlashChip, Phase};
 

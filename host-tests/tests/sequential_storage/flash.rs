@@ -1,4 +1,4 @@
-//! A blocking flash behind the crate's async traits.
+//! Adapts a blocking flash to the crate's async traits.
 
 use std::{
     future::Future,

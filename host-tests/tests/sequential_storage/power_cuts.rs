@@ -47,7 +47,7 @@ impl Figures {
     }
 }
 
-/// What is torn by a cut in the middle of a step.
+/// What a cut in the middle of a step tears.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Step {
     /// The first or last word of a sector, by which the crate tells whether it is open, in use or closed.

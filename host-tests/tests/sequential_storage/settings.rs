@@ -1,4 +1,4 @@
-//! Twelve groups of settings in sectors 1–3: what is saved, and what a boot finds.
+//! Twelve groups of settings in sectors 1–3, with their saves and what a boot finds.
 
 use robot_plant::flash_chip::FlashChip;
 
@@ -31,7 +31,7 @@ impl Save {
     }
 }
 
-/// Who keeps the settings. Every call is a boot of its own.
+/// A store of the settings. Every call boots it.
 pub trait Keeper: Sync {
     /// Whether the save was confirmed; the power may go before or after.
     fn save(&self, chip: &mut FlashChip, save: Save) -> bool;
@@ -39,7 +39,7 @@ pub trait Keeper: Sync {
     fn load(&self, chip: &mut FlashChip) -> [Found; KEYS as usize];
 }
 
-/// What a boot makes of a key.
+/// What a boot finds for a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Found {
     Save(Save),

@@ -1,4 +1,4 @@
-//! The control loop with six motors and the tasks around it. Every frame that leaves is held against the rules.
+//! The control loop with six motors and the tasks around it. Every frame that leaves is checked against the rules.
 
 use robot_app::{
     control::ChassisController,
@@ -21,14 +21,14 @@ use crate::{
 /// C620 counts of the 8 A limit: 8000 · 16384 / 20000, rounded up. Tuning can raise it to 10 A.
 pub const LIMIT_COUNTS: i32 = 6_554;
 const TUNED_LIMIT_COUNTS: i32 = 8_192;
-/// Of each joint as shipped: N·m, rad, rad/s.
+/// Default limits of each joint: N·m, rad, rad/s.
 const JOINT_NM: f32 = 3.0;
 const JOINT_RAD: f32 = 1.5;
 const JOINT_RPS: f32 = 15.0;
 /// Joint angle = this times motor angle.
 const DIRECTIONS: [f32; 4] = [1.0, 1.0, -1.0, -1.0];
 
-/// What left the board in one tick.
+/// The frames that left the board in one tick.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tick {
     /// Counts of wheels 0 and 1.
@@ -43,7 +43,7 @@ impl Tick {
         self.wheels != [0; 2]
     }
 
-    /// True if a joint is told to turn on or obey.
+    /// Whether a joint is enabled or commanded.
     pub fn enables_joints(&self) -> bool {
         self.joints
             .iter()
@@ -245,7 +245,7 @@ impl<C: ChassisController> Bench<C> {
     }
 }
 
-/// Whatever the sensors said, what comes out is a rotation and finite numbers.
+/// For any sensor values, the estimate is a rotation with finite numbers.
 fn assert_sound(estimate: &StateEstimate) {
     let squared: f32 = estimate.q_wxyz.iter().map(|part| part * part).sum();
     assert!((squared - 1.0).abs() < 1e-4, "{estimate:?}");

@@ -5,7 +5,7 @@ use robot_app::{
     domain::{ChassisCommand, JointCommand, WheelCommand},
 };
 
-/// A user's controller gone wrong: asks for whatever it is told.
+/// A faulty user controller that requests arbitrary commands.
 pub struct Rogue {
     pub current_ma: f32,
     pub joint: JointCommand,
@@ -36,7 +36,7 @@ impl ChassisController for Rogue {
     fn reset(&mut self) {}
 }
 
-/// A controller with memory: asks for 1 mA more each tick.
+/// A controller with memory that requests 1 mA more in each tick.
 pub struct Integrator(pub f32);
 
 impl ChassisController for Integrator {
@@ -59,7 +59,7 @@ impl ChassisController for Integrator {
     }
 }
 
-/// Asks for something and says itself that it is not to be done.
+/// Returns a command and marks it as invalid.
 pub struct Unsure(pub Rogue);
 
 impl ChassisController for Unsure {

@@ -24,7 +24,7 @@ use robot_app::{
 };
 use wire::Make;
 
-/// What each tick sent to the left wheel, in C620 counts.
+/// Current sent to the left wheel in each tick, in C620 counts.
 fn run(phases: &[Phase], controller: impl ChassisController) -> Vec<i32> {
     let mut bench = Bench::new(Make::Dm4310, controller);
     bench.run(phases);
@@ -51,7 +51,7 @@ proptest! {
     }
 }
 
-/// Without this the property above could hold because nothing ever arms.
+/// Without this test the property above would hold even if nothing ever armed.
 #[test]
 fn with_everything_in_order_the_rogue_drives_at_its_limit() {
     let driven = driven(&[good(1_000, false), good(500, true)], f32::INFINITY);
@@ -73,9 +73,9 @@ fn an_output_that_is_not_valid_is_zero() {
     assert_eq!(left, [0; 1_500]);
 }
 
-/// Each of these ends the drive, and the robot does not start again when it is over.
+/// Each cause ends the drive, and the robot does not start again when the cause is over.
 #[test]
-fn every_cause_disarms_until_the_switch_moves() {
+fn every_cause_disarms_until_the_switch_is_cycled() {
     type Cause = fn(&mut Phase);
     let causes: [(&str, Cause); 11] = [
         ("switch", |phase| phase.enabled = false),
@@ -127,7 +127,7 @@ fn a_controller_with_memory_starts_each_drive_fresh() {
 
 /// 1000 mA are 819 counts. A direct command needs the same permit as any other, and has the same limit.
 #[test]
-fn a_direct_command_passes_the_controller_by_and_nothing_else() {
+fn a_direct_command_bypasses_only_the_controller() {
     let cases = [
         (1_000.0, 819),
         (-f32::INFINITY, 1 - LIMIT_COUNTS),

@@ -1,4 +1,4 @@
-//! Six motors that answer, each as well or as badly as it is told to.
+//! Six simulated motors, each with a given behaviour.
 
 use crate::wire::{JointFrame, Make, Motion};
 
@@ -149,7 +149,7 @@ impl JointMotor {
     }
 }
 
-/// An M3508 whose rotor turns slowly and whose current is what it was told.
+/// An M3508 whose rotor turns slowly and whose current is the commanded one.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct WheelMotor {
     angle: u16,

@@ -1,4 +1,4 @@
-//! What goes into the tick, stretch by stretch.
+//! Inputs of the tick, phase by phase.
 
 use proptest::prelude::*;
 use robot_app::{
@@ -18,7 +18,7 @@ pub enum Clock {
     Rushes(u32),
 }
 
-/// One stretch of ticks in which the same things are right or wrong.
+/// A phase of ticks with constant faults.
 #[derive(Clone, Debug)]
 pub struct Phase {
     pub ticks: u16,

@@ -1,4 +1,4 @@
-//! What the joints said, on its way to the board and as the board may have understood it.
+//! Replies of the joints on their way to the board, and their possible interpretations.
 
 use crate::wire::{Make, Motion};
 

@@ -125,10 +125,10 @@ fn in_the_third_step_one_motor_turns_while_the_stick_is_held() {
     }
 }
 
-/// The joint stands at 0 and may go from −1.5 to −0.5 rad: a new robot whose zero is not set yet. 5 N·m/rad to the limit
-/// would be 2.5 N·m.
+/// The joint is at 0 and its range is −1.5 to −0.5 rad, as on a new robot whose zero is not set. 5 N·m/rad to the
+/// limit would be 2.5 N·m.
 #[test]
-fn a_joint_beyond_its_soft_limit_is_held_as_softly_as_any() {
+fn a_joint_beyond_its_soft_limit_is_held_softly() {
     let [a, b, c, d] = (-0.5f32).to_le_bytes();
     for make in [Make::Dm4310, Make::Rs00] {
         let phases = [
@@ -164,7 +164,7 @@ fn a_joint_beyond_its_soft_limit_is_held_as_softly_as_any() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Whatever is asked for, by the request and by the controller, if the request is taken at all.
+    /// Applies to any values of the request and of the controller, if the request is accepted.
     #[test]
     fn bring_up_keeps_its_own_limits(
         (step, motor, action, value) in prop_oneof![

@@ -12,7 +12,7 @@ const COMMAND_TIMEOUT_US: u64 = 50_000;
 /// A stop whose cause must last has come at the latest this long after its time: 20 ms of jumping clock and a tick.
 const SLACK_US: u64 = 25_000;
 
-/// What may leave the board in a tick.
+/// What is allowed to leave the board in a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Allowed {
     /// Wheel currents.
@@ -23,7 +23,7 @@ pub struct Allowed {
     pub commands: bool,
 }
 
-/// How long something has been so while the clock ran as it should.
+/// How long a condition has held while the clock ran regularly.
 #[derive(Default)]
 struct Lasting(u64);
 

@@ -1,4 +1,4 @@
-//! What stops wheels and joints apart, and what it takes to start again.
+//! What stops wheels and joints separately, and what is needed to start again.
 
 use robot_app::domain::{BusErrorState, JointCommand, JointMode};
 
@@ -44,7 +44,7 @@ fn drive() -> Vec<Phase> {
 }
 
 #[test]
-fn armed_joints_are_enabled_and_obey() {
+fn armed_joints_are_enabled_and_follow_commands() {
     for make in [Make::Dm4310, Make::Rs00] {
         let ticks = ticks(make, &drive());
         assert_eq!(moves(&ticks), [true, true], "{make:?}");
@@ -66,7 +66,7 @@ fn armed_joints_are_enabled_and_obey() {
 
 type Cause = fn(&mut Phase);
 
-/// What; wheels go on; joints go on; all goes on by itself when it is over.
+/// Cause; whether wheels continue; whether joints continue; whether all resumes by itself.
 const STOPS: [(&str, Cause, [bool; 2], bool); 15] = [
     (
         "can1 off",
@@ -152,7 +152,7 @@ const STOPS: [(&str, Cause, [bool; 2], bool); 15] = [
 
 /// With one second of each cause. What was latched goes on after the clearing gesture and the enable switch.
 #[test]
-fn each_stop_takes_its_own_actuators_and_latches_if_it_must() {
+fn each_stop_affects_its_own_actuators_and_latches_as_documented() {
     for make in [Make::Dm4310, Make::Rs00] {
         for (name, cause, goes_on, recovers) in STOPS {
             let name = format!("{name}, {make:?}");
@@ -174,9 +174,9 @@ fn each_stop_takes_its_own_actuators_and_latches_if_it_must() {
     }
 }
 
-/// With the robot disarmed; only what goes away by itself lets it arm.
+/// The robot is disarmed, and only causes that end by themselves allow arming again.
 #[test]
-fn whatever_is_wrong_forbids_arming() {
+fn every_cause_blocks_arming() {
     let causes: [(&str, Cause); 14] = [
         ("can1 off", |p| p.buses[0] = BusErrorState::BusOff),
         ("can2 off", |p| p.buses[1] = BusErrorState::BusOff),
@@ -223,9 +223,9 @@ fn a_stop_reaches_every_joint_in_its_next_slot() {
     }
 }
 
-/// At boot the robot lies on its side; or it falls while it drives: 4 rad/s for half a second.
+/// The robot lies on its side at boot, or falls while it drives: 4 rad/s for half a second.
 #[test]
-fn a_fallen_robot_does_not_move_until_it_is_put_up_and_cleared() {
+fn a_fallen_robot_does_not_move_until_upright_and_cleared() {
     let mut lying = good(3_000, false);
     lying.accel = [0.0, 9.81, 0.0];
     let mut try_to_drive = good(300, true);

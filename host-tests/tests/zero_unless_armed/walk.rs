@@ -1,4 +1,4 @@
-//! Robots that go through many stretches, always the same ones.
+//! Robots that run through many phases, always the same ones.
 
 use proptest::{strategy::ValueTree, test_runner::TestRunner};
 use robot_app::domain::{JointCommand, JointMode};
@@ -24,7 +24,7 @@ fn rogue() -> Rogue {
     }
 }
 
-/// A pilot who clears what is latched and starts again.
+/// A pilot clears latched stops and starts again.
 fn start(imu_errors: u32) -> [Phase; 3] {
     let [mut clear, off, on] = [good(2_500, false), good(300, false), good(100, true)];
     clear.e_stop = true;

@@ -75,13 +75,13 @@ impl Mit {
         }
     }
 
-    /// What a motor makes of it that moves so.
+    /// Torque that a motor with this motion computes from the command.
     pub fn asked_nm(&self, motion: Motion) -> f32 {
         let Motion { pos_rad, vel_rps } = motion;
         self.kp * (self.pos_rad - pos_rad) + self.kd * (self.vel_rps - vel_rps) + self.torque_nm
     }
 
-    /// How much of that may come from the steps of the codes alone.
+    /// Part of that torque that may come from the resolution of the codes.
     pub fn steps_nm(&self, motion: Motion, make: Make) -> f32 {
         let [p, v, t] = make.ranges();
         let Motion { pos_rad, vel_rps } = motion;
@@ -121,7 +121,7 @@ pub enum JointFrame {
 }
 
 impl JointFrame {
-    /// Cannot move a motor that is not enabled, nor enable it.
+    /// Whether the frame can neither enable a motor nor move a disabled one.
     pub fn is_harmless(self) -> bool {
         match self {
             Self::Disable | Self::ClearFault | Self::ReadRegister(_) | Self::ReadFaults => true,
@@ -143,7 +143,7 @@ pub enum Sent {
     TuningReply([u8; 8]),
 }
 
-/// Panics for a frame that has no business on this bus.
+/// Decodes a frame. Panics if it does not belong on this bus.
 pub fn understand((bus, frame): &(BusId, CanFrame), make: Make) -> Sent {
     let id = frame.id().raw();
     let data = frame.full_payload().expect("eight bytes");

@@ -31,7 +31,7 @@ const BY_HAND: [(&str, [Vector3; 3]); 24] = [
 ];
 
 #[test]
-fn what_the_sensor_reads_is_turned_as_by_hand() {
+fn readings_are_rotated_as_computed_by_hand() {
     for (number, (name, [level, nose_up, left_up])) in BY_HAND.into_iter().enumerate() {
         let orientation = Orientation::from_number(number as u32).unwrap();
         assert_eq!(orientation.name(), name);
@@ -54,9 +54,9 @@ fn what_the_sensor_reads_is_turned_as_by_hand() {
     assert_eq!(Orientation::default().name(), "x-forward-z-up");
 }
 
-/// No two alike, none mirrored, and any two after each other are a third.
+/// The orientations are distinct, none is mirrored, and any two in sequence give a third.
 #[test]
-fn they_are_the_rotations_of_a_cube() {
+fn the_orientations_are_the_rotations_of_a_cube() {
     let turned =
         |o: Orientation| [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|v| o.rotate(v));
     let all = Orientation::ALL.map(turned);

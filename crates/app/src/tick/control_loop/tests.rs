@@ -9,7 +9,7 @@ use crate::{
     tick::RobotLoop,
 };
 
-/// The firmware's loop on a level, still robot that hears its two wheels.
+/// The firmware's loop on a level robot at rest that receives reports of its two wheels.
 struct Bench {
     control: RobotLoop,
     remote: RemoteUpdate,
@@ -78,7 +78,7 @@ impl Bench {
         self.tick()
     }
 
-    /// What the tuning channel answers within its slot.
+    /// Replies of the tuning channel in its slot.
     fn replies(&mut self) -> std::vec::Vec<(BusId, [u8; 8])> {
         let mut replies = std::vec::Vec::new();
         for _ in 0..REPLY_PERIOD_TICKS {
@@ -109,10 +109,10 @@ fn new_settings_are_acknowledged_and_published() {
 }
 
 #[test]
-fn the_estimator_takes_new_wheels() {
+fn the_estimator_uses_new_wheel_geometry() {
     let speed_mps = |tuned: bool| {
         let mut bench = Bench::new();
-        // From the start: beside a robot at rest wheels that speed up spin.
+        // The wheels must turn from the start: wheels that speed up under a robot at rest count as spinning.
         bench.rpm = 1_000;
         bench.run(500);
         if tuned {
