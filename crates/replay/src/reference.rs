@@ -6,12 +6,12 @@ use crate::track::Track;
 
 pub struct Reference {
     pub track: Track,
-    /// For each row: in the scored phase.
+    /// Whether each row is in the scored phase.
     scored: Vec<bool>,
 }
 
 impl Reference {
-    /// `None` if the recording has not one attitude.
+    /// `None` if the recording has no attitude at all.
     pub fn new(recording: &recording::Trial) -> Option<Self> {
         let rows = recording.rows();
         let known = rows.iter().any(|row| !row.reference_wxyz[0].is_nan());

@@ -42,7 +42,7 @@ impl Figures {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Instant {
     pub t_s: f64,
-    /// In the phase that counts.
+    /// Whether it is in the scored phase.
     pub scored: bool,
     /// `None` where the reference has a gap.
     pub error: Option<AttitudeError>,

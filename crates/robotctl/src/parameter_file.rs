@@ -59,7 +59,7 @@ impl ParameterFile {
         })
     }
 
-    /// As `load`; a file that does not exist is an empty one.
+    /// Loads a file; one that does not exist is an empty one.
     pub fn load_or_new(path: &Path) -> Result<Self, ParameterFileError> {
         match Self::load(path) {
             Err(ParameterFileError::Read { source, .. })

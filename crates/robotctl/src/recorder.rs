@@ -22,12 +22,12 @@ const LOST_AT_MOST: f64 = 0.01;
 /// The IMU gives 200 samples a second.
 const LEAST_IMU_HZ: f64 = 100.0;
 
-/// In time of the computer.
+/// How long the recorder waits, in the time of the computer.
 #[derive(Clone, Copy, Debug)]
 pub struct RecordPatience {
-    /// Between two looks at how the recording goes.
+    /// Pause between two questions how the recording goes.
     pub look: Duration,
-    /// Without a sample, after which something is wrong.
+    /// A recording without samples for this long has failed.
     pub silence: Duration,
 }
 

@@ -18,7 +18,7 @@ impl Named {
         format!("{}.{}", self.group.name, self.parameter.name)
     }
 
-    /// Which values it may have, without its unit.
+    /// Describes the values it may have, without its unit.
     pub fn range(&self) -> String {
         let Parameter { min, max, kind, .. } = *self.parameter;
         match kind {
@@ -29,7 +29,7 @@ impl Named {
         }
     }
 
-    /// Which values it may have.
+    /// Describes the values it may have, with its unit.
     pub fn allowed(&self) -> String {
         let allowed = format!("{} {}", self.range(), self.parameter.unit);
         allowed.trim_end().to_owned()
@@ -44,7 +44,7 @@ pub struct UnknownName {
     nearest: Option<String>,
 }
 
-/// All settings in the order of their numbers.
+/// Returns all settings in the order of their numbers.
 pub fn all() -> impl Iterator<Item = Named> {
     PARAMETERS.iter().flat_map(|group| {
         let parameters = group.parameters.iter();
@@ -52,7 +52,7 @@ pub fn all() -> impl Iterator<Item = Named> {
     })
 }
 
-/// By full name.
+/// Finds a setting by its full name.
 pub fn find(name: &str) -> Result<Named, UnknownName> {
     let found = all().find(|named| named.full_name() == name);
     found.ok_or_else(|| UnknownName {

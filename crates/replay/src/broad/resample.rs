@@ -7,7 +7,7 @@ use robot_plant::attitude;
 
 use super::source::Recorded;
 
-/// In units of 0.5 ms.
+/// Length of a sample and of a row, in units of 0.5 ms.
 const SAMPLE: usize = 7;
 const ROW: usize = 10;
 const ROW_S: f64 = 0.005;

@@ -46,7 +46,7 @@ impl AccelCorrection {
         (raw_mps2 - self.bias_mps2).component_mul(&self.scale)
     }
 
-    /// What the sensor said before this correction was applied.
+    /// Returns what the sensor measured before this correction.
     pub fn undo(&self, corrected_mps2: Vector3<f64>) -> Vector3<f64> {
         corrected_mps2.component_div(&self.scale) + self.bias_mps2
     }

@@ -47,7 +47,7 @@ impl MagCorrection {
         self.soft_iron * (raw_ut - self.bias_ut)
     }
 
-    /// What the sensor said before this correction was applied; `None` if it cannot be undone.
+    /// Returns what the sensor measured before this correction; `None` if it cannot be undone.
     pub fn undo(&self, corrected_ut: Vector3<f64>) -> Option<Vector3<f64>> {
         Some(self.soft_iron.try_inverse()? * corrected_ut + self.bias_ut)
     }

@@ -7,9 +7,9 @@ const BELL: u8 = 0x07;
 /// `T`, eight digits, length, eight bytes, time stamp.
 const LONGEST: usize = 1 + 8 + 1 + 16 + 4;
 
-/// What an adapter says.
+/// One message of an adapter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Heard {
+pub(super) enum Received {
     Frame(CanFrame),
     /// A command or frame was accepted.
     Done,
@@ -17,23 +17,23 @@ pub(super) enum Heard {
     Refused,
 }
 
-/// Takes bytes and gives what they say; frames of other kinds, and anything unknown, are passed over.
+/// Parses bytes into messages; frames of other kinds, and anything unknown, are ignored.
 #[derive(Debug, Default)]
-pub(super) struct Listener {
+pub(super) struct LineParser {
     line: Vec<u8>,
 }
 
-impl Listener {
-    pub fn feed(&mut self, byte: u8) -> Option<Heard> {
+impl LineParser {
+    pub fn feed(&mut self, byte: u8) -> Option<Received> {
         match byte {
             BELL => {
                 self.line.clear();
-                Some(Heard::Refused)
+                Some(Received::Refused)
             }
             b'\r' => {
-                let heard = parse(&self.line);
+                let received = parse(&self.line);
                 self.line.clear();
-                heard
+                received
             }
             _ => {
                 // One byte too many is kept as the mark of a line too long.
@@ -46,10 +46,10 @@ impl Listener {
     }
 }
 
-fn parse(line: &[u8]) -> Option<Heard> {
+fn parse(line: &[u8]) -> Option<Received> {
     match line {
-        [] | [b'z' | b'Z'] => Some(Heard::Done),
-        [b't', rest @ ..] => frame(rest).map(Heard::Frame),
+        [] | [b'z' | b'Z'] => Some(Received::Done),
+        [b't', rest @ ..] => frame(rest).map(Received::Frame),
         _ => None,
     }
 }
@@ -89,9 +89,9 @@ mod tests {
         CanFrame::from_payload(StandardId::new(id).unwrap(), payload).unwrap()
     }
 
-    fn heard(bytes: &[u8]) -> Vec<Heard> {
-        let mut listener = Listener::default();
-        bytes.iter().filter_map(|b| listener.feed(*b)).collect()
+    fn received(bytes: &[u8]) -> Vec<Received> {
+        let mut parser = LineParser::default();
+        bytes.iter().filter_map(|b| parser.feed(*b)).collect()
     }
 
     // The manual's example: t10021133[CR] is ID 0x100 with the two bytes 0x11 and 0x33.
@@ -99,20 +99,20 @@ mod tests {
     fn the_manuals_example_both_ways() {
         let example = frame(0x100, &[0x11, 0x33]);
         assert_eq!(transmit(&example), "t10021133\r");
-        assert_eq!(heard(b"t10021133\r"), [Heard::Frame(example)]);
+        assert_eq!(received(b"t10021133\r"), [Received::Frame(example)]);
     }
 
     #[test]
     fn answers_and_frames_are_told_apart() {
-        let said = heard(b"\rz\rt7A20\r\x07t2011FF EA60\rt20118812AB\r");
+        let said = received(b"\rz\rt7A20\r\x07t2011FF EA60\rt20118812AB\r");
         assert_eq!(
             said,
             [
-                Heard::Done,
-                Heard::Done,
-                Heard::Frame(frame(0x7A2, &[])),
-                Heard::Refused,
-                Heard::Frame(frame(0x201, &[0x88])),
+                Received::Done,
+                Received::Done,
+                Received::Frame(frame(0x7A2, &[])),
+                Received::Refused,
+                Received::Frame(frame(0x201, &[0x88])),
             ]
         );
     }
@@ -128,9 +128,9 @@ mod tests {
             b"V1013\r",
         ];
         for line in broken {
-            assert_eq!(heard(line), [], "{}", String::from_utf8_lossy(line));
+            assert_eq!(received(line), [], "{}", String::from_utf8_lossy(line));
         }
         let long = [b"t", [b'0'; 90].as_slice(), b"\rz\r"].concat();
-        assert_eq!(heard(&long), [Heard::Done]);
+        assert_eq!(received(&long), [Received::Done]);
     }
 }

@@ -11,12 +11,12 @@ use serialport::SerialPort;
 
 use super::{
     CanLink, CanLinkError,
-    lawicel::{self, Heard, Listener},
+    lawicel::{self, LineParser, Received},
 };
 
 /// USB adapters and pseudo-terminals ignore it.
 const LINE_BPS: u32 = 115_200;
-/// Some adapters do not answer commands; silence for so long is taken for yes.
+/// Some adapters do not answer commands: silence for this long counts as acceptance.
 const ANSWER_TIME: Duration = Duration::from_millis(300);
 /// After closing the channel, what was still on its way is dropped.
 const SETTLE_TIME: Duration = Duration::from_millis(100);
@@ -35,8 +35,8 @@ const SHORTEST_WAIT: Duration = Duration::from_millis(1);
 
 pub(super) struct Slcan {
     port: Box<dyn SerialPort>,
-    listener: Listener,
-    heard: VecDeque<Heard>,
+    parser: LineParser,
+    received: VecDeque<Received>,
 }
 
 impl Slcan {
@@ -54,8 +54,8 @@ impl Slcan {
             })?;
         let mut link = Self {
             port,
-            listener: Listener::default(),
-            heard: VecDeque::new(),
+            parser: LineParser::default(),
+            received: VecDeque::new(),
         };
         // The empty line ends whatever was left half-written.
         link.port.write_all(b"\r")?;
@@ -72,9 +72,9 @@ impl Slcan {
         let deadline = Instant::now() + ANSWER_TIME;
         loop {
             match self.next(deadline)? {
-                Some(Heard::Done) | None => return Ok(()),
-                Some(Heard::Frame(_)) => {}
-                Some(Heard::Refused) => {
+                Some(Received::Done) | None => return Ok(()),
+                Some(Received::Frame(_)) => {}
+                Some(Received::Refused) => {
                     let command = command.trim_end();
                     return Err(CanLinkError::SetUp { command });
                 }
@@ -82,10 +82,10 @@ impl Slcan {
         }
     }
 
-    fn next(&mut self, deadline: Instant) -> Result<Option<Heard>, CanLinkError> {
+    fn next(&mut self, deadline: Instant) -> Result<Option<Received>, CanLinkError> {
         loop {
-            if let Some(heard) = self.heard.pop_front() {
-                return Ok(Some(heard));
+            if let Some(received) = self.received.pop_front() {
+                return Ok(Some(received));
             }
             let left = deadline.saturating_duration_since(Instant::now());
             if left.is_zero() {
@@ -103,8 +103,8 @@ impl Slcan {
         match self.port.read(&mut bytes) {
             Ok(count) => {
                 let said = bytes[..count].iter();
-                self.heard
-                    .extend(said.filter_map(|byte| self.listener.feed(*byte)));
+                self.received
+                    .extend(said.filter_map(|byte| self.parser.feed(*byte)));
                 Ok(())
             }
             Err(e) if matches!(e.kind(), ErrorKind::TimedOut | ErrorKind::Interrupted) => Ok(()),
@@ -141,9 +141,9 @@ impl CanLink for Slcan {
     fn receive(&mut self, deadline: Instant) -> Result<Option<CanFrame>, CanLinkError> {
         loop {
             match self.next(deadline)? {
-                Some(Heard::Frame(frame)) => return Ok(Some(frame)),
-                Some(Heard::Refused) => return Err(CanLinkError::FrameRefused),
-                Some(Heard::Done) => {}
+                Some(Received::Frame(frame)) => return Ok(Some(frame)),
+                Some(Received::Refused) => return Err(CanLinkError::FrameRefused),
+                Some(Received::Done) => {}
                 None => return Ok(None),
             }
         }

@@ -16,7 +16,7 @@ pub fn is_closed(error: &anyhow::Error) -> bool {
     matches!(output, Some(OutputError(cause)) if cause.kind() == io::ErrorKind::BrokenPipe)
 }
 
-/// For [`say!`] and [`begin!`].
+/// Writes to standard output; [`say!`] and [`begin!`] call it.
 pub fn write(text: fmt::Arguments<'_>) -> Result<(), OutputError> {
     let mut output = io::stdout().lock();
     let written = output.write_fmt(text).and_then(|()| output.flush());
@@ -30,14 +30,14 @@ pub fn clear() -> Result<(), OutputError> {
     write(format_args!("\x1b[2J\x1b[H"))
 }
 
-/// As `println!`, but an error is one of the command.
+/// Prints like `println!`, but returns an error.
 macro_rules! say {
     ($($text:tt)*) => {
         $crate::command::output::write(format_args!("{}\n", format_args!($($text)*)))
     };
 }
 
-/// As `say!`, but the line goes on.
+/// Prints like `say!`, without the end of the line.
 macro_rules! begin {
     ($($text:tt)*) => {
         $crate::command::output::write(format_args!($($text)*))

@@ -13,7 +13,7 @@ use robotctl::{
 
 use super::{answer::ask, output::say, tune::confirm_saved};
 
-/// Of moving the sticks round all their ends.
+/// How long the sticks are moved round all their ends.
 const ROUND: Duration = Duration::from_secs(8);
 
 #[derive(clap::Args)]

@@ -119,10 +119,10 @@ impl Step {
 struct Wheel {
     #[arg(long)]
     radius_mm: Option<u16>,
-    /// Distance of the wheels' middles
+    /// Distance between the centres of the wheels
     #[arg(long)]
     track_mm: Option<u16>,
-    /// Motor turns a wheel turn, such as 19.2
+    /// Turns of the motor for one turn of the wheel, such as 19.2
     #[arg(long)]
     gear_ratio: Option<f64>,
     /// The left motor's positive direction drives backwards
@@ -306,7 +306,7 @@ fn shown(named: Named, value: f32) -> String {
     text.trim_end().to_owned()
 }
 
-/// For one line of a list: names of many choices are cut short.
+/// Cuts a range short for one line of a list.
 fn short(range: String) -> String {
     const MOST: usize = 60;
     match range.char_indices().nth(MOST) {

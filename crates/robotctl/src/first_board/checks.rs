@@ -5,7 +5,7 @@ use super::measured::{self, Measuring};
 /// One thing to find out.
 #[derive(Debug)]
 pub struct Check {
-    /// In reports; never changes.
+    /// Names the check in reports; it never changes.
     pub id: &'static str,
     pub title: &'static str,
     pub connect: &'static str,

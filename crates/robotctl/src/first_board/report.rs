@@ -91,7 +91,7 @@ pub struct Report {
 }
 
 impl Report {
-    /// As left by an earlier walk, or empty.
+    /// Reads the report of an earlier walk, or begins an empty one.
     pub fn load_or_new(path: &Path) -> Result<Self, ReportError> {
         let mut report = Self {
             path: path.to_owned(),
@@ -147,7 +147,7 @@ impl Report {
         self.status = Some(status);
     }
 
-    /// In the place of an older one, and to the file.
+    /// Replaces an older entry of the check, and writes the file.
     pub fn put(&mut self, id: &'static str, entry: Entry) -> Result<(), ReportError> {
         self.entries.retain(|(of, _)| *of != id);
         self.entries.push((id, entry));

@@ -7,7 +7,7 @@
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 use robot_app::domain::Orientation;
 
-/// As the robot believes itself to lie, and what the magnetometer shows at that moment.
+/// The estimated attitude, and what the magnetometer shows at that moment.
 #[derive(Clone, Copy, Debug)]
 pub struct FieldSample {
     /// Robot → earth, as a rotation matrix.
@@ -25,7 +25,7 @@ const MIN_TURN: f64 = 0.1;
 const EARTH_UT: std::ops::RangeInclusive<f64> = 12.0..=110.0;
 /// What the best way may leave of the field.
 const MAX_LEFT: f64 = 0.3;
-/// By how much the second best way must be worse.
+/// The second best orientation must leave this many times as much.
 const MIN_LEAD: f64 = 2.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -46,12 +46,12 @@ impl<'c> Watch<'c> {
         Ok(Self { client, board, mag })
     }
 
-    /// As the settings say.
+    /// Returns how the board sits, as the settings say.
     pub fn board(&self) -> Orientation {
         self.board
     }
 
-    /// As the settings say.
+    /// Returns how the magnetometer sits on the board, as the settings say.
     pub fn mag(&self) -> Option<Orientation> {
         self.mag
     }

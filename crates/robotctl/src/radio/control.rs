@@ -17,7 +17,7 @@ impl Control {
     /// The e-stop is last: it stays thrown while the others are moved.
     pub const SWITCHES: [Self; 3] = [Self::Mode, Self::Enable, Self::EStop];
 
-    /// As in the names of settings.
+    /// Returns the name that settings use for it.
     pub fn name(self) -> &'static str {
         match self {
             Self::Steering => "steering",

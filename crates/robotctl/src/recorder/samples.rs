@@ -6,7 +6,7 @@ use robot_app::tuning::{RecordedSample, RecordedSensor};
 use super::RecordError;
 use crate::calibration::{accel::AccelCorrection, mag::MagCorrection};
 
-/// Of the robot's time on the wire.
+/// Units of the robot's time on the wire.
 const UNITS_A_SECOND: f64 = 10_000.0;
 
 const HEADING: &str = "\
@@ -27,12 +27,12 @@ enum Measured {
     Mag(Vector),
 }
 
-/// In the order of their times.
+/// Recorded samples in the order of their times.
 #[derive(Clone, Debug, Default)]
 pub struct Samples {
     /// The low 16 bits of a time are those that came.
     rows: Vec<(i64, Measured)>,
-    /// Of the sample that came last.
+    /// Time of the sample that came last.
     last_time: Option<i64>,
 }
 
@@ -102,7 +102,7 @@ impl Samples {
         (time - first) as f64 / UNITS_A_SECOND
     }
 
-    /// As the sensors had it before the robot corrected it.
+    /// Restores what the sensors measured before the robot corrected it.
     pub(super) fn undo(
         &mut self,
         accel: &AccelCorrection,
@@ -119,7 +119,8 @@ impl Samples {
         Ok(())
     }
 
-    /// As `robotctl calibrate` and spreadsheets read it: a row a sample; what a row does not have is empty.
+    /// Returns the table that `robotctl calibrate` and spreadsheets read. Each sample is a row; values that it does not have
+    /// are empty.
     pub fn table(&self) -> String {
         let mut table = String::from(HEADING);
         for (time, measured) in &self.rows {

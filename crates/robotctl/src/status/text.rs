@@ -333,7 +333,7 @@ fn stranger(f: &mut Formatter<'_>, strangers: &LiveReading) -> fmt::Result {
     Ok(())
 }
 
-/// For sectors that were never a store.
+/// Describes sectors that were never a store.
 pub fn strange_sectors(count: u32) -> String {
     format!(
         "{count} flash sectors for settings hold something else, such as an older firmware; they are erased when their turn \

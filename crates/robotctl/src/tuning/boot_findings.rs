@@ -17,7 +17,7 @@ pub struct BootFindings {
 }
 
 impl BootFindings {
-    /// Of the bytes after the command.
+    /// Parses the bytes after the command.
     pub(super) fn from_bytes([lost_sectors, damaged, foreign, a, b, c, d]: [u8; 7]) -> Self {
         let refused = u32::from_le_bytes([a, b, c, d]);
         let numbers = (0..32).filter(|number| refused & 1 << number != 0);

@@ -27,7 +27,7 @@ pub enum Joint {
 /// What the motor on trial does while the pilot holds the dead-man stick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Trial {
-    /// As far as the drive stick is pushed.
+    /// The torque follows the drive stick.
     Stick,
     /// mN·m of a joint, mA of a wheel; on the wire, 0 would stand for `Stick`.
     Fixed(NonZeroI16),

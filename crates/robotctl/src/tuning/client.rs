@@ -225,7 +225,8 @@ impl TuningClient {
         done.map(drop).map_err(|error| error.with_allowed(allowed))
     }
 
-    /// The robot sends each sample of its IMU and magnetometer for so many seconds; 0 ends that. Must be disarmed.
+    /// Has the robot send each sample of its IMU and magnetometer for this many seconds; 0 ends that. The robot must be
+    /// disarmed.
     pub fn start_recording(&mut self, seconds: u16) -> Result<(), TuningError> {
         self.recorded.clear();
         let request = Request::Record(seconds);

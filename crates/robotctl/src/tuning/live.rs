@@ -21,7 +21,7 @@ pub fn live_page(name: &str) -> &'static LivePage {
 }
 
 impl LiveReading {
-    /// Of the bytes after the command; the first is the page's number.
+    /// Takes the bytes after the command; the first is the page's number.
     pub(super) fn new(
         page: &'static LivePage,
         part: usize,
@@ -95,7 +95,7 @@ impl LiveReading {
     /// Whether `member` is in a set.
     ///
     /// # Panics
-    /// As [`set`](Self::set).
+    /// Panics where [`set`](Self::set) does.
     pub fn has(&self, field: &str, member: &str) -> bool {
         self.set(field).iter().any(|name| name == member)
     }

@@ -6,14 +6,14 @@ use robot_app::tuning::RecordingState;
 pub struct RecordingReport {
     /// `Err` is a number this tool does not know.
     pub state: Result<RecordingState, u8>,
-    /// Samples the robot has sent of its IMU …
+    /// Samples of the IMU that the robot has sent.
     pub imu: u32,
-    /// … and of its magnetometer.
+    /// Samples of the magnetometer that the robot has sent.
     pub mag: u32,
 }
 
 impl RecordingReport {
-    /// Of the bytes after the command.
+    /// Parses the bytes after the command.
     pub(super) fn from_bytes([state, a, b, c, d, e, f]: [u8; 7]) -> Self {
         Self {
             state: RecordingState::from_code(state).ok_or(state),

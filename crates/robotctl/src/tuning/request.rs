@@ -139,7 +139,7 @@ fn write(command: u8, [a, b, c, d, e, f, g]: [u8; 7]) -> CanFrame {
     CanFrame::new(WRITE_ID, [command, a, b, c, d, e, f, g])
 }
 
-/// Of the reply to a read setting.
+/// Returns the value in the reply to a request that reads a setting.
 pub(super) fn value(reply: [u8; 7]) -> f32 {
     let [_, _, _, a, b, c, d] = reply;
     f32::from_le_bytes([a, b, c, d])

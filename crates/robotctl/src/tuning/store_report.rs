@@ -8,7 +8,7 @@ use robot_app::domain::{ParamError, ParamState};
 pub struct StoreReport {
     /// `Err` is a number this tool does not know.
     pub state: Result<ParamState, u8>,
-    /// Of the last attempt that failed since the robot booted.
+    /// The error of the last attempt that failed since the robot booted.
     pub last_error: Result<ParamError, u8>,
     /// Groups of settings that flash does not hold yet.
     pub unsaved: u8,
@@ -19,7 +19,7 @@ pub struct StoreReport {
 }
 
 impl StoreReport {
-    /// Of the bytes after the command.
+    /// Parses the bytes after the command.
     pub(super) fn from_bytes([state, error, unsaved, a, b, c, d]: [u8; 7]) -> Self {
         Self {
             state: ParamState::from_code(state).ok_or(state),

@@ -23,7 +23,7 @@ pub(crate) struct Robot {
     pub config: RobotConfig,
     pub gate: TuningGate,
     pub diagnostics: DiagnosticsSnapshot,
-    /// Of every joint's motor.
+    /// The angle at which every joint's motor stands.
     pub standing: Result<f32, NotStationary>,
     /// Looks at the store after which everything is saved.
     pub looks_to_save: Option<usize>,
@@ -118,7 +118,7 @@ pub(crate) fn robot() -> (Bus, TuningClient) {
     (bus, client)
 }
 
-/// Of a robot with these diagnostics, over a bus that loses nothing.
+/// Returns the client of a robot with these diagnostics, over a bus that loses nothing.
 pub(crate) fn client(fill: impl FnOnce(&mut DiagnosticsSnapshot)) -> TuningClient {
     let (bus, client) = robot();
     fill(&mut bus.0.borrow_mut().diagnostics);

@@ -17,7 +17,7 @@ pub struct Coverage {
 }
 
 impl Coverage {
-    /// Of corrected samples.
+    /// Measures the coverage of corrected samples.
     pub(super) fn of(samples: &[Vector3<f64>]) -> Self {
         let seen: Vec<_> = samples.iter().map(|v| v.normalize()).collect();
         let nearest: Vec<(Vector3<f64>, f64)> = spiral()
