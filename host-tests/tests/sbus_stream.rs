@@ -9,7 +9,7 @@ const FRAME_LEN: usize = 25;
 /// 12 bit at 100 kbaud.
 const BYTE_US: u64 = 120;
 
-/// Of SBUS and SBUS2; of Futaba R7003SB (bolderflight/sbus#79).
+/// Footers of SBUS and SBUS2, and that of the Futaba R7003SB (bolderflight/sbus#79).
 const FOOTERS: [u8; 6] = [0x00, 0x04, 0x14, 0x24, 0x34, 0x08];
 
 /// What the specification says about 25 bytes. After silence on the line they are framed, and makers put what they like

@@ -135,7 +135,7 @@ fn a_sector_that_takes_no_head_is_skipped() {
         let (mut chip, contents) = in_use();
         for copy in [8, 24] {
             let address = SECTOR_1 + sector * SECTOR_BYTES + copy + 4;
-            // Of the generation's lowest bytes, which are small numbers.
+            // A bit in the lowest bytes of the generation, which are small numbers.
             let (bit, value) = (7, true);
             chip.stick(StuckBit {
                 address,

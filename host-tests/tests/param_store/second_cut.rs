@@ -13,9 +13,9 @@ const MANY_STEPS: u64 = 40;
 
 /// Which second cuts are tried; a change of sector is always among the first ones.
 struct Sample {
-    /// Of the saves that only append, one in so many.
+    /// Every how many saves that only append are cut.
     appends: usize,
-    /// Of the steps of the recovery one in so many, from another one after each first cut.
+    /// Distance between the steps of the recovery that are cut; the first one differs after each first cut.
     stride: u64,
 }
 

@@ -27,7 +27,7 @@ pub struct Moment {
     /// What must be in it.
     pub contents: Contents,
     pub record: Record,
-    /// Of the chip: the first step of the save and the first after it.
+    /// The chip's first step of the save, and its first step after it.
     pub steps: std::ops::Range<u64>,
 }
 

@@ -15,7 +15,7 @@ use crate::{
 /// Saves before and after each change of the sector that are cut too.
 const NEIGHBOURS: usize = 4;
 const SECTOR_CHANGES: usize = 3;
-/// Of the steps of a sector change and of the recovery after it: so many apart are cut twice.
+/// Distances between the steps of a sector change, and of the recovery after it, that are cut twice.
 const FIRST_CUTS_APART: usize = 4;
 const SECOND_CUTS_APART: usize = 2;
 

@@ -34,7 +34,7 @@ pub struct Tick {
     /// Counts of wheels 0 and 1.
     pub wheels: [i32; 2],
     pub joints: [Option<JointFrame>; 4],
-    /// Of the tuning channel, on any bus.
+    /// Replies of the tuning channel, on any bus.
     pub replies: Vec<[u8; 8]>,
 }
 

@@ -55,7 +55,7 @@ fn walk(make: Make) {
         enabled += ticks.iter().filter(|tick| tick.enables_joints()).count();
     }
     println!("{starts} starts, {driven} ticks with wheel torque, {enabled} with joints enabled");
-    // Of the 100 ticks in which each start might drive, half.
+    // Half of the 100 ticks in which each start might drive.
     assert!(driven > 50 * starts && enabled > 50 * starts);
 }
 

@@ -1,4 +1,4 @@
-//! The settings of a robot that nobody has changed yet.
+//! Default settings of a robot.
 
 use super::{MotorLayout, ROBOT_LAYOUT};
 use crate::domain::{

@@ -152,7 +152,7 @@ fn a_grant_stays_until_the_request_is_withdrawn() {
     let grant = bench.tick();
     assert_eq!(grant.granted, FlashRequest::Program);
     assert!(grant.blocks_arming);
-    // Another request is decided anew.
+    // Another request needs a new decision.
     bench.request = FlashRequest::Erase;
     assert_eq!(bench.tick(), FlashGrant::default());
 }

@@ -17,7 +17,7 @@ struct Bench {
     logic: LogicBus,
     health: SystemHealth,
     params: ParamStatus,
-    /// Of the wheels, forward positive.
+    /// Speed of the wheels, forward positive.
     rpm: i16,
     now_us: u64,
 }
