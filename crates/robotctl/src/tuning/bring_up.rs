@@ -2,6 +2,8 @@
 
 use std::num::NonZeroI16;
 
+use robot_app::bring_up::BringUpStep as Step;
+
 /// The six motors by their numbers on the wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 #[repr(u8)]
@@ -50,15 +52,20 @@ impl BringUpStep {
     /// The bytes after the command: step, motor, action, value, and two that are 0.
     pub(super) fn to_bytes(self) -> [u8; 7] {
         let (step, motor, action, value) = match self {
-            Self::Off => (0, 0, 0, 0),
-            Self::ReadOnly => (1, 0, 0, 0),
-            Self::ZeroTorque => (2, 0, 0, 0),
-            Self::OneMotor(motor, Trial::Stick) => (3, motor as u8, TORQUE, 0),
-            Self::OneMotor(motor, Trial::Fixed(value)) => (3, motor as u8, TORQUE, value.get()),
-            Self::OneMotor(motor, Trial::Hold) => (3, motor as u8, HOLD, 0),
+            Self::Off => (Step::Off, 0, 0, 0),
+            Self::ReadOnly => (Step::ReadOnly, 0, 0, 0),
+            Self::ZeroTorque => (Step::ZeroTorque, 0, 0, 0),
+            Self::OneMotor(motor, trial) => {
+                let (action, value) = match trial {
+                    Trial::Stick => (TORQUE, 0),
+                    Trial::Fixed(value) => (TORQUE, value.get()),
+                    Trial::Hold => (HOLD, 0),
+                };
+                (Step::OneMotor, motor as u8, action, value)
+            }
         };
         let [low, high] = value.to_le_bytes();
-        [step, motor, action, low, high, 0, 0]
+        [step as u8, motor, action, low, high, 0, 0]
     }
 }
 
