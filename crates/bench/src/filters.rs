@@ -5,19 +5,19 @@ use std::path::{Path, PathBuf};
 /// A program of the package `robot-estimator-bench`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Filter {
-    /// Of the program's file.
+    /// Name of the program's file.
     pub program: &'static str,
     /// Head of its column.
     pub title: &'static str,
 }
 
-/// The robot's own.
+/// The robot's own filter.
 pub const OURS: Filter = Filter {
     program: "ours",
     title: "robot",
 };
 
-/// From the registry, each with its own settings.
+/// Published filters, each with its own settings.
 pub const RIVALS: [Filter; 4] = [
     Filter {
         program: "vqf-rs",

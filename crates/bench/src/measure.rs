@@ -16,11 +16,11 @@ use crate::{
 pub struct Costs {
     pub update_with_mag: Vec<u32>,
     pub update: Vec<u32>,
-    /// Nothing new: the attitude is carried on.
+    /// Ticks without a new sample, in which the attitude is extrapolated.
     pub extrapolation: Vec<u32>,
 }
 
-/// Instructions.
+/// Distribution of a number of instructions.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Spread {
     pub mean: f64,
@@ -31,7 +31,7 @@ pub struct Spread {
 pub struct Measured {
     pub motion: String,
     pub costs: Costs,
-    /// Against the recording's reference, if it has one.
+    /// Errors against the recording's reference, if it has one.
     pub at_samples: Option<Figures>,
     pub at_1_khz: Option<Figures>,
     pub flash_bytes: usize,
@@ -39,12 +39,12 @@ pub struct Measured {
     pub profile: Profile,
 }
 
-/// What ran.
+/// The blocks of code that ran.
 #[derive(Clone, Debug, Default)]
 pub struct Profile {
-    /// In updates with magnetometer.
+    /// Blocks that ran in updates with magnetometer.
     pub updates: Blocks,
-    /// In ticks with nothing new.
+    /// Blocks that ran in ticks without a new sample.
     pub between: Blocks,
     pub worst: WorstTick,
 }

@@ -14,7 +14,7 @@ const WHEEL_AGE_US: u32 = 1_000;
 const TOP_RPM: f64 = 2_000.0;
 
 pub enum Motion {
-    /// Of a sensor alone: no wheel ever reports.
+    /// A recording of the sensors alone, in which no wheel ever reports.
     Recorded(Trial),
     Computed {
         samples: Vec<Sample>,

@@ -19,7 +19,7 @@ pub struct Row {
     pub unit: &'static str,
     /// The most that is allowed.
     pub limit: Option<f64>,
-    /// By column; a column may lack the figure.
+    /// Figure of each column that has one.
     pub values: BTreeMap<String, f64>,
     /// Columns whose figure is above the limit.
     pub broken: Vec<String>,
@@ -104,7 +104,7 @@ impl fmt::Display for Group {
 }
 
 impl Row {
-    /// With the thousands set apart.
+    /// Formats a value with separators between the thousands.
     fn text(&self, value: f64) -> String {
         let plain = format!("{value:.*}", self.decimals);
         let whole = plain.split('.').next().unwrap_or(&plain).len();

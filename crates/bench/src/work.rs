@@ -50,7 +50,7 @@ pub struct FilterResult {
 }
 
 pub struct Results {
-    /// In the order of the plan.
+    /// One summary for each board, in the order of the plan.
     pub boards: Vec<Summary>,
     pub filters: Vec<FilterResult>,
 }

@@ -20,9 +20,9 @@ use robot_bench::{
 };
 use robot_replay::Trial;
 
-/// From the repository's root.
+/// Usual folder of the recordings, relative to the repository's root.
 const RECORDINGS: &str = "../shared/data/broad";
-/// What is taken of the recordings where nobody says which.
+/// The recordings that are used unless the command names others.
 const AT_200_HZ: &str = "hz200";
 
 /// What the firmware costs: the shipped image on the emulated board, and its attitude filter beside others, counted on
@@ -174,7 +174,7 @@ fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// Of our estimator, over all its motions.
+/// Prints where our estimator spends its instructions, over all motions.
 fn print_functions(programs: &Path, results: Results) -> anyhow::Result<()> {
     let ours = results
         .filters

@@ -15,7 +15,7 @@ const SAMPLES_A_FIELD: u64 = 4;
 const GRAVITY_MPS2: f64 = 9.81;
 /// East, north, up: a field of 49 µT that dips by 67°, as in Berlin.
 const FIELD_UT: [f64; 3] = [0.0, 19.0, -45.0];
-/// Of the gyro, 1 °/s on each axis.
+/// Offset of the gyro, 1 °/s on each axis.
 const OFFSET_RPS: f64 = 0.0175;
 
 type Vector = [f64; 3];

@@ -1,8 +1,8 @@
 //! Accesses that must be word-aligned whatever CCR says: LDM, STM, LDRD, STRD, VLDR, VSTR and their kind (ARMv7-M ARM
 //! A3.2.1). The engine carries them out at any address.
 //!
-//! What a base register holds at its access is followed through the block, as far as its two lowest bits go. Where that
-//! fails, the register is looked at after the block, if it is still what it was.
+//! The two lowest bits of each base register are tracked through the block. Where they cannot be tracked, the register is
+//! checked after the block, provided that it has not changed since the access.
 
 /// Registers that must hold aligned addresses in one run through a block.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -11,11 +11,11 @@ pub struct WordAccesses {
     pub before: u64,
     /// Bit r: register r must be a multiple of four after it.
     pub after: u16,
-    /// One access goes to a constant address that is none.
+    /// One access goes to a constant address that is not word-aligned.
     pub wrong: bool,
 }
 
-/// R0 to R12: stack pointer and PC are always aligned, and a call changes LR.
+/// Registers that are checked: R0 to R12. Stack pointer and PC are always aligned, and a call changes LR.
 const LOOKED_AT: std::ops::Range<usize> = 0..13;
 const SP: usize = 13;
 const PC: usize = 15;
@@ -23,7 +23,7 @@ const PC: usize = 15;
 /// The two lowest bits of a register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Low {
-    /// As those of this register before the block, plus something.
+    /// The bits of this register before the block, plus a constant.
     Start {
         register: usize,
         plus: u32,
@@ -45,7 +45,7 @@ impl Low {
     }
 }
 
-/// Of `code`, the bytes of one straight run of instructions.
+/// Finds the accesses of `code`, the bytes of one straight run of instructions.
 pub fn word_accesses(code: &[u8]) -> WordAccesses {
     let mut block = Block::default();
     let mut halves = code.as_chunks().0.iter().copied().map(u16::from_le_bytes);
@@ -76,7 +76,7 @@ impl Default for Block {
     fn default() -> Self {
         let mut registers = std::array::from_fn(|register| Low::Start { register, plus: 0 });
         registers[SP] = Low::Known(0);
-        // As ADR takes it.
+        // ADR uses the PC rounded down to a word.
         registers[PC] = Low::Known(0);
         Self {
             registers,
@@ -110,7 +110,7 @@ impl Block {
         }
     }
 
-    /// A conditional access may not take place: it is left out.
+    /// Ignores a conditional access, which may not take place.
     fn access(&mut self, base: u32) {
         let register = base as usize & 15;
         if self.may_be_skipped || !LOOKED_AT.contains(&register) {
@@ -131,7 +131,7 @@ impl Block {
         let (rd, rn, upper) = (op & 7, op >> 3 & 7, op >> 8 & 7);
         let imm8 = op & 0xFF;
         match op >> 11 {
-            // MOVS between registers is a shift by nothing.
+            // MOVS between registers is encoded as a shift by 0.
             0b00000 if op >> 6 & 0x1F == 0 => self.set(rd, self.get(rn)),
             0b00011 if op >> 9 & 3 == 2 => self.set(rd, self.get(rn).plus(op >> 6 & 7)),
             0b00011 if op >> 9 & 3 == 3 => {
@@ -168,7 +168,7 @@ impl Block {
             0x44 => self.lose(high_rd),
             0x46 => self.set(high_rd, self.get(rm)),
             0x45 | 0x47 => {}
-            // TST, CMP and CMN write nothing.
+            // TST, CMP and CMN write no register.
             _ if matches!(op >> 6 & 15, 8 | 10 | 11) => {}
             _ => self.lose(op & 7),
         }
@@ -190,7 +190,7 @@ impl Block {
                 }
             }
             1 if op & 0x64 == 0x04 && op & 0x12 == 0 => {
-                // Exclusives and table branches: the engine sees to their alignment.
+                // The engine checks the alignment of exclusives and table branches.
                 self.lose_all(1 << rt | 1 << rd | 1 << (second & 15));
             }
             1 if op & 0x64 == 0x04 => {
@@ -201,7 +201,7 @@ impl Block {
             }
             1 => self.lose(rd),
             2 if second >> 15 == 1 => {
-                // MRS; branches and the rest of control write nothing here.
+                // MRS writes a register; branches and other control instructions do not.
                 if first & 0xFFE0 == 0xF3E0 && second & 0xD000 == 0x8000 {
                     self.lose(rd);
                 }
@@ -219,7 +219,7 @@ impl Block {
             _ => {
                 self.lose(rd);
                 if op & 0x78 == 0x38 {
-                    // The other half of a long product.
+                    // The upper half of a long product.
                     self.lose(rt);
                 }
             }

@@ -39,13 +39,13 @@ pub use fault_injection::{Effect, Injection};
 use hooks::with_soc;
 use sleep::SleepKind;
 use standstill::Standstill;
-/// Error of the engine under the CPU.
+/// An error of the CPU engine.
 pub use unicorn_engine::uc_error as EngineError;
 
-/// Why `Cpu::run` came back.
+/// Why `Cpu::run` returned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pause {
-    /// The asked-for time is reached.
+    /// The requested time is reached.
     Limit,
     /// WFE or WFI found nothing to do; `thread` when no handler is active.
     Asleep {
@@ -54,11 +54,11 @@ pub enum Pause {
     },
     /// The chip must be reset, then `Cpu::reset` called; after `PowerOn`, which is the loss of power, `power_off`.
     Reset(ResetCause),
-    /// The board was without power long enough: `Cpu::power_up` must be called.
+    /// The power cut is over: `Cpu::power_up` must be called.
     PowerReturns,
 }
 
-/// The run cannot go on.
+/// The run cannot continue.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Halt {
     /// Why, with the register or the fault.
@@ -67,7 +67,7 @@ pub struct Halt {
     pub pc: u32,
 }
 
-/// Why the engine was asked to come out of translated code.
+/// Why the engine was asked to leave translated code.
 #[derive(Clone, Debug)]
 enum Stop {
     Interrupt,
@@ -80,9 +80,9 @@ enum Stop {
     Unmodelled(Unmodelled),
     Engine(String),
     Injected(Injection),
-    /// A BKPT instruction or a breakpoint, and a debugger that wants to hear of it.
+    /// A BKPT instruction or a breakpoint while a debugger is attached.
     Breakpoint,
-    /// The function at this address may go on after all.
+    /// The function that hung at this address may continue.
     Released(u32),
 }
 
@@ -94,14 +94,14 @@ struct Block {
     /// Instructions and cycles that are not yet added to the counters.
     instructions: u16,
     cycles: u16,
-    /// Registers that must be multiples of four when it has run, a bit each.
+    /// Registers that must be multiples of four after the block, one bit each.
     aligned_after: u16,
 }
 
 /// State that the engine's hooks share with the run loop.
 pub(crate) struct State {
     clock: CycleClock,
-    /// Out only while it works on the memories through the engine.
+    /// `None` only while the chip accesses the memories through the engine.
     soc: Option<Box<Soc>>,
     system: System,
     stats: Execution,
@@ -111,7 +111,7 @@ pub(crate) struct State {
     soc_event: Ps,
     due_cycle: u64,
     limit_cycle: u64,
-    /// An interrupt may be deliverable: look at the next block boundary.
+    /// An interrupt may be deliverable, which the next block boundary checks.
     attention: bool,
     standstill: Standstill,
     /// The event register of WFE.
@@ -184,7 +184,7 @@ impl Cpu {
         Ok(cpu)
     }
 
-    /// System reset: the chip has been reset; the core starts again from its vector table, memories as they are.
+    /// Performs the core's part of a system reset: it restarts from its vector table and keeps the memories.
     pub fn reset(&mut self) {
         self.engine.get_data_mut().stats.rebooted();
         self.boot();
@@ -198,7 +198,7 @@ impl Cpu {
         state.event = false;
         state.stop = None;
         state.injector = Injector::default();
-        // C_HALT does not outlive a reset.
+        // A reset clears C_HALT.
         state.standstill.halted_until(None);
         let caught = state.system.debug.catches_reset();
         self.reset_registers();
@@ -236,7 +236,7 @@ impl Cpu {
         &self.state().stats
     }
 
-    /// False where no memory answers.
+    /// Returns false if no memory answers.
     pub fn read_memory(&self, addr: u32, out: &mut [u8]) -> bool {
         self.engine.mem_read(addr.into(), out).is_ok()
     }
@@ -258,7 +258,7 @@ impl Cpu {
         self.with_soc(|_, _| ());
     }
 
-    /// Runs on until `until`, sleep, or a reset. Blocks are not split: the limit may be passed by one.
+    /// Runs until `until`, sleep or a reset. Blocks are not split, so the run may end up to one block later.
     pub fn run(&mut self, until: Ps) -> Result<Pause, Halt> {
         let state = self.state_mut();
         state.limit_cycle = state.clock.cycle_at(until);
@@ -285,7 +285,7 @@ impl Cpu {
         }
     }
 
-    /// Lets translated code run once, then does what it stopped for.
+    /// Runs translated code once, then handles the reason why it stopped.
     fn execute(&mut self) -> Result<Option<Pause>, Halt> {
         let pc = self.pc();
         let result = self.engine.emu_start(u64::from(pc | 1), NOWHERE, 0, 0);
@@ -351,7 +351,7 @@ impl Cpu {
         }
     }
 
-    /// Takes the exception that beats the running code, if there is one.
+    /// Takes the exception that preempts the running code, if there is one.
     fn take_deliverable(&mut self) -> Result<(), Halt> {
         while let Some(exception) = {
             let masks = context::masks(&self.engine);
@@ -362,7 +362,7 @@ impl Cpu {
         Ok(())
     }
 
-    /// A synchronous fault: its own exception if that may run now, else HardFault, else lock-up.
+    /// Takes a synchronous fault: its own exception if that may run now, else HardFault, else lock-up.
     fn raise(&mut self, fault: Fault) -> Result<(), Halt> {
         let masks = context::masks(&self.engine);
         let state = self.state_mut();
@@ -396,7 +396,8 @@ impl Cpu {
         }
     }
 
-    /// After a register access the engine gives its PC, inside an IT block that of the block's end.
+    /// After a register access the engine reports the PC of that access; inside an IT block it reports the PC of the block's
+    /// end.
     fn halt_in_block(&self, what: String) -> Halt {
         let Block { start, end, .. } = self.state().block;
         let pc = self.pc();

@@ -20,7 +20,7 @@ impl Exception {
     pub const PEND_SV: Self = Self(14);
     pub const SYS_TICK: Self = Self(15);
 
-    /// `None` past the chip's last interrupt.
+    /// Returns `None` past the chip's last interrupt.
     pub fn from_number(number: u32) -> Option<Self> {
         u8::try_from(number)
             .ok()
@@ -40,7 +40,7 @@ impl Exception {
         self.0.into()
     }
 
-    /// The interrupt behind it, unless it is a system exception.
+    /// The interrupt of this exception, or `None` for a system exception.
     pub fn irq(self) -> Option<Irq> {
         self.0.checked_sub(16)
     }

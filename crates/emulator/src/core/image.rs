@@ -40,7 +40,7 @@ pub struct Image {
 /// Why an image cannot be loaded.
 #[derive(Debug, thiserror::Error)]
 pub enum ImageError {
-    /// The file is no such ELF.
+    /// The file is not an ELF file for this chip.
     #[error("not a 32-bit little-endian ELF file: {0}")]
     Elf(#[from] object::Error),
     #[error("segment of {size} bytes at 0x{address:08X} is not in the 1 MiB flash")]
@@ -103,7 +103,7 @@ impl Image {
         self.symbols.get(name).copied()
     }
 
-    /// Starts of all functions whose demangled name has `part` in it and ends so.
+    /// Addresses of all functions whose demangled name contains `part` and has the given end.
     pub fn functions(&self, part: &str, ends: &str) -> impl Iterator<Item = u32> {
         let fits = move |f: &&Item| f.name.contains(part) && f.name.ends_with(ends);
         self.functions.iter().filter(fits).map(|f| f.start)
@@ -115,7 +115,7 @@ impl Image {
         Some((item.start, item.size))
     }
 
-    /// The function that holds `pc`, with the offset in it: `main+0x12`; the bare address where none does.
+    /// The function that contains `pc` and the offset in it, such as `main+0x12`, or the bare address if there is none.
     pub fn describe(&self, pc: u32) -> String {
         let pc = if FLASH_ALIAS.contains(pc, 1) {
             pc + FLASH.base

@@ -14,13 +14,13 @@ pub struct Region {
 }
 
 impl Region {
-    /// Whether all `len` bytes from `addr` on lie in it.
+    /// Whether all `len` bytes from `addr` on lie in this range.
     pub fn contains(self, addr: u32, len: u32) -> bool {
         addr >= self.base
             && u64::from(addr) + u64::from(len) <= u64::from(self.base) + u64::from(self.size)
     }
 
-    /// Whether one of the `len` bytes from `addr` on lies in it.
+    /// Whether any of the `len` bytes from `addr` on lies in this range.
     pub fn overlaps(self, addr: u32, len: u32) -> bool {
         u64::from(addr) < u64::from(self.base) + u64::from(self.size)
             && u64::from(addr) + u64::from(len) > u64::from(self.base)
@@ -32,7 +32,7 @@ pub const FLASH: Region = Region {
     base: 0x0800_0000,
     size: 0x10_0000,
 };
-/// BOOT0 = 0 shows the flash at address 0 too.
+/// With BOOT0 = 0 the flash is also visible at address 0.
 pub const FLASH_ALIAS: Region = Region {
     base: 0,
     size: 0x10_0000,
@@ -62,7 +62,7 @@ const SYSTEM_MEMORY: Region = Region {
     base: 0x1FFF_0000,
     size: 0x8000,
 };
-/// No memory of the chip: the endless loop that code made to hang runs in.
+/// Not a memory of the chip: it holds the endless loop in which a function hangs.
 pub const HANG: Region = Region {
     base: 0x1F00_0000,
     size: 0x1000,
@@ -73,8 +73,7 @@ const FLASH_SIZE_KIB: u32 = 0x1FFF_7A22;
 const VREFIN_CAL: u32 = 0x1FFF_7A2A;
 
 /// Maps the memories and fills them as they are at power-on: flash and OTP erased, RAM full of noise. Sectors 1–3 are
-/// left out.
-/// SRAM may not hold code: the engine would then look at every store for changes of it.
+/// left out. SRAM is not executable, because otherwise the engine would check every store for changed code.
 pub fn map<D>(engine: &mut Unicorn<'_, D>) -> Result<(), uc_error> {
     for (region, rights) in [
         (SYSTEM_MEMORY, Prot::READ),
@@ -116,7 +115,7 @@ fn around(whole: Region, hole: Region) -> [Region; 2] {
     ]
 }
 
-/// NOPs and a branch back to the first: long enough to be quick to emulate, short against any deadline.
+/// NOPs and a branch back to the first. The loop is long enough to be emulated fast, and much shorter than any deadline.
 fn endless_loop() -> Vec<u8> {
     const NOPS: usize = 62;
     const NOP: u16 = 0xBF00;
@@ -128,7 +127,7 @@ fn endless_loop() -> Vec<u8> {
         .collect()
 }
 
-/// RAM after power-on: the same on every run, and no value a program could count on.
+/// Contents of the RAM after power-on: noise that is the same in every run.
 pub fn power_on_noise(region: Region) -> Vec<u8> {
     let mut state = region.base | 1;
     let mut word = || {

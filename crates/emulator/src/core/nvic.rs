@@ -1,4 +1,4 @@
-//! Nested vectored interrupt controller: what is pending, enabled and active, and which exception goes first.
+//! Nested vectored interrupt controller: which exceptions are pending, enabled and active, and which is taken first.
 
 use crate::{
     core::exception::{EXCEPTION_COUNT, Exception},
@@ -21,7 +21,7 @@ pub struct Masks {
     pub basepri: u8,
 }
 
-/// One bit an exception in each set, by exception number.
+/// Sets of exceptions, with one bit for each exception number.
 #[derive(Debug)]
 pub struct Nvic {
     pending: u128,
@@ -92,7 +92,7 @@ impl Nvic {
         }
     }
 
-    /// Request lines that rose; true when one of them became pending now.
+    /// Makes interrupts pending whose request line rose. Returns true if one of them was not pending before.
     pub fn lines_rose(&mut self, irqs: u128) -> bool {
         let before = self.pending;
         self.pending |= irqs << 16 & IRQ_BITS;
@@ -153,7 +153,7 @@ impl Nvic {
         self.group = group & 7;
     }
 
-    /// The part of a priority that decides on preemption (ARMv7-M ARM B1.5.4).
+    /// The part of a priority that decides about preemption (ARMv7-M ARM B1.5.4).
     fn group_priority(&self, value: u8) -> Priority {
         Priority::from(value) & (0xFF << (self.group + 1))
     }
@@ -174,7 +174,7 @@ impl Nvic {
             .unwrap_or(THREAD_PRIORITY)
     }
 
-    /// The priority an exception must beat to be taken (ARMv7-M ARM `ExecutionPriority`).
+    /// The priority that an exception must exceed to be taken (ARMv7-M ARM `ExecutionPriority`).
     pub fn execution_priority(&self, masks: Masks) -> Priority {
         let mut boosted = THREAD_PRIORITY;
         if masks.basepri != 0 {
@@ -189,12 +189,12 @@ impl Nvic {
         boosted.min(self.active_priority())
     }
 
-    /// True when `exception` would be taken at once if it were raised now.
+    /// Whether `exception` would be taken at once if it were raised now.
     pub fn can_take(&self, exception: Exception, masks: Masks) -> bool {
         self.is_enabled(exception) && self.priority_of(exception) < self.execution_priority(masks)
     }
 
-    /// The pending, enabled exception that goes first: group priority, then subpriority, then number.
+    /// The pending, enabled exception that is taken first, by group priority, then subpriority, then number.
     fn first_pending(&self) -> Option<Exception> {
         numbers(self.pending & self.enabled)
             .min_by_key(|&e| (self.priority_of(e), self.priority[e.index()], e.number()))
@@ -206,7 +206,7 @@ impl Nvic {
             .filter(|&e| self.priority_of(e) < self.execution_priority(masks))
     }
 
-    /// Something pending beats the active code, masks aside: the masks decide.
+    /// Whether a pending exception would preempt the active code if no mask were set.
     pub fn waits_for_masks_only(&self) -> bool {
         self.deliverable(Masks::default()).is_some()
     }
@@ -220,14 +220,14 @@ impl Nvic {
         .is_some()
     }
 
-    /// The processor begins to run `exception`.
+    /// Notes that the processor begins to run `exception`.
     pub fn activate(&mut self, exception: Exception) {
         self.unpend(exception);
         self.active |= bit(exception);
         self.current = exception;
     }
 
-    /// The handler of the current exception is over; `line_high` tells whether its request is still raised.
+    /// Notes that the handler of the current exception has ended. `line_high` says whether its request is still raised.
     pub fn retire(&mut self, line_high: bool) {
         let ended = self.current;
         self.active &= !bit(ended);

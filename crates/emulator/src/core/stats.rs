@@ -7,7 +7,7 @@ use crate::{
     time::Ps,
 };
 
-/// Counters that the engine's hooks feed.
+/// Counters that the engine's hooks update.
 #[derive(Debug)]
 pub struct Execution {
     executed: [u64; EXCEPTION_COUNT],
@@ -53,7 +53,7 @@ impl Execution {
         self.idle_cycles = 0;
     }
 
-    /// The core fetched nothing for so long. That is neither busy nor idle.
+    /// Records a time in which the core fetched nothing. It counts as neither busy nor idle.
     pub(crate) fn stood_still(&mut self, time: Ps) {
         self.stood_still += time;
     }

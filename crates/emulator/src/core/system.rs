@@ -63,7 +63,7 @@ impl Default for System {
     }
 }
 
-/// State of the rest of the machine that an access needs.
+/// State of the rest of the machine that an access depends on.
 pub(crate) struct Surroundings<'a> {
     pub cycles: u64,
     /// Level of each interrupt's request line.
@@ -71,7 +71,7 @@ pub(crate) struct Surroundings<'a> {
 }
 
 impl System {
-    /// Everything a system reset resets; debug registers keep their values (only power-on clears them).
+    /// Performs a system reset. Debug registers keep their values, which only power-on clears.
     pub fn reset(&mut self) {
         let debug = std::mem::take(&mut self.debug);
         *self = Self {
@@ -88,12 +88,12 @@ impl System {
     ) -> Result<u32, Unmodelled> {
         let access = Access::new(addr, size);
         let word = match access.register {
-            reg::ICTR => 2, // ICTR: 96 interrupt lines
+            reg::ICTR => 2, // 96 interrupt lines
             reg::ACTLR => self.actlr,
             reg::SYST_CSR => self.systick.read_ctrl(),
             reg::SYST_RVR => self.systick.reload(),
             reg::SYST_CVR => self.systick.value(around.cycles),
-            reg::SYST_CALIB => 0, // CALIB: no calibration value is promised
+            reg::SYST_CALIB => 0, // no calibration value
             r @ reg::NVIC_ISER0..=reg::NVIC_IPR59 => {
                 self.read_nvic(r).ok_or_else(|| unmodelled(r, "read"))?
             }
@@ -158,7 +158,7 @@ impl System {
         self.scr & SCR_SLEEPONEXIT != 0
     }
 
-    /// Sleep is Stop or Standby mode.
+    /// Whether sleep means Stop or Standby mode.
     pub fn sleeps_deeply(&self) -> bool {
         self.scr & SCR_SLEEPDEEP != 0
     }
@@ -178,12 +178,12 @@ impl System {
         self.cpacr & CPACR_FPU == CPACR_FPU
     }
 
-    /// SYSRESETREQ since the last call.
+    /// Whether SYSRESETREQ was set since the last call.
     pub fn take_reset_request(&mut self) -> bool {
         std::mem::take(&mut self.reset_requested)
     }
 
-    /// SysTick up to `cycles`; true when something became pending.
+    /// Advances SysTick to `cycles`. Returns true if an exception became pending.
     pub fn run_due(&mut self, cycles: u64) -> bool {
         let due = self.systick.run_due(cycles);
         if due {
@@ -192,7 +192,7 @@ impl System {
         due
     }
 
-    /// The core was halted for debugging: its own counters stood.
+    /// Takes a halt for debugging out of the core's own counters.
     pub fn halted_for(&mut self, cycles: u64) {
         self.debug.halted_for(cycles);
         self.systick.halted_for(cycles);

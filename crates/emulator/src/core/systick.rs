@@ -1,6 +1,6 @@
 //! SysTick: the core's own 24-bit down-counter.
 
-/// Registers as programmed; the count follows from the core's cycle counter.
+/// The programmed registers. The count is computed from the core's cycle counter.
 #[derive(Debug, Default)]
 pub struct SysTick {
     enabled: bool,
@@ -8,7 +8,7 @@ pub struct SysTick {
     /// CLKSOURCE: the core clock when set, an eighth of it when clear.
     core_clock: bool,
     reload: u32,
-    /// Cycle at which the counter stood (or will stand) at zero, and the present period began.
+    /// Cycle at which the counter is zero and the present period begins.
     zero_at: u64,
     counted: bool,
 }
@@ -37,7 +37,7 @@ impl SysTick {
         }
     }
 
-    /// Lets the counter wrap as often as `cycles` asks; true when an interrupt is due.
+    /// Advances the counter to `cycles`. Returns true if an interrupt is due.
     pub fn run_due(&mut self, cycles: u64) -> bool {
         if self.next_cycle() > cycles {
             return false;
@@ -47,7 +47,7 @@ impl SysTick {
         self.interrupt
     }
 
-    /// The counter stands while the core is halted for debugging.
+    /// Stops the counter while the core is halted for debugging.
     pub fn halted_for(&mut self, cycles: u64) {
         self.zero_at += cycles;
     }

@@ -47,7 +47,7 @@ registers! {
 /// One wait state each 30 MHz at 2.7–3.6 V (RM0090 table 10).
 const HZ_PER_WAIT_STATE: u32 = 30_000_000;
 
-/// Written to KEYR one after the other they open CR; anything else keeps it shut until the next reset.
+/// Keys that unlock CR when written to KEYR in this order. Any other value locks it until the next reset.
 const KEYS: [u32; 2] = [0x4567_0123, 0xCDEF_89AB];
 
 const FLASH_IRQ: Irq = 4;
@@ -61,7 +61,7 @@ enum Lock {
     UntilReset,
 }
 
-/// The flash interface and what is under way in it.
+/// The flash interface and its operation in progress.
 #[derive(Debug, Default)]
 pub struct Flash {
     acr: u32,
@@ -73,31 +73,31 @@ pub struct Flash {
     under_way: Option<UnderWay>,
     history: History,
     planned_cut: Option<PlannedCut>,
-    /// The board loses its power now.
+    /// A planned cut has come: the board loses its power now.
     power_fails: bool,
-    /// Number of the scheduler event that still counts.
+    /// Number of the latest scheduler event; earlier ones are stale.
     generation: u32,
-    /// When the caches should be on: a while after the clock needed wait states first.
+    /// Time by which the caches should be on: 100 ms after the clock first needed wait states.
     caches_due: Option<Ps>,
 }
 
-/// Tag of the event that looks at the caches; no generation gets there.
+/// Tag of the event that checks the caches. No generation reaches this number.
 const CACHE_LOOK: u32 = u32::MAX;
-/// A boot may take its time.
+/// Time that a boot has to turn the caches on.
 const CACHES_ON_WITHIN: Ps = 100 * MS;
 
 impl Flash {
-    /// Programs and erases since power-on.
+    /// All programming and erase operations since power-on.
     pub fn history(&self) -> &History {
         &self.history
     }
 
-    /// Programs and erases take the times of that column from now on.
+    /// Sets the durations of programming and erasing from now on.
     pub fn set_times(&mut self, times: FlashTimes) {
         self.times = times;
     }
 
-    /// The board loses its power at a step of the flash.
+    /// Plans a loss of power at a step of the flash.
     pub fn plan_cut(&mut self, cut: PlannedCut) {
         self.planned_cut = Some(cut);
     }
@@ -107,7 +107,7 @@ impl Flash {
         std::mem::take(&mut self.power_fails)
     }
 
-    /// When fetches are served again, while the flash works.
+    /// Time at which fetches are served again; `None` if the flash is not busy.
     pub fn stalled_until(&self) -> Option<Ps> {
         self.under_way.as_ref().map(|under_way| under_way.time.end)
     }
@@ -189,7 +189,7 @@ impl Flash {
         self.check_speed(ctx);
     }
 
-    /// Files a board error where `hclk_hz` asks for more wait states than set.
+    /// Reports a board error if `hclk_hz` needs more wait states than are set.
     pub(crate) fn check_speed(&mut self, ctx: &mut Ctx<'_>) {
         let needed = ctx
             .clocks
@@ -211,7 +211,8 @@ impl Flash {
         }
     }
 
-    /// Time follows the count of instructions: what the wait states cost without the caches is not in it.
+    /// Reports caches that are off. Simulated time follows the count of instructions, so it does not show the cost of the
+    /// wait states.
     fn check_caches(&self, ctx: &mut Ctx<'_>) {
         for (bit, name) in [
             (acr::PRFTEN, "prefetch"),
@@ -291,7 +292,7 @@ impl Peripheral for Flash {
         }
     }
 
-    /// The contents stay; what was under way is torn.
+    /// Keeps the contents; an operation in progress is torn.
     fn reset(&mut self, ctx: &mut Ctx<'_>) {
         if let Some(work) = self.under_way.take().and_then(|w| w.work) {
             work.tear(ctx.board.flash_cells());

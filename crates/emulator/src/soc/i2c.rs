@@ -15,12 +15,12 @@ use registers::{cr1, cr2, reg, sr1, sr2};
 const IRQ_EVENT: u8 = 72;
 const IRQ_ERROR: u8 = 73;
 
-/// I2C3's registers around the bus master.
+/// The registers of I2C3 and its bus master.
 #[derive(Debug, Default)]
 pub struct I2c {
     master: Master,
     oar: [u32; 2],
-    /// SR1 was read since these flags rose: the second half of their clear sequence may come.
+    /// Flags that were set when SR1 was read. The second half of their clear sequence may follow.
     shown: u32,
 }
 
@@ -89,7 +89,7 @@ impl I2c {
     }
 
     /// CR1 must not be written before the hardware has cleared START and STOP: "there is a risk of setting a second
-    /// request" (RM0090 27.6.1). What then became of a START was seen on a bus: stm32f4xx-hal, pull request 737.
+    /// request" (RM0090 27.6.1). The effect on a START was observed on a bus in stm32f4xx-hal, pull request 737.
     fn check_requests_done(&mut self, was: u32, value: u32, ctx: &mut Ctx<'_>) {
         let why = match (was & cr1::STOP != 0, value & cr1::START != 0) {
             (true, true) => {

@@ -230,7 +230,7 @@ impl Peripheral for Iwdg {
                 let left = self.periods_left(ctx.now);
                 self.write_guarded("PR", value & 7, ctx);
                 self.cross(ctx);
-                // What is left to count goes on at the new divider once that has crossed.
+                // The remaining periods are counted with the new divider once it has arrived in the watchdog's clock domain.
                 if let Some(periods) = left {
                     self.expire_after(periods, ctx);
                 }

@@ -18,7 +18,7 @@ use crate::soc::{
     scheduler::Target,
 };
 
-/// Every clock goes on in sleep: reset values of AHB1LPENR to APB2LPENR.
+/// Reset values of AHB1LPENR to APB2LPENR: every clock keeps running in sleep.
 const SLEEP_ENABLES: [u32; 6] = [0x7E67_91FF, 0x0000_00F1, 1, 0, 0x36FE_C9FF, 0x0007_5F33];
 
 #[derive(Debug)]
@@ -30,14 +30,14 @@ pub struct Rcc {
     bdcr: u32,
     sscgr: u32,
     plli2scfgr: u32,
-    /// AHB1, AHB2, AHB3, –, APB1, APB2 as the registers lie.
+    /// Reset bits of AHB1, AHB2, AHB3, –, APB1 and APB2, in the order of the registers.
     resets: [u32; 6],
     enables: [u32; 6],
     source: SystemClock,
-    /// Start-ups begun, by oscillator; an event of an older one is stale.
+    /// Number of start-ups of each oscillator. An event of an earlier start-up is stale.
     generation: [u32; 4],
     frequencies_changed: bool,
-    /// PWR_CR.DBP.
+    /// Whether PWR_CR.DBP is set.
     backup_unlocked: bool,
     risen_resets: Vec<(Bus, u32)>,
 }
@@ -121,7 +121,7 @@ impl Rcc {
             reg::CSR => self.csr,
             reg::SSCGR => self.sscgr,
             reg::PLLI2SCFGR => self.plli2scfgr,
-            // Of the F42x, which drivers for the whole family touch; reserved on the F407.
+            // This register belongs to the F42x. It is reserved on the F407, but drivers for the whole family access it.
             reg::DCKCFGR => 0,
             _ => return Err(reg::MAP.unmodelled_read("RCC", register)),
         })
@@ -281,7 +281,7 @@ impl Rcc {
         Ok(())
     }
 
-    /// SYSCLK moves to the source asked for as soon as that one is ready.
+    /// Switches SYSCLK to the requested source as soon as that is ready.
     fn follow_sw(&mut self) {
         let Some(wanted) = SystemClock::from_sw(self.cfgr) else {
             return;
@@ -385,7 +385,7 @@ impl Peripheral for Rcc {
         self.publish_frequencies(ctx);
     }
 
-    /// Reset flags and the backup domain outlive a system reset.
+    /// Reset flags and the backup domain survive a system reset.
     fn reset(&mut self, ctx: &mut Ctx<'_>) {
         *self = Self {
             csr: self.csr & csr::FLAGS,

@@ -13,7 +13,7 @@ use crate::{
     wire::{CanFrame, CanPort, LineFormat, Parity, UartChar},
 };
 
-/// Sectors 1–3, whose torn words and sectors follow from a seed.
+/// Sectors 1–3. The contents of torn words and sectors follow from a seed.
 pub struct Cells {
     bytes: Vec<u8>,
     /// Erases of sector 1, 2 and 3.
@@ -114,13 +114,13 @@ const BURST: u64 = 25;
 /// node of either bus is off until a test starts it: it sends the identifier 0 all the time.
 #[derive(Default)]
 pub struct CanNodes {
-    /// Cut or shorted for everybody.
+    /// Whether the bus is cut or shorted for every node.
     pub broken: bool,
-    /// No node is plugged in.
+    /// Whether the bus has no node.
     pub empty: bool,
-    /// The node that floods the bus is on.
+    /// Whether the node that floods the bus is on.
     pub flooded: bool,
-    /// When each of the two senders of CAN1 wants to send next.
+    /// Time of the next frame of each sender on CAN1.
     due: [Ps; 2],
 }
 
@@ -129,15 +129,15 @@ pub struct CanNodes {
 pub struct TestBoard {
     now: Ps,
     pub cells: Cells,
-    /// Chip select of the SPI device is low.
+    /// Whether the chip select of the SPI device is low.
     pub spi_selected: bool,
     spi_command: Option<u8>,
-    /// A device holds SDA low.
+    /// Whether a device holds SDA low.
     pub i2c_held: bool,
     i2c_register: Option<u8>,
     characters_sent: u64,
     pub can: [CanNodes; 2],
-    /// At ADC3_IN8.
+    /// Voltage at ADC3_IN8.
     pub analog_v: f64,
     pub vdda_v: f64,
 }
@@ -166,7 +166,7 @@ impl Default for TestBoard {
 /// 7-bit address of the device on I2C3, and what its register 0 holds.
 pub const I2C_DEVICE: u8 = 0x0E;
 pub const I2C_IDENTITY: u8 = 0x10;
-/// What the SPI device answers to the byte after the command [`SPI_IDENTIFY`].
+/// The SPI device's answer to the byte after the command [`SPI_IDENTIFY`].
 pub const SPI_IDENTITY: u8 = 0x0F;
 pub const SPI_IDENTIFY: u8 = 0x80;
 

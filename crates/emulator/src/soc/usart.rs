@@ -373,7 +373,7 @@ impl Peripheral for Usart {
     }
 
     fn board_advanced(&mut self, ctx: &mut Ctx<'_>) {
-        // Of the three receivers this is the one with a line.
+        // Only USART3 is connected to a line.
         if self.number != 3 {
             return;
         }

@@ -1,4 +1,4 @@
-//! Looks at the registers of accesses that must be word-aligned.
+//! Checks the registers of accesses that must be word-aligned.
 
 use unicorn_engine::{RegisterARM, Unicorn};
 
@@ -21,7 +21,7 @@ const REGISTERS: [RegisterARM; 13] = [
     RegisterARM::R12,
 ];
 
-/// False if the block that begins will access a word at no multiple of four.
+/// Returns false if the block that begins will access a word at an unaligned address.
 pub(super) fn holds_before(engine: &Unicorn<'_, State>, accesses: WordAccesses) -> bool {
     let mut wanted = accesses.before;
     let mut wrong = accesses.wrong;
@@ -34,7 +34,7 @@ pub(super) fn holds_before(engine: &Unicorn<'_, State>, accesses: WordAccesses) 
     !wrong || it_state::is_inside(engine)
 }
 
-/// False if the block that has run has done so.
+/// Returns false if the block that has run accessed a word at an unaligned address.
 pub(super) fn held_after(engine: &mut Unicorn<'_, State>) -> bool {
     let mut wanted = std::mem::take(&mut engine.get_data_mut().block.aligned_after);
     while wanted != 0 {

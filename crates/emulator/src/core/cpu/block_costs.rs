@@ -6,7 +6,7 @@ use crate::core::{
     memory::FLASH,
 };
 
-/// One slot for each halfword of 256 KiB: no two blocks of an image of that size share a slot.
+/// One slot for each halfword of 256 KiB, so no two blocks of an image of that size share a slot.
 const SLOTS: usize = 1 << 17;
 
 #[derive(Clone, Copy, Default)]
@@ -14,11 +14,11 @@ struct Slot {
     start: u32,
     size: u32,
     cost: BlockCost,
-    /// Position of its accesses in the list of all; 0 for none.
+    /// Index of the block's accesses in the list of all accesses; 0 if it has none.
     accesses: u16,
 }
 
-/// A direct-mapped cache for code in flash; code elsewhere may change under it and is costed anew each time.
+/// A direct-mapped cache for code in flash. Code elsewhere may change, so its cost is computed each time.
 pub(super) struct BlockCosts {
     slots: Vec<Slot>,
     accesses: Vec<WordAccesses>,
@@ -56,7 +56,7 @@ impl BlockCosts {
         (cost, accesses)
     }
 
-    /// `None` if there is no room; the block is looked at anew each time then.
+    /// Returns `None` if there is no room; the block is then analysed each time.
     fn keep(&mut self, accesses: WordAccesses) -> Option<u16> {
         if accesses == WordAccesses::default() {
             return Some(0);

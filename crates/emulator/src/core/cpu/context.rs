@@ -16,8 +16,8 @@ const XPSR_PADDED: u32 = 1 << 9;
 const XPSR_FLAGS: u32 = 0xF80F_0000;
 const CONTROL_NPRIV: u32 = 1;
 const CONTROL_SPSEL: u32 = 1 << 1;
-/// FPCA, and the engine's twin of it (SFPA) for its own idea of a secure state: both or neither, or it would start a
-/// new floating-point context in the middle of one.
+/// FPCA, and the bit SFPA that the engine keeps for its secure state. They must be set and cleared together; otherwise the
+/// engine would start a new floating-point context in the middle of one.
 const CONTROL_FPCA: u32 = 1 << 2 | 1 << 3;
 const EXC_RETURN_STANDARD_FRAME: u32 = 1 << 4;
 const EXC_RETURN_THREAD: u32 = 1 << 3;
@@ -67,7 +67,7 @@ pub(super) fn masks(engine: &Unicorn<'_, State>) -> Masks {
     }
 }
 
-/// Thread mode that has given its privilege away; handlers always have it.
+/// Whether this is thread mode without privilege. Handlers are always privileged.
 pub(super) fn is_unprivileged(engine: &Unicorn<'_, State>) -> bool {
     engine.get_data().system.nvic.current() == Exception::THREAD
         && register(engine, RegisterARM::CONTROL) & CONTROL_NPRIV != 0
@@ -84,7 +84,7 @@ impl Cpu {
             .expect("the engine knows the register");
     }
 
-    /// The T bit, which only the view of other ARM processors shows.
+    /// The T bit, which the engine exposes only in the CPSR of other ARM processors.
     pub(super) fn is_thumb(&self) -> bool {
         const CPSR_THUMB: u32 = 1 << 5;
         self.register(RegisterARM::CPSR) & CPSR_THUMB != 0
@@ -135,7 +135,7 @@ impl Cpu {
         let extended = control & CONTROL_FPCA != 0;
         let xpsr = self.register(RegisterARM::XPSR);
         if is_unprivileged(&self.engine) {
-            // The engine shows the stack pointers to privileged code only, which a handler is.
+            // The engine exposes the stack pointers to privileged code only, and a handler is privileged.
             self.set_xpsr(xpsr & XPSR_FLAGS | XPSR_THUMB | exception.number());
         }
         let stacked = self.push_frame(uses_psp, extended, xpsr);
@@ -203,7 +203,7 @@ impl Cpu {
         Ok(())
     }
 
-    /// False where the frame does not fit into RAM; the stack pointer moves anyway, as on silicon.
+    /// Returns false if the frame does not fit into RAM. The stack pointer moves anyway, as on silicon.
     fn push_frame(&mut self, uses_psp: bool, extended: bool, xpsr: u32) -> bool {
         let stack = if uses_psp {
             RegisterARM::PSP
@@ -231,7 +231,7 @@ impl Cpu {
         is_ram(frame, size) && self.engine.mem_write(frame.into(), &bytes).is_ok()
     }
 
-    /// A branch to an EXC_RETURN value: the handler is over; what waits runs next without unstacking.
+    /// Handles a branch to an EXC_RETURN value, which ends the handler. A pending exception runs next without unstacking.
     pub(super) fn return_from_exception(&mut self, exc_return: u32) -> Result<(), Halt> {
         const VALID: [u32; 6] = [
             0xFFFF_FFE1,
@@ -322,7 +322,7 @@ impl Cpu {
     fn resume(&mut self, pc: u32, xpsr: u32, to_psp: bool, fp_active: bool) {
         let exception = Exception::from_number(xpsr & 0x1FF).unwrap_or(Exception::THREAD);
         let before = self.register(RegisterARM::CONTROL) & !(CONTROL_FPCA | CONTROL_SPSEL);
-        // Last comes the loss of privilege, after which the engine lets CONTROL be.
+        // Privilege is dropped last, because afterwards the engine ignores writes to CONTROL.
         self.set_register(RegisterARM::CONTROL, before & !CONTROL_NPRIV);
         self.set_xpsr(xpsr | XPSR_THUMB);
         let mut control = before;

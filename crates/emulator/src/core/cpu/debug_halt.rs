@@ -1,4 +1,4 @@
-//! A debug probe on the core (ARMv7-M ARM C1): it halts it, and what it has set does so when nobody looks.
+//! A debug probe on the core (ARMv7-M ARM C1). It halts the core, and the settings that it leaves halt the core later.
 
 use super::Cpu;
 use crate::{core::system::debug_registers::Debug, time::Ps};
@@ -9,7 +9,7 @@ impl Cpu {
         &mut self.state_mut().system.debug
     }
 
-    /// A probe halts the core now, and lets it go on after `time`.
+    /// A probe halts the core now and resumes it after `time`.
     pub fn halt_for(&mut self, time: Ps) {
         let until = self.now().saturating_add(time);
         let state = self.state_mut();
@@ -18,7 +18,7 @@ impl Cpu {
         self.watchdog_follows();
     }
 
-    /// The core halts by itself, and nobody lets it go on: until a reset.
+    /// The core halts by itself. Nobody resumes it, so it stays halted until a reset.
     pub(super) fn enter_debug_state(&mut self, at: &str) {
         self.state_mut().standstill.halted_until(Some(Ps::MAX));
         self.with_soc(|soc, now| {
@@ -28,7 +28,7 @@ impl Cpu {
         self.watchdog_follows();
     }
 
-    /// DBG_IWDG_STOP holds the watchdog as long as the core is halted.
+    /// DBG_IWDG_STOP stops the watchdog while the core is halted.
     pub(super) fn watchdog_follows(&mut self) {
         let state = self.state();
         let frozen = state.standstill.is_halted() && state.system.debug.stops_watchdog();

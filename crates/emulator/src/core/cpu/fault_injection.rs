@@ -1,6 +1,6 @@
 //! Faults injected at the entry of a function, to show that the image survives its own failures.
 //!
-//! Nothing is patched: the program is caught where the function begins, before its first instruction.
+//! The image is not patched: the program is stopped at the function's first instruction.
 
 use unicorn_engine::{RegisterARM, Unicorn};
 
@@ -10,15 +10,15 @@ use crate::core::{faults::Fault, memory::HANG};
 /// Effect of an injected fault, in place of the function's work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effect {
-    /// Once: execution goes on in another function, with the same arguments.
+    /// Once, execution continues in another function with the same arguments.
     GoTo(u32),
-    /// Once: its first instruction is undefined.
+    /// Once, the function's first instruction is undefined.
     Undefined,
-    /// Once: the stack pointer has this value.
+    /// Once, the stack pointer gets this value.
     StackAt(u32),
-    /// Once: the function does not return until the injection ends.
+    /// Once, the function does not return until the injection ends.
     Hang,
-    /// Every time: the function returns at once.
+    /// Every call of the function returns at once.
     ReturnAtOnce,
 }
 
@@ -31,12 +31,12 @@ pub struct Injection {
     pub effect: Effect,
 }
 
-/// Effect that waits for its function, and functions that hang.
+/// An effect that waits for its function to be called, and functions that hang.
 #[derive(Debug, Default)]
 pub(super) struct Injector {
     waiting: Vec<Injection>,
     hanging: Option<Injection>,
-    /// A function that hung and may go on.
+    /// A function that hung and may now continue.
     released: Option<u32>,
 }
 
@@ -46,7 +46,7 @@ impl Injector {
     }
 }
 
-/// Whether a fault is injected at the block at `start`, which then must not run.
+/// Whether a fault is injected at the block at `start`. If so, the block must not run.
 pub(super) fn is_due(engine: &mut Unicorn<'_, State>, start: u32) -> bool {
     let state = engine.get_data_mut();
     if state.injector.is_idle() {
@@ -80,7 +80,7 @@ impl Cpu {
         }
     }
 
-    /// Withdraws a fault that was not injected yet; a function that hangs does its work now.
+    /// Withdraws a fault that has not been injected yet. A function that hangs continues.
     pub fn end_injection(&mut self, injection: Injection) {
         let injector = &mut self.state_mut().injector;
         injector.waiting.retain(|s| *s != injection);

@@ -41,9 +41,9 @@ pub(super) fn install(engine: &mut Unicorn<'static, State>) -> Result<(), uc_err
     Ok(())
 }
 
-/// Every page is where it is. The engine sends each store to a page that may hold code through a slow path, and the
-/// Cortex-M's own map allows code in RAM; so RAM is told apart here. A fetch from it still gets as far as the
-/// memory map, which refuses it.
+/// Maps every page to its own address. The engine uses a slow path for each store to a page that may hold code, and the
+/// Cortex-M's own map allows code in RAM. RAM is therefore marked as not executable here. A fetch from it still reaches
+/// the memory map, which refuses it.
 fn page_rights(_: &mut Unicorn<'_, State>, page: u64, access: MemType) -> Option<TlbEntry> {
     let is_ram = [SRAM, CCM].iter().any(|ram| ram.contains(page as u32, 1));
     let perms = if is_ram && access != MemType::FETCH {
@@ -80,7 +80,7 @@ fn block_begins(engine: &mut Unicorn<'_, State>, address: u64, size: u32) {
     }
     let state = engine.get_data_mut();
     if state.system.debug.breaks_in(start, start + size) {
-        // Before the block instead of before the instruction.
+        // Silicon stops before the instruction, the emulator before its block.
         state.stop = Some(Stop::Breakpoint);
         leave(engine);
         return;
@@ -95,7 +95,7 @@ fn block_begins(engine: &mut Unicorn<'_, State>, address: u64, size: u32) {
         }
     };
     if !alignment::holds_before(engine, accesses) {
-        // Before the block instead of before the access.
+        // Silicon faults at the access, the emulator before its block.
         engine.get_data_mut().stop = Some(Stop::Fault(Fault::Unaligned));
         leave(engine);
         return;

@@ -18,7 +18,7 @@ impl Cpu {
         self.fall_asleep(SleepKind::Event)
     }
 
-    /// The engine came out by itself: for a WFI, which leaves the PC past it, and for nothing else that is known.
+    /// Called when the engine returned by itself. It does so only for a WFI, with the PC behind that instruction.
     pub(super) fn wait_for_interrupt(&mut self) -> Result<Option<Pause>, Halt> {
         const WFI: u16 = 0xBF30;
         const WFI_W: u16 = 0x8003;
@@ -68,7 +68,7 @@ impl Cpu {
         }
     }
 
-    /// Takes over what chip and board have done while no code ran.
+    /// Returns the pause that chip or board caused while no code ran, if any.
     pub(super) fn ended_by_chip(&mut self) -> Result<Option<Pause>, Halt> {
         match self.state_mut().stop.take() {
             Some(Stop::Reset(cause)) => Ok(Some(Pause::Reset(cause))),

@@ -1,5 +1,5 @@
-//! Time in which the core runs nothing: the flash works and serves no fetch, a debug probe halts it, or the board has
-//! no power.
+//! Time in which the core runs nothing, because the flash is busy and serves no fetch, a debug probe halts the core or the
+//! board has no power.
 
 use super::{Cpu, Halt, Pause, State, hooks};
 use crate::{
@@ -14,9 +14,9 @@ use crate::{
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Standstill {
     flash_works_until: Option<Ps>,
-    /// Debug state; `Ps::MAX` until a reset, when nobody is there to let the core go on.
+    /// Debug state until this time, or `Ps::MAX` if nobody will resume the core before a reset.
     halted_until: Option<Ps>,
-    /// `Ps::MAX` for as long as nobody gives the power back.
+    /// No power until this time, or `Ps::MAX` while its return is not planned.
     no_power_until: Option<Ps>,
 }
 
@@ -44,12 +44,12 @@ impl Standstill {
 }
 
 impl Cpu {
-    /// The board is without power until then; chip and memories lose what they hold when it comes back.
+    /// Takes the power away until the given time. Chip and memories lose their contents when it returns.
     pub fn power_off(&mut self, until: Ps) {
         self.state_mut().standstill.no_power_until = Some(until);
     }
 
-    /// The core comes up with noise in RAM; the chip has been reset.
+    /// Starts the core after a power cut, with noise in RAM. The chip must have been reset.
     pub fn power_up(&mut self) {
         for ram in [SRAM, CCM] {
             self.engine
@@ -67,7 +67,7 @@ impl Cpu {
         self.state().standstill.no_power_until.is_none()
     }
 
-    /// Lets chip and board go on without the core; `None` when it runs again.
+    /// Advances chip and board without the core. Returns `None` when the core runs again.
     pub(super) fn stand_still(&mut self) -> Result<Option<Pause>, Halt> {
         loop {
             hooks::run_due(&mut self.engine);
@@ -90,7 +90,7 @@ impl Cpu {
         }
     }
 
-    /// The probe lets the core go on when its time is over.
+    /// Resumes the core when the probe's halt is over.
     fn let_go(&mut self) {
         let now = self.now();
         let standstill = &mut self.state_mut().standstill;

@@ -106,7 +106,7 @@ impl Debug {
             reg::DWT_FUNCTION0 | reg::DWT_FUNCTION1 | reg::DWT_FUNCTION2 | reg::DWT_FUNCTION3 => 0,
             reg::DWT_LSR => 0, // LSR: unlocked
             reg::FP_CTRL..FPB_END => return self.breakpoints.read(register),
-            // Who can read it runs.
+            // Code that reads the register is running, so the core is not halted.
             reg::DHCSR if self.enabled => DHCSR_S_REGRDY | DHCSR_C_DEBUGEN,
             reg::DHCSR => DHCSR_S_REGRDY,
             reg::DEMCR => self.demcr,

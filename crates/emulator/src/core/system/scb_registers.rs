@@ -8,7 +8,7 @@ const CPUID: u32 = 0x410F_C241;
 const AIRCR_KEY: u32 = 0x05FA;
 const AIRCR_KEY_READ: u32 = 0xFA05_0000;
 const AIRCR_SYSRESETREQ: u32 = 1 << 2;
-/// Eight MPU regions, none programmed.
+/// MPU_TYPE: eight regions.
 const MPU_TYPE: u32 = 0x0000_0800;
 
 /// Enable bits of SHCSR and the exceptions they enable.
@@ -31,14 +31,14 @@ impl System {
             reg::SHCSR => self.shcsr(),
             reg::CFSR => self.faults.cfsr,
             reg::HFSR => self.faults.hfsr,
-            reg::DFSR => 0,  // DFSR: no debugger
-            reg::MMFAR => 0, // MMFAR: no fault of ours has a valid address in it
+            reg::DFSR => 0,  // no debugger
+            reg::MMFAR => 0, // no modelled fault sets a valid address
             reg::BFAR => self.faults.bfar,
             reg::CPACR => self.cpacr,
             reg::MPU_TYPE => MPU_TYPE,
-            reg::MPU_CTRL => 0, // MPU_CTRL
+            reg::MPU_CTRL => 0,
             reg::FPCCR => self.fpccr,
-            reg::FPDSCR => 0, // FPDSCR
+            reg::FPDSCR => 0,
             reg::MVFR0 => 0x1011_0021,
             reg::MVFR1 => 0x1100_0011,
             _ => return None,
@@ -76,7 +76,7 @@ impl System {
             reg::DFSR => {}
             reg::CPACR => self.cpacr = access.written_over(self.cpacr, value) & 0x00F0_0000,
             reg::MPU_CTRL if value == 0 => {}
-            // Other stacking modes than the default would need another frame logic.
+            // Stacking modes other than the default are not modelled.
             reg::FPCCR => return value & FPCCR_RESET == FPCCR_RESET,
             reg::FPDSCR if value == 0 => {}
             _ => return false,

@@ -1,4 +1,4 @@
-//! Moves what the DMA streams ask for between peripherals and memory.
+//! Moves the items of the DMA streams between peripherals and memory.
 
 use std::ops::Range;
 
@@ -20,7 +20,7 @@ const SRAM: Range<u32> = 0x2000_0000..0x2002_0000;
 const FLASH: Range<u32> = 0x0800_0000..0x0810_0000;
 const CCM: Range<u32> = 0x1000_0000..0x1001_0000;
 
-/// More items than any peripheral takes at one instant: the request never falls.
+/// More items than any peripheral takes at one instant. Beyond this the request line must be stuck.
 const STUCK: usize = 1000;
 
 impl Soc {
@@ -75,7 +75,7 @@ impl Soc {
         Ok(())
     }
 
-    /// Moves one item; returns what is wrong where memory does not answer.
+    /// Moves one item. If memory does not answer, the error is returned.
     fn move_item(
         &mut self,
         item: &Item,
@@ -122,7 +122,7 @@ impl Soc {
     }
 }
 
-/// The reason why silicon would not move this item.
+/// Why silicon would not move this item.
 fn problem(beat: &Beat) -> Option<String> {
     let Item {
         peripheral_addr,
@@ -144,7 +144,7 @@ fn problem(beat: &Beat) -> Option<String> {
     let reads = beat.item.direction == Direction::MemoryToPeripheral;
     match memory_addr {
         _ if SRAM.contains(&memory_addr) => None,
-        // Flash can be read only.
+        // Flash is read-only for DMA.
         _ if FLASH.contains(&memory_addr) && reads => None,
         _ if CCM.contains(&memory_addr) => Some(format!(
             "memory address {memory_addr:#010x} is in CCM, which DMA cannot reach"

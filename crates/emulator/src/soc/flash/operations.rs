@@ -1,4 +1,4 @@
-//! Loads and stores of the core, and what programming and erasing do to cells and cache.
+//! Loads and stores of the core, and the effect of programming and erasing on cells and cache.
 
 use super::{
     Flash, FlashStep, Lock,
@@ -16,7 +16,7 @@ impl Flash {
     /// A load from sectors 1–3, of 1, 2 or 4 bytes.
     pub(crate) fn load(&mut self, address: u32, size: u8, ctx: &mut Ctx<'_>) -> u32 {
         if self.under_way.as_ref().is_some_and(|w| w.cut.is_none()) {
-            // The bus holds the load until the cells have it.
+            // The bus holds the load until the word is in the cells.
             self.reach_the_cells(ctx);
         }
         let access = Access::new(address, size);
@@ -43,7 +43,7 @@ impl Flash {
         self.begin(work, self.times.program(), ctx);
     }
 
-    /// How many bits a store programs; otherwise the store is refused.
+    /// Number of bits that a store programs, or `None` if it is refused.
     fn programs(&mut self, address: u32, ctx: &mut Ctx<'_>) -> Option<Parallelism> {
         if self.lock != Lock::Open || self.cr & cr::PG == 0 {
             self.refuse(sr::PGSERR, address, "a store while PG is 0", ctx);
@@ -67,7 +67,7 @@ impl Flash {
     }
 
     pub(super) fn begin(&mut self, work: Work, duration: Ps, ctx: &mut Ctx<'_>) {
-        // The bus holds what is asked for until that before it is done; if the power goes first, it never comes.
+        // The bus holds a request until the operation before it is done. If the power fails first, it is never served.
         let start = match &self.under_way {
             Some(before) if before.cut.is_some() => return,
             Some(before) => before.time.end,
@@ -100,7 +100,7 @@ impl Flash {
         self.under_way = Some(under_way);
     }
 
-    /// The work under way is done, as far as the contents go.
+    /// Applies the finished operation to the contents.
     fn reach_the_cells(&mut self, ctx: &mut Ctx<'_>) {
         let Some(work) = self.under_way.as_mut().and_then(|w| w.work.take()) else {
             return;

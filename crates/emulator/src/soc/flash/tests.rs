@@ -1,4 +1,4 @@
-//! Against RM0090 3.6 (sequences, errors), the datasheet's times and docs/hardware.md#flash.
+//! The flash against RM0090 3.6 (sequences, errors), the datasheet's times and docs/hardware.md#flash.
 
 use super::{history::FlashStats, *};
 use crate::{
@@ -34,7 +34,7 @@ fn store(bench: &mut Bench, flash: &mut Flash, address: u32, word: u32) {
     flash.store(address, 4, word, &mut bench.ctx());
 }
 
-/// Lets the work under way end; returns how long that took.
+/// Waits until the operation ends. Returns how long that took.
 fn wait(bench: &mut Bench, flash: &mut Flash) -> Ps {
     let from = bench.now;
     let until = flash.stalled_until().expect("work under way");
@@ -259,7 +259,7 @@ fn the_data_cache_shows_the_word_meant_and_not_the_one_the_cells_took() {
 
 #[test]
 fn a_power_cut_comes_at_its_step_and_nothing_after_it() {
-    // Before: nothing; after: all of it.
+    // A cut before the step leaves the word blank; a cut after it leaves the whole word.
     for (phase, left) in [(CutPhase::Before, 0xFFFF_FFFF), (CutPhase::After, 2)] {
         let (mut bench, mut flash) = unlocked();
         let cut = PlannedCut {
@@ -285,7 +285,7 @@ fn a_power_cut_comes_at_its_step_and_nothing_after_it() {
 
 #[test]
 fn in_the_middle_of_an_erase_the_power_goes_half_way_and_leaves_no_clean_sector() {
-    // What a torn sector reads as is drawn; some draws come close to erased.
+    // The contents of a torn sector are random, and with some seeds it looks erased.
     let torn = (0..8).filter(|&seed| {
         let (mut bench, mut flash) = unlocked();
         program(&mut bench, &mut flash, WORD, 0);
@@ -321,7 +321,7 @@ fn a_reset_tears_what_is_under_way() {
             .filter(|address| flash.load(*address, 4, &mut bench.ctx()) != 0xFFFF_FFFF)
             .count()
     };
-    // It was blank before: a sector that is no longer is the tear's work.
+    // The sector was blank before, so only the torn erase can have changed it.
     assert!(changed(&mut bench, &mut flash) > 0);
     bench.run(&mut flash, 300 * MS);
     assert!(

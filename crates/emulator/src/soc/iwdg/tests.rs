@@ -42,7 +42,7 @@ fn the_shortest_and_longest_times_of_the_table() {
         }
         assert!(!iwdg.take_reset_request());
         step(&mut bench, &mut iwdg);
-        // After the start the counter ran from 0xFFF, whose event may come first.
+        // At the start the counter ran from 0xFFF, so the event of that first period may come before.
         while !iwdg.take_reset_request() {
             step(&mut bench, &mut iwdg);
         }

@@ -1,4 +1,4 @@
-//! From register values to frequencies, and what RM0090 7.3 and datasheet table 14 forbid on the way.
+//! Computes frequencies from register values, and reports settings that RM0090 7.3 and datasheet table 14 forbid.
 
 /// The board's crystal, Hz.
 pub const HSE_HZ: u32 = 12_000_000;
@@ -13,7 +13,7 @@ pub enum SystemClock {
 }
 
 impl SystemClock {
-    /// 3 is "not allowed".
+    /// `None` for the value 3, which RM0090 does not allow.
     pub fn from_sw(sw: u32) -> Option<Self> {
         match sw & 3 {
             0 => Some(Self::Hsi),
@@ -28,7 +28,7 @@ impl SystemClock {
     }
 }
 
-/// PLLCFGR taken apart.
+/// The fields of PLLCFGR.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pll {
     m: u32,

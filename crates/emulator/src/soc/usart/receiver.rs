@@ -7,28 +7,28 @@ use crate::{
 
 use super::waveform::Waveform;
 
-/// How the receiver is set: what one character is to it.
+/// Settings of the receiver, which define one character.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Framing {
     /// One bit, at the programmed baud rate.
     pub bit: Ps,
-    /// 8 or 9: the M bit. It counts the parity bit.
+    /// Bits of a word by the M bit: 8 or 9, parity bit included.
     pub word_bits: u8,
     pub parity: Parity,
     pub two_stop_bits: bool,
     pub oversampling_8: bool,
-    /// ONEBIT: the middle sample alone decides, and noise goes unseen.
+    /// ONEBIT: the middle sample alone decides, and noise is not detected.
     pub one_sample: bool,
 }
 
 impl Framing {
-    /// One character from start bit to the end of the stop bits.
+    /// Duration of a character from the start bit to the end of the stop bits.
     pub fn char_time(&self) -> Ps {
         self.bit * (1 + Ps::from(self.word_bits) + if self.two_stop_bits { 2 } else { 1 })
     }
 
-    /// From the start edge to the moment the character is in DR: 10th sample of a single stop bit, end of the
-    /// first of two (RM0090 30.3.3, configurable stop bits).
+    /// Time from the start edge until the character is in DR. That is the 10th sample of a single stop bit, or the end of
+    /// the first of two (RM0090 30.3.3, configurable stop bits).
     fn completion(&self) -> Ps {
         let before_stop = self.bit * (1 + Ps::from(self.word_bits));
         before_stop
@@ -65,7 +65,7 @@ pub struct Receiver {
     last_char: Option<UartChar>,
     /// Start edge of the character being received.
     start: Option<Ps>,
-    /// Start edges before this are history.
+    /// Start edges before this time no longer count.
     search_from: Ps,
 }
 
@@ -75,7 +75,7 @@ impl Receiver {
         self.last_char = Some(c);
     }
 
-    /// The sender's last character, for a telling error message.
+    /// The sender's last character, for the error message.
     pub fn last_char(&self) -> Option<UartChar> {
         self.last_char
     }
@@ -86,7 +86,7 @@ impl Receiver {
         self.search_from = now;
     }
 
-    /// When the character now beginning or going on will be complete; none while no start edge is known.
+    /// Time at which the character being received will be complete; `None` while no start edge is known.
     pub fn completes_at(&mut self, framing: &Framing) -> Option<Ps> {
         if self.start.is_none() {
             self.line.forget_before(self.search_from);
@@ -95,7 +95,7 @@ impl Receiver {
         Some(self.start? + framing.completion())
     }
 
-    /// Ends the character whose completion `completes_at` gave; `None` where its start bit was a glitch.
+    /// Ends the character whose completion `completes_at` returned; `None` if its start bit was a glitch.
     pub fn finish(&mut self, framing: &Framing) -> Option<(Ps, Received)> {
         let start = self.start.take()?;
         let sample = |index: u8| self.sample(start, framing, index);
@@ -179,7 +179,7 @@ mod tests {
     #[test]
     fn matching_formats_give_the_byte_and_its_parity_bit_at_the_end_of_the_first_stop_bit() {
         let (at, got) = receive(0x07, EIGHT_E_TWO);
-        // Three ones: the even parity bit is 1, received as bit 8.
+        // Three ones give an even parity bit of 1, which is received as bit 8.
         let clean = Received {
             data: 0x107,
             framing_error: false,
@@ -192,9 +192,9 @@ mod tests {
 
     #[test]
     fn eight_n_one_takes_the_parity_bit_for_a_stop_bit() {
-        // An even number of ones: parity bit 0 stands where the stop bit should be.
+        // With an even number of ones the parity bit is 0 where the stop bit should be.
         assert!(receive(0x0F, EIGHT_N_ONE).1.framing_error);
-        // An odd number: the parity bit 1 passes for a stop bit.
+        // With an odd number of ones the parity bit is 1 and passes for a stop bit.
         let (_, got) = receive(0x07, EIGHT_N_ONE);
         assert_eq!((got.data, got.framing_error), (0x07, false));
     }

@@ -1,4 +1,4 @@
-//! What a debug probe sets halts the core, and only then.
+//! The settings of a debug probe halt the core, and nothing else does.
 
 use super::*;
 use crate::core::system::debug_registers::{DEMCR_VC_CORERESET, DEMCR_VC_HARDERR};

@@ -1,11 +1,11 @@
-//! What the processor refuses to do, and the engine would.
+//! Operations that the processor refuses, although the engine would carry them out.
 
 use super::*;
 
 const UNALIGNED: u32 = 1 << 24;
 const INVSTATE: u32 = 1 << 17;
 
-/// Exception handlers that leave their number; what was left, and CFSR.
+/// Runs with handlers that leave their exception number. Returns these numbers and CFSR.
 fn faults_of(thread: &[u16]) -> (Vec<u32>, u32) {
     let leave = |number| program(&[&trace(number), &[STAY]]);
     let handlers = [
@@ -24,7 +24,7 @@ fn a_call_of_nothing_is_a_usage_fault() {
     assert_eq!(faults_of(&[0x2000, 0x4780]), (vec![6], INVSTATE));
 }
 
-/// With the Thumb bit the vector table runs as code until it ends.
+/// The address has the Thumb bit, so the vector table at address 0 runs as code until it ends.
 #[test]
 fn a_call_of_address_one_ends_in_a_fault() {
     // movs r0, #1; blx r0
@@ -52,7 +52,7 @@ fn words_in_pairs_and_lists_must_be_aligned() {
         let seen = faults_of(&[&base(4), access].concat());
         assert_eq!(seen, (vec![1], 0), "{access:04X?}");
     }
-    // ldr r0, [r2]; strh r0, [r2]: single ones need not.
+    // ldr r0, [r2]; strh r0, [r2]: single accesses need not be aligned.
     let single = faults_of(&[&base(1)[..], &[0x6810, 0x8010]].concat());
     assert_eq!(single, (vec![1], 0));
 }

@@ -1,4 +1,4 @@
-//! The core does nothing while the flash works or the power is away, and all else goes on.
+//! The core does nothing while the flash is busy or has lost its power; everything else goes on.
 
 use super::*;
 use crate::soc::guest_memory::GuestMemory;
@@ -22,7 +22,7 @@ impl GuestMemory for NoMemory {
     }
 }
 
-/// PG and 32 bits at once, as the image would set it up.
+/// Sets PG and a width of 32 bits, as the image would.
 fn ready_to_program(cpu: &mut Cpu) {
     cpu.with_soc(|soc, now| {
         for (offset, value) in [(0x04, 0x4567_0123), (0x04, 0xCDEF_89AB), (0x10, 0x201)] {
@@ -51,7 +51,7 @@ fn a_store_to_flash_stops_the_core_for_16_us_and_interrupts_wait() {
     assert_eq!(traced(&cpu), [1]);
     assert_eq!(cpu.now() / US, 15, "time does not jump over the limit");
     run_until(&mut cpu, 30 * US).expect("no fault");
-    // Three ticks came due meanwhile; one of them is remembered.
+    // Three ticks were due meanwhile, of which one stays pending.
     assert_eq!(traced(&cpu)[..4], [1, 9, 5, 2]);
     assert!(!traced(&cpu)[4..].contains(&5));
     let loaded = with_soc(&mut cpu.engine, |soc, now, memory| {
@@ -64,7 +64,7 @@ fn a_store_to_flash_stops_the_core_for_16_us_and_interrupts_wait() {
 
 #[test]
 fn a_store_to_the_image_itself_stops_the_run() {
-    // As STORE_AND_LOAD, at the vector table: movw r2, #0.
+    // STORE_AND_LOAD with the address of the vector table: movw r2, #0.
     let mut thread = STORE_AND_LOAD;
     thread[0] = 0xF240;
     let mut cpu = board(&thread, &[]);
