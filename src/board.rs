@@ -1,4 +1,4 @@
-//! The RoboMaster Development Board C: clocks, pins, DMA streams and interrupts. The only file that names them
+//! The RoboMaster Development Board C: clocks, pins, DMA streams and interrupts. No other file names them
 //! (docs/hardware.md#board-devices, docs/hardware.md#dma).
 
 use bxcan::{Rx0, Rx1};

@@ -24,7 +24,7 @@ const CHOSEN_LAYOUT: MotorLayout = match option_env!("ROBOT_JOINTS") {
     Some(name) => layout(name),
 };
 
-/// Which motor sits where, with which number and direction.
+/// Place, number and direction of each motor.
 pub static LAYOUT: MotorLayout = CHOSEN_LAYOUT;
 
 /// The frames that stop every motor. Boot and the fault handlers send them.

@@ -45,9 +45,9 @@ pub struct MagReport {
 #[derive(Clone, Copy)]
 pub struct ConfigUpdate {
     pub config: RobotConfig,
-    /// As `TuningStatus::revision` counts.
+    /// `TuningStatus::revision` of these settings.
     pub revision: u32,
-    /// `TuningStatus::restored`.
+    /// `TuningStatus::restored` of these settings.
     pub restored: u32,
 }
 

@@ -1,6 +1,6 @@
 //! Stalls: erasing a flash sector stops the whole chip for a quarter to half a second.
 //!
-//! The clock and the task deadlines are corrected at once. Everybody else who measures time asks a [`StallWatch`].
+//! The clock and the task deadlines are corrected at once. All other code that measures time asks a [`StallWatch`].
 
 pub mod clock_repair;
 
@@ -27,7 +27,7 @@ pub fn stand_still<R>(work: impl FnOnce() -> R) -> Option<R> {
     })
 }
 
-/// Notices stalls that come after it was made.
+/// Notices stalls that happen after it was created.
 pub struct StallWatch {
     seen: u32,
 }

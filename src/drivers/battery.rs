@@ -34,7 +34,7 @@ impl Battery {
         }
     }
 
-    /// Takes the conversions that the last call began, and begins the next. To be called every 5 ms.
+    /// Takes the conversions that the last call began, and begins the next. Call this every 5 ms.
     pub fn sample(&mut self) {
         self.monitor
             .feed(self.battery.take(), self.reference.take());
@@ -46,7 +46,7 @@ impl Battery {
     }
 }
 
-/// One converter, which converts the same input again and again.
+/// One converter, which always converts the same input.
 struct Converter<T: Instance> {
     registers: pac::adc::Adc,
     /// Kept, because it switches the converter off when it is dropped.

@@ -101,11 +101,11 @@ pub struct RadioUart {
     stalls: StallWatch,
 }
 
-/// What arrived since the last read.
+/// The bytes that arrived since the last read.
 pub enum Burst<'a> {
     /// Bytes without a line error.
     Clean(&'a [u8]),
-    /// So many bytes of which the UART flagged or lost at least one.
+    /// A number of bytes of which the UART flagged or lost at least one.
     Damaged { count: usize },
 }
 

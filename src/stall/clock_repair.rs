@@ -16,8 +16,8 @@ const CYCLES_PER_US: u32 = 168;
 /// Half a turn is two to this power, in µs.
 const HALF_TURN_BITS: u32 = 15;
 const HALF_TURN: u16 = 1 << HALF_TURN_BITS;
-/// Distances from the timer's events, in µs: after one until its interrupt has run, and before the next until the missing ones
-/// have been added.
+/// Least distances from the timer's events, in µs. After an event its interrupt must have run, and before the next one the
+/// missing half turns must have been added.
 const AFTER_EVENT: u16 = 64;
 const BEFORE_EVENT: u16 = 256;
 
@@ -28,9 +28,9 @@ pub fn keep_time<R>(work: impl FnOnce() -> R, repaired: impl FnOnce(u32)) -> Opt
     if !start_cycle_counter() {
         return None;
     }
-    // Waits with interrupts first, so that the wait without them is short.
+    // The first wait, with interrupts enabled, keeps the second one short.
     wait_between_events();
-    // SAFETY: postpones interrupts until the same function lets them in again; no lock relies on them running.
+    // SAFETY: masks interrupts until the end of this function; no lock relies on their running.
     unsafe { basepri::write(BELOW_TIME_DRIVER) };
     wait_between_events();
     let (result, gap) = cortex_m::interrupt::free(|_| {
@@ -39,20 +39,20 @@ pub fn keep_time<R>(work: impl FnOnce() -> R, repaired: impl FnOnce(u32)) -> Opt
         wait_between_events();
         (result, Gap::since(&before))
     });
-    // The driver's interrupt has run now, on what the timer's flags told it.
+    // The driver's interrupt has run by now, for the events in the timer's flags.
     for _ in 0..gap.missing_half_turns {
         make_up_for_half_turn();
     }
     let elapsed_us = gap.elapsed_us;
     repaired(elapsed_us);
-    // SAFETY: the state before; thread mode runs with all interrupts let in.
+    // SAFETY: restores the previous state, as thread mode runs with all interrupts unmasked.
     unsafe { basepri::write(0) };
     Some(result)
 }
 
 /// Starts the cycle counter, which a debugger stops when it detaches. False if the counter still does not run.
 pub fn start_cycle_counter() -> bool {
-    // SAFETY: nobody else owns these two, and all their writers run in thread mode: at boot, and for an erase.
+    // SAFETY: nobody else owns DCB and DWT, and all their writers run in thread mode: at boot, and for an erase.
     let mut core = unsafe { Peripherals::steal() };
     core.DCB.enable_trace();
     core.DWT.enable_cycle_counter();
@@ -82,7 +82,7 @@ struct Gap {
 }
 
 impl Gap {
-    /// To be called while the driver's interrupt is held back, after a wait between events.
+    /// Call this after a wait between events, while the driver's interrupt is masked.
     fn since(before: &Moment) -> Self {
         let (status, counter) = (TIM2.sr().read(), TIM2.cnt().read() as u16);
         let cycles = DWT::cycle_count().wrapping_sub(before.cycles);
@@ -108,7 +108,7 @@ fn wait_between_events() {
     while !safe.contains(&(TIM2.cnt().read() as u16 % HALF_TURN)) {}
 }
 
-/// Raises the event of channel 1 (RM0090 18.4.6), which is the driver's half turn, so that its interrupt counts one more.
+/// Raises the event of channel 1 (RM0090 18.4.6), by which the driver's interrupt counts one more half turn.
 fn make_up_for_half_turn() {
     TIM2.egr().write(|w| w.set_ccg(0, true));
     while TIM2.sr().read().ccif(0) {}

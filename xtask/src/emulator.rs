@@ -12,15 +12,15 @@ use crate::{
     tool,
 };
 
-/// Its CPU core is C that nobody has built for Windows.
+/// Whether the emulator can be built here. Its CPU core, which is written in C, is not built on Windows.
 pub const IS_BUILT_HERE: bool = !cfg!(windows);
 pub const NOT_BUILT_HERE: &str = "the emulated board is not built on Windows: run it in WSL, where \
     all commands work as on Linux (docs/platforms.md)";
 
-/// With any of these no image is built: one is named, or none is run.
+/// Arguments with which no image is built, because one is named or none is run.
 const WITHOUT_IMAGE: [&str; 4] = ["--elf", "--help", "-h", "--list-faults"];
 
-/// Installs what the emulator's CPU core takes; fails where it cannot be built.
+/// Installs what the build of the emulator's CPU core needs. Fails if it cannot be built here.
 pub fn ensure_buildable() -> anyhow::Result<()> {
     ensure!(IS_BUILT_HERE, NOT_BUILT_HERE);
     prerequisites::ensure(&EMULATOR)

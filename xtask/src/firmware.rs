@@ -43,7 +43,7 @@ impl Parts {
         joints: "rs00",
     };
 
-    /// As `ROBOT_REMOTE` and `ROBOT_JOINTS` say.
+    /// The variant that `ROBOT_REMOTE` and `ROBOT_JOINTS` choose.
     pub fn chosen() -> anyhow::Result<Self> {
         Ok(Self {
             remote: chosen("ROBOT_REMOTE", &["sbus", "dbus"])?,
@@ -93,7 +93,7 @@ pub fn build(parts: &Parts) -> anyhow::Result<(Job, PathBuf)> {
     Ok((Job { name, command }, elf))
 }
 
-/// As [`build`], but the programs of single filters, and the folder they are in.
+/// Builds the programs of single filters. Returns the job and their folder.
 pub fn build_filters() -> anyhow::Result<(Job, PathBuf)> {
     let target_dir = workspace::firmware_target_dir(FILTERS);
     let mut command = cargo()?;

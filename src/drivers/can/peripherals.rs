@@ -1,4 +1,4 @@
-//! The two CAN peripherals as `bxcan` wants them: proofs of ownership with a register address.
+//! The two CAN peripherals in the form that `bxcan` needs: proofs of ownership with a register address.
 
 use bxcan::{FilterOwner, Instance, MasterInstance, RegisterBlock};
 use embassy_stm32::{Peri, pac, peripherals};
@@ -10,14 +10,14 @@ pub struct Can1(());
 pub struct Can2(());
 
 impl Can1 {
-    /// Uses up the HAL's token.
+    /// Consumes the HAL's token.
     pub fn new(_token: Peri<'static, peripherals::CAN1>) -> Self {
         Self(())
     }
 }
 
 impl Can2 {
-    /// Uses up the HAL's token.
+    /// Consumes the HAL's token.
     pub fn new(_token: Peri<'static, peripherals::CAN2>) -> Self {
         Self(())
     }

@@ -12,8 +12,8 @@ pub fn is_usable() -> bool {
     loads() && Clang::new().is_ok_and(|clang| reads(&clang, HEADER))
 }
 
-/// Without this look first, `Clang::new` fails for ever once it has failed, though libclang is installed meanwhile, and
-/// panics where the search finds a library that only bears a similar name (`libclang-cpp14.so`): that has no version.
+/// This must be checked before `Clang::new`. Once that has failed it always fails, even after libclang has been installed,
+/// and it panics if the search finds a library with a similar name (`libclang-cpp14.so`), which has no version.
 fn loads() -> bool {
     clang_sys::load().is_ok()
         && clang_sys::get_library().is_some_and(|library| library.version().is_some())
