@@ -80,7 +80,7 @@ fn every_footer_after_silence_is_a_frame_s_end() {
     }
 }
 
-/// Futaba R7003SB: 30 bytes, the 25th is 0x08 (bolderflight/sbus#79). The five others are no fault of the link.
+/// Futaba R7003SB: 30 bytes, the 25th is 0x08 (bolderflight/sbus#79). The other five bytes do not count against the link.
 #[test]
 fn bytes_after_a_frame_do_not_reduce_quality() {
     for footer in [0x00, 0x08] {
@@ -91,7 +91,7 @@ fn bytes_after_a_frame_do_not_reduce_quality() {
         let last = updates[99];
         assert_eq!(last.diagnostics.quality, 1.0);
         assert_eq!(last.diagnostics.discarded_bytes, 5 * 99);
-        // Its centre: within what moves nothing.
+        // The receiver's centre lies within the dead band.
         assert!((last.state.vx - 0.039).abs() < 0.001);
         assert!(last.operator.enabled);
     }
@@ -114,7 +114,7 @@ fn longer_trailers_count_as_lost_frames() {
     frame.extend([0x55; 9]);
     let updates = SBUS.feed(&vec![frame; 100]);
     assert_eq!(updates.len(), 100);
-    // Nine bytes behind each frame make a frame's length of them in 25 of 34.
+    // With nine bytes behind each frame, a frame's 25 bytes are 25 of 34.
     let quality = updates[99].diagnostics.quality;
     assert!((0.6..0.8).contains(&quality), "{quality}");
 }
@@ -134,7 +134,7 @@ fn every_period_from_3_to_22_ms_is_followed() {
     }
 }
 
-/// Any footer is believed at the periods that receivers have, be the interrupt half a millisecond late.
+/// Any footer is accepted at a period of 6 ms, even if the interrupt is half a millisecond late.
 #[test]
 fn silence_of_three_milliseconds_is_seen_whatever_the_footer() {
     let mut receiver = RemoteReceiver::new(RemoteFormat::Sbus, RemoteMapping::default());
@@ -169,7 +169,7 @@ fn without_an_idle_line_an_unknown_footer_is_rejected() {
     receiver.feed(&stream, 1_000_000, |_| panic!("which phase is it?"));
 }
 
-/// Ends and beyond: FrSky 172 and 1811, Futaba 352 and 1696, 0 and 2047 with travel at 150 %.
+/// End points and beyond: FrSky 172 and 1811, Futaba 352 and 1696, 0 and 2047 with travel at 150 %.
 #[test]
 fn ends_of_all_makes_drive_and_switch() {
     for (raw, vx, enabled) in [
@@ -241,7 +241,7 @@ const DBUS_CENTRED: [u8; 18] = [
     0x00, 0x04, 0x20, 0x00, 0x01, 0xF8, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0x00, 0x04,
 ];
 
-/// The wrong image for this receiver, or a line without its inverter (betaflight#4867).
+/// The image is the wrong one for this receiver, or the line has no inverter (betaflight#4867).
 #[test]
 fn another_protocol_gives_nothing() {
     assert!(SBUS.feed(&vec![DBUS_CENTRED.to_vec(); 50]).is_empty());

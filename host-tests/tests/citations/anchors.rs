@@ -1,8 +1,8 @@
-//! Names of the sections of a document.
+//! Anchors of the sections of a document.
 
 use robot_host_tests::links::slug;
 
-/// Anchors of all headings of a document, those in code excepted.
+/// Anchors of all headings of a document, except those in code blocks.
 pub fn anchors(text: &str) -> Vec<String> {
     let mut in_code = false;
     let mut found = Vec::new();

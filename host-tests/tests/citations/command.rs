@@ -2,10 +2,10 @@
 
 use crate::tree::Tree;
 
-/// Where `cargo xtask` lists its commands.
+/// The file in which `cargo xtask` lists its commands.
 const XTASK: &str = "xtask/src/main.rs";
 
-/// Pairs of words in a command, such as `--test NAME`, whose second word is nothing in the tree.
+/// Names in a command, such as the one after `--test`, that do not exist in the tree.
 pub fn missing(tree: &Tree, command: &str) -> Vec<String> {
     let words: Vec<&str> = command.split_whitespace().collect();
     if !words.contains(&"cargo") {
@@ -37,7 +37,7 @@ fn folder_of(tree: &Tree, package: &str) -> Option<String> {
     manifest.strip_suffix("Cargo.toml").map(str::to_owned)
 }
 
-/// Whether one of the packages in `folders` has the test; any package if there are none.
+/// Whether one of the packages in `folders` has the test, or any package if `folders` is empty.
 fn has_test(tree: &Tree, folders: &[String], name: &str) -> bool {
     [format!("tests/{name}.rs"), format!("tests/{name}/main.rs")]
         .iter()
@@ -48,7 +48,7 @@ fn has_test(tree: &Tree, folders: &[String], name: &str) -> bool {
         })
 }
 
-/// A command `sim` is the variant `Sim`.
+/// The command `sim` is the variant `Sim`.
 fn has_command(tree: &Tree, name: &str) -> bool {
     let mut letters = name.chars();
     let first = letters.next().map(|letter| letter.to_ascii_uppercase());

@@ -30,7 +30,7 @@ fn documents_cite_what_is_there() {
     assert!(missing.is_empty(), "{}", missing.join("\n"));
 }
 
-/// From the front page on, over other documents.
+/// Every page can be reached from the README through other documents.
 #[test]
 fn every_page_is_linked() {
     let tree = Tree::read();

@@ -6,7 +6,7 @@ pub const GRAVITY_MPS2: f64 = 9.806_65;
 
 pub type OverTime = Box<dyn Fn(f64) -> Vector>;
 
-/// Functions of the time in seconds. World frame: ENU, y to magnetic north.
+/// Functions of time in seconds. The world frame is ENU with y to magnetic north.
 pub struct Motion {
     pub start: Rotation,
     /// Body frame.
@@ -75,7 +75,8 @@ impl Motion {
         self
     }
 
-    /// As carried by hand: rotation about all axes at up to some 100 °/s, accelerations of up to 3 m/s², no rest.
+    /// The motion of a robot carried by hand: rotation about all axes at up to some 100 °/s, accelerations of up to
+    /// 3 m/s², no rest.
     pub fn carried_about() -> Self {
         Self::at_rest().turning(carried_rate_dps).accelerated(|t| {
             let wave = |hz: f64, phase: f64| (std::f64::consts::TAU * hz * t + phase).sin();

@@ -13,9 +13,9 @@ use crate::{
 const STEP_US: u64 = 250;
 const IMU_US: u64 = 5_000;
 const MAG_US: u64 = 20_000;
-/// From the middle of the magnetometer's measurement to its reading.
+/// Time from the middle of the magnetometer's measurement to its reading.
 const MAG_READ_US: u64 = 4_000;
-/// In steps of the motion.
+/// Largest jitter of a sample, in steps of the motion.
 const MAX_JITTER_STEPS: f64 = 8.0;
 
 struct Due<T> {

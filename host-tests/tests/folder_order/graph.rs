@@ -1,4 +1,4 @@
-//! Which modules beside each other use which, and whether that goes round in a circle.
+//! The graph of uses between sibling modules, and its cycles.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -12,7 +12,7 @@ use crate::{imports::Import, module_tree::Module};
 pub struct Use {
     pub from: String,
     pub to: String,
-    /// Where and what, for whoever has to undo it.
+    /// One place of this use, for the error message.
     example: String,
 }
 
@@ -22,7 +22,7 @@ impl fmt::Display for Use {
     }
 }
 
-/// One for each pair of modules inside `folder`, whatever in the first uses whatever in the second.
+/// One use for each pair of modules inside `folder` in which anything in the first uses anything in the second.
 pub fn uses_between_siblings(crate_root: &Module, folder: &Module) -> Vec<Use> {
     let depth = folder.path().len();
     let mut found = BTreeMap::new();
@@ -45,10 +45,10 @@ pub fn uses_between_siblings(crate_root: &Module, folder: &Module) -> Vec<Use> {
         .collect()
 }
 
-/// Names passed on from module to module: more of it would be a riddle.
+/// Limit of re-exports that are followed for one name.
 const MAX_DETOURS: u32 = 8;
 
-/// The module where the path's last name comes from, through every `use` that passes it on.
+/// The module that defines the path's last name, found through its re-exports.
 fn target(crate_root: &Module, path: &[String], detours: u32) -> Vec<String> {
     let mut module = crate_root;
     for part in path {
@@ -67,7 +67,7 @@ fn target(crate_root: &Module, path: &[String], detours: u32) -> Vec<String> {
     module.path().to_vec()
 }
 
-/// The first circle that is found, as a chain of names.
+/// The first cycle that is found, as a chain of names.
 pub fn first_circle(edges: &[Use]) -> Option<String> {
     let starts: BTreeSet<_> = edges.iter().map(|edge| edge.from.as_str()).collect();
     starts

@@ -26,13 +26,13 @@ impl Sources {
     }
 }
 
-/// One module with those inside it.
+/// A module with the modules inside it.
 #[derive(Debug, Default)]
 pub struct Module {
-    /// From the crate's root, which is empty.
+    /// Path from the crate's root, whose own path is empty.
     path: Vec<String>,
     children: BTreeMap<String, Module>,
-    /// What it names, from the crate's root.
+    /// Paths that the module names, from the crate's root.
     pub imports: Vec<Import>,
 }
 
@@ -82,7 +82,7 @@ impl Module {
         &self.path
     }
 
-    /// In the order of their names.
+    /// The modules directly inside this one, in the order of their names.
     pub fn children(&self) -> impl Iterator<Item = &Self> {
         self.children.values()
     }

@@ -1,4 +1,4 @@
-//! RS00 frames by the maker's MIT protocol reference; floats by IEEE 754, little-endian.
+//! RS00 frames according to the maker's MIT protocol reference. Floats are IEEE 754, little-endian.
 
 use robot_app::{
     domain::{CanFrame, StandardId},
@@ -16,7 +16,7 @@ fn frame(id: u16, payload: &[u8]) -> CanFrame {
     CanFrame::from_payload(StandardId::new(id).unwrap(), payload).unwrap()
 }
 
-/// Sections 4.1 to 4.5: what stands in bytes 6 and 7 after six times FF.
+/// Sections 4.1 to 4.5: bytes 6 and 7, which follow six bytes of FF.
 #[test]
 fn orders() {
     for (order, detail, code) in [
@@ -36,7 +36,7 @@ fn orders() {
     }
 }
 
-/// A vector of docs/hardware.md#test-vectors.
+/// A test vector from docs/hardware.md#test-vectors.
 #[test]
 fn mit_command() {
     let targets = MitTargets {

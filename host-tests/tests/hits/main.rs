@@ -96,7 +96,7 @@ fn hold(
     println!("{name}: worst of {count} for {bases:?}: {worst:?}");
 }
 
-/// In any case no sample is rejected and no fall is reported.
+/// Whether no sample was rejected and no fall was reported.
 fn is_consistent(outcome: &Outcome) -> bool {
     outcome.rejected == 0 && !outcome.falls
 }

@@ -2,7 +2,7 @@
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
-    /// With its level, 1 for the title.
+    /// A heading with its level, which is 1 for the title.
     Heading(usize),
     Row,
     Item,

@@ -6,7 +6,7 @@ use crate::{
 };
 use std::{collections::BTreeSet, fs};
 
-/// What is between the marks of the matrix on a page.
+/// The text between the marks of the matrix on a page.
 fn region(page: &str) -> String {
     let text = fs::read_to_string(root().join(page)).unwrap();
     let begin = text.find("<!-- matrix").unwrap();
@@ -14,7 +14,7 @@ fn region(page: &str) -> String {
     text[begin..end].to_owned()
 }
 
-/// The phrases of the matrix, times left out: `all 0 within … ms`, `stays off`.
+/// The phrases of the matrix without times: `all 0 within … ms`, `stays off`.
 fn phrases(matrix: &str) -> BTreeSet<String> {
     let rows = matrix.lines().filter(|line| line.starts_with("| `"));
     let cells = rows.flat_map(|row| row.split('|').skip(2));
@@ -37,7 +37,7 @@ fn phrases_of_cell(cell: &str) -> Vec<String> {
     nameless.filter(|phrase| !phrase.is_empty()).collect()
 }
 
-/// What the key explains: the first cell of each row, in backticks.
+/// The phrases that the key explains: the first cell of each row, in backticks.
 fn explained(key: &str) -> BTreeSet<String> {
     let cells = key.lines().filter_map(|row| row.split('|').nth(1));
     cells.flat_map(|cell| spans(cell).code).collect()

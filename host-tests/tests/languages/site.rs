@@ -10,11 +10,11 @@ use std::{
 
 const CHINESE_README: &str = "README.zh-CN.md";
 const CHINESE_FOLDER: &str = "docs/zh-CN";
-/// What the words for a place end with if the link leads from one language to the other.
+/// Suffix of the description of a link that leads from one language to the other.
 const OTHER_LANGUAGE: &str = ", in the other language";
 
 pub struct Page {
-    /// From the repository's root, with `/`.
+    /// Path from the repository's root, with `/` as separator.
     pub path: String,
     pub blocks: Vec<Block>,
 }

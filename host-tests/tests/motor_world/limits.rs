@@ -102,7 +102,7 @@ fn beyond_a_soft_limit_nothing_pushes_further_out() {
                 } else {
                     0
                 };
-                // A joint is told something in every second tick.
+                // A joint gets a command in every second tick.
                 if *ticks < 2 {
                     continue;
                 }

@@ -8,10 +8,10 @@ use robot_app::{
 };
 use robot_plant::flash_chip::FlashChip;
 
-/// More steps than a save with a rotation takes.
+/// Limit of steps, more than a save with a rotation takes.
 const MAX_STEPS: usize = 300;
 
-/// By key and variant.
+/// Records by key and variant.
 pub type Contents = BTreeMap<(u8, u8), Record>;
 
 pub type BootedStore<'a> = Store<&'a mut FlashChip>;

@@ -11,9 +11,9 @@ use crate::{
 
 const SECTOR: usize = 16 * 1024;
 const SLOT: usize = 128;
-/// The second sector's, counted in slots.
+/// Position of the second sector's head, counted in slots.
 const ACTIVE_HEAD: usize = SECTOR / SLOT;
-/// From the start of sector 1.
+/// Address of sector 1.
 const SECTOR_1: u32 = 0x0800_4000;
 
 /// Checks a store after damage: it boots, it saves, and later boots find what it saved.
@@ -94,7 +94,7 @@ proptest! {
     }
 }
 
-/// As flash is read by hand: the last slot of the active sector with the key in its second word.
+/// Finds the newest slot of a key without the store: the last slot of the active sector with the key in its second word.
 fn newest_slot(bytes: &[u8], key: u8) -> usize {
     let keys = bytes.chunks(SLOT).map(|slot| slot[4]).enumerate();
     let mut held = keys.skip(ACTIVE_HEAD + 1).take(127);
@@ -146,9 +146,9 @@ fn garbage_in_whole_sectors_loses_only_their_records() {
             }
         }
         let (store, found) = boot(&mut chip).expect("boots");
-        // With the clean sector ruined too, one of them may be what an erase left that was cut short.
+        // If the clean sector is damaged too, one of the two may be the result of an interrupted erase.
         let lost = [0, 1, 1, 0, 0, 1, 1, 0][usize::from(broken)];
-        // With no store left, noise looks as if another program had always been there.
+        // If no valid sector is left, the noise counts as the data of another program.
         let strange = [0, 0, 0, 2, 0, 0, 0, 3][usize::from(broken)];
         let report = store.report();
         let told = (report.lost_sectors, report.strange_sectors);

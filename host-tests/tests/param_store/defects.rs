@@ -79,7 +79,7 @@ fn in_use() -> (FlashChip, Contents) {
     (chip, contents)
 }
 
-/// In every word of a slot in turn, and of all three heads, stuck either way.
+/// One bit is stuck at 0 or at 1, in each word of a slot and of the three heads in turn.
 #[test]
 fn a_stuck_bit_costs_at_most_a_sector_and_no_record() {
     let mut errors = 0;

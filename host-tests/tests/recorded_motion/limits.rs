@@ -1,4 +1,4 @@
-//! What the estimator must reach on the twelve trials. Every limit is here.
+//! All limits of the estimator's errors on the twelve trials.
 
 use robot_replay::Figures;
 
@@ -6,9 +6,9 @@ use crate::twelve_trials::Errors;
 
 /// Means over the trials.
 pub struct Limits {
-    /// At the times of the reference.
+    /// Total error at the times of the reference.
     total_at_samples_deg: f64,
-    /// At every output.
+    /// Total error over all outputs.
     total_every_tick_deg: f64,
     inclination_deg: f64,
 }
@@ -32,7 +32,7 @@ pub const WORST_INCLINATION_DEG: f64 = 3.0;
 /// The most by which the magnetometer may change the inclination.
 pub const TILT_BY_MAGNETOMETER_DEG: f64 = 0.5;
 
-/// Each is 4.4 °/s long and added to every gyro sample of every trial, on top of the sensors' own biases.
+/// Biases of 4.4 °/s that are added to every gyro sample of every trial, on top of the sensors' own biases.
 pub const START_UP_OFFSETS_DPS: [[f32; 3]; 3] =
     [[2.54, -2.54, 2.54], [4.4, 0.0, 0.0], [0.0, -4.4, 0.0]];
 /// The most by which such a bias may increase any figure.

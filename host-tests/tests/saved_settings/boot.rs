@@ -17,7 +17,7 @@ const HEATER: u32 = 1 << 6;
 const SAFETY: u32 = 1 << 3;
 const GEOMETRY: u32 = 1 << 0;
 
-/// In the masks of `ParamStatus`.
+/// The group's bit in the masks of `ParamStatus`.
 fn bit_of(group: &str) -> u32 {
     let place = PARAMETERS.iter().position(|known| known.name == group);
     1 << place.unwrap()

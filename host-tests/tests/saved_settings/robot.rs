@@ -20,7 +20,7 @@ use robot_plant::flash_chip::{FlashChip, PARAMETER_SECTORS};
 #[derive(Clone)]
 pub struct Chip {
     pub cells: Rc<RefCell<FlashChip>>,
-    /// Reports an error instead of programming.
+    /// Whether the chip reports an error instead of programming.
     pub refuses_words: Rc<Cell<bool>>,
 }
 
@@ -106,7 +106,7 @@ pub struct Robot {
     restored: u32,
     now_us: u64,
     asked: FlashRequest,
-    /// Disarmed and standing still.
+    /// Whether the robot is disarmed and at a standstill.
     pub rests: bool,
 }
 
@@ -115,7 +115,7 @@ impl Robot {
         Self::boot_with(chip, &ROBOT_LAYOUT)
     }
 
-    /// Booted and at rest for long enough to make a sector ready.
+    /// A robot that has been at rest for long enough after boot to have a sector ready.
     pub fn ready(chip: &Chip) -> Self {
         let mut robot = Self::boot(chip);
         robot.save();
@@ -141,7 +141,7 @@ impl Robot {
         self.revision = self.revision.wrapping_add(1);
     }
 
-    /// As the tuning channel gives groups their defaults. Bits are positions.
+    /// Sets groups to their defaults, as the tuning channel does. Bit n stands for position n in `PARAMETERS`.
     pub fn restore(&mut self, groups: u32) {
         let defaults = RobotConfig::default();
         for (position, group) in PARAMETERS.iter().enumerate() {
@@ -153,7 +153,7 @@ impl Robot {
         self.revision = self.revision.wrapping_add(1);
     }
 
-    /// As the control tick publishes its settings.
+    /// Takes over the settings that the control tick publishes.
     pub fn take(&mut self, config: &RobotConfig, tuning: &TuningStatus) {
         self.config = *config;
         (self.revision, self.restored) = (tuning.revision, tuning.restored);
@@ -167,7 +167,7 @@ impl Robot {
         });
     }
 
-    /// One millisecond. Programs a slot or erases a sector, not more.
+    /// Runs one millisecond, in which at most one slot may be programmed or one sector erased.
     pub fn step_with(&mut self, granted: FlashRequest) {
         let before = (self.chip.cells.borrow().programs(), self.chip.erases());
         self.now_us += 1_000;
@@ -194,7 +194,7 @@ impl Robot {
         }
     }
 
-    /// Until everything is saved, a spare sector included.
+    /// Runs until everything is saved and a spare sector is ready.
     pub fn save(&mut self) {
         for _ in 0..10_000 {
             self.step();
@@ -206,7 +206,7 @@ impl Robot {
         panic!("not saved: {:?}", self.service.status());
     }
 
-    /// The chip stood still in the last step.
+    /// Notes that the chip stood still in the last step.
     pub fn note_stall_ms(&mut self, stall_ms: u32) {
         self.service.note_stall(stall_ms * 1_000);
     }

@@ -188,7 +188,7 @@ fn sectors_that_cannot_be_erased_do_not_delay_a_save() {
         robot.run_ms(520);
         assert_eq!(robot.status().unsaved, 0, "save {number}");
     }
-    // After 0, 1, 11 and no more of these 26 s.
+    // The erases were tried after 0, 1 and 11 s of these 26 s.
     assert_eq!((robot.status().erases, robot.status().save_failed), (3, 3));
     assert_eq!(robot.status().state, ParamState::BackingOff);
     assert_eq!(Robot::boot(&chip).config, robot.config);

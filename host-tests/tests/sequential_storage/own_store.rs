@@ -40,7 +40,8 @@ fn work(store: &mut Store<&mut FlashChip>, wanted: fn(FlashRequest) -> bool) -> 
 }
 
 impl Keeper for OwnStore {
-    /// As the firmware does it: programs what a cut left open, saves, then erases what the next change of sector needs.
+    /// Works as the firmware does: it completes what a cut left unfinished, saves, and then erases the sector that the next
+    /// rotation needs.
     fn save(&self, chip: &mut FlashChip, save: Save) -> bool {
         let mut store = Store::open(chip);
         let record = record(save);

@@ -79,7 +79,7 @@ impl NorFlash for &mut Bytes {
     }
 }
 
-/// The report's sequence: two first saves cut after 7 bytes, then one that nothing disturbs.
+/// The sequence of the report: two first saves are cut after 7 bytes, and the third is completed.
 fn is_hidden(value: u64) -> bool {
     let config = || MapConfig::new(0..256);
     let mut flash = Bytes {

@@ -23,7 +23,8 @@ impl Keeper for SequentialStorage {
         block_on(storage(chip).store_item(&mut buffer, &save.key, &value.as_slice())).is_ok()
     }
 
-    /// All records are read in one go, the last of a key counts; where that fails, key by key, as only that repairs.
+    /// Reads all records in one pass, in which the last record of a key counts. If that fails, it reads key by key, because
+    /// only that repairs the flash.
     fn load(&self, chip: &mut FlashChip) -> [Found; KEYS as usize] {
         load_all(chip).unwrap_or_else(|_| {
             let mut storage = storage(chip);
@@ -39,7 +40,7 @@ impl Keeper for SequentialStorage {
     }
 }
 
-/// As after a boot: the cache is empty. Without one, a change of the sector takes some 60 ms on a PC.
+/// The storage after a boot, with an empty key cache. Without a cache a change of the sector takes some 60 ms on a PC.
 fn storage(chip: &mut FlashChip) -> Storage<'_> {
     let config = const { MapConfig::new(0..0xC000) };
     let cache = Cache::new(Uncached, Uncached, KeyCache::new());

@@ -64,7 +64,7 @@ impl Rules {
         bring_up: bool,
         now_us: u64,
     ) -> Allowed {
-        // Nothing that must last is believed to last while the clock does not run evenly.
+        // A condition that must last does not count as lasting while the clock runs unevenly.
         let dt_us = now_us.saturating_sub(self.last_us);
         let operator = &inputs.remote.operator;
         let gesture = operator.disabled && operator.e_stop;
