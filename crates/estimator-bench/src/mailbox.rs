@@ -1,4 +1,4 @@
-//! What host and board hand each other: words in one static.
+//! The words in one static through which host and board exchange data.
 
 use core::sync::atomic::AtomicU32;
 #[cfg(feature = "board")]
@@ -19,7 +19,7 @@ pub struct Input {
     pub now_us: u32,
     /// End of the interval that the IMU's means are of. A new value is a new sample; 0 = none yet.
     pub imu_ts_us: u32,
-    /// As for the IMU; 0 = no magnetometer.
+    /// End of the interval that the magnetometer's mean is of; 0 = no magnetometer.
     pub mag_ts_us: u32,
     pub gyro_rps: [f32; 3],
     pub accel_mps2: [f32; 3],

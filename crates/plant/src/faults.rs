@@ -3,7 +3,7 @@
 /// A fault that a scenario can start and end.
 #[derive(Clone, Copy, Debug)]
 pub struct FaultInfo {
-    /// As scenarios write it, such as `imu-gone`.
+    /// Name in scenarios, such as `imu-gone`.
     pub name: &'static str,
     /// One sentence: what is broken, and what happens at the end of the fault.
     pub what: &'static str,

@@ -87,7 +87,7 @@ impl Rows<'_> {
         }
     }
 
-    /// Rounded up: an axis that is cut off at all is told.
+    /// Time in ms for which each axis was clipped, rounded up so that any clipping is reported.
     fn clipped_ms(&self, window: &Range<Ps>) -> [u8; 3] {
         let at_end = |row: &Row| {
             row.gyro_rps

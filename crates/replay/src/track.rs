@@ -19,7 +19,7 @@ impl Track {
         self.start_s + index as f64 * self.period_s
     }
 
-    /// On the straight line between the two neighbours, put back on the sphere; `None` outside the track and where a
+    /// Interpolates linearly between the two neighbours and normalises the result. `None` outside the track, or if a
     /// neighbour is not known.
     pub fn at(&self, t_s: f64) -> Option<Quaternion> {
         let steps = (t_s - SAME_S - self.start_s) / self.period_s;

@@ -1,4 +1,4 @@
-//! The budgets a run can be held against, beside what the run measured.
+//! The budgets that a run can be checked against, with the measured values.
 
 use serde::Serialize;
 
@@ -7,7 +7,7 @@ use super::runner::RunResult;
 pub const TICK_MEAN_INSTRUCTIONS: f64 = 6_000.0;
 pub const TICK_MAX_INSTRUCTIONS: f64 = 12_000.0;
 pub const RELEASE_JITTER_US: f64 = 5.0;
-/// Shares.
+/// Limits of loads, as shares of the time.
 pub const CPU_LOAD: f64 = 0.2;
 pub const CAN_LOAD: f64 = 0.8;
 

@@ -30,7 +30,7 @@ pub struct CBoard {
     pub world: World,
     /// Sectors 1–3.
     pub flash: FlashChip,
-    /// The levels that the devices were last told, so that they are told of changes only.
+    /// The levels that were last passed to the devices, so that only changes are passed.
     levels: Option<Levels>,
 }
 

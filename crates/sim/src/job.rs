@@ -30,7 +30,7 @@ pub struct Job {
     /// A recorded trial to play through the sensor models.
     pub imu_trial: Option<PathBuf>,
     pub patches: Vec<RegisterPatch>,
-    /// The board was flashed and started by a debug probe's tool with its default options.
+    /// Whether a debug probe's tool with default options flashed and started the board.
     pub probe: bool,
     /// Buses that a PC takes part in through a pseudo-terminal. What it sends is not reproducible.
     pub can_on_pty: Vec<CanBusId>,
@@ -69,7 +69,7 @@ pub struct Outcome {
 }
 
 impl Job {
-    /// The board at power-on, not yet run.
+    /// Prepares the board at power-on.
     pub fn machine(&self) -> Result<Machine, JobError> {
         let world = World::new(WorldConfig {
             plant: self.scenario.plant,
@@ -129,7 +129,7 @@ impl Job {
         })
     }
 
-    /// Runs and writes nothing but the flash file.
+    /// Runs, and writes only the flash file.
     pub fn run(&self, observers: &mut [&mut dyn Observer]) -> Result<Outcome, JobError> {
         let mut machine = self.machine()?;
         let ports: Result<Vec<_>, _> = self.can_on_pty.iter().copied().map(CanPort::open).collect();
@@ -145,7 +145,7 @@ impl Job {
         })
     }
 
-    /// Runs and writes `report.html`, `summary.json` and `run.mcap` into `out`, made if it does not exist.
+    /// Runs, and writes `report.html`, `summary.json` and `run.mcap` into the folder `out`, which is created if necessary.
     pub fn run_into(&self, out: &Path, watcher: &mut dyn Observer) -> Result<Outcome, JobError> {
         let failed = |path: &Path, source| JobError::Write {
             path: path.to_owned(),

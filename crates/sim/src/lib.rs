@@ -1,7 +1,7 @@
 //! The emulated C board in a simulated world: scenarios on the shipped firmware image, judged, recorded and reported.
 //!
 //! `c_board` is the board around the chip of `robot-emulator`, `machine` joins both to a firmware image, `pty` offers
-//! the CAN buses to tools on this computer, `runner` plays a scenario on the machine, `soak` keeps it busy for hours.
+//! the CAN buses to tools on this computer, `runner` plays a scenario on the machine, `soak` tests it for hours.
 
 pub mod attitude_score;
 pub mod budgets;

@@ -57,7 +57,8 @@ pub enum MachineError {
     Diagnostics(#[from] LayoutError),
     #[error("the engine refuses the image: {0:?}")]
     Engine(EngineError),
-    /// Unmodelled register, bus fault outside the map, lock-up: the text names register, PC and function.
+    /// The machine cannot continue: an unmodelled register, a bus fault outside the map, or a lock-up. The text names
+    /// register, PC and function.
     #[error("{0}")]
     Stopped(String),
 }
@@ -139,7 +140,7 @@ pub struct Machine {
     image: Image,
     rtt: Option<Rtt>,
     log: Option<DefmtLog>,
-    /// False once the probe that read it is pulled.
+    /// Whether a probe still reads the log.
     log_is_read: bool,
     diagnostics: Diagnostics,
     ticks: TickStats,
@@ -147,7 +148,7 @@ pub struct Machine {
     /// Deepest stack before the last loss of power.
     stack_peak: u64,
     resets: Vec<String>,
-    /// How long a power cut at a step of the flash lasts.
+    /// Duration of a power cut at a step of the flash.
     off_time: Ps,
 }
 
@@ -187,7 +188,7 @@ impl Machine {
         self.cpu.with_soc(|soc, _| soc.add_patch(patch));
     }
 
-    /// When an injected fault last took effect.
+    /// Time at which an injected fault last took effect.
     pub fn fault_struck_at(&self) -> Option<Ps> {
         self.cpu.struck_at()
     }
@@ -254,7 +255,7 @@ impl Machine {
         })
     }
 
-    /// Lines since the last call.
+    /// Log lines since the last call.
     pub fn take_log(&mut self) -> Vec<LogLine> {
         self.log.as_mut().map(DefmtLog::take).unwrap_or_default()
     }
@@ -310,7 +311,7 @@ impl Machine {
         }
     }
 
-    /// When the last control tick that is over was entered.
+    /// Entry time of the last control tick that has ended.
     pub fn last_tick(&self) -> Option<Ps> {
         self.ticks.last_over(self.cpu.now())
     }
@@ -338,7 +339,7 @@ impl Machine {
         }
     }
 
-    /// Errors that fail on silicon.
+    /// Board errors that would fail on silicon.
     pub fn board_errors(&self) -> Vec<BoardError> {
         self.cpu.soc().errors.list().to_vec()
     }

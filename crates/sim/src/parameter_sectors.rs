@@ -35,7 +35,7 @@ impl Record {
     }
 }
 
-/// Erased, and marked so.
+/// A sector that is erased and marked as such.
 pub fn clean() -> [u8; PARAMETER_FLASH_BYTES] {
     let mut bytes = [0xFF; PARAMETER_FLASH_BYTES];
     for sector in bytes.chunks_exact_mut(SECTOR_BYTES) {
@@ -53,7 +53,7 @@ pub fn holding(records: &[Record]) -> [u8; PARAMETER_FLASH_BYTES] {
     bytes
 }
 
-/// Puts a clean sector to use, with at most [`SLOTS`] records in it.
+/// Makes a clean sector the active one, with at most [`SLOTS`] records in it.
 pub fn fill<'r>(sector: &mut [u8], generation: u32, records: impl Iterator<Item = &'r Record>) {
     let check = [MAGIC, generation, !generation];
     let crc = crc32(check.iter().flat_map(|word| word.to_le_bytes()));

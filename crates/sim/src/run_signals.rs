@@ -30,9 +30,9 @@ const PERIOD: Ps = 100 * time::MS;
 pub struct RunSignals {
     due: Ps,
     counters: [Option<f64>; 8],
-    /// When they were last taken, and how long each CAN bus had been busy by then.
+    /// Time of the last measurement, and for how long each CAN bus had been busy by then.
     can_busy: (Ps, [Ps; 2]),
-    /// Control ticks by then, and when the last of them was entered.
+    /// Number of control ticks by then, and entry time of the last one.
     ticks: Option<(u64, Ps)>,
     quaternion: Option<[usize; 4]>,
     valid: Option<usize>,
@@ -98,7 +98,7 @@ impl RunSignals {
         [0, 1].map(|bus| Some((progress.can_busy[bus] - busy_before[bus]) as f64 / elapsed?))
     }
 
-    /// Mean time from tick to tick since the last measurement, by the crystal's time.
+    /// Mean time between ticks since the last measurement, in the time of the crystal.
     fn tick_period_us(&mut self, progress: &Progress) -> Option<f64> {
         let before = std::mem::replace(&mut self.ticks, progress.ticks);
         let ((ticks_before, from), (ticks, to)) = (before?, progress.ticks?);
@@ -106,7 +106,7 @@ impl RunSignals {
         Some((to - from) as f64 / time::US as f64 / new as f64)
     }
 
-    /// The firmware's attitude, while it calls it valid.
+    /// The firmware's attitude while it is valid.
     fn estimate(&self, values: &Values) -> Option<[f64; 4]> {
         values[self.valid?].filter(|v| *v != 0.0)?;
         let [w, x, y, z] = self.quaternion?;

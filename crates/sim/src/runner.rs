@@ -41,27 +41,27 @@ pub trait Observer {
 pub struct RunResult {
     pub table: SignalTable,
     pub verdicts: Vec<Verdict>,
-    /// Why the machine stopped before the end, if it did.
+    /// Reason why the machine stopped before the end, if it did.
     pub stopped: Option<String>,
     /// Board errors that the scenario does not allow.
     pub board_errors: Vec<BoardError>,
     pub allowed_board_errors: Vec<BoardError>,
-    /// Suspicious settings and accesses; they fail no run.
+    /// Suspicious settings and accesses, which do not fail the run.
     pub suspicions: Vec<BoardError>,
     pub stats: Stats,
-    /// Simulated time really run.
+    /// Time that was actually simulated.
     pub ran: Ps,
     pub last_values: Values,
-    /// All bits that `diag.safety.flags` has had at any sample.
+    /// All bits that were set in `diag.safety.flags` at any sample.
     pub safety_flags_seen: u64,
     pub attitude: AttitudeScore,
-    /// Buses a PC took part in.
+    /// Buses in which a PC took part.
     pub ports: Vec<(CanBusId, PortStats)>,
 }
 
 impl RunResult {
-    /// True if the run went to its end, every expectation held and there was no board error but suspicions and allowed
-    /// ones.
+    /// Whether the run reached its end, every expectation held, and there were no board errors other than suspicions and
+    /// allowed ones.
     pub fn ok(&self) -> bool {
         self.stopped.is_none()
             && self.board_errors.is_empty()

@@ -1,4 +1,4 @@
-//! A scenario: which robot and radio, what the pilot and the faults do when, and what must hold.
+//! A scenario: robot and radio, the actions of the pilot and the faults over time, and what must hold.
 
 mod file;
 
@@ -16,7 +16,7 @@ use robot_plant::{
 use super::expectation::Expectation;
 use crate::{machine::flash::FlashTimes, parameter_sectors::Record};
 
-/// A checked scenario: every time lies inside the run, every fault exists, every expectation has a window and a bound.
+/// A valid scenario. Every time lies inside the run, every fault exists, and every expectation has a window and a bound.
 #[derive(Clone, Debug)]
 pub struct Scenario {
     pub name: String,
@@ -57,7 +57,7 @@ pub enum FlashContents {
     Erased,
     /// The contents of a file of 48 KiB.
     Image(PathBuf),
-    /// Records as an earlier run has saved them.
+    /// Records that an earlier run saved.
     Records(Vec<Record>),
 }
 
@@ -103,7 +103,7 @@ impl Scenario {
         Self::parse(&text, &path.display().to_string())
     }
 
-    /// Cuts the run to `length` and returns how many expectations fall away because they look past it.
+    /// Cuts the run to `length`. Returns the number of expectations that are dropped because they reach beyond it.
     pub fn cut_to(&mut self, length: Ps) -> usize {
         let before = self.expectations.len();
         self.length = length;

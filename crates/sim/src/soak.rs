@@ -34,7 +34,7 @@ pub use saved_settings::SettingsTally;
 
 /// Invariants are checked, and events happen, on this grid.
 const STEP: Ps = MS;
-/// The reproduction of a violation repeats the events of this time before it.
+/// The reproduction of a violation repeats the events of this span of time before it.
 const REPRODUCED: Ps = 30 * SECOND;
 
 #[derive(Clone, Debug)]
@@ -57,7 +57,7 @@ pub enum SoakError {
     MissingSignal(#[from] MissingSignal),
 }
 
-/// How long the run was, and the first violation.
+/// Length of the run, and the first violation.
 #[derive(Clone, Debug)]
 pub struct Outcome {
     pub ran: Ps,
@@ -89,7 +89,7 @@ impl Soak {
         while now < self.length {
             while let Some(timed) = plan.next_until(now) {
                 match Simulation::apply(&mut machine, &timed.event) {
-                    // The chip is booting: there is no task to fail yet.
+                    // The chip is booting, and no task runs yet that could fail.
                     Err(EventError::Machine(FaultError::NotThere { .. })) => continue,
                     // The bus has been down for so long that the adapter's queue is full.
                     Err(EventError::AdapterFull) => continue,

@@ -51,7 +51,7 @@ pub struct Summary {
     pub resets: Vec<String>,
     /// Flags of `diag.safety.flags` that were set at some time, by name; `bit n` for one without a name.
     pub safety_flags_seen: Vec<String>,
-    /// Against the plant's truth or the recording's reference; absent where nothing could be scored.
+    /// Error against the plant's truth or the recording's reference. Absent if nothing could be scored.
     pub attitude_error: Option<AttitudeError>,
     pub budgets: Vec<Budget>,
     #[serde(rename = "final")]

@@ -1,4 +1,4 @@
-//! Signals over time, thinned to what a plot can show.
+//! Signals over time, thinned out to the resolution of a plot.
 
 use robot_plant::time::{self, Ps};
 
@@ -8,7 +8,7 @@ use super::{
 };
 use crate::machine::LogLine;
 
-/// Points over the width of a plot.
+/// Number of points over the width of a plot.
 const POINTS: u64 = 2_000;
 
 /// The signals and the log of a run.

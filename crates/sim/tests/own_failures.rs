@@ -14,7 +14,7 @@ use reaction::{Debugger, Reaction, reaction};
 use robot_plant::time::{MS, Ps};
 use robot_sim::machine::faults;
 
-/// In the order of the runs, which are spread over all cores.
+/// Runs all on all cores. Returns the reactions in the order of `runs`.
 fn run_all(runs: &[(&'static str, Debugger)]) -> Vec<Reaction> {
     support::image();
     let queue = Mutex::new(runs.iter().enumerate());

@@ -68,7 +68,7 @@ fn replay(trial: &Path) -> Figures {
     }
 }
 
-/// In the order of the trials' names.
+/// Compares all trials on all cores. The results are in the order of the trials' names.
 fn compare_all(mut trials: Vec<PathBuf>) -> Vec<Compared> {
     trials.sort_by_key(|trial| recording::run_length(trial).expect("a trial"));
     let waiting = Mutex::new(trials);

@@ -1,4 +1,4 @@
-//! Every modelled register block of the chip, and the wires between them that do not pass a bus.
+//! Every modelled register block of the chip, and the signals between blocks that do not use a bus.
 
 use crate::{
     soc::{
@@ -83,7 +83,7 @@ impl Default for Blocks {
 }
 
 impl Blocks {
-    /// Blocks with a wire to the board that may change by itself.
+    /// Blocks with an input from the board that may change by itself.
     pub const WATCHING_THE_BOARD: [Block; 2] = [Block::Usart(3), Block::Can];
 
     pub fn get(&mut self, block: Block) -> &mut dyn Peripheral {
@@ -149,7 +149,7 @@ impl Blocks {
             .then_some(ResetCause::IndependentWatchdog)
     }
 
-    /// DBG_IWDG_STOP, while the core is halted.
+    /// Stops the watchdog by DBG_IWDG_STOP while the core is halted.
     pub fn freeze_watchdog(&mut self, frozen: bool, ctx: &mut Ctx<'_>) {
         self.iwdg.freeze(frozen, ctx);
     }
@@ -159,13 +159,13 @@ impl Blocks {
         self.can.stats(bus)
     }
 
-    /// A device drives a pin differently, or may.
+    /// Call this when a device may drive a pin differently.
     pub fn inputs_changed(&mut self, ctx: &mut Ctx<'_>) {
         ctx.board.drive_pins(ctx.pins);
         self.exti.pins_changed(&self.syscfg, ctx);
     }
 
-    /// A port or a timer drives a pin differently, or may.
+    /// Call this when a port or a timer may drive a pin differently.
     pub fn outputs_changed(&mut self, ctx: &mut Ctx<'_>) {
         let outputs = Outputs {
             pins: ctx.pins,
@@ -183,7 +183,7 @@ impl Blocks {
         self.exti.check_sources(&self.syscfg, ctx);
     }
 
-    /// Limits that join several blocks: wait states, regulator scale, the backup domain's lock.
+    /// Checks limits that involve several blocks: wait states, regulator scale and the backup domain's lock.
     pub fn power_changed(&mut self, ctx: &mut Ctx<'_>) {
         self.rcc.set_backup_unlocked(self.pwr.backup_unlocked());
         self.flash.check_speed(ctx);

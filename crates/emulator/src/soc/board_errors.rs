@@ -5,15 +5,15 @@ use crate::time::Ps;
 /// A wrong setting or access.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BoardError {
-    /// When it was first seen.
+    /// Time of the first report.
     pub at: Ps,
-    /// How often it was seen.
+    /// Number of reports.
     pub count: u64,
     /// The error and its consequence.
     pub message: String,
 }
 
-/// Distinct messages in the order they were first seen, by severity.
+/// Distinct messages by severity, in the order in which they were first reported.
 #[derive(Debug, Default)]
 pub struct BoardErrors {
     failing: Vec<BoardError>,
@@ -21,12 +21,12 @@ pub struct BoardErrors {
 }
 
 impl BoardErrors {
-    /// Files an error that fails on silicon.
+    /// Reports an error that fails on silicon.
     pub fn report(&mut self, at: Ps, message: impl Into<String>) {
         note(&mut self.failing, at, message.into());
     }
 
-    /// Files what is only suspicious.
+    /// Reports a setting or access that is only suspicious.
     pub fn suspect(&mut self, at: Ps, message: impl Into<String>) {
         note(&mut self.suspicious, at, message.into());
     }

@@ -45,7 +45,7 @@ pub struct Soc {
     dma_requests: DmaRequests,
     blocks: Blocks,
     patches: Vec<RegisterPatch>,
-    /// No event is due before that; 0 once the chip was used since [`Self::next_event`].
+    /// No event is due before this time. It is 0 if the chip has been used since [`Self::next_event`].
     quiet_until: Ps,
 }
 
@@ -90,7 +90,7 @@ impl Soc {
         soc
     }
 
-    /// The board as what it is; `None` where it is another.
+    /// The board as its concrete type, or `None` if it has another type.
     pub fn board_as<B: Board>(&mut self) -> Option<&mut B> {
         self.quiet_until = 0;
         let board: &mut dyn Any = &mut *self.board;
@@ -102,7 +102,7 @@ impl Soc {
         self.patches.push(patch);
     }
 
-    /// Every register back to its reset value; RCC_CSR remembers `cause`.
+    /// Sets every register to its reset value, and the flag of `cause` in RCC_CSR.
     pub fn reset(&mut self, cause: ResetCause, now: Ps) {
         self.quiet_until = 0;
         let (blocks, mut ctx) = split!(self, now);
@@ -116,7 +116,8 @@ impl Soc {
         self.outputs_changed(now);
     }
 
-    /// A reset that a peripheral asked for, or the loss of power as `PowerOn`; the machine carries it out with `reset` and restarts the CPU.
+    /// A reset that a peripheral requested, or the loss of power as `PowerOn`. The machine carries it out with `reset` and
+    /// restarts the CPU.
     pub fn take_reset_request(&mut self) -> Option<ResetCause> {
         self.blocks.take_reset_request()
     }
@@ -136,7 +137,7 @@ impl Soc {
         self.blocks.pwr.set_vdd_mv(vdd_mv);
     }
 
-    /// A load of the core from flash sectors 1–3.
+    /// Loads from flash sectors 1–3 for the core.
     pub fn load_data_flash(
         &mut self,
         addr: u32,
@@ -149,7 +150,7 @@ impl Soc {
         Ok(blocks.flash.load(addr, size, &mut ctx))
     }
 
-    /// A store of the core to them.
+    /// Stores to flash sectors 1–3 for the core.
     pub fn store_data_flash(
         &mut self,
         addr: u32,
@@ -169,7 +170,7 @@ impl Soc {
         self.blocks.can_stats(bus)
     }
 
-    /// A load of the core or of a test, at `now`, of 1, 2 or 4 bytes.
+    /// Loads 1, 2 or 4 bytes at `now`, for the core or a test.
     pub fn read(
         &mut self,
         addr: u32,
@@ -188,7 +189,7 @@ impl Soc {
         Ok(value)
     }
 
-    /// A store of the core or of a test, at `now`, of 1, 2 or 4 bytes.
+    /// Stores 1, 2 or 4 bytes at `now`, for the core or a test.
     pub fn write(
         &mut self,
         addr: u32,
@@ -208,15 +209,15 @@ impl Soc {
         self.after_access(block, now, mem)
     }
 
-    /// DBG_IWDG_STOP: the watchdog stands while a debugger halts the core.
+    /// Stops the watchdog by DBG_IWDG_STOP while a debugger halts the core.
     pub fn freeze_watchdog(&mut self, frozen: bool, now: Ps) {
         self.quiet_until = 0;
         let (blocks, mut ctx) = split!(self, now);
         blocks.freeze_watchdog(frozen, &mut ctx);
     }
 
-    /// When something happens next without the CPU's doing, the board included. Until the chip is used again, the
-    /// answer holds.
+    /// Time of the next event in chip or board that the CPU does not cause. The answer is valid until the chip is used
+    /// again.
     pub fn next_event(&mut self) -> Ps {
         self.quiet_until = self.scheduler.next().min(self.board.next_event());
         self.quiet_until
@@ -322,7 +323,7 @@ impl Soc {
         blocks.power_changed(&mut ctx);
     }
 
-    /// The rising edge of a reset bit does the work; the image lowers it again at once.
+    /// Resets blocks at the rising edge of their reset bit, which the image lowers again at once.
     fn reset_blocks(&mut self, bus: Bus, bits: u32, now: Ps) {
         let rose = |reset: (Bus, u8)| reset.0 == bus && bits >> reset.1 & 1 == 1;
         let (blocks, mut ctx) = split!(self, now);
@@ -344,7 +345,7 @@ impl Soc {
         blocks.outputs_changed(&mut ctx);
     }
 
-    /// True where the block answers: clocked and out of reset. Otherwise files a board error.
+    /// Whether the block responds, which means that it is clocked and not in reset. If not, a board error is reported.
     fn answers(&mut self, block: Block, offset: u32, access: &str, now: Ps) -> bool {
         let Some(gate) = memory_map::clock_gate(block, offset) else {
             return true;

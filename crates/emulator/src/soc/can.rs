@@ -47,13 +47,13 @@ registers! {
     F0R1 = 0x240,
 }
 
-/// Four words each: identifier, length and time, data. Three transmit mailboxes, two FIFOs.
+/// Registers of three transmit mailboxes and two FIFOs. Each has four words: identifier, length and time, data.
 const MAILBOXES: Range<u32> = reg::TI0R..reg::RI0R;
 const FIFOS: Range<u32> = reg::RI0R..reg::RI0R + 0x20;
 /// Offset of CAN2's registers from those of CAN1.
 const CAN2: u32 = 0x400;
 
-/// Tags of scheduled events, above the bus number in bit 0.
+/// Tags of scheduled events. Bit 0 is the bus number.
 const BUS_PHASE: u32 = 0;
 const QUIET_BUS: u32 = 1;
 
@@ -88,7 +88,7 @@ impl Can {
         self.buses[bus].stats
     }
 
-    /// Registers of CAN1 (0) or CAN2 (1) back to their reset values; the filters are CAN1's.
+    /// Resets the registers of CAN1 (0) or CAN2 (1). The filters belong to CAN1.
     pub fn reset_controller(&mut self, index: usize, ctx: &mut Ctx<'_>) {
         self.controllers[index] = Controller::new(index);
         self.buses[index].board_reset();
@@ -105,7 +105,7 @@ impl Can {
         }
     }
 
-    /// Lets controller and bus `index` go as far as they can at this instant.
+    /// Advances controller and bus `index` as far as possible at this instant.
     fn settle(&mut self, index: usize, ctx: &mut Ctx<'_>) {
         let in_frame = self.buses[index].in_frame();
         if self.controllers[index].follow_requests(in_frame, ctx) {
@@ -116,7 +116,7 @@ impl Can {
         self.controllers[index].update_lines(ctx);
     }
 
-    /// When the bus will have been quiet for as long as the controller waits for.
+    /// Time at which the bus will have been quiet for as long as the controller requires.
     fn wake_when_quiet(&self, index: usize, ctx: &mut Ctx<'_>) {
         let controller = &self.controllers[index];
         let joins_at = match controller.mode {
@@ -127,7 +127,7 @@ impl Can {
     }
 
     fn quiet_for_long(&mut self, index: usize, ctx: &mut Ctx<'_>) {
-        // A frame breaks the silence; its end starts the count anew.
+        // A frame interrupts the quiet time, and its end restarts the count.
         if self.buses[index].in_frame() {
             return;
         }
@@ -216,7 +216,7 @@ fn name(index: usize) -> &'static str {
     ["CAN1", "CAN2"][index]
 }
 
-/// Which mailbox of a register cluster, and which of its four words.
+/// The mailbox of a register cluster, and the word in it.
 fn cluster_word(offset: u32) -> (usize, usize) {
     ((offset / 0x10) as usize, (offset % 0x10 / 4) as usize)
 }
@@ -248,7 +248,7 @@ impl Peripheral for Can {
                 .write(register, access.written_over(old, value), ctx)
                 .ok_or_else(|| reg::MAP.unmodelled_write(name(index), register, value));
         }
-        // Status registers are cleared by ones: the bytes a narrow write leaves alone count as zeros there.
+        // Status bits are cleared by writing ones, so bytes outside a narrow write count as zeros.
         let old = match register {
             reg::MSR..=reg::RF1R => 0,
             _ => self.read_controller(index, register).unwrap_or(0),

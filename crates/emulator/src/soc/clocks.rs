@@ -1,8 +1,8 @@
-//! The clock tree as programmed, and which peripherals it feeds. Written by RCC, read by everybody.
+//! The programmed clock tree and the peripherals that it feeds. RCC writes it, and all blocks read it.
 
 use crate::time::{Ps, SECOND};
 
-/// Frequencies in hertz and the clock-enable registers as they stand.
+/// Frequencies in hertz and the clock-enable registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ClockTree {
     pub hclk_hz: u32,
@@ -19,7 +19,7 @@ pub struct ClockTree {
 }
 
 impl Default for ClockTree {
-    /// After reset: 16 MHz HSI, undivided; flash interface and CCM clocked.
+    /// The state after reset: HSI at 16 MHz, undivided, with flash interface and CCM clocked.
     fn default() -> Self {
         let hsi = 16_000_000;
         Self {

@@ -1,4 +1,4 @@
-//! DMA1 and DMA2: eight streams each, served one item a request (RM0090 section 10).
+//! DMA1 and DMA2 with eight streams each. A request moves one item (RM0090 section 10).
 //!
 //! Memory-to-memory, double buffer, FIFO mode, peripheral bursts and peripheral flow control are not modelled.
 
@@ -28,7 +28,7 @@ registers! {
 const FLAG_SHIFTS: [u32; 4] = [0, 6, 16, 22];
 const FLAG_BITS: u32 = 0x3D;
 
-/// One item that a stream should move now.
+/// An item that a stream should move now.
 #[derive(Debug)]
 pub struct Beat {
     pub stream: usize,
@@ -55,7 +55,7 @@ impl Dma {
         &self.streams[usize::from(index)]
     }
 
-    /// The most urgent item that some high request line asks for: highest PL first, then the lowest stream.
+    /// The most urgent item among all high request lines: the one with the highest PL, then of the lowest stream.
     pub fn next_beat(&self, requests: &DmaRequests) -> Option<Beat> {
         let waiting = self
             .streams

@@ -1,6 +1,6 @@
 //! Request lines from the peripherals to the DMA controllers (RM0090 tables 42 and 43).
 
-/// A peripheral's wish for one transfer.
+/// A peripheral's request for one transfer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum DmaRequest {
     Spi1Rx,
@@ -16,7 +16,7 @@ pub enum DmaRequest {
     Adc3,
 }
 
-/// Level of each request line; a DMA stream serves it while it is high.
+/// Level of each request line. A DMA stream serves a line while it is high.
 #[derive(Debug, Default)]
 pub struct DmaRequests {
     level: u32,
@@ -37,7 +37,7 @@ impl DmaRequests {
         self.level >> (request as u32) & 1 == 1
     }
 
-    /// The end-of-transfer wire back to the peripheral: the stream serving `request` has one item left (EOT_1).
+    /// The end-of-transfer signal to the peripheral (EOT_1): the stream that serves `request` has one item left.
     pub fn set_last(&mut self, request: DmaRequest, last: bool) {
         let bit = 1u32 << request as u32;
         if last {

@@ -26,12 +26,12 @@ pub struct Exti {
     rtsr: u32,
     ftsr: u32,
     pr: u32,
-    /// Levels of the 16 lines when last looked at.
+    /// Levels of the 16 lines at the last check.
     levels: u32,
 }
 
 impl Exti {
-    /// Looks at the pins again; edges selected by RTSR and FTSR become pending.
+    /// Checks the pins. Edges that RTSR and FTSR select become pending.
     pub fn pins_changed(&mut self, syscfg: &Syscfg, ctx: &mut Ctx<'_>) {
         let levels = line_levels(syscfg, ctx);
         let rose = levels & !self.levels;
@@ -41,12 +41,12 @@ impl Exti {
         self.drive_irqs(ctx);
     }
 
-    /// Another port on a line: its level is taken over without an edge.
+    /// Connects a line to another port, whose level is taken over without an edge.
     pub fn sources_changed(&mut self, syscfg: &Syscfg, ctx: &mut Ctx<'_>) {
         self.levels = line_levels(syscfg, ctx);
     }
 
-    /// Files a board error for each unmasked line on which no edge can ever come.
+    /// Reports a board error for each unmasked line on which no edge can ever occur.
     pub fn check_sources(&self, syscfg: &Syscfg, ctx: &mut Ctx<'_>) {
         let unmasked = self.imr & (self.rtsr | self.ftsr);
         for line in (0..16).filter(|line| unmasked >> line & 1 == 1) {

@@ -147,7 +147,7 @@ impl Peripheral for Gpio {
             reg::PUPDR => self.pupdr = whole,
             reg::IDR => {}
             reg::ODR => self.odr = whole & 0xFFFF,
-            // Set wins over reset where both are asked for.
+            // Set has priority over reset.
             reg::BSRR => self.odr = self.odr & !(whole >> 16) | whole & 0xFFFF,
             reg::AFRL => self.afr[0] = whole,
             reg::AFRH => self.afr[1] = whole,
@@ -165,7 +165,7 @@ impl Peripheral for Gpio {
     }
 }
 
-/// Levels of floating inputs at that time. They are a hash (splitmix64), so that a run can be repeated.
+/// Levels of floating inputs at that time. They are a hash (splitmix64), so a run can be repeated.
 fn noise(now: u64, port: u8) -> u64 {
     let mut bits = (now ^ u64::from(port)).wrapping_add(0x9E37_79B9_7F4A_7C15);
     bits = (bits ^ bits >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);

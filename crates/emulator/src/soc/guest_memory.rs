@@ -1,9 +1,9 @@
-//! SRAM, CCM and flash as DMA sees them.
+//! The memories as DMA accesses them: SRAM, CCM and flash.
 
-/// The CPU owns the memories; DMA borrows them.
+/// The memories, which the CPU owns and DMA borrows.
 pub trait GuestMemory {
-    /// False where no memory answers.
+    /// Returns false if no memory answers.
     fn read(&mut self, addr: u32, out: &mut [u8]) -> bool;
-    /// False where no memory answers.
+    /// Returns false if no memory answers.
     fn write(&mut self, addr: u32, data: &[u8]) -> bool;
 }

@@ -5,7 +5,7 @@ pub type Irq = u8;
 
 pub const IRQ_COUNT: usize = 82;
 
-/// Level of each request line. The NVIC latches rising edges and looks again when a handler returns.
+/// Level of each request line. The NVIC latches rising edges and checks the level again when a handler returns.
 #[derive(Debug, Default)]
 pub struct IrqLines {
     level: u128,

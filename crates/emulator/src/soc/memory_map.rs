@@ -66,17 +66,17 @@ pub enum Bus {
     Apb2,
 }
 
-/// One clock-enable bit; the reset bit stands at the same place of the reset register.
+/// A clock-enable bit. The reset bit has the same position in the reset register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ClockGate {
     pub bus: Bus,
     pub bit: u8,
-    /// `"APB1ENR.USART3EN"`.
+    /// Name of the bit, such as `"APB1ENR.USART3EN"`.
     pub name: &'static str,
 }
 
 impl ClockGate {
-    /// The peripheral behind the gate: `"USART3"`.
+    /// The peripheral that it clocks, such as `"USART3"`.
     pub fn peripheral(&self) -> &'static str {
         let bit = self.name.rsplit('.').next().unwrap_or(self.name);
         bit.strip_suffix("EN").unwrap_or(bit)
@@ -119,7 +119,7 @@ pub fn locate(addr: u32) -> Option<(Block, u32)> {
     Some((block, addr - base))
 }
 
-/// The clock gate of the registers at `offset` of `block`; none where the block is always clocked.
+/// The clock gate of the registers at `offset` of `block`; `None` if the block is always clocked.
 pub fn clock_gate(block: Block, offset: u32) -> Option<ClockGate> {
     let (bus, bit, name) = match block {
         Block::Timer(2) => (Bus::Apb1, 0, "APB1ENR.TIM2EN"),
@@ -165,7 +165,7 @@ const GPIO_ENABLES: [&str; 9] = [
     "AHB1ENR.GPIOIEN",
 ];
 
-/// The RCC reset bit of the registers at `offset` of `block`; none where only a system reset does it.
+/// The RCC reset bit of the registers at `offset` of `block`; `None` if only a system reset resets them.
 pub fn reset_bit(block: Block, offset: u32) -> Option<(Bus, u8)> {
     match block {
         // One bit for the three converters (RM0090 7.3.9).
@@ -174,10 +174,10 @@ pub fn reset_bit(block: Block, offset: u32) -> Option<(Bus, u8)> {
     }
 }
 
-/// RCC reset bits of CAN1 and CAN2, which are one block here.
+/// RCC reset bits of CAN1 and CAN2, which share one block in the model.
 pub const CAN_RESETS: [(Bus, u8); 2] = [(Bus::Apb1, 25), (Bus::Apb1, 26)];
 
-/// Name of an address at which no modelled block answers.
+/// Name of an address outside the modelled blocks.
 pub fn unmodelled_name(addr: u32) -> String {
     UNMODELLED
         .iter()
@@ -188,7 +188,7 @@ pub fn unmodelled_name(addr: u32) -> String {
         )
 }
 
-/// The blocks of the chip that nothing on the board uses, by address and size.
+/// Blocks of the chip that the board does not use, by address and size.
 const UNMODELLED: [(u32, u32, &str); 33] = [
     (0x4000_1000, 0x400, "TIM6"),
     (0x4000_1400, 0x400, "TIM7"),

@@ -8,17 +8,17 @@ use crate::{
     time::Ps,
 };
 
-/// An access the model does not implement: it stops the run, with this text and the PC's function.
+/// An access that the model does not implement. It stops the run with this text and the function at the PC.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{register}: {what} is not modelled")]
 pub struct Unmodelled {
-    /// `"USART3.GTPR"`.
+    /// The register, such as `"USART3.GTPR"`.
     pub register: String,
-    /// `"write of 0x00000100"`, `"bit SCEN"`.
+    /// The access, such as `"write of 0x00000100"` or `"bit SCEN"`.
     pub what: String,
 }
 
-/// Everything a peripheral may touch besides its own registers.
+/// Everything that a peripheral may access besides its own registers.
 pub(crate) struct Ctx<'a> {
     pub now: Ps,
     pub scheduler: &'a mut Scheduler,
@@ -40,13 +40,13 @@ pub(crate) trait Peripheral {
         value: u32,
         ctx: &mut Ctx<'_>,
     ) -> Result<(), Unmodelled>;
-    /// An event this block asked the scheduler for.
+    /// Handles an event that this block has scheduled.
     fn event(&mut self, tag: u32, ctx: &mut Ctx<'_>);
-    /// Registers and request lines back to their reset values (RCC reset bit or system reset). The scheduler keeps
-    /// what was asked before: the block must ignore such events when they come.
+    /// Sets registers and request lines to their reset values, after an RCC reset bit or a system reset. The scheduler
+    /// keeps events scheduled before, which the block must ignore.
     fn reset(&mut self, ctx: &mut Ctx<'_>);
-    /// RCC changed a frequency; `ctx.clocks` is the new tree. What ran until `ctx.now` ran at the old one.
+    /// Handles a change of frequency. `ctx.clocks` is the new tree; until `ctx.now` the old one was in force.
     fn clocks_changed(&mut self, _ctx: &mut Ctx<'_>) {}
-    /// The board was brought up to `ctx.now`: a wire into this block may have changed.
+    /// Called after the board has advanced to `ctx.now`. An input of this block may have changed.
     fn board_advanced(&mut self, _ctx: &mut Ctx<'_>) {}
 }

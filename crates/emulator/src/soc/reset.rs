@@ -1,11 +1,11 @@
-//! Why the chip starts again.
+//! Causes of a reset.
 
-/// Sets the flag of the same name in RCC_CSR (RM0090 7.3.21).
+/// Cause of a reset, with a flag in RCC_CSR (RM0090 7.3.21).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ResetCause {
     /// The supply came up.
     PowerOn,
-    /// SYSRESETREQ.
+    /// Software set SYSRESETREQ.
     Software,
     /// The independent watchdog ran out.
     IndependentWatchdog,

@@ -1,20 +1,20 @@
-//! Events in order of time; those of the same time in the order in which they were requested.
+//! Events in order of time. Events of the same time keep the order in which they were requested.
 
 use std::{cmp::Reverse, collections::BinaryHeap};
 
 use crate::time::Ps;
 
-/// Receiver of an event: one variant for each block that acts by itself.
+/// Receiver of an event, with a variant for each block that schedules events.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Target {
     Rcc,
     Timer(u8),
-    /// 1, 3 or 6.
+    /// USART1, USART3 or USART6, by number.
     Usart(u8),
     Spi1,
     I2c3,
     CanBus(u8),
-    /// Tag: which converter, from 0.
+    /// The tag is the index of the converter.
     Adc,
     Iwdg,
     Flash,
@@ -23,10 +23,10 @@ pub enum Target {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Event {
     pub at: Ps,
-    /// Order of asking, so that equal times stay deterministic.
+    /// Order of the requests, so that events of the same time are deterministic.
     pub order: u64,
     pub target: Target,
-    /// Meaning is the target's own; a target that cancels keeps a generation number in it and ignores old ones.
+    /// The target defines its meaning. A target that cancels events puts a generation number in it and ignores old ones.
     pub tag: u32,
 }
 

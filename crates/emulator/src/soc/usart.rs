@@ -32,7 +32,7 @@ const SENT: u32 = 2;
 pub struct Usart {
     number: u8,
     sr: u32,
-    /// Flags a read of SR has shown: reading DR next clears those.
+    /// Flags that were set when SR was read. The next read of DR clears them.
     shown: u32,
     dr: u16,
     brr: u32,
@@ -92,7 +92,7 @@ impl Usart {
         }
     }
 
-    /// The framing set in the registers; none while the baud generator stands still.
+    /// The framing in the registers; `None` while the baud generator is stopped.
     fn framing(&self, ctx: &Ctx<'_>) -> Option<Framing> {
         let clock_hz = if self.number == 3 {
             ctx.clocks.pclk1_hz
@@ -172,7 +172,7 @@ impl Usart {
         self.plan_reception(ctx);
     }
 
-    /// Says what the sender sends when the receiver is set to something else.
+    /// Reports the sender's format if the receiver is set to another one.
     fn report_mismatch(&mut self, framing: &Framing, flagged: bool, ctx: &mut Ctx<'_>) {
         let Some(sent) = self.receiver.last_char() else {
             return;
@@ -251,7 +251,7 @@ impl Usart {
             self.received_at = None;
         }
         if !was_receiving && self.receiving() {
-            // An enabled receiver counts a quiet line from here on.
+            // From here on the enabled receiver times the idle line.
             if let Some(framing) = self.framing(ctx) {
                 self.plan_idle(ctx.now + framing.char_time(), ctx);
             }

@@ -1,15 +1,15 @@
-//! The supply of the flash, and the step at which it is cut.
+//! The power supply of the flash, and the step at which it is cut.
 
 use super::error::FlashError;
 
-/// When during a step the power is cut.
+/// The moment within a step at which the power is cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
-    /// Before anything has happened.
+    /// The step has changed nothing yet.
     Before,
     /// The word or the sector is torn.
     Middle,
-    /// After all is done, but before the processor knows.
+    /// The step is complete, but the processor has not seen that.
     After,
 }
 

@@ -1,4 +1,4 @@
-//! Samples as they came → rows of a table.
+//! Received samples → rows of a table.
 
 use nalgebra::Vector3;
 use robot_app::tuning::{RecordedSample, RecordedSensor};
@@ -6,7 +6,7 @@ use robot_app::tuning::{RecordedSample, RecordedSensor};
 use super::RecordError;
 use crate::calibration::{accel::AccelCorrection, mag::MagCorrection};
 
-/// Units of the robot's time on the wire.
+/// Unit of the robot's time on the wire.
 const UNITS_A_SECOND: f64 = 10_000.0;
 
 const HEADING: &str = "\
@@ -30,9 +30,9 @@ enum Measured {
 /// Recorded samples in the order of their times.
 #[derive(Clone, Debug, Default)]
 pub struct Samples {
-    /// The low 16 bits of a time are those that came.
+    /// The low 16 bits of each time are those received.
     rows: Vec<(i64, Measured)>,
-    /// Time of the sample that came last.
+    /// Time of the sample that was received last.
     last_time: Option<i64>,
 }
 
@@ -54,12 +54,12 @@ impl Samples {
             RecordedSensor::Mag => Measured::Mag(value),
             RecordedSensor::Gyro => return self.add_gyro(time, value),
         };
-        // The magnetometer's time is the middle of its measurement: it may come after younger samples of the IMU.
+        // The magnetometer's time is the middle of its measurement: it may arrive after newer samples of the IMU.
         let place = self.rows.partition_point(|(other, _)| *other <= time);
         self.rows.insert(place, (time, measured));
     }
 
-    /// It follows the accelerometer's half of the same sample.
+    /// Adds the gyro's half of a sample, which follows the accelerometer's half.
     fn add_gyro(&mut self, time: i64, value: Vector) {
         let of_this_time = self.rows.iter_mut().rev();
         for (_, measured) in of_this_time.take_while(|(other, _)| *other >= time) {
@@ -69,7 +69,7 @@ impl Samples {
         }
     }
 
-    /// The nearest to the last one: sixteen bits of it came.
+    /// Unwraps a received time of 16 bits to the time nearest to the last one.
     fn unwrapped(&mut self, time: u16) -> i64 {
         let time = match self.last_time {
             None => time.into(),

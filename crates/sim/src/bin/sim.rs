@@ -66,7 +66,7 @@ struct Args {
     patch: Vec<RegisterPatch>,
 }
 
-/// Where the frames of a bus go beside the simulated robot.
+/// Where the frames of a bus go in addition to the simulated robot.
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum CanOutside {
     /// A pseudo-terminal.

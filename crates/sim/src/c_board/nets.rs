@@ -15,7 +15,7 @@ const PULLED_UP: [Pin; 5] = [
     Pin::new('G', 9),
 ];
 
-/// The radio's inverter (4.7 kΩ to 3.3 V) and both CAN transceivers: high while their lines rest.
+/// Outputs of the radio's inverter (4.7 kΩ to 3.3 V) and of both CAN transceivers, which are high while their lines idle.
 const RESTING_HIGH: [Pin; 3] = [Pin::new('C', 11), Pin::new('D', 0), Pin::new('B', 5)];
 
 /// Connects everything that gives a pin its level from power-on.
@@ -33,7 +33,7 @@ pub fn drives_input(pin: Pin) -> bool {
     matches!(pin, MAG_DRDY | USER_KEY)
 }
 
-/// Sets the levels that devices drive onto the chip's pins now.
+/// Sets the levels that devices now drive onto the chip's pins.
 pub fn drive_inputs(pins: &mut PinBank, world: &World) {
     pins.set_outside(MAG_DRDY, Outside::Drives(world.mag_drdy_pin()));
     let key = if world.user_key_pin() {

@@ -1,4 +1,4 @@
-//! Chip selects, the magnetometer's reset and what hangs on MOSFETs: levels and PWM waves on plain pins.
+//! Levels and PWM waves on plain pins: chip selects, the magnetometer's reset and the loads behind MOSFETs.
 
 use robot_emulator::{
     soc::{
@@ -71,7 +71,7 @@ pub(super) struct Levels {
     buzzer: Wave,
 }
 
-/// Reads the pins, and files errors of what cannot work.
+/// Reads the pins, and reports settings that cannot work.
 struct Reader<'a> {
     pins: &'a PinBank,
     waves: &'a dyn Waves,
@@ -89,7 +89,7 @@ pub(super) fn levels(outputs: &Outputs<'_>, errors: &mut BoardErrors, now: Ps) -
     reader.levels()
 }
 
-/// Passes what changed on the output pins to the devices.
+/// Passes changes of the output pins to the devices.
 pub(super) fn tell(world: &mut World, before: Option<Levels>, levels: Levels, now: Ps) {
     let changed = |field: fn(&Levels) -> bool| before.as_ref().map(field) != Some(field(&levels));
     if changed(|l| l.accel_selected) {
@@ -129,7 +129,7 @@ impl Reader<'_> {
         }
     }
 
-    /// A chip select that nothing drives yet counts as high: the sensor is not talked to before it is.
+    /// A chip select that nothing drives yet counts as high, because no transfer takes place before it is driven.
     fn select_high(&mut self, name: &str, pin: Pin) -> bool {
         let settings = self.pins.settings(pin);
         let lets_go = settings.mode == PinMode::Output && settings.open_drain && settings.high;
@@ -146,7 +146,7 @@ impl Reader<'_> {
         false
     }
 
-    /// Whether the IST8310 pulls its RSTN up itself no source says; a pin that lets go counts as high.
+    /// No source says whether the IST8310 pulls its RSTN up itself. An undriven pin counts as high.
     fn mag_reset_high(&mut self) -> bool {
         let settings = self.pins.settings(MAG_RESET);
         if settings.mode == PinMode::Output && settings.open_drain && settings.high {
@@ -158,7 +158,7 @@ impl Reader<'_> {
         self.pins.level(MAG_RESET).unwrap_or(true)
     }
 
-    /// The wave at a MOSFET's gate. Its pull-down keeps it off while the pin drives no high level.
+    /// The wave at a MOSFET's gate. The pull-down keeps the MOSFET off while the pin drives no high level.
     fn drive(&mut self, gate: &Gate) -> Wave {
         let settings = self.pins.settings(gate.pin);
         let by_timer = self.waves.wave(gate.timer, gate.channel).unwrap_or(OFF);

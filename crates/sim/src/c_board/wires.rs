@@ -89,7 +89,7 @@ impl FlashCells for CBoard {
 
 fn tear(flash: &mut FlashChip, step: impl FnOnce(&mut FlashChip) -> Result<(), FlashError>) {
     flash.cut_at(flash.steps(), Phase::Middle);
-    // The cut is what it fails with.
+    // The only error here is the power cut.
     let _ = step(flash);
     flash.power_up();
 }

@@ -1,4 +1,4 @@
-//! The firmware's diagnostics record, read out of guest memory by the layout in the image's debug information.
+//! The firmware's diagnostics record. It is read from guest memory by the layout in the image's debug information.
 
 use robot_emulator::core::{cpu::Cpu, image::Image};
 
@@ -16,7 +16,7 @@ const RECORD: &str = "DiagnosticsSnapshot";
 const ARMING_STATE: &str = "arming.state";
 const ARMED: f64 = 1.0;
 
-/// Names, layout and the last whole copy of the record. Empty for an image that has none.
+/// Names, layout and the last complete copy of the record. Empty for an image without such a record.
 #[derive(Debug, Default)]
 pub struct Diagnostics {
     address: u32,

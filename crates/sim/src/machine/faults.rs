@@ -127,7 +127,7 @@ impl Machine {
             Kind::ProbeBreakpoints if active => self.leave_breakpoints(),
             Kind::ProbeHalts(ms) if active => self.halt_core(ms * MS),
             Kind::ProbeAttached => self.pull_probe(),
-            // Nothing of it goes with the probe.
+            // These stay in the core when the probe is detached.
             Kind::ProbeBreakpoints | Kind::ProbeHalts(_) => {}
         }
         Ok(())

@@ -1,4 +1,4 @@
-//! The parameter sectors of the flash from outside: contents, wear, defects, and when the power goes.
+//! Access to the parameter sectors of the flash from outside: contents, wear, defects and power cuts.
 
 use robot_emulator::soc::flash::{CutPhase, PlannedCut};
 use robot_plant::flash_chip::{
@@ -28,7 +28,7 @@ impl Machine {
             .expect("the chip holds these sectors");
     }
 
-    /// Seeds whatever is random in the cells from now on.
+    /// Seeds the randomness of the cells from now on.
     pub fn set_flash_seed(&mut self, seed: u64) {
         self.with_flash(|flash| flash.reseed(seed));
     }
@@ -42,12 +42,12 @@ impl Machine {
         self.cpu.soc().flash().history().steps()
     }
 
-    /// Erases of sector 1, 2 or 3 that began.
+    /// Number of erases that began in sector 1, 2 or 3.
     pub fn flash_erases(&mut self, sector: u8) -> u32 {
         self.with_flash(|flash| flash.erases(sector))
     }
 
-    /// The board loses its power at that step and gets it back as [`Machine::set_off_time`] says.
+    /// Plans a loss of power at that step. It returns after the time set with [`Machine::set_off_time`].
     pub fn cut_power_at_flash_step(&mut self, step: usize, phase: Phase, seed: u64) {
         let phase = match phase {
             Phase::Before => CutPhase::Before,
@@ -66,14 +66,14 @@ impl Machine {
         self.with_flash(|flash| flash.set_erase_fault(sector, fault));
     }
 
-    /// Makes one bit of every word of sectors 1–3 stick at 1, or mends all of them.
+    /// Makes one bit of every word of sectors 1–3 stick at 1, or repairs all of them.
     pub(super) fn set_worn_words(&mut self, worn: bool) {
         self.with_flash(|flash| {
             if !worn {
                 return flash.mend_bits();
             }
             for address in parameter_words() {
-                // Another bit from word to word.
+                // The stuck bit differs from word to word.
                 let bit = (address / 4).wrapping_mul(0x9E37_79B9) >> 27;
                 flash.stick(StuckBit {
                     address: address + bit / 8,

@@ -35,7 +35,7 @@ impl DefmtLog {
             self.frame.push(byte);
             if byte == END_OF_FRAME {
                 let frame = std::mem::take(&mut self.frame);
-                // The encoder also ends what came before its first frame: nothing.
+                // The encoder also terminates the empty data before its first frame.
                 if frame.len() > 1 {
                     self.decode(&frame, at);
                 }

@@ -1,5 +1,5 @@
-//! The board's supply. The motors, the radio and the PC have supplies of their own and go on; the sensors on the board
-//! go with it.
+//! The board's supply. The motors, the radio and the PC have supplies of their own and keep running. The sensors lose their
+//! power together with the board.
 
 use robot_plant::time::{MS, Ps};
 
@@ -15,7 +15,7 @@ impl Machine {
         self.off_time = time;
     }
 
-    /// Takes the power away now; it comes back `off_time` later, and the image boots.
+    /// Cuts the power now. It returns `off_time` later, and the image boots.
     pub fn cut_power(&mut self, off_time: Ps) {
         self.power_off(self.cpu.now().saturating_add(off_time));
     }

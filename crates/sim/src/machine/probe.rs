@@ -1,4 +1,4 @@
-//! A debug probe at the board's SWD connector, and what it leaves behind when it is pulled.
+//! A debug probe at the board's SWD connector, and the settings that stay in the core when it is detached.
 
 use robot_plant::time::Ps;
 
@@ -11,7 +11,7 @@ const CAUGHT_BY_DEFAULT: u32 = DEMCR_VC_CORERESET | DEMCR_VC_HARDERR;
 const BROKEN_AT: [&str; 4] = ["HardFault", "DefaultHandler", "main", "_defmt_panic"];
 
 impl Machine {
-    /// Sets the core up as `probe-rs run` does before it resumes it; the image waits for the reader of its log.
+    /// Sets the core up as `probe-rs run` does before it resumes it. The image then waits for a reader of its log.
     pub fn attach_probe(&mut self) {
         self.cpu.debug().attach(CAUGHT_BY_DEFAULT);
         self.log_is_read = true;
@@ -20,14 +20,14 @@ impl Machine {
         }
     }
 
-    /// Nothing is taken back: on the STM32F4 probe-rs does not (docs/hardware.md#debug-probes), and only power-on
-    /// clears what it has set in the core. Nobody reads the log any more.
+    /// Detaches the probe. Its settings stay in the core until power-on, as probe-rs does not undo them on the STM32F4
+    /// (docs/hardware.md#debug-probes). Nobody reads the log any more.
     pub(super) fn pull_probe(&mut self) {
         self.log_is_read = false;
     }
 
-    /// Leaves the core as a killed session of OpenOCD and gdb does: with breakpoints, and with watchdogs that stop in
-    /// every halt.
+    /// Leaves the core in the state after a killed session of OpenOCD and gdb: with breakpoints, and with watchdogs that
+    /// stop in every halt.
     pub(super) fn leave_breakpoints(&mut self) {
         let addresses = BROKEN_AT.map(|name| self.image.symbol(name));
         let addresses: Vec<u32> = addresses.into_iter().flatten().collect();
@@ -37,7 +37,7 @@ impl Machine {
         debug.freeze_watchdogs();
     }
 
-    /// A debugger that sets its catch bits again as soon as they are cleared, until it is gone.
+    /// Simulates a debugger that sets its catch bits again whenever they are cleared.
     pub(super) fn insist_on_catches(&mut self, insists: bool) {
         let debug = self.cpu.debug();
         debug.attach(0);

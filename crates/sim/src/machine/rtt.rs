@@ -10,7 +10,7 @@ const UP_READ: u32 = 24 + 16;
 const UP_FLAGS: u32 = 24 + 20;
 /// The image waits for the reader when the ring is full, if it implements that.
 const BLOCK_IF_FULL: u32 = 2;
-/// More than any ring on a chip with 192 KiB of RAM; a control block that says more is not initialised yet.
+/// Larger than any ring on a chip with 192 KiB of RAM. A control block with a greater size is not initialised yet.
 const LARGEST_RING: u32 = 0x1_0000;
 
 /// Up channel 0 of the control block at `control_block`.
@@ -24,13 +24,13 @@ impl Rtt {
         Self { control_block }
     }
 
-    /// Asks the image to wait when the ring is full, as a reader does that wants to lose nothing. The next boot clears it.
+    /// Makes the image wait when the ring is full, as a reader does that must not lose data. The next boot clears this.
     pub fn ask_to_block(&self, cpu: &mut Cpu) {
         let flags = self.control_block + UP_FLAGS;
         cpu.memory().write(flags, &BLOCK_IF_FULL.to_le_bytes());
     }
 
-    /// Takes what the image has written, so that its ring never fills.
+    /// Takes the bytes that the image has written, so that its ring never fills.
     pub fn drain(&self, cpu: &mut Cpu, out: &mut Vec<u8>) {
         let [buffer, size, write, read] = [UP_BUFFER, UP_SIZE, UP_WRITE, UP_READ]
             .map(|offset| word(cpu, self.control_block + offset));

@@ -3,13 +3,13 @@
 use robot_emulator::core::stats::FunctionEntry;
 use robot_plant::time::{MS, Ps, US};
 
-/// The 12,000 instructions that a tick may take, in as many cycles.
+/// Longest duration of a tick: 12,000 instructions of one cycle each.
 const TICK_LASTS: Ps = 72 * US;
 /// The control tick's period.
 const TICK: Ps = MS;
 const JITTER_BIN: Ps = US / 2;
 
-/// How a measured quantity is distributed.
+/// Distribution of a measured quantity.
 #[derive(Clone, Debug, Default, serde::Serialize)]
 pub struct Distribution {
     pub mean: f64,
@@ -40,7 +40,7 @@ pub(super) struct TickStats {
 }
 
 impl TickStats {
-    /// Takes over the ticks since the last call; `entries` are all of the run.
+    /// Takes over the ticks since the last call. `entries` holds all ticks of the run.
     pub fn follow(&mut self, entries: &[FunctionEntry]) {
         for &tick in entries.get(self.ticks.len()..).unwrap_or_default() {
             self.add(tick);
@@ -66,12 +66,12 @@ impl TickStats {
         self.ticks.push(tick);
     }
 
-    /// Whether the firmware is armed, for the gaps that end from now on.
+    /// Sets whether the firmware is armed, for the gaps that end from now on.
     pub fn set_armed(&mut self, armed: bool) {
         self.armed = armed;
     }
 
-    /// The chip was reset after the last tick that [`Self::follow`] has seen.
+    /// Notes a reset of the chip after the last tick that [`Self::follow`] has seen.
     pub fn rebooted(&mut self) {
         self.armed = false;
         self.boots.push(self.ticks.len());
@@ -86,19 +86,19 @@ impl TickStats {
         self.ticks.len() as u64
     }
 
-    /// How many ticks there were, and when the last one was entered.
+    /// Number of ticks, and entry time of the last one.
     pub fn so_far(&self) -> Option<(u64, Ps)> {
         let last = self.ticks.last()?;
         Some((self.count(), last.at))
     }
 
-    /// When the last tick was entered that is over by `now`; one takes at most [`TICK_LASTS`].
+    /// Entry time of the last tick that has ended by `now`. A tick takes at most [`TICK_LASTS`].
     pub fn last_over(&self, now: Ps) -> Option<Ps> {
         let over = |tick: &&FunctionEntry| tick.at + TICK_LASTS <= now;
         self.ticks.iter().rev().find(over).map(|tick| tick.at)
     }
 
-    /// Periods in which no tick came.
+    /// Number of periods without a tick.
     pub fn missed(&self) -> u64 {
         self.missed
     }
@@ -136,7 +136,7 @@ impl TickStats {
         bins
     }
 
-    /// The ticks, cut where the runs begin that `starts` lists.
+    /// The ticks, split into the runs that begin at the indices in `starts`.
     fn runs<'a>(&'a self, starts: &'a [usize]) -> impl Iterator<Item = &'a [FunctionEntry]> {
         let ends = starts.iter().copied().chain([self.ticks.len()]);
         let starts = std::iter::once(0).chain(starts.iter().copied());
@@ -153,7 +153,7 @@ impl TickStats {
         for run in self.runs(&self.grids) {
             let run: Vec<&FunctionEntry> = run.iter().filter(|t| t.stood_still == 0).collect();
             let Some(first) = run.first() else { continue };
-            // Phase on the grid, half a period of head-room so that early ticks do not wrap.
+            // Phase on the grid, shifted by half a period so that early ticks do not wrap.
             let phase = |t: &&FunctionEntry| (t.at + TICK + TICK / 2 - first.at % TICK) % TICK;
             let earliest = run.iter().map(phase).min().unwrap_or(0);
             all.extend(run.iter().map(|tick| phase(tick) - earliest));

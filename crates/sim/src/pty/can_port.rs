@@ -14,9 +14,9 @@ use super::{
     terminal::Terminal,
 };
 
-/// Text that waits for the PC; at full bus load this is a quarter of a second.
+/// Limit of text that waits for the PC, a quarter of a second at full bus load.
 const WAITING: usize = 64 * 1024;
-/// Bytes taken from the PC in one visit: more than a bus carries in a millisecond.
+/// Bytes taken from the PC in one call, more than a bus carries in a millisecond.
 const READ: u64 = 4 * 1024;
 /// Time stamps run from 0 to 59,999.
 const STAMP_MS: Ps = 60_000;
@@ -30,7 +30,7 @@ pub struct PortStats {
     pub dropped: u64,
 }
 
-/// A LAWICEL adapter on a bus, at a PC's disposal.
+/// A LAWICEL adapter on a bus, which a PC can use.
 pub struct CanPort {
     bus: CanBusId,
     terminal: Terminal,
@@ -38,7 +38,7 @@ pub struct CanPort {
     arrived: Vec<u8>,
     waiting: String,
     flags: u8,
-    /// Frames dropped here, and by the adapter up to now.
+    /// Number of frames dropped here and by the adapter.
     dropped: u64,
     stats: PortStats,
 }
@@ -61,7 +61,7 @@ impl CanPort {
         self.bus
     }
 
-    /// The device a tool opens.
+    /// Path of the device that a tool opens.
     pub fn path(&self) -> &Path {
         self.terminal.path()
     }

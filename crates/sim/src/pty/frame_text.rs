@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use robot_plant::wire::CanFrame;
 
-/// The frame of a transmit command without its carriage return; `None` where it is none.
+/// Parses a transmit command without its carriage return. `None` if it is not one.
 pub fn parse(line: &[u8]) -> Option<CanFrame> {
     let (kind, rest) = line.split_first()?;
     let (extended, remote, digits, highest) = match kind {
@@ -35,7 +35,7 @@ pub fn parse(line: &[u8]) -> Option<CanFrame> {
     })
 }
 
-/// Appends a received frame with its carriage return; `stamp_ms` where time stamps are on.
+/// Appends a received frame with its carriage return, and with `stamp_ms` if time stamps are on.
 pub fn append(frame: &CanFrame, stamp_ms: Option<u16>, out: &mut String) {
     let kind = match (frame.extended, frame.remote) {
         (false, false) => 't',
@@ -56,7 +56,7 @@ pub fn append(frame: &CanFrame, stamp_ms: Option<u16>, out: &mut String) {
     out.push('\r');
 }
 
-/// Hexadecimal digits only: no sign, no blanks, at most eight.
+/// Parses one to eight hexadecimal digits, without sign or blanks.
 pub fn number(digits: &[u8]) -> Option<u32> {
     let all_digits = digits.iter().all(u8::is_ascii_hexdigit);
     let text = std::str::from_utf8(digits).ok().filter(|_| all_digits)?;

@@ -1,22 +1,22 @@
 //! The LAWICEL command set of CAN232 and CANUSB adapters, which slcan tools speak: lines of ASCII that end with CR.
 //!
-//! Left out, and answered as unknown: polling (A, P, X), dual filters (W), the serial line's own bit rate (U) and
-//! automatic start-up (Q).
+//! Polling (A, P, X), dual filters (W), the serial line's own bit rate (U) and automatic start-up (Q) are not supported
+//! and answered as unknown commands.
 
 use robot_plant::{can_adapter::AdapterMode, wire::CanFrame};
 
 use super::frame_text::{self, number};
 
 const OK: &str = "\r";
-/// BELL: unknown, malformed, or impossible in this state.
+/// BELL, the reply to a command that is unknown, malformed or impossible in this state.
 const ERROR: &str = "\x07";
-/// Bit rate of every emulated bus. An adapter at another one could only destroy frames, so it does not open.
+/// Bit rate of every emulated bus. An adapter with another bit rate would only destroy frames, so it does not open.
 const BUS_BPS: u32 = 1_000_000;
-/// `S0` … `S8`.
+/// Bit rates of the commands `S0` to `S8`.
 const BIT_RATES_BPS: [u32; 9] = [
     10_000, 20_000, 50_000, 100_000, 125_000, 250_000, 500_000, 800_000, BUS_BPS,
 ];
-/// The SJA1000 whose bit timing registers `s` takes runs on 16 MHz.
+/// Clock of the SJA1000, to which the bit timing registers in `s` refer.
 const SJA1000_HZ: u32 = 16_000_000;
 /// Longest line: an extended frame of eight bytes.
 const LONGEST: usize = 1 + 8 + 1 + 16;
@@ -24,7 +24,7 @@ const LONGEST: usize = 1 + 8 + 1 + 16;
 /// A request of the PC to the adapter. The reply depends on whether it can be done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Request {
-    /// The reply stands already.
+    /// A request whose reply is already known.
     Answered(&'static str),
     Switch(AdapterMode),
     Send(CanFrame),
@@ -52,7 +52,7 @@ impl Lawicel {
             }
             b'\n' => None,
             _ => {
-                // One byte too many is kept as the mark of a line too long.
+                // One byte too many is kept to mark a line that is too long.
                 if self.line.len() <= LONGEST {
                     self.line.push(byte);
                 }
@@ -80,7 +80,7 @@ impl Lawicel {
                 self.time_stamps = *digit == b'1';
                 Some(Request::Answered(OK))
             }
-            // The acceptance filter lets everything pass; a mask that would not is refused.
+            // The acceptance filter lets every frame pass. A mask that would not is refused.
             (b'M', code) if closed && code.len() == 8 => {
                 number(code).map(|_| Request::Answered(OK))
             }

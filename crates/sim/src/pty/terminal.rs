@@ -1,4 +1,4 @@
-//! The emulator's end of a pseudo-terminal; the other end is a serial device to a PC's tool.
+//! The emulator's end of a pseudo-terminal. A tool on the PC uses the other end as a serial device.
 
 use std::{
     ffi::OsStr,
@@ -27,7 +27,7 @@ pub struct Terminal {
 }
 
 impl Terminal {
-    /// A new pseudo-terminal in raw mode: no echo, no line editing, bytes as they are.
+    /// Creates a pseudo-terminal in raw mode: without echo, line editing or conversion of bytes.
     pub fn open() -> io::Result<Self> {
         let ours: OwnedFd = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
         grantpt(&ours)?;
@@ -50,12 +50,12 @@ impl Terminal {
         })
     }
 
-    /// The device a tool opens.
+    /// Path of the device that a tool opens.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Appends what has arrived, at most `most` bytes.
+    /// Appends the bytes that have arrived, at most `most`.
     pub fn read(&mut self, into: &mut Vec<u8>, most: u64) -> io::Result<()> {
         match (&self.ours).take(most).read_to_end(into) {
             Err(e) if e.kind() != ErrorKind::WouldBlock => Err(e),
@@ -63,7 +63,7 @@ impl Terminal {
         }
     }
 
-    /// Writes as much as the line takes now and returns how much that was.
+    /// Writes as many bytes as the line accepts now. Returns their number.
     pub fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match self.ours.write(bytes) {
             Err(e) if e.kind() == ErrorKind::WouldBlock => Ok(0),

@@ -1,4 +1,4 @@
-//! Quaternions as angles a reader can follow.
+//! Conversion of quaternions to angles that are easier to read.
 
 use super::super::trace::Traces;
 

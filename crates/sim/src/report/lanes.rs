@@ -1,4 +1,4 @@
-//! Switches, states and flags over time: one lane each, filled while on.
+//! Switches, states and flags over time. Each has a lane, which is filled while it is on.
 
 use std::ops::Range;
 
@@ -13,7 +13,7 @@ pub struct Lane {
 }
 
 impl Lane {
-    /// A lane that is on where `is_on` says so of the value.
+    /// A lane that is on while `is_on` holds for the value.
     pub fn new(
         label: impl Into<String>,
         colour: RGBColor,

@@ -1,4 +1,4 @@
-//! Which plots a report shows.
+//! The plots of a report.
 
 mod motion;
 
@@ -25,7 +25,7 @@ const SCORED_PHASE: &str = "truth.trial.mov";
 /// Width of a bin of the release jitter histogram (`Stats::jitter_bins`).
 const JITTER_BIN_US: f64 = 0.5;
 
-/// Without these nothing moves.
+/// Signals without which nothing moves.
 const DRIVING: [&str; 5] = [
     "radio.vx",
     "radio.wz",
@@ -66,7 +66,7 @@ pub fn all(report: &Report) -> Result<Vec<Figure>, ChartError> {
 struct Plots<'a> {
     report: &'a Report<'a>,
     marks: Vec<f64>,
-    /// When a recording was in the phase that counts.
+    /// The span of time in which a recording was in its scored phase.
     scored: Vec<Range<f64>>,
 }
 
@@ -80,7 +80,7 @@ impl Plots<'_> {
         Ok(figures)
     }
 
-    /// A recording is played for the attitude's sake, and most often nobody drives meanwhile.
+    /// The plots of a played recording: first the attitude, and the drive only if anything moves.
     fn replayed(&self) -> Result<Vec<Option<Figure>>, ChartError> {
         let mut figures = vec![self.attitude_error()?, self.attitude()?];
         if DRIVING.iter().any(|signal| self.happens(signal)) {
@@ -103,7 +103,7 @@ impl Plots<'_> {
         ])
     }
 
-    /// True if a signal is ever other than 0.
+    /// Whether a signal is ever other than 0.
     fn happens(&self, signal: &str) -> bool {
         let values = self.report.traces.signal(signal).unwrap_or_default();
         values.into_iter().flatten().any(|value| value != 0.0)

@@ -1,18 +1,18 @@
-//! What a signal does in the course of a run.
+//! The course of a signal over a run.
 
 use std::ops::Range;
 
-/// Instants in s, and the value from each on.
+/// Instants in s, each with the value that holds from then on.
 pub type Points = [(f64, Option<f64>)];
 
-/// By how much a count has risen since the point before.
+/// The increase of a count since the previous point.
 pub fn rises(counts: &Points) -> Vec<(f64, Option<f64>)> {
     let pairs = counts.windows(2);
     let rise = |pair: &[(f64, Option<f64>)]| Some(pair[1].1? - pair[0].1?);
     pairs.map(|pair| (pair[1].0, rise(pair))).collect()
 }
 
-/// When a signal is other than 0.
+/// The spans of time in which a signal is not 0.
 pub fn spans(points: &Points) -> Vec<Range<f64>> {
     let mut spans: Vec<Range<f64>> = Vec::new();
     let mut open = false;
@@ -28,7 +28,7 @@ pub fn spans(points: &Points) -> Vec<Range<f64>> {
     spans
 }
 
-/// The whole numbers a signal takes, in order.
+/// The whole numbers that a signal takes, in ascending order.
 pub fn distinct(points: &Points) -> Vec<u64> {
     let values = points.iter().filter_map(|p| p.1);
     let whole: std::collections::BTreeSet<u64> = values.map(|v| v as u64).collect();

@@ -1,4 +1,4 @@
-//! The runner on a board made of a few lines: a wheel current that follows the stick, and nothing else.
+//! The runner with a minimal board, whose wheel current follows the stick.
 
 use robot_plant::time::{MS, US};
 
@@ -70,7 +70,7 @@ impl Simulation for FakeBoard {
         vec!["diag.safety.flags".into()]
     }
 
-    /// Up from 2 ms, hung from 10 ms on.
+    /// A board that runs from 2 ms on and hangs from 10 ms on.
     fn sample_diag(&mut self, out: &mut Vec<f64>) -> bool {
         out.clear();
         out.push(if self.now < 5 * MS { 2.0 } else { 4.0 });

@@ -33,7 +33,7 @@ pub struct SettingsCheck {
     saved: SavedSettings,
     boots: usize,
     booted: Ps,
-    /// Until when cells stick, as far as is known.
+    /// Latest time at which cells may still be stuck.
     worn_until: Ps,
 }
 

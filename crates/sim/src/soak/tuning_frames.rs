@@ -8,7 +8,8 @@ use super::rng::Rng;
 pub const WRITE: u32 = 0x7A0;
 pub const READ: u32 = 0x7A1;
 pub const REPLY: u32 = 0x7A2;
-/// First bytes. The simulation takes nothing from the firmware but its image: a test compares them with its table.
+/// Opcodes, the first byte of a frame. The simulation shares no code with the firmware, so a test compares these with the
+/// firmware's table.
 pub const WRITE_GEOMETRY: u8 = 0x10;
 pub const READ_GEOMETRY: u8 = 0x11;
 pub const WRITE_SETTING: u8 = 0x20;
@@ -16,7 +17,7 @@ pub const READ_SETTING: u8 = 0x21;
 pub const READ_STORE: u8 = 0x31;
 pub const BRING_UP: u8 = 0x40;
 
-/// Group and index.
+/// A setting by group and index.
 pub type Setting = (u8, u8);
 
 /// The settings that the soak changes, with their limits.
@@ -29,7 +30,7 @@ pub const RANGES: [(Setting, f64, f64); 6] = [
     ((7, 2), 0.005, 0.02),
 ];
 
-/// The values that these groups begin with: the emulated robot's own, and no defaults where the soak changes them.
+/// The initial values of these groups: those of the emulated robot, but no default where the soak changes a setting.
 pub const INITIAL_VALUES: [(u8, &[f32]); 4] = [
     (1, &[0.06, 0.43, 3591.0 / 187.0, 1.0, -1.0]),
     (2, &[1.5, 3.75, 60_000.0, 8_000.0, 1_000.0, 50_000.0]),
@@ -37,7 +38,7 @@ pub const INITIAL_VALUES: [(u8, &[f32]); 4] = [
     (7, &[40.0, 0.25, 0.015, 1.0]),
 ];
 
-/// Bits of the `f32` that the setting begins with.
+/// Bits of the initial value, an `f32`.
 pub fn initial((group, index): Setting) -> Option<u32> {
     let (_, values) = INITIAL_VALUES.iter().find(|(number, _)| *number == group)?;
     values.get(usize::from(index)).map(|value| value.to_bits())

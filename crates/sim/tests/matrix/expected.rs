@@ -240,7 +240,7 @@ fn sensors() -> Vec<Row> {
     let dead = flags(&["imu-stale"], &["imu-errors", "estimate-invalid"]);
     let wrong = || flags(&["imu-stale", "imu-errors"], &["estimate-invalid", "tilt"]);
     vec![
-        // After a gap of two seconds up is found anew, which takes half a second of rest.
+        // After a gap of two seconds the vertical must be found again, which takes half a second of rest.
         global("imu-gone", 35.0, dead).back_within_ms(1_600.0),
         global("imu-frozen", 100.0, wrong()).latched(),
         global("imu-extreme", 100.0, wrong()).latched(),

@@ -32,7 +32,7 @@ impl std::fmt::Display for Phase {
 /// (1 = enabled). Times since the fault started; nothing before it.
 #[derive(Clone, Debug, Default)]
 pub struct Wire {
-    /// At the instant of the fault.
+    /// Value at the instant of the fault.
     pub before: f64,
     pub changes: Vec<(Ps, f64)>,
 }
@@ -48,7 +48,7 @@ impl Wire {
         earlier.map_or(self.before, |(_, value)| *value)
     }
 
-    /// From when on it stays zero until `end`; `None` where it does not.
+    /// Time from which the value stays zero until `end`, if it does.
     pub fn zero_from(&self, end: Ps) -> Option<Ps> {
         if self.at(end) != 0.0 {
             return None;

@@ -117,8 +117,8 @@ impl Run {
         motor && event.value != 0.0
     }
 
-    /// From when on each bus has zero torque, looked for from `from` to `to`: after the last frame with torque, every
-    /// wheel has got its zero current and every joint its disable frame.
+    /// Time from which each bus has zero torque, between `from` and `to`. By then, after the last frame with torque, every
+    /// wheel has received its zero current and every joint its disable frame.
     fn zero_from(&self, from: Ps, to: Ps) -> [Option<Ps>; 2] {
         let seen = || self.events.iter().filter(|e| (from..to).contains(&e.at));
         let last_torque = seen().filter(|e| self.is_torque(e)).map(|e| e.at).max();

@@ -62,7 +62,7 @@ fn to_set((group, index): Setting, value: f32) -> [u8; 8] {
 }
 
 impl Robot {
-    /// At power-on, with these contents of the parameter sectors.
+    /// A robot at power-on with these contents of the parameter sectors.
     pub fn with_flash(make: Make, flash: &Image) -> Self {
         let parts = match make {
             Make::Dm4310 => "",

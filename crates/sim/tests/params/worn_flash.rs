@@ -164,7 +164,7 @@ fn a_slot_that_cannot_be_written_is_skipped() {
     assert!(took < 600 * MS, "{took}");
 }
 
-/// Nothing can be written at first, and later it can again.
+/// The flash cannot be written at first, and later it can.
 #[test]
 fn worn_out_flash_is_reported_and_stops_nothing() {
     let mut robot = Robot::with_flash(Make::Dm4310, &image(Make::Dm4310, 50));

@@ -27,9 +27,9 @@ use robotctl::{
 use tool::Tool;
 use trial::SensorErrors;
 
-/// Nearly all of the trial.
+/// Length of the recording, nearly the whole trial.
 const RECORDED_S: u16 = 24;
-/// In time of the computer, on which the board may run slowly.
+/// Time-outs in the computer's time, as the board may run slowly on it.
 const PATIENCE: RecordPatience = RecordPatience {
     look: Duration::from_millis(50),
     silence: Duration::from_secs(60),

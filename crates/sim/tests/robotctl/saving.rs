@@ -13,7 +13,7 @@ use robotctl::{
 
 use crate::{support, tool::Tool};
 
-/// In time of the computer, on which the board may run slowly.
+/// Time-outs in the computer's time, as the board may run slowly on it.
 const PATIENCE: SavePatience = SavePatience {
     pause: Duration::from_millis(2),
     looks: 20_000,

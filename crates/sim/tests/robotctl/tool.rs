@@ -16,12 +16,12 @@ use robotctl::{
     tuning::{Patience, TuningClient},
 };
 
-/// The board has booted and receives frames by then.
+/// By this time the board has booted and receives frames.
 const START: Ps = 200 * MS;
-/// The board runs faster than real time: it waits this long each millisecond while the tool works, so that the tool is
-/// done long before the run ends.
+/// Pause of the board in each simulated millisecond while the tool works. The board runs faster than real time, and the tool
+/// must end long before the run does.
 const LET_THE_TOOL_WORK: Duration = Duration::from_micros(500);
-/// On a busy computer a thread may rest for long.
+/// The time-out is long because a thread may be suspended for long on a busy computer.
 const PATIENCE: Patience = Patience {
     each_try: Duration::from_secs(20),
     tries: 2,
@@ -29,7 +29,7 @@ const PATIENCE: Patience = Patience {
 
 type Work<T> = Box<dyn FnOnce(&mut TuningClient) -> anyhow::Result<T> + Send>;
 
-/// What a user does with the tool, once.
+/// A user's single action with the tool.
 pub struct Tool<T> {
     work: Option<Work<T>>,
     device: Option<CanDevice>,
@@ -45,7 +45,7 @@ impl<T: Send + 'static> Tool<T> {
         }
     }
 
-    /// Of the work, which must have ended before the run did.
+    /// Result of the work, which must have ended before the run.
     pub fn result(self) -> anyhow::Result<T> {
         let running = self.running.expect("the run was long enough to start it");
         assert!(running.is_finished(), "the run ended before the tool");

@@ -1,4 +1,4 @@
-//! Register sequences of the reference manual, played against the whole chip without its CPU.
+//! Register sequences of the reference manual, performed on the whole chip without its CPU.
 
 mod clocks;
 mod dma;

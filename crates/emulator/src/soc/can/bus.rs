@@ -14,19 +14,19 @@ use crate::{
     wire::{CanFrame, CanPort},
 };
 
-/// Bit time of the nodes.
+/// Bit time of the nodes on the board.
 const NODE_BIT: Ps = US;
 const INTERMISSION_BITS: Ps = 3;
 /// Error flag and error delimiter.
 const ERROR_FRAME_BITS: Ps = 6 + 8;
-/// A passive transmitter lets others go first (ISO 11898-1, suspend transmission).
+/// Wait of an error-passive transmitter, which lets others send first (ISO 11898-1, suspend transmission).
 const SUSPEND_BITS: Ps = 8;
 /// Bits after the ACK slot: its delimiter and end of frame.
 const AFTER_ACK_BITS: Ps = 8;
-/// A receiver at another bit rate sees a stuff error within the first bits of the identifier.
+/// Bits after which a receiver at another bit rate detects a stuff error, within the first bits of the identifier.
 const MISREAD_BITS: Ps = 12;
 
-/// Counted on the wire since power-on.
+/// Counters of the bus since power-on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CanBusStats {
     /// Frames the board sent.
@@ -77,7 +77,7 @@ pub(crate) struct CanBus {
     id: CanPort,
     phase: Phase,
     phase_ends_at: Ps,
-    /// The board, having failed as a passive transmitter, waits until then.
+    /// Time until which the board waits, after it failed as an error-passive transmitter.
     board_suspended_until: Ps,
     pub stats: CanBusStats,
 }
@@ -97,7 +97,7 @@ impl CanBus {
         matches!(self.phase, Phase::Frame(_))
     }
 
-    /// The board's controller was reset: what it was sending ends as an error.
+    /// Handles a reset of the board's controller. A frame that it was sending ends as an error.
     pub fn board_reset(&mut self) {
         if let Phase::Frame(transmission) = &mut self.phase
             && matches!(transmission.sender, Sender::Board { .. })
@@ -106,7 +106,7 @@ impl CanBus {
         }
     }
 
-    /// Starts what waits for an idle bus. Returns when to come back.
+    /// Starts a frame that waits for an idle bus. Returns the time of the next call.
     pub fn start_if_idle(&mut self, board: &mut Controller, ctx: &mut Ctx<'_>) -> Option<Ps> {
         if !matches!(self.phase, Phase::Idle) {
             return None;
@@ -145,7 +145,7 @@ impl CanBus {
         Some(self.phase_lasts(bits_until_end(&transmission) * bit, ctx))
     }
 
-    /// The phase's end, if it has come. Returns when to come back.
+    /// Ends the phase if its time is over. Returns the time of the next call.
     pub fn phase_ended(
         &mut self,
         board: &mut Controller,
@@ -254,7 +254,7 @@ impl CanBus {
         }
     }
 
-    /// A bus shorted or a sender gone since the start of frame: nobody got the frame whole.
+    /// Applies faults since the start of frame: if the bus was shorted or the sender disappeared, nobody receives the frame.
     fn apply_faults_meanwhile(&self, transmission: &mut Transmission, ctx: &Ctx<'_>) {
         let sender_gone = match transmission.sender {
             Sender::Board { .. } => false,
@@ -325,7 +325,7 @@ impl CanBus {
         }
     }
 
-    /// A start of frame wakes a sleeping controller that asked for it.
+    /// Wakes a sleeping controller at a start of frame, if it has enabled that.
     fn wake(&self, board: &mut Controller) {
         if board.mode == Mode::Sleep && board.mcr & mcr::AWUM != 0 {
             board.mcr &= !mcr::SLEEP;
@@ -333,7 +333,7 @@ impl CanBus {
         }
     }
 
-    /// A frame holds eleven recessive bits only at its end: whoever counts them counts on from there.
+    /// Delays a controller that waits for eleven recessive bits until the end of the frame, the only place with that many.
     fn delay_quiet_bus(&self, transmission: &Transmission, quiet_at: Ps, board: &mut Controller) {
         if let Mode::Synchronising(until) = &mut board.mode
             && *until != Ps::MAX
@@ -347,7 +347,7 @@ impl CanBus {
     }
 }
 
-/// From start of frame to the end of end-of-frame or of the error frame, in the sender's bits.
+/// Duration from start of frame to the end of end-of-frame or of the error frame, in bits of the sender.
 fn bits_until_end(transmission: &Transmission) -> Ps {
     let whole = Ps::from(frame_bits::length(&transmission.frame));
     match transmission.outcome {

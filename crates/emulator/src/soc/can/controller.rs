@@ -1,4 +1,4 @@
-//! One bxCAN controller: modes, interrupts, and what the bus tells it (RM0090 32.4 to 32.9).
+//! One bxCAN controller: modes, interrupts, and its reaction to the bus (RM0090 32.4 to 32.9).
 
 use super::{
     bit_timing::BitTiming,
@@ -74,7 +74,7 @@ pub struct Controller {
     pub errors: ErrorCounters,
     pub mailboxes: Mailboxes,
     pub fifos: [Fifo; 2],
-    /// When 128 times eleven recessive bits will have passed; none while not recovering.
+    /// Time at which 128 times eleven recessive bits will have passed; `None` while not recovering.
     pub recovers_at: Option<Ps>,
 }
 
@@ -119,12 +119,12 @@ impl Controller {
         self.mcr & mcr::TXFP != 0
     }
 
-    /// Receives every frame of the bus, and sends unless silent.
+    /// Whether it receives every frame of the bus, and sends unless silent.
     pub fn on_bus(&self) -> bool {
         self.mode == Mode::Normal && !self.errors.is_bus_off()
     }
 
-    /// The frame it would put on an idle bus now.
+    /// The frame that it would send on an idle bus now.
     pub fn pending(&self) -> Option<(usize, CanFrame)> {
         if !self.on_bus() || self.timing.silent() {
             return None;
@@ -142,8 +142,8 @@ impl Controller {
         routing::check([Signal::Can1Rx, Signal::Can2Rx][self.index], ctx)
     }
 
-    /// Moves towards the mode INRQ and SLEEP ask for; a frame it takes part in goes on to its end first.
-    /// True where it now begins to wait for a quiet bus.
+    /// Changes towards the mode that INRQ and SLEEP request, after the end of a frame in which it takes part. Returns
+    /// true if it now begins to wait for a quiet bus.
     pub fn follow_requests(&mut self, in_frame: bool, ctx: &mut Ctx<'_>) -> bool {
         if in_frame && self.mode == Mode::Normal {
             return false;
@@ -182,7 +182,7 @@ impl Controller {
         self.mode = Mode::Synchronising(until);
     }
 
-    /// Eleven recessive bits have passed.
+    /// Handles the end of eleven recessive bits.
     pub fn synchronised(&mut self, ctx: &mut Ctx<'_>) {
         self.mode = Mode::Normal;
         if self.errors.is_bus_off() {
@@ -195,7 +195,7 @@ impl Controller {
             .get_or_insert(ctx.now + 128 * 11 * self.bit(ctx));
     }
 
-    /// An attempt to send mailbox `index` ended.
+    /// Handles the end of an attempt to send mailbox `index`.
     pub fn attempt_ended(
         &mut self,
         index: usize,
@@ -229,7 +229,7 @@ impl Controller {
         self.errors_changed(before, true, ctx);
     }
 
-    /// A frame of another node arrived whole; `started` is its start of frame.
+    /// Receives a complete frame of another node. `started` is the time of its start of frame.
     pub fn receive(&mut self, frame: &CanFrame, started: Ps, filters: &Filters, ctx: &mut Ctx<'_>) {
         self.errors.received();
         let Some(accepted) = filters.accept(self.index, frame) else {
@@ -260,7 +260,7 @@ impl Controller {
         }
     }
 
-    /// Ends a bus-off whose recovery time has come.
+    /// Ends bus-off when the recovery time is over.
     pub fn recover_if_due(&mut self, now: Ps) {
         if self.recovers_at.is_some_and(|at| at <= now) {
             self.recovers_at = None;

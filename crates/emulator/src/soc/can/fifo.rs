@@ -10,7 +10,7 @@ mod rfr {
     pub const RFOM: u32 = 1 << 5;
 }
 
-/// RIxR, RDTxR, RDLxR, RDHxR.
+/// A frame in the registers RIxR, RDTxR, RDLxR and RDHxR.
 pub type Received = [u32; 4];
 
 #[derive(Debug, Default)]
@@ -23,7 +23,7 @@ pub struct Fifo {
 }
 
 impl Fifo {
-    /// Stores a frame; into a full FIFO it replaces the newest one, or is lost where `locked` (RFLM).
+    /// Stores a frame. In a full FIFO it replaces the newest one, or is lost if `locked` (RFLM).
     pub fn push(&mut self, frame: Received, locked: bool) {
         if self.frames.len() < DEPTH {
             self.frames.push_back(frame);

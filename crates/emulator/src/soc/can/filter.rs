@@ -13,11 +13,11 @@ const ALL_BANKS: u32 = 0x0FFF_FFFF;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Accepted {
     pub fifo: usize,
-    /// Filter match index: numbered per FIFO over all of the controller's banks, active or not.
+    /// Filter match index, numbered per FIFO over all of the controller's banks, whether active or not.
     pub index: u8,
 }
 
-/// FMR to FxRx.
+/// The filter registers, FMR to FxRx.
 #[derive(Debug)]
 pub struct Filters {
     initialising: bool,
@@ -101,7 +101,7 @@ impl Filters {
         Some(())
     }
 
-    /// The FIFO for `frame` at controller 0 (CAN1) or 1; none where no filter lets it in.
+    /// The FIFO for `frame` at controller 0 (CAN1) or 1 (CAN2); `None` if no filter accepts the frame.
     pub fn accept(&self, controller: usize, frame: &CanFrame) -> Option<Accepted> {
         if self.initialising {
             return None;
@@ -175,13 +175,13 @@ fn exact_32(id: u32) -> Filter {
     Filter { id, mask: !1 }
 }
 
-/// STDID, RTR, IDE, EXID bits 17 to 15 of a 16-bit filter at their places in the 32-bit layout.
+/// Converts a 16-bit filter to the 32-bit layout: STDID, RTR, IDE and EXID bits 17 to 15.
 fn spread_16(half: u16) -> u32 {
     let half = u32::from(half);
     half >> 5 << 21 | (half >> 4 & 1) << 1 | (half >> 3 & 1) << 2 | (half & 7) << 18
 }
 
-/// The identifier as CAN_RIxR shows it.
+/// The identifier in the layout of CAN_RIxR.
 pub fn register_layout(frame: &CanFrame) -> u32 {
     let identifier = if frame.extended {
         frame.id << 3 | 4

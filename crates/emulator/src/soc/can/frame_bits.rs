@@ -2,7 +2,7 @@
 
 use crate::wire::CanFrame;
 
-/// CRC delimiter, ACK slot, ACK delimiter and the seven bits of end of frame: never stuffed.
+/// CRC delimiter, ACK slot, ACK delimiter and the seven bits of end of frame, which are never stuffed.
 const TAIL_BITS: u32 = 10;
 /// x¹⁵ + x¹⁴ + x¹⁰ + x⁸ + x⁷ + x⁴ + x³ + 1
 const CRC15: u16 = 0x4599;
@@ -16,7 +16,7 @@ pub fn length(frame: &CanFrame) -> u32 {
     stuffer.bits + TAIL_BITS
 }
 
-/// Lower wins the bus: the arbitration field as it appears bit by bit, dominant = 0.
+/// The arbitration field as it appears bit by bit, dominant = 0. The lower value wins the bus.
 pub fn arbitration_key(frame: &CanFrame) -> u32 {
     let rtr = u32::from(frame.remote);
     if frame.extended {

@@ -25,10 +25,10 @@ pub enum Attempt {
 struct Mailbox {
     /// TIxR, TDTxR, TDLxR, TDHxR.
     registers: [u32; 4],
-    /// RQCP, TXOK, ALST, TERR of the last request.
+    /// RQCP, TXOK, ALST and TERR of the last request.
     result: u32,
     abort_requested: bool,
-    /// Order of asking, for TXFP.
+    /// Order of the requests, for TXFP.
     asked: u64,
 }
 
@@ -79,7 +79,7 @@ impl Mailboxes {
         Some((index, self.boxes[index].frame()))
     }
 
-    /// Mailbox `index` won the bus: from here on only the bus can finish it.
+    /// Notes that mailbox `index` won the bus. From here on only the bus can end its transmission.
     pub fn started(&mut self, index: usize) {
         self.on_bus = Some(index);
     }
@@ -129,7 +129,7 @@ impl Mailboxes {
         }
     }
 
-    /// RQCP clears its mailbox's results, ABRQ gives a pending request up.
+    /// Writes CAN_TSR: RQCP clears its mailbox's results, and ABRQ aborts a pending request.
     pub fn write_status(&mut self, value: u32) {
         for (i, mailbox) in self.boxes.iter_mut().enumerate() {
             let bits = value >> (8 * i);
@@ -151,7 +151,7 @@ impl Mailboxes {
         self.boxes[index].registers[word]
     }
 
-    /// False where the mailbox is not empty: silicon ignores such a write.
+    /// Returns false if the mailbox is not empty, in which case silicon ignores the write.
     pub fn write(&mut self, index: usize, word: usize, value: u32) -> bool {
         let mailbox = &mut self.boxes[index];
         if mailbox.pending() {

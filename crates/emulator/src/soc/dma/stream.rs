@@ -32,7 +32,7 @@ const DMDIS: u32 = 1 << 2;
 /// FIFO empty.
 const FS_EMPTY: u32 = 0b100 << 3;
 
-/// Status flags as they lie in a stream's group of LISR/HISR.
+/// Status flags at their positions in a stream's group of LISR or HISR.
 pub mod flag {
     pub const TEIF: u32 = 1 << 3;
     pub const HTIF: u32 = 1 << 4;
@@ -51,7 +51,7 @@ pub struct Item {
     pub direction: Direction,
     pub peripheral_addr: u32,
     pub memory_addr: u32,
-    /// 1, 2 or 4 bytes.
+    /// Size: 1, 2 or 4 bytes.
     pub size: u8,
 }
 
@@ -121,7 +121,7 @@ impl Stream {
         self.ndtr
     }
 
-    /// True where the write enabled the stream; an error names what is not modelled.
+    /// Returns true if the write enabled the stream, or an error that names what is not modelled.
     pub fn set_register(&mut self, offset: u32, value: u32) -> Result<bool, &'static str> {
         match offset {
             reg::CR => return self.write_cr(value),
@@ -166,7 +166,7 @@ impl Stream {
         match unusual.iter().find(|(bit, _)| self.cr & bit != 0) {
             Some((_, what)) => Err(what),
             None if self.cr & DIR > 1 << 6 => Err("memory-to-memory transfer"),
-            // The FIFO would hold items back until its threshold.
+            // The FIFO would keep items until its threshold is reached.
             None if self.fcr & DMDIS != 0 => Err("FIFO mode"),
             None => Ok(()),
         }
@@ -176,7 +176,7 @@ impl Stream {
         1 << (self.cr >> 11 & 3).min(2)
     }
 
-    /// The item that the next request moves. In direct mode MSIZE counts for nothing: both sides move PSIZE (RM0090 10.3.12).
+    /// The item that the next request moves. In direct mode MSIZE is ignored, and both sides use PSIZE (RM0090 10.3.12).
     pub fn next_item(&self) -> Item {
         let size = self.item_size();
         let done = (self.reload - self.ndtr) * u32::from(size);
@@ -193,7 +193,7 @@ impl Stream {
         }
     }
 
-    /// One item has been moved.
+    /// Notes that one item was moved.
     pub fn item_done(&mut self) {
         self.ndtr -= 1;
         if self.ndtr == self.reload / 2 {
@@ -209,13 +209,13 @@ impl Stream {
         }
     }
 
-    /// A bus error ends the transfer.
+    /// Ends the transfer after a bus error.
     pub fn fail(&mut self) {
         self.flags |= flag::TEIF;
         self.cr &= !EN;
     }
 
-    /// True while a request finds something left to move.
+    /// Whether the stream can serve a request.
     pub fn ready(&self) -> bool {
         self.enabled() && self.ndtr > 0
     }

@@ -1,4 +1,4 @@
-//! Notices request lines that wait for a stream which was never set up for them.
+//! Notices request lines that wait for a stream that was never set up for them.
 
 use super::{
     Dma,
@@ -9,13 +9,13 @@ use crate::{
     time::{MS, Ps},
 };
 
-/// Drivers raise a request shortly before they enable its stream; waiting longer is a mistake.
+/// Drivers may raise a request shortly before they enable its stream. A longer wait is an error.
 const PATIENCE: Ps = MS;
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Waiting {
     since: Option<Ps>,
-    /// A stream has served this line since reset: one that ended leaves the line high, and rightly so.
+    /// Whether a stream has served this line since reset. A stream that has ended legitimately leaves the line high.
     served_before: bool,
 }
 
@@ -32,7 +32,7 @@ impl Unserved {
         };
     }
 
-    /// Looks at the lines that are high now although every ready stream has been served.
+    /// Checks the lines that are still high after every ready stream has been served.
     pub fn check(
         &mut self,
         requests: &DmaRequests,

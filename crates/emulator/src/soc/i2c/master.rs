@@ -11,7 +11,7 @@ use crate::{
 
 /// Bits of one byte with its acknowledge.
 const BYTE_BITS: u64 = 9;
-/// How often a held bus is looked at again, in bit times.
+/// Interval at which a held bus is checked again, in bit times.
 const HELD_BUS_LOOKS: u64 = 50;
 
 /// State of the bus.
@@ -20,18 +20,18 @@ pub enum Phase {
     /// No transfer of this master is under way.
     #[default]
     Idle,
-    /// START under way, or waiting for a held bus.
+    /// START is in progress, or waits for a held bus.
     Starting {
         repeated: bool,
     },
-    /// SB: the address byte is awaited, SCL low.
+    /// SB is set: the address byte is awaited with SCL low.
     Started,
     Addressing(u8),
-    /// ADDR: waiting for it to be cleared, SCL low.
+    /// ADDR is set and must be cleared; SCL is low.
     Addressed,
     Transmitting,
     Receiving,
-    /// After a NACK of either side: only STOP or START goes on.
+    /// One side has sent a NACK, and only STOP or START can follow.
     Ended,
     Stopping,
 }
@@ -49,16 +49,16 @@ pub struct Master {
     dr: u8,
     /// DR holds a byte not yet moved to the shift register.
     dr_waits: bool,
-    /// Byte leaving, or byte received that found DR full.
+    /// The byte being sent, or a received byte that found DR full.
     shift: u8,
-    /// The bus action under way ends then.
+    /// Time at which the current bus action ends.
     ends_at: Option<Ps>,
-    /// The next START is cut off by a STOP before SB: the peripheral waits for ever, until it is reset.
+    /// Whether a STOP cuts off the next START before SB. The peripheral then waits until it is reset.
     pub start_cut_off: bool,
 }
 
 impl Master {
-    /// After reset.
+    /// The state after reset.
     pub fn new() -> Self {
         Self {
             trise: 2,
@@ -73,7 +73,7 @@ impl Master {
         )
     }
 
-    /// CR1 was written: START and STOP act as soon as no byte is under way.
+    /// Handles a write to CR1. START and STOP act as soon as no byte is in transfer.
     pub fn requests_changed(&mut self, ctx: &mut Ctx<'_>) {
         if self.cr1 & cr1::PE == 0 {
             self.cr1 &= !(cr1::START | cr1::STOP);
@@ -82,7 +82,7 @@ impl Master {
         self.act_on_requests(ctx);
     }
 
-    /// STOP before START; true when one of them took the bus.
+    /// Begins STOP or else START. Returns true if one of them took the bus.
     fn act_on_requests(&mut self, ctx: &mut Ctx<'_>) -> bool {
         let between_bytes = matches!(
             self.phase,
@@ -118,7 +118,7 @@ impl Master {
         self.wait_bits(BYTE_BITS, ctx);
     }
 
-    /// The clear sequence of ADDR is complete.
+    /// Handles the end of the clear sequence of ADDR.
     pub fn address_acknowledged_seen(&mut self, ctx: &mut Ctx<'_>) {
         if self.phase != Phase::Addressed {
             return;
@@ -134,7 +134,7 @@ impl Master {
         }
     }
 
-    /// DR written with data.
+    /// Handles a write of data to DR.
     pub fn write(&mut self, byte: u8, ctx: &mut Ctx<'_>) {
         self.dr = byte;
         self.dr_waits = true;
@@ -151,7 +151,7 @@ impl Master {
         }
     }
 
-    /// DR read.
+    /// Handles a read of DR.
     pub fn read(&mut self, ctx: &mut Ctx<'_>) -> u8 {
         let value = self.dr;
         if self.transmitter {
@@ -169,7 +169,7 @@ impl Master {
         value
     }
 
-    /// The bus action under way may have ended.
+    /// Handles the end of the current bus action, if its time has come.
     pub fn event(&mut self, ctx: &mut Ctx<'_>) {
         if self.ends_at.is_none_or(|at| at > ctx.now) {
             return;
@@ -256,7 +256,7 @@ impl Master {
         }
     }
 
-    /// Lets go of both lines: to a device, SCL and then SDA rising look like a STOP.
+    /// Releases both lines. To a device, SCL and then SDA rising look like a STOP.
     pub fn release_bus(&mut self, ctx: &mut Ctx<'_>) {
         if self.owns_bus() {
             ctx.board.i2c_stop(ctx.now);

@@ -36,7 +36,7 @@ fn the_shortest_and_longest_times_of_the_table() {
         bench.write(&mut iwdg, KR, 0xCCCC);
         bench.write(&mut iwdg, KR, 0xAAAA);
         let start = bench.now;
-        // The board has nothing to do with it: only the watchdog's own events.
+        // Only the watchdog's own events are needed, not the board.
         while bench.scheduler.next() < start + time {
             step(&mut bench, &mut iwdg);
         }

@@ -1,8 +1,8 @@
 //! The counting part of a timer: prescaler, counter, auto-reload and compare, advanced lazily and exactly.
 //!
-//! Everything is counted in cycles of the timer's clock, so nothing drifts however often it is looked at.
+//! Everything is counted in cycles of the timer's clock, so reading the counter often causes no drift.
 
-/// Which status flags (TIMx_SR) an advance raised.
+/// Status flags (TIMx_SR) that an advance raised.
 pub const UIF: u32 = 1;
 
 /// CCxIF of channel 0–3.
@@ -25,7 +25,7 @@ impl Shadowed {
 
 #[derive(Debug)]
 pub struct Counter {
-    /// 0xFFFF or 0xFFFF_FFFF.
+    /// Largest count: 0xFFFF or 0xFFFF_FFFF.
     max: u32,
     pub enabled: bool,
     pub update_disabled: bool,
@@ -36,7 +36,7 @@ pub struct Counter {
     count: u32,
     /// Clock cycles since the counter last stepped, below `prescaler.active + 1`.
     phase: u64,
-    /// The cycle at which `count` and `phase` hold.
+    /// The cycle for which `count` and `phase` are valid.
     at: u64,
 }
 
@@ -73,7 +73,7 @@ impl Counter {
         self.count = count;
     }
 
-    /// The clock changed: `cycle` of the old count is 0 of the new one.
+    /// Handles a change of clock. `cycle` of the old clock becomes cycle 0 of the new one.
     pub fn restart_cycles(&mut self) {
         self.at = 0;
     }
@@ -112,7 +112,7 @@ impl Counter {
         flags
     }
 
-    /// The first cycle at which one of `flags` may be raised; none while the counter stands.
+    /// The first cycle at which one of `flags` may be raised; `None` while the counter is stopped.
     pub fn next_flag(&self, flags: u32) -> Option<u64> {
         if !self.running() || flags == 0 {
             return None;
@@ -134,7 +134,7 @@ impl Counter {
         u64::from(self.prescaler.active) + 1
     }
 
-    /// Where the count turns to 0: past the auto-reload value or, when already beyond it, at the counter's end.
+    /// The count after which the counter wraps to 0: the auto-reload value or, if already beyond it, the largest count.
     fn wrap_at(&self) -> u64 {
         let last = if self.count <= self.reload.active {
             self.reload.active

@@ -9,7 +9,7 @@ const FORCE_ACTIVE: u32 = 0b101;
 const PWM1: u32 = 0b110;
 const PWM2: u32 = 0b111;
 
-/// True for the output modes this model can turn into a wave.
+/// Whether the model can convert this output mode to a wave.
 pub fn mode_is_modelled(ocm: u32) -> bool {
     matches!(ocm, 0 | FORCE_INACTIVE | FORCE_ACTIVE | PWM1 | PWM2)
 }
@@ -31,7 +31,7 @@ pub fn wave(counter: &Counter, channel: usize, ocm: u32, inverted: bool, clock_h
     }
 }
 
-/// Fraction of the period with CNT < CCR; a standing counter gives all or nothing.
+/// Fraction of the period with CNT < CCR. With a stopped counter it is 0 or 1.
 fn pwm_duty(counter: &Counter, channel: usize, period: f64) -> f64 {
     let compare = counter.compare[channel].active;
     if counter.enabled {

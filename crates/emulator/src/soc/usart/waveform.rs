@@ -1,4 +1,4 @@
-//! The level of a UART line over time, rebuilt from the characters put on it.
+//! The level of a UART line over time, reconstructed from the characters sent on it.
 
 use std::collections::VecDeque;
 
@@ -44,7 +44,7 @@ fn bits(c: &UartChar) -> u32 {
     1 + u32::from(c.format.data_bits) + parity + u32::from(c.format.stop_bits)
 }
 
-/// When bit `index` begins, counted from the start bit.
+/// Start time of bit `index`, counted from the start bit.
 fn edge(c: &UartChar, index: u32) -> Ps {
     c.start + (u128::from(index) * u128::from(SECOND) / u128::from(c.format.baud)) as Ps
 }

@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 
 use anyhow::bail;
 
-/// Beside the repository.
+/// Usual folder, beside the repository.
 const USUAL: &str = "../shared/data/broad";
-/// What is taken of the recordings where nobody says which.
+/// The recordings that are used unless the command names others.
 const AT_200_HZ: &str = "hz200";
 
-/// What was asked for, else what `ROBOT_DATA` names, else the usual place.
+/// The requested folder, else the one that `ROBOT_DATA` names, else the usual one.
 pub fn find(asked: Option<&Path>) -> anyhow::Result<PathBuf> {
     let (folder, said_by) = match (asked, std::env::var_os("ROBOT_DATA")) {
         (Some(folder), _) => (folder.to_owned(), "--data"),

@@ -15,7 +15,7 @@ mod meanings;
 type Slice<'d> = EndianSlice<'d, LittleEndian>;
 type Die<'d> = DebuggingInformationEntry<Slice<'d>, usize>;
 
-/// Why the image's debug information does not tell the record's layout.
+/// Why the layout of the record cannot be read from the image's debug information.
 #[derive(Debug, thiserror::Error)]
 pub enum LayoutError {
     #[error("{0}")]
@@ -48,7 +48,7 @@ pub struct Leaf {
     pub name: String,
     offset: u32,
     kind: Kind,
-    /// What its values stand for, where the image says so.
+    /// Meaning of its values, if the image contains it.
     pub meaning: Option<Meaning>,
 }
 
@@ -59,7 +59,7 @@ enum Kind {
     Float(u8),
 }
 
-/// The record: where it lies in its static, how long it is, and its numbers.
+/// The record: its offset in its static, its length and its numbers.
 #[derive(Debug)]
 pub struct Record {
     pub offset: u32,
@@ -68,7 +68,7 @@ pub struct Record {
 }
 
 impl Leaf {
-    /// The number out of a copy of the whole record.
+    /// Reads the number from a copy of the whole record.
     pub fn read(&self, record: &[u8]) -> f64 {
         let at = self.offset as usize;
         let bytes = |len: u8| {
@@ -88,7 +88,7 @@ impl Leaf {
     }
 }
 
-/// The record of type `record` inside the static `name`, through whatever cells wrap it.
+/// Finds the record of type `record` inside the static `name`, through any cells that wrap it.
 pub fn of_static(elf: &[u8], name: &str, record: &str) -> Result<Record, LayoutError> {
     let file = object::File::parse(elf)?;
     let section = |id: gimli::SectionId| -> Result<Cow<'_, [u8]>, gimli::Error> {
@@ -119,7 +119,7 @@ pub fn of_static(elf: &[u8], name: &str, record: &str) -> Result<Record, LayoutE
     })
 }
 
-/// A type: its unit and its entry in it.
+/// A type: its compilation unit and its entry there.
 #[derive(Clone, Copy)]
 struct Place {
     unit: usize,

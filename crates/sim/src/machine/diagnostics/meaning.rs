@@ -1,4 +1,4 @@
-//! What the numbers of a diagnostic stand for, in the firmware's own words.
+//! The meaning of the numbers in a diagnostic, by the names that the firmware uses.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ pub enum Meaning {
 }
 
 impl Meaning {
-    /// Name of a flag by its bit; `None` for what is no set of flags and for a bit without a name.
+    /// Name of a flag by its bit. `None` for a bit without a name, and for values that are not flags.
     pub fn bit(&self, bit: u8) -> Option<&str> {
         match self {
             Self::States(_) => None,
@@ -20,7 +20,7 @@ impl Meaning {
         }
     }
 
-    /// The value in words: a variant, or the flags that are set; `None` where a name is missing.
+    /// The value as text: a variant, or the flags that are set. `None` if a name is missing.
     pub fn words(&self, value: f64) -> Option<String> {
         let number = value as u64;
         if value.fract() != 0.0 || value < 0.0 {

@@ -1,11 +1,11 @@
-//! What the firmware believes of its own motion, beside the truth.
+//! The firmware's estimate of the motion beside the truth.
 
 use robot_chart::{BLUE, Curve, GREEN, ORANGE};
 
 use super::{MaybeFigure, Plots, attitude};
 
 impl Plots<'_> {
-    /// Where the robot moves, or its wheels do.
+    /// The plot of the speeds, if the robot or its wheels move.
     pub(super) fn speed(&self) -> MaybeFigure {
         let mut truth = self.curve("robot, truth", "truth.body.vx", 1.0, BLUE);
         truth.faint = true;

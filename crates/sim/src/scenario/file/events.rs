@@ -1,4 +1,4 @@
-//! The tables `[[at]]`: what happens when.
+//! The tables `[[at]]`, which say what happens at which time.
 
 use robot_plant::{
     wire::CanFrame,
@@ -28,7 +28,7 @@ pub(super) struct At {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Can {
-    /// 1 or 2.
+    /// Number of the CAN bus, 1 or 2.
     bus: u8,
     id: u32,
     data: Vec<u8>,

@@ -1,4 +1,4 @@
-//! The tables `[[expect]]`: what must hold.
+//! The tables `[[expect]]`, which say what must hold.
 
 use serde::Deserialize;
 

@@ -31,7 +31,7 @@ struct Stored {
     group: u8,
     #[serde(default = "one")]
     version: u8,
-    /// Of a joint, the make of its motor.
+    /// The make of a joint's motor.
     #[serde(default)]
     variant: u8,
     values: Vec<f32>,

@@ -1,4 +1,4 @@
-//! What can be wrong in a scenario file, and what to write instead.
+//! Errors in a scenario file, with the text that names what to write instead.
 
 use crate::parameter_sectors::{MAX_VALUES, SLOTS};
 

@@ -70,7 +70,7 @@ fn state(sector: &[u8]) -> SectorState {
     }
 }
 
-/// Of the first good copy in the head.
+/// Generation in the first valid copy of the head.
 fn generation(sector: &[u8]) -> Option<u32> {
     COPIES_AT.into_iter().find_map(|at| {
         let copy = &sector[at..at + COPY_BYTES];

@@ -18,7 +18,7 @@ impl Image {
         }
     }
 
-    /// Such a dump.
+    /// An image with the contents of a dump.
     pub fn of(dump: &[u8]) -> Self {
         let mut image = Self::blank();
         image.bytes.copy_from_slice(dump);
@@ -29,12 +29,12 @@ impl Image {
         &self.bytes
     }
 
-    /// Nothing in the sector, not even the mark of an erase.
+    /// Makes the sector blank, without the mark of a completed erase.
     pub fn erased(self, sector: usize) -> Self {
         self.garbage(sector, || 0xFF)
     }
 
-    /// The sector is marked as erased.
+    /// Marks the sector as erased.
     pub fn clean(mut self, sector: usize) -> Self {
         self.put(sector, 0, 0, &CLEAN);
         self

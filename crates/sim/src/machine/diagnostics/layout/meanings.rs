@@ -1,5 +1,5 @@
-//! Names of values: the variants of an enum; for a set of flags (a newtype of an integer) the image's static of type
-//! `[(Flags, &str); N]`.
+//! Names of values. For an enum these are its variants. For a set of flags, which is a newtype of an integer, the image has
+//! them in a static of type `[(Flags, &str); N]`.
 
 use std::collections::BTreeMap;
 
@@ -62,7 +62,7 @@ impl Types<'_> {
         Ok(None)
     }
 
-    /// Single bits and their names; `None` if the table is not in the file as it should be.
+    /// Single bits and their names. `None` if the file does not contain a valid table.
     fn read_table(
         &self,
         table: Table,
