@@ -10,7 +10,7 @@ use crate::{
     tool,
 };
 
-/// Builds what is out of date and runs the bench on it; its exit code becomes ours.
+/// Builds what is out of date and runs the bench on it. Returns its exit code.
 pub fn run(args: &PassedOn) -> anyhow::Result<ExitCode> {
     emulator::ensure_buildable()?;
     let (build, path) = host_program::build("robot-bench", "bench")?;

@@ -11,7 +11,7 @@ pub fn has(target: &str) -> bool {
     tool::printed_by(rustc).is_ok_and(|dir| PathBuf::from(dir).is_dir())
 }
 
-/// Has rustup fetch the target where it is missing. False if it cannot.
+/// Makes rustup fetch the target if it is missing. Returns false if that fails.
 pub fn add(target: &str) -> bool {
     if has(target) {
         return true;

@@ -1,4 +1,4 @@
-//! Where things lie.
+//! Paths in the workspace.
 
 use std::{
     env,

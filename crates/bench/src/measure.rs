@@ -56,16 +56,16 @@ pub struct WorstTick {
     pub blocks: Blocks,
 }
 
-/// What a run is for.
+/// How much a run records.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Detail {
     Totals,
-    /// Also where the instructions of an update with magnetometer go.
+    /// Totals, and the functions in which an update with magnetometer spends its instructions.
     Blocks,
 }
 
-/// `progress` is told of each tick. Filters that carry nothing on between samples are called at samples only; between
-/// them their last attitude stands.
+/// Calls `progress` in each tick. Filters that do not extrapolate between samples are called at samples only, and keep
+/// their last attitude in between.
 pub fn run(
     filter: Filter,
     programs: &Path,

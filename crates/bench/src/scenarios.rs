@@ -13,10 +13,10 @@ use robot_sim::{
     summary::Summary,
 };
 
-/// Scenarios that load the board: what a robot does all day, and everything on.
+/// Scenarios that load the board: the default drive, and one with all traffic on.
 pub const NAMES: [&str; 2] = ["drive", "full-traffic"];
 
-/// Simulated milliseconds.
+/// Number of simulated milliseconds.
 pub fn length_ms(scenario: &Scenario) -> u64 {
     scenario.length / MS
 }
@@ -26,7 +26,7 @@ pub fn read(repository: &Path, name: &str) -> anyhow::Result<Scenario> {
     Scenario::read(&path).with_context(|| format!("scenario {name}"))
 }
 
-/// `progress` is told of each simulated millisecond. Expectations that did not hold are an error.
+/// Calls `progress` in each simulated millisecond. Expectations that did not hold are an error.
 pub fn run(elf: &Path, scenario: Scenario, progress: impl FnMut()) -> anyhow::Result<Summary> {
     let name = scenario.name.clone();
     let job = Job {

@@ -17,7 +17,7 @@ pub struct Group {
 pub struct Row {
     pub name: &'static str,
     pub unit: &'static str,
-    /// The most that is allowed.
+    /// Largest allowed figure.
     pub limit: Option<f64>,
     /// Figure of each column that has one.
     pub values: BTreeMap<String, f64>,
@@ -39,7 +39,7 @@ impl Group {
         }
     }
 
-    /// A row without limit: one value a column.
+    /// A row without a limit, with one value for each column.
     pub fn add(
         &mut self,
         name: &'static str,
@@ -67,7 +67,7 @@ impl Row {
         self
     }
 
-    /// Holds for the columns named.
+    /// Applies the limit to the named columns.
     pub fn at_most<'c>(&mut self, limit: f64, columns: impl IntoIterator<Item = &'c String>) {
         self.limit = Some(limit);
         let over = |column: &&String| self.values.get(*column).is_some_and(|v| *v > limit);

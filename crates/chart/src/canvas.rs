@@ -1,4 +1,4 @@
-//! What all drawings share: colours, the style of labels, and SVG text as the paper.
+//! Parts that all drawings share: colours, the style of labels, and the SVG drawing area.
 
 use plotters::{
     coord::Shift,

@@ -96,7 +96,7 @@ fn cell(html: &mut String, tag: &str, column: usize, text: &str) {
     let _ = write!(html, "<{tag}{class}>{}</{tag}>", escaped(text));
 }
 
-/// Returns text that means itself inside HTML.
+/// Returns the text with HTML's special characters escaped.
 pub fn escaped(text: &str) -> String {
     text.replace('&', "&amp;")
         .replace('<', "&lt;")

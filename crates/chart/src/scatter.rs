@@ -12,7 +12,7 @@ const BEFORE: RGBColor = ORANGE;
 const AFTER: RGBColor = BLUE;
 const RESIDUALS_HEIGHT: u32 = 260;
 const PROJECTIONS_HEIGHT: u32 = WIDTH / 3;
-/// At most this many points of a series are drawn: more only make the file larger.
+/// At most this many points of a series are drawn, because more would only make the file larger.
 const MAX_POINTS: usize = 1_500;
 
 /// The legend of the drawings in this file.

@@ -3,7 +3,7 @@
 use core::{f32::consts::FRAC_1_SQRT_2, hint::black_box, panic::PanicInfo};
 
 use cortex_m::asm::{bkpt, udf};
-// Its linker script is asked for by the workspace's settings for the board.
+// The workspace's settings for the board name its linker script.
 use defmt as _;
 
 use crate::mailbox::{Input, MAILBOX};
@@ -13,19 +13,19 @@ pub trait Filter {
     /// What the filter is fed with.
     type Taken;
 
-    /// Brings the input into the filter's own types; not counted.
+    /// Converts the input to the filter's own types. This is not counted.
     fn take(&mut self, input: &Input) -> Self::Taken;
 
-    /// One tick of 1 ms; this is what counts.
+    /// Performs one tick of 1 ms. Only this is counted.
     fn step(&mut self, taken: &Self::Taken);
 
-    /// Body → ENU after the last step, w first; not counted.
+    /// Attitude, body → ENU, after the last step, w first. This is not counted.
     fn q_wxyz(&self) -> [f32; 4];
 }
 
-/// Serves the mailbox for ever.
+/// Serves the mailbox in an endless loop.
 pub fn run<F: Filter>(mut filter: F) -> ! {
-    // The compiler sees nobody write the input, and must not conclude that it stays zero.
+    // The compiler sees no code that writes the input, and must not conclude that it stays zero.
     let mailbox = black_box(&MAILBOX);
     link_memory_functions();
     loop {
@@ -36,8 +36,8 @@ pub fn run<F: Filter>(mut filter: F) -> ! {
     }
 }
 
-/// The compiler's functions that copy and clear memory are in every image, also in one without a filter: each program has
-/// them, so that none counts as a part of its filter.
+/// The compiler's functions that copy and clear memory. Every program contains them, even the one without a filter, so they
+/// do not count as part of a filter.
 #[inline(never)]
 fn link_memory_functions() {
     let mut words = black_box([1_u32; 64]);
@@ -53,7 +53,7 @@ fn counted<F: Filter>(filter: &mut F, taken: &F::Taken) {
     filter.step(taken);
 }
 
-/// New samples of one tick, for filters that know no time.
+/// New samples of one tick, for filters without a notion of time.
 #[derive(Clone, Copy, Default)]
 pub struct Samples {
     pub imu: Option<ImuSample>,
@@ -66,7 +66,7 @@ pub struct ImuSample {
     pub accel_mps2: [f32; 3],
 }
 
-/// Tells new samples from old ones.
+/// Distinguishes new samples from old ones.
 #[derive(Default)]
 pub struct Fresh {
     imu_ts_us: u32,
@@ -89,7 +89,7 @@ impl Fresh {
     }
 }
 
-/// Attitude in a world whose x axis points north → in ENU.
+/// Converts an attitude from a world frame whose x axis points north to ENU.
 pub fn north_to_east([w, x, y, z]: [f32; 4]) -> [f32; 4] {
     [w - z, x - y, x + y, w + z].map(|part| part * FRAC_1_SQRT_2)
 }

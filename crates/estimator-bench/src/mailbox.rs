@@ -4,9 +4,9 @@ use core::sync::atomic::AtomicU32;
 #[cfg(feature = "board")]
 use core::sync::atomic::Ordering::Relaxed;
 
-/// Words of an [`Input`].
+/// Number of words of an [`Input`].
 pub const INPUT_WORDS: usize = 15;
-/// The attitude: w, x, y, z.
+/// Number of words of the attitude: w, x, y, z.
 pub const OUTPUT_WORDS: usize = 4;
 /// End of the static's name in the program.
 pub const SYMBOL: &str = "mailbox::MAILBOX";
@@ -26,7 +26,7 @@ pub struct Input {
     pub mag_ut: [f32; 3],
     /// Rotor speeds of both wheels.
     pub wheel_rpm: [i16; 2],
-    /// Since the wheels last reported; `u32::MAX` = never.
+    /// Time since the wheels last reported; `u32::MAX` = never.
     pub wheel_age_us: u32,
 }
 
@@ -89,14 +89,14 @@ impl Input {
     }
 }
 
-/// `input` is written by the host, `output` by the board; words in memory one after the other.
+/// The host writes `input`, the board writes `output`. The words are consecutive in memory.
 #[repr(C)]
 pub struct Mailbox {
     input: [AtomicU32; INPUT_WORDS],
     output: [AtomicU32; OUTPUT_WORDS],
 }
 
-/// Found by the host through the program's symbols.
+/// The mailbox, which the host finds through the program's symbols.
 #[cfg(feature = "board")]
 pub static MAILBOX: Mailbox = Mailbox {
     input: [const { AtomicU32::new(0) }; INPUT_WORDS],

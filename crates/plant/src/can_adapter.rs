@@ -4,9 +4,9 @@ use std::collections::VecDeque;
 
 use crate::{time::Ps, wire::CanFrame};
 
-/// Frames that wait for the bus; more would take 30 ms and longer to send.
+/// Limit of frames that wait for the bus. More would take 30 ms or longer to send.
 const OUTBOX: usize = 256;
-/// Frames that wait for the PC; a bus at full load fills this in a tenth of a second.
+/// Limit of frames that wait for the PC. A bus at full load reaches it in a tenth of a second.
 const INBOX: usize = 1_024;
 
 /// How the adapter takes part in its bus.
@@ -58,12 +58,12 @@ impl CanAdapter {
         self.inbox.pop_front()
     }
 
-    /// Frames that went out and were acknowledged.
+    /// Number of frames sent and acknowledged.
     pub fn sent(&self) -> u64 {
         self.sent
     }
 
-    /// Frames received that nobody took in time.
+    /// Number of received frames that were not taken in time.
     pub fn lost(&self) -> u64 {
         self.lost
     }

@@ -1,10 +1,10 @@
 //! Complaints of a device or chip that was used outside of its maker's limits.
 
-/// What the misuse leads to on a real board.
+/// Consequence of the misuse on a real board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Severity {
-    /// It fails on all or on some specimens: the access is ignored, lost, garbled or undefined, or a limit is exceeded that
-    /// nobody is known to exceed with success.
+    /// It fails on all or on some specimens: the access is ignored, lost, garbled or undefined, or a limit is exceeded
+    /// that no known board exceeds with success.
     Fails,
     /// The datasheet does not promise it, or others advise against it, but boards that do it are known to run, or it costs
     /// accuracy only.
@@ -14,7 +14,7 @@ pub enum Severity {
 /// One misuse of a device.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Complaint {
-    /// What it leads to.
+    /// Consequence of the misuse.
     pub severity: Severity,
     /// The device, what was done, and the limit.
     pub text: String,

@@ -1,4 +1,4 @@
-//! The flash cells of the STM32F407 (RM0090 3.4–3.6): what programming, erasing and a power cut leave in them.
+//! The flash cells of the STM32F407 (RM0090 3.4–3.6), and the effect of programming, erasing and power cuts on them.
 //!
 //! Times, keys and registers belong to the flash controller, which is not here: every operation is done at once. Addresses
 //! are those of the processor. The tests of the parameter store reach the cells through `embedded_storage`'s `NorFlash`.
@@ -55,7 +55,7 @@ impl FlashChip {
         self.random = Random::new(seed, Stream::Flash);
     }
 
-    /// Puts `bytes` at `address` as if they had been programmed long ago. This is no step and wears nothing.
+    /// Puts `bytes` at `address` as if they had been programmed long ago. This does not count as a step and causes no wear.
     ///
     /// # Errors
     /// The range is not in sectors 1–3.
@@ -80,7 +80,7 @@ impl FlashChip {
     /// Programs a word: bits go from 1 to 0 only. The chip reports no error for a 0 that should become 1.
     ///
     /// # Errors
-    /// The chip has no power or loses it, or the address is no word of sectors 1–3.
+    /// The chip has no power or loses it, or the address is not that of a word in sectors 1–3.
     pub fn program_word(&mut self, address: u32, value: u32) -> Result<(), FlashError> {
         if !address.is_multiple_of(WORD) {
             return Err(FlashError::NotAligned(address));
@@ -125,17 +125,17 @@ impl FlashChip {
         outcome.result()
     }
 
-    /// Erases of the sector that were begun. A torn one counts too, since it wears the sector.
+    /// Number of erases of the sector that were begun. A torn erase counts too, since it wears the sector.
     pub fn erases(&self, sector: u8) -> u32 {
         self.erases.get(sector).unwrap_or_default()
     }
 
-    /// Words whose programming was begun.
+    /// Number of words whose programming was begun.
     pub fn programs(&self) -> u64 {
         self.programs
     }
 
-    /// Programs and erases begun since the chip was made, which is also the number of the next step.
+    /// Number of programs and erases begun since the chip was created, which is also the number of the next step.
     pub fn steps(&self) -> u64 {
         self.power.steps()
     }
@@ -155,7 +155,7 @@ impl FlashChip {
         self.power = self.power.restored();
     }
 
-    /// Sticks a cell: from now on it reads the same, whatever is written.
+    /// Makes a cell stick. From now on it reads the same, whatever is written.
     pub fn stick(&mut self, bit: StuckBit) {
         self.defects.stick(bit);
     }

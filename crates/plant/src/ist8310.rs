@@ -33,9 +33,9 @@ const CNTL2_DRDY_HIGH: u8 = 1 << 2;
 const CNTL2_DRDY_ENABLED: u8 = 1 << 3;
 /// Drivers wait 50 ms after power-on or the reset pin; the model needs most of it.
 const POWER_ON: Ps = 45 * MS;
-/// The shortest wait a driver is known to get away with (ArduPilot).
+/// The shortest wait that a driver is known to use with success (ArduPilot).
 const SOFT_RESET: Ps = 10 * MS;
-/// µT a count: 14 bits by default, 1320 counts a gauss with the axis's bit in CNTL3 set.
+/// Resolution in µT per count: 14 bits by default, and 1320 counts per gauss with the axis's bit in CNTL3 set.
 const LSB_14_BIT_UT: f64 = 0.3;
 const LSB_16_BIT_UT: f64 = 100.0 / 1320.0;
 const RANGE_UT: [f64; 3] = [1_600.0, 1_600.0, 2_500.0];
@@ -94,7 +94,7 @@ impl FieldMean {
         self.steps += 1;
     }
 
-    /// Takes the mean in µT, 0 without a sample, and starts over.
+    /// Returns the mean in µT, or 0 without a sample, and starts again.
     fn take_ut(&mut self) -> [f64; 3] {
         let Self { sum_ut, steps } = std::mem::take(self);
         sum_ut.map(|sum| sum / f64::from(steps.max(1)))
@@ -185,7 +185,7 @@ impl Ist8310 {
         }
     }
 
-    /// End of the conversion under way.
+    /// End of the current conversion.
     pub(crate) fn next_event(&self) -> Ps {
         self.conversion_done_at.unwrap_or(Ps::MAX)
     }
@@ -196,7 +196,7 @@ impl Ist8310 {
         done_at.is_some_and(|done_at| now + self.conversion_time() > done_at)
     }
 
-    /// Adds the field of one step, in the sensor's axes, to the conversion under way.
+    /// Adds the field of one step, in the sensor's axes, to the current conversion.
     pub(crate) fn sample_field(&mut self, field_ut: [f64; 3]) {
         self.field.add(field_ut);
     }
@@ -228,7 +228,7 @@ impl Ist8310 {
         }
     }
 
-    /// The misuse by which the chip cannot understand the master, if there is one.
+    /// The misuse that keeps the chip from understanding the master, if there is one.
     pub(crate) fn misuse(&self, addr7: u8, scl_hz: u32) -> Option<Complaint> {
         (addr7 == ADDRESS && scl_hz > MAX_SCL_HZ).then(|| {
             Complaint::fails(format!(

@@ -32,7 +32,7 @@ pub enum JointKind {
     Rs00,
 }
 
-/// What wire events report of a drive.
+/// A quantity of a drive that wire events report.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct WireState {
     pub enabled: bool,
@@ -61,7 +61,7 @@ pub(crate) fn drives(kind: JointKind, rs00_timeout: Ps) -> [Joint; JOINTS] {
 }
 
 impl Joint {
-    /// The drive's shaft for a joint at this angle and speed.
+    /// The state of the drive's shaft for a joint at this angle and speed.
     pub(crate) fn shaft(&self, pos_rad: f64, vel_rps: f64) -> Shaft {
         Shaft {
             pos_rad: self.direction * pos_rad,
@@ -97,7 +97,7 @@ impl Joint {
         }
     }
 
-    /// When the waiting reply wants the bus.
+    /// Time at which the waiting reply requests the bus.
     pub(crate) fn reply_at(&self) -> Option<Ps> {
         self.drive.replies().ready_at()
     }

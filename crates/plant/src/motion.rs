@@ -1,4 +1,4 @@
-//! What inertial sensors measure.
+//! The motion that inertial sensors measure.
 
 /// Specific force and angular rate, both in the same right-handed axes.
 #[derive(Clone, Copy, Debug)]
@@ -9,7 +9,7 @@ pub(crate) struct Motion {
     pub gyro_rps: [f64; 3],
 }
 
-/// Where the motion comes from, which decides the errors a sensor model adds to it.
+/// Source of the motion, which decides the errors that a sensor model adds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum MotionSource {
     /// True motion: the model adds offset, noise, filter, range and quantisation.

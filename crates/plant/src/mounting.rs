@@ -1,8 +1,8 @@
-//! How a sensor sits in what carries it.
+//! The orientation of a sensor in its carrier, the board or the robot.
 
 use std::str::FromStr;
 
-/// Where the sensor's x, y and z axes point, as unit vectors in the axes of what carries it.
+/// Directions of the sensor's x, y and z axes, as unit vectors in the carrier's axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mounting {
     axes: [[f64; 3]; 3],
@@ -41,7 +41,7 @@ impl FromStr for Mounting {
 }
 
 impl Mounting {
-    /// A vector in the carrier's axes, seen in the sensor's own axes.
+    /// Converts a vector from the carrier's axes to the sensor's axes.
     pub(crate) fn to_sensor(self, [x, y, z]: [f64; 3]) -> [f64; 3] {
         self.axes
             .map(|axis| axis[0] * x + axis[1] * y + axis[2] * z)
@@ -70,7 +70,7 @@ mod tests {
 
     fn measured(name: &str, carrier: [f64; 3]) -> [f64; 3] {
         let mounting: Mounting = name.parse().expect("a mounting");
-        // Adding 0.0 takes the sign off a zero.
+        // Adding 0.0 turns −0.0 into 0.0.
         mounting.to_sensor(carrier).map(|axis| axis + 0.0)
     }
 

@@ -30,7 +30,7 @@ pub const TWELVE: [&str; 12] = [
     "34_disturbed_attached_magnet_3cm",
 ];
 
-/// Goes beside the prepared trials: the licence asks for it.
+/// The attribution beside the prepared trials, which the licence requires.
 const NOTICE: &str = "\
 # Recorded motion
 
@@ -72,7 +72,7 @@ pub fn prepare(name: &str, from: &Path, to: &Path) -> Result<(), BroadError> {
     })
 }
 
-/// Writes the attribution that the licence asks for.
+/// Writes the attribution that the licence requires.
 pub fn write_notice(to: &Path) -> Result<(), BroadError> {
     let path = to.join("README.md");
     fs::write(&path, NOTICE).map_err(|source| BroadError::Write { path, source })

@@ -1,4 +1,4 @@
-//! Recorded motion through the firmware's own estimator, and how far off its attitude is.
+//! Replays recorded motion through the firmware's own estimator, and computes the error of its attitude.
 //!
 //! ```no_run
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {

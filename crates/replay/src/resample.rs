@@ -18,12 +18,12 @@ pub const FIELD_AGE_US: u64 = IMU_PERIOD / US / 2;
 const ACCEL_RANGE_MPS2: f64 = 12.0 * 9.806_65;
 const GYRO_RANGE_RPS: f64 = 2_000.0 * std::f64::consts::PI / 180.0;
 
-/// What the sensors say about the 5 ms that end at `end_us`.
+/// Measurements of the sensors over the 5 ms that end at `end_us`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
     /// Time in the recording.
     pub end_us: u64,
-    /// `None` where the recording has no number: the firmware gets no sample then.
+    /// `None` if the recording has no finite value, in which case the firmware gets no sample.
     pub motion: Option<Motion>,
     /// Body frame; in every fourth sample only, and `None` where the recording has no number.
     pub field_ut: Option<[f32; 3]>,
@@ -35,9 +35,9 @@ pub struct Motion {
     pub gyro_rps: [f32; 3],
     /// Specific force: +9.8 up at rest.
     pub accel_mps2: [f32; 3],
-    /// Somewhere in the 5 ms an axis was at the end of the BMI088's range. It is cut off there.
+    /// Whether an axis reached the end of the BMI088's range during the 5 ms, where it is clipped.
     pub saturated: bool,
-    /// How long each axis of the gyro was there, ms.
+    /// Time for which each axis of the gyro was clipped, ms.
     pub gyro_clipped_ms: [u8; 3],
 }
 
@@ -104,7 +104,7 @@ impl Rows<'_> {
         indices.filter_map(|index| self.rows.get(usize::try_from(index).ok()?))
     }
 
-    /// `None` if a row in the window has no number.
+    /// `None` if a row in the window has no finite value.
     fn mean(&self, window: &Range<Ps>, value: impl Fn(&Row) -> [f64; 3]) -> Option<[f32; 3]> {
         let first = window.start / self.period;
         let mut sum = [0.0; 3];
@@ -121,7 +121,7 @@ impl Rows<'_> {
     }
 }
 
-/// What is not finite stays so.
+/// A value that is not finite stays so.
 fn cut_off(value: [f64; 3], range: f64) -> [f64; 3] {
     value.map(|axis| match axis.is_finite() {
         true => axis.clamp(-range, range),

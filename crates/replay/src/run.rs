@@ -22,7 +22,7 @@ pub enum Mode {
     #[value(name = "9d")]
     #[serde(rename = "9d")]
     NineAxis,
-    /// Without magnetometer: the heading starts anywhere, and drifts.
+    /// Without magnetometer: the heading starts at an arbitrary value, and drifts.
     #[value(name = "6d")]
     #[serde(rename = "6d")]
     SixAxis,
@@ -40,8 +40,8 @@ pub struct Tick {
 }
 
 impl Tick {
-    /// Single precision leaves the quaternion's length off by some 1e-7: here it is 1, or NaN if the estimator lost it
-    /// altogether.
+    /// Normalises the quaternion, whose length is off by some 1e-7 in single precision. It is NaN if the estimator's
+    /// quaternion is not finite.
     pub fn new(t_us: u64, estimate: &StateEstimate) -> Self {
         let unit = attitude::normalised(estimate.q_wxyz.map(f64::from));
         Self {
@@ -92,7 +92,7 @@ pub fn run(trial: &Trial, mode: Mode, gyro_offset_dps: [f32; 3]) -> Run {
     Run { mode, ticks }
 }
 
-/// The latest samples, as they lie in the exchange between sensor and control task.
+/// The latest samples, as exchanged between sensor and control task.
 struct Sensors {
     mode: Mode,
     gyro_offset_dps: [f32; 3],

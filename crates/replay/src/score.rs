@@ -12,9 +12,9 @@ use crate::{
 /// The instants at which estimate and reference are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum At {
-    /// Those of the reference; the estimate is interpolated between its neighbours (`score.py --at ref`).
+    /// The instants of the reference. The estimate is interpolated between its neighbours (`score.py --at ref`).
     Samples,
-    /// Those of the 1 kHz output; the reference is interpolated between its neighbours (`score.py --at est`).
+    /// The instants of the 1 kHz output. The reference is interpolated between its neighbours (`score.py --at est`).
     EveryTick,
 }
 
@@ -27,7 +27,7 @@ pub struct Figures {
 }
 
 impl Figures {
-    /// Plain mean; `None` of nothing.
+    /// Arithmetic mean, or `None` if there are no figures.
     pub fn mean(all: &[Self]) -> Option<Self> {
         let mean = |part: fn(&Self) -> f64| all.iter().map(part).sum::<f64>() / all.len() as f64;
         (!all.is_empty()).then(|| Self {
@@ -44,12 +44,12 @@ pub struct Instant {
     pub t_s: f64,
     /// Whether it is in the scored phase.
     pub scored: bool,
-    /// `None` where the reference has a gap.
+    /// `None` in a gap of the reference.
     pub error: Option<AttitudeError>,
 }
 
 impl Run {
-    /// Errors over the scored phase of `trial`, which the run must be of; `None` if it has no reference there.
+    /// Errors over the scored phase of `trial`, of which this must be the run. `None` if it has no reference there.
     pub fn score(&self, trial: &Trial, at: At) -> Option<Figures> {
         let mut sums = [0.0; 3];
         let mut count = 0_u32;
@@ -75,8 +75,8 @@ impl Run {
         })
     }
 
-    /// The error at every instant of the record, scored or not; empty without reference. In 6d one heading offset is
-    /// taken out of all of them: that of the last second before the scored phase.
+    /// The error at every instant of the record, whether scored or not. Empty without a reference. In 6d the heading offset
+    /// of the last second before the scored phase is subtracted from all of them.
     pub fn compare(&self, trial: &Trial, at: At) -> Vec<Instant> {
         let Some(reference) = &trial.reference else {
             return Vec::new();
@@ -111,8 +111,8 @@ impl Run {
     }
 }
 
-/// Mean heading error over the last known second before the scored phase; over the first known second if nothing is
-/// known before.
+/// Mean heading error over the last known second before the scored phase, or over the first known second if none is known
+/// before.
 fn heading_offset_rad(compared: &[Instant]) -> f64 {
     let from = compared.iter().position(|instant| instant.scored);
     let known = |instants: &[Instant]| -> Vec<f64> {

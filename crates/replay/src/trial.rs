@@ -24,20 +24,20 @@ pub enum ReplayError {
     Trial(#[from] TrialError),
 }
 
-/// One recording, in the form in which the firmware would have met it.
+/// One recording, as the samples that the firmware would have received.
 pub struct Trial {
     /// File name without extension.
     pub name: String,
     pub samples: Vec<Sample>,
-    /// Rows in which gyro or accelerometer have no number.
+    /// Number of rows without a finite value of gyro or accelerometer.
     pub rows_without_motion: usize,
-    /// Rows in which the magnetometer has no number.
+    /// Number of rows without a finite value of the magnetometer.
     pub rows_without_field: usize,
     pub(crate) reference: Option<Reference>,
 }
 
 impl Trial {
-    /// `header`: the .json file. Wants the length and the checksum that it names.
+    /// Loads the trial of `header`, the .json file. The data must have the length and the checksum given there.
     pub fn read(header: &Path) -> Result<Self, ReplayError> {
         let recording = recording::Trial::load(header)?;
         let rows = recording.rows().iter();
@@ -68,7 +68,7 @@ pub fn load(folder: &Path) -> Result<Vec<Trial>, ReplayError> {
         .collect()
 }
 
-/// The headers in `folder`, or else in the one folder in it that has any; in order of their names, never none.
+/// The headers in `folder`, or else in the only subfolder that has any, in the order of their names. There is at least one.
 pub fn trial_files(folder: &Path) -> Result<Vec<PathBuf>, ReplayError> {
     let here = headers(folder)?;
     if !here.is_empty() {

@@ -1,13 +1,13 @@
-//! Whether the tools and the host tests still compile for Windows, seen from any machine.
+//! Checks on any machine that the tools and the host tests still compile for Windows.
 
 use std::process::Command;
 
 use super::totals::{self, Totals};
 use crate::{host_program::HOST_PROFILE, tool, toolchain};
 
-/// The target that needs no Microsoft compiler: its core library alone is enough to check code.
+/// The target that can be checked without a Microsoft compiler, with its core library alone.
 const TARGET: &str = "x86_64-pc-windows-gnu";
-/// What works on Windows (docs/platforms.md).
+/// Packages that work on Windows (docs/platforms.md).
 const PACKAGES: [&str; 8] = [
     "robotctl",
     "robot-replay",
@@ -19,7 +19,7 @@ const PACKAGES: [&str; 8] = [
     "xtask",
 ];
 
-/// Runs `cargo check` with tests; skipped where rustup cannot fetch the target.
+/// Runs `cargo check` with tests. It is skipped if rustup cannot fetch the target.
 pub fn check() -> anyhow::Result<Totals> {
     if toolchain::add(TARGET) {
         return totals::of_command(command());
@@ -35,7 +35,7 @@ fn command() -> Command {
     for package in PACKAGES {
         command.args(["--package", package]);
     }
-    // Code that only Windows leaves unused is a warning nowhere else.
+    // Other targets do not warn about code that is unused only on Windows.
     command.env("RUSTFLAGS", "-D warnings");
     command
 }

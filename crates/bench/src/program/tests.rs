@@ -13,8 +13,9 @@ fn boot(program: &str) -> Program {
     Program::boot(&folder.join(program)).expect("`cargo xtask test` builds it")
 }
 
-/// Counts by the engine's own hook before each instruction. It leaves out those of an IT block whose condition fails,
-/// which the processor issues nevertheless, a cycle each; so an IT counts for all it covers, and those not again.
+/// Counts with the engine's own hook before each instruction. The hook leaves out instructions of an IT block whose
+/// condition fails, although the processor issues them in a cycle each. Therefore an IT counts for all instructions that it
+/// covers, and these do not count again.
 #[derive(Default)]
 struct Oracle {
     count: u32,
@@ -49,7 +50,7 @@ fn halfword(engine: &Unicorn<'_, Counter>, address: u64) -> u16 {
     u16::from_le_bytes(bytes)
 }
 
-/// How many instructions an IT covers (ARMv7-M ARM A7.3.2); none if it is something else.
+/// Number of instructions that an IT covers (ARMv7-M ARM A7.3.2); 0 for other instructions.
 fn it_length(op: u16) -> u32 {
     if op >> 8 == 0xBF && op & 0xF != 0 {
         4 - (op & 0xF).trailing_zeros()
@@ -71,7 +72,7 @@ fn as_many_instructions_are_counted_as_the_engine_executes() {
         };
         let installed = program.engine.add_code_hook(1, 0, count);
         installed.expect("the engine takes a hook");
-        // Start-up has left translated code without it.
+        // Code translated during start-up does not have the hook.
         program.engine.ctl_flush_tb().expect("the engine forgets");
         for (_, _, input) in Motion::computed(Wheels::Turning).ticks().take(2_000) {
             oracle.take();
@@ -87,7 +88,7 @@ fn as_many_instructions_are_counted_as_the_engine_executes() {
     }
 }
 
-/// What the host writes is what the filter gets: the empty one gives parts of it back.
+/// The filter gets what the host writes. The empty filter returns parts of it.
 #[test]
 fn samples_arrive_as_they_were_sent() {
     let mut program = boot(EMPTY.program);

@@ -1,11 +1,11 @@
-//! Where the tests find the filters' programs.
+//! The place of the filters' programs.
 
 use std::{
     env,
     path::{Path, PathBuf},
 };
 
-/// `ROBOT_FILTERS`, or where `cargo xtask` builds them.
+/// The folder that `ROBOT_FILTERS` names, or the one in which `cargo xtask` builds them.
 pub fn folder() -> PathBuf {
     let built = "../../target/robot-estimator-bench/thumbv7em-none-eabihf/release";
     let usual = || Path::new(env!("CARGO_MANIFEST_DIR")).join(built);

@@ -1,4 +1,4 @@
-//! No filter at all: what the others are larger than this is theirs.
+//! A program without a filter. The size that the others have beyond this one is that of their filters.
 
 #![no_std]
 #![no_main]

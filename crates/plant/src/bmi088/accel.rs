@@ -40,7 +40,7 @@ const CHIP_ID: u8 = 0x1E;
 const SUSPEND: u8 = 0x03;
 const ACC_ENABLED: u8 = 0x04;
 const START_UP: Ps = MS;
-/// 39.0625 µs per count.
+/// Resolution of the sensor time: 39.0625 µs per count.
 const SENSORTIME_LSB: Ps = SECOND / 25_600;
 const TEMPERATURE_PERIOD: Ps = 1_280 * MS;
 
@@ -262,7 +262,7 @@ impl Die for AccelDie {
         }
     }
 
-    /// A die that is still starting misses the edge. So the edge that ends the soft reset does not count.
+    /// A die that is still starting misses the edge, so the edge that ends the soft reset does not count.
     fn deselected(&mut self, now: Ps) {
         self.write_gap.deselected(now);
         if now >= self.alive_at {

@@ -3,7 +3,7 @@
 use super::die::Die;
 use crate::time::Ps;
 
-/// State of one chip select, and what was exchanged since it fell.
+/// State of one chip select, and the bytes exchanged since it fell.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Transaction {
     pub selected: bool,
@@ -13,7 +13,7 @@ pub(super) struct Transaction {
 }
 
 impl Transaction {
-    /// The level of the chip select changes at `now`; `selected` means low.
+    /// Changes the level of the chip select at `now`. `selected` means low.
     pub(super) fn begin(selected: bool, now: Ps) -> Self {
         Self {
             selected,
@@ -32,7 +32,7 @@ impl Transaction {
         }
         let register = self.address & !READ;
         if self.address & READ == 0 {
-            // The datasheet knows single-byte writes only.
+            // The datasheet specifies single-byte writes only.
             if index == 1 {
                 die.write(register, mosi, self.since, now);
             }

@@ -9,21 +9,21 @@ use crate::{
 const NORMAL: Ps = 2 * US;
 const SUSPEND: Ps = 450 * US;
 
-/// Watches one chip select. A write that comes too soon is accepted all the same: DJI's `BMI088driver.c` pauses only 150 µs
+/// Watches one chip select. A write that comes too early is accepted nevertheless: DJI's `BMI088driver.c` pauses only 150 µs
 /// in suspend mode on this board, and its sensor starts.
 #[derive(Debug, Default)]
 pub(super) struct WriteGap {
     /// The pause after the last write, which begins when the chip select rises.
     gap: Ps,
-    /// When that pause is over.
+    /// Time at which that pause is over.
     over_at: Ps,
-    /// The transaction under way has written a register.
+    /// Whether the current transaction has written a register.
     wrote: bool,
     complaint: Option<Complaint>,
 }
 
 impl WriteGap {
-    /// A register is written in a transaction that began at `selected_at`.
+    /// Notes that a register is written in a transaction that began at `selected_at`.
     pub(super) fn written(&mut self, suspended: bool, selected_at: Ps) {
         if selected_at < self.over_at {
             self.complaint = Some(if self.gap == NORMAL {

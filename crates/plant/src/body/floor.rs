@@ -1,6 +1,6 @@
 //! The ground under the wheels.
 
-/// What the wheels roll on.
+/// The ground on which the wheels roll.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Floor {
     Clean,

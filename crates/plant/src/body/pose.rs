@@ -1,4 +1,4 @@
-//! Where the body is and how it moves.
+//! Position and motion of the body.
 
 /// Position in the ENU earth frame, velocity in the body's own axes.
 #[derive(Clone, Copy, Debug, Default)]

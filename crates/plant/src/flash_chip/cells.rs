@@ -1,4 +1,4 @@
-//! The bits: what they hold, and which of them read differently from one read to the next.
+//! The bits, and which of them may read differently from one read to the next.
 
 use std::ops::Range;
 

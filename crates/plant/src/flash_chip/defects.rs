@@ -7,18 +7,18 @@ use super::sectors::PerSector;
 pub struct StuckBit {
     /// Address of its byte.
     pub address: u32,
-    /// 0 … 7.
+    /// Number of the bit, 0 … 7.
     pub bit: u8,
-    /// What it reads.
+    /// The value that it reads.
     pub value: bool,
 }
 
 /// How the erase of a worn-out sector fails. The chip reports neither failure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EraseFault {
-    /// All words keep what they held.
+    /// All words keep their contents.
     DoesNothing,
-    /// About one word in 64 keeps what it held.
+    /// About one word in 64 keeps its contents.
     LeavesSomeWords,
 }
 
@@ -47,7 +47,7 @@ impl Defects {
         self.erase.get(sector).flatten()
     }
 
-    /// Overwrites the stuck bits in what was read at `address`.
+    /// Overwrites the stuck bits in the bytes read at `address`.
     pub fn distort(&self, address: u32, bytes: &mut [u8]) {
         for stuck in &self.stuck {
             let offset = stuck.address.checked_sub(address);

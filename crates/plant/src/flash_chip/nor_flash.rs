@@ -1,4 +1,4 @@
-//! Sectors 1–3 as the parameter store sees them: offsets from the start of sector 1.
+//! Sectors 1–3 with offsets from the start of sector 1, as the parameter store uses them.
 
 use embedded_storage::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash, check_erase, check_read,

@@ -1,4 +1,4 @@
-//! Where the sectors lie (RM0090 table 5, 1 MiB in one bank).
+//! Addresses of the sectors (RM0090 table 5, 1 MiB in one bank).
 
 use std::ops::{Range, RangeInclusive};
 

@@ -66,7 +66,7 @@ pub(crate) struct Dm4310 {
     registers: Registers,
     state: State,
     target: Target,
-    /// Deaf and mute while it stores its registers.
+    /// Time until which it stores its registers and neither receives nor sends.
     deaf_until: Ps,
 }
 
@@ -83,7 +83,7 @@ impl Dm4310 {
         }
     }
 
-    /// Settings that were not stored are lost; the heat and the place of the zero stay.
+    /// Performs a power cycle. Settings that were not stored are lost; temperature and zero position remain.
     fn power_cycle(&mut self, now: Ps) {
         self.registers = self.stored;
         self.deaf_until = now;
@@ -105,7 +105,7 @@ impl Dm4310 {
         (self.registers.mst_id + u32::from(self.parts.faults.wrong_id) * WRONG_ID) & STANDARD_ID
     }
 
-    /// The motor's own protection: time-out and over-temperature.
+    /// Runs the motor's own protection: time-out and over-temperature.
     fn watch(&mut self, now: Ps) {
         if self.state != State::Enabled {
             return;

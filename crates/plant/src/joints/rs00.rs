@@ -37,7 +37,7 @@ const OVER_TEMPERATURE_C: f64 = 145.0;
 /// Identifiers of the fault `motor-N-wrong-id` are this much too high.
 const WRONG_ID: u32 = 8;
 
-/// Discriminants as on the wire.
+/// Discriminants are the codes on the wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Mode {
     Mit = 0,
@@ -54,7 +54,7 @@ enum Target {
     Speed { vel_rps: f64, max_a: f64 },
 }
 
-/// The motor as shipped holds its last command for ever: its CAN time-out, parameter 0x7028, is off, and the MIT protocol
+/// A motor as shipped holds its last command indefinitely: its CAN time-out, parameter 0x7028, is off, and the MIT protocol
 /// cannot set it.
 pub(crate) struct Rs00 {
     parts: DriveParts,
@@ -69,7 +69,7 @@ pub(crate) struct Rs00 {
 }
 
 impl Rs00 {
-    /// `can_timeout` is what somebody set in the private protocol.
+    /// `can_timeout` is the value that was set in the private protocol.
     pub(crate) fn new(motor_id: u32, host_id: u32, can_timeout: Ps) -> Self {
         Self {
             parts: DriveParts::new(&RATING),

@@ -6,7 +6,7 @@ const POSITION_GAIN_PER_S: f64 = 15.0;
 const SPEED_GAIN_NMS_PER_RAD: f64 = 1.0;
 const SPEED_INTEGRAL_NM_PER_RAD: f64 = 10.0;
 
-/// Speed that a position loop asks for, at most `max_rps`.
+/// Speed that a position loop demands, at most `max_rps`.
 pub(super) fn towards(goal_rad: f64, pos_rad: f64, max_rps: f64) -> f64 {
     let max_rps = max_rps.abs();
     (POSITION_GAIN_PER_S * (goal_rad - pos_rad)).clamp(-max_rps, max_rps)

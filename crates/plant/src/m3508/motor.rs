@@ -92,7 +92,7 @@ impl M3508 {
         self.winding_c += (loss_w - cooling_w) * dt_s / HEAT_CAPACITY_J_PER_K;
     }
 
-    /// Opens the winding: the supply is cut.
+    /// Opens the winding, as when the supply is cut.
     pub(crate) fn cut(&mut self) {
         self.current_a = 0.0;
     }

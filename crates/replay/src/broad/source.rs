@@ -7,7 +7,7 @@ use matfile::{MatFile, NumericData};
 /// Samples a second in every file of the dataset.
 const RATE_HZ: f64 = 2_000.0 / 7.0;
 
-/// A MATLAB file cannot be read, or is none of the dataset.
+/// A MATLAB file cannot be read, or does not belong to the dataset.
 #[derive(Debug, thiserror::Error)]
 pub enum SourceError {
     #[error(transparent)]
@@ -20,7 +20,7 @@ pub enum SourceError {
     Rate(f64),
 }
 
-/// What was recorded: one row a sample.
+/// The recorded data, with one row for each sample.
 pub(super) struct Recorded {
     pub gyro_rps: Vec<[f64; 3]>,
     /// Specific force.

@@ -1,4 +1,4 @@
-//! What is wrong with the files is said, with the file's name.
+//! Errors in the files are reported with the file's name.
 
 use std::{fs, path::Path};
 
@@ -46,7 +46,7 @@ fn data_that_is_missing_or_of_another_length() {
     assert!(error(&folder).contains("turn.f32.gz"));
 }
 
-/// `e3b0…b855` is the SHA-256 of nothing (FIPS 180-4 examples).
+/// `e3b0…b855` is the SHA-256 of an empty input (FIPS 180-4 examples).
 #[test]
 fn data_with_another_checksum() {
     let folder = recorder::folder("checksum");

@@ -21,7 +21,7 @@ pub fn folder(test: &str) -> PathBuf {
     folder
 }
 
-/// Rows a second as a fraction.
+/// Number of rows per second, as a fraction.
 #[derive(Clone, Copy)]
 pub struct Rate {
     pub num: u64,
@@ -35,7 +35,7 @@ pub const NATIVE: Rate = Rate { num: 2000, den: 7 };
 /// Level, at rest for 10 s, then a constant turn to the left.
 pub struct Turn {
     pub rate_dps: f64,
-    /// The reference says so much more heading than is true.
+    /// Error that is added to the heading of the reference.
     pub reference_off_deg: f64,
 }
 

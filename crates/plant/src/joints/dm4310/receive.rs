@@ -70,7 +70,7 @@ impl Dm4310 {
                 }
             }
             (SET_ZERO, _) => self.parts.zero_rad = shaft.pos_rad,
-            // A trip whose cause is still there comes back at once.
+            // A trip whose cause persists returns at once.
             (CLEAR, State::Tripped(_)) if !self.parts.faults.tripped => {
                 self.state = State::Disabled
             }
@@ -78,7 +78,7 @@ impl Dm4310 {
         }
     }
 
-    /// A command of the present mode; one of another mode changes nothing, but is answered.
+    /// Executes a command of the current mode. A command of another mode changes nothing, but gets a reply.
     fn target_of(&self, frame: &CanFrame) -> Option<Target> {
         if frame.id & !ADDRESS != self.mode_offset() {
             return None;

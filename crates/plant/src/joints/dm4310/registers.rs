@@ -15,7 +15,7 @@ mod rid {
     pub const CAN_BAUD: u8 = 35;
 }
 
-/// 1 Mbit/s.
+/// Code of the bit rate 1 Mbit/s.
 const CAN_BAUD_1M: u32 = 4;
 /// Assumed setting: the maker lets users choose.
 const OVER_TEMPERATURE_C: f32 = 140.0;
@@ -32,7 +32,7 @@ pub(super) struct Registers {
     pub over_temperature_c: f32,
     pub mst_id: u32,
     pub esc_id: u32,
-    /// In 50 µs; 0 = off.
+    /// CAN time-out in units of 50 µs; 0 = off.
     pub timeout: u32,
     pub control_mode: ControlMode,
     pmax_rad: f32,
@@ -44,7 +44,7 @@ pub(super) struct Registers {
 pub(super) struct NotModelled;
 
 impl Registers {
-    /// Factory settings but for the identifiers, which every robot sets.
+    /// Factory settings except for the identifiers, which every robot sets.
     pub(super) fn new(esc_id: u32, mst_id: u32) -> Self {
         Self {
             over_temperature_c: OVER_TEMPERATURE_C,
@@ -81,7 +81,7 @@ impl Registers {
         })
     }
 
-    /// A value out of its register's range changes nothing.
+    /// Writes a register. A value out of its range changes nothing.
     pub(super) fn write(&mut self, register: u8, value: [u8; 4]) -> Result<(), NotModelled> {
         let whole = u32::from_le_bytes(value);
         let real = f32::from_le_bytes(value);

@@ -30,7 +30,7 @@ impl Bench {
         self.motor.receive(&frame, self.shaft, self.now)
     }
 
-    /// Time passes; the shaft is held.
+    /// Advances the time while the shaft is held.
     fn wait(&mut self, ms: u64) {
         for _ in 0..4 * ms {
             self.now += 250 * US;
@@ -79,7 +79,7 @@ fn an_enabled_motor_follows_the_reference_command() {
     assert_eq!(bench.ask(1, DISABLE).expect("a reply")[0], 0x01);
     assert_eq!(bench.motor.actuator().torque_nm(), 0.0);
     assert_eq!(bench.motor.stop_frames(), 1);
-    // Enabled anew it waits for a command.
+    // Enabled again, it waits for a command.
     bench.ask(1, ENABLE);
     assert_eq!(bench.motor.commanded_nm(bench.shaft), 0.0);
 }
@@ -98,8 +98,8 @@ fn it_replies_once_and_150_us_after_the_frame() {
     }
 }
 
-/// Only the low byte of an identifier names the motor: a frame meant for somebody else is answered, and a service frame
-/// obeyed.
+/// Only the low byte of an identifier names the motor, so it replies to frames of other identifiers with the same low byte,
+/// and obeys such service frames.
 #[test]
 fn every_identifier_with_its_low_byte_reaches_it() {
     let mut bench = bench();
@@ -218,7 +218,7 @@ fn silence_trips_it_after_its_timeout_and_any_frame_counts() {
     bench.ask(1, ENABLE);
     bench.wait(2_000);
     assert!(bench.motor.enabled(), "as shipped it waits for ever");
-    // The write itself is a frame.
+    // The write itself also counts as a frame.
     bench.ask(0x7FF, [1, 0, 0x55, 9, 0xD0, 0x07, 0, 0]);
     bench.wait(98);
     assert!(bench.motor.enabled());

@@ -1,29 +1,29 @@
-//! What is done with trials, and what comes of each.
+//! Settings of a replay, and the outcome of each trial.
 
 use std::path::PathBuf;
 
 use robot_chart::Figure;
 use robot_replay::{Figures, Mode, Run, Trial};
 
-/// What is done with each trial.
+/// Settings for all trials.
 pub struct Task {
     pub mode: Mode,
     pub gyro_offset_dps: [f32; 3],
     pub out: PathBuf,
 }
 
-/// What came of a trial.
+/// Outcome of a trial.
 pub struct Outcome {
     pub name: String,
     pub seconds: f64,
     pub rows_without_motion: usize,
     pub rows_without_field: usize,
-    /// Samples cut off at the end of the BMI088's range.
+    /// Number of samples clipped at the end of the BMI088's range.
     pub saturated_samples: usize,
     /// Time without a valid estimate after the first valid one.
     pub invalid_s: f64,
     pub gyro_bias_at_end_dps: [f32; 3],
-    /// `None` without reference.
+    /// Errors against the reference, if there is one.
     pub at_samples: Option<Figures>,
     pub at_1khz: Option<Figures>,
     pub plots: Vec<Figure>,

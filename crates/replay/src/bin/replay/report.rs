@@ -91,7 +91,7 @@ fn error_curves(compared: &[Instant]) -> Vec<Curve> {
     ]
 }
 
-/// The offset put in, if any, lies faint under what was found.
+/// Any added offset is drawn faintly below the estimated bias.
 fn bias_curves(run: &Run, gyro_offset_dps: [f32; 3]) -> Vec<Curve> {
     let axes = [("x", BLUE), ("y", GREEN), ("z", ORANGE)];
     let ends = [run.ticks.first(), run.ticks.last()];

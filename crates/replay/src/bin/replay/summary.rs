@@ -36,7 +36,7 @@ struct TrialSummary<'a> {
     rows_without_motion: usize,
     rows_without_field: usize,
     saturated_samples: usize,
-    /// After the first valid estimate.
+    /// Counted after the first valid estimate.
     invalid_s: f64,
 }
 

@@ -1,4 +1,4 @@
-//! What the terminal shows.
+//! The table on the terminal.
 
 use std::fmt::Write;
 
@@ -52,7 +52,7 @@ fn cells(figures: Option<Figures>) -> String {
     }
 }
 
-/// Over the trials that have a reference: at the samples, at 1 kHz.
+/// Errors over the trials with a reference: at the samples, and at 1 kHz.
 pub fn means(outcomes: &[Outcome]) -> (Option<Figures>, Option<Figures>) {
     let mean = |figures: fn(&Outcome) -> Option<Figures>| {
         let all: Vec<Figures> = outcomes.iter().filter_map(figures).collect();
@@ -64,7 +64,7 @@ pub fn means(outcomes: &[Outcome]) -> (Option<Figures>, Option<Figures>) {
     )
 }
 
-/// What was replayed, in words.
+/// A description of the replay.
 pub fn title(task: &Task) -> String {
     let mode = match task.mode {
         Mode::NineAxis => "with magnetometer (9d)",
@@ -76,7 +76,7 @@ pub fn title(task: &Task) -> String {
     }
 }
 
-/// What the estimator had to do without.
+/// The data that a trial lacked.
 pub fn troubles(outcome: &Outcome) -> impl Iterator<Item = String> {
     let rows = |count: usize, sensor: &str| {
         (count > 0).then(|| format!("{count} rows without {sensor} numbers, dropped"))
