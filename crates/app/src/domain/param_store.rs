@@ -1,6 +1,6 @@
 //! State of the parameter store, and its requests to the control tick.
 
-/// What the store is doing.
+/// Activity of the store.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
@@ -104,7 +104,7 @@ pub struct ParamStatus {
     pub foreign: u16,
     /// Number of records that fit before the next rotation.
     pub free_slots: u16,
-    /// What the store is doing.
+    /// Activity of the store.
     pub state: ParamState,
     /// Why the last failed attempt failed.
     pub last_error: ParamError,
@@ -116,7 +116,7 @@ pub struct ParamStatus {
     pub strange_sectors: u8,
 }
 
-/// What the parameter task wants to do to flash. The control tick grants it.
+/// The flash operation that the parameter task requests. The control tick grants it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum FlashRequest {

@@ -1,7 +1,7 @@
 //! DJI DBUS (DT7/DR16): 18 bytes at 100 kbaud 8E1 every 14 ms, without header or checksum (docs/hardware.md#dbus).
 //!
 //! A frame is exactly 18 bytes after an idle line, with sticks, switches and mouse buttons in range. Anything else is
-//! dropped up to the next idle line.
+//! dropped until the next idle line.
 
 use super::channels;
 
@@ -154,7 +154,7 @@ impl DbusParser {
     }
 
     /// Takes the place of [`feed`](Self::feed) for `count` bytes of which at least one was damaged on the line. They
-    /// are dropped, and so is everything up to the next idle line.
+    /// are dropped, and so is everything until the next idle line.
     pub fn reject(&mut self, count: usize, ts_us: u64) {
         self.drop_window();
         self.discarded_bytes = self.discarded_bytes.wrapping_add(count as u32);

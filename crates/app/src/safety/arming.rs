@@ -141,7 +141,7 @@ pub struct ArmingStatus {
     pub state: ArmingState,
     /// The pilot has requested arming. The robot arms when the blockers end by themselves.
     pub waiting: bool,
-    /// What blocks arming, empty while armed.
+    /// The blockers of arming, empty while armed.
     pub blockers: ArmingBlockers,
     /// Why the last request was refused, empty since the robot was last armed.
     pub refused: ArmingBlockers,

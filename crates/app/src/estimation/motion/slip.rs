@@ -2,7 +2,7 @@
 //!
 //! A wheel slips if its speed differs too much from the filter's. The filter follows the wheels with a time constant T of
 //! 1/3.9 s. A wheel that lastingly accelerates by a m/s² more than the accelerometer shows is therefore a·T ahead of the
-//! filter. So a limit on the speed is also one on the acceleration, limit / T = 1.2 m/s², without differentiating a speed.
+//! filter. A limit on the speed is therefore also one on the acceleration, limit / T = 1.2 m/s², and needs no derivative.
 
 /// Speed error beyond which a wheel slips.
 const SLIP_MPS: f32 = 0.3;
@@ -53,7 +53,7 @@ impl SlipState {
         agreed_s: 0.0,
     };
 
-    /// As [`Self::step`], for a robot at a standstill: its speed does not drift.
+    /// Like [`Self::step`], but for a robot at a standstill, whose speed does not drift.
     pub fn step_at_standstill(self, speed_mps: f32, dt_s: f32) -> Self {
         match self.step(speed_mps, dt_s) {
             Self::Slipping { agreed_s, .. } => Self::Slipping {

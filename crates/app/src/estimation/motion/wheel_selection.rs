@@ -1,4 +1,4 @@
-//! Which wheels aid the velocity, and how long the accelerometer does without any.
+//! Selects the wheels that aid the velocity, and limits the time for which the accelerometer works without them.
 
 use super::{
     slip::SlipState,
@@ -9,13 +9,13 @@ use super::{
 
 /// Longest time without wheel aiding. A tilt error of 1° makes 0.34 m/s by then.
 const MAX_UNAIDED_S: f32 = 2.0;
-/// Time of rolling without a break after which wheels are trusted.
+/// Time of rolling without interruption after which wheels are trusted.
 const TRUSTED_AFTER_S: f32 = 1.0;
 /// Largest difference of two rolling wheels, after the yaw rate is taken into account.
 const MAX_DIFFERENCE_MPS: f32 = 0.3;
-/// Of two wheels that differ more, one within this of the filter's speed still rolls.
+/// If two wheels differ by more, one whose speed is within this of the filter's still rolls.
 const AGREE_MPS: f32 = 0.1;
-/// A wheel slower than this stands.
+/// A wheel slower than this counts as standing.
 const STANDING_MPS: f32 = 0.02;
 
 /// How the wheels aid the velocity filter. The innovations are wheel speed less predicted speed, m/s.
@@ -25,14 +25,14 @@ pub(super) enum WheelAiding {
     Trusted(f32),
     /// At least one wheel rolls, but not for long.
     Provisional(f32),
-    /// All wheels heard slip, so nothing holds the robot sideways either. The accelerometer goes on alone.
+    /// All wheels that report slip, so nothing holds the robot sideways either. The accelerometer works alone.
     Slipping,
-    /// No wheel is heard. The accelerometer goes on alone.
+    /// No wheel reports. The accelerometer works alone.
     Silent,
     /// The wheels are used again, because one rolls or because the accelerometer is no better by now. The forward speed
     /// is set to theirs, the speed to the left to zero.
     Reset(f32),
-    /// No wheel is heard, and the accelerometer alone is not good enough any longer.
+    /// No wheel reports, and the accelerometer alone is no longer accurate enough.
     Lost,
 }
 
@@ -58,12 +58,12 @@ pub(super) struct WheelSelection {
     slip: [SlipState; 2],
     /// Time since a wheel last aided the filter.
     unaided_s: f32,
-    /// Time for which wheels have aided it without a break.
+    /// Time for which wheels have aided it without interruption.
     rolling_s: f32,
 }
 
 impl WheelSelection {
-    /// The state before any wheel was heard.
+    /// The state before any wheel has reported.
     pub const fn new() -> Self {
         Self {
             slip: [SlipState::Rolling; 2],
@@ -169,7 +169,7 @@ impl WheelSelection {
         }
     }
 
-    /// What the wheels show about a standstill.
+    /// The wheels' evidence of a standstill.
     pub fn standstill_evidence(&self, speeds: PerWheel) -> WheelEvidence {
         if speeds == [None; 2] {
             return WheelEvidence::Silent;
@@ -194,7 +194,7 @@ fn are_inconsistent(innovation: PerWheel) -> bool {
     }
 }
 
-/// Of two inconsistent wheels keeps the one nearer to the filter's speed, or none if both are far from it.
+/// Keeps the one of two inconsistent wheels that is nearer to the filter's speed, or none if both are far from it.
 fn consistent(innovation: PerWheel) -> PerWheel {
     if !are_inconsistent(innovation) {
         return innovation;

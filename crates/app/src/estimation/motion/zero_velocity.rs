@@ -2,9 +2,9 @@
 
 use crate::math::{Vector3, scalar, vector};
 
-/// Quiet time that is a standstill while the wheels stand.
+/// Quiet time that counts as a standstill while the wheels stand.
 const STANDING_S: f32 = 0.3;
-/// The same while no wheel is heard. By then the velocity has decayed already.
+/// The same while no wheel reports. By then the velocity has already decayed.
 const UNHEARD_S: f32 = 4.0;
 /// Largest angular rate of a quiet sample (5.7 °/s). It leaves room for a gyro bias that is not known yet.
 const MAX_RATE_RPS: f32 = 0.1;
@@ -16,16 +16,16 @@ const SMOOTHING_S: f32 = 0.2;
 /// wheels decelerates more.
 const MAX_FREE_MPS2: f32 = 1.0;
 
-/// What the wheels show about a standstill.
+/// The wheels' evidence of a standstill.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum WheelEvidence {
-    /// All wheels heard stand, and none slips.
+    /// All wheels that report stand, and none slips.
     Standing,
     /// At least one wheel rolls.
     Turning,
     /// All wheels that turn slip.
     Spinning,
-    /// No wheel is heard.
+    /// No wheel reports.
     Silent,
 }
 
