@@ -1,4 +1,4 @@
-//! Licences of what is linked, and which programs the GPL reaches (docs/decisions/unicorn-engine.md).
+//! Licences of linked packages, and the programs that contain GPL code (docs/decisions/unicorn-engine.md).
 
 use std::{
     collections::BTreeSet,
@@ -17,7 +17,7 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// What cargo prints. It fetches packages only where another build has not done so.
+/// Output of cargo. It fetches packages only if another build has not done so.
 fn cargo(arguments: &[&str]) -> String {
     let run = |more: &[&str]| -> Output {
         let mut command = Command::new(env!("CARGO"));
@@ -45,7 +45,7 @@ fn host() -> String {
 #[derive(PartialEq, Eq, PartialOrd, Ord, Debug)]
 struct Package {
     name: String,
-    /// Where it comes from, if not from the registry.
+    /// Source of the package, if it is not the registry.
     elsewhere: Option<String>,
     licence: String,
 }
@@ -67,7 +67,7 @@ impl Package {
     }
 }
 
-/// Packages that `selection` takes on a target.
+/// Packages in `selection` on a target.
 fn tree(selection: &[&str], edges: &str, target: &str) -> BTreeSet<Package> {
     let options = ["--prefix", "none", "--format", "{p}|{l}"];
     let place = ["--edges", edges, "--target", target];
@@ -77,7 +77,7 @@ fn tree(selection: &[&str], edges: &str, target: &str) -> BTreeSet<Package> {
     lines.map(Package::read).collect()
 }
 
-/// Names of what is built into `package`, tests aside.
+/// Names of the packages built into `package`, without tests.
 fn linked(package: &str, target: &str) -> BTreeSet<String> {
     let tree = tree(&["--package", package], "normal,build", target);
     tree.into_iter().map(|package| package.name).collect()

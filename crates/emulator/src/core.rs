@@ -1,4 +1,4 @@
-//! Cortex-M4F: instruction execution through unicorn-engine; exceptions, NVIC, SCB, SysTick and DWT here.
+//! The Cortex-M4F. unicorn-engine executes the instructions; exceptions, NVIC, SCB, SysTick and DWT are implemented here.
 
 mod alignment;
 pub(crate) mod clock;

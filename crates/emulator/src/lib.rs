@@ -1,7 +1,7 @@
-//! An emulated STM32F407: a firmware image boots here, unchanged.
+//! An emulated STM32F407, on which an unchanged firmware image boots.
 //!
-//! `core` runs the Cortex-M4F and its private peripherals, `soc` holds the chip's own peripherals. Whatever the pins
-//! and buses lead to stands behind [`soc::board::Board`]; this crate knows no board.
+//! `core` runs the Cortex-M4F and its private peripherals, `soc` holds the chip's own peripherals. The devices
+//! at pins and buses are behind [`soc::board::Board`]; this crate contains no board.
 
 #![deny(missing_docs)]
 

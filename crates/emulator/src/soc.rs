@@ -1,4 +1,4 @@
-//! The STM32F407's peripherals: registers in, wires out. One file a peripheral.
+//! The STM32F407's peripherals, with their registers and signals. Each has its own file.
 //!
 //! The devices at the other ends of the wires are behind [`board::Board`].
 

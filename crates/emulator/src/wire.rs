@@ -5,11 +5,11 @@ use crate::time::Ps;
 /// One CAN 2.0 frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CanFrame {
-    /// 11 bits, or 29 where `extended`.
+    /// Identifier of 11 bits, or of 29 bits if `extended`.
     pub id: u32,
     /// The identifier has 29 bits (IDE).
     pub extended: bool,
-    /// The frame asks for the data (RTR) instead of carrying them.
+    /// The frame requests data (RTR) instead of carrying them.
     pub remote: bool,
     /// Number of data bytes, 0 to 8.
     pub dlc: u8,
@@ -17,7 +17,7 @@ pub struct CanFrame {
     pub data: [u8; 8],
 }
 
-/// Which CAN controller a bus belongs to.
+/// The CAN controller of a bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CanPort {
     /// bxCAN 1, the master of the shared filters.
@@ -46,14 +46,14 @@ pub struct LineFormat {
     pub data_bits: u8,
     /// The parity bit that follows the data.
     pub parity: Parity,
-    /// 1 or 2.
+    /// Number of stop bits, 1 or 2.
     pub stop_bits: u8,
 }
 
 /// One character on a UART line, from the falling edge of its start bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UartChar {
-    /// When its start bit begins.
+    /// Time at which its start bit begins.
     pub start: Ps,
     /// The data bits, least significant first on the line.
     pub byte: u8,

@@ -8,7 +8,7 @@ use crate::machine::diagnostics::meaning::Meaning;
 pub struct Expectation {
     pub signal: String,
     pub window: Window,
-    /// Every bound and every flag must hold; there is at least one of either.
+    /// Bounds and flags that must all hold. There is at least one of either.
     pub bounds: Vec<Bound>,
     /// Flags of the signal, named as in the image.
     pub flags: Vec<NamedFlag>,
@@ -37,7 +37,7 @@ pub struct NamedFlag {
 }
 
 impl NamedFlag {
-    /// The bound on the signal whose values have this `meaning`; an error says why there is none.
+    /// The bound on the signal whose values have this `meaning`, or an error that says why there is none.
     pub fn bound(&self, signal: &str, meaning: Option<&Meaning>) -> Result<Bound, FlagError> {
         let Some(Meaning::Flags(names)) = meaning else {
             return Err(FlagError::NoNames(signal.to_owned()));
@@ -64,7 +64,7 @@ impl std::fmt::Display for NamedFlag {
     }
 }
 
-/// Both ends belong to the window.
+/// A window in time. Both ends belong to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Window {
     pub start: Ps,
@@ -115,7 +115,7 @@ impl Bound {
         }
     }
 
-    /// How far `value` exceeds this bound: 0 where it holds, infinite for NaN.
+    /// Amount by which `value` exceeds this bound: 0 if it holds, infinite for NaN.
     fn excess(self, value: f64) -> f64 {
         let excess = match self {
             Self::MaxAbs(limit) => value.abs() - limit,
@@ -184,7 +184,7 @@ impl std::fmt::Display for Bound {
     }
 }
 
-/// A value and when it was seen.
+/// A value and its time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading {
     pub at: Ps,
@@ -201,7 +201,7 @@ pub struct Verdict {
     pub because: Option<String>,
     /// The reading nearest to breaking the bound, the one that broke it most, or the crossing.
     pub decisive: Option<Reading>,
-    /// Readings judged.
+    /// Number of readings that were judged.
     pub readings: u64,
     /// The reason in words; `None` if the bound held.
     pub failure: Option<String>,
@@ -232,7 +232,7 @@ impl Judge {
         }
     }
 
-    /// Takes the signal's value at `at`; times never go backwards.
+    /// Takes the signal's value at `at`. Times must not decrease.
     pub fn see(&mut self, at: Ps, value: f64) {
         let inside = if self.window.is_instant() {
             at >= self.window.start && self.readings == 0
@@ -278,7 +278,7 @@ impl Judge {
         margin(a) < margin(b)
     }
 
-    /// `end` is when the run really ended: a bound whose window was cut off has not held.
+    /// Ends the judgement. `end` is the actual end of the run, and a bound whose window was cut off has not held.
     pub fn finish(
         self,
         signal: &str,

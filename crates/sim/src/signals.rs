@@ -8,11 +8,11 @@ pub struct SignalTable {
     names: Vec<String>,
     world: usize,
     diag: usize,
-    /// Meanings of the diagnostics' values, in the same order; may be shorter.
+    /// Meanings of the diagnostics' values, in the same order. The list may be shorter.
     meanings: Vec<Option<Meaning>>,
 }
 
-/// One value of each signal; `None` while it has none: the firmware is not up, or a reference has a gap.
+/// One value of each signal; `None` while the firmware is not running, or in a gap of the reference.
 pub type Values = Vec<Option<f64>>;
 
 impl SignalTable {
@@ -33,7 +33,7 @@ impl SignalTable {
         self
     }
 
-    /// The meaning of a signal's values, where the firmware tells it.
+    /// The meaning of a signal's values, if the firmware contains it.
     pub fn meaning(&self, place: usize) -> Option<&Meaning> {
         let diag = place.checked_sub(self.world)?;
         self.meanings.get(diag)?.as_ref()
@@ -65,7 +65,7 @@ impl SignalTable {
     }
 }
 
-/// The candidate a mistyped name most likely meant, if one is close.
+/// The candidate most similar to a mistyped name, if one is close.
 pub fn nearest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     candidates
         .map(|c| (edit_distance(name, c), c))

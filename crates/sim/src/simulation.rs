@@ -24,14 +24,14 @@ pub trait Simulation {
     fn sample_world(&mut self, out: &mut Vec<f64>);
     fn drain_wire_events(&mut self, out: &mut Vec<WireEvent>);
     fn diag_names(&mut self) -> Vec<String>;
-    /// The meaning of the values of each of them, where the firmware tells it.
+    /// The meaning of the values of each of them, if the firmware contains it.
     fn diag_meanings(&mut self) -> Vec<Option<Meaning>>;
     /// Returns false while the firmware's diagnostics cannot be read consistently.
     fn sample_diag(&mut self, out: &mut Vec<f64>) -> bool;
     /// Total, heading and inclination error of the last tick's estimate in degrees; `None` in a gap of the reference.
     fn attitude_error_deg(&mut self, q_wxyz: [f64; 4]) -> Option<[f64; 3]>;
     fn take_log(&mut self) -> Vec<LogLine>;
-    /// All measurements; this takes a while for a long run.
+    /// All measurements. This takes some time for a long run.
     fn stats(&mut self) -> Stats;
     fn progress(&mut self) -> Progress;
     /// Resets since power-on.

@@ -16,7 +16,7 @@ pub enum Tree {
 }
 
 impl Tree {
-    /// A tree of the given names (each a dotted path and the place of its value).
+    /// Builds a tree of the given names, each a dotted path with the index of its value.
     pub fn new<'a>(names: impl Iterator<Item = (&'a str, usize)>) -> Self {
         let mut root = BTreeMap::new();
         for (name, place) in names {
@@ -25,7 +25,7 @@ impl Tree {
         into_arrays(root)
     }
 
-    /// The present values; a missing one is left out of an object and null in an array.
+    /// The current values as JSON. A missing value is omitted in an object and null in an array.
     pub fn with<'a>(&'a self, values: &'a Values) -> impl Serialize + 'a {
         Filled { tree: self, values }
     }
@@ -57,7 +57,8 @@ impl Tree {
     }
 }
 
-/// A tree with the values of an instant: written a hundred times a second, so without a copy in between.
+/// A tree with the values of an instant. It is written a hundred times a second, and therefore without an intermediate
+/// copy.
 struct Filled<'a> {
     tree: &'a Tree,
     values: &'a Values,

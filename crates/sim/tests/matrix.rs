@@ -1,5 +1,5 @@
-//! Every fault in every phase of a drive, on the shipped image: what stops, how soon, under which flags, and what
-//! happens when the fault is gone.
+//! Every fault in every phase of a drive, on the shipped image: which parts stop, how soon and with which flags, and what
+//! happens after the end of the fault.
 //!
 //! `matrix/expected.rs` holds what must happen. `docs/safety.md` shows it, with the times measured when it was written
 //! (`ROBOT_WRITE_MATRIX=1` writes it again). `ROBOT_MATRIX=motor-3` runs only the faults whose names contain that.

@@ -6,7 +6,7 @@ use robot_host_tests::links::resolved;
 
 use crate::{anchors::anchors, command, source::missing_documents, tree::Tree};
 
-/// What a document cites and the tree does not have, a line each.
+/// Citations of a document that do not exist in the tree, one line each.
 pub fn missing(tree: &Tree, path: &str, text: &str) -> Vec<String> {
     let mut found = BTreeSet::from_iter(missing_documents(tree, path, text));
     let links = links(text).filter(|link| !is_there(tree, path, link));

@@ -1,4 +1,4 @@
-//! docs/port.md says in each row where a statement went, what shows it and what is different.
+//! Each row of docs/port.md names the new place of a statement, the test that shows it and the differences.
 
 use crate::tree::Tree;
 

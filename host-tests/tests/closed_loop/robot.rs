@@ -34,14 +34,14 @@ pub struct Robot {
     health: SystemHealth,
     diagnostics: DiagnosticsSnapshot,
     wheel_currents_ma: [f64; 2],
-    /// What a user's logic would command past the controller, if any.
+    /// Direct command of a user's logic, which bypasses the controller.
     pub direct: Option<ChassisCommand>,
     /// Every byte sent on CAN so far, folded into one number.
     pub sent_digest: u64,
 }
 
 impl Robot {
-    /// Powered on, sensors brought up, time somewhat above zero.
+    /// A robot that is powered on and has its sensors brought up. Its time is slightly above zero.
     pub fn new(plant: PlantKind, radio: RadioKind) -> Self {
         let world = WorldConfig {
             plant,

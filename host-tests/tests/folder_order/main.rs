@@ -1,7 +1,7 @@
 //! The modules of crates/app use each other in one direction only.
 //!
-//! Its `lib.rs` lists the folders in a table: a folder uses only folders above it. Inside a folder no modules beside each
-//! other form a circle. Code for tests may use anything.
+//! Its `lib.rs` lists the folders in a table: a folder uses only folders above it. Sibling modules inside a folder do
+//! not form a cycle. Code for tests may use anything.
 
 use std::{
     fs,
@@ -45,7 +45,7 @@ fn upward_uses(crate_root: &Module, order: &[&str]) -> Vec<String> {
         .collect()
 }
 
-/// The modules of a circle in each folder that has one.
+/// The modules of a cycle in each folder that has one.
 fn circles(crate_root: &Module, folder: &Module) -> Vec<String> {
     let edges = uses_between_siblings(crate_root, folder);
     let own = first_circle(&edges).map(|circle| format!("{}: {circle}", folder.name()));

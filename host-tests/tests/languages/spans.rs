@@ -1,4 +1,4 @@
-//! What a piece of Markdown holds beside its words: code in backticks and targets of links.
+//! Parts of Markdown besides words: code in backticks and targets of links.
 
 use std::collections::BTreeSet;
 
@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 pub struct Spans {
     pub code: BTreeSet<String>,
     pub targets: BTreeSet<String>,
-    /// All the rest, a space in the place of each piece of code and of each target.
+    /// The remaining text, with a space in place of each piece of code and each target.
     pub words: String,
 }
 

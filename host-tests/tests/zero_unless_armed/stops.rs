@@ -150,7 +150,7 @@ const STOPS: [(&str, Cause, [bool; 2], bool); 15] = [
     ),
 ];
 
-/// With one second of each cause. What was latched goes on after the clearing gesture and the enable switch.
+/// Each cause lasts one second. After a latched stop the parts resume after the clearing gesture and the enable switch.
 #[test]
 fn each_stop_affects_its_own_actuators_and_latches_as_documented() {
     for make in [Make::Dm4310, Make::Rs00] {
@@ -206,7 +206,7 @@ fn every_cause_blocks_arming() {
     }
 }
 
-/// 3 ms from the tick in which the pilot's will is known: every slot of every joint carries a stop.
+/// Within 3 ms of the tick that knows the pilot's request, every slot of every joint carries a stop.
 #[test]
 fn a_stop_reaches_every_joint_in_its_next_slot() {
     for make in [Make::Dm4310, Make::Rs00] {

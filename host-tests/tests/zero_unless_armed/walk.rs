@@ -1,4 +1,4 @@
-//! Robots that run through many phases, always the same ones.
+//! Robots that run through many phases, which are the same in each run.
 
 use proptest::{strategy::ValueTree, test_runner::TestRunner};
 use robot_app::domain::{JointCommand, JointMode};

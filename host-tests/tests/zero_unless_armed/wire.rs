@@ -1,5 +1,5 @@
-//! What a motor understands of the frames on its bus: docs/hardware.md#c620-and-m3508, docs/hardware.md#dm4310 and
-//! docs/hardware.md#rs00. Written apart from the firmware's own codecs.
+//! Decoding of frames as the motors do it: docs/hardware.md#c620-and-m3508, docs/hardware.md#dm4310 and
+//! docs/hardware.md#rs00. It is independent of the firmware's own codecs.
 
 use robot_app::domain::{BusId, CanFrame};
 
@@ -108,7 +108,7 @@ pub enum JointFrame {
         pos_rad: f32,
         max_rps: f32,
     },
-    /// RS00: and a current limit in A.
+    /// For an RS00 also a current limit in A.
     Speed {
         vel_rps: f32,
     },

@@ -12,9 +12,9 @@ pub struct BlockCost {
     pub instructions: u16,
     /// Core cycles that they take with no wait state.
     pub cycles: u16,
-    /// Holds a SEV.
+    /// Whether the block contains a SEV.
     pub sends_event: bool,
-    /// Holds a floating-point instruction.
+    /// Whether the block contains a floating-point instruction.
     pub uses_fpu: bool,
 }
 
@@ -27,13 +27,13 @@ const FP_MULTIPLY_ADD: u16 = 3;
 
 enum Kind {
     Plain(u16),
-    /// A single load: pipelines with the one before it.
+    /// A single load, which pipelines with the one before it.
     Load,
     Event,
     Fpu(u16),
 }
 
-/// Cost of `code`, the bytes of one straight run of instructions.
+/// Computes the cost of `code`, the bytes of one straight run of instructions.
 pub fn block_cost(code: &[u8]) -> BlockCost {
     let mut cost = BlockCost::default();
     let mut after_load = false;

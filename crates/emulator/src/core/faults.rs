@@ -2,15 +2,15 @@
 
 use crate::core::exception::Exception;
 
-/// Cause of a fault, with the address where the hardware reports one.
+/// Cause of a fault, with the address if the hardware reports one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// Load or store where nothing answers. Stores are reported as precisely as loads, which a real write buffer
-    /// does not always manage.
+    /// Load or store at an address where nothing responds. Stores are reported as precisely as loads, which a real
+    /// write buffer cannot always do.
     DataBus {
         address: u32,
     },
-    /// Instruction fetch where nothing answers.
+    /// Instruction fetch from an address where nothing responds.
     FetchBus,
     /// Instruction fetch from memory that may not hold code.
     FetchForbidden,
@@ -26,7 +26,7 @@ pub enum Fault {
     Unaligned,
     /// A floating-point instruction while CPACR keeps the FPU off.
     NoCoprocessor,
-    /// BKPT without a debugger: straight to HardFault.
+    /// BKPT without a debugger, which raises HardFault directly.
     Breakpoint,
 }
 

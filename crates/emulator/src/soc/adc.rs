@@ -27,12 +27,12 @@ const ADC3: Range<u32> = 0x200..0x300;
 
 const IRQ: u8 = 18;
 const MAX_ADC_HZ: u32 = 36_000_000;
-/// This chip's. The datasheet allows 1.18 to 1.24 V.
+/// Internal reference voltage of this chip. The datasheet allows 1.18 to 1.24 V.
 const VREFINT_V: f64 = 1.217;
 /// The reference after TSVREFE (DS8626, embedded reference voltage).
 const VREFINT_START: Ps = 10 * US;
 
-/// The internal reference in counts of 12 bits, where the supply is `vdda_v`.
+/// The internal reference in counts of 12 bits at a supply of `vdda_v`.
 pub fn vrefint_counts(vdda_v: f64) -> u16 {
     (VREFINT_V / vdda_v * 4095.0).round() as u16
 }
@@ -54,7 +54,7 @@ impl Common {
         ctx.clocks.pclk2_hz / (2 * ((self.ccr >> 16 & 3) + 1))
     }
 
-    /// False where no converter can see the reference; files a board error then.
+    /// Whether a converter can measure the reference. If not, a board error is reported.
     fn reference_is_on(&self, ctx: &mut Ctx<'_>) -> bool {
         if self.ccr & ccr::TSVREFE == 0 {
             ctx.errors.report(

@@ -19,15 +19,15 @@ pub trait Board: Any {
     /// The cells of flash sectors 1–3.
     fn flash_cells(&mut self) -> &mut dyn FlashCells;
 
-    /// When something happens on the board next without the chip's doing.
+    /// Time of the next event on the board that the chip does not cause.
     fn next_event(&self) -> Ps {
         Ps::MAX
     }
 
-    /// Brings the board up to `now`.
+    /// Advances the board to `now`.
     fn advance(&mut self, _now: Ps) {}
 
-    /// Files the accesses beyond the limits of the board's devices since the last call.
+    /// Reports the accesses since the last call that exceeded the limits of the board's devices.
     fn file_errors(&mut self, _errors: &mut BoardErrors, _now: Ps) {}
 
     /// Sets the pins' connections on the board at power-on.
@@ -41,10 +41,10 @@ pub trait Board: Any {
         false
     }
 
-    /// The chip may drive its pins differently.
+    /// Called when the chip may drive its pins differently.
     fn outputs_changed(&mut self, _outputs: &Outputs<'_>, _errors: &mut BoardErrors, _now: Ps) {}
 
-    /// The pin to which the board routes a peripheral's signal; `None` where it leads nowhere.
+    /// The pin to which the board routes a peripheral's signal; `None` if it is not connected.
     fn route(&self, _signal: Signal) -> Option<Route> {
         None
     }
@@ -59,7 +59,7 @@ pub trait Board: Any {
         3.3
     }
 
-    /// Exchanges one byte on SPI1 in the SPI mode 0 … 3; 0xFF where no device is selected.
+    /// Exchanges one byte on SPI1 in the SPI mode 0 … 3. Returns 0xFF if no device is selected.
     fn spi_transfer(&mut self, _mosi: u8, _sck_hz: u32, _mode: u8, _now: Ps) -> u8 {
         0xFF
     }
@@ -67,22 +67,22 @@ pub trait Board: Any {
     /// A transfer on I2C3 is about to address a device.
     fn i2c_started(&mut self, _pins: &PinBank, _errors: &mut BoardErrors, _now: Ps) {}
 
-    /// START and address byte on I2C3; true where a device acknowledges.
+    /// Handles START and address byte on I2C3. Returns true if a device acknowledges.
     fn i2c_address(&mut self, _address: u8, _read: bool, _scl_hz: u32, _now: Ps) -> bool {
         false
     }
 
-    /// Data byte to the device; true where it acknowledges.
+    /// Sends a data byte to the device. Returns true if it acknowledges.
     fn i2c_write(&mut self, _byte: u8, _now: Ps) -> bool {
         false
     }
 
-    /// Data byte from the device, which the chip acknowledges or not.
+    /// Receives a data byte from the device, which the chip acknowledges or not.
     fn i2c_read(&mut self, _acknowledge: bool, _now: Ps) -> u8 {
         0xFF
     }
 
-    /// STOP, or the chip lets go of both lines.
+    /// Handles STOP, or a release of both lines by the chip.
     fn i2c_stop(&mut self, _now: Ps) {}
 
     /// Whether a device holds SDA or SCL low.
@@ -95,27 +95,27 @@ pub trait Board: Any {
         None
     }
 
-    /// How many nodes the bus has beside the chip; they are numbered from 0.
+    /// Number of nodes on the bus besides the chip. They are numbered from 0.
     fn can_nodes(&self, _port: CanPort) -> usize {
         0
     }
 
-    /// Whether the bus is cut or shorted for everybody.
+    /// Whether the bus is cut or shorted for every node.
     fn can_broken(&self, _port: CanPort) -> bool {
         false
     }
 
-    /// Whether the node is powered and plugged in: otherwise it neither sends nor acknowledges.
+    /// Whether the node is powered and connected. Otherwise it neither sends nor acknowledges.
     fn can_present(&self, _port: CanPort, _node: usize) -> bool {
         false
     }
 
-    /// Whether the node receives frames: a present one does, and one that only listens.
+    /// Whether the node receives frames. This is true for a node that is present, and for one that only listens.
     fn can_hears(&self, port: CanPort, node: usize) -> bool {
         self.can_present(port, node)
     }
 
-    /// The frame the node wants on the bus now.
+    /// The frame that the node requests to send now.
     fn can_pending(&self, _port: CanPort, _node: usize, _now: Ps) -> Option<CanFrame> {
         None
     }
@@ -129,7 +129,7 @@ pub trait Board: Any {
 
 /// Outputs of the chip on its pins.
 pub struct Outputs<'a> {
-    /// Modes and levels as the ports have them.
+    /// Modes and levels of the ports.
     pub pins: &'a PinBank,
     /// The waves of the timers' channels.
     pub waves: &'a dyn Waves,

@@ -1,4 +1,4 @@
-//! State of every GPIO pin, kept by the GPIO ports and read by whoever sits behind a pin.
+//! State of every GPIO pin, kept by the GPIO ports and read by the devices behind the pins.
 
 /// Port A = 0 … I = 8, and the pin number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -32,7 +32,7 @@ pub enum PinMode {
     Input,
     /// The output register drives it.
     Output,
-    /// A peripheral has it, by number of the alternate function.
+    /// A peripheral uses it, by number of the alternate function.
     Alternate(u8),
     /// Analogue input or output.
     Analog,
@@ -54,9 +54,9 @@ impl std::fmt::Display for PinMode {
 pub enum Pull {
     /// No resistor.
     None,
-    /// To VDD.
+    /// Pull-up to VDD.
     Up,
-    /// To ground.
+    /// Pull-down to ground.
     Down,
 }
 
@@ -76,7 +76,7 @@ pub struct PinSettings {
 }
 
 impl PinSettings {
-    /// After reset, but for the debug port's pins.
+    /// The state after reset, except for the debug port's pins.
     pub const RESET: Self = Self {
         mode: PinMode::Input,
         open_drain: false,
@@ -89,7 +89,7 @@ impl PinSettings {
 /// Connection of a pin on the board.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Outside {
-    /// Nothing gives the pin a level.
+    /// Nothing outside the chip gives the pin a level.
     #[default]
     Nothing,
     /// A resistor of some kΩ to 3.3 V, which wins over the chip's own.
@@ -106,7 +106,7 @@ pub struct PinBank {
 }
 
 impl Default for PinBank {
-    /// After reset: inputs, but PA13–15 and PB3–4 on AF0 (debug port). Nothing outside.
+    /// The state after reset: inputs, except for PA13–15 and PB3–4 on AF0 (debug port). Nothing is connected.
     fn default() -> Self {
         let mut settings = [[PinSettings::RESET; 16]; 9];
         for (port, number) in [(0, 13), (0, 14), (0, 15), (1, 3), (1, 4)] {
@@ -145,8 +145,8 @@ impl PinBank {
         self.outside[usize::from(pin.port)][usize::from(pin.number)] = outside;
     }
 
-    /// Level on the wire; `None` where nobody and no resistor gives it one. What a peripheral drives onto a pin of an
-    /// alternate function is not in it.
+    /// Level on the wire; `None` if no output and no resistor sets one. The output of a peripheral on a pin with an
+    /// alternate function is not included.
     pub fn level(&self, pin: Pin) -> Option<bool> {
         let settings = self.settings(pin);
         if settings.mode == PinMode::Output && !(settings.open_drain && settings.high) {
@@ -160,7 +160,7 @@ impl PinBank {
         }
     }
 
-    /// True where two outputs fight: the pin's own drives the other level than a device outside.
+    /// Whether two outputs conflict: the pin drives one level and a device outside the other.
     pub fn contested(&self, pin: Pin) -> bool {
         let settings = self.settings(pin);
         settings.mode == PinMode::Output

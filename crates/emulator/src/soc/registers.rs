@@ -1,4 +1,4 @@
-//! Register offsets by the reference manual's names, and how a block refuses what it does not model.
+//! Register offsets by the reference manual's names, and the errors for accesses that a block does not model.
 
 use std::fmt::Display;
 
@@ -8,7 +8,7 @@ use crate::soc::peripheral::Unmodelled;
 pub(crate) struct RegisterMap(pub(crate) &'static [(u32, &'static str)]);
 
 impl RegisterMap {
-    /// `"USART3.GTPR"`, or `"USART3+0x50"` where the manual knows no register.
+    /// Name such as `"USART3.GTPR"`, or `"USART3+0x50"` if the manual has no register there.
     fn name(&self, block: impl Display, offset: u32) -> String {
         let word = offset & !3;
         self.0.iter().find(|(at, _)| *at == word).map_or_else(
@@ -17,7 +17,7 @@ impl RegisterMap {
         )
     }
 
-    /// `what` was asked of the register at `offset` of `block`, and is not modelled.
+    /// Error for the access `what` to the register at `offset` of `block`, which is not modelled.
     pub(crate) fn unmodelled(
         &self,
         block: impl Display,
@@ -30,12 +30,12 @@ impl RegisterMap {
         }
     }
 
-    /// The register was read, and is not modelled.
+    /// Error for a read of a register that is not modelled.
     pub(crate) fn unmodelled_read(&self, block: impl Display, offset: u32) -> Unmodelled {
         self.unmodelled(block, offset, "read")
     }
 
-    /// `value` was written to the register, and has bits that are not modelled.
+    /// Error for a write of `value`, which has bits that are not modelled.
     pub(crate) fn unmodelled_write(
         &self,
         block: impl Display,

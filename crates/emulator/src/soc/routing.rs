@@ -1,4 +1,4 @@
-//! Whether signals get through their pins: muxed as the board wants them, with an output stage that can drive them.
+//! Checks that signals get through their pins: muxed as the board needs, with an output stage that can drive them.
 
 use crate::soc::{
     peripheral::Ctx,
@@ -6,8 +6,8 @@ use crate::soc::{
     signals::{Signal, Stage},
 };
 
-/// True where the signal's pin is set up so that the signal gets through; otherwise files a board error. A signal
-/// that the board routes nowhere does not get through either.
+/// Whether the signal's pin is set up so that the signal gets through. If not, a board error is reported. A signal that
+/// the board does not route does not get through either.
 pub fn check(signal: Signal, ctx: &mut Ctx<'_>) -> bool {
     let Some(route) = ctx.board.route(signal) else {
         return false;
@@ -30,8 +30,8 @@ pub fn check(signal: Signal, ctx: &mut Ctx<'_>) -> bool {
     false
 }
 
-/// The present and the needed output stage, where the present one cannot drive the signal. 40 kΩ and the 30 pF of a pin, its track and
-/// an input make edges of more than a µs.
+/// The current and the required output stage, if the current one cannot drive the signal. 40 kΩ and the 30 pF of a pin, its
+/// track and an input lead to edges of more than 1 µs.
 fn stage_misfit(
     stage: Stage,
     pin: PinSettings,
@@ -39,7 +39,7 @@ fn stage_misfit(
 ) -> Option<(&'static str, &'static str)> {
     let pulled_up = outside == Outside::PullUp || pin.pull == Pull::Up;
     match stage {
-        // A push-pull stage would drive against whoever pulls the line down (RM0090 27.3.2).
+        // A push-pull stage would drive against a device that pulls the line down (RM0090 27.3.2).
         Stage::Shared if !pin.open_drain => Some(("push-pull", "open-drain")),
         Stage::Fast if pin.open_drain && pulled_up => {
             Some(("open-drain and rises too slowly by a resistor", "push-pull"))
@@ -56,7 +56,7 @@ fn stage_misfit(
 const SLOW_STAGE_HZ: u32 = 4_000_000;
 const SLOW_STAGE_LIGHT_LOAD_HZ: u32 = 8_000_000;
 
-/// Files an output stage that is too slow for a square wave of `hz`.
+/// Reports an output stage that is too slow for a square wave of `hz`.
 pub fn check_speed(signal: Signal, hz: u32, ctx: &mut Ctx<'_>) {
     let Some(route) = ctx.board.route(signal) else {
         return;

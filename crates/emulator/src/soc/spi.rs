@@ -31,13 +31,13 @@ const IRQ: u8 = 35;
 mod cr1 {
     pub const MSTR: u32 = 1 << 2;
     pub const SPE: u32 = 1 << 6;
-    /// CPHA, CPOL, BR, LSBFIRST, DFF: not to be touched during a frame (RM0090 28.5.1).
+    /// CPHA, CPOL, BR, LSBFIRST, DFF: which must not change during a frame (RM0090 28.5.1).
     pub const FRAME_SHAPE: u32 = 0x8BB;
     pub const LSBFIRST: u32 = 1 << 7;
     pub const SSI: u32 = 1 << 8;
     pub const SSM: u32 = 1 << 9;
     pub const DFF: u32 = 1 << 11;
-    /// CPHA, CPOL, MSTR, BR, SPE, LSBFIRST, SSI, SSM, DFF, and BIDIOE, which means nothing without BIDIMODE.
+    /// CPHA, CPOL, MSTR, BR, SPE, LSBFIRST, SSI, SSM, DFF, and BIDIOE, which has no effect without BIDIMODE.
     pub const MODELLED: u32 = 0x4BFF;
 }
 
@@ -59,7 +59,7 @@ mod sr {
     pub const BSY: u32 = 1 << 7;
 }
 
-/// A frame on its way through the shift register.
+/// A frame in the shift register.
 #[derive(Clone, Copy, Debug)]
 struct Shifting {
     frame: u16,
@@ -74,9 +74,9 @@ pub struct Spi {
     crcpr: u32,
     /// RXNE, MODF and OVR; the others follow from the state below.
     flags: u32,
-    /// MODF was seen in SR: the next write of CR1 clears it.
+    /// Whether MODF was read in SR, so that the next write of CR1 clears it.
     modf_shown: bool,
-    /// DR was read after an overrun: the next read of SR clears OVR.
+    /// Whether DR was read after an overrun, so that the next read of SR clears OVR.
     dr_read_after_overrun: bool,
     received: u16,
     transmit_buffer: Option<u16>,

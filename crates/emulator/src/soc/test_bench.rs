@@ -1,4 +1,4 @@
-//! A chip of one peripheral for unit tests: running clocks, a board around it, time passing.
+//! A chip with one peripheral for unit tests, with running clocks, a board and simulated time.
 
 use super::{
     board::Board,
@@ -102,12 +102,12 @@ impl Bench {
             .expect("a modelled register");
     }
 
-    /// Lets board and peripheral live until `until`.
+    /// Advances board and peripheral to `until`.
     pub fn run(&mut self, block: &mut dyn Peripheral, until: Ps) {
         self.run_while(block, until, |_| true);
     }
 
-    /// The same, until `go_on` says no after an event.
+    /// The same, but it ends early if `go_on` returns false after an event.
     pub fn run_while(
         &mut self,
         block: &mut dyn Peripheral,
@@ -130,7 +130,7 @@ impl Bench {
         }
     }
 
-    /// What fails on silicon.
+    /// Board errors that fail on silicon.
     pub fn error_texts(&self) -> Vec<&str> {
         texts(self.errors.list())
     }

@@ -64,13 +64,13 @@ pub struct Timer {
     /// Cycle 0 of the counter and the clock since then.
     epoch: Ps,
     clock_hz: u32,
-    /// Time and number of the scheduler event that still counts.
+    /// Time and number of the latest scheduler event; earlier ones are stale.
     scheduled: Option<Ps>,
     generation: u32,
 }
 
 impl Timer {
-    /// 2, 3, 4, 5 or 10.
+    /// Number of the timer: 2, 3, 4, 5 or 10.
     pub fn new(number: u8) -> Self {
         let max = if matches!(number, 2 | 5) {
             u32::MAX
@@ -128,7 +128,7 @@ impl Timer {
             3 => 29,
             4 => 30,
             5 => 50,
-            // Shared with TIM1's update.
+            // This interrupt is shared with TIM1's update.
             _ => 25,
         }
     }
@@ -141,7 +141,7 @@ impl Timer {
         }
     }
 
-    /// Interrupt line and next event after anything changed.
+    /// Updates interrupt line and next event after a change.
     fn settle(&mut self, ctx: &mut Ctx<'_>) {
         ctx.irq.set(self.irq(), self.sr & self.dier & FLAGS != 0);
         let awaited = self.dier & !self.sr & FLAGS | self.pending_preload();
@@ -157,7 +157,7 @@ impl Timer {
         }
     }
 
-    /// The update event, if it will change what a channel drives onto its pin.
+    /// The next update event, if it will change the output of a channel.
     fn pending_preload(&self) -> u32 {
         let pending = (0..4).any(|channel| {
             let compare = self.counter.compare[channel];
@@ -315,7 +315,7 @@ impl Peripheral for Timer {
     }
 }
 
-/// TIM2–5 hang on APB1, TIM10 on APB2.
+/// TIM2–5 are on APB1, TIM10 is on APB2.
 fn clock_hz(number: u8, clocks: &ClockTree) -> u32 {
     if number == 10 {
         clocks.tim2_hz

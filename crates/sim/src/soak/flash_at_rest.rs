@@ -7,7 +7,7 @@ use crate::machine::{
     flash::{FlashStep, FlashStepKind},
 };
 
-/// Least time at rest before a step: half a second, less what the soak's grid hides.
+/// Least time at rest before a step: half a second less the resolution of the soak's grid.
 const REST: Ps = 490 * MS;
 /// Time after a reset in which the image may program again what a power cut has left half programmed.
 const BOOT_WORK: Ps = 100 * MS;
@@ -20,11 +20,11 @@ const ERASE_STEP: Ps = 300 * MS;
 /// The state of the robot that decides whether flash may be written.
 #[derive(Clone, Copy, Debug)]
 pub struct RobotState {
-    /// The firmware reported to be armed, a millisecond ago and now.
+    /// Whether the firmware reported to be armed, a millisecond ago and now.
     pub armed: bool,
     pub last_armed: Option<Ps>,
     pub booted: Ps,
-    /// When the enable switch went on, if the firmware receives it.
+    /// Time at which the enable switch went on, if the firmware receives it.
     pub enabled: Option<Ps>,
 }
 
@@ -33,12 +33,12 @@ pub struct RobotState {
 pub struct FlashAtRest {
     /// Number of steps that were checked.
     judged: usize,
-    /// When the last erase began.
+    /// Time at which the last erase began.
     erase: Option<Ps>,
 }
 
 impl FlashAtRest {
-    /// The violation by the first new step that should have waited.
+    /// The violation by the first new step that was not allowed.
     pub fn check(&mut self, machine: &Machine, state: &RobotState) -> Option<String> {
         let steps = machine.flash_steps();
         let new = steps.get(self.judged..).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! What must hold at every instant, checked on the wires and in the firmware's diagnostics.
+//! Invariants that are checked at every instant, on the wires and in the firmware's diagnostics.
 
 use robot_plant::{
     time::{MS, Ps, SECOND},
@@ -19,7 +19,7 @@ use crate::{
     simulation::Simulation,
 };
 
-/// The diagnostics are one sample old, and a command takes a millisecond to reach the wire.
+/// Tolerance in time: the diagnostics are one sample old, and a command takes a millisecond to reach the wire.
 const SLACK: Ps = 5 * MS;
 /// Time from a failure of the image to the reset and the first frames of the next boot.
 const AFTER_CHIP_FAULT: Ps = 300 * MS;
@@ -50,7 +50,7 @@ pub struct Tally {
     pub frames: u64,
     pub armings: u64,
     pub resets: u64,
-    /// How often actuators had to be without torque by a deadline, and were.
+    /// Number of met deadlines for actuators without torque.
     pub stops: u64,
     pub settings: SettingsTally,
     pub flash_words: u64,
@@ -82,14 +82,14 @@ struct Places {
     arming: usize,
 }
 
-/// The invariants, with what they need to know of the past.
+/// The invariants, with the history that they need.
 pub struct Invariants {
     places: Places,
     tally: Tally,
     faults: Vec<ActiveFault>,
     pending_stops: Vec<PendingStop>,
     chip_fault: Option<Ps>,
-    /// The pilot's switches, and when the enable switch last went on.
+    /// The pilot's switches, and the time at which the enable switch last went on.
     e_stop: bool,
     enable: bool,
     enabled_at: Option<Ps>,
@@ -159,7 +159,7 @@ impl Invariants {
         }
     }
 
-    /// Takes an event that has happened.
+    /// Takes an event.
     pub fn record(&mut self, timed: &TimedEvent) {
         let at = timed.at;
         match &timed.event {
@@ -226,7 +226,7 @@ impl Invariants {
         }
     }
 
-    /// Checks everything; returns the first invariant that does not hold.
+    /// Checks all invariants. Returns the first one that does not hold.
     pub fn check(&mut self, machine: &mut Machine, now: Ps) -> Option<Violation> {
         self.faults
             .retain(|t| t.ended.is_none_or(|ended| ended + BUS_BACK > now));

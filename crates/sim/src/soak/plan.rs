@@ -1,4 +1,4 @@
-//! Draws what the pilot, the world and a PC do, and when.
+//! Draws the actions of the pilot, the world and a PC, and their times.
 
 use std::{cmp::Reverse, collections::BinaryHeap};
 
@@ -23,7 +23,7 @@ const BOOTED: Ps = 2_500 * MS;
 /// Time between two requests on one bus: the robot answers one in 4 ms.
 const NEXT_REQUEST: Ps = 7 * MS;
 
-/// Who causes an event.
+/// The source of an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Actor {
     Pilot,
@@ -91,7 +91,7 @@ impl Plan {
         Some(TimedEvent { at, event })
     }
 
-    /// The event happens at `at`.
+    /// Adds an event at `at`.
     fn then(&mut self, at: Ps, event: Event) {
         self.waiting.push(Reverse((at, self.drawn)));
         self.events.insert(self.drawn, event);
@@ -133,7 +133,7 @@ impl Plan {
         at
     }
 
-    /// The robot rests, is tuned and saves, until a power cut or the end of the rest. Returns when that is.
+    /// The robot rests, is tuned and saves, until a power cut or the end of the rest. Returns the time of that end.
     fn rest(&mut self, start: Ps) -> Ps {
         let changes = start + self.rng.time(50.0, 800.0);
         self.tune(changes);
@@ -261,7 +261,7 @@ impl Plan {
             self.rng.time(10.0, 4_000.0)
         };
         self.fault(&name, at, at + lasts);
-        // Most faults are alone, some overlap.
+        // Most faults occur alone, some overlap.
         at + self.rng.time(300.0, 20_000.0)
     }
 

@@ -13,7 +13,7 @@ use crate::scenario::{Event, TimedEvent};
 /// Time for boot, calibration and set-up before the first event.
 const BOOT: Ps = 3 * SECOND;
 
-/// The events of the time `replayed` before the violation. At its start, switches and faults are as they were then.
+/// The events in the span `replayed` before the violation. They begin with the switches and faults of its start.
 pub fn scenario(done: &[TimedEvent], violation: &Violation, seed: u64, replayed: Ps) -> String {
     let from = violation.at.saturating_sub(replayed);
     let (earlier, replayed): (Vec<_>, Vec<_>) = done.iter().partition(|timed| timed.at < from);
@@ -40,7 +40,7 @@ pub fn scenario(done: &[TimedEvent], violation: &Violation, seed: u64, replayed:
     text
 }
 
-/// The fewest events that lead to the same switches and faults as all of these.
+/// The smallest set of events that leads to the same switches and faults.
 fn state(earlier: &[&TimedEvent]) -> Vec<Event> {
     let mut pilot = RemoteInput::default();
     let mut faults = BTreeSet::new();

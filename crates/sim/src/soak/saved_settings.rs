@@ -23,7 +23,7 @@ pub struct ReceivedFrame<'a> {
     pub at: Ps,
     pub bus: CanBusId,
     pub frame: &'a CanFrame,
-    /// A fault disturbs the bus: replies may be late.
+    /// Whether a fault disturbs the bus, so that replies may be late.
     pub disturbed: bool,
 }
 
@@ -78,7 +78,7 @@ impl SavedSettings {
         self.tally
     }
 
-    /// A frame of the PC was handed to the bus.
+    /// Notes that a frame of the PC was handed to the bus.
     pub fn sent(&mut self, bus: CanBusId, frame: &CanFrame) {
         let sent = &mut self.sent[bus as usize];
         *sent += 1;
@@ -91,7 +91,7 @@ impl SavedSettings {
         }
     }
 
-    /// That many frames have gone out on each bus.
+    /// Notes the number of frames sent on each bus.
     pub fn delivered(&mut self, delivered: [u64; 2], now: Ps) {
         self.values
             .iter_mut()
@@ -144,7 +144,7 @@ impl SavedSettings {
         }
     }
 
-    /// The image has booted; with `worn` cells it may not find what was saved.
+    /// Notes a boot of the image. With `worn` cells it may not find the saved values.
     pub fn booted(&mut self, worn: bool, now: Ps) {
         self.booted = now;
         self.status = None;
@@ -165,7 +165,7 @@ impl SavedSettings {
         }
     }
 
-    /// The robot has reported that flash holds the values in use.
+    /// Notes the robot's report that flash holds the values in use.
     fn reported_saved(&mut self, applies: impl Fn(&TrackedSetting) -> bool) {
         for n in 0..self.values.len() {
             let group = self.values[n].setting.0;

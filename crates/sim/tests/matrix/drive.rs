@@ -19,10 +19,10 @@ use crate::{
 
 const QUIET: &str = "name = \"matrix\"\nseconds = 10.0\nplant = \"stand\"\n";
 
-/// Calibration and set-up of the motors are over.
+/// By this time calibration and set-up of the motors are over.
 const READY: Ps = 2_500 * MS;
 const DRIVES: Ps = 2_700 * MS;
-/// Start of the fault. It is no whole millisecond, as a fault is not synchronous to the control tick.
+/// Start of the fault. It is not a whole millisecond, because faults are not synchronous to the control tick.
 const FAULT: Ps = 3_300 * MS + 370_000_000;
 const FAULT_LASTS: Ps = 2_000 * MS;
 const SAMPLE: Ps = MS;
@@ -30,7 +30,7 @@ const SAMPLE: Ps = MS;
 const CENTRED: Ps = 300 * MS;
 const PUSHED: Ps = 500 * MS;
 
-/// Faults that the pilot causes, and no device.
+/// Faults that the pilot causes, not a device.
 pub const E_STOP: &str = "e-stop";
 
 /// The run of one cell.
@@ -223,7 +223,7 @@ impl Drive {
             }
         }
         self.events = events;
-        // A joint that loses its supply says nothing.
+        // A joint that loses its supply reports nothing.
         self.machine.sample_world(&mut self.world);
         for joint in 0..4 {
             let value = self.world[self.places.enabled[joint]];

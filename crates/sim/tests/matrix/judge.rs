@@ -1,4 +1,4 @@
-//! Compares what was seen with what must happen.
+//! Compares the observations with the expected reactions.
 
 use robot_plant::time::{MS, Ps};
 
@@ -7,10 +7,10 @@ use crate::{
     observed::{Observed, Phase, Wire},
 };
 
-/// The end of the fault, or of the run, as it is then.
+/// The span before an instant that shows the state at that instant.
 const LATELY: Ps = 200 * MS;
 
-/// What is not as it must be, in words.
+/// Differences from the expectation, as text.
 pub fn violations(row: &Row, phase: Phase, seen: &Observed) -> Vec<String> {
     let mut all = match phase {
         Phase::Driving => armed(&row.driving, seen, true),
@@ -56,7 +56,7 @@ fn armed(wanted: &Armed, seen: &Observed, driving: bool) -> Vec<String> {
     all
 }
 
-/// No torque with the stick still pushed.
+/// Violations by motors that have torque before the stick is centred.
 fn waited(name: &str, wires: &[Wire], seen: &Observed) -> Vec<String> {
     let Some(centred) = seen.centred else {
         return vec!["the stick was never centred".to_owned()];
@@ -71,7 +71,7 @@ fn waited(name: &str, wires: &[Wire], seen: &Observed) -> Vec<String> {
     }
 }
 
-/// All obeys at the end of the run.
+/// Violations by motors that do not follow their commands at the end of the run.
 fn back(seen: &Observed) -> Vec<String> {
     let (from, to) = (seen.ended - LATELY, seen.ended);
     let wheels = wheels(seen)
@@ -95,7 +95,7 @@ fn joints(seen: &Observed) -> &[Wire] {
     &seen.joints
 }
 
-/// When the last motor of the group had no torque any more; `None` while one has. Counted from when the fault struck.
+/// Time from the start of the fault until no motor of the group has torque; `None` if one still has it.
 pub fn zero_from(wires: &[Wire], seen: &Observed) -> Option<Ps> {
     let each = wires.iter().map(|wire| wire.zero_from(seen.fault_ended));
     let all: Option<Vec<Ps>> = each.collect();

@@ -10,7 +10,7 @@ use crate::{
     settings::Make,
 };
 
-/// Calibration and set-up of the motors are over.
+/// By this time calibration and set-up of the motors are over.
 const READY: Ps = 2_400 * MS;
 const FLASH_BUSY: &str = "flash-busy";
 const REMOTE_NOT_FRESH: &str = "remote-not-fresh";
@@ -18,7 +18,7 @@ const SILENT: &str = "sbus-silent";
 /// Time until a silent radio must stop the robot: the firmware's own limit is 100 ms.
 const REMOTE_TIMEOUT: Ps = 100 * MS;
 
-/// A robot whose erase began within the last millisecond, and when it ends.
+/// A robot whose erase began within the last millisecond, and the end of the erase.
 fn erasing(make: Make, times: FlashTimes) -> (Robot, Ps) {
     let mut robot = Robot::with_flash(make, &before_a_rotation(make));
     robot.machine.set_flash_times(times);
@@ -41,7 +41,7 @@ fn erasing(make: Make, times: FlashTimes) -> (Robot, Ps) {
     (robot, ends)
 }
 
-/// How far the image's clock is behind the emulated one.
+/// Lag of the image's clock behind the emulated time.
 fn lag(robot: &mut Robot) -> Ps {
     let lags = (0..20).map(|_| {
         robot.step();
@@ -151,7 +151,7 @@ fn arming_waits_for_the_erase_and_then_happens() {
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
 }
 
-/// The radio goes silent during the erase: what it sent before must not count as fresh afterwards.
+/// The radio goes silent during the erase. Frames from before must not count as fresh afterwards.
 #[test]
 fn a_radio_that_dies_during_an_erase_is_missed_in_time() {
     let makes = [Make::Dm4310, Make::Rs00];

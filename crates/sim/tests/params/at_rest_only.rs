@@ -10,12 +10,12 @@ use crate::{
     settings::{Make, image},
 };
 
-/// Calibration and set-up of the motors are over.
+/// By this time calibration and set-up of the motors are over.
 const READY: Ps = 2_400 * MS;
 const TRACK: (u8, u8) = (1, 1);
 const MAKES: [Make; 2] = [Make::Dm4310, Make::Rs00];
 
-/// The next save begins another sector, and then the oldest one has to be erased.
+/// The next save begins another sector, after which the oldest one has to be erased.
 pub fn before_a_rotation(make: Make) -> Image {
     let old = Stored::of(1, &[0.3, 0.3, 30.0, 1.0, 1.0]);
     let full = image(make, 127).erased(2).headed(2, 6);

@@ -15,7 +15,7 @@ use crate::{
 };
 
 const PHASES: [Phase; 3] = [Phase::Before, Phase::Middle, Phase::After];
-/// Changes that the user makes together; each is a record of its own.
+/// Changes that the user makes together. Each is saved as its own record.
 const CHANGES: [(Setting, f32); 3] = [((2, 0), 1.125), ((4, 0), 90_000.0), ((7, 0), 43.5)];
 /// The change that is saved after the cuts.
 const NEXT: (Setting, f32) = ((5, 3), 1.03);
@@ -29,7 +29,7 @@ const PATIENCE: Ps = 4 * SECOND;
 enum Work {
     /// The sector's last slot, the move to the next sector, two more records, and the erase of the oldest sector.
     Save,
-    /// The erase after the boot of a robot whose last one was cut.
+    /// The erase after boot of a robot whose last erase was cut.
     Erase,
 }
 
@@ -89,7 +89,7 @@ fn steps(work: Work) -> usize {
     robot.machine.flash_steps().len()
 }
 
-/// Works until all is done or `cut` says so; `acknowledged` collects the changes that the robot reported as saved.
+/// Works until all is done or `cut` returns true. `acknowledged` collects the changes that the robot reported as saved.
 fn do_work(
     robot: &mut Robot,
     work: Work,
@@ -160,7 +160,7 @@ fn run(cell: &Cell) -> Seen {
     if let Some((later, phase)) = cell.second {
         let step = robot.machine.flash_steps().len() + later;
         robot.machine.cut_power_at_flash_step(step, phase, seed + 1);
-        // The next save goes into the cut, and may or may not be done.
+        // The next save is interrupted by the cut, and may or may not be complete.
         robot.run_for(20 * MS);
         if robot.machine.resets() == 1 {
             known.look(&mut robot, &mut seen, "after the first cut");
@@ -277,7 +277,7 @@ fn cells() -> Vec<Cell> {
         steps.flat_map(move |step| PHASES.map(|phase| first(work, step, phase)))
     };
     let once: Vec<Cell> = of_work(Work::Save).chain(of_work(Work::Erase)).collect();
-    // Each first cut of every seventh cell, and then a cut ever later.
+    // Each first cut of every seventh cell, followed by second cuts at later and later steps.
     let twice = once.iter().step_by(7).zip(0..).map(|(cell, n)| Cell {
         second: Some((n * 5 % 48, PHASES[n % 3])),
         ..*cell

@@ -1,4 +1,5 @@
-//! A robot whose board sits otherwise is tilted and turned by hand: the tool finds out how, from the shipped image.
+//! A robot with another board orientation is tilted and turned by hand, and the tool finds the orientation with the shipped
+//! image.
 
 use std::path::{Path, PathBuf};
 
@@ -57,7 +58,7 @@ fn motion(directory: &Path) -> PathBuf {
     save(directory, "by-hand", &columns)
 }
 
-/// Names of what it found.
+/// Names of the orientations that it found.
 fn find_out(client: &mut TuningClient) -> anyhow::Result<[&'static str; 2]> {
     let mut poses = Vec::new();
     while poses.len() < 3 {

@@ -98,7 +98,7 @@ fn set_priority(cpu: &mut Cpu, number: u8, priority: u8) {
         .set_priority_register(irq(number), priority);
 }
 
-/// Runs until `until`, sleeping through whatever sleeps.
+/// Runs until `until`, sleep included.
 fn run_until(cpu: &mut Cpu, until: Ps) -> Result<(), Halt> {
     while cpu.run(until)? != Pause::Limit {}
     Ok(())
@@ -138,7 +138,7 @@ fn a_higher_priority_interrupts_a_handler_and_a_lower_one_waits() {
     assert_eq!(traced(&cpu), [1, 2, 3, 4, 9, 5]);
 }
 
-/// The load is done in the first round only; what follows it is done in each.
+/// The load is executed in the first round only; the instructions after it are executed in each round.
 #[test]
 fn code_behind_a_conditional_load_from_a_register_is_never_skipped() {
     let before = [
@@ -157,7 +157,7 @@ fn code_behind_a_conditional_load_from_a_register_is_never_skipped() {
 
 #[test]
 fn a_waiting_handler_follows_without_unstacking() {
-    // r2 is in the frame: only a return to thread mode would restore it between the handlers.
+    // r2 is in the frame, so only a return to thread mode would restore it between the handlers.
     let thread = program(&[
         &[0x2211, CPSID_I],
         &pend(5),

@@ -109,7 +109,7 @@ impl Converter {
         }
     }
 
-    /// 12, 10, 8 or 6.
+    /// Resolution in bits: 12, 10, 8 or 6.
     fn resolution_bits(&self) -> u32 {
         12 - 2 * (self.cr1 >> 24 & 3)
     }
@@ -239,7 +239,7 @@ impl Converter {
         self.sr & sr::ALL
     }
 
-    /// `access` counts from the converter's own registers.
+    /// The offset of `access` is relative to the converter's own registers.
     pub fn read(&mut self, access: Access) -> Result<u32, Unmodelled> {
         Ok(match access.register {
             reg::SR => self.sr,
@@ -286,7 +286,7 @@ impl Converter {
         Ok(())
     }
 
-    /// The conversion may be over.
+    /// Ends the conversion if its time is over.
     pub fn event(&mut self, common: &Common, ctx: &mut Ctx<'_>) {
         if self.ends_at.is_none_or(|at| at > ctx.now) {
             return;

@@ -16,7 +16,7 @@ const RECOMMENDED_PERMILLE: RangeInclusive<u32> = 750..=900;
 /// (the same table, bit time on pin RXD).
 const EARLIEST_PERMILLE: u32 = 600;
 
-/// BTR and what follows from it.
+/// BTR and the values computed from it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BitTiming(pub u32);
 
@@ -56,7 +56,7 @@ impl BitTiming {
         pclk1_hz / self.clocks_per_bit()
     }
 
-    /// Receives but never drives the bus.
+    /// Whether it receives but never drives the bus.
     pub fn silent(self) -> bool {
         self.0 >> 31 == 1
     }

@@ -1,4 +1,4 @@
-//! Which streams and channels can serve a request (RM0090 tables 42 and 43).
+//! The streams and channels that can serve a request (RM0090 tables 42 and 43).
 
 use crate::soc::dma_request::DmaRequest;
 

@@ -1,14 +1,14 @@
-//! The flash interface's data cache at its worst: it holds every word the core could have read while it was on, and
-//! never lets go of one until it is reset (RM0090 3.5.2).
+//! The worst case of the flash interface's data cache. It holds every word that the core could have read while it was on,
+//! and drops none until it is reset (RM0090 3.5.2).
 
 use std::collections::HashMap;
 
 #[derive(Debug, Default)]
 pub struct DataCache {
-    /// Words that differ, or may, from what the cells hold.
+    /// Words that differ, or may differ, from the cells.
     stale: HashMap<u32, u32>,
     on: bool,
-    /// It was on at some time since its last reset.
+    /// Whether it was on at some time since its last reset.
     may_hold: bool,
 }
 
@@ -18,7 +18,7 @@ impl DataCache {
         self.may_hold |= on;
     }
 
-    /// Empties it; can be done only while it is off.
+    /// Empties the cache, which is possible only while it is off.
     pub fn reset(&mut self) {
         self.stale.clear();
         self.may_hold = false;
@@ -29,14 +29,14 @@ impl DataCache {
         self.stale.get(&address).copied().filter(|_| self.on)
     }
 
-    /// A store goes to the cells and to the cache, where it always succeeds.
+    /// Notes a store, which goes to the cells and to the cache. In the cache it always succeeds.
     pub fn programmed(&mut self, address: u32, word: u32) {
         if self.may_hold {
             self.stale.insert(address, word);
         }
     }
 
-    /// An erase goes to the cells only.
+    /// Notes an erase, which goes to the cells only.
     pub fn erased(&mut self, before: impl Iterator<Item = (u32, u32)>) {
         if self.may_hold {
             for (address, word) in before {

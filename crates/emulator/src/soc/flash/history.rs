@@ -4,10 +4,10 @@ use std::ops::Range;
 
 use crate::time::Ps;
 
-/// A program or an erase that the image asked for, cut short or not.
+/// A program or an erase that the image requested, whether interrupted or not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FlashStep {
-    /// When it began; the core stood still from then on.
+    /// Time at which it began. The core stood still from then on.
     pub at: Ps,
     /// Program or erase.
     pub kind: FlashStepKind,
@@ -24,7 +24,7 @@ pub enum FlashStepKind {
     Erase,
 }
 
-/// Counted since power-on. The one bank of this chip serves no fetch while it works.
+/// Counters since power-on. The single bank of this chip serves no fetch while it is busy.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FlashStats {
     pub erases: u64,

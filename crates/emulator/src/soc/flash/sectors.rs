@@ -1,10 +1,10 @@
-//! Where the sectors that a program may write lie (RM0090 table 5, 1 MiB in one bank).
+//! Addresses of the sectors that a program may write (RM0090 table 5, 1 MiB in one bank).
 
 use std::ops::{Range, RangeInclusive};
 
 pub const WRITABLE_SECTORS: RangeInclusive<u8> = 1..=3;
 const BASE: u32 = 0x0800_0000;
-/// Each of the first four.
+/// Size of each of the first four sectors.
 const BYTES: u32 = 0x4000;
 
 /// Addresses of one of [`WRITABLE_SECTORS`].

@@ -1,8 +1,8 @@
-//! How long the flash works (STM32F407 datasheet, flash memory programming at 2.7–3.6 V).
+//! Durations of flash operations (STM32F407 datasheet, flash memory programming at 2.7–3.6 V).
 
 use crate::time::{MS, Ps, US};
 
-/// Which column of the datasheet the chip takes.
+/// The column of the datasheet that applies to the chip.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FlashTimes {
     /// Typical times.
@@ -21,7 +21,7 @@ pub enum Parallelism {
 }
 
 impl Parallelism {
-    /// `None` for 64 bits.
+    /// Returns `None` for 64 bits.
     pub fn of(control: u32) -> Option<Self> {
         match control >> 8 & 3 {
             0 => Some(Self::X8),
@@ -31,7 +31,7 @@ impl Parallelism {
         }
     }
 
-    /// Bytes of the only store that programs.
+    /// Size in bytes of the only store that programs.
     pub fn bytes(self) -> u8 {
         match self {
             Self::X8 => 1,

@@ -1,4 +1,4 @@
-//! One program or erase while it lasts, and the power cut that may end it.
+//! One program or erase in progress, and the power cut that may end it.
 
 use std::ops::Range;
 
@@ -7,7 +7,7 @@ use crate::{soc::flash_cells::FlashCells, time::Ps};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Work {
-    /// Bits outside `stored` are left alone, and are 1 in `word`.
+    /// Bits outside `stored` are not changed, and are 1 in `word`.
     Program {
         address: u32,
         word: u32,
@@ -40,7 +40,7 @@ impl Work {
         }
     }
 
-    /// Leaves the cells as a reset or the loss of power in the middle of the work does.
+    /// Changes the cells as a reset or a loss of power in the middle of the operation does.
     pub fn tear(self, cells: &mut dyn FlashCells) {
         match self {
             Self::Program { address, word, .. } => cells.tear_word(address, word),
@@ -56,14 +56,14 @@ pub enum CutPhase {
     Before,
     /// The word or the sector is torn.
     Middle,
-    /// The work is done, but the image has not seen it.
+    /// The operation is done, but the image has not seen that.
     After,
 }
 
-/// The power goes at a step of the flash.
+/// A loss of power at a step of the flash.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlannedCut {
-    /// Counted from 0 at power-on, as in the history.
+    /// Number of the step, counted from 0 at power-on, as in the history.
     pub step: usize,
     /// Instant within the step.
     pub phase: CutPhase,

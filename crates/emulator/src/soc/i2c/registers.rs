@@ -1,4 +1,4 @@
-//! Bits of the I2C registers (RM0090 27.6), and which of them the model has.
+//! Bits of the I2C registers (RM0090 27.6), and a check for bits that are not modelled.
 
 use crate::soc::{peripheral::Unmodelled, registers::registers};
 
@@ -51,12 +51,12 @@ pub mod sr2 {
     pub const TRA: u32 = 1 << 2;
 }
 
-/// The bits of a write that ask for something the model lacks (slave, SMBus, PEC, POS, 10-bit own addresses …).
+/// The bits of a write that request functions that are not modelled (slave, SMBus, PEC, POS, 10-bit own addresses …).
 pub fn check_write(register: u32, value: u32) -> Result<(), Unmodelled> {
     let modelled = match register {
         reg::CR1 => cr1::MODELLED,
         reg::CR2 => cr2::MODELLED,
-        // Own addresses may be set; without slave mode nobody asks for them. Bit 14 of OAR1 is kept 1 by software.
+        // Own addresses may be set, but are not used without slave mode. Software keeps bit 14 of OAR1 at 1.
         reg::OAR1 | reg::OAR2 => 0x43FE,
         reg::DR | reg::SR1 | reg::SR2 => u32::MAX,
         reg::CCR => 0xCFFF,

@@ -1,4 +1,4 @@
-//! Bits of the USART registers (RM0090 30.6), and which of them the model has.
+//! Bits of the USART registers (RM0090 30.6), and a check for bits that are not modelled.
 
 use crate::soc::{peripheral::Unmodelled, registers::registers};
 
@@ -53,7 +53,7 @@ pub mod cr3 {
 /// STOP, bits 13 and 12: whole stop bits only.
 const CR2_MODELLED: u32 = 1 << 13;
 
-/// The bits of a write that ask for something the model lacks (LIN, smartcard, IrDA, mute mode, flow control …).
+/// The bits of a write that request functions that are not modelled (LIN, smartcard, IrDA, mute mode, flow control …).
 pub fn check_write(number: u8, register: u32, value: u32) -> Result<(), Unmodelled> {
     let modelled = match register {
         reg::SR | reg::BRR => u32::MAX,

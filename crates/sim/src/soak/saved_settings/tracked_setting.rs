@@ -7,7 +7,7 @@ use robot_plant::{
 
 use super::{OVERTAKEN, Setting};
 
-/// A request that went out is answered within this time, an erase included, or never.
+/// A request that was sent is answered within this time, including an erase, or never.
 const ANSWERED: Ps = SECOND;
 
 /// A write request that has no reply yet.
@@ -17,14 +17,14 @@ struct PendingWrite {
     /// Position among the frames sent on that bus.
     number: u64,
     bits: u32,
-    /// When the frame had gone out.
+    /// Time at which the frame was sent.
     delivered: Option<Ps>,
 }
 
 /// The bit patterns that the value may have; `None` if it may have any.
 type Possible = Option<Vec<u32>>;
 
-/// What a reply to a read request shows.
+/// Result of a reply to a read request.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ReadOutcome {
     /// The value is one of those that are possible.
@@ -37,7 +37,7 @@ pub enum ReadOutcome {
     Wrong(Vec<u32>),
 }
 
-/// What is known of one setting from the frames on both buses.
+/// Knowledge about one setting from the frames on both buses.
 #[derive(Clone, Debug)]
 pub struct TrackedSetting {
     pub setting: Setting,
@@ -51,7 +51,7 @@ pub struct TrackedSetting {
     /// The first value in use since the contents of flash became unknown.
     first: Option<u32>,
     read_since_boot: bool,
-    /// When and on which bus the last write was acknowledged.
+    /// Time and bus of the last acknowledged write.
     acknowledged: Option<(Ps, CanBusId)>,
 }
 
@@ -70,7 +70,7 @@ impl TrackedSetting {
         }
     }
 
-    /// A write request was handed to the bus.
+    /// Notes that a write request was handed to the bus.
     pub fn requested(&mut self, bus: CanBusId, number: u64, bits: u32) {
         self.pending.push(PendingWrite {
             bus,
@@ -82,7 +82,7 @@ impl TrackedSetting {
         add(&mut self.flash, bits);
     }
 
-    /// That many frames have gone out on each bus.
+    /// Notes the number of frames sent on each bus.
     pub fn delivered(&mut self, delivered: [u64; 2], now: Ps) {
         for write in &mut self.pending {
             if write.number <= delivered[write.bus as usize] {
@@ -96,7 +96,7 @@ impl TrackedSetting {
         }
     }
 
-    /// A write was acknowledged; false if none of this value was pending.
+    /// Notes an acknowledged write. Returns false if no write of this value was pending.
     pub fn acknowledged(&mut self, bus: CanBusId, bits: u32, at: Ps, disturbed: bool) -> bool {
         let mut pending = self.pending.iter();
         let Some(write) = pending.find(|write| write.bus == bus && write.bits == bits) else {
@@ -114,13 +114,13 @@ impl TrackedSetting {
         true
     }
 
-    /// Whether a write was acknowledged on the other bus a moment ago: the order of the two is unknown.
+    /// Whether a write was acknowledged on the other bus just before, so that the order of the two is unknown.
     pub fn changed_elsewhere(&self, bus: CanBusId, at: Ps) -> bool {
         self.acknowledged
             .is_some_and(|(then, there)| there != bus && at < then + OVERTAKEN)
     }
 
-    /// A read request was answered with `bits`.
+    /// Takes the reply `bits` to a read request.
     pub fn read(&mut self, bits: u32, at: Ps) -> ReadOutcome {
         let lately = |(then, _): (Ps, CanBusId)| at < then + OVERTAKEN;
         if self.acknowledged.is_some_and(lately) {
@@ -145,7 +145,7 @@ impl TrackedSetting {
         }
     }
 
-    /// The image has booted, with worn flash or without.
+    /// Notes a boot of the image, with or without worn flash.
     pub fn booted(&mut self, worn: bool) {
         // If one of these was accepted, its value is among those that flash may hold.
         self.pending.retain(|write| write.delivered.is_none());
@@ -159,7 +159,7 @@ impl TrackedSetting {
         self.read_since_boot = false;
     }
 
-    /// The contents of flash are unknown until the setting is written again.
+    /// Makes the contents of flash unknown until the setting is written again.
     pub fn forget_flash(&mut self) {
         self.flash = None;
         self.first = self.only();

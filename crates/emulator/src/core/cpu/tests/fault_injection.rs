@@ -34,7 +34,7 @@ fn effect(effect: Effect) -> Injection {
     }
 }
 
-/// Times 400, 500 and 600 µs fall into the hang: the first call goes on at its end, one more was pending.
+/// The times 400, 500 and 600 µs fall into the hang. The first call continues at its end, and one more was pending.
 #[test]
 fn a_function_that_hangs_does_its_work_when_the_injection_ends() {
     let mut cpu = calling_board();

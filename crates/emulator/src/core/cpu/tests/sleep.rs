@@ -1,4 +1,4 @@
-//! SCR: what sleep is, and when it begins.
+//! The effect of SCR on the kind and start of sleep.
 
 use super::*;
 

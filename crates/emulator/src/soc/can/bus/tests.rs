@@ -1,4 +1,4 @@
-//! Both buses through the controllers' registers, against the nodes of the test board.
+//! Both buses through the controllers' registers, with the nodes of the test board.
 
 use crate::{
     soc::{
@@ -152,7 +152,7 @@ fn a_shorted_bus_leads_to_bus_off_and_back_after_128_times_11_bits() {
     run_for(&mut bench, &mut can, 2 * MS);
     assert_eq!(bench.read(&mut can, CAN2 + ESR) & 7, 7);
     bench.board.can[1].broken = false;
-    // ABOM is 0: without software's request it stays off.
+    // ABOM is 0, so it stays off until software requests a recovery.
     run_for(&mut bench, &mut can, 5 * MS);
     assert_eq!(bench.read(&mut can, CAN2 + ESR) & 7, 7);
     bench.write(&mut can, CAN2 + MCR, INRQ);
@@ -162,7 +162,7 @@ fn a_shorted_bus_leads_to_bus_off_and_back_after_128_times_11_bits() {
     assert_eq!(bench.read(&mut can, CAN2 + ESR) & 4, 4);
     run_for(&mut bench, &mut can, 200 * US);
     assert_eq!(bench.read(&mut can, CAN2 + ESR) & 7, 0);
-    // The request outlived it.
+    // The request is still pending afterwards.
     assert_eq!(bench.read(&mut can, CAN2 + TSR) & 0xFF, 3);
 }
 
@@ -279,7 +279,7 @@ fn bus_off_recovers_by_itself_where_abom_is_set_and_interrupts() {
     assert!(bench.irq.level(66));
     assert_eq!(bench.read(&mut can, CAN2 + ESR) & 4, 4);
     bench.board.can[1].broken = false;
-    // 1408 bits of silence, then the frame that waited.
+    // 1408 recessive bits, then the waiting frame.
     run_for(&mut bench, &mut can, 1400 * US);
     assert_eq!(bench.read(&mut can, CAN2 + ESR) & 4, 4);
     run_for(&mut bench, &mut can, 200 * US);
