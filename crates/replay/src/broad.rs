@@ -1,4 +1,4 @@
-//! BROAD, the public recordings: from its MATLAB files to trials at 200 Hz.
+//! Prepares trials at 200 Hz from the MATLAB files of BROAD, the public recordings.
 //!
 //! BROAD is the Berlin Robust Orientation Estimation Assessment Dataset (D. Laidig, M. Caruso, A. Cereatti, T. Seel,
 //! Data 6 (7), 2021, doi 10.3390/data6070072), under Creative Commons Attribution 4.0.
@@ -14,7 +14,7 @@ use std::{
 
 pub use source::SourceError;
 
-/// The trials that the tests and the figures in the documents are about.
+/// The trials that the tests and the figures in the documents use.
 pub const TWELVE: [&str; 12] = [
     "02_undisturbed_slow_rotation_B",
     "04_undisturbed_slow_rotation_with_breaks_A",
@@ -30,7 +30,7 @@ pub const TWELVE: [&str; 12] = [
     "34_disturbed_attached_magnet_3cm",
 ];
 
-/// The attribution beside the prepared trials, which the licence requires.
+/// The attribution that the licence asks for, written beside the prepared trials.
 const NOTICE: &str = "\
 # Recorded motion
 
@@ -48,9 +48,9 @@ pub enum BroadError {
         "{name}.mat is neither in {folder} nor in its folder data_mat: is this a copy of the whole dataset?"
     )]
     Missing { name: String, folder: PathBuf },
-    #[error("cannot use {path}: {source}")]
+    #[error("cannot use {path}")]
     Source { path: PathBuf, source: SourceError },
-    #[error("cannot write {path}: {source}")]
+    #[error("cannot write {path}")]
     Write { path: PathBuf, source: io::Error },
 }
 

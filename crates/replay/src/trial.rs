@@ -1,4 +1,4 @@
-//! Folders of recordings.
+//! Reads trials from a folder of recordings.
 
 use std::{
     io,
@@ -14,7 +14,7 @@ use crate::{
 
 #[derive(Debug, thiserror::Error)]
 pub enum ReplayError {
-    #[error("cannot read the folder {path}: {source}")]
+    #[error("cannot read the folder {path}")]
     Folder { path: PathBuf, source: io::Error },
     #[error("no trial in {path}: expected files NAME.json, each with NAME.f32.gz beside it")]
     NoTrials { path: PathBuf },
@@ -24,20 +24,20 @@ pub enum ReplayError {
     Trial(#[from] TrialError),
 }
 
-/// One recording, as the samples that the firmware would have received.
+/// One recording, in the form in which the firmware would have measured it.
 pub struct Trial {
     /// File name without extension.
     pub name: String,
     pub samples: Vec<Sample>,
-    /// Number of rows without a finite value of gyro or accelerometer.
+    /// Number of rows in which gyro or accelerometer have no value.
     pub rows_without_motion: usize,
-    /// Number of rows without a finite value of the magnetometer.
+    /// Number of rows in which the magnetometer has no value.
     pub rows_without_field: usize,
     pub(crate) reference: Option<Reference>,
 }
 
 impl Trial {
-    /// Loads the trial of `header`, the .json file. The data must have the length and the checksum given there.
+    /// Reads the trial whose .json file is `header`. The data must have the length and the checksum that it names.
     pub fn read(header: &Path) -> Result<Self, ReplayError> {
         let recording = recording::Trial::load(header)?;
         let rows = recording.rows().iter();
@@ -60,7 +60,7 @@ impl Trial {
     }
 }
 
-/// All trials of a folder, in order of their names.
+/// Reads all trials of a folder, in the order of their names.
 pub fn load(folder: &Path) -> Result<Vec<Trial>, ReplayError> {
     trial_files(folder)?
         .iter()
@@ -68,7 +68,8 @@ pub fn load(folder: &Path) -> Result<Vec<Trial>, ReplayError> {
         .collect()
 }
 
-/// The headers in `folder`, or else in the only subfolder that has any, in the order of their names. There is at least one.
+/// Returns the headers in `folder`, or else in the only subfolder that has any. They are in the order of their names,
+/// and there is at least one.
 pub fn trial_files(folder: &Path) -> Result<Vec<PathBuf>, ReplayError> {
     let here = headers(folder)?;
     if !here.is_empty() {

@@ -20,12 +20,12 @@ pub struct ParameterFile(BTreeMap<String, f32>);
 
 #[derive(Debug, thiserror::Error)]
 pub enum ParameterFileError {
-    #[error("cannot read {path}: {source}")]
+    #[error("cannot read {path}")]
     Read {
         path: PathBuf,
         source: std::io::Error,
     },
-    #[error("cannot write {path}: {source}")]
+    #[error("cannot write {path}")]
     Write {
         path: PathBuf,
         source: std::io::Error,

@@ -16,7 +16,7 @@ pub use units::UnitError;
 
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
-    #[error("cannot read {path}: {source}")]
+    #[error("cannot read {path}")]
     File {
         path: PathBuf,
         source: std::io::Error,

@@ -35,7 +35,7 @@ impl Outcome {
 pub struct Entry {
     pub outcome: Outcome,
     pub note: String,
-    /// What the tool found by itself.
+    /// The values that the tool measured.
     pub measured: Table,
 }
 
@@ -58,12 +58,12 @@ impl Entry {
 
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {
-    #[error("cannot read {path}: {source}")]
+    #[error("cannot read {path}")]
     Read {
         path: PathBuf,
         source: std::io::Error,
     },
-    #[error("cannot write {path}: {source}")]
+    #[error("cannot write {path}")]
     Write {
         path: PathBuf,
         source: std::io::Error,
@@ -81,11 +81,11 @@ pub enum FormatError {
     NoOutcome(&'static str),
 }
 
-/// Entries by the ids of their checks.
+/// The outcomes of the checks, in a file.
 #[derive(Debug)]
 pub struct Report {
     path: PathBuf,
-    /// Robot's status as it was last.
+    /// The robot's status after the last check, as JSON.
     status: Option<String>,
     entries: Vec<(&'static str, Entry)>,
 }
@@ -161,7 +161,7 @@ impl Report {
         &self.path
     }
 
-    /// Checks that ended so.
+    /// Returns how many checks ended in this way.
     pub fn count(&self, outcome: Outcome) -> usize {
         let ended = self
             .entries

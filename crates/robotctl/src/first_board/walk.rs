@@ -1,4 +1,4 @@
-//! Through the list with the user.
+//! Takes the user through the list of checks.
 
 use super::{CHECKS, Check, Entry, How, Measured, Outcome, Report, ReportError, Verdict};
 use crate::{
@@ -6,19 +6,19 @@ use crate::{
     tuning::{TuningClient, TuningError},
 };
 
-/// The user.
+/// The channel to the user: a terminal, or a script in tests.
 pub trait Dialogue {
     fn show(&mut self, text: &str) -> std::io::Result<()>;
-    /// An answer without the spaces around it; `None` at the end of all input.
+    /// Returns the answer without the spaces around it, or `None` at the end of input.
     fn ask(&mut self, question: &str) -> std::io::Result<Option<String>>;
 }
 
-/// Which checks, and how.
+/// Says which checks are made and how.
 #[derive(Clone, Copy, Debug)]
 pub struct Walk {
-    /// Number of the first check, from 1; `None`: the first that is not in the report.
+    /// Number of the first check, counted from 1. `None` means all that are not in the report.
     pub from: Option<usize>,
-    /// Do what needs no user, skip the rest.
+    /// True to make only the checks that need no user and skip the others.
     pub alone: bool,
 }
 
@@ -28,7 +28,7 @@ pub enum WalkError {
     Robot(#[from] TuningError),
     #[error(transparent)]
     Report(#[from] ReportError),
-    #[error("cannot talk to the user: {0}")]
+    #[error("cannot talk to the user")]
     User(#[from] std::io::Error),
     #[error("there are checks 1 to {}", CHECKS.len())]
     NoSuchCheck,
@@ -41,7 +41,7 @@ enum Next {
     Quit,
 }
 
-/// Ends after the last check, or when the user wants to.
+/// Makes the checks until the last one, or until the user stops.
 pub fn walk(
     client: &mut TuningClient,
     report: &mut Report,
