@@ -1,4 +1,4 @@
-//! `cargo xtask bench`: what the release image and its estimator cost.
+//! `cargo xtask bench`: measures what the release image and its estimator cost.
 
 use std::process::{Command, ExitCode};
 
@@ -10,7 +10,7 @@ use crate::{
     tool,
 };
 
-/// Builds what is out of date and runs the bench on it. Returns its exit code.
+/// Builds what is out of date and runs the bench on it. Its exit code becomes ours.
 pub fn run(args: &PassedOn) -> anyhow::Result<ExitCode> {
     emulator::ensure_buildable()?;
     let (build, path) = host_program::build("robot-bench", "bench")?;

@@ -6,8 +6,8 @@ use anyhow::bail;
 
 use crate::{passed_on::PassedOn, prerequisites, tool};
 
-/// Options of `probe-rs run`. By default probe-rs makes the core halt at each reset and fault, before the image can stop
-/// the motors, and the core keeps this setting until it loses its power.
+/// Options of `probe-rs run`. By default probe-rs halts the core at each reset and fault, before the image can tell
+/// the motors to stop. The board keeps that setting until it loses its power.
 const OPTIONS: [&str; 5] = [
     "run",
     "--chip",
@@ -22,7 +22,7 @@ probe-rs is not here: it flashes the board and shows its log. To get it:
 (on Debian and Ubuntu first: sudo apt-get install pkg-config libudev-dev cmake), then run the command again.
 Without a board: cargo xtask sim";
 
-/// Runs probe-rs with `args`, the image and further options. Returns its exit code.
+/// Runs probe-rs with `args`, which are the image and more options. Its exit code becomes ours.
 pub fn run(args: &PassedOn) -> anyhow::Result<ExitCode> {
     if !prerequisites::runs("probe-rs") {
         bail!(HOW_TO_GET_IT);

@@ -12,21 +12,21 @@ use crate::{
     tool,
 };
 
-/// Whether the emulator can be built here. Its CPU core, which is written in C, is not built on Windows.
+/// The emulator's CPU core is written in C and has not been built for Windows.
 pub const IS_BUILT_HERE: bool = !cfg!(windows);
 pub const NOT_BUILT_HERE: &str = "the emulated board is not built on Windows: run it in WSL, where \
     all commands work as on Linux (docs/platforms.md)";
 
-/// Arguments with which no image is built, because one is named or none is run.
+/// With any of these options no image is built: the user names one, or none is run.
 const WITHOUT_IMAGE: [&str; 4] = ["--elf", "--help", "-h", "--list-faults"];
 
-/// Installs what the build of the emulator's CPU core needs. Fails if it cannot be built here.
+/// Installs what the emulator's CPU core needs. It fails where that cannot be built.
 pub fn ensure_buildable() -> anyhow::Result<()> {
     ensure!(IS_BUILT_HERE, NOT_BUILT_HERE);
     prerequisites::ensure(&EMULATOR)
 }
 
-/// Builds what is out of date and runs `program` on the image; its exit code becomes ours.
+/// Builds what is out of date and runs `program` on the image. Its exit code becomes ours.
 pub fn run(program: &str, args: &PassedOn) -> anyhow::Result<ExitCode> {
     ensure_buildable()?;
     let (build_emulator, path) = host_program::build("robot-sim", program)?;

@@ -16,34 +16,34 @@ use crate::{
 const PACKAGE: &str = "robot-firmware";
 const FILTERS: &str = "robot-estimator-bench";
 
-/// Which compiler has a core library for the board.
+/// A compiler that can build for the board.
 enum Compiler {
     /// The toolchain of `rust-toolchain.toml`.
     Rustup,
-    /// The distribution's, which brings the sources of the core library: for machines on which
-    /// rustup can fetch nothing.
+    /// The distribution's compiler with the sources of the core library, for machines on which rustup can fetch
+    /// nothing.
     Distribution,
 }
 
-/// Which parts the image is for (`src/config.rs`).
+/// The parts of a robot that the image is for (`src/config.rs`).
 pub struct Parts {
     remote: &'static str,
     joints: &'static str,
 }
 
 impl Parts {
-    /// Those that need no variable.
+    /// The parts that an image without variables is for.
     pub const DEFAULT: Self = Self {
         remote: "sbus",
         joints: "dm4310",
     };
-    /// All the others.
+    /// The other remote and the other joints.
     pub const OTHER: Self = Self {
         remote: "dbus",
         joints: "rs00",
     };
 
-    /// The variant that `ROBOT_REMOTE` and `ROBOT_JOINTS` choose.
+    /// Returns the parts that `ROBOT_REMOTE` and `ROBOT_JOINTS` name.
     pub fn chosen() -> anyhow::Result<Self> {
         Ok(Self {
             remote: chosen("ROBOT_REMOTE", &["sbus", "dbus"])?,
@@ -51,7 +51,7 @@ impl Parts {
         })
     }
 
-    /// Its own folder, so that no image makes another one out of date.
+    /// Returns the target folder. Each image has its own, so that none makes another one out of date.
     fn target_dir(&self) -> PathBuf {
         let Self { remote, joints } = self;
         if (*remote, *joints) == (Self::DEFAULT.remote, Self::DEFAULT.joints) {
@@ -62,7 +62,7 @@ impl Parts {
     }
 }
 
-/// What a variable says; without it the first of `words`.
+/// Returns the word that a variable names, or the first of `words` without the variable.
 fn chosen(variable: &str, words: &[&'static str]) -> anyhow::Result<&'static str> {
     let said = match env::var(variable) {
         Err(env::VarError::NotPresent) => words.first().copied(),
@@ -78,7 +78,7 @@ fn chosen(variable: &str, words: &[&'static str]) -> anyhow::Result<&'static str
     })
 }
 
-/// The build, ready to start, and the image it makes; installs what it needs.
+/// Returns the job that builds the image, and the image's path. It installs what the build needs.
 pub fn build(parts: &Parts) -> anyhow::Result<(Job, PathBuf)> {
     let target_dir = parts.target_dir();
     let mut command = cargo()?;
@@ -93,7 +93,7 @@ pub fn build(parts: &Parts) -> anyhow::Result<(Job, PathBuf)> {
     Ok((Job { name, command }, elf))
 }
 
-/// Builds the programs of single filters. Returns the job and their folder.
+/// Does what [`build`] does for the programs of single filters, and returns their folder.
 pub fn build_filters() -> anyhow::Result<(Job, PathBuf)> {
     let target_dir = workspace::firmware_target_dir(FILTERS);
     let mut command = cargo()?;
@@ -107,7 +107,7 @@ pub fn build_filters() -> anyhow::Result<(Job, PathBuf)> {
     Ok((job, target_dir.join(BOARD).join("release")))
 }
 
-/// Cargo with a compiler that has a core library for the board.
+/// Returns cargo with a compiler that can build for the board.
 fn cargo() -> anyhow::Result<Command> {
     match compiler()? {
         Compiler::Rustup => Ok(tool::cargo()),
@@ -115,14 +115,15 @@ fn cargo() -> anyhow::Result<Command> {
     }
 }
 
-/// Clippy over the image and the filters' programs; `None` if the compiler of `rust-toolchain.toml` lacks the target.
+/// Returns clippy over the image and the filters' programs, or `None` if the compiler of `rust-toolchain.toml` lacks
+/// the target.
 pub fn clippy() -> Option<Command> {
     let mut command = over_programs("clippy")?;
     command.args(["--", "-D", "warnings"]);
     Some(command)
 }
 
-/// The documentation of the same; a broken link is an error.
+/// Returns the command that builds their documentation. A broken link is an error.
 pub fn docs() -> Option<Command> {
     let mut command = over_programs("doc")?;
     command.args(["--no-deps", "--document-private-items"]);
@@ -130,7 +131,8 @@ pub fn docs() -> Option<Command> {
     Some(command)
 }
 
-/// Shares the dependencies that clippy has checked.
+/// Returns `cargo WHAT` over the image and the filters' programs. Clippy and documentation share a target folder, so
+/// that dependencies are checked once.
 fn over_programs(what: &str) -> Option<Command> {
     toolchain::has(BOARD).then(|| {
         let mut command = tool::cargo();

@@ -4,10 +4,10 @@ use std::{env::consts::EXE_SUFFIX, path::PathBuf};
 
 use crate::{job::Job, tool, workspace};
 
-/// Cargo profile of everything that runs on this machine: quick to build, quick enough to run.
+/// Cargo profile of everything that runs on this machine. It builds fast and runs fast enough.
 pub const HOST_PROFILE: &str = "host";
 
-/// The build of a program, ready to start, and where it puts it.
+/// Returns the job that builds a program, and the program's path.
 pub fn build(package: &str, program: &str) -> anyhow::Result<(Job, PathBuf)> {
     let host = tool::host_triple()?;
     let mut command = tool::cargo();

@@ -34,8 +34,8 @@ struct Running {
     started: Instant,
 }
 
-/// Runs all jobs to their end. If one fails, the others are ended too, and what it lacks is said or, where that is not
-/// known, the end of its output is shown.
+/// Runs all jobs to their end. If one fails, the others are stopped. The message says what the job lacks or, where that
+/// is not known, shows the end of its output.
 pub fn run_all(jobs: Vec<Job>) -> anyhow::Result<()> {
     let mut running = Vec::new();
     for job in jobs {
@@ -109,7 +109,7 @@ fn tail(output: &str) -> String {
     lines.get(from..).unwrap_or_default().join("\n")
 }
 
-/// One redrawn line on a terminal, a line now and then elsewhere.
+/// Shows the status: one redrawn line on a terminal, a line now and then elsewhere.
 struct Status {
     redraws: bool,
     last_shown: Instant,
@@ -169,7 +169,7 @@ mod tests {
         }
     }
 
-    /// A program of this system that does not end by itself.
+    /// Returns a program of this system that does not end by itself.
     const ENDLESS: (&str, &[&str]) = if cfg!(windows) {
         ("ping", &["-t", "localhost"])
     } else {

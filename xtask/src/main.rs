@@ -19,7 +19,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use passed_on::PassedOn;
 
-/// Developer commands of the robot firmware. Each installs or explains what it lacks.
+/// Developer commands of the robot firmware. Each one installs what it lacks, or says what to install.
 #[derive(Parser)]
 #[command(name = "cargo xtask")]
 struct Args {
@@ -31,17 +31,17 @@ struct Args {
 enum Command {
     /// Build the release image, boot it in the emulated C board and run a scenario.
     Sim(PassedOn),
-    /// Let faults from a seed have their way with the image for simulated hours.
+    /// Run the image for simulated hours with random faults that a seed repeats.
     Soak(PassedOn),
-    /// Run the estimator over recorded trials: attitude at 1 kHz, its errors, plots.
+    /// Run the estimator over recorded trials and show its attitude at 1 kHz, errors and plots.
     Replay(PassedOn),
     /// Prepare the recorded motion that tests and replay use, or say where to get it.
     Data(PassedOn),
-    /// What the release image costs, and its estimator beside others, against their limits.
+    /// Measure what the release image and its estimator cost, and compare that with limits and other filters.
     Bench(PassedOn),
-    /// Flash an image with probe-rs, run it, show its log: what `cargo run --release` calls.
+    /// Flash an image with probe-rs, run it and show its log. `cargo run --release` calls this.
     Run(PassedOn),
-    /// Everything CI runs: format, clippy, host tests, loom, image checks, emulator tests.
+    /// Run all checks of CI: format, clippy, host tests, loom, image checks, emulator tests.
     Test,
 }
 

@@ -1,14 +1,14 @@
-//! Options that the program behind a command parses itself.
+//! Options that are passed on to the program behind a command, which parses them.
 
 use std::ffi::OsString;
 
 use clap::Parser;
 
-/// Everything after the command's name, `--help` too.
+/// Everything after the command's name, including `--help`.
 #[derive(Parser)]
 #[command(disable_help_flag = true)]
 pub struct PassedOn {
-    /// A scenario file or options: the command's own `--help` lists them.
+    /// A scenario file or options. The command's own `--help` lists them.
     #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
     pub words: Vec<OsString>,
 }

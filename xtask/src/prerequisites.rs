@@ -1,4 +1,4 @@
-//! Programs and libraries of this machine that a build needs, and how they get here.
+//! Finds and installs the programs and libraries that a build needs on this machine.
 
 mod libclang;
 
@@ -12,12 +12,12 @@ use crate::tool;
 pub struct Prerequisite {
     pub what: &'static str,
     pub why: &'static str,
-    /// Debian packages that bring it.
+    /// Debian packages that contain it.
     pub packages: &'static [&'static str],
     pub present: fn() -> bool,
 }
 
-/// What building the emulator takes: its CPU core (unicorn-engine) is C.
+/// What the build of the emulator needs. Its CPU core (unicorn-engine) is written in C.
 pub const EMULATOR: [Prerequisite; 4] = [
     Prerequisite {
         what: "a C and C++ compiler and make",
@@ -105,7 +105,7 @@ enum Root {
 }
 
 impl Root {
-    /// `None` if it would ask for a password.
+    /// Returns `None` if it would ask for a password.
     fn find() -> Option<Self> {
         let mut id = tool::command("id");
         id.arg("-u");
@@ -130,7 +130,7 @@ impl Root {
     }
 }
 
-/// Whether `program --version` works.
+/// True if `program --version` works.
 pub fn runs(program: &str) -> bool {
     let mut command = tool::command(program);
     command.arg("--version");

@@ -1,10 +1,10 @@
-//! `cargo xtask replay` and `cargo xtask data`: recorded motion, on this machine.
+//! `cargo xtask replay` and `cargo xtask data`: run programs on recorded motion, on this machine.
 
 use std::process::{Command, ExitCode};
 
 use crate::{host_program, job, passed_on::PassedOn, tool};
 
-/// Builds `program` if it is out of date and runs it; its exit code becomes ours. Needs neither image nor emulator.
+/// Builds `program` if it is out of date and runs it. It needs neither image nor emulator. Its exit code becomes ours.
 pub fn run(program: &str, args: &PassedOn) -> anyhow::Result<ExitCode> {
     let (build, path) = host_program::build("robot-replay", program)?;
     job::run_all(vec![build])?;

@@ -10,7 +10,7 @@ use std::{process::ExitCode, time::Instant};
 use steps::Step;
 use totals::Totals;
 
-/// Runs every step, shows a table and one closing line of totals.
+/// Runs every step, then shows a table and one line of totals.
 pub fn run() -> anyhow::Result<ExitCode> {
     let started = Instant::now();
     let mut rows = Vec::new();

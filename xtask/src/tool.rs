@@ -10,9 +10,8 @@ use anyhow::{Context, bail};
 
 use crate::workspace;
 
-/// What `cargo run` and the rustup proxies leave in the environment for the program they start.
-/// A build must not depend on whether it was started from another build, and the distribution's
-/// compiler must not meet rustup's libraries.
+/// Variables that `cargo run` and the rustup proxies set for the program they start. They are removed, as a build must
+/// not depend on who started it, and the distribution's compiler must not load rustup's libraries.
 fn is_leftover(name: &str) -> bool {
     const NAMES: [&str; 8] = [
         "CARGO",
@@ -30,10 +29,10 @@ fn is_leftover(name: &str) -> bool {
         || name.starts_with("DEP_")
 }
 
-/// A public item may name a private one: readers of these pages see both.
+/// A public item may link to a private one, because readers of these pages see both.
 pub const RUSTDOC_FLAGS: &str = "-D warnings -A rustdoc::private_intra_doc_links";
 
-/// `program` in the repository root, without leftovers of the cargo that started us.
+/// Returns `program` in the repository root, without the variables of the cargo that started us.
 pub fn command(program: impl AsRef<OsStr>) -> Command {
     let mut command = Command::new(program);
     command.current_dir(workspace::root());
@@ -45,17 +44,17 @@ pub fn command(program: impl AsRef<OsStr>) -> Command {
     command
 }
 
-/// The cargo that started us.
+/// Returns the cargo that started us.
 pub fn cargo() -> Command {
     command(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
 }
 
-/// Whether `program` exists and exits with success; it prints nothing.
+/// True if `program` exists and exits with success. It prints nothing.
 pub fn succeeds(mut command: Command) -> bool {
     command.output().is_ok_and(|output| output.status.success())
 }
 
-/// Runs it to its end in front of the user; its exit code becomes ours.
+/// Runs it to its end in front of the user. Its exit code becomes ours.
 pub fn exit_code_of(mut command: Command) -> anyhow::Result<ExitCode> {
     let name = command.get_program().to_string_lossy().into_owned();
     let status = command
@@ -65,7 +64,7 @@ pub fn exit_code_of(mut command: Command) -> anyhow::Result<ExitCode> {
     Ok(code.map_or(ExitCode::FAILURE, ExitCode::from))
 }
 
-/// What `program` prints, without the line end.
+/// Returns what `program` prints, without the line end.
 pub fn printed_by(mut command: Command) -> anyhow::Result<String> {
     let name = command.get_program().to_string_lossy().into_owned();
     let output = command
@@ -80,7 +79,7 @@ pub fn printed_by(mut command: Command) -> anyhow::Result<String> {
     Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
 }
 
-/// Target triple of this machine.
+/// Returns the target triple of this machine.
 pub fn host_triple() -> anyhow::Result<String> {
     let mut rustc = command("rustc");
     rustc.arg("-vV");

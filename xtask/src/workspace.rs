@@ -1,4 +1,4 @@
-//! Paths in the workspace.
+//! Folders and targets of the workspace.
 
 use std::{
     env,
@@ -22,12 +22,12 @@ pub fn host_target_dir() -> PathBuf {
     }
 }
 
-/// A folder of its own, so that an image and the emulator can be built at the same time.
+/// Target folder of images. It is separate, so that an image and the emulator can be built at the same time.
 pub fn firmware_target_dir(name: &str) -> PathBuf {
     host_target_dir().join(name)
 }
 
-/// Logs of finished builds.
+/// Folder for the logs of builds.
 pub fn log_dir() -> PathBuf {
     host_target_dir().join("xtask")
 }

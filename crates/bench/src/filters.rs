@@ -7,17 +7,17 @@ use std::path::{Path, PathBuf};
 pub struct Filter {
     /// Name of the program's file.
     pub program: &'static str,
-    /// Head of its column.
+    /// Title of its column.
     pub title: &'static str,
 }
 
-/// The robot's own filter.
+/// The estimator of the robot.
 pub const OURS: Filter = Filter {
     program: "ours",
     title: "robot",
 };
 
-/// Published filters, each with its own settings.
+/// Filters of published crates, each with its own settings.
 pub const RIVALS: [Filter; 4] = [
     Filter {
         program: "vqf-rs",
@@ -37,7 +37,7 @@ pub const RIVALS: [Filter; 4] = [
     },
 ];
 
-/// Start-up and mailbox alone: what each program has beside its filter.
+/// A program without a filter. It shows what start-up and mailbox cost in each program.
 pub const EMPTY: Filter = Filter {
     program: "empty",
     title: "empty",

@@ -1,4 +1,4 @@
-//! Where instructions and flash go, by function.
+//! The share that each function has of the instructions and of the flash.
 
 use std::{borrow::Cow, collections::HashMap, fs, path::Path};
 
@@ -16,21 +16,21 @@ use crate::{
 
 type Names<'d> = Context<EndianSlice<'d, RunTimeEndian>>;
 
-/// One function's part, what is inlined into it left out.
+/// What one function costs, without the functions that are inlined into it.
 #[derive(Clone, Debug, Default)]
 pub struct Share {
-    /// `function < caller`.
+    /// An inlined function stands with the function it is inlined into: `function < caller`.
     pub name: String,
-    /// Instructions of a mean update with magnetometer.
+    /// Instructions in a mean update with magnetometer.
     pub update: f64,
-    /// Instructions of a mean tick with nothing new.
+    /// Instructions in a mean tick without a new sample.
     pub between: f64,
-    /// Instructions of the costliest tick.
+    /// Instructions in the most expensive tick.
     pub worst: u64,
     pub flash_bytes: u64,
 }
 
-/// The largest first.
+/// Returns the share of each function, the largest first.
 pub fn shares(elf: &Path, runs: &[Measured]) -> anyhow::Result<Vec<Share>> {
     let bytes = fs::read(elf)?;
     let file = File::parse(&*bytes)?;
@@ -119,7 +119,7 @@ impl<'d> Code<'d> {
         (self.start..self.start + self.bytes.len() as u64).step_by(2)
     }
 
-    /// Address of each instruction in the blocks, and how often it ran.
+    /// Returns the address of each instruction in the blocks, and how often it ran.
     fn instructions(&self, blocks: &Blocks) -> Vec<(u64, u64)> {
         let mut list = Vec::new();
         for (&(start, size), &runs) in blocks {
@@ -133,7 +133,7 @@ impl<'d> Code<'d> {
         list
     }
 
-    /// Thumb: four bytes if the upper five bits say so.
+    /// Returns the length of a Thumb instruction: four bytes if its upper five bits say so, else two.
     fn instruction_bytes(&self, address: u64) -> u64 {
         let high = self.bytes.get((address - self.start) as usize + 1);
         if high.is_some_and(|byte| byte >> 3 >= 0b11101) {

@@ -16,7 +16,7 @@ const SRAM: Range<u64> = 0x2000_0000..0x2002_0000;
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct ImageSize {
     pub flash_bytes: u64,
-    /// Statics.
+    /// Size of the statics.
     pub ram_bytes: u64,
 }
 

@@ -1,8 +1,9 @@
-//! What the firmware costs: instructions, time and memory of the shipped image on the emulated board, and its attitude
-//! filter beside others on the same processor and the same motion.
+//! Measures what the firmware costs: instructions, time and memory of the shipped image on the emulated board. It also
+//! compares the attitude filter with others, on the same processor and the same motion.
 //!
-//! `program` runs one filter and counts, `motion` feeds it, `measure` does both for one filter, `scenarios` runs the
-//! image, `work` does all of it on every core, `report` holds the figures against their limits.
+//! `program` runs one filter and counts its instructions. `motion` makes its input, and `measure` runs it over one
+//! motion. `scenarios` runs the image. `work` does all of this on every core, and `report` compares the figures with
+//! their limits.
 
 pub mod filters;
 pub mod functions;

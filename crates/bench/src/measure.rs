@@ -1,4 +1,4 @@
-//! One filter over one motion.
+//! Runs one filter over one motion and measures it.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use crate::{
     program::{Blocks, Program},
 };
 
-/// Instructions of each tick, by what was new in it.
+/// The instructions of each tick, sorted by what was new in it.
 #[derive(Clone, Debug, Default)]
 pub struct Costs {
     pub update_with_mag: Vec<u32>,
@@ -20,7 +20,7 @@ pub struct Costs {
     pub extrapolation: Vec<u32>,
 }
 
-/// Distribution of a number of instructions.
+/// Mean, 99th percentile and maximum of an instruction count.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Spread {
     pub mean: f64,
@@ -35,7 +35,7 @@ pub struct Measured {
     pub at_samples: Option<Figures>,
     pub at_1_khz: Option<Figures>,
     pub flash_bytes: usize,
-    /// Empty unless asked for.
+    /// Empty unless [`Detail::Blocks`] was asked for.
     pub profile: Profile,
 }
 
@@ -49,23 +49,23 @@ pub struct Profile {
     pub worst: WorstTick,
 }
 
-/// The costliest tick of all.
+/// The tick that took the most instructions.
 #[derive(Clone, Debug, Default)]
 pub struct WorstTick {
     pub instructions: u32,
     pub blocks: Blocks,
 }
 
-/// How much a run records.
+/// How much a run notes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Detail {
     Totals,
-    /// Totals, and the functions in which an update with magnetometer spends its instructions.
+    /// Notes also which blocks of code ran.
     Blocks,
 }
 
-/// Calls `progress` in each tick. Filters that do not extrapolate between samples are called at samples only, and keep
-/// their last attitude in between.
+/// Runs `filter` over `motion` and calls `progress` after each tick. A filter that does not extrapolate is called at
+/// samples only, and keeps its last attitude between them.
 pub fn run(
     filter: Filter,
     programs: &Path,
@@ -144,7 +144,7 @@ impl Costs {
 }
 
 impl Spread {
-    /// `None` without ticks.
+    /// Returns `None` if there are no ticks.
     pub fn of(ticks: &[u32]) -> Option<Self> {
         let mut sorted = ticks.to_vec();
         sorted.sort_unstable();

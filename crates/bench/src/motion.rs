@@ -1,11 +1,11 @@
-//! What the filters are fed with: a recorded trial, or a motion computed here.
+//! The input of the filters: a recorded trial, or a motion computed here.
 
 mod computed;
 
 use robot_estimator_bench::mailbox::Input;
 use robot_replay::{FIELD_AGE_US, Sample, Trial};
 
-/// The board's clock at time 0 of the motion. Not 0, which stands for "no sample yet".
+/// The board's clock at time 0 of the motion. It is not 0, which stands for "no sample yet".
 const START_US: u64 = 1_000_000;
 const TICK_US: u64 = 1_000;
 pub const TICKS_A_SAMPLE: u64 = 5;
@@ -14,7 +14,7 @@ const WHEEL_AGE_US: u32 = 1_000;
 const TOP_RPM: f64 = 2_000.0;
 
 pub enum Motion {
-    /// A recording of the sensors alone, in which no wheel ever reports.
+    /// The sensor was moved without a robot around it, so no wheel ever reports.
     Recorded(Trial),
     Computed {
         samples: Vec<Sample>,
@@ -58,8 +58,8 @@ impl Motion {
         }
     }
 
-    /// The control loop's ticks as `robot_replay::run` makes them: an IMU sample in every fifth, with every fourth of
-    /// those a magnetometer sample. With each its time in the motion.
+    /// Returns the control loop's ticks as `robot_replay::run` makes them, each with its time in the motion. Every
+    /// fifth tick has an IMU sample, and every fourth of those has a magnetometer sample too.
     pub fn ticks(&self) -> impl Iterator<Item = (u64, Fresh, Input)> {
         let mut latest = Input {
             wheel_age_us: u32::MAX,
@@ -107,7 +107,7 @@ fn deliver(sample: &Sample, latest: &mut Input) -> Fresh {
     Fresh::ImuAndMag
 }
 
-/// A motion lasts minutes, and the mailbox counts to an hour.
+/// Returns the board's time. A motion lasts minutes, and the mailbox counts to an hour.
 fn clock_us(t_us: u64) -> u32 {
     (START_US + t_us) as u32
 }

@@ -1,7 +1,7 @@
-//! A filter's program on a bare Cortex-M4F: memories of the chip, no peripherals.
+//! Runs a filter's program on a bare Cortex-M4F with the chip's memories and no peripherals.
 //!
-//! Every instruction that the processor issues counts, as in the control ticks of the emulated board. This includes
-//! instructions of an IT block whose condition fails, which take a cycle too.
+//! Every instruction that the processor issues counts, as in the control ticks of the emulated board. Instructions of
+//! an IT block whose condition fails count too, because each takes its cycle.
 
 use std::{collections::HashMap, fs, path::Path};
 
@@ -14,16 +14,16 @@ use robot_emulator::core::{
 use robot_estimator_bench::mailbox::{COUNTED, INPUT_WORDS, Input, OUTPUT_WORDS, SYMBOL};
 use unicorn_engine::{Arch, ArmCpuModel, Mode, Prot, RegisterARM, Unicorn};
 
-/// System control space, as plain memory that keeps what start-up writes.
+/// System control space. It is plain memory, as start-up only writes to it.
 const PRIVATE_PERIPHERALS: (u64, u64) = (0xE000_0000, 0x0010_0000);
 /// Number of the engine's exception for BKPT (QEMU's `target/arm/cpu.h`).
 const BREAKPOINT: u32 = 7;
 const BREAKPOINT_BYTES: u32 = 2;
 
-/// Blocks of code that ran inside the counted function: start, size in bytes, and number of runs.
+/// Blocks of code that ran inside the counted function: start and size in bytes, and how often.
 pub type Blocks = HashMap<(u32, u32), u64>;
 
-/// Cost and result of a tick.
+/// The cost and the result of a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct Tick {
     pub instructions: u32,
@@ -33,7 +33,7 @@ pub struct Tick {
 #[derive(Default)]
 struct Counter {
     entry: u32,
-    /// Return address of the counted function while it runs.
+    /// The counted function's return address while it runs, else `None`.
     returns_to: Option<u32>,
     instructions: u32,
     known: HashMap<(u32, u32), u16>,
@@ -46,7 +46,7 @@ pub struct Program {
     engine: Unicorn<'static, Counter>,
     mailbox: u32,
     resume_at: u32,
-    /// Number of bytes in flash.
+    /// Size of all that is programmed into flash.
     pub flash_bytes: usize,
 }
 
@@ -79,12 +79,12 @@ impl Program {
         Ok(program)
     }
 
-    /// Sets whether the blocks that the counted function runs are recorded from now on.
+    /// Sets whether the program notes from now on which blocks the counted function runs.
     pub fn note_blocks(&mut self, yes: bool) {
         self.engine.get_data_mut().notes_blocks = yes;
     }
 
-    /// The blocks recorded since the last call.
+    /// Returns the blocks noted since the last call.
     pub fn take_blocks(&mut self) -> Blocks {
         std::mem::take(&mut self.engine.get_data_mut().blocks)
     }

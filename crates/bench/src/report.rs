@@ -1,4 +1,4 @@
-//! The figures against their limits.
+//! Compares the figures with their limits.
 
 use robot_replay::Figures;
 use serde::Serialize;
@@ -12,10 +12,10 @@ use crate::{
 };
 use robot_sim::{budgets, summary::Summary};
 
-/// What the shipped image may take.
+/// Limits of the shipped image.
 const IMAGE_FLASH_BYTES: f64 = 256.0 * 1024.0;
 const IMAGE_RAM_BYTES: f64 = 64.0 * 1024.0;
-/// What the estimator may take.
+/// Limits of the estimator.
 pub const UPDATE_MEAN: f64 = 2_000.0;
 pub const UPDATE_MAX: f64 = 3_000.0;
 pub const EXTRAPOLATION_MEAN: f64 = 400.0;
@@ -24,13 +24,13 @@ pub const ESTIMATOR_FLASH_BYTES: f64 = 12.0 * 1024.0;
 #[derive(Debug, Serialize)]
 pub struct Report {
     pub ok: bool,
-    /// What the filters were fed with.
+    /// Names of the motions that were the filters' input.
     pub motions: Vec<String>,
     pub groups: Vec<Group>,
     pub runs: Vec<Run>,
 }
 
-/// One filter over one motion; instructions and degrees.
+/// The figures of one filter over one motion, in instructions and degrees.
 #[derive(Debug, Serialize)]
 pub struct Run {
     filter: &'static str,
@@ -61,7 +61,7 @@ impl Report {
         report
     }
 
-    /// Rows over their limits.
+    /// Returns the rows that exceed their limits.
     pub fn broken(&self) -> impl Iterator<Item = (&Group, &Row)> {
         let rows = self
             .groups
@@ -217,7 +217,7 @@ fn ticks(result: &FilterResult, of: fn(&Costs) -> &Vec<u32>) -> Vec<u32> {
     runs.copied().collect()
 }
 
-/// Mean over the motions with a reference.
+/// Returns the mean error of each filter over the motions that have a reference.
 fn errors(filters: &[FilterResult], of: fn(&Measured) -> Option<Figures>) -> Vec<Option<Figures>> {
     let mean = |result: &FilterResult| {
         let known: Vec<Figures> = result.runs.iter().filter_map(of).collect();

@@ -1,4 +1,4 @@
-//! The shipped image on the emulated board.
+//! Runs the shipped image on the emulated board.
 
 use std::path::Path;
 
@@ -13,10 +13,10 @@ use robot_sim::{
     summary::Summary,
 };
 
-/// Scenarios that load the board: the default drive, and one with all traffic on.
+/// Scenarios that load the board: ordinary driving, and the most traffic on every line.
 pub const NAMES: [&str; 2] = ["drive", "full-traffic"];
 
-/// Number of simulated milliseconds.
+/// Returns the length of the scenario in simulated milliseconds.
 pub fn length_ms(scenario: &Scenario) -> u64 {
     scenario.length / MS
 }
@@ -26,7 +26,7 @@ pub fn read(repository: &Path, name: &str) -> anyhow::Result<Scenario> {
     Scenario::read(&path).with_context(|| format!("scenario {name}"))
 }
 
-/// Calls `progress` in each simulated millisecond. Expectations that did not hold are an error.
+/// Runs the scenario and calls `progress` after each simulated millisecond. It fails if an expectation does not hold.
 pub fn run(elf: &Path, scenario: Scenario, progress: impl FnMut()) -> anyhow::Result<Summary> {
     let name = scenario.name.clone();
     let job = Job {

@@ -1,10 +1,10 @@
-//! Figures in rows, on a terminal and as JSON.
+//! Tables of figures, for a terminal and as JSON.
 
 use std::{collections::BTreeMap, fmt};
 
 use serde::Serialize;
 
-/// Rows that share their columns.
+/// Rows that have the same columns.
 #[derive(Debug, Serialize)]
 pub struct Group {
     pub title: &'static str,
@@ -17,11 +17,11 @@ pub struct Group {
 pub struct Row {
     pub name: &'static str,
     pub unit: &'static str,
-    /// Largest allowed figure.
+    /// The largest value allowed.
     pub limit: Option<f64>,
-    /// Figure of each column that has one.
+    /// Values by column. A column may have none.
     pub values: BTreeMap<String, f64>,
-    /// Columns whose figure is above the limit.
+    /// Columns whose value is above the limit.
     pub broken: Vec<String>,
     #[serde(skip)]
     decimals: usize,
@@ -39,7 +39,7 @@ impl Group {
         }
     }
 
-    /// A row without a limit, with one value for each column.
+    /// Adds a row without a limit, with one value for each column.
     pub fn add(
         &mut self,
         name: &'static str,
@@ -67,7 +67,7 @@ impl Row {
         self
     }
 
-    /// Applies the limit to the named columns.
+    /// Sets the limit for the columns named.
     pub fn at_most<'c>(&mut self, limit: f64, columns: impl IntoIterator<Item = &'c String>) {
         self.limit = Some(limit);
         let over = |column: &&String| self.values.get(*column).is_some_and(|v| *v > limit);
@@ -104,7 +104,7 @@ impl fmt::Display for Group {
 }
 
 impl Row {
-    /// Formats a value with separators between the thousands.
+    /// Returns the value with its thousands set apart.
     fn text(&self, value: f64) -> String {
         let plain = format!("{value:.*}", self.decimals);
         let whole = plain.split('.').next().unwrap_or(&plain).len();

@@ -1,4 +1,4 @@
-//! All runs, on every core, behind one progress bar.
+//! Runs everything that is measured, on every core, behind one progress bar.
 
 use std::{
     path::{Path, PathBuf},
@@ -20,7 +20,7 @@ use crate::{
 
 /// What is to be measured.
 pub struct Plan {
-    /// `None` leaves the board out.
+    /// `None` if the board is not measured.
     pub board: Option<Board>,
     /// Folder of the filters' programs.
     pub programs: PathBuf,
@@ -29,28 +29,28 @@ pub struct Plan {
 }
 
 pub struct Board {
-    /// The shipped one.
+    /// The shipped image.
     pub image: PathBuf,
     pub scenarios: Vec<Scenario>,
 }
 
-/// A filter on one kind of motion: a column of the table.
+/// A filter on one kind of motion. It is a column of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Entry {
     pub filter: Filter,
     pub wheels: Wheels,
 }
 
-/// An entry over all its motions, in their order.
+/// What an entry cost over each of its motions, in their order.
 pub struct FilterResult {
     pub entry: Entry,
-    /// Without start-up and mailbox.
+    /// Start-up and mailbox do not count.
     pub flash_bytes: usize,
     pub runs: Vec<Measured>,
 }
 
 pub struct Results {
-    /// One summary for each board, in the order of the plan.
+    /// Summaries of the scenarios, in the order of the plan.
     pub boards: Vec<Summary>,
     pub filters: Vec<FilterResult>,
 }
@@ -93,7 +93,7 @@ impl Plan {
         Ok(Results { boards, filters })
     }
 
-    /// The longest first: no core shall be left alone with one at the end.
+    /// Returns all tasks, the longest first, so that no core works alone on a long one at the end.
     fn tasks(&self) -> Vec<Task<'_>> {
         let boards = self.board.iter().flat_map(|board| {
             let scenarios = board.scenarios.iter();
@@ -109,7 +109,7 @@ impl Plan {
         boards.chain(filters).collect()
     }
 
-    /// What the tasks gave, in their order.
+    /// Runs the tasks and returns their results in the same order.
     fn do_all(&self, tasks: Vec<Task<'_>>, bar: &ProgressBar) -> anyhow::Result<Vec<Done>> {
         let count = tasks.len();
         let queue = Mutex::new(tasks.into_iter().enumerate());
@@ -157,7 +157,7 @@ impl Plan {
 }
 
 impl Task<'_> {
-    /// Simulated.
+    /// Returns how much simulated time the task takes.
     fn milliseconds(&self) -> u64 {
         match self {
             Self::Board(_, scenario) => scenarios::length_ms(scenario),
@@ -166,7 +166,8 @@ impl Task<'_> {
     }
 }
 
-/// Ours over recordings, then the others over the same; ours with wheels, which recordings lack.
+/// Returns our estimator and the other filters over the recordings, then ours over a motion with wheels, which no
+/// recording has.
 fn entries() -> impl Iterator<Item = Entry> {
     let of = |wheels| move |filter| Entry { filter, wheels };
     let silent = [OURS].into_iter().chain(RIVALS).map(of(Wheels::Silent));
@@ -181,7 +182,7 @@ impl Entry {
         }
     }
 
-    /// What the limits of the estimator hold for.
+    /// True for the entries that the limits of the estimator apply to.
     pub fn is_ours(self) -> bool {
         self.filter == OURS
     }

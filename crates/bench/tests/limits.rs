@@ -1,4 +1,4 @@
-//! The estimator keeps its limits, on a motion that needs no recording: rest, slow and fast turning, a magnet.
+//! The estimator keeps its limits on a motion that needs no recording: rest, slow and fast turning, a magnet.
 
 mod programs;
 
@@ -11,8 +11,8 @@ use robot_bench::{
     report::{EXTRAPOLATION_MEAN, UPDATE_MAX, UPDATE_MEAN},
 };
 
-/// No larger than it is, a tenth of it for impacts and for wheels that spin beside a robot at rest; `cargo xtask bench`
-/// shows how far that is from what is wanted.
+/// The estimator may grow no further. A tenth of its size handles impacts, and wheels that spin while the robot rests.
+/// `cargo xtask bench` shows how far this is from the size wanted.
 const FLASH_BYTES: f64 = 22.5 * 1024.0;
 
 fn costs(wheels: Wheels) -> Costs {
@@ -54,7 +54,8 @@ fn the_estimator_grows_no_larger() {
     assert!(own <= FLASH_BYTES, "{own} bytes");
 }
 
-/// Names of the ARM run-time ABI (`__aeabi_dadd` …) and of compiler-rt (`__adddf3`, `__extendsfdf2` …).
+/// The names are from the ARM run-time ABI, such as `__aeabi_dadd`, and from compiler-rt, such as `__adddf3` and
+/// `__extendsfdf2`.
 #[test]
 fn the_estimator_computes_nothing_in_double_precision() {
     let elf = std::fs::read(OURS.elf(&programs::folder())).expect("the program is there");

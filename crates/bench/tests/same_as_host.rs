@@ -1,5 +1,5 @@
-//! The emulated Cortex-M4F computes what this machine computes: same sources, same samples, same attitude to the bit.
-//! Single-precision sums, products, quotients are exact to the last place on both, and nothing else is used.
+//! The emulated Cortex-M4F computes what this machine computes: the same sources and samples give the same attitude to
+//! the bit. Both round sums, products and quotients of single precision correctly, and nothing else is used.
 
 mod programs;
 

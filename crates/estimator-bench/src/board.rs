@@ -1,4 +1,4 @@
-//! The loop around a filter.
+//! The loop that runs a filter on the board.
 
 use core::{f32::consts::FRAC_1_SQRT_2, hint::black_box, panic::PanicInfo};
 
@@ -10,16 +10,16 @@ use crate::mailbox::{Input, MAILBOX};
 
 /// An attitude filter under test.
 pub trait Filter {
-    /// What the filter is fed with.
+    /// Input of the filter.
     type Taken;
 
-    /// Converts the input to the filter's own types. This is not counted.
+    /// Converts the input into the filter's own types. This does not count.
     fn take(&mut self, input: &Input) -> Self::Taken;
 
-    /// Performs one tick of 1 ms. Only this is counted.
+    /// Does one tick of 1 ms. Only this counts.
     fn step(&mut self, taken: &Self::Taken);
 
-    /// Attitude, body → ENU, after the last step, w first. This is not counted.
+    /// Returns the attitude from body to ENU after the last step, w first. This does not count.
     fn q_wxyz(&self) -> [f32; 4];
 }
 
@@ -36,8 +36,8 @@ pub fn run<F: Filter>(mut filter: F) -> ! {
     }
 }
 
-/// The compiler's functions that copy and clear memory. Every program contains them, even the one without a filter, so they
-/// do not count as part of a filter.
+/// The compiler's functions that copy and clear memory. Each program has them, also the one without a filter, so that
+/// they do not count as a part of any filter.
 #[inline(never)]
 fn link_memory_functions() {
     let mut words = black_box([1_u32; 64]);
@@ -53,7 +53,7 @@ fn counted<F: Filter>(filter: &mut F, taken: &F::Taken) {
     filter.step(taken);
 }
 
-/// New samples of one tick, for filters without a notion of time.
+/// The new samples of one tick, for filters that take no time stamps.
 #[derive(Clone, Copy, Default)]
 pub struct Samples {
     pub imu: Option<ImuSample>,
@@ -89,7 +89,7 @@ impl Fresh {
     }
 }
 
-/// Converts an attitude from a world frame whose x axis points north to ENU.
+/// Converts an attitude in a world whose x axis points north into ENU.
 pub fn north_to_east([w, x, y, z]: [f32; 4]) -> [f32; 4] {
     [w - z, x - y, x + y, w + z].map(|part| part * FRAC_1_SQRT_2)
 }

@@ -1,7 +1,7 @@
-//! Attitude filters as programs for the board, one filter each, so that an emulated Cortex-M4F can count what they cost.
+//! Attitude filters as programs for the board. Each program has one filter, whose cost an emulated Cortex-M4F counts.
 //!
-//! Each program waits at a breakpoint, where its runner writes a [`mailbox::Input`] into the mailbox. When resumed, the
-//! program does one step of its filter, puts the attitude into the mailbox and returns to the breakpoint.
+//! Each program waits in a breakpoint, and the host writes a [`mailbox::Input`] into the mailbox. Then the program does
+//! one step of its filter, writes the attitude into the mailbox and returns to the breakpoint.
 
 #![no_std]
 #![forbid(unsafe_code)]

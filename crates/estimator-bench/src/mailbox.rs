@@ -1,4 +1,4 @@
-//! The words in one static through which host and board exchange data.
+//! The words that host and board exchange, in one static.
 
 use core::sync::atomic::AtomicU32;
 #[cfg(feature = "board")]
@@ -17,16 +17,16 @@ pub const COUNTED: &str = "board::counted";
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Input {
     pub now_us: u32,
-    /// End of the interval that the IMU's means are of. A new value is a new sample; 0 = none yet.
+    /// End of the interval over which the IMU's samples are means. A new value marks a new sample; 0 means none yet.
     pub imu_ts_us: u32,
-    /// End of the interval that the magnetometer's mean is of; 0 = no magnetometer.
+    /// End of the magnetometer's interval in the same way; 0 means that there is no magnetometer.
     pub mag_ts_us: u32,
     pub gyro_rps: [f32; 3],
     pub accel_mps2: [f32; 3],
     pub mag_ut: [f32; 3],
     /// Rotor speeds of both wheels.
     pub wheel_rpm: [i16; 2],
-    /// Time since the wheels last reported; `u32::MAX` = never.
+    /// Time since the wheels last reported; `u32::MAX` means never.
     pub wheel_age_us: u32,
 }
 
@@ -89,14 +89,14 @@ impl Input {
     }
 }
 
-/// The host writes `input`, the board writes `output`. The words are consecutive in memory.
+/// The host writes `input` and the board writes `output`. The words follow one another in memory.
 #[repr(C)]
 pub struct Mailbox {
     input: [AtomicU32; INPUT_WORDS],
     output: [AtomicU32; OUTPUT_WORDS],
 }
 
-/// The mailbox, which the host finds through the program's symbols.
+/// The host finds it through the program's symbols.
 #[cfg(feature = "board")]
 pub static MAILBOX: Mailbox = Mailbox {
     input: [const { AtomicU32::new(0) }; INPUT_WORDS],

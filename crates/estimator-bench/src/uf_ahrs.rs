@@ -8,7 +8,7 @@ use crate::{
     mailbox::Input,
 };
 
-/// Each step takes the latest field, because these filters have no other way to fuse a slower magnetometer.
+/// Passes the latest field to each step: these filters have no other way to fuse a slower magnetometer.
 pub struct AllInOne<F> {
     filter: F,
     mag_ut: Vector3<f32>,

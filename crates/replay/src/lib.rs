@@ -1,4 +1,4 @@
-//! Replays recorded motion through the firmware's own estimator, and computes the error of its attitude.
+//! Runs the firmware's estimator over recorded motion, and compares its attitude with the reference.
 //!
 //! ```no_run
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -6,7 +6,7 @@ use crate::track::Track;
 
 pub struct Reference {
     pub track: Track,
-    /// Whether each row is in the scored phase.
+    /// True for each row in the scored phase.
     scored: Vec<bool>,
 }
 
@@ -25,7 +25,7 @@ impl Reference {
         })
     }
 
-    /// Whether the row nearest in time is scored.
+    /// True if the row nearest in time is scored.
     pub fn scored(&self, t_s: f64) -> bool {
         let row = (t_s / self.track.period_s).round_ties_even().max(0.0) as usize;
         let last = self.scored.len().saturating_sub(1);

@@ -1,4 +1,4 @@
-//! A recording of any rate → samples as the firmware's sensors deliver them.
+//! Turns a recording of any rate into samples as the firmware's sensors deliver them.
 
 use std::ops::Range;
 
@@ -11,38 +11,38 @@ use robot_plant::{
 const IMU_PERIOD: Ps = 5 * MS;
 /// The IST8310 is read at 50 Hz.
 const IMU_SAMPLES_A_FIELD_SAMPLE: Ps = 4;
-/// The field belongs to the middle of the 5 ms that it is a mean over, so it is as old as this at their end.
+/// The age of the field at the end of the 5 ms that it is a mean over: it belongs to their middle.
 pub const FIELD_AGE_US: u64 = IMU_PERIOD / US / 2;
 
-/// Ranges that the firmware sets the BMI088 to (datasheet, registers 0x41 and 0x0F): ±12 g, ±2000 °/s.
+/// The ranges that the firmware configures in the BMI088 (datasheet, registers 0x41 and 0x0F): ±12 g, ±2000 °/s.
 const ACCEL_RANGE_MPS2: f64 = 12.0 * 9.806_65;
 const GYRO_RANGE_RPS: f64 = 2_000.0 * std::f64::consts::PI / 180.0;
 
-/// Measurements of the sensors over the 5 ms that end at `end_us`.
+/// What the sensors measured in the 5 ms that end at `end_us`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
     /// Time in the recording.
     pub end_us: u64,
-    /// `None` if the recording has no finite value, in which case the firmware gets no sample.
+    /// `None` where the recording has no number. The firmware gets no sample then.
     pub motion: Option<Motion>,
-    /// Body frame; in every fourth sample only, and `None` where the recording has no number.
+    /// The field in the body frame. Only every fourth sample has one; it is `None` where the recording has no number.
     pub field_ut: Option<[f32; 3]>,
 }
 
-/// Means over the 5 ms, body frame.
+/// Means over the 5 ms in the body frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion {
     pub gyro_rps: [f32; 3],
-    /// Specific force: +9.8 up at rest.
+    /// Specific force, which is 9.8 m/s² upwards at rest.
     pub accel_mps2: [f32; 3],
-    /// Whether an axis reached the end of the BMI088's range during the 5 ms, where it is clipped.
+    /// True if an axis was at the end of the BMI088's range at some time in the 5 ms. It is clipped there.
     pub saturated: bool,
-    /// Time for which each axis of the gyro was clipped, ms.
+    /// How long each axis of the gyro was clipped, in ms.
     pub gyro_clipped_ms: [u8; 3],
 }
 
-/// Every whole 5 ms of the recording. A row counts as constant over its interval, so at 200 Hz its rows come out as
-/// they are.
+/// Returns a sample for every whole 5 ms of the recording. A row counts as constant over its interval, so the rows of a
+/// recording at 200 Hz do not change.
 pub fn samples(recording: &recording::Trial) -> Vec<Sample> {
     let period = recording.row_period();
     let rows = Rows {
@@ -87,7 +87,7 @@ impl Rows<'_> {
         }
     }
 
-    /// Time in ms for which each axis was clipped, rounded up so that any clipping is reported.
+    /// Returns how long each axis of the gyro was clipped. The time is rounded up, so that any clipping shows.
     fn clipped_ms(&self, window: &Range<Ps>) -> [u8; 3] {
         let at_end = |row: &Row| {
             row.gyro_rps
@@ -104,7 +104,7 @@ impl Rows<'_> {
         indices.filter_map(|index| self.rows.get(usize::try_from(index).ok()?))
     }
 
-    /// `None` if a row in the window has no finite value.
+    /// Returns `None` if a row in the window has no number.
     fn mean(&self, window: &Range<Ps>, value: impl Fn(&Row) -> [f64; 3]) -> Option<[f32; 3]> {
         let first = window.start / self.period;
         let mut sum = [0.0; 3];
@@ -121,7 +121,7 @@ impl Rows<'_> {
     }
 }
 
-/// A value that is not finite stays so.
+/// Clips the value to the range. A value that is not finite stays as it is.
 fn cut_off(value: [f64; 3], range: f64) -> [f64; 3] {
     value.map(|axis| match axis.is_finite() {
         true => axis.clamp(-range, range),

@@ -1,4 +1,4 @@
-//! The control tick's part of the estimator, over a whole recording.
+//! Runs the estimator over a whole recording, as the control tick does.
 
 use robot_app::{
     domain::{ImuState, MagState, MotorFeedback, StateEstimate, WheelOdomConfig},
@@ -13,16 +13,16 @@ use crate::{
 };
 
 const TICK_US: u64 = 1_000;
-/// The firmware's clock at time 0 of the recording. Not 0, which stands for "no sample yet".
+/// The firmware's clock at time 0 of the recording. It is not 0, which stands for "no sample yet".
 const START_US: u64 = 1_000_000;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
 pub enum Mode {
-    /// With magnetometer: the heading is that of the earth.
+    /// The magnetometer is used, so the heading is absolute.
     #[value(name = "9d")]
     #[serde(rename = "9d")]
     NineAxis,
-    /// Without magnetometer: the heading starts at an arbitrary value, and drifts.
+    /// The magnetometer is not used, so the heading starts anywhere and drifts.
     #[value(name = "6d")]
     #[serde(rename = "6d")]
     SixAxis,
@@ -33,15 +33,15 @@ pub enum Mode {
 pub struct Tick {
     /// Time in the recording.
     pub t_us: u64,
-    /// Unit quaternion, body → ENU earth, scalar first.
+    /// Unit quaternion from body to ENU earth, scalar first.
     pub q_wxyz: Quaternion,
     pub gyro_bias_rps: [f32; 3],
     pub valid: bool,
 }
 
 impl Tick {
-    /// Normalises the quaternion, whose length is off by some 1e-7 in single precision. It is NaN if the estimator's
-    /// quaternion is not finite.
+    /// Normalises the quaternion, whose length is off by about 1e-7 in single precision. It becomes NaN if it cannot be
+    /// normalised.
     pub fn new(t_us: u64, estimate: &StateEstimate) -> Self {
         let unit = attitude::normalised(estimate.q_wxyz.map(f64::from));
         Self {
@@ -53,7 +53,7 @@ impl Tick {
     }
 }
 
-/// All outputs of a run, one a millisecond.
+/// All outputs of a run, one for each millisecond.
 pub struct Run {
     pub mode: Mode,
     pub ticks: Vec<Tick>,
@@ -71,7 +71,7 @@ impl Run {
 }
 
 /// Steps a new estimator as the control tick does, from the first sample of `trial` to its end. `gyro_offset_dps` is
-/// added to every gyro sample, as by an offset that start-up calibration has missed.
+/// added to every gyro sample, like an offset that start-up calibration has missed.
 pub fn run(trial: &Trial, mode: Mode, gyro_offset_dps: [f32; 3]) -> Run {
     let mut estimator = InsEstimator::new(WheelOdomConfig::default());
     let mut sensors = Sensors::new(mode, gyro_offset_dps);
@@ -92,7 +92,7 @@ pub fn run(trial: &Trial, mode: Mode, gyro_offset_dps: [f32; 3]) -> Run {
     Run { mode, ticks }
 }
 
-/// The latest samples, as exchanged between sensor and control task.
+/// The latest samples, as the sensor task passes them to the control task.
 struct Sensors {
     mode: Mode,
     gyro_offset_dps: [f32; 3],

@@ -27,7 +27,7 @@ pub struct Figures {
 }
 
 impl Figures {
-    /// Arithmetic mean, or `None` if there are no figures.
+    /// Returns the mean, or `None` if there are no errors.
     pub fn mean(all: &[Self]) -> Option<Self> {
         let mean = |part: fn(&Self) -> f64| all.iter().map(part).sum::<f64>() / all.len() as f64;
         (!all.is_empty()).then(|| Self {
@@ -42,14 +42,15 @@ impl Figures {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Instant {
     pub t_s: f64,
-    /// Whether it is in the scored phase.
+    /// True in the scored phase.
     pub scored: bool,
     /// `None` in a gap of the reference.
     pub error: Option<AttitudeError>,
 }
 
 impl Run {
-    /// Errors over the scored phase of `trial`, of which this must be the run. `None` if it has no reference there.
+    /// Returns the errors over the scored phase of `trial`, which must be the trial of this run. It is `None` if the
+    /// trial has no reference there.
     pub fn score(&self, trial: &Trial, at: At) -> Option<Figures> {
         let mut sums = [0.0; 3];
         let mut count = 0_u32;
@@ -75,8 +76,8 @@ impl Run {
         })
     }
 
-    /// The error at every instant of the record, whether scored or not. Empty without a reference. In 6d the heading offset
-    /// of the last second before the scored phase is subtracted from all of them.
+    /// Returns the error at every instant of the record, scored or not. It is empty without a reference. In 6d mode,
+    /// the heading error of the last second before the scored phase is subtracted from all of them.
     pub fn compare(&self, trial: &Trial, at: At) -> Vec<Instant> {
         let Some(reference) = &trial.reference else {
             return Vec::new();
@@ -111,8 +112,8 @@ impl Run {
     }
 }
 
-/// Mean heading error over the last known second before the scored phase, or over the first known second if none is known
-/// before.
+/// Returns the mean heading error over the last known second before the scored phase, or over the first known second if
+/// nothing is known before.
 fn heading_offset_rad(compared: &[Instant]) -> f64 {
     let from = compared.iter().position(|instant| instant.scored);
     let known = |instants: &[Instant]| -> Vec<f64> {

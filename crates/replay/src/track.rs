@@ -1,10 +1,10 @@
-//! An attitude at equal steps of time, and between them.
+//! An attitude sampled at equal steps of time, and interpolated between them.
 
 use robot_plant::attitude::{self, Quaternion};
 
-/// Times this close are the same.
+/// Times that differ by less than this are the same.
 const SAME_S: f64 = 1e-4;
-/// Attitudes further apart in time are not bridged.
+/// There is no interpolation over a longer gap.
 const MAX_GAP_S: f64 = 0.05;
 
 pub struct Track {
@@ -19,8 +19,8 @@ impl Track {
         self.start_s + index as f64 * self.period_s
     }
 
-    /// Interpolates linearly between the two neighbours and normalises the result. `None` outside the track, or if a
-    /// neighbour is not known.
+    /// Returns the normalised linear interpolation between the two neighbours. It is `None` outside the track and where
+    /// a neighbour is not known.
     pub fn at(&self, t_s: f64) -> Option<Quaternion> {
         let steps = (t_s - SAME_S - self.start_s) / self.period_s;
         let last = self.attitudes.len().checked_sub(1)?;

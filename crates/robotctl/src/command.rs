@@ -21,9 +21,9 @@ pub enum Command {
         #[command(subcommand)]
         sensor: calibrate::Sensor,
     },
-    /// Find out how board and magnetometer sit, by tilting the robot (docs/mounting.md)
+    /// Find out how board and magnetometer are mounted by tilting the robot (docs/mounting.md)
     Mounting(mounting::Mounting),
-    /// Find out which channel of an SBUS transmitter is which, by moving its controls (docs/bring-up.md)
+    /// Find out what each channel of an SBUS transmitter controls by moving its sticks (docs/bring-up.md)
     Radio(radio::Radio),
     /// Record accelerometer, gyro and magnetometer of the disarmed robot over CAN
     Record(record::Record),
@@ -31,7 +31,7 @@ pub enum Command {
     Tune(tune::Tune),
     /// Set a joint's zero
     Joint(joint::JointCommand),
-    /// Walk through the checks for whoever first has a board, and write a report (docs/first-board.md)
+    /// Walk through the checks of a first board, and write a report (docs/first-board.md)
     FirstBoard(first_board::FirstBoard),
 }
 

@@ -1,4 +1,5 @@
-//! Which channel of an SBUS transmitter means what, found by moving one control after the other (docs/bring-up.md).
+//! Finds which control of an SBUS transmitter is on which channel: the pilot moves one after the other
+//! (docs/bring-up.md).
 
 mod control;
 mod ends;

@@ -1,4 +1,4 @@
-//! Records the sensors of a robot on a bus: each sample once, with the robot's time, without its corrections.
+//! Records the sensors of a robot on a bus. Each sample comes once, with the robot's time and without its corrections.
 
 mod samples;
 
@@ -17,15 +17,15 @@ use crate::{
 
 /// Groups of settings that change what is recorded.
 const CORRECTIONS: [&str; 2] = ["imu-calibration", "mag-calibration"];
-/// More than this share of samples lost is refused.
+/// A recording that lost a larger share of its samples is refused.
 const LOST_AT_MOST: f64 = 0.01;
 /// The IMU gives 200 samples a second.
 const LEAST_IMU_HZ: f64 = 100.0;
 
-/// How long the recorder waits, in the time of the computer.
+/// How long the recorder waits, by the computer's clock.
 #[derive(Clone, Copy, Debug)]
 pub struct RecordPatience {
-    /// Pause between two questions how the recording goes.
+    /// Pause between two requests for the state of the recording.
     pub look: Duration,
     /// A recording without samples for this long has failed.
     pub silence: Duration,
@@ -63,15 +63,15 @@ pub enum RecordError {
     SoftIron,
 }
 
-/// What was recorded, and how well.
+/// The samples of a recording, and how many were lost.
 #[derive(Clone, Debug)]
 pub struct Recorded {
     pub samples: Samples,
-    /// Samples sent by the robot that did not arrive.
+    /// Samples that the robot sent and that did not arrive.
     pub lost: u32,
 }
 
-/// Returns when the robot has ended the recording. `progress` gets the seconds recorded so far.
+/// Records until the robot ends the recording. `progress` gets the seconds recorded so far.
 pub fn record(
     client: &mut TuningClient,
     seconds: u16,

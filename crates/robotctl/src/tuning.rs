@@ -1,4 +1,4 @@
-//! The robot's tuning channel, seen from the PC (docs/tuning.md).
+//! The PC's end of the robot's tuning channel (docs/tuning.md).
 
 mod apply;
 mod boot_findings;

@@ -1,5 +1,5 @@
-//! The Debian compiler as a way to the board without rustup's servers: it has no core library for
-//! the board, but `rust-web-src` brings the sources, and cargo builds them.
+//! Builds for the board with Debian's compiler, without rustup's servers. That compiler has no core library for the
+//! board, but the package `rust-web-src` contains the sources, and cargo builds them.
 
 use std::{
     path::{Path, PathBuf},
@@ -39,7 +39,7 @@ pub fn install() -> anyhow::Result<()> {
     prerequisites::ensure(&COMPILER)
 }
 
-/// The distribution's cargo, set up to build for the board.
+/// Returns the distribution's cargo, set up to build for the board.
 pub fn cargo() -> anyhow::Result<Command> {
     let linker = linker().context("the LLVM linker is not there")?;
     let mut command = tool::command("/usr/bin/cargo");
@@ -65,7 +65,7 @@ fn has_compiler() -> bool {
         && tool::printed_by(rustc).is_ok_and(|version| is_new_enough(&version))
 }
 
-/// `version` as in `rustc 1.96.0 (…)`.
+/// Reads the version from a line such as `rustc 1.96.0 (abc 2026-05-25)`.
 fn is_new_enough(version: &str) -> bool {
     let minor = version.split(['.', ' ']).nth(2);
     minor.and_then(|minor| minor.parse().ok()) >= Some(OLDEST_MINOR)

@@ -1,4 +1,4 @@
-//! What can be checked on the linked image without running it.
+//! Checks the linked image without running it.
 
 use std::{fs, ops::Range, path::Path};
 
@@ -9,7 +9,7 @@ use object::{
     read::elf::{ElfFile32, ProgramHeader},
 };
 
-/// docs/figures.md#the-image.
+/// Limit from docs/figures.md#the-image.
 const FLASH_BUDGET_BYTES: u64 = 256 * 1024;
 const RAM_BUDGET_BYTES: u64 = 64 * 1024;
 
@@ -52,7 +52,7 @@ struct Section {
     range: Range<u64>,
 }
 
-/// One question asked of the image.
+/// The result of one check of the image.
 pub struct Check {
     pub name: &'static str,
     /// What was found, or what is wrong.
@@ -172,8 +172,8 @@ impl Image {
     }
 }
 
-/// Where the load segments go in flash. Initialised data counts where it is stored (its physical
-/// address), not where start-up copies it.
+/// Returns where the load segments go in flash. Initialised data counts where it is stored (its physical address), not
+/// where start-up copies it.
 fn programmed(file: &ElfFile32<'_, object::Endianness>) -> Vec<Range<u64>> {
     let endian = file.endian();
     file.elf_program_headers()
@@ -198,7 +198,7 @@ fn two_words(bytes: &[u8]) -> Option<[u32; 2]> {
     }
 }
 
-/// Anything of the `alloc` crate or of the allocator interface it calls.
+/// True for a name from the `alloc` crate or from the allocator interface that it calls.
 fn is_allocator(name: &str) -> bool {
     const INTERFACE: [&str; 5] = [
         "__rust_alloc",

@@ -1,8 +1,8 @@
-//! What a failed build lacks, told by what it printed.
+//! Recognises what a failed build lacks by what it printed.
 
-/// A line that a tool prints for want of something, and what to do about it.
+/// A line that a tool prints when something is missing, and what to do about it.
 struct Sign {
-    /// All of them stand in one line.
+    /// All of these words stand in one line.
     words: &'static [&'static str],
     cure: &'static str,
 }
@@ -63,7 +63,7 @@ const SIGNS: [Sign; 13] = [
     },
 ];
 
-/// One sentence, if the output of a build shows what it lacks.
+/// Returns a sentence on what to do, if the output of a build shows what it lacks.
 pub fn of(output: &str) -> Option<&'static str> {
     let shown = |sign: &&Sign| {
         let tells = |line: &str| sign.words.iter().all(|word| line.contains(word));

@@ -1,19 +1,21 @@
-//! Whether bindgen will find a libclang that it can use.
+//! Checks that bindgen will find a libclang that it can use.
 
 use clang::{Clang, Index, Unsaved, diagnostic::Severity};
 
-/// What every C header begins with: the first is the compiler's own, the second the C library's.
+/// Headers that every C header includes. The first is the compiler's own, the second is the C library's.
 const HEADER: &str = "#include <stddef.h>\n#include <stdint.h>\n";
 
-/// Has libclang, found by the very search that bindgen makes, read a header.
+/// Lets libclang read a header. It finds libclang by the same search as bindgen.
 ///
-/// LLVM brings files of similar names without it, and distributions pack its own headers apart from it.
+/// Finding a file is not enough: LLVM has files of similar names, and distributions put libclang's headers into another
+/// package.
 pub fn is_usable() -> bool {
     loads() && Clang::new().is_ok_and(|clang| reads(&clang, HEADER))
 }
 
-/// This must be checked before `Clang::new`. Once that has failed it always fails, even after libclang has been installed,
-/// and it panics if the search finds a library with a similar name (`libclang-cpp14.so`), which has no version.
+/// True if there is a libclang. This must be checked before `Clang::new`. Once `Clang::new` has failed, it goes on
+/// failing although libclang has been installed meanwhile. It panics where the search finds a library that only has a
+/// similar name, such as `libclang-cpp14.so`, because that has no version.
 fn loads() -> bool {
     clang_sys::load().is_ok()
         && clang_sys::get_library().is_some_and(|library| library.version().is_some())
@@ -35,7 +37,7 @@ fn reads(clang: &Clang, text: &str) -> bool {
 mod tests {
     use super::*;
 
-    /// Without libclang there is nothing to test; the emulator would not have been built either.
+    /// Without libclang there is nothing to test. The emulator could not be built either.
     #[test]
     fn a_header_that_is_not_there_is_noticed() {
         let Ok(clang) = Clang::new() else { return };

@@ -5,15 +5,15 @@ use std::{env, path::Path, process::Command};
 use crate::{emulator, host_program::HOST_PROFILE, tool, workspace};
 
 const FIRMWARE: &str = "robot-firmware";
-/// Packages that are built on the emulator's CPU core.
+/// Packages that need the emulator's CPU core.
 const ON_THE_CORE: [&str; 3] = ["robot-emulator", "robot-sim", "robot-bench"];
-/// Packages whose tests need images: the emulated board, and what counts in it.
+/// Packages whose tests need images: the emulated board, and the bench that counts in it.
 const EMULATED: [&str; 2] = ["robot-sim", "robot-bench"];
 
 /// Images that the tests of the emulated board boot.
 pub struct Images<'a> {
     pub default: &'a Path,
-    /// For a DBUS receiver and RS00 joints.
+    /// The image for a DBUS receiver and RS00 joints.
     pub other: &'a Path,
     /// Folder of the filters' programs.
     pub filters: &'a Path,
@@ -25,7 +25,7 @@ pub fn clippy(host: &str) -> Command {
     command
 }
 
-/// The documentation of public and private items; a broken link is an error.
+/// Builds the documentation of public and private items. A broken link is an error.
 pub fn docs(host: &str) -> Command {
     let mut command = over_workspace("doc", host, &[]);
     command.args(["--no-deps", "--document-private-items"]);
@@ -33,21 +33,21 @@ pub fn docs(host: &str) -> Command {
     command
 }
 
-/// The examples in doc comments.
+/// Tests the examples in doc comments.
 pub fn examples(host: &str) -> Command {
     let mut command = over_workspace("test", host, &[]);
     command.args(["--doc", "--no-fail-fast", "--", "--show-output"]);
     command
 }
 
-/// All tests that need no image.
+/// Runs all tests that need no image.
 pub fn tests(host: &str) -> Command {
     let mut command = over_workspace("test", host, &EMULATED);
     command.args(["--tests", "--no-fail-fast", "--", "--show-output"]);
     command
 }
 
-/// The tests that need images.
+/// Runs the tests that need images.
 pub fn emulator_tests(host: &str, images: &Images<'_>) -> Command {
     let mut command = tool::cargo();
     command.arg("test");
@@ -62,7 +62,8 @@ pub fn emulator_tests(host: &str, images: &Images<'_>) -> Command {
     command
 }
 
-/// Loom replaces the atomics of the snapshot by modelled ones, so everything is built apart.
+/// Runs the loom tests. Loom replaces the atomics of the snapshot by its models, so they have a target folder of their
+/// own.
 pub fn loom(host: &str) -> Command {
     let mut flags = env::var("RUSTFLAGS").unwrap_or_default();
     flags.push_str(" --cfg loom");
@@ -75,7 +76,7 @@ pub fn loom(host: &str) -> Command {
     command
 }
 
-/// `cargo WHAT` over all packages of this machine but those `left_out`.
+/// Returns `cargo WHAT` over all packages of this machine except those `left_out`.
 fn over_workspace(what: &str, host: &str, left_out: &[&str]) -> Command {
     let mut command = tool::cargo();
     command.args([what, "--workspace", "--exclude", FIRMWARE]);

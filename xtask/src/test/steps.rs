@@ -1,4 +1,4 @@
-//! What is tested, in the order of what fails quickest.
+//! The steps of the test, those that fail quickest first.
 
 use std::{path::Path, process::Command};
 
@@ -21,7 +21,7 @@ pub struct Step {
     pub run: Box<dyn FnOnce() -> anyhow::Result<Totals>>,
 }
 
-/// Returns all steps. Packages are installed before, so that no step fails for the want of one.
+/// Returns all steps. It installs the packages they need first, so that no step fails because one is missing.
 pub fn all() -> anyhow::Result<Vec<Step>> {
     if emulator::IS_BUILT_HERE {
         prerequisites::ensure(&EMULATOR)?;
@@ -85,7 +85,8 @@ fn format() -> Command {
     command
 }
 
-/// Against `deny.toml`. Without cargo-deny, `host-tests/tests/dependencies.rs` alone looks at licences and sources.
+/// Checks dependencies against `deny.toml`. Without cargo-deny, only `host-tests/tests/dependencies.rs` checks their
+/// licences and sources.
 fn check_dependencies() -> anyhow::Result<Totals> {
     if !prerequisites::runs("cargo-deny") {
         println!("skipped: no cargo-deny here (cargo install cargo-deny --locked)");
@@ -103,7 +104,7 @@ fn check_dependencies() -> anyhow::Result<Totals> {
     totals::of_command(command)
 }
 
-/// Skipped without a command: then the compiler of `rust-toolchain.toml` lacks the target.
+/// Runs the command. `None` means that the compiler of `rust-toolchain.toml` lacks the target: the step is skipped.
 fn on_the_board(command: Option<Command>) -> anyhow::Result<Totals> {
     match command {
         Some(command) => totals::of_command(command),

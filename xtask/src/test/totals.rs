@@ -1,4 +1,4 @@
-//! Counting what test runners report.
+//! Counts what test runners report.
 
 use std::{
     fmt,
@@ -68,7 +68,7 @@ pub fn of_command(mut command: Command) -> anyhow::Result<Totals> {
 
 /// Runs `cargo test … -- --show-output` and adds up the results of its test binaries.
 ///
-/// What passing tests print stays hidden, except lines that say that something was `skipped:`.
+/// The output of passing tests stays hidden, except lines that begin with `skipped:`.
 pub fn of_test_runner(mut command: Command) -> anyhow::Result<Totals> {
     let mut child = command
         .stdout(Stdio::piped())
@@ -97,7 +97,7 @@ struct Reading {
     totals: Totals,
     in_output_of_passed_tests: bool,
     this_test_skipped: bool,
-    /// Tests of the current binary that returned early; libtest counts them as passed.
+    /// Tests of the current binary that returned early. libtest counts them as passed.
     skips: u32,
 }
 

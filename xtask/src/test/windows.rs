@@ -1,11 +1,11 @@
-//! Checks on any machine that the tools and the host tests still compile for Windows.
+//! Checks on any machine that the tools and the host tests compile for Windows.
 
 use std::process::Command;
 
 use super::totals::{self, Totals};
 use crate::{host_program::HOST_PROFILE, tool, toolchain};
 
-/// The target that can be checked without a Microsoft compiler, with its core library alone.
+/// This target needs no Microsoft compiler: its core library is enough to check code.
 const TARGET: &str = "x86_64-pc-windows-gnu";
 /// Packages that work on Windows (docs/platforms.md).
 const PACKAGES: [&str; 8] = [
@@ -19,7 +19,7 @@ const PACKAGES: [&str; 8] = [
     "xtask",
 ];
 
-/// Runs `cargo check` with tests. It is skipped if rustup cannot fetch the target.
+/// Runs `cargo check` over code and tests. It is skipped where rustup cannot fetch the target.
 pub fn check() -> anyhow::Result<Totals> {
     if toolchain::add(TARGET) {
         return totals::of_command(command());

@@ -1,4 +1,4 @@
-//! The bench: see `--help`.
+//! `cargo xtask bench`: measures what the firmware costs. `--help` says more.
 
 use std::{
     env, fs,
@@ -20,13 +20,13 @@ use robot_bench::{
 };
 use robot_replay::Trial;
 
-/// Usual folder of the recordings, relative to the repository's root.
+/// The folder of recordings, seen from the repository's root.
 const RECORDINGS: &str = "../shared/data/broad";
-/// The recordings that are used unless the command names others.
+/// The folder in [`RECORDINGS`] that is taken if the user names none.
 const AT_200_HZ: &str = "hz200";
 
-/// What the firmware costs: the shipped image on the emulated board, and its attitude filter beside others, counted on
-/// an emulated Cortex-M4F over recorded motion. Exit code 1 if a limit is broken.
+/// Measure what the firmware costs: the shipped image on the emulated board, and its attitude filter beside others,
+/// counted on an emulated Cortex-M4F over recorded motion. The exit code is 1 if a limit is exceeded.
 #[derive(Parser)]
 #[command(
     name = "bench",
@@ -37,26 +37,26 @@ const AT_200_HZ: &str = "hz200";
   cargo xtask bench --quick --functions   where the estimator's instructions go"
 )]
 struct Args {
-    /// The shipped image; `cargo xtask` names the one it builds.
+    /// The shipped image. `cargo xtask` passes the one it builds.
     #[arg(long, value_name = "ELF", required_unless_present = "quick")]
     elf: Option<PathBuf>,
-    /// Folder of the filters' programs for the board; `cargo xtask` names it.
+    /// Folder of the filters' programs for the board. `cargo xtask` passes it.
     #[arg(long, value_name = "DIR")]
     programs: PathBuf,
-    /// Folder of recorded trials [default: $ROBOT_DATA, else ../shared/data/broad; if that is not there, a
-    /// computed motion stands in].
+    /// Folder of recorded trials [default: $ROBOT_DATA, else ../shared/data/broad; without recordings, a computed
+    /// motion].
     #[arg(long, value_name = "DIR")]
     data: Option<PathBuf>,
-    /// Only the recordings with this in their name.
+    /// Use only recordings whose name contains this.
     #[arg(long, value_name = "PART")]
     trial: Option<String>,
-    /// The filters alone, over one recording.
+    /// Measure the filters only, over one recording.
     #[arg(long)]
     quick: bool,
-    /// Also list where the estimator's instructions and its flash go, by function.
+    /// List also the estimator's instructions and flash by function.
     #[arg(long)]
     functions: bool,
-    /// Where `bench.json` goes.
+    /// Folder for `bench.json`.
     #[arg(long, value_name = "DIR", default_value = "target/bench")]
     out: PathBuf,
 }
@@ -115,7 +115,7 @@ impl Args {
         })
     }
 
-    /// Recordings, and one motion with wheels.
+    /// Returns the recordings and one motion with wheels.
     fn motions(&self) -> anyhow::Result<Vec<Motion>> {
         let mut motions = Vec::new();
         for header in self.headers()? {
@@ -174,7 +174,7 @@ fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// Prints where our estimator spends its instructions, over all motions.
+/// Prints what each function of our estimator costs over all its motions.
 fn print_functions(programs: &Path, results: Results) -> anyhow::Result<()> {
     let ours = results
         .filters

@@ -1,4 +1,4 @@
-//! For where there are no recordings, and for wheels, which recordings lack.
+//! Motions computed in closed form. They stand in for missing recordings and have wheels, which no recording has.
 
 use std::f64::consts::TAU;
 
@@ -13,15 +13,15 @@ const SAMPLE_S: f64 = SAMPLE_US as f64 * 1e-6;
 /// The magnetometer is read at 50 Hz.
 const SAMPLES_A_FIELD: u64 = 4;
 const GRAVITY_MPS2: f64 = 9.81;
-/// East, north, up: a field of 49 µT that dips by 67°, as in Berlin.
+/// The field in east, north, up: 49 µT with a dip of 67°, as in Berlin.
 const FIELD_UT: [f64; 3] = [0.0, 19.0, -45.0];
-/// Offset of the gyro, 1 °/s on each axis.
+/// The gyro's offset: 1 °/s on each axis.
 const OFFSET_RPS: f64 = 0.0175;
 
 type Vector = [f64; 3];
 
 impl Motion {
-    /// Rest, slow turning, fast turning with thrusts, a magnet nearby, rest.
+    /// Has phases of rest, slow turning, fast turning with thrusts, a magnet nearby, and rest.
     pub fn computed(wheels: Wheels) -> Self {
         let mut q = [1.0, 0.0, 0.0, 0.0];
         let count = (SECONDS / SAMPLE_S) as u64;
@@ -58,7 +58,7 @@ fn sample(q: &mut Quaternion, index: u64) -> Sample {
     }
 }
 
-/// How fast the motion is at `t_s`, 0 … 1.
+/// Returns how fast the motion is at `t_s`, from 0 to 1.
 fn vigour(t_s: f64) -> f64 {
     match t_s {
         5.0..30.0 => 0.15,

@@ -14,8 +14,8 @@ fn boot(program: &str) -> Program {
 }
 
 /// Counts with the engine's own hook before each instruction. The hook leaves out instructions of an IT block whose
-/// condition fails, although the processor issues them in a cycle each. Therefore an IT counts for all instructions that it
-/// covers, and these do not count again.
+/// condition fails, although the processor issues them and each takes a cycle. So an IT counts for all instructions
+/// that it covers, and these do not count again.
 #[derive(Default)]
 struct Oracle {
     count: u32,
@@ -50,7 +50,7 @@ fn halfword(engine: &Unicorn<'_, Counter>, address: u64) -> u16 {
     u16::from_le_bytes(bytes)
 }
 
-/// Number of instructions that an IT covers (ARMv7-M ARM A7.3.2); 0 for other instructions.
+/// Returns how many instructions an IT covers (ARMv7-M ARM A7.3.2), or 0 if this is no IT.
 fn it_length(op: u16) -> u32 {
     if op >> 8 == 0xBF && op & 0xF != 0 {
         4 - (op & 0xF).trailing_zeros()
@@ -88,7 +88,7 @@ fn as_many_instructions_are_counted_as_the_engine_executes() {
     }
 }
 
-/// The filter gets what the host writes. The empty filter returns parts of it.
+/// The empty filter returns parts of its input, which must be what the host wrote.
 #[test]
 fn samples_arrive_as_they_were_sent() {
     let mut program = boot(EMPTY.program);

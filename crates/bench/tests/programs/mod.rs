@@ -1,11 +1,11 @@
-//! The place of the filters' programs.
+//! Finds the filters' programs for the tests.
 
 use std::{
     env,
     path::{Path, PathBuf},
 };
 
-/// The folder that `ROBOT_FILTERS` names, or the one in which `cargo xtask` builds them.
+/// Returns the folder that `ROBOT_FILTERS` names, else the one where `cargo xtask` builds them.
 pub fn folder() -> PathBuf {
     let built = "../../target/robot-estimator-bench/thumbv7em-none-eabihf/release";
     let usual = || Path::new(env!("CARGO_MANIFEST_DIR")).join(built);

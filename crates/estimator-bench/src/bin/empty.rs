@@ -1,4 +1,4 @@
-//! A program without a filter. The size that the others have beyond this one is that of their filters.
+//! A program without a filter. Its size is subtracted from that of the others.
 
 #![no_std]
 #![no_main]

@@ -1,4 +1,4 @@
-//! `cargo xtask data`: the public recordings, prepared for tests and `cargo xtask replay`.
+//! `cargo xtask data`: prepares the public recordings for tests and `cargo xtask replay`.
 
 use std::{path::PathBuf, process::ExitCode};
 
@@ -10,13 +10,13 @@ use robot_replay::broad::{self, TWELVE};
 #[derive(Parser)]
 #[command(name = "data", bin_name = "cargo xtask data", after_help = EXAMPLES)]
 struct Args {
-    /// A copy of the dataset: the folder that has `data_mat` in it.
+    /// Folder with a copy of the dataset. It has `data_mat` in it.
     #[arg(long, value_name = "FOLDER")]
     from: Option<PathBuf>,
-    /// Folder for the prepared trials; they go into `hz200` in it.
+    /// Folder for the prepared trials. They are written to its subfolder `hz200`.
     #[arg(long, value_name = "FOLDER", default_value = "target/broad")]
     out: PathBuf,
-    /// Only trials with this in their name.
+    /// Prepare only trials whose name contains this.
     #[arg(
         long,
         value_name = "SUBSTRING",

@@ -1,6 +1,6 @@
-//! From 285.7 to 200 Hz.
+//! Resamples a recording from 285.7 to 200 Hz.
 //!
-//! Sample k of the dataset stands for the 3.5 ms that end at k · 3.5 ms. Row j of a trial is the mean over the 5 ms that
+//! Sample k of the dataset covers the 3.5 ms that end at k · 3.5 ms. Row j of a trial has the mean over the 5 ms that
 //! end at j · 5 ms, and the reference at that instant.
 
 use robot_plant::attitude;
@@ -58,7 +58,8 @@ pub(super) fn columns(recorded: &Recorded) -> Vec<Vec<f32>> {
     columns
 }
 
-/// Each sample counts as long as it lies in the row. Before sample 0 there is nothing, so row 0 is sample 0.
+/// Returns the mean over a row. A sample is weighted by the time that it shares with the row. There is nothing before
+/// sample 0, so row 0 is sample 0.
 fn mean(samples: &[[f64; 3]], row: usize) -> [f64; 3] {
     // Both count from the start of sample 0.
     let end = row * ROW + SAMPLE;
@@ -81,7 +82,7 @@ fn mean(samples: &[[f64; 3]], row: usize) -> [f64; 3] {
     sum.map(|sum| sum / covered)
 }
 
-/// The sample at or before the end of the row, and how far the row reaches towards the next one, 0 … 1.
+/// Returns the sample at or before the end of the row, and how far the row reaches towards the next one, from 0 to 1.
 fn place(row: usize) -> (usize, f64) {
     let at = row * ROW;
     (at / SAMPLE, (at % SAMPLE) as f64 / SAMPLE as f64)
@@ -91,7 +92,7 @@ fn nearest(row: usize) -> usize {
     (row * ROW + SAMPLE / 2) / SAMPLE
 }
 
-/// NaN where a neighbour is not known.
+/// Returns the reference at the end of a row, or NaN where a neighbour is not known.
 fn reference(samples: &[[f64; 4]], row: usize) -> [f64; 4] {
     let (index, share) = place(row);
     let attitude = if share == 0.0 {
@@ -115,7 +116,8 @@ fn between(samples: &[[f64; 3]], row: usize) -> [f64; 3] {
 mod tests {
     use super::*;
 
-    /// Eleven samples of 3.5 ms end at 35 ms: eight rows. 0 … 5 ms is all of sample 1 and 1.5 ms of sample 2.
+    /// Eleven samples of 3.5 ms end at 35 ms and give eight rows. The row from 0 to 5 ms is all of sample 1 and 1.5 ms
+    /// of sample 2.
     fn counting() -> Recorded {
         let row = |k: usize| [k as f64; 3];
         let samples: Vec<[f64; 3]> = (0..11).map(row).collect();

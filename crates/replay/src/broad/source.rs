@@ -1,4 +1,4 @@
-//! A MATLAB file of the dataset.
+//! Reads a MATLAB file of the dataset.
 
 use std::{fs::File, io, path::Path};
 
@@ -20,15 +20,15 @@ pub enum SourceError {
     Rate(f64),
 }
 
-/// The recorded data, with one row for each sample.
+/// A recording with one row for each sample.
 pub(super) struct Recorded {
     pub gyro_rps: Vec<[f64; 3]>,
     /// Specific force.
     pub accel_mps2: Vec<[f64; 3]>,
     pub field_ut: Vec<[f64; 3]>,
-    /// Sensor → ENU earth, scalar first; NaN where the cameras lost the markers.
+    /// Rotation from sensor to ENU earth, scalar first; NaN where the cameras lost the markers.
     pub reference_wxyz: Vec<[f64; 4]>,
-    /// ENU; NaN where the cameras lost the markers.
+    /// Position in ENU; NaN where the cameras lost the markers.
     pub position_m: Vec<[f64; 3]>,
     /// True in the phase that is scored.
     pub moving: Vec<bool>,
@@ -66,7 +66,7 @@ pub(super) fn read(path: &Path) -> Result<Recorded, SourceError> {
     Ok(recorded)
 }
 
-/// The rows of an array with `N` columns.
+/// Returns the rows of an array with `N` columns.
 fn rows<const N: usize>(file: &MatFile, name: &'static str) -> Result<Vec<[f64; N]>, SourceError> {
     let wrong = || SourceError::Array(name);
     let array = file.find_by_name(name).ok_or_else(wrong)?;

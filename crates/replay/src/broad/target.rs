@@ -1,4 +1,4 @@
-//! The two files of a trial.
+//! Writes the two files of a trial.
 
 use std::{
     fs,
@@ -12,7 +12,7 @@ use sha2::{Digest, Sha256};
 
 use super::resample::NAMES;
 
-/// Writes `NAME.json` and `NAME.f32.gz`: all rows of one column, then of the next, little-endian.
+/// Writes `NAME.json` and `NAME.f32.gz`. The latter holds all rows of one column, then of the next, little-endian.
 pub(super) fn write(name: &str, columns: &[Vec<f32>], folder: &Path) -> io::Result<()> {
     let values = columns.iter().flatten();
     let bytes: Vec<u8> = values.flat_map(|value| value.to_le_bytes()).collect();

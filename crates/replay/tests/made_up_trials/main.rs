@@ -1,4 +1,4 @@
-//! Trials with a truth known in closed form, from files to figures.
+//! Trials whose true attitude is known in closed form, from files to figures.
 
 mod damaged;
 mod recorder;
@@ -13,7 +13,7 @@ fn figures(test: &str, turn: &Turn, rate: Rate, mode: Mode, at: At) -> Figures {
     run(&trial, mode, [0.0; 3]).score(&trial, at).unwrap()
 }
 
-/// At 90 °/s half a row of delay in reference or samples would show as 0.22°.
+/// At 90 °/s, a delay of half a row in reference or samples would show as 0.22°.
 #[test]
 fn a_constant_turn_is_followed_at_any_rate_and_any_instant() {
     let turn = Turn {

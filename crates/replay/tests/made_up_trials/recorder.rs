@@ -1,4 +1,4 @@
-//! Writes trials in the recordings' format, of a motion known in closed form.
+//! Writes trials of a motion known in closed form, in the format of the recordings.
 
 use std::{
     fs,
@@ -13,7 +13,7 @@ pub const COLUMNS: [&str; 15] = [
     "t", "gx", "gy", "gz", "ax", "ay", "az", "mx", "my", "mz", "qw", "qx", "qy", "qz", "mov",
 ];
 
-/// An empty folder of this test's own.
+/// Returns an empty folder for one test.
 pub fn folder(test: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
     fs::remove_dir_all(&folder).ok();
@@ -21,7 +21,7 @@ pub fn folder(test: &str) -> PathBuf {
     folder
 }
 
-/// Number of rows per second, as a fraction.
+/// Rows per second, as a fraction.
 #[derive(Clone, Copy)]
 pub struct Rate {
     pub num: u64,
@@ -29,13 +29,13 @@ pub struct Rate {
 }
 
 pub const HZ200: Rate = Rate { num: 200, den: 1 };
-/// 3.5 ms a row.
+/// A row lasts 3.5 ms.
 pub const NATIVE: Rate = Rate { num: 2000, den: 7 };
 
-/// Level, at rest for 10 s, then a constant turn to the left.
+/// A level sensor that rests for 10 s and then turns to the left at a constant rate.
 pub struct Turn {
     pub rate_dps: f64,
-    /// Error that is added to the heading of the reference.
+    /// The reference's heading exceeds the true one by this.
     pub reference_off_deg: f64,
 }
 
@@ -49,8 +49,8 @@ impl Turn {
         self.rate_dps.to_radians() * (t_s - REST_S).max(0.0)
     }
 
-    /// Means over `from..to`: the turn's rate has one step, and the level field of a body at heading ψ,
-    /// (sin ψ, cos ψ), has the integral (−cos ψ, sin ψ) / ω.
+    /// Returns the means over `from..to`. The rate of the turn has one step. The level field of a body at heading ψ is
+    /// (sin ψ, cos ψ), whose integral is (−cos ψ, sin ψ) / ω.
     fn row(&self, from: f64, to: f64) -> [f64; 15] {
         let (psi0, psi1) = (self.heading_rad(from), self.heading_rad(to));
         let gyro_z = (psi1 - psi0) / (to - from);
@@ -83,7 +83,7 @@ impl Turn {
         ]
     }
 
-    /// Columns of the whole trial.
+    /// Returns the columns of the whole trial.
     pub fn columns(&self, rate: Rate) -> Vec<Vec<f32>> {
         let period = rate.den as f64 / rate.num as f64;
         let count = (LENGTH_S / period) as usize;

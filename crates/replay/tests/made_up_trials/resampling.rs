@@ -1,10 +1,10 @@
-//! Rows of any rate → samples of 5 ms.
+//! Rows of any rate become samples of 5 ms.
 
 use robot_replay::Trial;
 
 use crate::recorder::{self, HZ200, NATIVE, Rate};
 
-/// Every sensor axis of row i reads i.
+/// Returns a trial in which every sensor axis of row i reads i.
 fn counting(
     rate: Rate,
     rows: u16,
@@ -33,8 +33,8 @@ fn rows_at_the_firmwares_rate_come_out_as_they_are() {
     }
 }
 
-/// Row i lasts from 3.5 (i − 1) ms to 3.5 i ms. So 0 … 5 ms is all of row 1 and 1.5 ms of row 2; 30 … 35 ms is 1.5 ms
-/// of row 9 and all of row 10. What began before row 0 did is left out.
+/// Row i lasts from 3.5 (i − 1) ms to 3.5 i ms. So the window from 0 to 5 ms is all of row 1 and 1.5 ms of row 2. The
+/// one from 30 to 35 ms is 1.5 ms of row 9 and all of row 10. A window that begins before row 0 is left out.
 #[test]
 fn rows_of_3_5_ms_are_shared_out_among_windows_of_5_ms() {
     let trial = read("shared-out", counting(NATIVE, 11, |_| {}));

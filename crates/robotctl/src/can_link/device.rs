@@ -1,4 +1,4 @@
-//! Which bus, as the user names it.
+//! The name that a user gives to a bus.
 
 use std::{convert::Infallible, fmt, str::FromStr};
 
@@ -16,7 +16,8 @@ pub enum CanDevice {
 impl FromStr for CanDevice {
     type Err = Infallible;
 
-    /// A path (`/dev/ttyACM0`) or a COM port (`COM3`) is a serial port, anything else the name of an interface.
+    /// Takes a path (`/dev/ttyACM0`) or a COM port (`COM3`) as a serial port, and anything else as the name of an
+    /// interface.
     fn from_str(text: &str) -> Result<Self, Infallible> {
         let is_serial = text.contains(['/', '\\']) || is_com_port(text);
         let device = if is_serial {

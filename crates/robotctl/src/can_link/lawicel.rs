@@ -1,10 +1,10 @@
-//! The lines of the LAWICEL protocol (CAN232, CANUSB; "slcan"), as far as a tool needs them.
+//! The part of the LAWICEL protocol (CAN232, CANUSB; "slcan") that this tool needs.
 
 use robot_app::domain::{CanFrame, StandardId};
 
-/// Answer to a command that was refused.
+/// The adapter's answer to a command that it refuses.
 const BELL: u8 = 0x07;
-/// `T`, eight digits, length, eight bytes, time stamp.
+/// Longest line: `T`, eight digits, length, eight bytes, time stamp.
 const LONGEST: usize = 1 + 8 + 1 + 16 + 4;
 
 /// One message of an adapter.
@@ -17,7 +17,7 @@ pub(super) enum Received {
     Refused,
 }
 
-/// Parses bytes into messages; frames of other kinds, and anything unknown, are ignored.
+/// Parses bytes into messages. It ignores frames of other kinds and anything unknown.
 #[derive(Debug, Default)]
 pub(super) struct LineParser {
     line: Vec<u8>,
@@ -54,7 +54,8 @@ fn parse(line: &[u8]) -> Option<Received> {
     }
 }
 
-/// `iiildd…`, perhaps with a time stamp of four digits.
+/// Parses an identifier of three digits, a length, and two digits for each byte. A time stamp of four digits may
+/// follow.
 fn frame(text: &[u8]) -> Option<CanFrame> {
     let text = std::str::from_utf8(text).ok().filter(|t| t.is_ascii())?;
     let id = u16::from_str_radix(text.get(..3)?, 16).ok()?;
@@ -70,7 +71,7 @@ fn frame(text: &[u8]) -> Option<CanFrame> {
     CanFrame::from_payload(StandardId::new(id)?, &bytes?)
 }
 
-/// The command that sends `frame`.
+/// Returns the command that sends `frame`.
 pub(super) fn transmit(frame: &CanFrame) -> String {
     let payload = frame.payload();
     let mut line = format!("t{:03X}{}", frame.id().raw(), payload.len());

@@ -14,11 +14,11 @@ use super::{
     lawicel::{self, LineParser, Received},
 };
 
-/// USB adapters and pseudo-terminals ignore it.
+/// Speed of the serial port. USB adapters and pseudo-terminals ignore it.
 const LINE_BPS: u32 = 115_200;
-/// Some adapters do not answer commands: silence for this long counts as acceptance.
+/// Silence for this long counts as acceptance, because some adapters do not answer commands.
 const ANSWER_TIME: Duration = Duration::from_millis(300);
-/// After closing the channel, what was still on its way is dropped.
+/// Bytes that arrive within this time after the channel was closed are dropped.
 const SETTLE_TIME: Duration = Duration::from_millis(100);
 const BIT_RATE_1M: &str = "S8\r";
 const OPEN: &str = "O\r";
@@ -30,7 +30,7 @@ pub(super) const EXAMPLE_PORT: &str = if cfg!(windows) {
 } else {
     "/dev/cu.usbmodem1101"
 };
-/// The shortest wait that a port is asked for: Windows refuses zero milliseconds.
+/// Shortest time-out of a port. Windows refuses zero milliseconds.
 const SHORTEST_WAIT: Duration = Duration::from_millis(1);
 
 pub(super) struct Slcan {
@@ -40,7 +40,7 @@ pub(super) struct Slcan {
 }
 
 impl Slcan {
-    /// Opens the adapter's channel at 1 Mbit/s, after closing it should it be open.
+    /// Opens the adapter's channel at 1 Mbit/s. It closes the channel first, as it may be open.
     pub fn open(name: &str) -> Result<Self, CanLinkError> {
         let port = serialport::new(name, LINE_BPS)
             .open()
@@ -118,7 +118,7 @@ fn port_names() -> Vec<String> {
     ports.into_iter().map(|port| port.port_name).collect()
 }
 
-/// What to do about a port that cannot be opened, given those that this computer has.
+/// Says what to do about a port that cannot be opened, given the ports of this computer.
 fn advice(error: serialport::ErrorKind, name: &str, ports: &[String]) -> String {
     let is_denied = error == serialport::ErrorKind::Io(ErrorKind::PermissionDenied);
     if is_denied && cfg!(target_os = "linux") {

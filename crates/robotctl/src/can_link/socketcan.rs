@@ -54,7 +54,7 @@ impl CanLink for Interface {
     }
 }
 
-/// `None` for the kinds of frames that a link passes over.
+/// Returns `None` for the kinds of frames that a link ignores.
 fn standard_data(heard: &SocketFrame) -> Option<CanFrame> {
     let (SocketFrame::Data(frame), Id::Standard(id)) = (heard, heard.id()) else {
         return None;

@@ -1,30 +1,30 @@
-//! The list, in order. Its numbers are in reports: append, or say in the report's version that they moved.
+//! The list of checks, in their order. New checks go to its end, because reports name the numbers.
 
 use super::measured::{self, Measuring};
 
-/// One thing to find out.
+/// One check of a first board.
 #[derive(Debug)]
 pub struct Check {
     /// Names the check in reports; it never changes.
     pub id: &'static str,
     pub title: &'static str,
     pub connect: &'static str,
-    /// What to type or to do.
+    /// What the user does.
     pub act: &'static str,
-    /// What must be seen.
+    /// What the user must see.
     pub see: &'static str,
-    /// What to write down beyond what the tool notes by itself.
+    /// What the user notes beyond what the tool measures.
     pub note: &'static str,
     pub how: How,
 }
 
 #[derive(Clone, Copy, Debug)]
 pub enum How {
-    /// The user looks and says.
+    /// The user looks and judges.
     Asked,
-    /// The user prepares it, then the tool looks and judges.
+    /// The user prepares it, then the tool measures and judges.
     Prepared(Measuring),
-    /// The tool looks and judges.
+    /// The tool measures and judges without the user.
     Alone(Measuring),
 }
 

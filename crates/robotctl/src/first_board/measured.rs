@@ -1,4 +1,4 @@
-//! What the tool measures by itself, from the robot's live pages.
+//! Measurements that the tool takes from the robot's live pages.
 
 mod board;
 mod compass;

@@ -9,7 +9,7 @@ use robot_app::{
 use super::*;
 use crate::tuning::testing;
 
-/// Answers in turn, and keeps what it was shown.
+/// A user who gives prepared answers and keeps the text shown.
 #[derive(Default)]
 struct Script {
     answers: VecDeque<&'static str>,
@@ -191,7 +191,7 @@ fn what_is_measured_is_judged() {
     assert!(complains("tick-jitter", |_| {}));
 }
 
-/// The list for reading is this list.
+/// docs/first-board.md has the same checks as the tool.
 #[test]
 fn the_document_has_the_same_checks() {
     let mut expected = String::new();

@@ -1,4 +1,4 @@
-//! Three poses → how the board sits.
+//! Finds how the board sits from three poses of the robot.
 
 use nalgebra::Vector3;
 use robot_app::domain::Orientation;
@@ -6,16 +6,16 @@ use robot_app::domain::Orientation;
 use super::words::Axis;
 
 const GRAVITY_MPS2: f64 = 9.81;
-/// A still accelerometer without calibration shows gravity within this.
+/// Largest error of gravity that a still accelerometer without calibration shows.
 const GRAVITY_ERROR_MPS2: f64 = 1.5;
-/// Level, an axis of the board must be as near to the vertical; settings know right angles only.
+/// Largest angle from the vertical of a board's axis while the robot is level. Settings have right angles only.
 const MAX_SLANT_DEG: f64 = 25.0;
-/// Less than this is no tilt on purpose.
+/// Smallest tilt that counts as intended.
 const MIN_TILT_DEG: f64 = 15.0;
-/// How far a tilt may be from that over an axis of the board.
+/// Largest angle between a tilt and the nearest axis of the board.
 const MAX_SIDEWAYS_DEG: f64 = 30.0;
 
-/// What the accelerometer shows at rest in each, along its own axes, m/s².
+/// What the accelerometer shows at rest in each pose, along its own axes, in m/s².
 #[derive(Clone, Copy, Debug)]
 pub struct Poses {
     pub level: Vector3<f64>,
@@ -23,13 +23,13 @@ pub struct Poses {
     pub left_up: Vector3<f64>,
 }
 
-/// What was seen, and what follows.
+/// What the poses showed, and the orientation that follows from it.
 #[derive(Clone, Copy, Debug)]
 pub struct BoardFound {
     pub orientation: Orientation,
-    /// That pointed up when the robot was level, and how far off.
+    /// The axis that pointed up while the robot was level, and by how much it was off.
     pub up: (Axis, f64),
-    /// That rose with the nose, and by how much it was lifted.
+    /// The axis that rose with the nose, and by how much the nose was lifted.
     pub nose: (Axis, f64),
     pub left: (Axis, f64),
 }
@@ -106,7 +106,7 @@ pub fn find_board(poses: &Poses) -> Result<BoardFound, BoardError> {
     })
 }
 
-/// Where up is.
+/// Returns the direction of up.
 fn unit(pose: &'static str, force_mps2: Vector3<f64>) -> Result<Vector3<f64>, BoardError> {
     let mps2 = force_mps2.norm();
     if (mps2 - GRAVITY_MPS2).abs() < GRAVITY_ERROR_MPS2 {
@@ -116,7 +116,7 @@ fn unit(pose: &'static str, force_mps2: Vector3<f64>) -> Result<Vector3<f64>, Bo
     }
 }
 
-/// The axis that was level and now points up the most, and by how much the robot was tilted.
+/// Returns the axis that was level and now points up the most, and by how much the robot was tilted.
 fn risen(
     pose: &'static str,
     level: Vector3<f64>,

@@ -1,42 +1,42 @@
-//! A robot turned in the hand → how the magnetometer sits on the board.
+//! Finds how the magnetometer sits on the board from samples of a robot turned by hand.
 //!
-//! Whatever the earth's field is, it stays where it is while the robot turns, and what the robot itself adds turns with it.
-//! Each of the 24 ways to sit is tried: the field and the robot's own that explain the samples best are found, and the way
-//! for which they leave the least is the true one.
+//! The earth's field does not move while the robot turns, and the robot's own field turns with it. Each of the 24
+//! orientations is tried. For each, the two fields that fit the samples best are computed. The orientation with the
+//! smallest residual is the true one.
 
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 use robot_app::domain::Orientation;
 
-/// The estimated attitude, and what the magnetometer shows at that moment.
+/// The estimated attitude and the field at the same moment.
 #[derive(Clone, Copy, Debug)]
 pub struct FieldSample {
-    /// Robot → earth, as a rotation matrix.
+    /// Rotation matrix from robot to earth.
     pub attitude: Matrix3<f64>,
-    /// Along the magnetometer's own (right-handed) axes, µT.
+    /// The field along the magnetometer's own (right-handed) axes, in µT.
     pub field_ut: Vector3<f64>,
 }
 
-/// Samples below this are too few to say anything.
+/// Fewer samples than this say nothing.
 const MIN_SAMPLES: usize = 50;
-/// How well each direction of the field must be known, as the mean square by which turning moved it: a tilt by 60° to one
-/// side and back is 0.2.
+/// How well each direction of the field must be known. It is the mean square by which turning moved it: a tilt by 60°
+/// to one side and back gives 0.2.
 const MIN_TURN: f64 = 0.1;
-/// The earth's field is 22 to 67 µT; calibration may be missing.
+/// The earth's field is 22 to 67 µT, and the magnetometer may not be calibrated.
 const EARTH_UT: std::ops::RangeInclusive<f64> = 12.0..=110.0;
-/// What the best way may leave of the field.
+/// Largest residual of the best orientation, as a share of the field.
 const MAX_LEFT: f64 = 0.3;
-/// The second best orientation must leave this many times as much.
+/// The residual of the second best orientation must be this many times as large.
 const MIN_LEAD: f64 = 2.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MagFound {
-    /// On the board.
+    /// Orientation of the magnetometer on the board.
     pub orientation: Orientation,
     pub earth_ut: f64,
-    /// How steeply it points into the ground, negative: out of it. A mirror image of right-handed axes fits as well as these,
-    /// with the field the wrong way round.
+    /// Angle at which the field points into the ground; negative if it points out of it. A mirror image of right-handed
+    /// axes fits as well, with the field reversed.
     pub dip_deg: f64,
-    /// What the best and the second best way leave, µT rms.
+    /// Residual of the best orientation, in µT rms.
     pub left_ut: f64,
     pub second_ut: f64,
 }
@@ -62,12 +62,12 @@ pub enum MagError {
     },
 }
 
-/// Whether the samples so far are enough.
+/// True if the samples so far are enough.
 pub fn enough_turned(samples: &[FieldSample]) -> bool {
     samples.len() >= MIN_SAMPLES && Turn::of(samples).is_some()
 }
 
-/// `board`: how the board sits, which must be right.
+/// Finds how the magnetometer sits. `board` is how the board sits, and must be right.
 pub fn find_mag(board: Orientation, samples: &[FieldSample]) -> Result<MagFound, MagError> {
     if samples.len() < MIN_SAMPLES {
         return Err(MagError::TooLittle);
@@ -103,7 +103,7 @@ pub fn find_mag(board: Orientation, samples: &[FieldSample]) -> Result<MagFound,
     })
 }
 
-/// Earth → robot, in the mean, and how well the earth's field can be told from the robot's own.
+/// The mean rotation from earth to robot, and how well the earth's field can be distinguished from the robot's own.
 struct Turn {
     mean: Matrix3<f64>,
     inverse: Matrix3<f64>,
@@ -115,7 +115,7 @@ struct Fit {
 }
 
 impl Turn {
-    /// `None` if the robot was turned too little.
+    /// Returns `None` if the robot was turned too little.
     fn of(samples: &[FieldSample]) -> Option<Self> {
         let share = 1.0 / samples.len() as f64;
         let mean = samples.iter().map(|s| s.attitude.transpose() * share);
@@ -130,7 +130,7 @@ impl Turn {
         (least > MIN_TURN).then_some(Self { mean, inverse })
     }
 
-    /// The earth's field that fits best, and what is left.
+    /// Returns the earth's field that fits best, and the residual.
     fn fit(&self, samples: &[FieldSample], turned: impl Fn(Vector3<f64>) -> Vector3<f64>) -> Fit {
         let share = 1.0 / samples.len() as f64;
         let mean: Vector3<f64> = samples.iter().map(|s| turned(s.field_ut) * share).sum();

@@ -15,7 +15,8 @@ fn found(poses: &Poses) -> &'static str {
     find_board(poses).unwrap().orientation.name()
 }
 
-/// By hand, from a board held in front of the robot; 9.8 m/s² upwards, nose up by 45°, left side up by 60° and 30°.
+/// These were worked out by hand for a board held before a robot: 9.8 m/s² upwards, nose up by 45°, left side up by 60°
+/// and 30°.
 #[test]
 fn three_poses_show_how_the_board_sits() {
     // Flat, as delivered, a little off.
@@ -102,13 +103,14 @@ fn poses_that_contradict_each_other_are_named() {
     );
 }
 
-/// Turned by hand to the left, nose up and left side up, in the field of Europe, µT in east, north, up.
+/// The field of Europe in east, north, up, in µT.
 const EARTH_UT: [f64; 3] = [0.0, 22.0, -42.0];
 
-/// What the robot itself adds turns with it.
+/// The robot's own field, which turns with it.
 const OWN_UT: [f64; 3] = [60.0, -25.0, 110.0];
 
-/// `felt` makes of a field in the robot's axes what the magnetometer shows.
+/// Returns the samples of a robot turned by hand to the left, nose up and left side up. `felt` turns a field in the
+/// robot's axes into what the magnetometer shows.
 fn turned(
     count: usize,
     tilt_rad: f64,
@@ -130,7 +132,7 @@ fn turned(
     (0..count).map(at).collect()
 }
 
-/// The two that DJI's and PX4's code imply for a board that lies flat, x forward.
+/// The code of DJI and of PX4 implies these two orientations for a board that lies flat with x forward.
 #[test]
 fn a_turned_robot_shows_how_its_magnetometer_sits() {
     let board = Orientation::XForwardZUp;
@@ -164,7 +166,7 @@ fn every_way_the_magnetometer_may_sit_is_found() {
     }
 }
 
-/// −42 µT of 47.4 are 62° into the ground; as much out of it in the mirror.
+/// A field of 47.4 µT with −42 µT upwards points 62° into the ground. Its mirror image points as far out of it.
 #[test]
 fn a_mirror_image_shows_the_field_the_wrong_way_round() {
     let board = Orientation::XForwardZUp;

@@ -1,4 +1,4 @@
-//! What the robot's sensors show, along their own axes.
+//! Reads what the robot's sensors show, along their own axes.
 
 use nalgebra::{Rotation3, Vector3};
 use robot_app::domain::Orientation;
@@ -9,9 +9,9 @@ use crate::{
     tuning::{LiveReading, TuningClient, TuningError, live_page},
 };
 
-/// Readings of a pose.
+/// Number of readings in a pose.
 const READINGS: usize = 40;
-/// A robot that is held in the hands trembles by this.
+/// A robot that is held in the hands trembles by less than this.
 const STILL_MPS2: f64 = 1.0;
 
 #[derive(Debug, thiserror::Error)]
@@ -28,7 +28,7 @@ pub enum WatchError {
     NoAttitude,
 }
 
-/// A robot whose sensors sit as its settings say, as far as it knows.
+/// Reads a robot's sensors. Its settings say how they sit, and turn its values back to the sensors' own axes.
 pub struct Watch<'c> {
     client: &'c mut TuningClient,
     board: Orientation,
@@ -56,7 +56,7 @@ impl<'c> Watch<'c> {
         self.mag
     }
 
-    /// The mean force on a robot at rest, along the IMU's axes, m/s².
+    /// Returns the mean specific force on a robot at rest, along the IMU's axes, in m/s².
     pub fn still_force(&mut self) -> Result<Vector3<f64>, WatchError> {
         let mut forces = Vec::with_capacity(READINGS);
         for _ in 0..READINGS {
@@ -72,7 +72,7 @@ impl<'c> Watch<'c> {
         Ok(turned_back(self.board, mean))
     }
 
-    /// One sample of a robot that is being turned.
+    /// Reads one sample of a robot that is being turned.
     pub fn field(&mut self) -> Result<FieldSample, WatchError> {
         let attitude = vector(
             &self.page("attitude")?,
@@ -87,7 +87,7 @@ impl<'c> Watch<'c> {
         })
     }
 
-    /// The attitude counts.
+    /// Fails unless the robot's attitude is valid.
     pub fn check_attitude(&mut self) -> Result<(), WatchError> {
         if self.page("safety")?.has("flags", "estimate-invalid") {
             return Err(WatchError::NoAttitude);

@@ -1,4 +1,4 @@
-//! Axes and where they point, in words.
+//! Describes axes and where they point.
 
 use std::fmt;
 
@@ -8,7 +8,7 @@ use robot_app::domain::Orientation;
 /// An axis of a sensor, or its opposite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Axis {
-    /// 0 … 2.
+    /// Number of the axis: 0 for x, 1 for y, 2 for z.
     index: usize,
     positive: bool,
 }
@@ -16,7 +16,7 @@ pub struct Axis {
 const NAMES: [&str; 3] = ["x", "y", "z"];
 
 impl Axis {
-    /// The one that is nearest to `direction`.
+    /// Returns the axis that is nearest to `direction`.
     pub fn nearest(direction: Vector3<f64>) -> Self {
         let index = direction.iamax();
         Self {
@@ -35,7 +35,7 @@ impl Axis {
         self.index == other.index
     }
 
-    /// Between it and `direction`.
+    /// Returns the angle between this axis and `direction`.
     pub fn degrees_to(self, direction: Vector3<f64>) -> f64 {
         self.unit().angle(&direction).to_degrees()
     }
@@ -48,7 +48,7 @@ impl fmt::Display for Axis {
     }
 }
 
-/// Such as `x points left, y backward, z up`.
+/// Returns words such as `x points left, y backward, z up`.
 pub fn describe(orientation: Orientation) -> String {
     let [x, y, z] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
         .map(|axis| direction(orientation.rotate(axis)));

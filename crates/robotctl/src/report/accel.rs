@@ -1,4 +1,4 @@
-//! The accelerometer's page.
+//! The page on an accelerometer calibration.
 
 use robot_chart::{ChartError, Figure, before_and_after, document, draw_residuals, header, table};
 

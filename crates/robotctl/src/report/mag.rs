@@ -1,4 +1,4 @@
-//! The magnetometer's page.
+//! The page on a magnetometer calibration.
 
 use robot_chart::{ChartError, Cloud, Figure, before_and_after, document, header, table};
 

@@ -1,4 +1,4 @@
-//! A parameter file written to the robot.
+//! Writes a parameter file to the robot.
 
 use robot_app::{
     domain::NO_CHANNEL,
@@ -13,7 +13,7 @@ use crate::{
 
 const MOUNTING: &str = "mounting";
 
-/// One setting of the file.
+/// A setting of the file.
 #[derive(Clone, Copy, Debug)]
 pub struct Applied {
     pub named: Named,
@@ -91,12 +91,12 @@ fn may_be(parameter: &Parameter, value: f32) -> bool {
     of_kind && (parameter.min..=parameter.max).contains(&value)
 }
 
-/// Channels of the radio that were given up for another function.
+/// Radio channels that were taken from their function, so that another one can have them.
 #[derive(Default)]
 struct Freed(Vec<u8>);
 
 impl Freed {
-    /// True for a radio channel that has not been given up yet; it counts as that from now on.
+    /// True for a radio channel that has not been freed yet. From now on it counts as freed.
     fn take(&mut self, setting: &Applied) -> bool {
         let Named { group, parameter } = setting.named;
         let is_channel = group.name == "radio" && parameter.name.ends_with("-channel");
@@ -108,8 +108,8 @@ impl Freed {
     }
 }
 
-/// How the sensors sit is written before their calibrations, which are for how they sit. A value that does not fit the
-/// others yet is written after them.
+/// Writes the values in an order that the robot accepts. The mounting of the sensors comes before their calibrations,
+/// which depend on it. A value that is refused because of the others is written after them.
 fn write_all(
     client: &mut TuningClient,
     settings: &[Applied],

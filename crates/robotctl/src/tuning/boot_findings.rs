@@ -1,4 +1,4 @@
-//! What the robot's boot found in its flash (docs/tuning.md, `32`).
+//! The robot's report on what it found in flash at boot (docs/tuning.md, `32`).
 
 use std::fmt;
 
@@ -6,11 +6,11 @@ use robot_app::tuning::PARAMETERS;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BootFindings {
-    /// Sectors ruined by something else than a power cut.
+    /// Sectors damaged by something other than a power cut.
     pub lost_sectors: u8,
-    /// Places of the sector in use that hold neither a record nor nothing; stays at 255.
+    /// Places of the sector in use that are neither empty nor a record; the count stays at 255.
     pub damaged: u8,
-    /// Records kept for another firmware or other motors; stays at 255.
+    /// Records kept for another firmware or other motors; the count stays at 255.
     pub foreign: u8,
     /// Names of the groups whose record is not used; `Err` is a number this tool does not know.
     pub refused: Vec<Result<&'static str, u8>>,
@@ -37,7 +37,7 @@ impl BootFindings {
         self.refused.iter().map(name).collect()
     }
 
-    /// What the user must know; `None` if all is well.
+    /// Returns what the user must know, or `None` if all is well.
     pub fn warnings(&self) -> Option<String> {
         let mut warnings = Vec::new();
         if self.lost_sectors != 0 {

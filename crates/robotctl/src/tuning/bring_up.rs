@@ -1,4 +1,4 @@
-//! Requests of bring-up (docs/bring-up.md).
+//! The requests of bring-up (docs/bring-up.md).
 
 use std::num::NonZeroI16;
 
@@ -31,7 +31,7 @@ pub enum Joint {
 pub enum Trial {
     /// The torque follows the drive stick.
     Stick,
-    /// mN·m of a joint, mA of a wheel; on the wire, 0 would stand for `Stick`.
+    /// A torque in mN·m for a joint or a current in mA for a wheel. On the wire, 0 would stand for `Stick`.
     Fixed(NonZeroI16),
     Hold,
 }
@@ -49,7 +49,7 @@ const TORQUE: u8 = 0;
 const HOLD: u8 = 1;
 
 impl BringUpStep {
-    /// The bytes after the command: step, motor, action, value, and two that are 0.
+    /// Returns the bytes after the command: step, motor, action, value, and two that are 0.
     pub(super) fn to_bytes(self) -> [u8; 7] {
         let (step, motor, action, value) = match self {
             Self::Off => (Step::Off, 0, 0, 0),

@@ -1,4 +1,4 @@
-//! One request at a time over a CAN link.
+//! Sends one request at a time over a CAN link.
 
 use std::time::{Duration, Instant};
 
@@ -15,7 +15,7 @@ use crate::{
     settings::Named,
 };
 
-/// How long replies are waited for.
+/// How long to wait for replies.
 #[derive(Clone, Copy, Debug)]
 pub struct Patience {
     /// The robot answers within six milliseconds.
@@ -46,13 +46,13 @@ pub enum TuningError {
     Refused {
         what: String,
         reason: Result<Refusal, u8>,
-        /// Which values it may have.
+        /// The values that it may have.
         allowed: Option<String>,
     },
 }
 
 impl TuningError {
-    /// True if the value fits alone but not beside the others the robot has now.
+    /// True if the value is allowed alone but not together with the robot's other values.
     pub(super) fn is_inconsistent(&self) -> bool {
         matches!(self, Self::Refused { reason, .. } if *reason == Ok(Refusal::Inconsistent))
     }
@@ -65,7 +65,7 @@ impl TuningError {
     }
 }
 
-/// What a refusal means and what to do about it.
+/// Says what a refusal means and what to do about it.
 fn explain(reason: Result<Refusal, u8>, allowed: Option<&str>) -> String {
     let text = match reason {
         Ok(Refusal::Armed) => {
@@ -105,7 +105,7 @@ fn explain(reason: Result<Refusal, u8>, allowed: Option<&str>) -> String {
 pub struct TuningClient {
     link: Box<dyn CanLink>,
     patience: Patience,
-    /// Samples of a recording, as they came.
+    /// Samples of a recording in the order of their arrival.
     recorded: Vec<RecordedSample>,
 }
 
@@ -150,7 +150,7 @@ impl TuningClient {
             .map(drop)
     }
 
-    /// `None` for all groups.
+    /// Gives a group of settings its defaults back, or all groups for `None`.
     pub fn restore_defaults(
         &mut self,
         group: Option<&'static ParameterGroup>,
@@ -160,18 +160,18 @@ impl TuningClient {
         self.exchange(request, what).map(drop)
     }
 
-    /// `None` if the firmware is too old to tell: it saves nothing.
+    /// Returns `None` if the firmware is too old to know: then it saves nothing.
     pub fn store(&mut self) -> Result<Option<StoreReport>, TuningError> {
         self.ask_newer(Request::ReadStore, StoreReport::from_bytes)
     }
 
-    /// `None` if the firmware is too old to tell.
+    /// Returns `None` if the firmware is too old to know.
     pub fn boot_findings(&mut self) -> Result<Option<BootFindings>, TuningError> {
         self.ask_newer(Request::ReadFindings, BootFindings::from_bytes)
     }
 
-    /// What a page shows of one of its parts, 0 for a page about the whole robot. At any time, armed too. `None` if the
-    /// firmware is too old to have the page.
+    /// Reads a page of one of its parts, which is 0 for a page about the whole robot. The robot may be armed. It
+    /// returns `None` if the firmware is too old to have the page.
     pub fn live(
         &mut self,
         page: &'static LivePage,
@@ -184,7 +184,7 @@ impl TuningClient {
         self.ask_newer(Request::ReadLive(number), read)
     }
 
-    /// Every page of every part that the firmware has, one after the other.
+    /// Reads every page of every part that the firmware has, one after the other.
     pub fn live_all(&mut self) -> Result<Vec<LiveReading>, TuningError> {
         let mut readings = Vec::new();
         for page in &LIVE_PAGES {
@@ -195,7 +195,7 @@ impl TuningClient {
         Ok(readings)
     }
 
-    /// A request that not every firmware knows.
+    /// Sends a request that not every firmware knows.
     fn ask_newer<T>(
         &mut self,
         request: Request,
@@ -216,8 +216,8 @@ impl TuningClient {
         self.exchange(request, || "bring-up".to_owned()).map(drop)
     }
 
-    /// Makes the angle at which this joint stands now `angle_rad`, in joint coordinates, by moving its zero. The robot
-    /// must be disarmed, the joint heard and still.
+    /// Moves the zero of a joint so that its present angle is `angle_rad` in joint coordinates. The robot must be
+    /// disarmed, and the joint must report and stand still.
     pub fn zero_joint(&mut self, joint: u8, angle_rad: f32) -> Result<(), TuningError> {
         let request = Request::ZeroJoint { joint, angle_rad };
         let done = self.exchange(request, || format!("zero of joint {joint}"));
@@ -225,8 +225,8 @@ impl TuningClient {
         done.map(drop).map_err(|error| error.with_allowed(allowed))
     }
 
-    /// Has the robot send each sample of its IMU and magnetometer for this many seconds; 0 ends that. The robot must be
-    /// disarmed.
+    /// Makes the robot send each sample of its IMU and magnetometer for this many seconds; 0 ends that. The robot must
+    /// be disarmed.
     pub fn start_recording(&mut self, seconds: u16) -> Result<(), TuningError> {
         self.recorded.clear();
         let request = Request::Record(seconds);
@@ -235,13 +235,13 @@ impl TuningClient {
         done.map(drop).map_err(|error| error.with_allowed(allowed))
     }
 
-    /// How many samples the robot has sent, and whether it still does.
+    /// Returns how many samples the robot has sent, and whether it still records.
     pub fn recording(&mut self) -> Result<RecordingReport, TuningError> {
         let reply = self.exchange(Request::ReadRecording, || "recording".to_owned())?;
         Ok(RecordingReport::from_bytes(reply))
     }
 
-    /// Samples that were heard until `deadline` and since the last call.
+    /// Returns the samples received since the last call and until `deadline`.
     pub fn hear_samples(&mut self, deadline: Instant) -> Result<Vec<RecordedSample>, TuningError> {
         while let Some(frame) = self.link.receive(deadline)? {
             self.recorded.extend(RecordedSample::decode(&frame));
@@ -249,7 +249,7 @@ impl TuningClient {
         Ok(std::mem::take(&mut self.recorded))
     }
 
-    /// Asks again if no reply comes: requests say what to be, not what to change, so twice is as good as once.
+    /// Sends the request again if no reply comes. Requests are idempotent, so a second one does no harm.
     fn exchange(
         &mut self,
         request: Request,

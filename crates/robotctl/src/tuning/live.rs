@@ -1,4 +1,4 @@
-//! Live values of the robot (docs/tuning.md, `33`).
+//! The robot's live values (docs/tuning.md, `33`).
 
 use robot_app::tuning::{LIVE_PAGES, LiveKind, LivePage, LiveValue};
 
@@ -6,12 +6,12 @@ use robot_app::tuning::{LIVE_PAGES, LiveKind, LivePage, LiveValue};
 #[derive(Clone, Copy, Debug)]
 pub struct LiveReading {
     pub page: &'static LivePage,
-    /// Which of `page.parts`.
+    /// Index into `page.parts`.
     pub part: usize,
     bytes: [u8; 6],
 }
 
-/// The page with this name.
+/// Returns the page with this name.
 ///
 /// # Panics
 /// If there is none: names of pages and fields are constants of the caller.
@@ -21,7 +21,7 @@ pub fn live_page(name: &str) -> &'static LivePage {
 }
 
 impl LiveReading {
-    /// Takes the bytes after the command; the first is the page's number.
+    /// Parses the bytes after the command. The first is the page's number.
     pub(super) fn new(
         page: &'static LivePage,
         part: usize,
@@ -31,7 +31,7 @@ impl LiveReading {
         Self { page, part, bytes }
     }
 
-    /// Name of the page and, if it has several, of the part.
+    /// Returns the name of the page and, if it has several parts, of the part.
     pub fn title(&self) -> String {
         match self.page.parts.get(self.part) {
             None | Some(&"") => self.page.name.to_owned(),
@@ -49,7 +49,7 @@ impl LiveReading {
         }
     }
 
-    /// A number in its unit; `None` if the robot does not know it.
+    /// Returns a number in its unit, or `None` if the robot does not know it.
     ///
     /// # Panics
     /// If the page has no such field, or it is no number.
@@ -61,7 +61,7 @@ impl LiveReading {
         }
     }
 
-    /// A choice in the firmware's word.
+    /// Returns a choice by the firmware's name.
     ///
     /// # Panics
     /// If the page has no such field, or it is no choice.
@@ -73,7 +73,7 @@ impl LiveReading {
         }
     }
 
-    /// Names of what is in a set, lowest bit first.
+    /// Returns the names of a set's members, lowest bit first.
     ///
     /// # Panics
     /// If the page has no such field, or it is no set.
@@ -92,7 +92,7 @@ impl LiveReading {
         set.map(name).collect()
     }
 
-    /// Whether `member` is in a set.
+    /// True if `member` is in a set.
     ///
     /// # Panics
     /// Panics where [`set`](Self::set) does.
@@ -100,7 +100,7 @@ impl LiveReading {
         self.set(field).iter().any(|name| name == member)
     }
 
-    /// The whole page.
+    /// Returns the whole page as JSON.
     pub fn values(&self) -> impl Iterator<Item = (&'static str, LiveValue)> {
         let fields = self.page.unpack(self.bytes);
         fields.map(|(field, value)| (field.name, value))

@@ -1,10 +1,10 @@
-//! How a recording goes (docs/tuning.md, `43`).
+//! The robot's report on a recording (docs/tuning.md, `43`).
 
 use robot_app::tuning::RecordingState;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RecordingReport {
-    /// `Err` is a number this tool does not know.
+    /// State of the recording; `Err` is a number that this tool does not know.
     pub state: Result<RecordingState, u8>,
     /// Samples of the IMU that the robot has sent.
     pub imu: u32,
@@ -27,7 +27,7 @@ impl RecordingReport {
 mod tests {
     use super::*;
 
-    /// docs/tuning.md: cut short after 258 and 65,537 samples.
+    /// In docs/tuning.md the recording ends early after 258 and 65,537 samples.
     #[test]
     fn the_documented_bytes_are_understood() {
         let expected = RecordingReport {

@@ -12,7 +12,7 @@ use robot_app::{
     },
 };
 
-/// A request, and how to know its reply.
+/// A request. It recognises its reply.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Request {
     Read {
@@ -27,7 +27,7 @@ pub(super) enum Request {
     ReadGeometry,
     /// The bytes after the command.
     WriteGeometry([u8; 7]),
-    /// The group's number; 0 for all.
+    /// Number of the group; 0 means all.
     RestoreDefaults(u8),
     ReadStore,
     ReadFindings,
@@ -44,12 +44,12 @@ pub(super) enum Request {
     ReadRecording,
 }
 
-/// What the robot says to a request.
+/// The robot's reply to a request.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Reply {
-    /// The bytes after the command and, of a setting, after its address.
+    /// The bytes after the command or, for a setting, after its address.
     Done([u8; 7]),
-    /// `Err` is a number this tool does not know.
+    /// The reason; `Err` is a number that this tool does not know.
     Refused(Result<Refusal, u8>),
 }
 
@@ -86,7 +86,7 @@ impl Request {
         }
     }
 
-    /// `None` if `frame` is not the reply to this request.
+    /// Returns `None` if `frame` is not the reply to this request.
     pub fn reply(&self, frame: &CanFrame) -> Option<Reply> {
         if frame.id() != REPLY_ID {
             return None;
@@ -117,7 +117,7 @@ impl Request {
         ours.then_some(Reply::Done(rest))
     }
 
-    /// Group and index, or page, as a refusal repeats them.
+    /// Returns the group and index, or the page, as a refusal repeats them.
     fn address(&self) -> [u8; 2] {
         match *self {
             Self::Read { group, index } | Self::Write { group, index, .. } => [group, index],

@@ -6,7 +6,7 @@ use robot_app::domain::ParamState;
 
 use super::{StoreReport, TuningClient, TuningError};
 
-/// How long a save is waited for.
+/// How long to wait for a save.
 #[derive(Clone, Copy, Debug)]
 pub struct SavePatience {
     pub pause: Duration,
@@ -14,7 +14,7 @@ pub struct SavePatience {
 }
 
 impl Default for SavePatience {
-    /// Five seconds: half a second of quiet, an erase, and one repetition a second later.
+    /// Waits for five seconds: half a second of quiet, an erase, and one repetition a second later.
     fn default() -> Self {
         Self {
             pause: Duration::from_millis(100),
@@ -35,7 +35,7 @@ pub enum SaveError {
     NotSaved(StoreReport),
 }
 
-/// Looks again and again until the robot has saved all it has.
+/// Asks until the robot has saved all changes.
 pub fn wait_until_saved(
     client: &mut TuningClient,
     patience: SavePatience,
@@ -54,7 +54,7 @@ pub fn wait_until_saved(
     }
 }
 
-/// Why it takes so long and what to do.
+/// Says why the save takes long and what to do.
 fn advice(report: &StoreReport) -> String {
     const WATCH: &str = "leave the robot switched on until `robotctl tune status` says saved";
     match report.state {

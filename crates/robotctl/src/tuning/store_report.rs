@@ -1,4 +1,4 @@
-//! What the robot says about its settings in flash (docs/tuning.md, `31`).
+//! The robot's report on its settings in flash (docs/tuning.md, `31`).
 
 use std::fmt;
 
@@ -6,11 +6,11 @@ use robot_app::domain::{ParamError, ParamState};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StoreReport {
-    /// `Err` is a number this tool does not know.
+    /// State of the store; `Err` is a number that this tool does not know.
     pub state: Result<ParamState, u8>,
     /// The error of the last attempt that failed since the robot booted.
     pub last_error: Result<ParamError, u8>,
-    /// Groups of settings that flash does not hold yet.
+    /// Groups of settings that are not in flash yet.
     pub unsaved: u8,
     /// Records saved since boot; stays at 65535.
     pub save_ok: u16,
@@ -30,7 +30,7 @@ impl StoreReport {
         }
     }
 
-    /// It may be switched off, and comes back with what it has now.
+    /// True if the robot may be switched off and will boot with its present settings.
     pub fn is_saved(&self) -> bool {
         self.unsaved == 0
     }

@@ -25,18 +25,18 @@ pub(crate) struct Robot {
     pub diagnostics: DiagnosticsSnapshot,
     /// The angle at which every joint's motor stands.
     pub standing: Result<f32, NotStationary>,
-    /// Looks at the store after which everything is saved.
+    /// Everything is saved after this many reads of the store's state.
     pub looks_to_save: Option<usize>,
-    /// From before there was a store.
+    /// The firmware is from before there was a store.
     pub is_old: bool,
-    /// Replies that the bus still loses.
+    /// Number of replies that the bus will lose.
     pub to_lose: usize,
     pub requests: usize,
     pub replies: VecDeque<CanFrame>,
 }
 
 impl Robot {
-    /// A store that needs some looks until it has saved.
+    /// Returns a robot whose changes are saved after some reads of the store's state.
     fn look(&mut self, frame: &CanFrame) {
         if frame.payload().first() != Some(&opcode::READ_STORE) {
             return;
@@ -48,7 +48,7 @@ impl Robot {
         }
     }
 
-    /// The firmware's own reply or, from an old one, that it does not know the command (docs/tuning.md).
+    /// Returns the firmware's own reply. An old one answers that it does not know the command (docs/tuning.md).
     fn reply(&mut self, frame: &CanFrame) -> Option<CanFrame> {
         if self.is_old
             && let [

@@ -269,7 +269,7 @@ fn what_boot_found_is_told_by_name() {
     assert_eq!(findings.refused, [Ok("safety"), Ok("joint-right-rear")]);
 }
 
-/// The group has its defaults already, but flash holds a record that was refused.
+/// The group has its defaults already, but flash contains a record that was refused.
 #[test]
 fn defaults_that_change_nothing_wait_for_the_robot_too() {
     let (bus, mut client) = robot();
@@ -385,7 +385,7 @@ fn how_a_sensor_sits_is_written_before_its_calibration() {
     assert_eq!(bus.0.borrow().config, config);
 }
 
-/// It answers with page 0 in the place of the group, as it does to any command it does not know.
+/// It answers with page 0 in the place of the group, as to any command that it does not know.
 #[test]
 fn an_old_firmware_has_no_live_values() {
     let (bus, mut client) = robot();
@@ -411,7 +411,7 @@ fn a_value_out_of_range_is_refused_with_its_range() {
     );
 }
 
-/// The motor stands at 0.75 rad; on the mirrored right side as 0.25 rad its zero is at 1.
+/// The motor is at 0.75 rad. If that is to be 0.25 rad on the mirrored right side, its zero is at 1 rad.
 #[test]
 fn a_joint_gets_its_zero_where_it_stands() {
     let (bus, mut client) = robot();

@@ -6,9 +6,9 @@ const RIGHT_REVERSED: u8 = 1 << 1;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WheelGeometry {
     pub radius_mm: u16,
-    /// Distance of the wheels' middles.
+    /// Distance between the centres of the wheels.
     pub track_mm: u16,
-    /// Motor turns a wheel turn, times 100.
+    /// Motor turns for each turn of the wheel, times 100.
     pub gear_ratio_x100: u16,
     /// The motor's positive direction drives backwards.
     pub left_reversed: bool,

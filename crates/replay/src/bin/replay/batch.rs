@@ -1,4 +1,4 @@
-//! Trials side by side, one on each core.
+//! Runs trials side by side, one on each core.
 
 use std::{
     num::NonZero,
@@ -18,7 +18,7 @@ use crate::{
     report,
 };
 
-/// Runs all trials and returns their outcomes in the order of `files`; the first error ends it.
+/// Runs all trials and returns their outcomes in the order of `files`. The first error ends the run.
 pub fn run(task: &Task, files: &[PathBuf]) -> anyhow::Result<Vec<Outcome>> {
     let bar = ProgressBar::new(files.len() as u64);
     let style = ProgressStyle::with_template("{bar:40} {pos} of {len} trials, {elapsed}")?;

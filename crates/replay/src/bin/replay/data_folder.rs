@@ -1,15 +1,15 @@
-//! Where the recordings are.
+//! Finds the recordings.
 
 use std::path::{Path, PathBuf};
 
 use anyhow::bail;
 
-/// Usual folder, beside the repository.
+/// The folder of recordings, seen from the repository's root.
 const USUAL: &str = "../shared/data/broad";
-/// The recordings that are used unless the command names others.
+/// The folder in it that is taken if the user names none.
 const AT_200_HZ: &str = "hz200";
 
-/// The requested folder, else the one that `ROBOT_DATA` names, else the usual one.
+/// Returns the folder asked for, else the one that `ROBOT_DATA` names, else the usual one.
 pub fn find(asked: Option<&Path>) -> anyhow::Result<PathBuf> {
     let (folder, said_by) = match (asked, std::env::var_os("ROBOT_DATA")) {
         (Some(folder), _) => (folder.to_owned(), "--data"),

@@ -1,4 +1,4 @@
-//! Recorded trials through the firmware's estimator (`cargo xtask replay`): 1 kHz attitude, its errors, plots.
+//! `cargo xtask replay`: runs the firmware's estimator over recorded trials.
 
 mod batch;
 mod csv;
@@ -20,11 +20,11 @@ use robot_replay::{Mode, trial_files};
 
 use outcome::Task;
 
-/// Run the firmware's estimator over recorded trials: one CSV of 1 kHz attitude a trial, a table of errors, a report
-/// with plots.
+/// Run the firmware's estimator over recorded trials. It writes a CSV of the 1 kHz attitude for each trial, a table of
+/// errors and a report with plots.
 ///
-/// A trial is NAME.json with NAME.f32.gz beside it, at any rate: see the README.md of the recordings. The estimator gets
-/// what the firmware would: the IMU at 200 Hz, the magnetometer at 50 Hz, each sample once.
+/// A trial is NAME.json with NAME.f32.gz beside it, sampled at any rate: see the README.md of the recordings. The
+/// estimator gets what it would get in the firmware: the IMU at 200 Hz, the magnetometer at 50 Hz, each sample once.
 #[derive(Parser)]
 #[command(name = "replay", bin_name = "cargo xtask replay", after_help = EXAMPLES)]
 struct Args {
@@ -34,13 +34,13 @@ struct Args {
     /// Folder for NAME.csv (t,qw,qx,qy,qz), summary.json and report.html.
     #[arg(long, value_name = "DIR", default_value = "target/replay")]
     out: PathBuf,
-    /// With the magnetometer (9d) or without (6d).
+    /// Use the magnetometer (9d) or not (6d).
     #[arg(long, value_enum, default_value = "9d")]
     mode: Mode,
-    /// Add an offset to every gyro sample, to see it found.
+    /// Add an offset to every gyro sample, to see whether it is found.
     #[arg(long, value_name = "X,Y,Z", value_parser = offset, default_value = "0,0,0", allow_hyphen_values = true)]
     gyro_offset_dps: [f32; 3],
-    /// Only trials with this in their name.
+    /// Run only trials whose name contains this.
     #[arg(long, value_name = "SUBSTRING")]
     trial: Option<String>,
 }

@@ -1,4 +1,4 @@
-//! Settings of a replay, and the outcome of each trial.
+//! What is done with each trial, and the outcome.
 
 use std::path::PathBuf;
 
@@ -12,13 +12,13 @@ pub struct Task {
     pub out: PathBuf,
 }
 
-/// Outcome of a trial.
+/// The outcome of a trial.
 pub struct Outcome {
     pub name: String,
     pub seconds: f64,
     pub rows_without_motion: usize,
     pub rows_without_field: usize,
-    /// Number of samples clipped at the end of the BMI088's range.
+    /// Samples clipped at the end of the BMI088's range.
     pub saturated_samples: usize,
     /// Time without a valid estimate after the first valid one.
     pub invalid_s: f64,

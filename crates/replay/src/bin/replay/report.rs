@@ -12,7 +12,7 @@ use crate::{
     table,
 };
 
-/// Error against time, then gyro bias against time.
+/// Returns the plots of a trial: error over time, then gyro bias over time.
 pub fn plots(
     trial: &Trial,
     run: &Run,
@@ -91,7 +91,7 @@ fn error_curves(compared: &[Instant]) -> Vec<Curve> {
     ]
 }
 
-/// Any added offset is drawn faintly below the estimated bias.
+/// Plots the bias found over the offset added, if any, which is a faint line.
 fn bias_curves(run: &Run, gyro_offset_dps: [f32; 3]) -> Vec<Curve> {
     let axes = [("x", BLUE), ("y", GREEN), ("z", ORANGE)];
     let ends = [run.ticks.first(), run.ticks.last()];

@@ -36,7 +36,7 @@ struct TrialSummary<'a> {
     rows_without_motion: usize,
     rows_without_field: usize,
     saturated_samples: usize,
-    /// Counted after the first valid estimate.
+    /// Time without a valid estimate after the first valid one.
     invalid_s: f64,
 }
 

@@ -1,4 +1,4 @@
-//! The table on the terminal.
+//! The table that the terminal shows.
 
 use std::fmt::Write;
 
@@ -6,7 +6,7 @@ use robot_replay::{Figures, Mode};
 
 use crate::outcome::{Outcome, Task};
 
-/// Errors of each trial and their mean, and a line for each trial in which something was missing.
+/// Returns the errors of each trial and their mean, and a line for each trial in which something was missing.
 pub fn table(task: &Task, outcomes: &[Outcome]) -> String {
     let name = |outcome: &Outcome| outcome.name.chars().count();
     let width = outcomes.iter().map(name).max().unwrap_or(0).max(18);
@@ -52,7 +52,7 @@ fn cells(figures: Option<Figures>) -> String {
     }
 }
 
-/// Errors over the trials with a reference: at the samples, and at 1 kHz.
+/// Returns the mean errors over the trials that have a reference: at the samples and at 1 kHz.
 pub fn means(outcomes: &[Outcome]) -> (Option<Figures>, Option<Figures>) {
     let mean = |figures: fn(&Outcome) -> Option<Figures>| {
         let all: Vec<Figures> = outcomes.iter().filter_map(figures).collect();
@@ -64,7 +64,7 @@ pub fn means(outcomes: &[Outcome]) -> (Option<Figures>, Option<Figures>) {
     )
 }
 
-/// A description of the replay.
+/// Describes what was replayed.
 pub fn title(task: &Task) -> String {
     let mode = match task.mode {
         Mode::NineAxis => "with magnetometer (9d)",
@@ -76,7 +76,7 @@ pub fn title(task: &Task) -> String {
     }
 }
 
-/// The data that a trial lacked.
+/// Describes the samples that the estimator did not get.
 pub fn troubles(outcome: &Outcome) -> impl Iterator<Item = String> {
     let rows = |count: usize, sensor: &str| {
         (count > 0).then(|| format!("{count} rows without {sensor} numbers, dropped"))

@@ -1,4 +1,4 @@
-//! The board itself: start, battery, clock, watchdog, heater and flash.
+//! Measures the board itself: start, battery, clock, watchdog, heater and flash.
 
 use super::verdict::{Measured, Verdict, read, vector};
 use crate::tuning::{TuningClient, TuningError};

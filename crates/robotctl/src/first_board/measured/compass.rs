@@ -1,4 +1,4 @@
-//! The magnetometer's axes, from a full circle of the board.
+//! Finds the magnetometer's axes from a full circle of the board.
 
 use std::{
     thread,
@@ -16,8 +16,8 @@ const CIRCLE: Duration = if cfg!(test) {
 };
 const PAUSE: Duration = Duration::from_millis(20);
 
-/// Follows the field over a full circle to the left that begins with the nose to the north. Iron on the robot only moves
-/// the centre of the circle.
+/// Follows the field over a full circle to the left that begins with the nose to the north. Iron on the robot moves
+/// only the centre of the circle.
 pub fn circle(client: &mut TuningClient) -> Result<Measured, TuningError> {
     let mut path = Vec::new();
     let end = Instant::now() + CIRCLE;
@@ -80,8 +80,8 @@ mod tests {
     use super::*;
     use crate::first_board::Verdict;
 
-    /// Steps of 10° to the left from north, 20 µT horizontal beside iron of (35, −50) µT. After 90° the nose points west and
-    /// north is to the right, −y.
+    /// The board turns to the left from north in steps of 10°. The horizontal field is 20 µT, and iron adds (35, −50)
+    /// µT. After 90° the nose points west and north is to the right, at −y.
     fn path(begin_deg: f64, step_deg: f64, mirrored: bool) -> Vec<[f64; 3]> {
         let place = |step: i32| {
             let angle = (begin_deg + step_deg * f64::from(step)).to_radians();

@@ -1,4 +1,4 @@
-//! What the motors report while they are off.
+//! Measures what the motors report while they are disabled.
 
 use std::time::{Duration, Instant};
 
@@ -7,7 +7,7 @@ use robot_app::tuning::{JOINTS, WHEELS};
 use super::verdict::{Measured, read};
 use crate::tuning::{TuningClient, TuningError};
 
-/// How long the joints are watched.
+/// Time for which the joints are watched.
 const LOOK: Duration = if cfg!(test) {
     Duration::ZERO
 } else {

@@ -1,4 +1,4 @@
-//! The radio, switched on and off.
+//! Measures the radio while it is switched on and off.
 
 use super::verdict::{Measured, read};
 use crate::tuning::{TuningClient, TuningError};

@@ -1,4 +1,4 @@
-//! Accelerometer and gyro of a board that is held and turned by hand.
+//! Measures accelerometer and gyro of a board that is held and turned by hand.
 
 use std::{
     thread,
@@ -16,7 +16,7 @@ const TURN: Duration = if cfg!(test) {
 };
 const PAUSE: Duration = Duration::from_millis(20);
 
-/// Expects gravity along one axis only. The magnetometer's values go into the report for its reader.
+/// Expects gravity along one axis only. It records the magnetometer's values for the reader of the report.
 fn gravity_on(client: &mut TuningClient, axis: usize, sign: f64) -> Result<Measured, TuningError> {
     let mut found = Measured::default();
     let accel = vector(&mut found, client, "accel", "mps2")?;
