@@ -1,4 +1,4 @@
-//! Sensor corrections found from recorded samples. The firmware applies them (`robot_app::sensing`).
+//! Finds sensor corrections from recorded samples. The firmware applies them (`robot_app::sensing`).
 
 pub mod accel;
 mod least_squares;

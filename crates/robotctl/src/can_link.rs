@@ -1,4 +1,4 @@
-//! CAN buses as this computer reaches them: through an slcan adapter or SocketCAN.
+//! Reaches a CAN bus from this computer through an slcan adapter or SocketCAN.
 
 mod device;
 mod lawicel;

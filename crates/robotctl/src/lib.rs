@@ -1,4 +1,4 @@
-//! The PC's side of the robot: calibration of its sensors and its tuning channel.
+//! The PC's tools for the robot: they calibrate its sensors, and tune and watch it over CAN.
 //!
 //! | place | does |
 //! |---|---|

@@ -1,4 +1,4 @@
-//! How board and magnetometer sit, found by tilting the robot (docs/mounting.md).
+//! Finds how board and magnetometer are mounted by tilting the robot (docs/mounting.md).
 
 mod board;
 mod mag;

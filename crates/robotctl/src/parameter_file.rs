@@ -1,6 +1,6 @@
-//! Parameters by name in a TOML file: what `calibrate` finds and `tune` writes to the robot.
+//! Parameters by name in a TOML file. `calibrate` writes such a file, and `tune` applies it to the robot.
 //!
-//! A name's parts are tables: `imu.accel-scale-x` is `accel-scale-x` in `[imu]`.
+//! The parts of a name are tables: `imu.accel-scale-x` is `accel-scale-x` in `[imu]`.
 
 use std::{
     collections::BTreeMap,
@@ -14,7 +14,7 @@ use crate::settings::{self, UnknownName, ValueError};
 const HEADING: &str =
     "# Parameters of the robot: `robotctl tune --can … apply FILE` writes them.\n";
 
-/// Values by full name, in the precision the robot has.
+/// Values by full name, in the robot's precision.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ParameterFile(BTreeMap<String, f32>);
 
@@ -59,7 +59,7 @@ impl ParameterFile {
         })
     }
 
-    /// Loads a file; one that does not exist is an empty one.
+    /// Loads a file. One that does not exist counts as empty.
     pub fn load_or_new(path: &Path) -> Result<Self, ParameterFileError> {
         match Self::load(path) {
             Err(ParameterFileError::Read { source, .. })
@@ -164,7 +164,7 @@ mod tests {
         assert_eq!(ParameterFile::parse(&file.text()).unwrap(), file);
     }
 
-    /// By number 13 and 24.
+    /// These choices have the numbers 13 and 24.
     #[test]
     fn choices_are_words() {
         let text = "[mounting]\nboard = \"x-right-z-down\"\nmag = 24\n";

@@ -1,4 +1,4 @@
-//! Recorded samples of one sensor: from a table of separated values or from a `run.mcap`.
+//! Reads recorded samples of one sensor from a table of separated values or from a `run.mcap`.
 
 mod header;
 mod mcap;
@@ -42,7 +42,7 @@ pub fn load(path: &Path, sensor: Sensor) -> Result<Vec<Sample>, RecordingError> 
     load_noting(path, sensor, |_| {})
 }
 
-/// Does what [`load`] does, and tells `note` which unit the numbers were taken for where the header names none.
+/// Does what [`load`] does. Where the header names no unit, `note` gets the unit that was guessed.
 pub fn load_noting(
     path: &Path,
     sensor: Sensor,

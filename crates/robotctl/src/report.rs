@@ -1,4 +1,4 @@
-//! What a calibration found, as one self-contained HTML page.
+//! Writes the result of a calibration as one self-contained HTML page.
 
 mod accel;
 mod mag;

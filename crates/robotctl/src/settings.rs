@@ -6,7 +6,7 @@ pub use value::ValueError;
 
 use robot_app::tuning::{PARAMETERS, Parameter, ParameterGroup, ParameterKind};
 
-/// A setting and the group it is in.
+/// A setting and its group.
 #[derive(Clone, Copy, Debug)]
 pub struct Named {
     pub group: &'static ParameterGroup,
@@ -71,14 +71,14 @@ pub fn find_group(name: &str) -> Result<&'static ParameterGroup, UnknownName> {
     })
 }
 
-/// The name that shares the longest pieces; `None` if none resembles it.
+/// Returns the most similar name, or `None` if none is similar.
 fn nearest(name: &str, names: impl Iterator<Item = String>) -> Option<String> {
     let scored = names.map(|candidate| (likeness(name, &candidate), candidate));
     let (score, candidate) = scored.max_by(|a, b| a.0.total_cmp(&b.0))?;
     (score > 0.5).then_some(candidate)
 }
 
-/// Share of neighbouring pairs of letters that both have (Dice), 0 … 1.
+/// Returns the share of neighbouring pairs of letters that both have (Dice's coefficient), from 0 to 1.
 fn likeness(a: &str, b: &str) -> f64 {
     let pairs =
         |text: &str| -> Vec<[u8; 2]> { text.as_bytes().windows(2).map(|w| [w[0], w[1]]).collect() };

@@ -1,4 +1,4 @@
-//! What the robot is doing and what keeps it from being armed: live pages, put into words or JSON.
+//! Shows what the robot does and what keeps it from being armed. It puts live pages into words or JSON.
 
 mod advice;
 mod json;
@@ -8,7 +8,7 @@ pub use text::strange_sectors;
 
 use crate::tuning::{BootFindings, LiveReading, StoreReport, TuningClient, TuningError};
 
-/// All that one look at the robot shows.
+/// The state of the robot: all live pages and the report on saved settings.
 #[derive(Clone, Debug)]
 pub struct Status {
     pages: Vec<LiveReading>,
@@ -18,7 +18,7 @@ pub struct Status {
 }
 
 impl Status {
-    /// One page after the other: they need not be of the same moment.
+    /// Reads one page after the other, so they may be from different moments.
     pub fn read(client: &mut TuningClient) -> Result<Self, TuningError> {
         Ok(Self {
             pages: client.live_all()?,

@@ -1,4 +1,4 @@
-//! `robotctl calibrate` as a user runs it: files in, values and plots out.
+//! Runs `robotctl calibrate` as a user does, from files to values and plots.
 
 use std::{
     fs,
@@ -25,7 +25,8 @@ fn directory(test: &str) -> PathBuf {
     path
 }
 
-/// Two seconds at 100 Hz a side, from a sensor with an offset of 0.2 m/s² in x and 1 % too much in z.
+/// Returns two seconds at 100 Hz on each side, from a sensor with an offset of 0.2 m/s² in x and a scale error of 1 %
+/// in z.
 fn accel_table(sides: &[[f64; 3]]) -> String {
     let mut text = String::from("t,ax,ay,az\n");
     for (row, side) in sides.iter().flat_map(|side| [side; 200]).enumerate() {
@@ -125,7 +126,7 @@ fn a_magnetometer_table_becomes_values_and_a_page() {
     assert!(page.matches("<circle").count() > 1_000);
 }
 
-/// The same recording as other programs export it: numbers of each field, and the header.
+/// Returns the same recording as other programs export it: a header, and the numbers of each field.
 fn exported(
     header: &str,
     separator: &str,

@@ -1,5 +1,5 @@
-//! docs/tuning.md lists what the firmware has: commands, refusals, settings and live values, with their numbers, units
-//! and ranges.
+//! docs/tuning.md lists the commands, refusals, settings and live values of the firmware with their numbers, units and
+//! ranges.
 
 use robot_app::tuning::{
     LIVE_PAGES, LiveField, LiveKind, LivePage, PARAMETERS, Parameter, ParameterGroup,
@@ -102,7 +102,7 @@ fn the_table_has_every_live_page_and_no_other() {
     assert_eq!(documented, expected, "expected:\n{}", expected.join("\n"));
 }
 
-/// The rows of a table of the document, without its head.
+/// Returns the rows of a table of the document, without its head.
 fn rows_below(head: &str) -> Vec<&'static str> {
     let lines = DOCUMENT.lines().skip_while(|line| !line.starts_with(head));
     lines
@@ -111,7 +111,7 @@ fn rows_below(head: &str) -> Vec<&'static str> {
         .collect()
 }
 
-/// Each row begins with the identifier and then, in backticks, with the command.
+/// Each row begins with the identifier, then the command in backticks.
 #[test]
 fn the_table_of_frames_has_every_command_and_no_other() {
     let command = |row: &&str| u8::from_str_radix(row.split('`').nth(1)?.get(..2)?, 16).ok();

@@ -1,4 +1,4 @@
-//! What the tool says, and to whom.
+//! Checks the output of the tool.
 
 use std::process::{Command, Stdio};
 
@@ -8,7 +8,7 @@ fn robotctl(arguments: &[&str]) -> Command {
     command
 }
 
-/// As `robotctl tune list | head -1` does.
+/// `robotctl tune list | head -1` stops reading in this way.
 #[test]
 fn whoever_reads_may_stop_early() {
     let mut command = robotctl(&["tune", "list"]);

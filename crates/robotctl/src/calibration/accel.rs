@@ -1,7 +1,7 @@
-//! Offset and scale of each accelerometer axis, from the robot held still on six sides.
+//! Finds offset and scale of each accelerometer axis from samples of the robot held still on six sides.
 //!
-//! At rest an accelerometer measures 1 g upwards whatever its attitude. So every still position gives one equation,
-//! |scale · (raw − bias)| = g, and six positions give the six unknowns.
+//! At rest an accelerometer measures 1 g upwards in every attitude. So every still position gives one equation,
+//! |scale · (raw − bias)| = g, and six positions determine the six unknowns.
 
 mod face;
 mod fit;
@@ -17,19 +17,20 @@ pub use still::StillWindow;
 
 use crate::{recording::Sample, statistics::rms};
 
-/// Standard gravity, which the firmware counts with.
+/// Standard gravity, which the firmware uses too.
 pub const GRAVITY_MPS2: f64 = 9.806_65;
-/// Root mean square over the positions; still hands and an undamaged sensor stay below 0.03.
+/// Largest residual, rms over the positions. Still hands and an undamaged sensor stay below 0.03.
 const MAX_RESIDUAL_MPS2: f64 = 0.05;
-/// The BMI088 is within ±20 mg (typical); six times that, where the firmware draws the line too, is a damaged sensor or
-/// wrong samples.
+/// Largest offset. The BMI088's is within ±20 mg (typical). Six times that means a damaged sensor or wrong samples, and
+/// is the firmware's limit too.
 const MAX_BIAS_MPS2: f64 = 1.2;
-/// The BMI088's sensitivity is within ±0.8 % (typical).
+/// Largest error of the scale. The BMI088's sensitivity is within ±0.8 % (typical).
 const MAX_SCALE_ERROR: f64 = 0.08;
-/// One axis-aligned position a side is six equations for six unknowns: only more can contradict each other.
+/// Number of unknowns. One position on each side gives as many equations, so only more positions can contradict each
+/// other.
 const UNKNOWNS: usize = 6;
 
-/// corrected = (raw − bias) · scale, axis by axis, in the body frame.
+/// A correction for each axis of the body frame: corrected = (raw − bias) · scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AccelCorrection {
     pub bias_mps2: Vector3<f64>,
@@ -51,26 +52,26 @@ impl AccelCorrection {
         corrected_mps2.component_div(&self.scale) + self.bias_mps2
     }
 
-    /// Difference of the corrected measurement's size from gravity.
+    /// Returns by how much the size of the corrected measurement differs from gravity.
     fn gravity_error(&self, raw_mps2: Vector3<f64>) -> f64 {
         self.apply(raw_mps2).norm() - GRAVITY_MPS2
     }
 }
 
-/// A correction and what speaks for it.
+/// A correction and the evidence for it.
 #[derive(Clone, Debug)]
 pub struct AccelFit {
     pub correction: AccelCorrection,
-    /// The positions it was made from.
+    /// The positions from which it was computed.
     pub windows: Vec<StillWindow>,
-    /// Still positions left out because they contradict the others.
+    /// Still positions that were left out because they contradict the others.
     pub rejected: Vec<StillWindow>,
     pub residual_before_mps2: f64,
     pub residual_after_mps2: f64,
 }
 
 impl AccelFit {
-    /// False if there are no more positions than unknowns, so that the residual is zero whatever was measured.
+    /// True if there are more positions than unknowns. Otherwise the residual is zero whatever was measured.
     pub fn is_checked(&self) -> bool {
         self.windows.len() > UNKNOWNS
     }
@@ -103,7 +104,7 @@ pub enum AccelError {
     },
 }
 
-/// From recordings of raw samples, each in the order of its times.
+/// Finds the correction from recordings of raw samples, each in the order of its times.
 pub fn calibrate(recordings: &[Vec<Sample>]) -> Result<AccelFit, AccelError> {
     let windows: Vec<StillWindow> = recordings.iter().flat_map(|r| still::windows(r)).collect();
     if windows.is_empty() {

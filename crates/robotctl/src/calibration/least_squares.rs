@@ -1,18 +1,19 @@
-//! Least squares for a handful of parameters (Levenberg–Marquardt on the normal equations).
+//! Solves least-squares problems with few parameters (Levenberg–Marquardt on the normal equations).
 
 use nalgebra::{SMatrix, SVector};
 
-/// Far more steps than a fit that starts near its minimum takes.
+/// Largest number of steps, far more than a fit that starts near its minimum takes.
 const MAX_STEPS: usize = 100;
 /// A step that moves no parameter by more than this share of its scale ends the search.
 const STILL: f64 = 1e-10;
 const MIN_DAMPING: f64 = 1e-12;
 const MAX_DAMPING: f64 = 1e12;
 
-/// A residual and its derivatives by the parameters.
+/// A residual and its derivatives with respect to the parameters.
 pub(super) type Equation<const N: usize> = (f64, SVector<f64, N>);
 
-/// Parameters with the least sum of squared residuals near `start`; `None` if the samples do not determine them.
+/// Returns the parameters near `start` with the least sum of squared residuals, or `None` if the samples do not
+/// determine them.
 pub(super) fn minimise<const N: usize, I>(
     start: SVector<f64, N>,
     equations: impl Fn(&SVector<f64, N>) -> I,
@@ -42,7 +43,7 @@ where
     None
 }
 
-/// Normal equations at one point.
+/// The normal equations at one point.
 struct System<const N: usize> {
     matrix: SMatrix<f64, N, N>,
     gradient: SVector<f64, N>,
@@ -64,7 +65,7 @@ impl<const N: usize> System<N> {
         system
     }
 
-    /// `None` if a parameter is not determined.
+    /// Returns `None` if a parameter is not determined.
     fn step(&self, damping: f64) -> Option<SVector<f64, N>> {
         let mut matrix = self.matrix;
         for index in 0..N {
@@ -80,7 +81,7 @@ mod tests {
 
     use super::*;
 
-    /// y = a·exp(b·x) through exact points of a = 2, b = −0.5.
+    /// The curve y = a·exp(b·x) goes through exact points of a = 2, b = −0.5.
     #[test]
     fn an_exponential_is_recovered_from_a_poor_start() {
         let points: Vec<(f64, f64)> = (0..10)

@@ -1,7 +1,7 @@
-//! Hard and soft iron of the robot, from the robot turned through all attitudes.
+//! Finds the hard and soft iron of the robot from samples of the robot turned through all attitudes.
 //!
-//! The earth's field has the same strength in every attitude, so undisturbed samples lie on a sphere. Magnets shift it
-//! (hard iron), steel and currents' cores stretch it to an ellipsoid (soft iron); the correction turns it back.
+//! The earth's field has the same strength in every attitude, so undisturbed samples lie on a sphere. Magnets shift the
+//! sphere (hard iron), and steel stretches it to an ellipsoid (soft iron). The correction makes it a sphere again.
 
 mod coverage;
 mod ellipsoid;
@@ -16,19 +16,21 @@ pub use coverage::Coverage;
 
 use crate::{recording::Sample, statistics::rms};
 
-/// The magnetometer gives 0.3 µT a count and 0.8 µT of noise; some of it remains whatever the correction.
+/// Largest residual as a share of the field. The magnetometer has 0.3 µT a count and 0.8 µT of noise, some of which
+/// always remains.
 const MAX_RESIDUAL_SHARE: f64 = 0.05;
-/// Of all directions the field could come from, seen from the robot.
+/// Least share of the directions from which the field must have come, seen from the robot.
 const MIN_COVERED: f64 = 0.75;
-/// Samples left out because they fit nothing: a few disturbances, not a disturbed place.
+/// Largest share of samples left out. A few disturbances are normal, but a disturbed place is not.
 const MAX_REJECTED_SHARE: f64 = 0.1;
-/// Longest to shortest axis of the ellipsoid; beyond it the sensor sits next to iron and no correction helps.
+/// Largest ratio of the ellipsoid's longest to its shortest axis. Beyond it the sensor is next to iron and no
+/// correction helps.
 const MAX_STRETCH: f64 = 2.0;
-/// The earth's field, 22 … 67 µT, with room for what iron adds.
+/// Range of the field's strength. The earth's field is 22 to 67 µT, and iron changes it.
 const PLAUSIBLE_UT: std::ops::Range<f64> = 15.0..120.0;
 const MIN_SAMPLES: usize = 200;
 
-/// corrected = soft_iron · (raw − bias), in the body frame; `soft_iron` is symmetric.
+/// A correction in the body frame: corrected = soft_iron · (raw − bias), where `soft_iron` is symmetric.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MagCorrection {
     pub bias_ut: Vector3<f64>,
@@ -53,17 +55,17 @@ impl MagCorrection {
     }
 }
 
-/// A correction and what speaks for it.
+/// A correction and the evidence for it.
 #[derive(Clone, Debug)]
 pub struct MagFit {
     pub correction: MagCorrection,
     /// Strength of the corrected field.
     pub field_ut: f64,
-    /// The raw samples it was made from.
+    /// The raw samples from which it was computed.
     pub samples: Vec<Vector3<f64>>,
     pub rejected: usize,
     pub coverage: Coverage,
-    /// Spread of the field's strength.
+    /// Standard deviation of the field's strength before the correction.
     pub residual_before_ut: f64,
     pub residual_after_ut: f64,
 }
@@ -102,7 +104,8 @@ pub enum MagError {
     Implausible { field_ut: f64, stretch: f64 },
 }
 
-/// From raw samples. The corrected strength is `field_ut`, or what leaves the samples' mean strength as it is.
+/// Finds the correction from raw samples. The corrected strength is `field_ut`; without it, the samples' mean strength
+/// stays.
 pub fn calibrate(recordings: &[Vec<Sample>], field_ut: Option<f64>) -> Result<MagFit, MagError> {
     let mut samples: Vec<Vector3<f64>> = recordings.iter().flatten().map(|s| s.value).collect();
     samples.dedup();
@@ -152,7 +155,7 @@ fn check(coverage: &Coverage, correction: &MagCorrection, field_ut: f64) -> Resu
     Ok(())
 }
 
-/// Deviation of the samples' strength from its mean.
+/// Returns the standard deviation of the samples' strength.
 fn spread(samples: &[Vector3<f64>]) -> f64 {
     let mean = samples.iter().map(|v| v.norm()).sum::<f64>() / samples.len() as f64;
     rms(samples.iter().map(|v| v.norm() - mean))

@@ -1,4 +1,4 @@
-//! Corrections by the names the firmware's tuning channel gives them.
+//! Reads and writes corrections by the names of the firmware's settings.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -64,7 +64,7 @@ fn mag_bias(axis: usize) -> String {
     format!("mag-calibration.bias-{}-ut", AXES[axis])
 }
 
-/// The matrix is symmetric: its lower half goes by the names of the upper one.
+/// Returns the name of an element. The matrix is symmetric, so its lower half has the names of the upper one.
 fn soft_iron(row: usize, column: usize) -> String {
     let (row, column) = (row.min(column), row.max(column));
     format!("mag-calibration.soft-iron-{}{}", AXES[row], AXES[column])

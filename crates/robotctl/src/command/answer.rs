@@ -1,4 +1,4 @@
-//! Asking the person at the keyboard.
+//! Asks the user at the keyboard.
 
 use std::io;
 
@@ -6,7 +6,7 @@ use anyhow::{Context, Result, bail};
 
 use super::output::begin;
 
-/// What was typed before Enter.
+/// Returns what was typed before Enter.
 pub fn ask(what: &str) -> Result<String> {
     begin!("{what} Then press Enter. ")?;
     let mut line = String::new();

@@ -1,4 +1,4 @@
-//! `robotctl calibrate`: recordings → a parameter file and a page with plots.
+//! `robotctl calibrate`: computes a parameter file and a page with plots from recordings.
 
 use std::path::PathBuf;
 
@@ -17,13 +17,13 @@ use super::output::say;
 
 #[derive(clap::Subcommand)]
 pub enum Sensor {
-    /// From the robot held still on each of its six sides (columns `t,ax,ay,az` in s and m/s²)
+    /// Use recordings of the robot held still on each of its six sides (columns `t,ax,ay,az` in s and m/s²)
     Accel(Files),
-    /// From the robot turned through all attitudes (columns `t,mx,my,mz` in s and µT)
+    /// Use recordings of the robot turned through all attitudes (columns `t,mx,my,mz` in s and µT)
     Mag {
         #[command(flatten)]
         files: Files,
-        /// Strength of the earth's field here in µT; without it the measured strength stays
+        /// Strength of the local earth's field in µT; without this option the measured strength stays
         #[arg(long)]
         field_ut: Option<f64>,
     },
@@ -34,10 +34,10 @@ pub struct Files {
     /// Tables (CSV) or recordings (`run.mcap`) of one robot
     #[arg(required = true)]
     recordings: Vec<PathBuf>,
-    /// Parameters the robot had while it was recorded; without it none of them corrected the samples
+    /// Parameters that corrected the recorded samples; without this option, none did
     #[arg(long)]
     active: Option<PathBuf>,
-    /// Parameter file that gets the values; others in it stay
+    /// Parameter file to write; other values in it stay
     #[arg(long, default_value = "calibration.toml")]
     out: PathBuf,
     /// Page with plots [default: beside the parameter file]

@@ -1,4 +1,4 @@
-//! `robotctl first-board`: the checks of a first board, with the user.
+//! `robotctl first-board`: makes the checks of a first board with the user.
 
 use std::{
     io::{self, BufRead, Write},
@@ -14,13 +14,13 @@ use super::{connection::Connection, output::say};
 pub struct FirstBoard {
     #[command(flatten)]
     connection: Connection,
-    /// Begin at this check; without it at the first that is not in the report
+    /// Begin at this check; without this option, make the checks that are not in the report
     #[arg(long, value_name = "N")]
     from: Option<usize>,
-    /// Ask nothing: do what needs nobody at the robot, skip the rest
+    /// Ask nothing: make only the checks that need nobody at the robot, skip the others
     #[arg(long)]
     yes: bool,
-    /// Where the report is, and goes
+    /// File of the report, which is read and written
     #[arg(long, default_value = "first-board.toml")]
     report: PathBuf,
 }

@@ -1,4 +1,4 @@
-//! `robotctl joint`: where a joint's zero is.
+//! `robotctl joint`: sets a joint's zero.
 
 use anyhow::{Context, Result, ensure};
 use clap::ValueEnum;
@@ -19,11 +19,10 @@ pub struct JointCommand {
 
 #[derive(clap::Subcommand)]
 enum Action {
-    /// The angle at which the joint stands now is to be 0 from now on, or --angle; the robot must be disarmed, the joint
-    /// still
+    /// Make the joint's present angle 0, or --angle; the robot must be disarmed and the joint must stand still
     Zero {
         joint: Joint,
-        /// In rad, as the robot's model has it
+        /// The joint's present angle in rad, in the robot's model
         #[arg(
             long,
             value_name = "RAD",

@@ -1,4 +1,4 @@
-//! `robotctl mounting`: guides through some poses and says how the sensors sit.
+//! `robotctl mounting`: guides the user through some poses and finds how the sensors are mounted.
 
 use std::time::{Duration, Instant};
 
@@ -13,9 +13,9 @@ use robotctl::{
 
 use super::{answer::ask, output::say, tune::confirm_saved};
 
-/// Longest time of turning the robot by hand.
+/// Longest time for turning the robot by hand.
 const TURNING: Duration = Duration::from_secs(90);
-/// The gyro is calibrated and the attitude settled after this.
+/// Time after which the gyro is calibrated and the attitude has settled.
 const SETTLING: Duration = Duration::from_secs(30);
 
 #[derive(clap::Args)]
@@ -23,10 +23,10 @@ pub struct Mounting {
     /// Serial port of an slcan adapter (COM3, /dev/ttyACM0) or, on Linux, a CAN interface (can0)
     #[arg(long, value_name = "DEVICE")]
     can: CanDevice,
-    /// Write what was found to the robot; without it the robot's settings are only checked
+    /// Write the result to the robot; without this option the robot's settings are only checked
     #[arg(long)]
     write: bool,
-    /// Find out how the magnetometer sits on the board, too
+    /// Find out also how the magnetometer is mounted on the board
     #[arg(long)]
     mag: bool,
 }
@@ -49,7 +49,8 @@ impl Mounting {
         self.conclude(&mut client, "mounting.mag", mag.orientation)
     }
 
-    /// A field that is turned wrongly would turn the heading, by which its turn is judged.
+    /// Removes the magnetometer's mounting. A wrong one would turn the heading, which must be right for the
+    /// measurement.
     fn forget_mag(&self, client: &mut TuningClient) -> Result<()> {
         if Watch::new(client)?.mag().is_none() {
             return Ok(());
@@ -178,7 +179,7 @@ fn find_mag(client: &mut TuningClient, board: Orientation) -> Result<MagFound> {
     Ok(found)
 }
 
-/// Until it was turned enough, and then for as long again.
+/// Collects samples until the robot was turned enough, and then for as long again.
 fn turn(watch: &mut Watch<'_>) -> Result<Vec<FieldSample>> {
     let start = Instant::now();
     let mut samples = Vec::new();

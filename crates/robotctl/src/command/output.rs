@@ -1,16 +1,16 @@
-//! What a command says on standard output. Whoever reads it may stop early, as `head` does.
+//! Writes to standard output. The program that reads it may stop early, as `head` does.
 
 use std::{
     fmt,
     io::{self, Write},
 };
 
-/// Standard output took no more.
+/// Standard output could not be written.
 #[derive(Debug, thiserror::Error)]
 #[error("cannot write to standard output: {0}")]
 pub struct OutputError(io::Error);
 
-/// True if nobody reads what this command says: no failure, but nothing more to do.
+/// True if nobody reads the output any more. This is no failure, but there is nothing left to do.
 pub fn is_closed(error: &anyhow::Error) -> bool {
     let output = error.chain().find_map(|cause| cause.downcast_ref());
     matches!(output, Some(OutputError(cause)) if cause.kind() == io::ErrorKind::BrokenPipe)

@@ -1,4 +1,4 @@
-//! `robotctl radio`: guides through the controls of an SBUS transmitter and says which channel is which.
+//! `robotctl radio`: guides the pilot through the controls of an SBUS transmitter and finds their channels.
 
 use std::time::{Duration, Instant};
 
@@ -13,7 +13,7 @@ use robotctl::{
 
 use super::{answer::ask, output::say, tune::confirm_saved};
 
-/// How long the sticks are moved round all their ends.
+/// Time for the pilot to move the sticks to all their ends.
 const ROUND: Duration = Duration::from_secs(8);
 
 #[derive(clap::Args)]
@@ -21,7 +21,7 @@ pub struct Radio {
     /// Serial port of an slcan adapter (COM3, /dev/ttyACM0) or, on Linux, a CAN interface (can0)
     #[arg(long, value_name = "DEVICE")]
     can: CanDevice,
-    /// Write what was found to the robot; without it the robot's settings are only compared
+    /// Write the result to the robot; without this option the robot's settings are only compared
     #[arg(long)]
     write: bool,
 }
@@ -77,7 +77,7 @@ impl Radio {
     }
 }
 
-/// Asks until the robot reads its enable switch, as it knows it now, as off.
+/// Requests a step of bring-up. While the robot reads its present enable switch as on, it asks the user to change that.
 fn bring_up(client: &mut TuningClient, step: BringUpStep, enable: f32) -> Result<()> {
     loop {
         match client.bring_up(step) {
@@ -123,7 +123,7 @@ fn find(watch: &mut Watch<'_>) -> Result<Vec<Found>> {
     Ok(found)
 }
 
-/// `None` if the transmitter has no such control.
+/// Returns `None` if the transmitter has no such control.
 fn find_moved(
     watch: &mut Watch<'_>,
     control: Control,
@@ -157,7 +157,7 @@ fn find_moved(
     }
 }
 
-/// Settings are taken with the enable switch off only.
+/// Asks until all controls are back, because the robot takes settings only with its enable switch off.
 fn put_back(watch: &mut Watch<'_>, rest: &Still) -> Result<()> {
     loop {
         ask("Put the e-stop back to stop.")?;
@@ -198,7 +198,7 @@ fn find_ends(watch: &mut Watch<'_>, sticks: &[Moved]) -> Result<Vec<Found>> {
     }
 }
 
-/// `None` after saying so if the radio was not heard, which the pilot can mend.
+/// Returns `None` and says so if the radio was not received, which the pilot can correct.
 fn heard<T>(seen: Result<T, WatchError>) -> Result<Option<T>> {
     match seen {
         Ok(seen) => Ok(Some(seen)),

@@ -1,4 +1,4 @@
-//! `robotctl record`: the sensors' samples into a table.
+//! `robotctl record`: records the sensors' samples into a table.
 
 use std::path::PathBuf;
 
@@ -8,16 +8,16 @@ use robotctl::recorder::{self, RecordPatience};
 
 use super::{connection::Connection, output::say};
 
-/// Ten samples of the IMU.
+/// A longer gap between samples is reported. This is the time of ten samples of the IMU.
 const LONG_GAP_S: f64 = 0.05;
 
 #[derive(clap::Args)]
 pub struct Record {
     #[command(flatten)]
     connection: Connection,
-    /// Table to write (CSV), which `robotctl calibrate` reads
+    /// Table (CSV) to write, which `robotctl calibrate` reads
     file: PathBuf,
-    /// How long, in s; the robot must be disarmed, its enable switch off
+    /// Length of the recording in s; the robot must be disarmed and its enable switch off
     #[arg(long, value_name = "S", default_value_t = 60, value_parser = clap::value_parser!(u16).range(1..=600))]
     seconds: u16,
     /// Replace the file if it exists

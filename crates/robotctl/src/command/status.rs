@@ -1,4 +1,4 @@
-//! `robotctl status`: one look at the robot, or one after the other.
+//! `robotctl status`: shows the robot's state once or repeatedly.
 
 use std::{thread, time::Duration};
 
@@ -14,13 +14,13 @@ use super::{
 pub struct Status {
     #[command(flatten)]
     connection: Connection,
-    /// For scripts: one line of JSON with all live values
+    /// Print all live values as one line of JSON
     #[arg(long)]
     json: bool,
-    /// Again and again, until Ctrl-C
+    /// Repeat until Ctrl-C
     #[arg(long)]
     watch: bool,
-    /// Pause between two looks, in ms
+    /// Pause between repetitions in ms
     #[arg(long, value_name = "MS", default_value_t = 500, requires = "watch")]
     every: u64,
 }

@@ -26,9 +26,9 @@ pub struct Tune {
 
 #[derive(clap::Subcommand)]
 enum Action {
-    /// All settings with unit and range and, with --can, their present values
+    /// List all settings with unit and range and, with --can, their present values
     List {
-        /// Only names that contain this
+        /// List only names that contain this
         filter: Option<String>,
     },
     /// Print one setting
@@ -36,25 +36,25 @@ enum Action {
     /// Change one setting; the robot must be disarmed
     Set {
         name: String,
-        /// A number, or one of a setting's names
+        /// A number, or one of the names that the setting has for its values
         #[arg(allow_negative_numbers = true)]
         value: String,
     },
-    /// Change all settings of a file that differ; the robot must be disarmed
+    /// Change all settings that differ from those in a file; the robot must be disarmed
     Apply { file: PathBuf },
     /// Write the present values of all settings to a file
     Save { file: PathBuf },
-    /// Give a group of settings its defaults back, or all of them; the robot must be disarmed
+    /// Restore the defaults of a group of settings, or of all; the robot must be disarmed
     Defaults {
-        /// Such as `heater`; all groups if left out
+        /// A group such as `heater`; without it, all groups
         group: Option<String>,
-        /// Do it: the values the robot has now are lost
+        /// Confirm that the robot's present values will be lost
         #[arg(long)]
         yes: bool,
     },
     /// Show whether the robot has saved its settings, and what it found in flash at boot
     Status,
-    /// Show the wheel geometry or change parts of it, in the frames of ROBOT_CPP
+    /// Show the wheel geometry or change parts of it
     Wheel(Wheel),
     /// Start or end bring-up of new hardware (docs/bring-up.md); the robot must be disarmed
     BringUp {
@@ -66,17 +66,17 @@ enum Action {
 #[derive(clap::Subcommand)]
 enum Step {
     Off,
-    /// Nothing moves; the log shows the joints
+    /// Enable no motor; the log shows the joints
     ReadOnly,
-    /// Motors enabled without torque
+    /// Enable the motors without torque
     ZeroTorque,
-    /// A little torque on one motor while the pilot holds the dead-man stick: by the drive stick, or as given here
+    /// Put a small torque on one motor while the pilot holds the dead-man stick; the drive stick or --torque sets it
     Motor {
         motor: Motor,
-        /// mN·m of a joint (at most 500) or mA of a wheel (at most 1000)
+        /// Torque of a joint in mN·m (at most 500) or current of a wheel in mA (at most 1000)
         #[arg(long, allow_negative_numbers = true, conflicts_with = "hold")]
         torque: Option<NonZeroI16>,
-        /// Softly keep the angle the motor has when the stick is taken
+        /// Hold the angle that the motor has when the pilot takes the stick, with a soft spring
         #[arg(long)]
         hold: bool,
     },
@@ -122,10 +122,10 @@ struct Wheel {
     /// Distance between the centres of the wheels
     #[arg(long)]
     track_mm: Option<u16>,
-    /// Turns of the motor for one turn of the wheel, such as 19.2
+    /// Motor turns for each turn of the wheel, such as 19.2
     #[arg(long)]
     gear_ratio: Option<f64>,
-    /// The left motor's positive direction drives backwards
+    /// Whether the left motor's positive direction drives backwards
     #[arg(long)]
     left_reversed: Option<bool>,
     #[arg(long)]
@@ -285,7 +285,7 @@ impl Wheel {
     }
 }
 
-/// Returns when the robot may be switched off.
+/// Waits until the robot may be switched off.
 pub(super) fn confirm_saved(client: &mut TuningClient) -> Result<()> {
     begin!("saving … ")?;
     let done = tuning::wait_until_saved(client, SavePatience::default());
@@ -306,7 +306,7 @@ fn shown(named: Named, value: f32) -> String {
     text.trim_end().to_owned()
 }
 
-/// Cuts a range short for one line of a list.
+/// Shortens a range to fit on one line of a list.
 fn short(range: String) -> String {
     const MOST: usize = 60;
     match range.char_indices().nth(MOST) {

@@ -1,4 +1,4 @@
-//! What the robot listens to, and how its pilot is asked for it.
+//! The controls of a transmitter, and the words that ask the pilot to move them.
 
 /// A stick's axis or a switch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,7 +14,7 @@ pub enum Control {
 
 impl Control {
     pub const STICKS: [Self; 4] = [Self::Drive, Self::Steering, Self::Select, Self::DeadMan];
-    /// The e-stop is last: it stays thrown while the others are moved.
+    /// The switches in the order of the requests. The e-stop is last and stays thrown while the others are moved.
     pub const SWITCHES: [Self; 3] = [Self::Mode, Self::Enable, Self::EStop];
 
     /// Returns the name that settings use for it.
@@ -30,7 +30,7 @@ impl Control {
         }
     }
 
-    /// What the pilot does.
+    /// Says what the pilot must do.
     pub fn request(self) -> &'static str {
         match self {
             Self::Drive => "Push the stick that shall drive fully forward and hold it there.",
@@ -53,7 +53,7 @@ impl Control {
         }
     }
 
-    /// What the end is that the settings call high.
+    /// Describes the end that the settings call high.
     pub fn high_end(self) -> &'static str {
         match self {
             Self::Steering | Self::DeadMan => "right",
@@ -64,18 +64,18 @@ impl Control {
         }
     }
 
-    /// The robot can be armed without it.
+    /// True if the robot can be armed without it.
     pub fn may_be_missing(self) -> bool {
         matches!(self, Self::Select | Self::DeadMan | Self::Mode)
     }
 
-    /// Asked for, it goes towards its high end. The e-stop is thrown before.
+    /// True if the requested movement goes towards the high end. It does not for the e-stop, which was thrown before.
     pub(super) fn goes_up(self) -> bool {
         self != Self::EStop
     }
 
-    /// Fewer counts are no movement on purpose. A switch goes from end to end, and the robot wants 200 counts on each
-    /// side of its middle.
+    /// Returns the fewest counts of an intended movement. A switch goes from end to end, and the robot needs 200 counts
+    /// on each side of its middle.
     pub(super) fn least_move(self) -> u16 {
         if Self::STICKS.contains(&self) {
             300

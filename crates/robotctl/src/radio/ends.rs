@@ -1,4 +1,4 @@
-//! How far sticks and switches go.
+//! Finds the ends of sticks and switches.
 
 use robot_app::domain::RemoteChannel;
 
@@ -7,14 +7,14 @@ use super::{
     movement::{MoveError, sorted},
 };
 
-/// An end counts once as many frames show it: SBUS has no checksum, so a single one may be wrong.
+/// Number of frames that must show an end. SBUS has no checksum, so a single frame may be wrong.
 const FRAMES_AT_AN_END: usize = 3;
-/// The end at which the stick was held must be reached again, but for this.
+/// A stick must come as near as this to the end at which it was held before.
 const MOST_MISSED: u16 = 60;
 /// Least distance of a stick's end from its centre.
 const LEAST_SPAN: u16 = 300;
 
-/// A stick by its ends in `frames`, in which it went round all of them.
+/// Returns the settings of a stick. It went to all its ends in `frames`.
 pub fn stick(moved: &Moved, frames: &[Frame]) -> Result<RemoteChannel, MoveError> {
     let counts = sorted(frames, moved.index);
     let (centre, held) = (moved.from, moved.to);
@@ -38,7 +38,7 @@ pub fn stick(moved: &Moved, frames: &[Frame]) -> Result<RemoteChannel, MoveError
     Ok(channel(moved, low, centre, high))
 }
 
-/// A switch, which has been at both of its ends.
+/// Returns the settings of a switch, which was at both of its ends.
 pub(super) fn switch(moved: &Moved) -> RemoteChannel {
     let (low, high) = (moved.from.min(moved.to), moved.from.max(moved.to));
     channel(moved, low, low.midpoint(high), high)

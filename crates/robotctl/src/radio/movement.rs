@@ -1,18 +1,18 @@
-//! Two positions of the transmitter → the channel that moved between them.
+//! Finds the channel that moved between two positions of the transmitter.
 
 use std::array;
 
 use super::{Control, Found};
 
-/// Counts of all channels as on the wire, 0 … 2047.
+/// Counts of all channels as on the wire, from 0 to 2047.
 pub type Frame = [u16; 16];
 
-/// While one control is held at its end, no other channel may move by as much.
+/// While one control is held at its end, any other channel must move by less than this.
 const MOST_BESIDE: u16 = 150;
-/// A control that is held goes to and fro by less.
+/// A control that is held varies by less than this.
 const MOST_SPREAD: u16 = 60;
 
-/// Where the channels stood for a while.
+/// The channels in a position that was held for a while.
 #[derive(Clone, Copy, Debug)]
 pub struct Still {
     pub median: Frame,
@@ -20,7 +20,7 @@ pub struct Still {
 }
 
 impl Still {
-    /// `None` without a frame.
+    /// Returns `None` if there is no frame.
     pub fn of(frames: &[Frame]) -> Option<Self> {
         let sorted = |index| sorted(frames, index);
         let middle = frames.len() / 2;
@@ -33,7 +33,7 @@ impl Still {
         })
     }
 
-    /// All controls are again where they were.
+    /// Fails unless all controls are where they were.
     pub fn check_back(&self, now: &Self) -> Result<(), MoveError> {
         let mut moved = (0..16).map(|index| now.median[index].abs_diff(self.median[index]));
         match moved.position(|counts| counts >= MOST_BESIDE) {
@@ -43,18 +43,18 @@ impl Still {
     }
 }
 
-/// Counts of one channel, lowest first.
+/// Returns the counts of one channel, lowest first.
 pub(super) fn sorted(frames: &[Frame], index: usize) -> Vec<u16> {
     let mut counts: Vec<u16> = frames.iter().map(|frame| frame[index]).collect();
     counts.sort_unstable();
     counts
 }
 
-/// A control that went from rest to where the pilot was asked to put it.
+/// A channel that moved from rest to where the pilot was asked to put its control.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Moved {
     pub control: Control,
-    /// 0 … 15.
+    /// Index of the channel, from 0 to 15.
     pub index: usize,
     pub from: u16,
     pub to: u16,
@@ -115,7 +115,7 @@ pub enum MoveError {
 }
 
 impl Moved {
-    /// The only channel that moved from `rest`.
+    /// Finds the only channel that moved from `rest`.
     pub fn find(
         control: Control,
         rest: &Still,
@@ -160,7 +160,7 @@ impl Moved {
         })
     }
 
-    /// Its high end has the lower count.
+    /// True if the high end has the lower count.
     pub fn is_reversed(&self) -> bool {
         (self.to > self.from) != self.control.goes_up()
     }

@@ -1,4 +1,4 @@
-//! What was found → settings of the robot.
+//! Converts the controls that were found into settings of the robot, and writes them.
 
 use robot_app::domain::{NO_CHANNEL, RemoteChannel};
 
@@ -9,10 +9,10 @@ use crate::{
     tuning::{self, ApplyError, TuningClient, TuningError},
 };
 
-/// Without this one the robot cannot be armed.
+/// Setting for the channel of the enable switch. Without this channel the robot cannot be armed.
 pub const ENABLE_CHANNEL: &str = "radio.enable-channel";
 
-/// A control and its channel; `None`: the transmitter has none for it.
+/// A control and its channel, which is `None` if the transmitter has no such control.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Found {
     pub control: Control,
@@ -32,7 +32,7 @@ impl Found {
         channel.is_some_and(|channel| channel.index as usize == index)
     }
 
-    /// Full names of settings and their values. A control without a channel keeps its ends.
+    /// Returns the full names of settings and their values. A control without a channel keeps its ends.
     pub fn settings(&self) -> Vec<(String, f32)> {
         let name = self.control.name();
         let index = self.channel.map_or(NO_CHANNEL, |channel| channel.index);
@@ -50,7 +50,7 @@ impl Found {
         exact.map(|(name, value)| (name, value as f32)).collect()
     }
 
-    /// Such as `drive: channel 1, 172 … 992 … 1811; forward is the high count`.
+    /// Returns words such as `drive: channel 1, 172 … 992 … 1811; forward is the high count`.
     pub fn in_words(&self) -> String {
         let name = self.control.name();
         let Some(channel) = self.channel else {
@@ -71,8 +71,8 @@ impl Found {
     }
 }
 
-/// Settings that the robot has otherwise: which, its value, the one that was found. Its enable channel may have been taken
-/// away; it was `enable_was`.
+/// Returns the settings that differ: the setting, the robot's value, and the value that was found. The robot's enable
+/// channel was `enable_was` before this tool removed it.
 pub fn differing(
     client: &mut TuningClient,
     found: &[Found],
@@ -104,8 +104,9 @@ pub enum WriteError {
     NotEnabled { source: TuningError },
 }
 
-/// The robot has no enable switch while its channels change: half a mapping could read it as on, and it would neither take
-/// further settings nor be safe. A break leaves a robot that cannot be armed.
+/// Writes the settings that differ. The robot has no enable switch while its channels change, because it could read
+/// half a mapping as enabled. That would not be safe, and it would refuse further settings. An interruption leaves a
+/// robot that cannot be armed.
 pub fn write(client: &mut TuningClient, found: &[Found]) -> Result<(), WriteError> {
     let enable = settings::find(ENABLE_CHANNEL)?;
     let mut enable_index = client.read(enable)?;

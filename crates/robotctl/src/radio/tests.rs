@@ -17,7 +17,8 @@ use crate::{
     },
 };
 
-/// FrSky: sticks in the middle, enable off (channel 4), mode manual (5), e-stop thrown (6), no more channels.
+/// A FrSky transmitter: sticks in the middle, enable off (channel 4), mode manual (5), e-stop thrown (6), no more
+/// channels.
 const REST: Frame = [
     992, 992, 992, 992, 172, 172, 1811, 992, 0, 0, 0, 0, 0, 0, 0, 0,
 ];
@@ -48,7 +49,7 @@ fn channel(index: u32, low: u32, centre: u32, high: u32, reversed: u32) -> Remot
     }
 }
 
-/// Held for five frames at each end of the channel.
+/// Returns frames in which the stick is held for five frames at each end of the channel.
 fn round(index: usize, low: u16, high: u16) -> Vec<Frame> {
     let mut frames = vec![REST; 5];
     frames.extend([with(&[(index, low)]); 5]);
@@ -56,7 +57,8 @@ fn round(index: usize, low: u16, high: u16) -> Vec<Frame> {
     frames
 }
 
-/// By docs/driving.md: drive forward, steering right, selector up, dead-man right, enable on, mode custom and e-stop stop are +1.
+/// In docs/driving.md drive forward, steering right, selector up, dead-man right, enable on, mode custom and e-stop
+/// stop are +1.
 #[test]
 fn each_control_at_its_high_end_is_at_plus_one_for_the_robot() {
     for (control, index) in Control::STICKS.into_iter().zip([1, 0, 2, 3]) {
@@ -188,7 +190,7 @@ fn a_stick_that_was_not_moved_to_both_ends_is_named() {
     assert!(stick(&weak, &round(1, 693, 1292)).is_err());
 }
 
-/// A transmitter of another order: throttle first, the two sticks' channels swapped, no select.
+/// A transmitter with another order: throttle first, the two sticks' channels swapped, no selector.
 fn found() -> Vec<Found> {
     let with = |control, channel| Found { control, channel };
     vec![
@@ -224,7 +226,7 @@ fn what_was_found_is_said_and_written() {
     assert_eq!(radio.e_stop, channel(4, 172, 991, 1811, 0));
 }
 
-/// A robot that hears the transmitter at rest, and takes settings only while it reads its enable switch as off.
+/// A robot that receives a transmitter at rest, and takes settings only while it reads its enable switch as off.
 struct AtRest(Bus, Frame);
 
 impl CanLink for AtRest {
@@ -245,7 +247,7 @@ impl CanLink for AtRest {
     }
 }
 
-/// Enable is on channel 5 and off at 1811: read with the old direction it would be on, and shut the robot's ears.
+/// Enable is on channel 5 and off at 1811. With the old direction it would be on, and the robot would take no settings.
 #[test]
 fn a_reversed_enable_switch_does_not_lock_its_own_settings_out() {
     let (bus, _) = robot();
@@ -277,7 +279,7 @@ fn a_robot_with_half_a_mapping_has_no_enable_switch() {
     assert_eq!(index(&bus.0.borrow()), 5);
 }
 
-/// Of a robot in bring-up's read-only step that hears a frame of these channels, but for `change`.
+/// Returns the error for a robot in bring-up's read-only step that receives a frame of these channels, after `change`.
 fn watched(raw: Frame, change: fn(&mut DiagnosticsSnapshot)) -> Result<Frame, WatchError> {
     let mut client = client(|diagnostics| {
         diagnostics.bring_up.step = BringUpStep::ReadOnly;

@@ -1,12 +1,12 @@
-//! The channels of a robot that cannot be armed.
+//! Reads the radio channels of a robot that cannot be armed.
 
 use super::{Frame, Still};
 use crate::tuning::{LiveReading, TuningClient, TuningError, live_page};
 use robot_app::tuning::LiveValue;
 
-/// Frames of a position that is held.
+/// Number of frames from a position that is held.
 const READINGS: usize = 15;
-/// As the robot itself takes its radio for lost.
+/// Largest age of a frame. Then the robot itself takes its radio as lost.
 const MOST_AGE_MS: f64 = 100.0;
 /// DBUS has four sticks and a wheel.
 const DBUS_CHANNELS: usize = 5;
@@ -33,19 +33,19 @@ pub struct Watch<'c> {
 }
 
 impl<'c> Watch<'c> {
-    /// Bring-up must be in its read-only step, and stay there.
+    /// Watches a robot whose bring-up is in its read-only step and stays there.
     pub fn new(client: &'c mut TuningClient) -> Self {
         Self { client }
     }
 
-    /// A position that the pilot holds.
+    /// Reads a position that the pilot holds.
     pub fn still(&mut self) -> Result<Still, WatchError> {
         let frames = (0..READINGS).map(|_| self.frame());
         let frames: Vec<Frame> = frames.collect::<Result<_, _>>()?;
         Still::of(&frames).ok_or(WatchError::NotHeard)
     }
 
-    /// All channels, read within some ten milliseconds.
+    /// Reads all channels within about ten milliseconds.
     pub fn frame(&mut self) -> Result<Frame, WatchError> {
         self.check_disarmed()?;
         if self.page("bring-up", 0)?.choice("step") != "read-only" {

@@ -1,4 +1,4 @@
-//! Received samples → rows of a table.
+//! Arranges samples as they arrive into rows of a table.
 
 use nalgebra::Vector3;
 use robot_app::tuning::{RecordedSample, RecordedSensor};
@@ -6,7 +6,7 @@ use robot_app::tuning::{RecordedSample, RecordedSensor};
 use super::RecordError;
 use crate::calibration::{accel::AccelCorrection, mag::MagCorrection};
 
-/// Unit of the robot's time on the wire.
+/// Units of the robot's time on the wire per second.
 const UNITS_A_SECOND: f64 = 10_000.0;
 
 const HEADING: &str = "\
@@ -21,7 +21,7 @@ type Vector = Vector3<f64>;
 enum Measured {
     Imu {
         accel_mps2: Vector,
-        /// Missing if its frame was lost.
+        /// `None` if its frame was lost.
         gyro_dps: Option<Vector>,
     },
     Mag(Vector),
@@ -30,9 +30,9 @@ enum Measured {
 /// Recorded samples in the order of their times.
 #[derive(Clone, Debug, Default)]
 pub struct Samples {
-    /// The low 16 bits of each time are those received.
+    /// Rows with their times. The low 16 bits of a time are those on the wire.
     rows: Vec<(i64, Measured)>,
-    /// Time of the sample that was received last.
+    /// Time of the sample that arrived last.
     last_time: Option<i64>,
 }
 
@@ -59,7 +59,7 @@ impl Samples {
         self.rows.insert(place, (time, measured));
     }
 
-    /// Adds the gyro's half of a sample, which follows the accelerometer's half.
+    /// Adds the gyro's half of a sample, which follows the accelerometer's.
     fn add_gyro(&mut self, time: i64, value: Vector) {
         let of_this_time = self.rows.iter_mut().rev();
         for (_, measured) in of_this_time.take_while(|(other, _)| *other >= time) {
@@ -69,7 +69,7 @@ impl Samples {
         }
     }
 
-    /// Unwraps a received time of 16 bits to the time nearest to the last one.
+    /// Returns the full time of which the wire has 16 bits. It is the one nearest to the last sample's.
     fn unwrapped(&mut self, time: u16) -> i64 {
         let time = match self.last_time {
             None => time.into(),
@@ -79,7 +79,7 @@ impl Samples {
         time
     }
 
-    /// Samples of the IMU and of the magnetometer.
+    /// Returns the number of samples of the IMU and of the magnetometer.
     pub fn counts(&self) -> (u32, u32) {
         let is_imu = |(_, measured): &&(i64, Measured)| matches!(measured, Measured::Imu { .. });
         let imu = self.rows.iter().filter(is_imu).count();
@@ -91,7 +91,7 @@ impl Samples {
         self.seconds(last)
     }
 
-    /// Longest time without any sample: the robot stands still while it erases flash.
+    /// Returns the longest time without a sample. The robot sends nothing while it erases flash.
     pub fn longest_gap_s(&self) -> f64 {
         let gaps = self.rows.windows(2).map(|pair| pair[1].0 - pair[0].0);
         gaps.max().unwrap_or(0) as f64 / UNITS_A_SECOND
@@ -119,8 +119,8 @@ impl Samples {
         Ok(())
     }
 
-    /// Returns the table that `robotctl calibrate` and spreadsheets read. Each sample is a row; values that it does not have
-    /// are empty.
+    /// Returns the table that `robotctl calibrate` and spreadsheets read. Each sample is a row, and values that it does
+    /// not have are empty.
     pub fn table(&self) -> String {
         let mut table = String::from(HEADING);
         for (time, measured) in &self.rows {

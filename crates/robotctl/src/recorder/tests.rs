@@ -25,7 +25,7 @@ fn sample(sensor: RecordedSensor, time: u16, x: f32) -> RecordedSample {
     }
 }
 
-/// Times 65,500, 14 and 64 of 16 bits are 0, 5 and 10 ms; the magnetometer's came late, for 2 ms.
+/// The 16-bit times 65,500, 14 and 64 are 0, 5 and 10 ms. The magnetometer's sample for 2 ms comes late.
 #[test]
 fn rows_are_in_order_whatever_order_they_came_in() {
     let mut samples = Samples::default();
@@ -55,7 +55,7 @@ fn rows_are_in_order_whatever_order_they_came_in() {
     );
 }
 
-/// Lets the robot send `each_look` of its 200 samples a second between two looks; every `lose`th does not arrive.
+/// Makes the robot send `each_look` of its 200 samples per second between two requests. Every `lose`th does not arrive.
 fn send(bus: &Bus, seconds: u64, lose: usize) -> impl FnMut() {
     let bus = bus.clone();
     let mut sent = 0_usize;

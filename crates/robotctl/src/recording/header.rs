@@ -1,4 +1,4 @@
-//! The first line of a table: its separator, and the columns that are read.
+//! Parses the first line of a table: its separator, and the columns that are read.
 
 use super::{sample::Sensor, units::Quantity};
 
@@ -152,8 +152,8 @@ fn column(
     Ok(None)
 }
 
-/// Splits `ax`, `Acc_X`, `t_ms`, `ax [g]` or `time (s)` into the name, in lower case without `_`, and the unit if there is
-/// one.
+/// Splits `ax`, `Acc_X`, `t_ms`, `ax [g]` or `time (s)` into the name, in lower case without `_`, and the unit if there
+/// is one.
 fn name_and_unit(text: &str, quantity: Quantity) -> (String, Option<String>) {
     let text = text.to_lowercase();
     let bare = |name: &str| name.replace(['_', ' ', '.'], "");

@@ -1,4 +1,4 @@
-//! The firmware's diagnostics in a `run.mcap`: topic `/diag`, JSON.
+//! Reads samples from the firmware's diagnostics in a `run.mcap`, which are JSON in the topic `/diag`.
 
 use mcap::MessageStream;
 use nalgebra::Vector3;
@@ -18,7 +18,7 @@ pub enum McapError {
 const TOPIC: &str = "/diag";
 const NS_A_SECOND: f64 = 1e9;
 
-/// Returns each new measurement once: the recorder repeats the last one until the next comes.
+/// Returns each new measurement once, because the recorder repeats the last one until the next comes.
 pub(super) fn samples(bytes: &[u8], sensor: Sensor) -> Result<Vec<Sample>, McapError> {
     let mut samples: Vec<Sample> = Vec::new();
     for message in MessageStream::new(bytes)? {
@@ -54,7 +54,7 @@ mod tests {
 
     use super::*;
 
-    /// A recording of (topic, time in ms, JSON), written by the format's own library.
+    /// Returns a recording of messages (topic, time in ms, JSON), which the format's own library writes.
     fn recording(messages: &[(&str, u64, &str)]) -> Vec<u8> {
         let mut bytes = Cursor::new(Vec::new());
         let options = WriteOptions::new().compression(None);

@@ -1,13 +1,13 @@
-//! Samples of one sensor.
+//! A sample of one sensor.
 
 use nalgebra::Vector3;
 
 /// The sensors that can be calibrated from a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sensor {
-    /// m/s², specific force in the body frame (x forward, y left, z up).
+    /// Specific force in m/s² in the body frame (x forward, y left, z up).
     Accelerometer,
-    /// µT, body frame.
+    /// Magnetic field in µT in the body frame.
     Magnetometer,
 }
 
@@ -39,7 +39,7 @@ impl Sensor {
     }
 }
 
-/// One measurement; finite.
+/// One measurement. Its numbers are finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
     pub t_s: f64,

@@ -1,5 +1,5 @@
-//! Tables of values under a header line that names the columns: time and three axes. Other columns are ignored, as are
-//! empty lines, lines that start with `#`, and rows that have no value of the sensor.
+//! Reads tables of values under a header line that names the columns: time and three axes. Other columns are ignored,
+//! as are empty lines, lines that start with `#`, and rows that have no value of the sensor.
 //!
 //! | what | may be |
 //! |---|---|
@@ -35,12 +35,12 @@ pub enum RowError {
 
 #[derive(Debug, PartialEq)]
 pub(super) struct TableError {
-    /// Counted from 1.
+    /// Number of the line, counted from 1.
     pub line: usize,
     pub why: RowError,
 }
 
-/// The samples, in s and the sensor's unit, and notes about guessed units.
+/// The samples of a table, in s and the sensor's unit, and notes about guessed units.
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct Table {
     pub samples: Vec<Sample>,
@@ -82,7 +82,7 @@ pub(super) fn read(bytes: &[u8], sensor: Sensor) -> Result<Table, TableError> {
     Ok(Table { samples, notes })
 }
 
-/// Parses a row; `None` if it has no value of the sensor.
+/// Parses a row. It returns `None` if the row has no value of the sensor.
 fn sample(header: &Header, row: &str) -> Result<Option<Sample>, RowError> {
     let fields = header.fields(row)?;
     let field = |place: usize| fields.get(place).copied().unwrap_or_default();

@@ -1,10 +1,10 @@
-//! Units of a table's columns: named by the header, or else guessed from the numbers.
+//! Finds the units of a table's columns, which the header names or the numbers show.
 
 use super::sample::Sensor;
 use crate::statistics::median;
 
 const GRAVITY_MPS2: f64 = 9.806_65;
-/// Fewer rows than this are no basis for a guess.
+/// Fewest rows from which a unit is guessed.
 const LEAST_ROWS: usize = 20;
 
 /// The unit of a column cannot be guessed.
@@ -26,7 +26,7 @@ pub enum UnitError {
     UnlikelyGravity(f64),
 }
 
-/// What a column measures.
+/// The quantity in a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Quantity {
     Time,
@@ -101,7 +101,7 @@ impl Guess {
     }
 }
 
-/// Guesses the unit of time: nobody samples a sensor faster than 3 kHz or slower than 4 Hz to calibrate it.
+/// Guesses the unit of time. A recording for calibration has between 4 Hz and 3 kHz.
 pub(super) fn of_time(times: &[f64]) -> Result<Guess, UnitError> {
     if times.len() < LEAST_ROWS {
         return Ok(Guess::AS_EXPECTED);
@@ -118,8 +118,8 @@ pub(super) fn of_time(times: &[f64]) -> Result<Guess, UnitError> {
     })
 }
 
-/// Guesses the unit of a sensor: a robot that is mostly still shows gravity, and a magnetometer the earth's field and some
-/// iron.
+/// Guesses the unit of a sensor. An accelerometer that is mostly still shows gravity, and a magnetometer shows the
+/// earth's field and some iron.
 pub(super) fn of_vectors(sensor: Sensor, strengths: &[f64]) -> Result<Guess, UnitError> {
     if strengths.len() < LEAST_ROWS {
         return Ok(Guess::AS_EXPECTED);

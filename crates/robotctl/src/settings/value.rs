@@ -1,4 +1,4 @@
-//! A setting's value in words.
+//! Converts a setting's value from and into words.
 
 use robot_app::tuning::ParameterKind;
 
@@ -17,7 +17,7 @@ pub enum ValueError {
 }
 
 impl Named {
-    /// A number, or the name of a choice. Whether the setting may take the number is not asked.
+    /// Parses a number, or the name of a choice. It does not check whether the setting may have the number.
     pub fn parse(&self, text: &str) -> Result<f32, ValueError> {
         if let Ok(number) = text.parse::<f32>() {
             return Ok(number);
@@ -34,7 +34,7 @@ impl Named {
         Ok(place as f32)
     }
 
-    /// The name of a choice, else the number.
+    /// Returns the name of a choice, or else the number.
     pub fn in_words(&self, value: f32) -> String {
         let name = match self.parameter.kind {
             ParameterKind::Choice(names) if value >= 0.0 && value.fract() == 0.0 => {
@@ -50,7 +50,7 @@ impl Named {
 mod tests {
     use crate::settings::find;
 
-    /// By docs/tuning.md.
+    /// The numbers are from docs/tuning.md.
     #[test]
     fn a_choice_is_told_by_name_or_number() {
         let board = find("mounting.board").unwrap();

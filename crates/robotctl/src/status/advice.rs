@@ -1,6 +1,6 @@
-//! What to do about each blocker and flag, by the firmware's own names.
+//! Says what to do about each blocker and flag, by the firmware's names.
 
-/// `None` for a name that this tool does not know: a newer firmware's.
+/// Returns `None` for a name that this tool does not know because the firmware is newer.
 pub(super) fn for_blocker(name: &str) -> Option<&'static str> {
     Some(match name {
         "remote-not-fresh" => {
@@ -82,7 +82,7 @@ mod tests {
 
     use super::*;
 
-    /// A blocker without advice leaves the user alone: write a line above.
+    /// If this fails, a blocker has no advice: add a line above.
     #[test]
     fn there_is_advice_for_everything_the_firmware_names() {
         for bit in 0..32 {

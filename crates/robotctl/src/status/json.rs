@@ -1,4 +1,5 @@
-//! The status for scripts: a table a page, by the firmware's own names. What the robot does not know is `null`.
+//! Writes the status for scripts: a table for each page, by the firmware's names. A value that the robot does not know
+//! is `null`.
 
 use robot_app::tuning::LiveValue;
 use serde_json::{Map, Value, json};
@@ -7,8 +8,8 @@ use super::Status;
 use crate::tuning::LiveReading;
 
 impl Status {
-    /// `{"power": {"battery-v": 24.1}, "joint": {"left-front": {"state": "disabled", …}, …}, …}`; what stands for several
-    /// parts has a table for each.
+    /// `{"power": {"battery-v": 24.1}, "joint": {"left-front": {"state": "disabled", …}, …}, …}`; what stands for
+    /// several parts has a table for each.
     pub fn to_json(&self) -> Value {
         let mut pages = Map::new();
         for reading in &self.pages {

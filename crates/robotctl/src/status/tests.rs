@@ -1,4 +1,4 @@
-//! The words and the JSON of a robot made up here.
+//! Checks the words and the JSON for states that the tests make up.
 
 use robot_app::{
     diagnostics::DiagnosticsSnapshot,

@@ -1,4 +1,4 @@
-//! The status for people, the most urgent first.
+//! Writes the status for people, the most urgent first.
 
 use std::fmt::{self, Display, Formatter};
 
@@ -7,7 +7,7 @@ use robot_app::tuning::{JOINTS, LiveValue, WHEELS};
 use super::{Status, advice};
 use crate::tuning::LiveReading;
 
-/// Pages that have words of their own here; any other is listed as it is.
+/// Pages that have their own words here. Any other page is listed with all its values.
 const PUT_INTO_WORDS: [&str; 21] = [
     "version",
     "run",
@@ -31,7 +31,7 @@ const PUT_INTO_WORDS: [&str; 21] = [
     "refused",
     "strangers",
 ];
-/// Pages for whoever looks for something; `--json` has them.
+/// Pages that are left out here. `--json` has them.
 const LEFT_OUT: [&str; 15] = [
     "seen",
     "radio-frames",
@@ -307,7 +307,7 @@ impl Status {
         }
     }
 
-    /// Pages that a newer firmware table has and this text does not know.
+    /// Lists the pages that are in the firmware's table and have no words here.
     fn others(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let known = |name: &str| PUT_INTO_WORDS.contains(&name) || LEFT_OUT.contains(&name);
         let others = self.pages.iter();
@@ -320,7 +320,7 @@ impl Status {
     }
 }
 
-/// A motor that does not answer may be talking under another number.
+/// Names the identifiers that were received instead, because a motor that does not answer may have another one.
 fn stranger(f: &mut Formatter<'_>, strangers: &LiveReading) -> fmt::Result {
     let (last, esc) = (whole(strangers, "last-id"), whole(strangers, "esc-id"));
     if last != 0 {
@@ -333,7 +333,7 @@ fn stranger(f: &mut Formatter<'_>, strangers: &LiveReading) -> fmt::Result {
     Ok(())
 }
 
-/// Describes sectors that were never a store.
+/// Describes sectors that were never part of a store.
 pub fn strange_sectors(count: u32) -> String {
     format!(
         "{count} flash sectors for settings hold something else, such as an older firmware; they are erased when their turn \
@@ -354,7 +354,7 @@ fn list(
     Ok(())
 }
 
-/// All fields of the page, as they are.
+/// Lists all fields of the page without words of their own.
 fn rest(f: &mut Formatter<'_>, reading: &LiveReading) -> fmt::Result {
     for (field, value) in reading.values() {
         match value {

@@ -160,12 +160,12 @@ impl TuningClient {
         self.exchange(request, what).map(drop)
     }
 
-    /// Returns `None` if the firmware is too old to know: then it saves nothing.
+    /// Reads the report on saved settings. It is `None` if the firmware is too old: then it saves nothing.
     pub fn store(&mut self) -> Result<Option<StoreReport>, TuningError> {
         self.ask_newer(Request::ReadStore, StoreReport::from_bytes)
     }
 
-    /// Returns `None` if the firmware is too old to know.
+    /// Reads the report on what was found in flash at boot. It is `None` if the firmware is too old.
     pub fn boot_findings(&mut self) -> Result<Option<BootFindings>, TuningError> {
         self.ask_newer(Request::ReadFindings, BootFindings::from_bytes)
     }

@@ -100,7 +100,7 @@ impl LiveReading {
         self.set(field).iter().any(|name| name == member)
     }
 
-    /// Returns the whole page as JSON.
+    /// Returns all values of the page with their names.
     pub fn values(&self) -> impl Iterator<Item = (&'static str, LiveValue)> {
         let fields = self.page.unpack(self.bytes);
         fields.map(|(field, value)| (field.name, value))

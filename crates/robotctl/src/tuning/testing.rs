@@ -36,7 +36,7 @@ pub(crate) struct Robot {
 }
 
 impl Robot {
-    /// Returns a robot whose changes are saved after some reads of the store's state.
+    /// Counts the reads of the store's state, and saves everything after the last one.
     fn look(&mut self, frame: &CanFrame) {
         if frame.payload().first() != Some(&opcode::READ_STORE) {
             return;

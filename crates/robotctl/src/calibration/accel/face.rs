@@ -4,10 +4,10 @@ use nalgebra::Vector3;
 
 use super::StillWindow;
 
-/// Share of the measurement that must lie along the axis: within 30° of it.
+/// Least share of the measurement along the axis, which means within 30° of it.
 const MIN_SHARE: f64 = 0.866;
 
-/// What points upwards; body frame x forward, y left, z up.
+/// The side that points upwards, in the body frame (x forward, y left, z up).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Face {
     Front,
@@ -28,7 +28,7 @@ impl Face {
         Self::Back,
     ];
 
-    /// The side the measured acceleration points at; `None` if the robot stood on an edge.
+    /// Returns the side that the measured acceleration points at, or `None` if the robot stood on an edge.
     pub fn up(mean_mps2: Vector3<f64>) -> Option<Self> {
         let direction = mean_mps2.normalize();
         let axis = direction.iamax();

@@ -1,11 +1,11 @@
-//! The correction that makes every still position 1 g.
+//! Fits the correction that makes every still position measure 1 g.
 
 use nalgebra::{SVector, Vector3};
 
 use super::{AccelCorrection, GRAVITY_MPS2, StillWindow, face};
 use crate::{calibration::least_squares, statistics::median};
 
-/// A position further off than this, and than four times what is usual here, is left out.
+/// A position is left out if its residual exceeds this and four times the usual residual.
 const OUTLIER_MPS2: f64 = 0.1;
 const OUTLIER_FACTOR: f64 = 4.0;
 
@@ -15,8 +15,8 @@ pub(super) struct Robust {
     pub rejected: Vec<StillWindow>,
 }
 
-/// Leaves out the worst position and fits again, as long as it contradicts the others and its side was recorded twice.
-/// `None` if the positions do not determine the correction.
+/// Fits the correction. While the worst position contradicts the others and its side was recorded twice, it is left out
+/// and the fit is repeated. The result is `None` if the positions do not determine the correction.
 pub(super) fn robust(windows: Vec<StillWindow>) -> Option<Robust> {
     let mut kept = windows;
     let mut rejected = Vec::new();
@@ -44,7 +44,7 @@ fn outlier(correction: &AccelCorrection, windows: &[StillWindow]) -> Option<usiz
         .max_by(|&a, &b| errors[a].total_cmp(&errors[b]))
 }
 
-/// True if all six sides remain without it.
+/// True if all six sides remain without this position.
 fn is_spare(windows: &[StillWindow], index: usize) -> bool {
     let mut others = windows.to_vec();
     others.remove(index);
@@ -61,7 +61,7 @@ fn least_squares(windows: &[StillWindow]) -> Option<AccelCorrection> {
     Some(correction(&found))
 }
 
-/// Residual |scale · (raw − bias)| − g and its derivatives.
+/// Returns the residual |scale · (raw − bias)| − g and its derivatives.
 fn equation(correction: &AccelCorrection, raw_mps2: Vector3<f64>) -> (f64, SVector<f64, 6>) {
     let corrected = correction.apply(raw_mps2);
     let size = corrected.norm();

@@ -1,21 +1,22 @@
-//! Pieces of a recording in which the robot was held still.
+//! Finds the pieces of a recording in which the robot was held still.
 
 use nalgebra::Vector3;
 
 use crate::{recording::Sample, statistics::mean};
 
-/// Shortest still position that counts, without the piece cut off at each end.
+/// Length of the shortest still position, without the piece that is cut off at each end.
 pub(super) const MIN_WINDOW_S: f64 = 1.0;
-/// Stillness is judged piece by piece.
+/// Length of a piece. Each piece is still or not.
 const PIECE_S: f64 = 0.2;
 const MIN_PIECE_SAMPLES: usize = 5;
 /// A longer pause in the samples ends a piece.
 const MAX_PAUSE_S: f64 = 0.1;
-/// Spread of each axis; the BMI088's own noise is 0.02 m/s² at 80 Hz bandwidth, a hand trembles with 0.2.
+/// Largest standard deviation of each axis. The BMI088's noise is 0.02 m/s² at 80 Hz bandwidth, and a trembling hand
+/// causes 0.2.
 const MAX_DEVIATION_MPS2: f64 = 0.08;
-/// From one piece to the next, and between any piece and the first of its window.
+/// Largest difference between one piece and the next, and between any piece and the first of its window.
 const MAX_DRIFT_MPS2: f64 = 0.08;
-/// Size of the mean; a steady push is no rest.
+/// Range for the size of the mean. A robot under a steady push is not at rest.
 const PLAUSIBLE_MPS2: std::ops::Range<f64> = 7.0..12.5;
 
 /// One still position.
@@ -24,11 +25,11 @@ pub struct StillWindow {
     pub start_s: f64,
     pub end_s: f64,
     pub samples: usize,
-    /// Raw.
+    /// Mean of the raw samples.
     pub mean_mps2: Vector3<f64>,
 }
 
-/// A fifth of a second.
+/// The samples of a fifth of a second.
 struct Piece<'a> {
     samples: &'a [Sample],
     mean_mps2: Vector3<f64>,
@@ -82,7 +83,7 @@ fn pieces(run: &[Sample]) -> Vec<Piece<'_>> {
     pieces
 }
 
-/// How many pieces from the first on belong to one position.
+/// Returns how many pieces from the first on belong to one position.
 fn still_length(pieces: &[Piece]) -> usize {
     let first = pieces[0].mean_mps2;
     let mut last = first;
@@ -97,7 +98,7 @@ fn still_length(pieces: &[Piece]) -> usize {
         .count()
 }
 
-/// Without its first and last piece, in which the hand was still there.
+/// Returns the position without its first and last piece, in which the hand may still touch the robot.
 fn window(pieces: &[Piece]) -> Option<StillWindow> {
     let [_, inner @ .., _] = pieces else {
         return None;

@@ -1,5 +1,5 @@
-//! Synthetic recordings: gravity seen from known attitudes through a sensor with known errors and the noise of the
-//! BMI088's datasheet.
+//! Tests with synthetic recordings: a sensor with known errors and the noise of the BMI088's datasheet measures gravity
+//! in known attitudes.
 
 use nalgebra::Vector3;
 use rand_distr::{Distribution, StandardNormal};
@@ -8,7 +8,7 @@ use rand_pcg::Pcg64;
 use super::*;
 
 const PERIOD_S: f64 = 0.005;
-/// 160 and 190 µg/√Hz through the 80 Hz filter (noise bandwidth 1.57 times that).
+/// The noise is 160 and 190 µg/√Hz through the 80 Hz filter, whose noise bandwidth is 1.57 times that.
 const NOISE_MPS2: [f64; 3] = [0.0176, 0.0176, 0.0209];
 const SIDES: [[f64; 3]; 6] = [
     [0.0, 0.0, 1.0],
@@ -18,7 +18,7 @@ const SIDES: [[f64; 3]; 6] = [
     [1.0, 0.0, 0.0],
     [-1.0, 0.0, 0.0],
 ];
-/// Robot leaned against something.
+/// Attitudes of a robot that leans against something.
 const SLANTED: [[f64; 3]; 4] = [
     [0.6, 0.0, 0.8],
     [0.0, -0.7, 0.7],
@@ -26,7 +26,7 @@ const SLANTED: [[f64; 3]; 4] = [
     [0.6, 0.6, 0.5],
 ];
 
-/// A sensor that says `true / gain + offset`, and the recording it makes.
+/// A sensor that measures `true / gain + offset`, and its recording.
 struct Bench {
     gain: Vector3<f64>,
     offset_mps2: Vector3<f64>,
@@ -56,7 +56,7 @@ impl Bench {
         self.samples.push(Sample { t_s, value });
     }
 
-    /// Still for `seconds`, pushed by `push_mps2` all the time, and then carried about.
+    /// Holds the robot still for `seconds` while `push_mps2` pushes it, and then carries it about.
     fn hold(&mut self, up: [f64; 3], seconds: f64, push_mps2: [f64; 3]) {
         let gravity = Vector3::from(up).normalize() * 9.806_65;
         for _ in 0..(seconds / PERIOD_S) as usize {
@@ -80,7 +80,7 @@ impl Bench {
     }
 }
 
-/// Noise over two seconds is 0.0015 m/s²; a few of them may add up.
+/// The noise over two seconds is 0.0015 m/s², and a few such errors may add up.
 fn assert_truth(fit: &AccelFit) {
     let correction = &fit.correction;
     let bias_error = correction.bias_mps2 - Vector3::new(0.18, -0.12, 0.19);

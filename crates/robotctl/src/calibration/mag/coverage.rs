@@ -1,18 +1,18 @@
-//! From which sides the field came, seen from the robot.
+//! Measures from which sides the field came, seen from the robot.
 
 use nalgebra::Vector3;
 
-/// Directions, evenly spread over the sphere.
+/// Number of directions, which are spread evenly over the sphere.
 const DIRECTIONS: usize = 64;
-/// A direction counts as seen if a sample lies within 20° of it.
+/// Cosine of the angle around a sample in which directions count as covered: 20°.
 const NEAR_COS: f64 = 0.94;
 
 /// How much of the sphere the samples cover.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coverage {
-    /// 0 … 1.
+    /// Share of the sphere, from 0 to 1.
     pub share: f64,
-    /// The direction that is furthest from any sample; body frame.
+    /// The direction that is furthest from any sample, in the body frame.
     pub widest_gap: Vector3<f64>,
 }
 
@@ -31,7 +31,7 @@ impl Coverage {
         }
     }
 
-    /// Such as `front left top`.
+    /// Describes the gap in words such as `front left top`.
     pub fn widest_gap_words(&self) -> String {
         let names = [("front", "back"), ("left", "right"), ("top", "bottom")];
         let words: Vec<&str> = self
@@ -45,7 +45,7 @@ impl Coverage {
     }
 }
 
-/// Fibonacci's spiral: equal steps of height and golden steps of longitude.
+/// Returns points on Fibonacci's spiral, which has equal steps of height and golden steps of longitude.
 fn spiral() -> impl Iterator<Item = Vector3<f64>> {
     let golden_rad = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
     (0..DIRECTIONS).map(move |index| {

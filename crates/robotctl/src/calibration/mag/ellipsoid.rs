@@ -1,18 +1,19 @@
-//! An ellipsoid through points by linear least squares: the start of the real fit.
+//! Fits an ellipsoid to points by linear least squares, as the start of the nonlinear fit.
 
 use nalgebra::{Matrix3, SMatrix, SVector, SymmetricEigen, Vector3};
 
-/// Shortest over longest half axis of anything that is taken for an ellipsoid; flatter is a disc, seen from one turn.
+/// Smallest ratio of the shortest to the longest semi-axis. Points from one turn form a disc, which is flatter.
 const MIN_AXIS_RATIO: f64 = 0.2;
 
-/// |shape · (point − centre)| = 1 on the surface; `shape` is symmetric and positive definite.
+/// The surface |shape · (point − centre)| = 1, where `shape` is symmetric and positive definite.
 pub(super) struct Ellipsoid {
     pub centre: Vector3<f64>,
     pub shape: Matrix3<f64>,
 }
 
 impl Ellipsoid {
-    /// x'Mx + 2n'x = 1 has nine unknowns in which it is linear. `None` if the points lie on no ellipsoid.
+    /// Solves x'Mx + 2n'x = 1, which is linear in its nine unknowns. It returns `None` if the points lie on no
+    /// ellipsoid.
     pub fn through(points: &[Vector3<f64>]) -> Option<Self> {
         // Around their mean and of size 1, so that squares and products are of one order.
         let mean = points.iter().sum::<Vector3<f64>>() / points.len().max(1) as f64;
@@ -64,7 +65,7 @@ fn quadric(points: impl Iterator<Item = Vector3<f64>>) -> Option<SVector<f64, 9>
 mod tests {
     use super::*;
 
-    /// Points of ((x − 1)/4)² + ((y + 2)/3)² + (z/2)² = 1, by its parameters.
+    /// Returns a point of ((x − 1)/4)² + ((y + 2)/3)² + (z/2)² = 1 by its two angles.
     #[test]
     fn exact_points_give_the_ellipsoid() {
         let mut points = Vec::new();

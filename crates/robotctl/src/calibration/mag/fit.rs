@@ -1,25 +1,25 @@
-//! The correction that makes the field equally strong in every sample.
+//! Fits the correction that makes the field equally strong in every sample.
 
 use nalgebra::{Matrix3, SVector, Vector3};
 
 use super::{MagCorrection, ellipsoid::Ellipsoid};
 use crate::{calibration::least_squares, statistics::median};
 
-/// Further from the middle of all samples than this many times the usual distance: a glitch that would pull the start.
+/// A sample this many times further from the centre than usual is a glitch, which would spoil the start of the fit.
 const FAR_FACTOR: f64 = 3.0;
-/// Relative error of the strength beyond this, and beyond five times what is usual here, leaves a sample out.
+/// A sample is left out if the relative error of its strength exceeds this and five times the usual error.
 const OUTLIER: f64 = 0.08;
 const OUTLIER_FACTOR: f64 = 5.0;
-/// Rounds of fitting and leaving out.
+/// Largest number of rounds of fitting and leaving out.
 const ROUNDS: usize = 10;
 
-/// `correction` makes the field of the `kept` samples 1 strong.
+/// A fit after which the field of the `kept` samples has the strength 1.
 pub(super) struct UnitFit {
     correction: MagCorrection,
     pub kept: Vec<Vector3<f64>>,
 }
 
-/// `None` if the samples do not determine the correction.
+/// Fits the samples that do not contradict the others. It returns `None` if they do not determine the correction.
 pub(super) fn robust(mut kept: Vec<Vector3<f64>>) -> Option<UnitFit> {
     drop_far(&mut kept);
     let start = Ellipsoid::through(&kept)?;
@@ -39,8 +39,8 @@ pub(super) fn robust(mut kept: Vec<Vector3<f64>>) -> Option<UnitFit> {
 }
 
 impl UnitFit {
-    /// With the field `strength_ut` strong; without one, the samples' mean strength stays: the correction then stretches
-    /// as much as it shrinks (determinant 1).
+    /// Returns the correction that makes the field `strength_ut` strong. Without a strength, the correction has the
+    /// determinant 1, so that it stretches as much as it shrinks and the mean strength stays.
     pub fn with_strength(&self, strength_ut: Option<f64>) -> (MagCorrection, f64) {
         let natural = 1.0 / self.correction.soft_iron.determinant().cbrt();
         let strength_ut = strength_ut.unwrap_or(natural);
@@ -65,7 +65,7 @@ fn drop_outliers(correction: &MagCorrection, samples: &mut Vec<Vector3<f64>>) {
     samples.retain(|raw| error(raw) <= OUTLIER.max(OUTLIER_FACTOR * usual));
 }
 
-/// The linear fit minimises a quantity without meaning and is bent by noise; this one minimises the strength's error.
+/// Minimises the error of the strength. The linear fit minimises an algebraic error, which noise biases.
 fn refine(start: &MagCorrection, samples: &[Vector3<f64>]) -> Option<MagCorrection> {
     let found = least_squares::minimise(parameters(start), |p| {
         let correction = correction(p);
@@ -74,7 +74,7 @@ fn refine(start: &MagCorrection, samples: &[Vector3<f64>]) -> Option<MagCorrecti
     Some(correction(&found))
 }
 
-/// Residual |soft_iron · (raw − bias)| − 1 and its derivatives.
+/// Returns the residual |soft_iron · (raw − bias)| − 1 and its derivatives.
 fn equation(correction: &MagCorrection, raw_ut: Vector3<f64>) -> (f64, SVector<f64, 9>) {
     let offset = raw_ut - correction.bias_ut;
     let corrected = correction.soft_iron * offset;

@@ -1,4 +1,4 @@
-//! Synthetic recordings: the earth's field seen from known attitudes through known iron, with the noise of the IST8310.
+//! Tests with synthetic recordings: the earth's field in known attitudes with known iron and the noise of the IST8310.
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3, Vector4};
 use rand_distr::{Distribution, StandardNormal};
@@ -6,13 +6,13 @@ use rand_pcg::Pcg64;
 
 use super::*;
 
-/// Central Europe: 20 µT north, 44 µT down (x east, y north, z up).
+/// The field of Central Europe: 20 µT north, 44 µT down (x east, y north, z up).
 const EARTH_UT: Vector3<f64> = Vector3::new(0.0, 20.0, -44.0);
 const STRENGTH_UT: f64 = 48.332_183_894_378_29;
 const NOISE_UT: f64 = 0.8;
 const COUNT_UT: f64 = 0.3;
 
-/// measured = iron · field + magnet.
+/// A sensor that measures `iron · field + magnet`.
 struct Bench {
     iron: Matrix3<f64>,
     magnet_ut: Vector3<f64>,
@@ -60,8 +60,9 @@ impl Bench {
     }
 }
 
-/// Soft iron of determinant 1 that undoes the bench's, and its magnet. 1,500 samples of 0.8 µT determine an offset to
-/// about 0.8 / √(1500 / 3) = 0.04 µT; four times that, and as much of 48 µT.
+/// Expects the soft iron of determinant 1 that undoes the bench's iron, and the bench's magnet. 1,500 samples of 0.8 µT
+/// noise determine an offset to about 0.8 / √(1500 / 3) = 0.04 µT. Four times that is allowed, and the same share of 48
+/// µT.
 fn assert_truth(fit: &MagFit) {
     let bench = Bench::new();
     let undo = bench.iron.try_inverse().unwrap() * bench.iron.determinant().cbrt();

@@ -23,7 +23,7 @@ fn a_wrong_line_is_named() {
     assert_eq!(error("t,ax,ay,az\n1,0,0,9\n0.5,0,0,9\n").0, 3);
 }
 
-/// How a program elsewhere might export the same recording: 40 rows at 50 Hz, flat on the table.
+/// A recording as another program might export it: 40 rows at 50 Hz, with the robot flat on the table.
 struct Export {
     header: &'static str,
     separator: &'static str,
@@ -65,7 +65,7 @@ impl Export {
         text
     }
 
-    /// The notes, if it is read as what it is.
+    /// Returns the notes, after a check that the samples are right.
     fn read(&self) -> Vec<String> {
         let table = read(self.text().as_bytes(), Sensor::Accelerometer).unwrap();
         assert_eq!(table.samples.len(), 40);
@@ -293,7 +293,7 @@ fn a_compass_in_other_units_is_known_by_the_earth_s_field() {
     }
 }
 
-/// As `robotctl record` writes it: the magnetometer measures less often.
+/// `robotctl record` writes such rows, because the magnetometer measures less often.
 #[test]
 fn rows_without_the_sensor_are_passed_over() {
     let text =
