@@ -5,13 +5,12 @@ use std::process::{Command, ExitCode};
 use crate::{
     emulator,
     firmware::{self, Parts},
-    host_program, job,
-    passed_on::PassedOn,
-    tool,
+    forwarded_args::ForwardedArgs,
+    host_program, job, tool,
 };
 
 /// Builds what is out of date and runs the bench on it. Its exit code becomes ours.
-pub fn run(args: &PassedOn) -> anyhow::Result<ExitCode> {
+pub fn run(args: &ForwardedArgs) -> anyhow::Result<ExitCode> {
     emulator::ensure_buildable()?;
     let (build, path) = host_program::build("robot-bench", "bench")?;
     let mut jobs = vec![build];

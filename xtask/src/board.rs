@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use anyhow::bail;
 
-use crate::{passed_on::PassedOn, prerequisites, tool};
+use crate::{forwarded_args::ForwardedArgs, prerequisites, tool};
 
 /// Options of `probe-rs run`. By default probe-rs halts the core at each reset and fault, before the image can tell
 /// the motors to stop. The board keeps that setting until it loses its power.
@@ -23,7 +23,7 @@ probe-rs is not here: it flashes the board and shows its log. To get it:
 Without a board: cargo xtask sim";
 
 /// Runs probe-rs with `args`, which are the image and more options. Its exit code becomes ours.
-pub fn run(args: &PassedOn) -> anyhow::Result<ExitCode> {
+pub fn run(args: &ForwardedArgs) -> anyhow::Result<ExitCode> {
     if !prerequisites::runs("probe-rs") {
         bail!(HOW_TO_GET_IT);
     }

@@ -6,8 +6,8 @@ use anyhow::ensure;
 
 use crate::{
     firmware::{self, Parts},
+    forwarded_args::ForwardedArgs,
     host_program, job,
-    passed_on::PassedOn,
     prerequisites::{self, EMULATOR},
     tool,
 };
@@ -27,7 +27,7 @@ pub fn ensure_buildable() -> anyhow::Result<()> {
 }
 
 /// Builds what is out of date and runs `program` on the image. Its exit code becomes ours.
-pub fn run(program: &str, args: &PassedOn) -> anyhow::Result<ExitCode> {
+pub fn run(program: &str, args: &ForwardedArgs) -> anyhow::Result<ExitCode> {
     ensure_buildable()?;
     let (build_emulator, path) = host_program::build("robot-sim", program)?;
     let mut jobs = vec![build_emulator];

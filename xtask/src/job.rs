@@ -1,6 +1,6 @@
 //! Builds that run side by side, shown as one status line instead of interleaved output.
 
-mod cure;
+mod missing_dependency;
 
 use std::{
     fs::{self, File},
@@ -76,8 +76,8 @@ fn end(running: &mut [Running]) {
 fn failure(job: &Running) -> anyhow::Result<anyhow::Error> {
     let output = fs::read_to_string(&job.log)?;
     let (name, log) = (&job.name, job.log.display());
-    Ok(if let Some(cure) = cure::of(&output) {
-        anyhow!("building {name} failed: {cure}\n(whole output: {log})")
+    Ok(if let Some(advice) = missing_dependency::advice(&output) {
+        anyhow!("building {name} failed: {advice}\n(whole output: {log})")
     } else {
         eprintln!("{}", tail(&output));
         anyhow!("building {name} failed (whole output: {log})")
@@ -177,7 +177,7 @@ mod tests {
     };
 
     #[test]
-    fn one_failure_ends_the_others_and_is_named() {
+    fn a_failed_job_stops_the_others_and_is_named() {
         let jobs = vec![
             job("test-endless", ENDLESS.0, ENDLESS.1),
             job("test-broken", "rustc", &["no-such-file.rs"]),

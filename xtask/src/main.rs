@@ -4,9 +4,9 @@ mod bench;
 mod board;
 mod emulator;
 mod firmware;
+mod forwarded_args;
 mod host_program;
 mod job;
-mod passed_on;
 mod prerequisites;
 mod replay;
 mod test;
@@ -17,7 +17,7 @@ mod workspace;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use passed_on::PassedOn;
+use forwarded_args::ForwardedArgs;
 
 /// Developer commands of the robot firmware. Each one installs what it lacks, or says what to install.
 #[derive(Parser)]
@@ -30,17 +30,17 @@ struct Args {
 #[derive(Subcommand)]
 enum Command {
     /// Build the release image, boot it in the emulated C board and run a scenario.
-    Sim(PassedOn),
+    Sim(ForwardedArgs),
     /// Run the image for simulated hours with random faults that a seed repeats.
-    Soak(PassedOn),
+    Soak(ForwardedArgs),
     /// Run the estimator over recorded trials and show its attitude at 1 kHz, errors and plots.
-    Replay(PassedOn),
+    Replay(ForwardedArgs),
     /// Prepare the recorded motion that tests and replay use, or say where to get it.
-    Data(PassedOn),
+    Data(ForwardedArgs),
     /// Measure what the release image and its estimator cost, and compare that with limits and other filters.
-    Bench(PassedOn),
+    Bench(ForwardedArgs),
     /// Flash an image with probe-rs, run it and show its log. `cargo run --release` calls this.
-    Run(PassedOn),
+    Run(ForwardedArgs),
     /// Run all checks of CI: format, clippy, host tests, loom, image checks, emulator tests.
     Test,
 }

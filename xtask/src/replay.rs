@@ -2,10 +2,10 @@
 
 use std::process::{Command, ExitCode};
 
-use crate::{host_program, job, passed_on::PassedOn, tool};
+use crate::{forwarded_args::ForwardedArgs, host_program, job, tool};
 
 /// Builds `program` if it is out of date and runs it. It needs neither image nor emulator. Its exit code becomes ours.
-pub fn run(program: &str, args: &PassedOn) -> anyhow::Result<ExitCode> {
+pub fn run(program: &str, args: &ForwardedArgs) -> anyhow::Result<ExitCode> {
     let (build, path) = host_program::build("robot-replay", program)?;
     job::run_all(vec![build])?;
     let mut command = Command::new(path);

@@ -18,7 +18,7 @@ type Names<'d> = Context<EndianSlice<'d, RunTimeEndian>>;
 
 /// What one function costs, without the functions that are inlined into it.
 #[derive(Clone, Debug, Default)]
-pub struct Share {
+pub struct FunctionCost {
     /// An inlined function stands with the function it is inlined into: `function < caller`.
     pub name: String,
     /// Instructions in a mean update with magnetometer.
@@ -31,7 +31,7 @@ pub struct Share {
 }
 
 /// Returns the share of each function, the largest first.
-pub fn shares(elf: &Path, runs: &[Measured]) -> anyhow::Result<Vec<Share>> {
+pub fn shares(elf: &Path, runs: &[Measured]) -> anyhow::Result<Vec<FunctionCost>> {
     let bytes = fs::read(elf)?;
     let file = File::parse(&*bytes)?;
     let sections = DwarfSections::load(|id: SectionId| -> Result<Cow<'_, [u8]>, object::Error> {
@@ -42,7 +42,7 @@ pub fn shares(elf: &Path, runs: &[Measured]) -> anyhow::Result<Vec<Share>> {
     let names =
         Context::from_dwarf(sections.borrow(|data| EndianSlice::new(data, RunTimeEndian::Little)))?;
     let code = Code::of(&file)?;
-    let mut shares: HashMap<String, Share> = HashMap::new();
+    let mut shares: HashMap<String, FunctionCost> = HashMap::new();
     let count =
         |of: fn(&Costs) -> &Vec<u32>| runs.iter().map(|run| of(&run.costs).len()).sum::<usize>();
     let updates = count(|costs| &costs.update_with_mag) as f64;
@@ -72,7 +72,7 @@ pub fn shares(elf: &Path, runs: &[Measured]) -> anyhow::Result<Vec<Share>> {
     }
     let named = shares
         .into_iter()
-        .map(|(name, share)| Share { name, ..share });
+        .map(|(name, share)| FunctionCost { name, ..share });
     let mut list: Vec<_> = named.collect();
     list.sort_by(|a, b| {
         b.update

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::{
     filters::{Filter, OURS},
-    motion::{Fresh, Motion},
+    motion::{Motion, NewSamples},
     program::{Blocks, Program},
 };
 
@@ -80,7 +80,7 @@ pub fn run(
     let mut ticks = Vec::new();
     let mut q_wxyz = [1.0, 0.0, 0.0, 0.0];
     for (t_us, fresh, input) in motion.ticks() {
-        if fresh != Fresh::Nothing || filter == OURS {
+        if fresh != NewSamples::Nothing || filter == OURS {
             let tick = program.tick(&input)?;
             costs.of(fresh).push(tick.instructions);
             if detail == Detail::Blocks {
@@ -113,11 +113,11 @@ pub fn run(
 }
 
 impl Profile {
-    fn add(&mut self, fresh: Fresh, instructions: u32, blocks: Blocks) {
+    fn add(&mut self, fresh: NewSamples, instructions: u32, blocks: Blocks) {
         let sum = match fresh {
-            Fresh::ImuAndMag => Some(&mut self.updates),
-            Fresh::Imu => None,
-            Fresh::Nothing => Some(&mut self.between),
+            NewSamples::ImuAndMag => Some(&mut self.updates),
+            NewSamples::Imu => None,
+            NewSamples::Nothing => Some(&mut self.between),
         };
         if let Some(sum) = sum {
             for (block, runs) in &blocks {
@@ -134,11 +134,11 @@ impl Profile {
 }
 
 impl Costs {
-    fn of(&mut self, fresh: Fresh) -> &mut Vec<u32> {
+    fn of(&mut self, fresh: NewSamples) -> &mut Vec<u32> {
         match fresh {
-            Fresh::ImuAndMag => &mut self.update_with_mag,
-            Fresh::Imu => &mut self.update,
-            Fresh::Nothing => &mut self.extrapolation,
+            NewSamples::ImuAndMag => &mut self.update_with_mag,
+            NewSamples::Imu => &mut self.update,
+            NewSamples::Nothing => &mut self.extrapolation,
         }
     }
 }

@@ -30,7 +30,7 @@ pub enum Wheels {
 
 /// What is new in a tick of 1 ms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fresh {
+pub enum NewSamples {
     ImuAndMag,
     Imu,
     Nothing,
@@ -60,7 +60,7 @@ impl Motion {
 
     /// Returns the control loop's ticks as `robot_replay::run` makes them, each with its time in the motion. Every
     /// fifth tick has an IMU sample, and every fourth of those has a magnetometer sample too.
-    pub fn ticks(&self) -> impl Iterator<Item = (u64, Fresh, Input)> {
+    pub fn ticks(&self) -> impl Iterator<Item = (u64, NewSamples, Input)> {
         let mut latest = Input {
             wheel_age_us: u32::MAX,
             ..Input::default()
@@ -71,7 +71,11 @@ impl Motion {
                 let fresh = deliver(sample, &mut latest);
                 (0..TICKS_A_SAMPLE).map(move |tick| {
                     let t_us = sample.end_us + tick * TICK_US;
-                    let fresh = if tick == 0 { fresh } else { Fresh::Nothing };
+                    let fresh = if tick == 0 {
+                        fresh
+                    } else {
+                        NewSamples::Nothing
+                    };
                     let now_us = clock_us(t_us);
                     (t_us, fresh, Input { now_us, ..latest })
                 })
@@ -92,19 +96,19 @@ impl Motion {
     }
 }
 
-fn deliver(sample: &Sample, latest: &mut Input) -> Fresh {
+fn deliver(sample: &Sample, latest: &mut Input) -> NewSamples {
     let Some(motion) = &sample.motion else {
-        return Fresh::Nothing;
+        return NewSamples::Nothing;
     };
     latest.imu_ts_us = clock_us(sample.end_us);
     latest.gyro_rps = motion.gyro_rps;
     latest.accel_mps2 = motion.accel_mps2;
     let Some(mag_ut) = sample.field_ut else {
-        return Fresh::Imu;
+        return NewSamples::Imu;
     };
     latest.mag_ts_us = clock_us(sample.end_us) - FIELD_AGE_US as u32;
     latest.mag_ut = mag_ut;
-    Fresh::ImuAndMag
+    NewSamples::ImuAndMag
 }
 
 /// Returns the board's time. A motion lasts minutes, and the mailbox counts to an hour.

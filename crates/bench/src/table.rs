@@ -125,7 +125,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_what_has_a_limit_can_break_it() {
+    fn only_rows_with_a_limit_can_exceed_it() {
         let mut group = Group::new("cost", ["robot".to_owned(), "other".to_owned()]);
         let own = ["robot".to_owned()];
         group
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn a_missing_figure_is_a_dash_and_breaks_nothing() {
+    fn a_missing_figure_is_a_dash_and_exceeds_no_limit() {
         let mut group = Group::new("cost", ["a".to_owned()]);
         let columns = group.columns.clone();
         group.add("flash", "KiB", vec![None]).at_most(0.0, &columns);

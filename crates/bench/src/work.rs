@@ -60,7 +60,7 @@ enum Task<'p> {
     Filter(Entry, &'p Motion),
 }
 
-enum Done {
+enum TaskResult {
     Board(Box<Summary>),
     Filter(Entry, Box<Measured>),
 }
@@ -75,8 +75,8 @@ impl Plan {
         let (mut boards, mut measured) = (Vec::new(), Vec::new());
         for done in done? {
             match done {
-                Done::Board(summary) => boards.push(*summary),
-                Done::Filter(entry, run) => measured.push((entry, *run)),
+                TaskResult::Board(summary) => boards.push(*summary),
+                TaskResult::Filter(entry, run) => measured.push((entry, *run)),
             }
         }
         let mut filters = Vec::new();
@@ -110,12 +110,12 @@ impl Plan {
     }
 
     /// Runs the tasks and returns their results in the same order.
-    fn do_all(&self, tasks: Vec<Task<'_>>, bar: &ProgressBar) -> anyhow::Result<Vec<Done>> {
+    fn do_all(&self, tasks: Vec<Task<'_>>, bar: &ProgressBar) -> anyhow::Result<Vec<TaskResult>> {
         let count = tasks.len();
         let queue = Mutex::new(tasks.into_iter().enumerate());
         let done = Mutex::new(Vec::with_capacity(count));
         let take = || queue.lock().unwrap_or_else(PoisonError::into_inner).next();
-        let put = |place, outcome: anyhow::Result<Done>| {
+        let put = |place, outcome: anyhow::Result<TaskResult>| {
             let failed = outcome.is_err();
             let mut done = done.lock().unwrap_or_else(PoisonError::into_inner);
             done.push((place, outcome));
@@ -138,19 +138,19 @@ impl Plan {
         done.into_iter().map(|(_, outcome)| outcome).collect()
     }
 
-    fn do_one(&self, task: &Task<'_>, bar: &ProgressBar) -> anyhow::Result<Done> {
+    fn do_one(&self, task: &Task<'_>, bar: &ProgressBar) -> anyhow::Result<TaskResult> {
         match task {
             Task::Board(image, scenario) => {
                 bar.set_message(scenario.name.clone());
                 let summary = scenarios::run(image, (*scenario).clone(), || bar.inc(1))?;
-                Ok(Done::Board(Box::new(summary)))
+                Ok(TaskResult::Board(Box::new(summary)))
             }
             Task::Filter(entry, motion) => {
                 let Entry { filter, .. } = *entry;
                 bar.set_message(format!("{}: {}", filter.title, motion.name()));
                 measure::run(filter, &self.programs, motion, self.detail, || bar.inc(1))
                     .with_context(|| format!("{} over {}", filter.title, motion.name()))
-                    .map(|run| Done::Filter(*entry, Box::new(run)))
+                    .map(|run| TaskResult::Filter(*entry, Box::new(run)))
             }
         }
     }

@@ -26,7 +26,7 @@ fn spread(ticks: &[u32]) -> Spread {
 }
 
 #[test]
-fn an_update_and_a_tick_between_take_few_instructions() {
+fn updates_and_extrapolations_keep_their_instruction_limits() {
     for wheels in [Wheels::Silent, Wheels::Turning] {
         let costs = costs(wheels);
         let update = spread(&costs.update_with_mag);
@@ -45,7 +45,7 @@ fn an_update_and_a_tick_between_take_few_instructions() {
 }
 
 #[test]
-fn the_estimator_grows_no_larger() {
+fn the_estimator_keeps_its_flash_limit() {
     let flash = |filter: robot_bench::filters::Filter| {
         let program = Program::boot(&filter.elf(&programs::folder())).expect("the program boots");
         program.flash_bytes as f64

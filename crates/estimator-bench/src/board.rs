@@ -25,7 +25,7 @@ pub trait Filter {
 
 /// Serves the mailbox in an endless loop.
 pub fn run<F: Filter>(mut filter: F) -> ! {
-    // The compiler sees no code that writes the input, and must not conclude that it stays zero.
+    // The host writes the input, which the compiler cannot see. It must not conclude that the input stays zero.
     let mailbox = black_box(&MAILBOX);
     link_memory_functions();
     loop {
@@ -68,12 +68,12 @@ pub struct ImuSample {
 
 /// Distinguishes new samples from old ones.
 #[derive(Default)]
-pub struct Fresh {
+pub struct NewSampleDetector {
     imu_ts_us: u32,
     mag_ts_us: u32,
 }
 
-impl Fresh {
+impl NewSampleDetector {
     pub fn samples(&mut self, input: &Input) -> Samples {
         let new_imu = input.imu_ts_us != self.imu_ts_us;
         let new_mag = input.mag_ts_us != self.mag_ts_us;

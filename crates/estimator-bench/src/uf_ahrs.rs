@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use uf_ahrs::Ahrs;
 
 use crate::{
-    board::{self, Filter, Fresh, Samples},
+    board::{self, Filter, NewSampleDetector, Samples},
     mailbox::Input,
 };
 
@@ -12,7 +12,7 @@ use crate::{
 pub struct AllInOne<F> {
     filter: F,
     mag_ut: Vector3<f32>,
-    fresh: Fresh,
+    fresh: NewSampleDetector,
 }
 
 impl<F> AllInOne<F> {
@@ -20,7 +20,7 @@ impl<F> AllInOne<F> {
         Self {
             filter,
             mag_ut: Vector3::zeros(),
-            fresh: Fresh::default(),
+            fresh: NewSampleDetector::default(),
         }
     }
 }

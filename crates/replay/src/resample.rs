@@ -49,7 +49,7 @@ pub fn samples(recording: &recording::Trial) -> Vec<Sample> {
         rows: recording.rows(),
         period,
     };
-    // Row 0 ends at time 0; windows that begin before it began are left out.
+    // Row 0 ends at time 0. Windows that begin before row 0 are left out.
     let first = IMU_PERIOD.saturating_sub(period).div_ceil(IMU_PERIOD);
     let last = rows.rows.len().saturating_sub(1) as Ps * period / IMU_PERIOD;
     (first..=last)

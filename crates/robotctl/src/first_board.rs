@@ -8,10 +8,10 @@ mod measured;
 mod report;
 mod walk;
 
-pub use checks::{CHECKS, Check, How};
+pub use checks::{CHECKS, Check, Method};
 pub use measured::{Measured, Verdict};
 pub use report::{Entry, Outcome, Report, ReportError};
-pub use walk::{Dialogue, Walk, WalkError, walk};
+pub use walk::{Dialogue, WalkError, WalkOptions, walk};
 
 #[cfg(test)]
 mod tests;

@@ -19,7 +19,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) if command::output::is_closed(&error) => ExitCode::SUCCESS,
         Err(error) => {
-            // Without a stack: whoever reads it wants to know what to do.
+            // The reader wants to know what to do, so there is no stack trace.
             eprintln!("Error: {error}");
             for cause in error.chain().skip(1) {
                 eprintln!("  because: {cause}");

@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_saved_is_read_again() {
+    fn a_saved_file_is_read_back() {
         let mut file = ParameterFile::default();
         file.set("imu.accel-bias-x-mps2", -0.187_500_1);
         file.set("joint.0.direction", 1.0);
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_named() {
+    fn a_value_that_is_no_number_is_named() {
         let why = |text| ParameterFile::parse(text).unwrap_err().to_string();
         let found = why("[heater]\nkp = \"one\"\n");
         assert_eq!(found, "heater.kp: `one` is no number");

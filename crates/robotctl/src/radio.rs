@@ -11,6 +11,6 @@ mod watch;
 
 pub use control::Control;
 pub use ends::stick;
-pub use movement::{Frame, MoveError, Moved, Still};
-pub use settings::{ENABLE_CHANNEL, Found, differing, write};
+pub use movement::{Frame, HeldPosition, MoveError, Movement};
+pub use settings::{ENABLE_CHANNEL, MappedControl, differing, write};
 pub use watch::{Watch, WatchError};

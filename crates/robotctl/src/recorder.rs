@@ -24,14 +24,14 @@ const LEAST_IMU_HZ: f64 = 100.0;
 
 /// How long the recorder waits, by the computer's clock.
 #[derive(Clone, Copy, Debug)]
-pub struct RecordPatience {
+pub struct RecordTimeouts {
     /// Pause between two requests for the state of the recording.
     pub look: Duration,
     /// A recording without samples for this long has failed.
     pub silence: Duration,
 }
 
-impl Default for RecordPatience {
+impl Default for RecordTimeouts {
     fn default() -> Self {
         Self {
             look: Duration::from_millis(200),
@@ -75,7 +75,7 @@ pub struct Recorded {
 pub fn record(
     client: &mut TuningClient,
     seconds: u16,
-    patience: RecordPatience,
+    timeouts: RecordTimeouts,
     mut progress: impl FnMut(f64),
 ) -> Result<Recorded, RecordError> {
     let corrections = corrections(client)?;
@@ -83,7 +83,7 @@ pub fn record(
     let mut samples = Samples::default();
     let mut heard_at = Instant::now();
     let report = loop {
-        let heard = client.hear_samples(Instant::now() + patience.look)?;
+        let heard = client.hear_samples(Instant::now() + timeouts.look)?;
         if !heard.is_empty() {
             heard_at = Instant::now();
         }
@@ -93,12 +93,12 @@ pub fn record(
         if report.state != Ok(RecordingState::Running) {
             break report;
         }
-        if heard_at.elapsed() > patience.silence {
+        if heard_at.elapsed() > timeouts.silence {
             client.start_recording(0)?;
-            return Err(RecordError::Silent(patience.silence));
+            return Err(RecordError::Silent(timeouts.silence));
         }
     };
-    // What came before the last reply.
+    // Samples that came before the last reply.
     samples.extend(&client.hear_samples(Instant::now())?);
     if report.state == Ok(RecordingState::CutShort) {
         return Err(RecordError::CutShort);

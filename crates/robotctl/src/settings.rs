@@ -8,12 +8,12 @@ use robot_app::tuning::{PARAMETERS, Parameter, ParameterGroup, ParameterKind};
 
 /// A setting and its group.
 #[derive(Clone, Copy, Debug)]
-pub struct Named {
+pub struct Setting {
     pub group: &'static ParameterGroup,
     pub parameter: &'static Parameter,
 }
 
-impl Named {
+impl Setting {
     pub fn full_name(&self) -> String {
         format!("{}.{}", self.group.name, self.parameter.name)
     }
@@ -45,15 +45,15 @@ pub struct UnknownName {
 }
 
 /// Returns all settings in the order of their numbers.
-pub fn all() -> impl Iterator<Item = Named> {
+pub fn all() -> impl Iterator<Item = Setting> {
     PARAMETERS.iter().flat_map(|group| {
         let parameters = group.parameters.iter();
-        parameters.map(move |parameter| Named { group, parameter })
+        parameters.map(move |parameter| Setting { group, parameter })
     })
 }
 
 /// Finds a setting by its full name.
-pub fn find(name: &str) -> Result<Named, UnknownName> {
+pub fn find(name: &str) -> Result<Setting, UnknownName> {
     let found = all().find(|named| named.full_name() == name);
     found.ok_or_else(|| UnknownName {
         what: "setting",
@@ -96,7 +96,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_are_found_and_near_misses_helped() {
+    fn names_are_found_and_misspelt_ones_get_a_suggestion() {
         let found = find("wheel-geometry.track-m").unwrap();
         assert_eq!((found.group.number, found.parameter.index), (1, 1));
         let error = find("wheel-geometry.trak-m").unwrap_err().to_string();

@@ -19,7 +19,7 @@ const UP: [[f64; 3]; 8] = [
 
 fn directory(test: &str) -> PathBuf {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
-    // What an earlier run left.
+    // Remove the files of an earlier run.
     let _ = fs::remove_dir_all(&path);
     fs::create_dir_all(&path).unwrap();
     path
@@ -71,10 +71,10 @@ fn a_table_becomes_values_and_a_page() {
 }
 
 #[test]
-fn values_in_force_while_recording_are_taken_out() {
+fn the_correction_active_while_recording_is_removed() {
     let directory = directory("calibrate-again");
     fs::write(directory.join("a.csv"), accel_table(&UP)).unwrap();
-    // The robot subtracted 0.1 from what the sensor said: 0.3 in truth.
+    // The robot subtracted 0.1 from the sensor's value, so the true offset is 0.3.
     fs::write(
         directory.join("active.toml"),
         "[imu-calibration]\naccel-bias-x-mps2 = 0.1\n",
@@ -87,7 +87,7 @@ fn values_in_force_while_recording_are_taken_out() {
 }
 
 #[test]
-fn a_missing_side_is_told_and_nothing_is_written() {
+fn a_missing_side_is_named_and_nothing_is_written() {
     let directory = directory("calibrate-missing");
     fs::write(directory.join("a.csv"), accel_table(&UP[1..])).unwrap();
     let output = robotctl(&directory, &["calibrate", "accel", "a.csv"]);
@@ -184,7 +184,7 @@ fn tables_of_other_programs_give_the_same_values() {
 }
 
 #[test]
-fn a_table_in_doubt_is_refused_with_its_cause() {
+fn a_doubtful_table_is_refused_with_its_cause() {
     let directory = directory("calibrate-doubt");
     for (table, cause) in [
         (

@@ -28,7 +28,7 @@ fn nowhere() -> PathBuf {
 }
 
 #[test]
-fn each_cause_is_told_once() {
+fn each_cause_is_printed_once() {
     let path = nowhere();
     let mut report = Report::load_or_new(&path).unwrap();
     let entry = Entry::new(Outcome::Skipped, String::new(), None);

@@ -10,7 +10,7 @@ fn robotctl(arguments: &[&str]) -> Command {
 
 /// `robotctl tune list | head -1` stops reading in this way.
 #[test]
-fn whoever_reads_may_stop_early() {
+fn the_reader_of_the_output_may_stop_early() {
     let mut command = robotctl(&["tune", "list"]);
     let mut child = command
         .stdout(Stdio::piped())
@@ -24,7 +24,7 @@ fn whoever_reads_may_stop_early() {
 }
 
 #[test]
-fn ranges_are_shown_as_they_are_meant() {
+fn ranges_are_shown_in_words() {
     let output = robotctl(&["tune", "list"]).output().unwrap();
     let list = String::from_utf8_lossy(&output.stdout).into_owned();
     let line = |name: &str| list.lines().find(|line| line.starts_with(name)).unwrap();
@@ -34,7 +34,7 @@ fn ranges_are_shown_as_they_are_meant() {
 }
 
 #[test]
-fn without_a_bus_it_says_how_to_name_one() {
+fn without_a_bus_the_error_says_how_to_name_one() {
     for arguments in [
         &["status"][..],
         &["joint", "zero", "left-front"],

@@ -39,7 +39,7 @@ mod tests {
 
     /// Without libclang there is nothing to test. The emulator could not be built either.
     #[test]
-    fn a_header_that_is_not_there_is_noticed() {
+    fn a_missing_header_is_detected() {
         let Ok(clang) = Clang::new() else { return };
         assert!(reads(&clang, HEADER));
         assert!(!reads(

@@ -75,15 +75,15 @@ pub fn of_test_runner(mut command: Command) -> anyhow::Result<Totals> {
         .spawn()
         .context("cannot start cargo test")?;
     let output = child.stdout.take().context("cargo test has no output")?;
-    let mut reading = Reading::default();
+    let mut parser = LibtestParser::default();
     for line in BufReader::new(output).lines() {
         let line = line.context("cannot read what cargo test prints")?;
-        if reading.take(&line) {
+        if parser.take(&line) {
             println!("{line}");
         }
     }
     let succeeded = child.wait().context("cargo test vanished")?.success();
-    let mut totals = reading.totals;
+    let mut totals = parser.totals;
     if !succeeded && totals.failed == 0 {
         // It did not compile, or a test binary crashed before it could count.
         totals += Totals::FAILED;
@@ -93,7 +93,7 @@ pub fn of_test_runner(mut command: Command) -> anyhow::Result<Totals> {
 
 /// Follows the output of libtest.
 #[derive(Default)]
-struct Reading {
+struct LibtestParser {
     totals: Totals,
     in_output_of_passed_tests: bool,
     this_test_skipped: bool,
@@ -101,7 +101,7 @@ struct Reading {
     skips: u32,
 }
 
-impl Reading {
+impl LibtestParser {
     /// Takes in one line and says whether to show it.
     fn take(&mut self, line: &str) -> bool {
         if let Some(mut totals) = result_line(line) {
@@ -173,15 +173,15 @@ reason
 test result: FAILED. 0 passed; 1 failed; 0 ignored; 0 measured; 0 filtered out; finished in 0.00s";
 
     #[test]
-    fn results_of_all_binaries_add_up_and_a_skip_is_no_pass() {
-        let mut reading = Reading::default();
-        let shown: Vec<_> = OUTPUT.lines().filter(|line| reading.take(line)).collect();
+    fn results_of_all_binaries_add_up_and_skips_do_not_pass() {
+        let mut parser = LibtestParser::default();
+        let shown: Vec<_> = OUTPUT.lines().filter(|line| parser.take(line)).collect();
         let expected = Totals {
             passed: 1,
             failed: 1,
             skipped: 2,
         };
-        assert_eq!(reading.totals, expected);
+        assert_eq!(parser.totals, expected);
         assert!(shown.contains(&"skipped: no recordings in ../shared/data"));
         assert!(shown.contains(&"reason"));
         assert!(!shown.contains(&"noise"));

@@ -35,7 +35,7 @@ fn command() -> Command {
     for package in PACKAGES {
         command.args(["--package", package]);
     }
-    // Other targets do not warn about code that is unused only on Windows.
+    // No other step shows a warning about code that only Windows does not use.
     command.env("RUSTFLAGS", "-D warnings");
     command
 }

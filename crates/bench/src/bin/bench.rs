@@ -10,7 +10,7 @@ use anyhow::{Context, ensure};
 use clap::Parser;
 use robot_bench::{
     filters::OURS,
-    functions::{self, Share},
+    functions::{self, FunctionCost},
     image_size::ImageSize,
     measure::Detail,
     motion::{Motion, Wheels},
@@ -185,7 +185,7 @@ fn print_functions(programs: &Path, results: Results) -> anyhow::Result<()> {
         "instructions of a mean update with magnetometer, of one between, of the costliest; bytes of flash"
     );
     for share in functions::shares(&OURS.elf(programs), &runs)? {
-        let Share {
+        let FunctionCost {
             name,
             update,
             between,

@@ -60,7 +60,7 @@ fn it_length(op: u16) -> u32 {
 }
 
 #[test]
-fn as_many_instructions_are_counted_as_the_engine_executes() {
+fn counted_instructions_equal_the_executed_ones() {
     for filter in [OURS, EMPTY] {
         let mut program = boot(filter.program);
         let oracle = Rc::new(RefCell::new(Oracle::default()));
@@ -105,7 +105,7 @@ fn samples_arrive_as_they_were_sent() {
 }
 
 #[test]
-fn what_is_no_program_is_refused() {
+fn a_file_that_is_no_program_is_refused() {
     let error = Program::boot(Path::new("/dev/null"))
         .err()
         .expect("an empty file");

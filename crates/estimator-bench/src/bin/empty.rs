@@ -4,13 +4,13 @@
 #![no_main]
 
 use robot_estimator_bench::{
-    board::{self, Filter, Fresh, Samples},
+    board::{self, Filter, NewSampleDetector, Samples},
     mailbox::Input,
 };
 
 #[derive(Default)]
 struct Empty {
-    fresh: Fresh,
+    fresh: NewSampleDetector,
     last: Samples,
 }
 

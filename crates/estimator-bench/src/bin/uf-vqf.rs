@@ -7,7 +7,7 @@ use core::time::Duration;
 
 use nalgebra::{UnitQuaternion, Vector3};
 use robot_estimator_bench::{
-    board::{self, Filter, Fresh, Samples},
+    board::{self, Filter, NewSampleDetector, Samples},
     mailbox::Input,
 };
 use uf_ahrs::{Vqf, VqfParams};
@@ -15,7 +15,7 @@ use uf_ahrs::{Vqf, VqfParams};
 struct UfVqf {
     filter: Vqf,
     orientation: UnitQuaternion<f32>,
-    fresh: Fresh,
+    fresh: NewSampleDetector,
 }
 
 impl Filter for UfVqf {
@@ -47,6 +47,6 @@ fn main() -> ! {
     board::run(UfVqf {
         filter: Vqf::new_with_sensor_rates(imu, imu, mag, VqfParams::default()),
         orientation: UnitQuaternion::identity(),
-        fresh: Fresh::default(),
+        fresh: NewSampleDetector::default(),
     })
 }

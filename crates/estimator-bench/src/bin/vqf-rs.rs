@@ -4,7 +4,7 @@
 #![no_main]
 
 use robot_estimator_bench::{
-    board::{self, Filter, Fresh, Samples},
+    board::{self, Filter, NewSampleDetector, Samples},
     mailbox::Input,
 };
 use vqf_rs::{Quaternion, VQF};
@@ -12,7 +12,7 @@ use vqf_rs::{Quaternion, VQF};
 struct VqfRs {
     filter: VQF,
     orientation: Quaternion,
-    fresh: Fresh,
+    fresh: NewSampleDetector,
 }
 
 impl Filter for VqfRs {
@@ -40,6 +40,6 @@ fn main() -> ! {
     board::run(VqfRs {
         filter: VQF::new(0.005, None, Some(0.02), None),
         orientation: Quaternion(1.0, 0.0, 0.0, 0.0),
-        fresh: Fresh::default(),
+        fresh: NewSampleDetector::default(),
     })
 }

@@ -152,7 +152,7 @@ mod tests {
 
     /// Row 3 ends at 15 ms, between sample 4, which is not known, and sample 5.
     #[test]
-    fn the_reference_is_that_of_the_instant_and_unknown_beside_a_gap() {
+    fn the_reference_is_interpolated_but_not_across_a_gap() {
         let unknown: Vec<bool> = column("qw").iter().map(|w| w.is_nan()).collect();
         let expected = [false, false, false, true, false, false, false, false];
         assert_eq!(unknown, expected);

@@ -81,7 +81,7 @@ fn rows<const N: usize>(file: &MatFile, name: &'static str) -> Result<Vec<[f64; 
     if columns != N || values.len() != count * columns {
         return Err(wrong());
     }
-    // Column after column.
+    // The array is stored column by column.
     let row = |row: usize| std::array::from_fn(|column| values[column * count + row]);
     Ok((0..count).map(row).collect())
 }

@@ -16,7 +16,7 @@ fn error(folder: &Path) -> String {
 }
 
 #[test]
-fn a_folder_that_is_missing_empty_or_ambiguous() {
+fn a_missing_empty_or_ambiguous_folder_is_reported() {
     let folder = recorder::folder("folders");
     assert!(error(&folder.join("nowhere")).contains("nowhere"));
     assert!(error(&folder).contains("NAME.json"));
@@ -32,7 +32,7 @@ fn a_folder_that_is_missing_empty_or_ambiguous() {
 }
 
 #[test]
-fn data_that_is_missing_or_of_another_length() {
+fn missing_data_and_a_wrong_length_are_reported() {
     let folder = recorder::folder("length");
     let header = recorder::write(&folder, "turn", HZ200, &TURN.columns(HZ200));
     let text = fs::read_to_string(&header).unwrap();
@@ -48,7 +48,7 @@ fn data_that_is_missing_or_of_another_length() {
 
 /// `e3b0…b855` is the SHA-256 of an empty input (FIPS 180-4 examples).
 #[test]
-fn data_with_another_checksum() {
+fn a_wrong_checksum_is_reported() {
     let folder = recorder::folder("checksum");
     let header = recorder::write(&folder, "turn", HZ200, &TURN.columns(HZ200));
     assert!(Trial::read(&header).is_ok());

@@ -47,7 +47,7 @@ fn heading_is_absolute_with_magnetometer_and_has_one_free_offset_without() {
 }
 
 #[test]
-fn an_offset_put_in_comes_out_as_bias() {
+fn an_added_offset_is_estimated_as_bias() {
     let turn = Turn {
         rate_dps: 0.0,
         reference_off_deg: 0.0,
@@ -69,7 +69,7 @@ fn an_offset_put_in_comes_out_as_bias() {
 }
 
 #[test]
-fn without_reference_there_is_an_attitude_and_no_figure() {
+fn without_a_reference_there_are_attitudes_but_no_errors() {
     let turn = Turn {
         rate_dps: 30.0,
         reference_off_deg: 0.0,

@@ -22,7 +22,7 @@ fn read(test: &str, (name, rate, columns): (&str, Rate, Vec<Vec<f32>>)) -> Trial
 }
 
 #[test]
-fn rows_at_the_firmwares_rate_come_out_as_they_are() {
+fn rows_at_the_firmwares_rate_do_not_change() {
     let trial = read("same-rate", counting(HZ200, 9, |_| {}));
     assert_eq!(trial.samples.len(), 9);
     for (index, sample) in trial.samples.iter().enumerate() {
@@ -36,7 +36,7 @@ fn rows_at_the_firmwares_rate_come_out_as_they_are() {
 /// Row i lasts from 3.5 (i − 1) ms to 3.5 i ms. So the window from 0 to 5 ms is all of row 1 and 1.5 ms of row 2. The
 /// one from 30 to 35 ms is 1.5 ms of row 9 and all of row 10. A window that begins before row 0 is left out.
 #[test]
-fn rows_of_3_5_ms_are_shared_out_among_windows_of_5_ms() {
+fn rows_of_3_5_ms_are_weighted_into_windows_of_5_ms() {
     let trial = read("shared-out", counting(NATIVE, 11, |_| {}));
     let gyro = |end_us: u64| {
         let sample = trial.samples.iter().find(|sample| sample.end_us == end_us);
@@ -70,7 +70,7 @@ fn a_row_without_a_number_is_no_sample() {
 
 /// The BMI088 measures ±2000 °/s (34.907 rad/s) and ±12 g (117.680 m/s²); the recorder may have measured more.
 #[test]
-fn what_the_boards_imu_cannot_measure_is_cut_off_and_marked() {
+fn values_beyond_the_imus_range_are_clipped_and_marked() {
     let beyond = counting(HZ200, 8, |columns| {
         columns[1][3] = -36.0;
         columns[4][5] = 130.0;

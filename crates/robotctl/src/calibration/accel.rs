@@ -114,7 +114,7 @@ pub fn calibrate(recordings: &[Vec<Sample>]) -> Result<AccelFit, AccelError> {
     if !missing.is_empty() {
         return Err(AccelError::MissingFaces(missing));
     }
-    let fit::Robust {
+    let fit::RobustFit {
         correction,
         kept,
         rejected,

@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn an_undetermined_parameter_is_no_fit() {
+    fn an_undetermined_parameter_gives_no_fit() {
         let found = minimise(Vector2::new(1.0, 1.0), |p| {
             let residual = p[0] - 3.0;
             (0..4).map(move |_| (residual, Vector2::new(1.0, 0.0)))

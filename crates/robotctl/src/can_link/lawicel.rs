@@ -36,7 +36,7 @@ impl LineParser {
                 received
             }
             _ => {
-                // One byte too many is kept as the mark of a line too long.
+                // One byte more than fits is kept. It marks a line that is too long.
                 if self.line.len() <= LONGEST {
                     self.line.push(byte);
                 }
@@ -97,14 +97,14 @@ mod tests {
 
     // The manual's example: t10021133[CR] is ID 0x100 with the two bytes 0x11 and 0x33.
     #[test]
-    fn the_manuals_example_both_ways() {
+    fn the_example_of_the_manual_is_parsed_and_written() {
         let example = frame(0x100, &[0x11, 0x33]);
         assert_eq!(transmit(&example), "t10021133\r");
         assert_eq!(received(b"t10021133\r"), [Received::Frame(example)]);
     }
 
     #[test]
-    fn answers_and_frames_are_told_apart() {
+    fn answers_and_frames_are_distinguished() {
         let said = received(b"\rz\rt7A20\r\x07t2011FF EA60\rt20118812AB\r");
         assert_eq!(
             said,
@@ -119,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn extended_remote_and_broken_lines_are_passed_over() {
+    fn extended_remote_and_broken_lines_are_ignored() {
         let broken: [&[u8]; 6] = [
             b"T0000010021133\r",
             b"r1002\r",

@@ -57,7 +57,7 @@ impl Slcan {
             parser: LineParser::default(),
             received: VecDeque::new(),
         };
-        // The empty line ends whatever was left half-written.
+        // The empty line ends a line that another program may have left unfinished.
         link.port.write_all(b"\r")?;
         link.port.write_all(CLOSE.as_bytes())?;
         let settled = Instant::now() + SETTLE_TIME;
@@ -165,7 +165,7 @@ mod tests {
 
     /// Windows reports a port that is in use as missing.
     #[test]
-    fn a_port_that_cannot_be_opened_is_in_use_or_another_one_is_named() {
+    fn advice_on_a_closed_port_names_the_cause_or_another_port() {
         let ports = ["COM3".to_owned(), "COM12".to_owned()];
         let said = advice(NoDevice, "com3", &ports);
         assert!(said.contains("another program"), "{said}");

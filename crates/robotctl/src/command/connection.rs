@@ -3,7 +3,7 @@
 use anyhow::{Context, Result};
 use robotctl::{
     can_link::CanDevice,
-    tuning::{Patience, TuningClient},
+    tuning::{Timeouts, TuningClient},
 };
 
 #[derive(clap::Args)]
@@ -23,6 +23,6 @@ impl Connection {
         let device = self.can.as_ref().context(
             "say where the CAN bus is: --can /dev/ttyACM0 or --can COM3 (slcan adapter) or, on Linux, --can can0",
         )?;
-        Ok(TuningClient::new(device.open()?, Patience::default()))
+        Ok(TuningClient::new(device.open()?, Timeouts::default()))
     }
 }

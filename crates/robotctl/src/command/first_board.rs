@@ -6,7 +6,7 @@ use std::{
 };
 
 use anyhow::Result;
-use robotctl::first_board::{self, Dialogue, Outcome, Report, Walk};
+use robotctl::first_board::{self, Dialogue, Outcome, Report, WalkOptions};
 
 use super::{connection::Connection, output::say};
 
@@ -29,7 +29,7 @@ impl FirstBoard {
     pub fn run(self) -> Result<()> {
         let mut report = Report::load_or_new(&self.report)?;
         let mut client = self.connection.open()?;
-        let walk = Walk {
+        let walk = WalkOptions {
             from: self.from,
             alone: self.yes,
         };

@@ -6,9 +6,9 @@ use anyhow::{Result, bail};
 use robot_app::domain::Orientation;
 use robotctl::{
     can_link::CanDevice,
-    mounting::{self, BoardFound, FieldSample, MagFound, Poses, Watch, WatchError},
+    mounting::{self, BoardMounting, FieldSample, MagMounting, Poses, Watch, WatchError},
     settings,
-    tuning::{Patience, TuningClient},
+    tuning::{Timeouts, TuningClient},
 };
 
 use super::{answer::ask, output::say, tune::confirm_saved};
@@ -33,7 +33,7 @@ pub struct Mounting {
 
 impl Mounting {
     pub fn run(self) -> Result<()> {
-        let mut client = TuningClient::new(self.can.open()?, Patience::default());
+        let mut client = TuningClient::new(self.can.open()?, Timeouts::default());
         say!("Disarm the robot and take its weight: it is tilted by hand, motors off.\n")?;
         let found = find_board(&mut client)?;
         self.conclude(&mut client, "mounting.board", found.orientation)?;
@@ -86,7 +86,7 @@ impl Mounting {
     }
 }
 
-fn find_board(client: &mut TuningClient) -> Result<BoardFound> {
+fn find_board(client: &mut TuningClient) -> Result<BoardMounting> {
     let mut watch = Watch::new(client)?;
     let mut pose = |what: &str| -> Result<_> {
         loop {
@@ -105,7 +105,7 @@ fn find_board(client: &mut TuningClient) -> Result<BoardFound> {
         )?,
     };
     let found = mounting::find_board(&poses)?;
-    let BoardFound {
+    let BoardMounting {
         orientation,
         up,
         nose,
@@ -134,7 +134,7 @@ fn find_board(client: &mut TuningClient) -> Result<BoardFound> {
     Ok(found)
 }
 
-fn find_mag(client: &mut TuningClient, board: Orientation) -> Result<MagFound> {
+fn find_mag(client: &mut TuningClient, board: Orientation) -> Result<MagMounting> {
     ask("Put it level and leave it alone until it is calibrated, away from iron.")?;
     let mut watch = Watch::new(client)?;
     let deadline = Instant::now() + SETTLING;
@@ -149,15 +149,16 @@ fn find_mag(client: &mut TuningClient, board: Orientation) -> Result<MagFound> {
     let samples = turn(&mut watch)?;
     watch.check_attitude()?;
     let found = mounting::find_mag(board, &samples)?;
-    let MagFound {
+    let MagMounting {
         orientation,
         earth_ut,
         dip_deg,
-        left_ut,
-        second_ut,
+        residual_ut,
+        second_residual_ut,
     } = found;
     say!(
-        "\nThe earth's field is {earth_ut:.0} µT; this way to sit leaves {left_ut:.1} µT, the next best {second_ut:.1}."
+        "\nThe earth's field is {earth_ut:.0} µT; this orientation leaves {residual_ut:.1} µT, the next best \
+         {second_residual_ut:.1}."
     )?;
     let (part, where_) = if dip_deg < 0.0 {
         ("out of", "south")

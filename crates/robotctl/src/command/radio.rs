@@ -6,9 +6,9 @@ use anyhow::{Context, Result};
 use robot_app::{domain::NO_CHANNEL, tuning::Refusal};
 use robotctl::{
     can_link::CanDevice,
-    radio::{self, Control, Found, Moved, Still, Watch, WatchError},
+    radio::{self, Control, HeldPosition, MappedControl, Movement, Watch, WatchError},
     settings,
-    tuning::{BringUpStep, Patience, TuningClient, TuningError},
+    tuning::{BringUpStep, Timeouts, TuningClient, TuningError},
 };
 
 use super::{answer::ask, output::say, tune::confirm_saved};
@@ -28,7 +28,7 @@ pub struct Radio {
 
 impl Radio {
     pub fn run(self) -> Result<()> {
-        let mut client = TuningClient::new(self.can.open()?, Patience::default());
+        let mut client = TuningClient::new(self.can.open()?, Timeouts::default());
         say!(
             "For SBUS; DBUS needs no settings. Robot disarmed, wheels off the ground, transmitter on."
         )?;
@@ -44,16 +44,21 @@ impl Radio {
         }
         let found = find(&mut Watch::new(&mut client));
         if self.write && found.is_err() {
-            // All else is still as it was. Once writing has begun, only a whole mapping may have an enable channel.
+            // Nothing else has changed. Once writing has begun, only a complete mapping may have an enable channel.
             client.write(enable, enable_was)?;
         }
         let done = found.and_then(|found| self.conclude(&mut client, &found, enable_was));
-        // A guide that was broken off leaves the robot where it cannot be armed.
+        // After an interruption the robot stays in a state in which it cannot be armed.
         done.context("the robot stays in bring-up and cannot be armed: `robotctl tune --can DEVICE bring-up off`")?;
         bring_up(&mut client, BringUpStep::Off, enable_was)
     }
 
-    fn conclude(&self, client: &mut TuningClient, found: &[Found], enable_was: f32) -> Result<()> {
+    fn conclude(
+        &self,
+        client: &mut TuningClient,
+        found: &[MappedControl],
+        enable_was: f32,
+    ) -> Result<()> {
         say!("\nSo:")?;
         for control in found {
             say!("{}", control.in_words())?;
@@ -93,7 +98,7 @@ fn bring_up(client: &mut TuningClient, step: BringUpStep, enable: f32) -> Result
     }
 }
 
-fn find(watch: &mut Watch<'_>) -> Result<Vec<Found>> {
+fn find(watch: &mut Watch<'_>) -> Result<Vec<MappedControl>> {
     let rest = loop {
         ask(
             "Enable off, e-stop thrown, mode at manual, sticks let go; one without a spring in its middle.",
@@ -106,8 +111,8 @@ fn find(watch: &mut Watch<'_>) -> Result<Vec<Found>> {
     let mut sticks = Vec::new();
     for control in Control::STICKS {
         let moved = find_moved(watch, control, &rest, &found)?;
-        // Its ends come later; until then its place is taken.
-        found.push(moved.map_or(missing(control), |moved| Found::switch(&moved)));
+        // The ends of a stick are found later. Its channel is taken from now on.
+        found.push(moved.map_or(missing(control), |moved| MappedControl::switch(&moved)));
         sticks.extend(moved);
     }
     let ends = find_ends(watch, &sticks)?;
@@ -117,7 +122,7 @@ fn find(watch: &mut Watch<'_>) -> Result<Vec<Found>> {
     }
     for control in Control::SWITCHES {
         let moved = find_moved(watch, control, &rest, &found)?;
-        found.push(moved.map_or(missing(control), |moved| Found::switch(&moved)));
+        found.push(moved.map_or(missing(control), |moved| MappedControl::switch(&moved)));
     }
     put_back(watch, &rest)?;
     Ok(found)
@@ -127,9 +132,9 @@ fn find(watch: &mut Watch<'_>) -> Result<Vec<Found>> {
 fn find_moved(
     watch: &mut Watch<'_>,
     control: Control,
-    rest: &Still,
-    found: &[Found],
-) -> Result<Option<Moved>> {
+    rest: &HeldPosition,
+    found: &[MappedControl],
+) -> Result<Option<Movement>> {
     if control.may_be_missing() {
         say!("(Without a {} control, type none.)", control.name())?;
     }
@@ -141,7 +146,7 @@ fn find_moved(
         let Some(held) = heard(watch.still())? else {
             continue;
         };
-        match Moved::find(control, rest, &held, found) {
+        match Movement::find(control, rest, &held, found) {
             Ok(moved) => {
                 say!(
                     "Channel {} went from {} to {}: {}.",
@@ -158,7 +163,7 @@ fn find_moved(
 }
 
 /// Asks until all controls are back, because the robot takes settings only with its enable switch off.
-fn put_back(watch: &mut Watch<'_>, rest: &Still) -> Result<()> {
+fn put_back(watch: &mut Watch<'_>, rest: &HeldPosition) -> Result<()> {
     loop {
         ask("Put the e-stop back to stop.")?;
         let Some(now) = heard(watch.still())? else {
@@ -171,7 +176,7 @@ fn put_back(watch: &mut Watch<'_>, rest: &Still) -> Result<()> {
     }
 }
 
-fn find_ends(watch: &mut Watch<'_>, sticks: &[Moved]) -> Result<Vec<Found>> {
+fn find_ends(watch: &mut Watch<'_>, sticks: &[Movement]) -> Result<Vec<MappedControl>> {
     'again: loop {
         ask(
             "Let go. After Enter, move both sticks slowly round all their ends for eight seconds.",
@@ -186,7 +191,7 @@ fn find_ends(watch: &mut Watch<'_>, sticks: &[Moved]) -> Result<Vec<Found>> {
         }
         let ends = sticks.iter().map(|moved| {
             let channel = radio::stick(moved, &frames)?;
-            Ok(Found {
+            Ok(MappedControl {
                 control: moved.control,
                 channel: Some(channel),
             })
@@ -210,8 +215,8 @@ fn heard<T>(seen: Result<T, WatchError>) -> Result<Option<T>> {
     }
 }
 
-fn missing(control: Control) -> Found {
-    Found {
+fn missing(control: Control) -> MappedControl {
+    MappedControl {
         control,
         channel: None,
     }

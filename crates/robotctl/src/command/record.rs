@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result, ensure};
 use indicatif::{ProgressBar, ProgressStyle};
-use robotctl::recorder::{self, RecordPatience};
+use robotctl::recorder::{self, RecordTimeouts};
 
 use super::{connection::Connection, output::say};
 
@@ -40,7 +40,7 @@ impl Record {
         let recorded = recorder::record(
             &mut client,
             self.seconds,
-            RecordPatience::default(),
+            RecordTimeouts::default(),
             |seconds| bar.set_position(seconds as u64),
         );
         bar.finish_and_clear();

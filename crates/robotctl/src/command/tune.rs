@@ -5,9 +5,9 @@ use std::{num::NonZeroI16, path::PathBuf};
 use anyhow::{Context, Result, bail};
 use robotctl::{
     parameter_file::ParameterFile,
-    settings::{self, Named},
+    settings::{self, Setting},
     tuning::{
-        self, BringUpStep, Motor, SaveError, SavePatience, Trial, TuningClient, WheelGeometry,
+        self, BringUpStep, Motor, SaveError, SaveTimeouts, Trial, TuningClient, WheelGeometry,
     },
 };
 
@@ -288,10 +288,10 @@ impl Wheel {
 /// Waits until the robot may be switched off.
 pub(super) fn confirm_saved(client: &mut TuningClient) -> Result<()> {
     begin!("saving … ")?;
-    let done = tuning::wait_until_saved(client, SavePatience::default());
+    let done = tuning::wait_until_saved(client, SaveTimeouts::default());
     say!("{}", if done.is_ok() { "saved" } else { "not saved" })?;
     match done {
-        // As it always was with that firmware: no failure of this command.
+        // That firmware never saves settings, so this is no failure of the command.
         Err(error @ SaveError::NeverSaves) => eprintln!("note: {error}"),
         done => {
             done?;
@@ -300,7 +300,7 @@ pub(super) fn confirm_saved(client: &mut TuningClient) -> Result<()> {
     Ok(())
 }
 
-fn shown(named: Named, value: f32) -> String {
+fn shown(named: Setting, value: f32) -> String {
     let (name, unit) = (named.full_name(), named.parameter.unit);
     let text = format!("{name} = {} {unit}", named.in_words(value));
     text.trim_end().to_owned()

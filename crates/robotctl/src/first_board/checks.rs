@@ -1,6 +1,6 @@
 //! The list of checks, in their order. New checks go to its end, because reports name the numbers.
 
-use super::measured::{self, Measuring};
+use super::measured::{self, MeasureFn};
 
 /// One check of a first board.
 #[derive(Debug)]
@@ -15,20 +15,20 @@ pub struct Check {
     pub see: &'static str,
     /// What the user notes beyond what the tool measures.
     pub note: &'static str,
-    pub how: How,
+    pub how: Method,
 }
 
 #[derive(Clone, Copy, Debug)]
-pub enum How {
+pub enum Method {
     /// The user looks and judges.
     Asked,
     /// The user prepares it, then the tool measures and judges.
-    Prepared(Measuring),
+    Prepared(MeasureFn),
     /// The tool measures and judges without the user.
-    Alone(Measuring),
+    Alone(MeasureFn),
 }
 
-use How::{Alone, Asked, Prepared};
+use Method::{Alone, Asked, Prepared};
 
 pub static CHECKS: [Check; 24] = [
     Check {

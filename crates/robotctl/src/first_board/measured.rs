@@ -12,4 +12,4 @@ pub use compass::circle;
 pub use motors::{joints_answer, wheels_heard};
 pub use radio::{radio, radio_off};
 pub use sensors::{after_an_hour, flat, left_turn, left_up, nose_up, upside_down};
-pub use verdict::{Measured, Measuring, Verdict};
+pub use verdict::{MeasureFn, Measured, Verdict};

@@ -31,7 +31,7 @@ impl Dialogue for Script {
 fn path(test: &str) -> PathBuf {
     let name = format!("robotctl-first-board-{test}-{}.toml", std::process::id());
     let path = std::env::temp_dir().join(name);
-    // What an earlier run left.
+    // Remove the file of an earlier run.
     let _ = std::fs::remove_file(&path);
     path
 }
@@ -55,7 +55,7 @@ fn go(report: &mut Report, answers: &[&'static str], from: Option<usize>, alone:
         answers: answers.iter().copied().collect(),
         ..Script::default()
     };
-    walk(&mut client, report, &mut user, Walk { from, alone }).unwrap();
+    walk(&mut client, report, &mut user, WalkOptions { from, alone }).unwrap();
     user.shown
 }
 
@@ -63,7 +63,7 @@ fn go(report: &mut Report, answers: &[&'static str], from: Option<usize>, alone:
 fn a_walk_is_resumed_where_it_was_left() {
     let path = path("resumed");
     let mut report = Report::load_or_new(&path).unwrap();
-    // Boot; the battery by the user's word, wrong; then stop.
+    // The boot passes, the user calls the battery wrong, and then stops.
     let shown = go(
         &mut report,
         &["", "on the desk", "", "n", "23.1 V", "q"],
@@ -79,7 +79,7 @@ fn a_walk_is_resumed_where_it_was_left() {
     );
     assert_eq!(battery.measured["battery-v"].as_float(), Some(24.2));
     assert_eq!(report.entry("boot").unwrap().note, "on the desk");
-    // The radio is silent: wrong, twice; skipped with its reason in the end.
+    // The radio is silent. It is wrong twice, and then skipped with a reason.
     let shown = go(
         &mut report,
         &["", "y", "s", "no receiver", "q"],
@@ -105,7 +105,7 @@ fn a_walk_is_resumed_where_it_was_left() {
 }
 
 #[test]
-fn alone_it_does_what_needs_nobody() {
+fn without_a_user_only_automatic_checks_are_made() {
     let path = path("alone");
     let mut report = Report::load_or_new(&path).unwrap();
     go(&mut report, &[], None, true);
@@ -127,7 +127,7 @@ fn alone_it_does_what_needs_nobody() {
 }
 
 #[test]
-fn a_file_that_is_none_is_not_overwritten() {
+fn a_file_that_is_no_report_is_not_overwritten() {
     let path = path("other");
     std::fs::write(&path, "[boot]\nx = 1\n").unwrap();
     let error = Report::load_or_new(&path).unwrap_err().to_string();
@@ -137,7 +137,7 @@ fn a_file_that_is_none_is_not_overwritten() {
 
 fn verdict(id: &str, fill: impl FnOnce(&mut DiagnosticsSnapshot)) -> Verdict {
     let check = CHECKS.iter().find(|check| check.id == id).unwrap();
-    let (How::Alone(measure) | How::Prepared(measure)) = check.how else {
+    let (Method::Alone(measure) | Method::Prepared(measure)) = check.how else {
         panic!("{id} is measured");
     };
     let mut client = testing::client(|diagnostics| {
@@ -152,7 +152,7 @@ fn complains(id: &str, fill: impl FnOnce(&mut DiagnosticsSnapshot)) -> bool {
 }
 
 #[test]
-fn what_is_measured_is_judged() {
+fn measurements_are_judged() {
     assert_eq!(verdict("boot", |_| {}), Verdict::AsItMustBe);
     assert!(complains("boot", |d| d.reset_cause = ResetCause::BrownOut));
     assert!(complains("boot", |d| d.mag_health.ready = false));

@@ -1,6 +1,6 @@
 //! Takes the user through the list of checks.
 
-use super::{CHECKS, Check, Entry, How, Measured, Outcome, Report, ReportError, Verdict};
+use super::{CHECKS, Check, Entry, Measured, Method, Outcome, Report, ReportError, Verdict};
 use crate::{
     status::Status,
     tuning::{TuningClient, TuningError},
@@ -15,7 +15,7 @@ pub trait Dialogue {
 
 /// Says which checks are made and how.
 #[derive(Clone, Copy, Debug)]
-pub struct Walk {
+pub struct WalkOptions {
     /// Number of the first check, counted from 1. `None` means all that are not in the report.
     pub from: Option<usize>,
     /// True to make only the checks that need no user and skip the others.
@@ -46,7 +46,7 @@ pub fn walk(
     client: &mut TuningClient,
     report: &mut Report,
     user: &mut dyn Dialogue,
-    walk: Walk,
+    walk: WalkOptions,
 ) -> Result<(), WalkError> {
     if walk
         .from
@@ -102,7 +102,7 @@ fn alone(
     check: &Check,
     user: &mut dyn Dialogue,
 ) -> Result<Next, WalkError> {
-    let How::Alone(measure) = check.how else {
+    let Method::Alone(measure) = check.how else {
         user.show("  skipped: it needs somebody at the robot\n")?;
         return Ok(Next::Done(Entry::new(
             Outcome::Skipped,
@@ -141,8 +141,8 @@ fn with_user(
         _ => {}
     }
     let measured = match check.how {
-        How::Asked => None,
-        How::Prepared(measure) | How::Alone(measure) => Some(measure(client)?),
+        Method::Asked => None,
+        Method::Prepared(measure) | Method::Alone(measure) => Some(measure(client)?),
     };
     let verdict = measured
         .as_ref()

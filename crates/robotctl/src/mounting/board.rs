@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use robot_app::domain::Orientation;
 
-use super::words::Axis;
+use super::axis::Axis;
 
 const GRAVITY_MPS2: f64 = 9.81;
 /// Largest error of gravity that a still accelerometer without calibration shows.
@@ -25,7 +25,7 @@ pub struct Poses {
 
 /// What the poses showed, and the orientation that follows from it.
 #[derive(Clone, Copy, Debug)]
-pub struct BoardFound {
+pub struct BoardMounting {
     pub orientation: Orientation,
     /// The axis that pointed up while the robot was level, and by how much it was off.
     pub up: (Axis, f64),
@@ -65,7 +65,7 @@ pub enum BoardError {
     Mirrored { nose: String, left: String },
 }
 
-pub fn find_board(poses: &Poses) -> Result<BoardFound, BoardError> {
+pub fn find_board(poses: &Poses) -> Result<BoardMounting, BoardError> {
     let level = unit("level", poses.level)?;
     let axis = Axis::nearest(level);
     let up = (axis, axis.degrees_to(level));
@@ -98,7 +98,7 @@ pub fn find_board(poses: &Poses) -> Result<BoardFound, BoardError> {
         let (nose, left) = names();
         BoardError::SameWay { nose, left }
     })?;
-    Ok(BoardFound {
+    Ok(BoardMounting {
         orientation,
         up,
         nose,

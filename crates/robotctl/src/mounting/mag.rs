@@ -29,7 +29,7 @@ const MAX_LEFT: f64 = 0.3;
 const MIN_LEAD: f64 = 2.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MagFound {
+pub struct MagMounting {
     /// Orientation of the magnetometer on the board.
     pub orientation: Orientation,
     pub earth_ut: f64,
@@ -37,8 +37,9 @@ pub struct MagFound {
     /// axes fits as well, with the field reversed.
     pub dip_deg: f64,
     /// Residual of the best orientation, in µT rms.
-    pub left_ut: f64,
-    pub second_ut: f64,
+    pub residual_ut: f64,
+    /// Residual of the second best orientation, in µT rms.
+    pub second_residual_ut: f64,
 }
 
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -52,12 +53,12 @@ pub enum MagError {
     )]
     NotTheEarth(f64),
     #[error(
-        "no way to sit explains what the magnetometer showed: the best leaves {left_ut:.0} µT of {earth_ut:.0}, the second \
-         best {second_ut:.0}; go away from iron and motors, and turn slowly"
+        "no orientation explains what the magnetometer showed: the best leaves {residual_ut:.0} µT of {earth_ut:.0}, the \
+         second best {second_residual_ut:.0}; go away from iron and motors, and turn slowly"
     )]
     Unclear {
-        left_ut: f64,
-        second_ut: f64,
+        residual_ut: f64,
+        second_residual_ut: f64,
         earth_ut: f64,
     },
 }
@@ -68,7 +69,7 @@ pub fn enough_turned(samples: &[FieldSample]) -> bool {
 }
 
 /// Finds how the magnetometer sits. `board` is how the board sits, and must be right.
-pub fn find_mag(board: Orientation, samples: &[FieldSample]) -> Result<MagFound, MagError> {
+pub fn find_mag(board: Orientation, samples: &[FieldSample]) -> Result<MagMounting, MagError> {
     if samples.len() < MIN_SAMPLES {
         return Err(MagError::TooLittle);
     }
@@ -80,26 +81,26 @@ pub fn find_mag(board: Orientation, samples: &[FieldSample]) -> Result<MagFound,
         };
         (mag, turn.fit(samples, turned))
     });
-    ways.sort_by(|a, b| a.1.left_ut.total_cmp(&b.1.left_ut));
+    ways.sort_by(|a, b| a.1.residual_ut.total_cmp(&b.1.residual_ut));
     let [(orientation, best), (_, second), ..] = ways;
-    let (left_ut, second_ut) = (best.left_ut, second.left_ut);
+    let (residual_ut, second_residual_ut) = (best.residual_ut, second.residual_ut);
     let earth_ut = best.earth_ut.norm();
-    if left_ut > MAX_LEFT * earth_ut || left_ut * MIN_LEAD > second_ut {
+    if residual_ut > MAX_LEFT * earth_ut || residual_ut * MIN_LEAD > second_residual_ut {
         return Err(MagError::Unclear {
-            left_ut,
-            second_ut,
+            residual_ut,
+            second_residual_ut,
             earth_ut,
         });
     }
     if !EARTH_UT.contains(&earth_ut) {
         return Err(MagError::NotTheEarth(earth_ut));
     }
-    Ok(MagFound {
+    Ok(MagMounting {
         orientation,
         earth_ut,
         dip_deg: (-best.earth_ut.z / earth_ut).asin().to_degrees(),
-        left_ut,
-        second_ut,
+        residual_ut,
+        second_residual_ut,
     })
 }
 
@@ -111,7 +112,7 @@ struct Turn {
 
 struct Fit {
     earth_ut: Vector3<f64>,
-    left_ut: f64,
+    residual_ut: f64,
 }
 
 impl Turn {
@@ -149,7 +150,7 @@ impl Turn {
             .sum();
         Fit {
             earth_ut: earth,
-            left_ut: left.sqrt(),
+            residual_ut: left.sqrt(),
         }
     }
 }

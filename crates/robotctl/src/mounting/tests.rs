@@ -18,11 +18,11 @@ fn found(poses: &Poses) -> &'static str {
 /// These were worked out by hand for a board held before a robot: 9.8 m/s² upwards, nose up by 45°, left side up by 60°
 /// and 30°.
 #[test]
-fn three_poses_show_how_the_board_sits() {
-    // Flat, as delivered, a little off.
+fn three_poses_show_how_the_board_is_mounted() {
+    // The board is flat with its default mounting and a small error.
     let flat = poses([0.3, -0.2, 9.8], [6.9, 0.1, 6.9], [0.1, 8.5, 4.9]);
     assert_eq!(found(&flat), "x-forward-z-up");
-    // Turned by a quarter to the left: x points left, y backward.
+    // A quarter turn to the left: x points left, y backward.
     let turned = poses([0.0, 0.0, 9.8], [0.0, -6.9, 6.9], [8.5, 0.0, 4.9]);
     assert_eq!(found(&turned), "x-left-z-up");
     // Upside down, x forward: y points right.
@@ -48,7 +48,7 @@ fn three_poses_show_how_the_board_sits() {
 }
 
 #[test]
-fn every_way_to_sit_is_found() {
+fn every_orientation_of_the_board_is_found() {
     for orientation in Orientation::ALL {
         let felt = |up: [f32; 3]| {
             Vector3::from(orientation.rotate_back(up.map(|part| 9.8 * part))).map(f64::from)
@@ -134,14 +134,14 @@ fn turned(
 
 /// The code of DJI and of PX4 implies these two orientations for a board that lies flat with x forward.
 #[test]
-fn a_turned_robot_shows_how_its_magnetometer_sits() {
+fn turning_the_robot_shows_how_its_magnetometer_is_mounted() {
     let board = Orientation::XForwardZUp;
     let as_the_imu = turned(300, 1.0, |field| field);
     assert!(enough_turned(&as_the_imu));
     let seen = find_mag(board, &as_the_imu).unwrap();
     assert_eq!(seen.orientation, Orientation::XForwardZUp);
     assert!(
-        (seen.earth_ut - 47.4).abs() < 0.1 && seen.left_ut < 0.1,
+        (seen.earth_ut - 47.4).abs() < 0.1 && seen.residual_ut < 0.1,
         "{seen:?}"
     );
     // Its x points left, its y backward.
@@ -153,7 +153,7 @@ fn a_turned_robot_shows_how_its_magnetometer_sits() {
 }
 
 #[test]
-fn every_way_the_magnetometer_may_sit_is_found() {
+fn every_orientation_of_the_magnetometer_is_found() {
     for (index, mag) in Orientation::ALL.into_iter().enumerate() {
         let board = Orientation::ALL[(5 * index + 3) % 24];
         let mut wobble = 0.0_f64;
@@ -168,7 +168,7 @@ fn every_way_the_magnetometer_may_sit_is_found() {
 
 /// A field of 47.4 µT with −42 µT upwards points 62° into the ground. Its mirror image points as far out of it.
 #[test]
-fn a_mirror_image_shows_the_field_the_wrong_way_round() {
+fn a_mirror_image_reverses_the_field() {
     let board = Orientation::XForwardZUp;
     let dip = |samples: &[FieldSample]| find_mag(board, samples).unwrap().dip_deg;
     assert!((dip(&turned(300, 1.0, |field| field)) - 62.4).abs() < 0.1);
@@ -177,7 +177,7 @@ fn a_mirror_image_shows_the_field_the_wrong_way_round() {
 }
 
 #[test]
-fn a_field_that_fits_no_way_to_sit_is_named() {
+fn a_field_that_fits_no_orientation_is_reported() {
     let board = Orientation::XForwardZUp;
     let complaint = |samples: &[FieldSample]| find_mag(board, samples).unwrap_err();
     let level_only = turned(300, 0.0, |field| field);

@@ -3,7 +3,7 @@
 use robot_app::domain::RemoteChannel;
 
 use super::{
-    Frame, Moved,
+    Frame, Movement,
     movement::{MoveError, sorted},
 };
 
@@ -15,7 +15,7 @@ const MOST_MISSED: u16 = 60;
 const LEAST_SPAN: u16 = 300;
 
 /// Returns the settings of a stick. It went to all its ends in `frames`.
-pub fn stick(moved: &Moved, frames: &[Frame]) -> Result<RemoteChannel, MoveError> {
+pub fn stick(moved: &Movement, frames: &[Frame]) -> Result<RemoteChannel, MoveError> {
     let counts = sorted(frames, moved.index);
     let (centre, held) = (moved.from, moved.to);
     let end = |place: Option<usize>| place.and_then(|place| counts.get(place));
@@ -39,12 +39,12 @@ pub fn stick(moved: &Moved, frames: &[Frame]) -> Result<RemoteChannel, MoveError
 }
 
 /// Returns the settings of a switch, which was at both of its ends.
-pub(super) fn switch(moved: &Moved) -> RemoteChannel {
+pub(super) fn switch(moved: &Movement) -> RemoteChannel {
     let (low, high) = (moved.from.min(moved.to), moved.from.max(moved.to));
     channel(moved, low, low.midpoint(high), high)
 }
 
-fn channel(moved: &Moved, low: u16, centre: u16, high: u16) -> RemoteChannel {
+fn channel(moved: &Movement, low: u16, centre: u16, high: u16) -> RemoteChannel {
     RemoteChannel {
         index: moved.index as u32,
         low: low.into(),

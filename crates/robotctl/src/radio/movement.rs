@@ -2,7 +2,7 @@
 
 use std::array;
 
-use super::{Control, Found};
+use super::{Control, MappedControl};
 
 /// Counts of all channels as on the wire, from 0 to 2047.
 pub type Frame = [u16; 16];
@@ -14,12 +14,12 @@ const MOST_SPREAD: u16 = 60;
 
 /// The channels in a position that was held for a while.
 #[derive(Clone, Copy, Debug)]
-pub struct Still {
+pub struct HeldPosition {
     pub median: Frame,
     spread: Frame,
 }
 
-impl Still {
+impl HeldPosition {
     /// Returns `None` if there is no frame.
     pub fn of(frames: &[Frame]) -> Option<Self> {
         let sorted = |index| sorted(frames, index);
@@ -52,7 +52,7 @@ pub(super) fn sorted(frames: &[Frame], index: usize) -> Vec<u16> {
 
 /// A channel that moved from rest to where the pilot was asked to put its control.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Moved {
+pub struct Movement {
     pub control: Control,
     /// Index of the channel, from 0 to 15.
     pub index: usize,
@@ -114,13 +114,13 @@ pub enum MoveError {
     },
 }
 
-impl Moved {
+impl Movement {
     /// Finds the only channel that moved from `rest`.
     pub fn find(
         control: Control,
-        rest: &Still,
-        held: &Still,
-        found: &[Found],
+        rest: &HeldPosition,
+        held: &HeldPosition,
+        found: &[MappedControl],
     ) -> Result<Self, MoveError> {
         let name = control.name();
         let moved = |index: usize| held.median[index].abs_diff(rest.median[index]);

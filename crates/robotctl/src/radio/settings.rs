@@ -2,10 +2,10 @@
 
 use robot_app::domain::{NO_CHANNEL, RemoteChannel};
 
-use super::{Control, Moved, ends};
+use super::{Control, Movement, ends};
 use crate::{
     parameter_file::ParameterFile,
-    settings::{self, Named, UnknownName},
+    settings::{self, Setting, UnknownName},
     tuning::{self, ApplyError, TuningClient, TuningError},
 };
 
@@ -14,13 +14,13 @@ pub const ENABLE_CHANNEL: &str = "radio.enable-channel";
 
 /// A control and its channel, which is `None` if the transmitter has no such control.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Found {
+pub struct MappedControl {
     pub control: Control,
     pub channel: Option<RemoteChannel>,
 }
 
-impl Found {
-    pub fn switch(moved: &Moved) -> Self {
+impl MappedControl {
+    pub fn switch(moved: &Movement) -> Self {
         Self {
             control: moved.control,
             channel: Some(ends::switch(moved)),
@@ -75,11 +75,11 @@ impl Found {
 /// channel was `enable_was` before this tool removed it.
 pub fn differing(
     client: &mut TuningClient,
-    found: &[Found],
+    found: &[MappedControl],
     enable_was: f32,
-) -> Result<Vec<(Named, f32, f32)>, WriteError> {
+) -> Result<Vec<(Setting, f32, f32)>, WriteError> {
     let mut differing = Vec::new();
-    for (name, wanted) in found.iter().flat_map(Found::settings) {
+    for (name, wanted) in found.iter().flat_map(MappedControl::settings) {
         let named = settings::find(&name)?;
         let is = match name.as_str() {
             ENABLE_CHANNEL => enable_was,
@@ -107,11 +107,11 @@ pub enum WriteError {
 /// Writes the settings that differ. The robot has no enable switch while its channels change, because it could read
 /// half a mapping as enabled. That would not be safe, and it would refuse further settings. An interruption leaves a
 /// robot that cannot be armed.
-pub fn write(client: &mut TuningClient, found: &[Found]) -> Result<(), WriteError> {
+pub fn write(client: &mut TuningClient, found: &[MappedControl]) -> Result<(), WriteError> {
     let enable = settings::find(ENABLE_CHANNEL)?;
     let mut enable_index = client.read(enable)?;
     let mut file = ParameterFile::default();
-    for (name, value) in found.iter().flat_map(Found::settings) {
+    for (name, value) in found.iter().flat_map(MappedControl::settings) {
         if name == ENABLE_CHANNEL {
             enable_index = value;
         } else {

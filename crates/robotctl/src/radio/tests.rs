@@ -12,7 +12,7 @@ use super::*;
 use crate::{
     can_link::{CanLink, CanLinkError},
     tuning::{
-        Patience, TuningClient,
+        Timeouts, TuningClient,
         testing::{Bus, Robot, client, robot},
     },
 };
@@ -31,12 +31,12 @@ fn with(changes: &[(usize, u16)]) -> Frame {
     frame
 }
 
-fn still(frame: Frame) -> Still {
-    Still::of(&[frame; 5]).unwrap()
+fn still(frame: Frame) -> HeldPosition {
+    HeldPosition::of(&[frame; 5]).unwrap()
 }
 
-fn find(control: Control, changes: &[(usize, u16)]) -> Result<Moved, MoveError> {
-    Moved::find(control, &still(REST), &still(with(changes)), &[])
+fn find(control: Control, changes: &[(usize, u16)]) -> Result<Movement, MoveError> {
+    Movement::find(control, &still(REST), &still(with(changes)), &[])
 }
 
 fn channel(index: u32, low: u32, centre: u32, high: u32, reversed: u32) -> RemoteChannel {
@@ -72,7 +72,7 @@ fn each_control_at_its_high_end_is_at_plus_one_for_the_robot() {
     }
     let switch = |control, index, to| {
         let moved = find(control, &[(index, to)]).unwrap();
-        Found::switch(&moved).channel.unwrap()
+        MappedControl::switch(&moved).channel.unwrap()
     };
     let enable = switch(Control::Enable, 4, 1811);
     assert_eq!(enable, channel(4, 172, 991, 1811, 0));
@@ -86,11 +86,14 @@ fn each_control_at_its_high_end_is_at_plus_one_for_the_robot() {
 }
 
 #[test]
-fn a_switch_that_is_sent_the_other_way_round_is_reversed() {
+fn a_switch_with_the_opposite_direction_is_reversed() {
     let found = |control, from: u16, to: u16| {
         let rest = still(with(&[(9, from)]));
-        let moved = Moved::find(control, &rest, &still(with(&[(9, to)])), &[]).unwrap();
-        (moved.is_reversed(), Found::switch(&moved).channel.unwrap())
+        let moved = Movement::find(control, &rest, &still(with(&[(9, to)])), &[]).unwrap();
+        (
+            moved.is_reversed(),
+            MappedControl::switch(&moved).channel.unwrap(),
+        )
     };
     // Futaba's ends.
     let (reversed, enable) = found(Control::Enable, 1696, 352);
@@ -103,7 +106,7 @@ fn a_switch_that_is_sent_the_other_way_round_is_reversed() {
 }
 
 #[test]
-fn a_movement_that_says_nothing_is_named_with_its_cure() {
+fn an_ambiguous_movement_is_reported_with_advice() {
     let complaint = |control, changes: &[_]| find(control, changes).unwrap_err().to_string();
     let little = complaint(Control::Drive, &[(1, 1291)]);
     assert!(
@@ -123,9 +126,9 @@ fn a_movement_that_says_nothing_is_named_with_its_cure() {
     );
     assert!(find(Control::Drive, &[(1, 1811), (0, 843)]).is_ok());
 
-    let drive = Found::switch(&find(Control::Drive, &[(1, 1811)]).unwrap());
+    let drive = MappedControl::switch(&find(Control::Drive, &[(1, 1811)]).unwrap());
     let held = still(with(&[(1, 172)]));
-    let again = Moved::find(Control::Steering, &still(REST), &held, &[drive]).unwrap_err();
+    let again = Movement::find(Control::Steering, &still(REST), &held, &[drive]).unwrap_err();
     let again = again.to_string();
     assert!(
         again.starts_with("steering: channel 1 moved, which is drive already"),
@@ -133,10 +136,10 @@ fn a_movement_that_says_nothing_is_named_with_its_cure() {
     );
 
     let wobbling = [1700, 1811, 1750, 1761, 1800].map(|count| with(&[(1, count)]));
-    let wobbling = Still::of(&wobbling).unwrap();
+    let wobbling = HeldPosition::of(&wobbling).unwrap();
     assert_eq!(wobbling.median[1], 1761);
     assert_eq!(
-        Moved::find(Control::Drive, &still(REST), &wobbling, &[]),
+        Movement::find(Control::Drive, &still(REST), &wobbling, &[]),
         Err(MoveError::Unsteady {
             name: "drive",
             index: 1,
@@ -146,7 +149,7 @@ fn a_movement_that_says_nothing_is_named_with_its_cure() {
 }
 
 #[test]
-fn what_is_not_back_is_named() {
+fn a_control_that_is_not_back_is_named() {
     let back = |changes: &[_]| still(REST).check_back(&still(with(changes)));
     assert_eq!(back(&[(0, 1100)]), Ok(()));
     let on = back(&[(4, 1811)]).unwrap_err();
@@ -154,7 +157,7 @@ fn what_is_not_back_is_named() {
 }
 
 #[test]
-fn ends_are_what_several_frames_show() {
+fn an_end_needs_several_frames() {
     let drive = find(Control::Drive, &[(1, 1811)]).unwrap();
     let mut frames = round(1, 180, 1805);
     frames.extend([with(&[(1, 0)]), with(&[(1, 2047)])]);
@@ -191,8 +194,8 @@ fn a_stick_that_was_not_moved_to_both_ends_is_named() {
 }
 
 /// A transmitter with another order: throttle first, the two sticks' channels swapped, no selector.
-fn found() -> Vec<Found> {
-    let with = |control, channel| Found { control, channel };
+fn found() -> Vec<MappedControl> {
+    let with = |control, channel| MappedControl { control, channel };
     vec![
         with(Control::Drive, Some(channel(0, 352, 1024, 1696, 1))),
         with(Control::Steering, Some(channel(1, 300, 1000, 1700, 0))),
@@ -205,9 +208,9 @@ fn found() -> Vec<Found> {
 }
 
 #[test]
-fn what_was_found_is_said_and_written() {
+fn the_mapping_is_shown_and_written() {
     let (bus, mut client) = robot();
-    let words: Vec<_> = found().iter().map(Found::in_words).collect();
+    let words: Vec<_> = found().iter().map(MappedControl::in_words).collect();
     assert_eq!(
         words[0],
         "drive: channel 0, 352 … 1024 … 1696; forward is the low count"
@@ -255,11 +258,11 @@ fn a_reversed_enable_switch_does_not_lock_its_own_settings_out() {
     let rest = [
         1024, 1000, 992, 992, 1811, 1811, 172, 0, 0, 0, 0, 0, 0, 0, 0, 0,
     ];
-    let patience = Patience {
+    let timeouts = Timeouts {
         each_try: Duration::ZERO,
         tries: 3,
     };
-    let mut client = TuningClient::new(Box::new(AtRest(bus.clone(), rest)), patience);
+    let mut client = TuningClient::new(Box::new(AtRest(bus.clone(), rest)), timeouts);
     write(&mut client, &found()).unwrap();
     let enable = bus.0.borrow().config.radio.enable;
     assert_eq!(enable, channel(5, 172, 991, 1811, 1));
@@ -298,7 +301,7 @@ fn all_channels_are_read_in_their_order() {
 }
 
 #[test]
-fn only_a_robot_that_hears_and_cannot_be_armed_is_watched() {
+fn only_a_robot_that_receives_and_cannot_be_armed_is_watched() {
     let refused = |change: fn(&mut DiagnosticsSnapshot)| watched(REST, change).unwrap_err();
     assert!(matches!(
         refused(|robot| robot.arming.state = ArmingState::Armed),

@@ -1,6 +1,6 @@
 //! Reads the radio channels of a robot that cannot be armed.
 
-use super::{Frame, Still};
+use super::{Frame, HeldPosition};
 use crate::tuning::{LiveReading, TuningClient, TuningError, live_page};
 use robot_app::tuning::LiveValue;
 
@@ -39,10 +39,10 @@ impl<'c> Watch<'c> {
     }
 
     /// Reads a position that the pilot holds.
-    pub fn still(&mut self) -> Result<Still, WatchError> {
+    pub fn still(&mut self) -> Result<HeldPosition, WatchError> {
         let frames = (0..READINGS).map(|_| self.frame());
         let frames: Vec<Frame> = frames.collect::<Result<_, _>>()?;
-        Still::of(&frames).ok_or(WatchError::NotHeard)
+        HeldPosition::of(&frames).ok_or(WatchError::NotHeard)
     }
 
     /// Reads all channels within about ten milliseconds.

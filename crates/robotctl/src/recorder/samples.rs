@@ -18,7 +18,7 @@ t,ax,ay,az,gx,gy,gz,mx,my,mz
 type Vector = Vector3<f64>;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Measured {
+enum SensorValues {
     Imu {
         accel_mps2: Vector,
         /// `None` if its frame was lost.
@@ -31,7 +31,7 @@ enum Measured {
 #[derive(Clone, Debug, Default)]
 pub struct Samples {
     /// Rows with their times. The low 16 bits of a time are those on the wire.
-    rows: Vec<(i64, Measured)>,
+    rows: Vec<(i64, SensorValues)>,
     /// Time of the sample that arrived last.
     last_time: Option<i64>,
 }
@@ -47,14 +47,14 @@ impl Samples {
         let time = self.unwrapped(sample.time);
         let value = Vector::from_iterator(sample.value.into_iter().map(f64::from));
         let measured = match sample.sensor {
-            RecordedSensor::Accel => Measured::Imu {
+            RecordedSensor::Accel => SensorValues::Imu {
                 accel_mps2: value,
                 gyro_dps: None,
             },
-            RecordedSensor::Mag => Measured::Mag(value),
+            RecordedSensor::Mag => SensorValues::Mag(value),
             RecordedSensor::Gyro => return self.add_gyro(time, value),
         };
-        // The magnetometer's time is the middle of its measurement: it may arrive after newer samples of the IMU.
+        // The magnetometer's time is the middle of its measurement, so it may arrive after younger samples of the IMU.
         let place = self.rows.partition_point(|(other, _)| *other <= time);
         self.rows.insert(place, (time, measured));
     }
@@ -63,7 +63,7 @@ impl Samples {
     fn add_gyro(&mut self, time: i64, value: Vector) {
         let of_this_time = self.rows.iter_mut().rev();
         for (_, measured) in of_this_time.take_while(|(other, _)| *other >= time) {
-            if let Measured::Imu { gyro_dps, .. } = measured {
+            if let SensorValues::Imu { gyro_dps, .. } = measured {
                 *gyro_dps = Some(value);
             }
         }
@@ -81,7 +81,8 @@ impl Samples {
 
     /// Returns the number of samples of the IMU and of the magnetometer.
     pub fn counts(&self) -> (u32, u32) {
-        let is_imu = |(_, measured): &&(i64, Measured)| matches!(measured, Measured::Imu { .. });
+        let is_imu =
+            |(_, measured): &&(i64, SensorValues)| matches!(measured, SensorValues::Imu { .. });
         let imu = self.rows.iter().filter(is_imu).count();
         (imu as u32, (self.rows.len() - imu) as u32)
     }
@@ -110,8 +111,8 @@ impl Samples {
     ) -> Result<(), RecordError> {
         for (_, measured) in &mut self.rows {
             match measured {
-                Measured::Imu { accel_mps2, .. } => *accel_mps2 = accel.undo(*accel_mps2),
-                Measured::Mag(field_ut) => {
+                SensorValues::Imu { accel_mps2, .. } => *accel_mps2 = accel.undo(*accel_mps2),
+                SensorValues::Mag(field_ut) => {
                     *field_ut = mag.undo(*field_ut).ok_or(RecordError::SoftIron)?;
                 }
             }
@@ -125,14 +126,14 @@ impl Samples {
         let mut table = String::from(HEADING);
         for (time, measured) in &self.rows {
             let row = match measured {
-                Measured::Imu {
+                SensorValues::Imu {
                     accel_mps2,
                     gyro_dps,
                 } => {
                     let gyro = gyro_dps.map_or(",,".to_owned(), |gyro| fields(&gyro, 4));
                     format!("{},{gyro},,,", fields(accel_mps2, 4))
                 }
-                Measured::Mag(field_ut) => format!(",,,,,,{}", fields(field_ut, 2)),
+                SensorValues::Mag(field_ut) => format!(",,,,,,{}", fields(field_ut, 2)),
             };
             table.push_str(&format!("{:.4},{row}\n", self.seconds(*time)));
         }

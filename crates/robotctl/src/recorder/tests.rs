@@ -12,7 +12,7 @@ use crate::{
     tuning::testing::{Bus, robot},
 };
 
-const QUICK: RecordPatience = RecordPatience {
+const QUICK: RecordTimeouts = RecordTimeouts {
     look: Duration::ZERO,
     silence: Duration::from_secs(60),
 };
@@ -27,7 +27,7 @@ fn sample(sensor: RecordedSensor, time: u16, x: f32) -> RecordedSample {
 
 /// The 16-bit times 65,500, 14 and 64 are 0, 5 and 10 ms. The magnetometer's sample for 2 ms comes late.
 #[test]
-fn rows_are_in_order_whatever_order_they_came_in() {
+fn rows_are_sorted_by_time() {
     let mut samples = Samples::default();
     samples.extend(&[
         sample(RecordedSensor::Accel, 65_500, 1.0),
@@ -98,7 +98,7 @@ fn recorded(seconds: u64, lose: usize) -> Result<Recorded, RecordError> {
 }
 
 #[test]
-fn a_recording_can_be_calibrated_from() {
+fn a_recording_can_be_used_for_calibration() {
     let recorded = recorded(10, usize::MAX).unwrap();
     assert_eq!(recorded.lost, 0);
     let (imu, mag) = recorded.samples.counts();
@@ -112,7 +112,7 @@ fn a_recording_can_be_calibrated_from() {
     let field = recording::load(&path, Sensor::Magnetometer).unwrap();
     std::fs::remove_file(&path).unwrap();
     assert_eq!((accel.len() as u32, field.len() as u32), (imu, mag));
-    // As the sensor had it: the robot had taken 0.25 off.
+    // The sensor measured this. The robot had subtracted 0.25.
     assert_eq!(accel[7].value, Vector3::new(0.75, 0.0, 9.5));
     assert_eq!(field[7].value, Vector3::new(20.0, 0.0, -40.0));
 }
@@ -126,7 +126,7 @@ fn lost_samples_are_counted_and_too_many_refused() {
 }
 
 #[test]
-fn arming_ends_a_recording_and_is_told() {
+fn arming_ends_a_recording_with_an_error() {
     let error = recorded(2, usize::MAX).unwrap_err();
     assert!(matches!(error, RecordError::CutShort), "{error}");
 }

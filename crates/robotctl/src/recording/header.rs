@@ -51,7 +51,7 @@ pub(super) struct Header {
 impl Header {
     pub fn parse(line: &str, sensor: Sensor) -> Result<Self, HeaderError> {
         let count = |separator: &char| line.matches(*separator).count();
-        // The most frequent one; of several, the first.
+        // This is the most frequent separator, or the first of several.
         let separator = [',', ';', '\t'].into_iter().rev().max_by_key(count);
         let separator = separator.filter(|separator| count(separator) > 0);
         let Some(separator) = separator else {

@@ -80,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn new_measurements_are_taken_once_with_their_times() {
+    fn each_new_measurement_is_read_once_with_its_time() {
         let file = recording(&[
             ("/diag", 10, r#"{"sensors":{"mag":{"mag_ut":[0,0,0]}}}"#),
             ("/truth", 20, r#"{"sensors":{"mag":{"mag_ut":[9,9,9]}}}"#),
@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_recording_is_refused() {
+    fn a_file_that_is_no_recording_is_refused() {
         assert!(samples(b"t,ax,ay,az\n", Sensor::Accelerometer).is_err());
     }
 }

@@ -2,7 +2,7 @@
 
 use robot_app::tuning::ParameterKind;
 
-use super::Named;
+use super::Setting;
 
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ValueError {
@@ -16,7 +16,7 @@ pub enum ValueError {
     },
 }
 
-impl Named {
+impl Setting {
     /// Parses a number, or the name of a choice. It does not check whether the setting may have the number.
     pub fn parse(&self, text: &str) -> Result<f32, ValueError> {
         if let Ok(number) = text.parse::<f32>() {
@@ -52,7 +52,7 @@ mod tests {
 
     /// The numbers are from docs/tuning.md.
     #[test]
-    fn a_choice_is_told_by_name_or_number() {
+    fn a_choice_is_parsed_by_name_or_number() {
         let board = find("mounting.board").unwrap();
         assert_eq!(board.parse("x-right-z-down"), Ok(13.0));
         assert_eq!(board.parse("13"), Ok(13.0));

@@ -14,7 +14,7 @@ fn status(fill: impl FnOnce(&mut DiagnosticsSnapshot)) -> Status {
 }
 
 #[test]
-fn what_speaks_against_arming_is_told_with_what_to_do() {
+fn arming_blockers_are_shown_with_advice() {
     let text = status(|diagnostics| {
         diagnostics.reset_cause = ResetCause::IndependentWatchdog;
         diagnostics.last_words = CrashCause::ImuLate;
@@ -43,7 +43,7 @@ fn what_speaks_against_arming_is_told_with_what_to_do() {
 }
 
 #[test]
-fn the_motor_that_forbids_arming_is_named_and_what_is_heard_instead() {
+fn the_motor_that_prevents_arming_is_named_with_unknown_identifiers() {
     let text = status(|diagnostics| {
         diagnostics.arming.refused = ArmingBlockers::WHEEL_NEVER_HEARD;
         diagnostics.motors.wheels_doubtful = 0b10;
@@ -82,7 +82,7 @@ fn an_armed_robot_has_no_blockers() {
 }
 
 #[test]
-fn scripts_get_every_value_by_name() {
+fn json_has_every_value_by_name() {
     let json = status(|diagnostics| {
         diagnostics.battery_v = 23.5;
         diagnostics.sensors.motor.wheels[1].rotor_angle = 8_000;

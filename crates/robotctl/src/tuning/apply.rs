@@ -8,7 +8,7 @@ use robot_app::{
 use super::{TuningClient, TuningError};
 use crate::{
     parameter_file::ParameterFile,
-    settings::{Named, UnknownName, find},
+    settings::{Setting, UnknownName, find},
 };
 
 const MOUNTING: &str = "mounting";
@@ -16,7 +16,7 @@ const MOUNTING: &str = "mounting";
 /// A setting of the file.
 #[derive(Clone, Copy, Debug)]
 pub struct Applied {
-    pub named: Named,
+    pub named: Setting,
     pub before: f32,
     pub after: f32,
 }
@@ -44,7 +44,7 @@ pub enum ApplyError {
 /// Writes what differs from the robot's present values. Unknown names and values out of range are found before anything
 /// is written.
 pub fn apply(client: &mut TuningClient, file: &ParameterFile) -> Result<Vec<Applied>, ApplyError> {
-    let wanted: Vec<(Named, f32)> = file
+    let wanted: Vec<(Setting, f32)> = file
         .iter()
         .map(|(name, value)| Ok((checked(find(name)?, value)?, value)))
         .collect::<Result<_, ApplyError>>()?;
@@ -71,7 +71,7 @@ pub fn apply(client: &mut TuningClient, file: &ParameterFile) -> Result<Vec<Appl
     Ok(settings)
 }
 
-fn checked(named: Named, value: f32) -> Result<Named, ApplyError> {
+fn checked(named: Setting, value: f32) -> Result<Setting, ApplyError> {
     if may_be(named.parameter, value) {
         return Ok(named);
     }
@@ -93,12 +93,12 @@ fn may_be(parameter: &Parameter, value: f32) -> bool {
 
 /// Radio channels that were taken from their function, so that another one can have them.
 #[derive(Default)]
-struct Freed(Vec<u8>);
+struct FreedChannels(Vec<u8>);
 
-impl Freed {
+impl FreedChannels {
     /// True for a radio channel that has not been freed yet. From now on it counts as freed.
     fn take(&mut self, setting: &Applied) -> bool {
-        let Named { group, parameter } = setting.named;
+        let Setting { group, parameter } = setting.named;
         let is_channel = group.name == "radio" && parameter.name.ends_with("-channel");
         let is_new = is_channel && !self.0.contains(&parameter.index);
         if is_new {
@@ -115,7 +115,7 @@ fn write_all(
     settings: &[Applied],
     written: &mut usize,
 ) -> Result<(), TuningError> {
-    let mut freed = Freed::default();
+    let mut freed = FreedChannels::default();
     let mut waiting: Vec<&Applied> = settings.iter().filter(|s| s.before != s.after).collect();
     waiting.sort_by_key(|setting| setting.named.group.name != MOUNTING);
     while !waiting.is_empty() {
@@ -133,7 +133,7 @@ fn write_all(
             }
         }
         if let (true, Some(error)) = (refused.len() == tried, last_error) {
-            // Channels that change places wait for each other in a ring.
+            // Functions that exchange their channels wait for each other in a ring.
             let Some(channel) = refused.iter().find(|setting| freed.take(setting)) else {
                 return Err(error);
             };

@@ -12,18 +12,18 @@ use super::{
 };
 use crate::{
     can_link::{CanLink, CanLinkError},
-    settings::Named,
+    settings::Setting,
 };
 
 /// How long to wait for replies.
 #[derive(Clone, Copy, Debug)]
-pub struct Patience {
+pub struct Timeouts {
     /// The robot answers within six milliseconds.
     pub each_try: Duration,
     pub tries: u32,
 }
 
-impl Default for Patience {
+impl Default for Timeouts {
     fn default() -> Self {
         Self {
             each_try: Duration::from_millis(250),
@@ -104,21 +104,21 @@ fn explain(reason: Result<Refusal, u8>, allowed: Option<&str>) -> String {
 /// The tuning channel of the robot on a bus.
 pub struct TuningClient {
     link: Box<dyn CanLink>,
-    patience: Patience,
+    timeouts: Timeouts,
     /// Samples of a recording in the order of their arrival.
     recorded: Vec<RecordedSample>,
 }
 
 impl TuningClient {
-    pub fn new(link: Box<dyn CanLink>, patience: Patience) -> Self {
+    pub fn new(link: Box<dyn CanLink>, timeouts: Timeouts) -> Self {
         Self {
             link,
-            patience,
+            timeouts,
             recorded: Vec::new(),
         }
     }
 
-    pub fn read(&mut self, named: Named) -> Result<f32, TuningError> {
+    pub fn read(&mut self, named: Setting) -> Result<f32, TuningError> {
         let request = Request::Read {
             group: named.group.number,
             index: named.parameter.index,
@@ -127,7 +127,7 @@ impl TuningClient {
         Ok(request::value(reply))
     }
 
-    pub fn write(&mut self, named: Named, value: f32) -> Result<(), TuningError> {
+    pub fn write(&mut self, named: Setting, value: f32) -> Result<(), TuningError> {
         let request = Request::Write {
             group: named.group.number,
             index: named.parameter.index,
@@ -255,9 +255,9 @@ impl TuningClient {
         request: Request,
         what: impl Fn() -> String,
     ) -> Result<[u8; 7], TuningError> {
-        for _ in 0..self.patience.tries {
+        for _ in 0..self.timeouts.tries {
             self.link.send(&request.frame())?;
-            let deadline = Instant::now() + self.patience.each_try;
+            let deadline = Instant::now() + self.timeouts.each_try;
             while let Some(frame) = self.link.receive(deadline)? {
                 match request.reply(&frame) {
                     Some(Reply::Done(bytes)) => return Ok(bytes),

@@ -95,7 +95,7 @@ impl Request {
         let [command, rest @ ..] = frame.full_payload()?;
         if command == REFUSED {
             let [refused, reason, group, index, ..] = rest;
-            // A firmware that does not know the command does not know either what follows it.
+            // A firmware that does not know the command does not know its operands either.
             let ours = self.address() == [group, index] || reason == Refusal::UnknownCommand.code();
             let ours = refused == asked[0] && ours;
             let reason = Refusal::from_code(reason).ok_or(reason);

@@ -8,12 +8,12 @@ use super::{StoreReport, TuningClient, TuningError};
 
 /// How long to wait for a save.
 #[derive(Clone, Copy, Debug)]
-pub struct SavePatience {
+pub struct SaveTimeouts {
     pub pause: Duration,
     pub looks: u32,
 }
 
-impl Default for SavePatience {
+impl Default for SaveTimeouts {
     /// Waits for five seconds: half a second of quiet, an erase, and one repetition a second later.
     fn default() -> Self {
         Self {
@@ -38,7 +38,7 @@ pub enum SaveError {
 /// Asks until the robot has saved all changes.
 pub fn wait_until_saved(
     client: &mut TuningClient,
-    patience: SavePatience,
+    timeouts: SaveTimeouts,
 ) -> Result<StoreReport, SaveError> {
     let mut looks = 1;
     loop {
@@ -46,11 +46,11 @@ pub fn wait_until_saved(
         if report.is_saved() {
             return Ok(report);
         }
-        if looks >= patience.looks {
+        if looks >= timeouts.looks {
             return Err(SaveError::NotSaved(report));
         }
         looks += 1;
-        thread::sleep(patience.pause);
+        thread::sleep(timeouts.pause);
     }
 }
 

@@ -15,7 +15,7 @@ use robot_app::{
     tuning::{REPLY_ID, Refusal, TuningAccess, TuningChannel, TuningGate, opcode},
 };
 
-use super::{Patience, TuningClient};
+use super::{Timeouts, TuningClient};
 use crate::can_link::{CanLink, CanLinkError};
 
 pub(crate) struct Robot {
@@ -110,11 +110,11 @@ pub(crate) fn robot() -> (Bus, TuningClient) {
         requests: 0,
         replies: VecDeque::new(),
     })));
-    let patience = Patience {
+    let timeouts = Timeouts {
         each_try: Duration::ZERO,
         tries: 3,
     };
-    let client = TuningClient::new(Box::new(bus.clone()), patience);
+    let client = TuningClient::new(Box::new(bus.clone()), timeouts);
     (bus, client)
 }
 

@@ -90,7 +90,7 @@ fn an_armed_robot_refuses_and_the_message_says_what_to_do() {
 }
 
 #[test]
-fn a_lost_reply_is_asked_for_again_and_a_dead_bus_is_told() {
+fn a_lost_reply_is_requested_again_and_a_dead_bus_is_reported() {
     let (bus, mut client) = robot();
     let target = find("heater.target-c").unwrap();
     bus.0.borrow_mut().to_lose = 2;
@@ -179,7 +179,7 @@ fn values_that_can_never_fit_end_the_application() {
 }
 
 #[test]
-fn what_the_robot_has_already_is_not_written() {
+fn unchanged_values_are_not_written() {
     let (bus, mut client) = robot();
     let values = [("heater.target-c", RobotConfig::default().heater.target_c)];
     apply(&mut client, &file(&values)).unwrap();
@@ -187,7 +187,7 @@ fn what_the_robot_has_already_is_not_written() {
 }
 
 #[test]
-fn bring_up_is_asked_for_and_too_much_torque_refused() {
+fn bring_up_is_requested_and_too_much_torque_is_refused() {
     let (_, mut client) = robot();
     let joint = |milli: i16| {
         BringUpStep::OneMotor(Motor::RightRear, Trial::Fixed(milli.try_into().unwrap()))
@@ -199,7 +199,7 @@ fn bring_up_is_asked_for_and_too_much_torque_refused() {
     assert!(error.to_string().contains("out of its range"), "{error}");
 }
 
-const QUICK: SavePatience = SavePatience {
+const QUICK: SaveTimeouts = SaveTimeouts {
     pause: Duration::ZERO,
     looks: 5,
 };
@@ -222,7 +222,7 @@ fn a_change_is_followed_until_it_is_saved() {
 }
 
 #[test]
-fn what_keeps_the_robot_from_saving_is_told_with_what_to_do() {
+fn a_failing_save_is_explained_with_advice() {
     let (bus, mut client) = changed();
     bus.0.borrow_mut().looks_to_save = None;
     let mut complaint = |state, last_error| {
@@ -257,7 +257,7 @@ fn an_old_firmware_is_known_to_save_nothing() {
 }
 
 #[test]
-fn what_boot_found_is_told_by_name() {
+fn findings_of_the_boot_are_named() {
     let (bus, mut client) = robot();
     bus.0.borrow_mut().diagnostics.params = ParamStatus {
         lost_sectors: 1,
@@ -281,7 +281,7 @@ fn defaults_that_change_nothing_wait_for_the_robot_too() {
 }
 
 #[test]
-fn a_group_or_all_get_their_defaults_back() {
+fn defaults_of_a_group_or_of_all_are_restored() {
     let (bus, mut client) = changed();
     let track = find("wheel-geometry.track-m").unwrap();
     client.write(track, 0.3).unwrap();
@@ -296,7 +296,7 @@ fn a_group_or_all_get_their_defaults_back() {
 }
 
 #[test]
-fn live_values_have_the_firmware_s_names_and_units() {
+fn live_values_have_the_firmwares_names_and_units() {
     let (bus, mut client) = robot();
     let joint = live_page("joint");
     {
@@ -351,7 +351,7 @@ fn sensors_are_watched_along_their_own_axes() {
         (field - Vector3::new(20.0, -40.0, 10.0)).norm() < 0.1,
         "{field}"
     );
-    // Turned by a quarter to the left: the nose points north.
+    // A quarter turn to the left: the nose points north.
     let nose = sample.attitude * Vector3::x();
     assert!((nose - Vector3::y()).norm() < 1e-3, "{nose}");
     watch.check_attitude().unwrap();
@@ -364,7 +364,7 @@ fn sensors_are_watched_along_their_own_axes() {
 
 /// A file with both, in an order that would be refused.
 #[test]
-fn how_a_sensor_sits_is_written_before_its_calibration() {
+fn mounting_is_written_before_calibration() {
     let (bus, mut client) = robot();
     let both = file(&[
         ("imu-calibration.accel-bias-x-mps2", 0.1),
@@ -413,7 +413,7 @@ fn a_value_out_of_range_is_refused_with_its_range() {
 
 /// The motor is at 0.75 rad. If that is to be 0.25 rad on the mirrored right side, its zero is at 1 rad.
 #[test]
-fn a_joint_gets_its_zero_where_it_stands() {
+fn a_joints_zero_is_set_at_its_present_angle() {
     let (bus, mut client) = robot();
     bus.0.borrow_mut().to_lose = 1;
     client.zero_joint(2, 0.25).unwrap();

@@ -19,7 +19,7 @@ use robot_sim::{job::Job, scenario::Scenario};
 use robotctl::{
     calibration::{accel, mag},
     parameter_file::ParameterFile,
-    recorder::{self, RecordPatience},
+    recorder::{self, RecordTimeouts},
     recording::{self, Sample, Sensor},
     settings,
     tuning::{self, TuningClient},
@@ -29,8 +29,8 @@ use trial::SensorErrors;
 
 /// Length of the recording, nearly the whole trial.
 const RECORDED_S: u16 = 24;
-/// Time-outs in the computer's time, as the board may run slowly on it.
-const PATIENCE: RecordPatience = RecordPatience {
+/// In time of the computer, on which the board may run slowly.
+const PATIENCE: RecordTimeouts = RecordTimeouts {
     look: Duration::from_millis(50),
     silence: Duration::from_secs(60),
 };

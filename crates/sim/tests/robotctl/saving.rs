@@ -8,13 +8,13 @@ use robot_sim::scenario::Scenario;
 use robotctl::{
     parameter_file::ParameterFile,
     settings,
-    tuning::{self, SavePatience, StoreReport, TuningClient},
+    tuning::{self, SaveTimeouts, StoreReport, TuningClient},
 };
 
 use crate::{support, tool::Tool};
 
-/// Time-outs in the computer's time, as the board may run slowly on it.
-const PATIENCE: SavePatience = SavePatience {
+/// In time of the computer, on which the board may run slowly.
+const PATIENCE: SaveTimeouts = SaveTimeouts {
     pause: Duration::from_millis(2),
     looks: 20_000,
 };

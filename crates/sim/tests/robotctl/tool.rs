@@ -13,7 +13,7 @@ use robot_sim::{
 };
 use robotctl::{
     can_link::CanDevice,
-    tuning::{Patience, TuningClient},
+    tuning::{Timeouts, TuningClient},
 };
 
 /// By this time the board has booted and receives frames.
@@ -21,8 +21,8 @@ const START: Ps = 200 * MS;
 /// Pause of the board in each simulated millisecond while the tool works. The board runs faster than real time, and the tool
 /// must end long before the run does.
 const LET_THE_TOOL_WORK: Duration = Duration::from_micros(500);
-/// The time-out is long because a thread may be suspended for long on a busy computer.
-const PATIENCE: Patience = Patience {
+/// On a busy computer a thread may rest for long.
+const PATIENCE: Timeouts = Timeouts {
     each_try: Duration::from_secs(20),
     tries: 2,
 };

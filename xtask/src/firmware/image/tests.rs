@@ -26,7 +26,7 @@ fn good() -> Image {
 }
 
 /// Name of the check that must fail, and how to make it fail.
-type Spoiled = (&'static str, fn(&mut Image));
+type Fault = (&'static str, fn(&mut Image));
 
 fn failures(image: &Image) -> Vec<&'static str> {
     let failed = |check: Check| check.outcome.is_err().then_some(check.name);
@@ -34,13 +34,13 @@ fn failures(image: &Image) -> Vec<&'static str> {
 }
 
 #[test]
-fn an_image_as_laid_out_passes() {
+fn a_correct_image_passes() {
     assert_eq!(failures(&good()), Vec::<&str>::new());
 }
 
 #[test]
-fn each_check_notices_its_fault() {
-    let cases: [Spoiled; 9] = [
+fn each_check_detects_its_fault() {
+    let cases: [Fault; 9] = [
         ("flash budget", |image| {
             image.programmed.push(0x0802_0000..0x0805_8001);
         }),
@@ -84,6 +84,6 @@ fn each_check_notices_its_fault() {
 }
 
 #[test]
-fn what_is_no_elf_is_refused() {
+fn a_file_that_is_no_elf_is_refused() {
     assert!(Image::parse(b"\x7fELF but not really").is_err());
 }

@@ -32,7 +32,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_row_a_tick_with_every_digit_of_single_precision() {
+    fn each_tick_is_a_row_in_full_single_precision() {
         let tick = Tick {
             t_us: 12_345_000,
             q_wxyz: [0.6, 0.0, -0.8, 1.234_567_891e-5],

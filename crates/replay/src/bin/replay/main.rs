@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn a_trial_nobody_has_is_answered_by_those_there_are() {
+    fn an_unknown_trial_is_answered_with_the_known_ones() {
         let files = vec![
             PathBuf::from("a/02_slow.json"),
             PathBuf::from("a/07_fast.json"),

@@ -9,7 +9,7 @@ use crate::{calibration::least_squares, statistics::median};
 const OUTLIER_MPS2: f64 = 0.1;
 const OUTLIER_FACTOR: f64 = 4.0;
 
-pub(super) struct Robust {
+pub(super) struct RobustFit {
     pub correction: AccelCorrection,
     pub kept: Vec<StillWindow>,
     pub rejected: Vec<StillWindow>,
@@ -17,13 +17,13 @@ pub(super) struct Robust {
 
 /// Fits the correction. While the worst position contradicts the others and its side was recorded twice, it is left out
 /// and the fit is repeated. The result is `None` if the positions do not determine the correction.
-pub(super) fn robust(windows: Vec<StillWindow>) -> Option<Robust> {
+pub(super) fn robust(windows: Vec<StillWindow>) -> Option<RobustFit> {
     let mut kept = windows;
     let mut rejected = Vec::new();
     loop {
         let correction = least_squares(&kept)?;
         let Some(worst) = outlier(&correction, &kept) else {
-            return Some(Robust {
+            return Some(RobustFit {
                 correction,
                 kept,
                 rejected,

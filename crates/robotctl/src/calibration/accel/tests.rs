@@ -27,14 +27,14 @@ const SLANTED: [[f64; 3]; 4] = [
 ];
 
 /// A sensor that measures `true / gain + offset`, and its recording.
-struct Bench {
+struct SimulatedSensor {
     gain: Vector3<f64>,
     offset_mps2: Vector3<f64>,
     random: Pcg64,
     samples: Vec<Sample>,
 }
 
-impl Bench {
+impl SimulatedSensor {
     fn new() -> Self {
         Self {
             gain: Vector3::new(1.006, 0.995, 1.004),
@@ -91,7 +91,7 @@ fn assert_truth(fit: &AccelFit) {
 
 #[test]
 fn offsets_and_scales_are_found_through_the_noise() {
-    let fit = Bench::new()
+    let fit = SimulatedSensor::new()
         .hold_all(&[&SIDES[..], &SLANTED].concat())
         .fit()
         .unwrap();
@@ -103,15 +103,15 @@ fn offsets_and_scales_are_found_through_the_noise() {
 
 #[test]
 fn six_sides_are_enough_but_leave_no_check() {
-    let fit = Bench::new().hold_all(&SIDES).fit().unwrap();
+    let fit = SimulatedSensor::new().hold_all(&SIDES).fit().unwrap();
     assert_truth(&fit);
     assert!(!fit.is_checked());
 }
 
 #[test]
 fn sides_may_come_in_several_recordings() {
-    let first = Bench::new().hold_all(&SIDES[..2]);
-    let second = Bench::new().hold_all(&SIDES[2..]);
+    let first = SimulatedSensor::new().hold_all(&SIDES[..2]);
+    let second = SimulatedSensor::new().hold_all(&SIDES[2..]);
     let fit = calibrate(&[first.samples, second.samples]).unwrap();
     assert_truth(&fit);
 }
@@ -119,7 +119,7 @@ fn sides_may_come_in_several_recordings() {
 #[test]
 fn the_missing_sides_are_named() {
     let sides = [SIDES[0], SIDES[2], SIDES[3], SIDES[4], SLANTED[2]];
-    let error = Bench::new().hold_all(&sides).fit().unwrap_err();
+    let error = SimulatedSensor::new().hold_all(&sides).fit().unwrap_err();
     assert_eq!(
         error,
         AccelError::MissingFaces(vec![Face::Bottom, Face::Back])
@@ -130,7 +130,7 @@ fn the_missing_sides_are_named() {
 
 #[test]
 fn a_pushed_position_is_left_out() {
-    let mut bench = Bench::new().hold_all(&[&SIDES[..], &SLANTED].concat());
+    let mut bench = SimulatedSensor::new().hold_all(&[&SIDES[..], &SLANTED].concat());
     bench.hold(SIDES[0], 2.5, [0.0, 0.0, 0.6]);
     let fit = bench.fit().unwrap();
     assert_truth(&fit);
@@ -139,8 +139,8 @@ fn a_pushed_position_is_left_out() {
 }
 
 #[test]
-fn positions_that_contradict_each_other_are_no_fit() {
-    let mut bench = Bench::new();
+fn positions_that_contradict_each_other_are_refused() {
+    let mut bench = SimulatedSensor::new();
     for (side, offset) in SIDES.iter().chain(&SLANTED).zip([0.4, -0.4].iter().cycle()) {
         bench.hold(*side, 2.5, [*offset, -*offset, *offset]);
     }
@@ -149,7 +149,7 @@ fn positions_that_contradict_each_other_are_no_fit() {
 
 #[test]
 fn a_robot_in_the_hand_is_not_still() {
-    let mut bench = Bench::new();
+    let mut bench = SimulatedSensor::new();
     for side in SIDES {
         bench.hold(side, 0.9, [0.0; 3]);
     }
@@ -158,7 +158,7 @@ fn a_robot_in_the_hand_is_not_still() {
 
 #[test]
 fn values_no_sensor_of_this_kind_has_are_refused() {
-    let mut bench = Bench::new();
+    let mut bench = SimulatedSensor::new();
     bench.offset_mps2.y = -2.5;
     let fit = bench.hold_all(&[&SIDES[..], &SLANTED].concat()).fit();
     assert!(matches!(

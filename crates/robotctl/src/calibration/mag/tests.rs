@@ -13,14 +13,14 @@ const NOISE_UT: f64 = 0.8;
 const COUNT_UT: f64 = 0.3;
 
 /// A sensor that measures `iron · field + magnet`.
-struct Bench {
+struct SimulatedSensor {
     iron: Matrix3<f64>,
     magnet_ut: Vector3<f64>,
     random: Pcg64,
     samples: Vec<Sample>,
 }
 
-impl Bench {
+impl SimulatedSensor {
     fn new() -> Self {
         Self {
             iron: Matrix3::new(1.12, 0.05, -0.03, 0.05, 0.94, 0.02, -0.03, 0.02, 1.03),
@@ -64,7 +64,7 @@ impl Bench {
 /// noise determine an offset to about 0.8 / √(1500 / 3) = 0.04 µT. Four times that is allowed, and the same share of 48
 /// µT.
 fn assert_truth(fit: &MagFit) {
-    let bench = Bench::new();
+    let bench = SimulatedSensor::new();
     let undo = bench.iron.try_inverse().unwrap() * bench.iron.determinant().cbrt();
     let bias_error = fit.correction.bias_ut - bench.magnet_ut;
     let iron_error = fit.correction.soft_iron - undo;
@@ -74,30 +74,30 @@ fn assert_truth(fit: &MagFit) {
 
 #[test]
 fn hard_and_soft_iron_are_found_through_the_noise() {
-    let fit = Bench::new().tumble(1_500).fit().unwrap();
+    let fit = SimulatedSensor::new().tumble(1_500).fit().unwrap();
     assert_truth(&fit);
     assert_eq!(fit.rejected, 0);
     assert_eq!(fit.coverage.share, 1.0);
     assert!(fit.residual_before_ut > 10.0, "{}", fit.residual_before_ut);
     assert!((0.7..0.95).contains(&fit.residual_after_ut));
-    let stretched = STRENGTH_UT * Bench::new().iron.determinant().cbrt();
+    let stretched = STRENGTH_UT * SimulatedSensor::new().iron.determinant().cbrt();
     assert!((fit.field_ut - stretched).abs() < 0.1, "{}", fit.field_ut);
 }
 
 #[test]
 fn the_matrix_is_symmetric_and_the_wanted_strength_is_kept() {
-    let bench = Bench::new().tumble(1_500);
+    let bench = SimulatedSensor::new().tumble(1_500);
     let fit = calibrate(&[bench.samples], Some(STRENGTH_UT)).unwrap();
     let matrix = fit.correction.soft_iron;
     assert_eq!(matrix, matrix.transpose());
-    let truth = Bench::new().iron.try_inverse().unwrap();
+    let truth = SimulatedSensor::new().iron.try_inverse().unwrap();
     assert!((matrix - truth).amax() < 0.006);
     assert_eq!(fit.field_ut, STRENGTH_UT);
 }
 
 #[test]
 fn glitches_and_a_passing_magnet_are_left_out() {
-    let mut bench = Bench::new().tumble(1_400);
+    let mut bench = SimulatedSensor::new().tumble(1_400);
     for _ in 0..60 {
         let attitude = bench.any_attitude();
         bench.measure(attitude, Vector3::new(15.0, -10.0, 10.0));
@@ -108,14 +108,14 @@ fn glitches_and_a_passing_magnet_are_left_out() {
     }
     let fit = bench.fit().unwrap();
     assert!(fit.rejected >= 60, "{}", fit.rejected);
-    let bench = Bench::new();
+    let bench = SimulatedSensor::new();
     let bias_error = fit.correction.bias_ut - bench.magnet_ut;
     assert!(bias_error.amax() < 0.6, "{:?}", fit.correction);
 }
 
 #[test]
 fn a_place_full_of_iron_is_refused() {
-    let mut bench = Bench::new();
+    let mut bench = SimulatedSensor::new();
     for n in 0..1_500 {
         let attitude = bench.any_attitude();
         let drift = Vector3::new(12.0, -9.0, 14.0) * (f64::from(n) * 0.01).sin();
@@ -132,8 +132,8 @@ fn a_place_full_of_iron_is_refused() {
 }
 
 #[test]
-fn turning_on_the_spot_is_too_little() {
-    let mut bench = Bench::new();
+fn turning_about_one_axis_is_not_enough() {
+    let mut bench = SimulatedSensor::new();
     for n in 0..1_500 {
         let yaw = f64::from(n) * 0.01;
         bench.measure(
@@ -153,11 +153,11 @@ fn turning_on_the_spot_is_too_little() {
 }
 
 #[test]
-fn never_upside_down_names_the_side_not_seen() {
-    let mut bench = Bench::new();
+fn the_side_that_was_not_seen_is_named() {
+    let mut bench = SimulatedSensor::new();
     while bench.samples.len() < 1_500 {
         let attitude = bench.any_attitude();
-        // The field points down, so an upright robot never sees it come out of its top.
+        // The field points down, so an upright robot never measures a field out of its top.
         if (attitude.inverse() * EARTH_UT).z < 5.0 {
             bench.measure(attitude, Vector3::zeros());
         }
@@ -171,9 +171,9 @@ fn never_upside_down_names_the_side_not_seen() {
 
 #[test]
 fn too_few_samples_and_wrong_units_are_refused() {
-    let few = Bench::new().tumble(150).fit().unwrap_err();
+    let few = SimulatedSensor::new().tumble(150).fit().unwrap_err();
     assert!(matches!(few, MagError::TooFewSamples(_)));
-    let mut bench = Bench::new().tumble(1_000);
+    let mut bench = SimulatedSensor::new().tumble(1_000);
     for sample in &mut bench.samples {
         sample.value /= 100.0;
     }
@@ -182,7 +182,7 @@ fn too_few_samples_and_wrong_units_are_refused() {
 
 #[test]
 fn a_correction_can_be_undone() {
-    let fit = Bench::new().tumble(1_000).fit().unwrap();
+    let fit = SimulatedSensor::new().tumble(1_000).fit().unwrap();
     let raw = Vector3::new(30.0, -4.0, 8.0);
     let again = fit.correction.undo(fit.correction.apply(raw)).unwrap();
     assert!((again - raw).norm() < 1e-9);

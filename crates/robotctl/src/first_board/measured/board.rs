@@ -48,7 +48,7 @@ pub fn jitter(client: &mut TuningClient) -> Result<Measured, TuningError> {
     let tick = read(client, "tick", 0)?;
     let cycles = found.value(&tick, "max-jitter-cycles");
     found.must(cycles > 0.0, || "the cycle counter does not run".to_owned());
-    // 5 µs.
+    // 840 cycles are 5 µs.
     found.must(cycles <= 840.0, || {
         format!("{cycles} cycles are more than 840, 5 us")
     });

@@ -104,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn a_circle_tells_the_magnetometer_s_axes_in_spite_of_iron() {
+    fn a_circle_shows_the_magnetometers_axes_despite_iron() {
         assert_eq!(complaint(&path(0.0, -10.0, false)), None);
         let mirrored = complaint(&path(0.0, -10.0, true)).unwrap();
         assert!(mirrored.contains("it turned by 360"), "{mirrored}");

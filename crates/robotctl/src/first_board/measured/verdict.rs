@@ -41,7 +41,7 @@ impl Measured {
 }
 
 /// How a check is measured.
-pub type Measuring = fn(&mut TuningClient) -> Result<Measured, TuningError>;
+pub type MeasureFn = fn(&mut TuningClient) -> Result<Measured, TuningError>;
 
 /// Reads a page of one part, 0 for a page about the whole robot.
 pub fn read(

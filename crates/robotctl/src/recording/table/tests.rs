@@ -182,7 +182,7 @@ fn tables_of_other_programs_are_read() {
 }
 
 #[test]
-fn what_leaves_a_doubt_is_refused_with_its_cause() {
+fn doubtful_tables_are_refused_with_the_cause() {
     for (export, cause) in [
         // 1 a row: 1 s, or 1 ms?
         (
@@ -269,7 +269,7 @@ fn what_leaves_a_doubt_is_refused_with_its_cause() {
 }
 
 #[test]
-fn a_compass_in_other_units_is_known_by_the_earth_s_field() {
+fn units_of_a_compass_are_recognised_by_the_earths_field() {
     let table = |factor: f64| {
         let mut text = String::from("t,mx,my,mz\n");
         for row in 0..40 {
@@ -295,7 +295,7 @@ fn a_compass_in_other_units_is_known_by_the_earth_s_field() {
 
 /// `robotctl record` writes such rows, because the magnetometer measures less often.
 #[test]
-fn rows_without_the_sensor_are_passed_over() {
+fn rows_without_the_sensor_are_ignored() {
     let text =
         "t,ax,ay,az,gx,gy,gz,mx,my,mz\n0,1,2,9,0,0,0,,,\n0.002,,,,,,,20,0,-40\n0.005,1,2,8,,,,,,\n";
     let count = |sensor| read(text.as_bytes(), sensor).unwrap().samples.len();

@@ -1,83 +1,83 @@
 //! Recognises what a failed build lacks by what it printed.
 
 /// A line that a tool prints when something is missing, and what to do about it.
-struct Sign {
+struct Symptom {
     /// All of these words stand in one line.
     words: &'static [&'static str],
-    cure: &'static str,
+    advice: &'static str,
 }
 
 /// Each line is what the tool named in it says (cargo, rustc, cmake, bindgen, QEMU's configure, C compilers).
-const SIGNS: [Sign; 13] = [
-    Sign {
+const SYMPTOMS: [Symptom; 13] = [
+    Symptom {
         words: &["pkg-config", "not found"],
-        cure: "pkg-config is missing. Debian, Ubuntu: sudo apt-get install pkg-config",
+        advice: "pkg-config is missing. Debian, Ubuntu: sudo apt-get install pkg-config",
     },
-    Sign {
+    Symptom {
         words: &["Unable to find libclang"],
-        cure: "libclang is missing. Debian, Ubuntu: sudo apt-get install libclang-dev",
+        advice: "libclang is missing. Debian, Ubuntu: sudo apt-get install libclang-dev",
     },
-    Sign {
+    Symptom {
         words: &["stddef.h' file not found"],
-        cure: "libclang is there without its headers. Debian, Ubuntu: sudo apt-get install libclang-dev",
+        advice: "libclang is there without its headers. Debian, Ubuntu: sudo apt-get install libclang-dev",
     },
-    Sign {
+    Symptom {
         words: &["is `cmake` not installed?"],
-        cure: "cmake is missing. Debian, Ubuntu: sudo apt-get install cmake",
+        advice: "cmake is missing. Debian, Ubuntu: sudo apt-get install cmake",
     },
-    Sign {
+    Symptom {
         words: &["CMAKE_MAKE_PROGRAM is not set"],
-        cure: "make is missing. Debian, Ubuntu: sudo apt-get install build-essential",
+        advice: "make is missing. Debian, Ubuntu: sudo apt-get install build-essential",
     },
-    Sign {
+    Symptom {
         words: &["No CMAKE_C", "_COMPILER could be found"],
-        cure: "a C and C++ compiler is missing. Debian, Ubuntu: sudo apt-get install build-essential",
+        advice: "a C and C++ compiler is missing. Debian, Ubuntu: sudo apt-get install build-essential",
     },
-    Sign {
+    Symptom {
         words: &["linker `cc` not found"],
-        cure: "a C compiler is missing. Debian, Ubuntu: sudo apt-get install build-essential",
+        advice: "a C compiler is missing. Debian, Ubuntu: sudo apt-get install build-essential",
     },
-    Sign {
+    Symptom {
         words: &["fatal error:", ".h: No such file or directory"],
-        cure: "the C library's headers are missing. Debian, Ubuntu: sudo apt-get install build-essential",
+        advice: "the C library's headers are missing. Debian, Ubuntu: sudo apt-get install build-essential",
     },
-    Sign {
+    Symptom {
         words: &["can't find crate for `core`"],
-        cure: "the board's core library is missing: rustup target add thumbv7em-none-eabihf",
+        advice: "the board's core library is missing: rustup target add thumbv7em-none-eabihf",
     },
-    Sign {
+    Symptom {
         words: &["No space left on device"],
-        cure: "the disk is full: a first build takes some 5 GB in the folder `target`",
+        advice: "the disk is full: a first build takes some 5 GB in the folder `target`",
     },
-    Sign {
+    Symptom {
         words: &["signal: 9, SIGKILL"],
-        cure: "the system ended the compiler, most likely for want of memory: a build takes 4 GB",
+        advice: "the system ended the compiler, most likely for want of memory: a build takes 4 GB",
     },
-    Sign {
+    Symptom {
         words: &["Could not resolve host"],
-        cure: "no way to the package registry: the first build needs the network (or cargo's mirror settings)",
+        advice: "no way to the package registry: the first build needs the network (or cargo's mirror settings)",
     },
-    Sign {
+    Symptom {
         words: &["failed to download"],
-        cure: "a package could not be fetched: the first build needs the network (or cargo's mirror settings)",
+        advice: "a package could not be fetched: the first build needs the network (or cargo's mirror settings)",
     },
 ];
 
 /// Returns a sentence on what to do, if the output of a build shows what it lacks.
-pub fn of(output: &str) -> Option<&'static str> {
-    let shown = |sign: &&Sign| {
-        let tells = |line: &str| sign.words.iter().all(|word| line.contains(word));
+pub fn advice(output: &str) -> Option<&'static str> {
+    let shown = |symptom: &&Symptom| {
+        let tells = |line: &str| symptom.words.iter().all(|word| line.contains(word));
         output.lines().any(tells)
     };
-    SIGNS.iter().find(shown).map(|sign| sign.cure)
+    SYMPTOMS.iter().find(shown).map(|symptom| symptom.advice)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::of;
+    use super::advice;
 
     #[test]
-    fn what_is_missing_is_named() {
+    fn a_missing_dependency_is_named() {
         for (output, named) in [
             (
                 "CMake Error\n  ERROR: pkg-config binary 'pkg-config' not found\n  thread main panicked",
@@ -102,18 +102,18 @@ mod tests {
                 "disk is full",
             ),
         ] {
-            let cure = of(output);
+            let advice = advice(output);
             assert!(
-                cure.is_some_and(|cure| cure.contains(named)),
-                "{output}: {cure:?}"
+                advice.is_some_and(|advice| advice.contains(named)),
+                "{output}: {advice:?}"
             );
         }
     }
 
     #[test]
-    fn a_mistake_in_the_source_has_no_cure() {
+    fn a_compile_error_is_no_missing_dependency() {
         assert_eq!(
-            of("error[E0425]: cannot find value `pkg` in this scope"),
+            advice("error[E0425]: cannot find value `pkg` in this scope"),
             None
         );
     }

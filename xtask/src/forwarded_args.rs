@@ -7,13 +7,13 @@ use clap::Parser;
 /// Everything after the command's name, including `--help`.
 #[derive(Parser)]
 #[command(disable_help_flag = true)]
-pub struct PassedOn {
+pub struct ForwardedArgs {
     /// A scenario file or options. The command's own `--help` lists them.
     #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
     pub words: Vec<OsString>,
 }
 
-impl PassedOn {
+impl ForwardedArgs {
     /// True if one of `options` is among them, alone or as `--option=value`.
     pub fn has(&self, options: &[&str]) -> bool {
         self.words.iter().any(|word| {
@@ -28,12 +28,12 @@ impl PassedOn {
 mod tests {
     use super::*;
 
-    fn parsed(words: &[&str]) -> PassedOn {
-        PassedOn::try_parse_from(words).expect("every word is passed on")
+    fn parsed(words: &[&str]) -> ForwardedArgs {
+        ForwardedArgs::try_parse_from(words).expect("every word is passed on")
     }
 
     #[test]
-    fn all_words_pass_through() {
+    fn all_arguments_are_passed_on() {
         let words = [
             "sim",
             "scenarios/drive.toml",
@@ -45,7 +45,7 @@ mod tests {
     }
 
     #[test]
-    fn an_option_is_seen_with_its_value_too() {
+    fn an_option_with_a_value_is_found() {
         let has_elf = |words: &[&str]| parsed(words).has(&["--elf", "--help"]);
         assert!(has_elf(&["sim", "--elf", "a.elf"]));
         assert!(has_elf(&["sim", "--elf=a.elf"]));
