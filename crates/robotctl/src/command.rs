@@ -21,9 +21,9 @@ pub enum Command {
         #[command(subcommand)]
         sensor: calibrate::Sensor,
     },
-    /// Find out how board and magnetometer are mounted by tilting the robot (docs/mounting.md)
+    /// Tilt the robot to find out how board and magnetometer are mounted (docs/mounting.md)
     Mounting(mounting::Mounting),
-    /// Find out what each channel of an SBUS transmitter controls by moving its sticks (docs/bring-up.md)
+    /// Move the controls of an SBUS transmitter to find out their channels (docs/bring-up.md)
     Radio(radio::Radio),
     /// Record accelerometer, gyro and magnetometer of the disarmed robot over CAN
     Record(record::Record),

@@ -65,10 +65,11 @@ enum Action {
 
 #[derive(clap::Subcommand)]
 enum Step {
+    /// End bring-up
     Off,
-    /// Enable no motor; the log shows the joints
+    /// Keep the robot from being armed; the log shows the joints
     ReadOnly,
-    /// Enable the motors without torque
+    /// Enable the motors without torque once the robot is armed
     ZeroTorque,
     /// Put a small torque on one motor while the pilot holds the dead-man stick; the drive stick or --torque sets it
     Motor {
