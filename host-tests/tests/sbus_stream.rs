@@ -12,8 +12,8 @@ const BYTE_US: u64 = 120;
 /// Footers of SBUS and SBUS2, and that of the Futaba R7003SB (bolderflight/sbus#79).
 const FOOTERS: [u8; 6] = [0x00, 0x04, 0x14, 0x24, 0x34, 0x08];
 
-/// What the specification says about 25 bytes. After silence on the line they are framed, and makers put what they like
-/// into the last one; but the next frame's header there means that a byte is missing.
+/// Decodes 25 bytes by the specification: channels, frame-lost flag and failsafe flag. `None` if they are not a frame.
+/// After silence on the line they are framed, and makers use arbitrary values in the last one. The next frame's header in that place means that a byte is missing.
 fn specified(bytes: &[u8], after_silence: bool) -> Option<([u16; 16], bool, bool)> {
     let ends = FOOTERS.contains(&bytes[24]) || after_silence && bytes[24] != 0x0F;
     if bytes[0] != 0x0F || !ends {
@@ -69,7 +69,7 @@ fn ten_million_bytes_without_a_frame_that_the_specification_rejects() {
         let mut free_from = 0;
         let mut silent_before = 0;
         for end in 1..=stream.len() {
-            // Now and then the line falls silent.
+            // The line is silent from time to time.
             now_us += match random.below(40) {
                 0 => {
                     silent_before = end - 1;

@@ -1,4 +1,4 @@
-//! Attitudes in double precision, and how far one is from another.
+//! Attitudes in double precision, and the error between two of them.
 
 mod error;
 mod quaternion;

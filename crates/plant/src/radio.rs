@@ -18,7 +18,7 @@ use line_noise::LineNoise;
 use pilot::Pilot;
 pub use pilot::RemoteInput;
 
-/// Which receiver is plugged into the DBUS connector.
+/// The receiver on the DBUS connector.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RadioKind {
     /// SBUS, 16 channels every 7 ms.
@@ -38,7 +38,7 @@ enum Loss {
 pub(crate) struct Receiver {
     kind: RadioKind,
     pilot: Pilot,
-    /// Sticks and switches in the last packet that the receiver got.
+    /// Sticks and switches in the last packet received.
     received: Pilot,
     next_frame: Ps,
     on_the_line: VecDeque<UartChar>,
@@ -97,7 +97,7 @@ impl Receiver {
         if faults.silent || lost == Some(Loss::Missing) {
             return;
         }
-        // A character that nobody took within two periods is gone: a line has no memory.
+        // A character that was not taken within two periods is dropped, because a line has no memory.
         self.on_the_line
             .retain(|character| character.start + 2 * period > start);
         let character_time = character_time(format);

@@ -4,7 +4,7 @@ use robot_host_tests::links::resolved;
 
 use crate::{anchors::anchors, document::missing_place, tree::Tree};
 
-/// What a source file cites and the tree does not have, a line each.
+/// Citations of a source file that do not exist in the tree, one line each.
 pub fn missing(tree: &Tree, path: &str, text: &str) -> Vec<String> {
     let mut found = missing_documents(tree, path, text);
     let comments = text.lines().filter(|line| is_comment(line));

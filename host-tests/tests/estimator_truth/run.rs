@@ -89,7 +89,7 @@ impl Run {
         }
     }
 
-    /// As `step`. Then the samples are repeated with other values but the same time stamps.
+    /// Does a `step`, and then repeats the samples with other values but the same time stamps.
     pub fn step_then_repeat_other_values(&mut self) {
         self.step();
         self.imu.gyro_dps = [500.0, -300.0, 100.0];
@@ -113,7 +113,7 @@ impl Run {
         worst
     }
 
-    /// Goes on to `until_s` without looking at the errors.
+    /// Runs until `until_s` without checking the errors.
     pub fn skip(&mut self, until_s: f64) {
         while self.time_s() < until_s - 1e-6 {
             self.step();

@@ -22,7 +22,7 @@ pub struct Robot {
     pub command: ChassisCommand,
     pub enabled: bool,
     pub e_stop: bool,
-    /// What the parameter store asks for.
+    /// The flash operation that the parameter store requests.
     pub flash_request: FlashRequest,
     flash: FlashGrant,
     world: World,
@@ -93,13 +93,13 @@ impl Robot {
         }
     }
 
-    /// Lets the whole board stand still for a flash erase. What the motors send meanwhile is lost.
+    /// Stops the whole board for a flash erase. Frames that the motors send meanwhile are lost.
     pub fn stall(&mut self, ms: u64) {
         self.run_without_board(ms, |_, _| ());
         self.world.take_frames(self.now, |_, _| ());
     }
 
-    /// The firmware tells the tick of the stall.
+    /// Reports the stall to the tick, as the firmware does.
     pub fn tell_of_stall(&mut self, ms: u32) {
         let now_us = self.now_us();
         self.control.after_stall(ms * 1_000, now_us);
@@ -147,7 +147,7 @@ impl Robot {
         self.world.signal(name).expect(name)
     }
 
-    /// What `name` says of each joint, as in `can.joint.{}.enabled`.
+    /// Value of the signal `name` for each joint, such as `can.joint.{}.enabled`.
     pub fn joint_signals(&self, name: &str) -> [f64; 4] {
         std::array::from_fn(|joint| self.signal(&name.replace("{}", &joint.to_string())))
     }
@@ -226,7 +226,7 @@ impl Robot {
         }
     }
 
-    /// Somebody else on CAN2 sends a frame.
+    /// Sends a frame of another node on CAN2.
     pub fn hear_from_a_stranger(&mut self, id: u16, data: [u8; 8]) {
         let id = StandardId::new(id).expect("11 bits");
         self.world

@@ -1,6 +1,6 @@
 //! The parameter store on the chip's flash cells: power cuts at every step, damage, defects, wear.
 //!
-//! What is right comes from a ledger of the saves the store has confirmed, kept outside of it.
+//! The expected contents come from a ledger, outside of the store, of the saves that it has confirmed.
 
 mod bench;
 mod damage;

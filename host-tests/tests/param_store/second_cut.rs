@@ -8,12 +8,12 @@ use crate::{
     workload::{Moment, moments, nth_save},
 };
 
-/// More steps than an append takes.
+/// Limit of steps, more than an append takes.
 const MANY_STEPS: u64 = 40;
 
-/// Which second cuts are tried; a change of sector is always among the first ones.
+/// The second cuts that are tried. The first cuts always include a change of sector.
 struct Sample {
-    /// Every how many saves that only append are cut.
+    /// One in this many of the saves that only append is cut.
     appends: usize,
     /// Distance between the steps of the recovery that are cut; the first one differs after each first cut.
     stride: u64,
@@ -84,12 +84,12 @@ fn cut_again(chip: &FlashChip, ledger: &Ledger, step: u64, stride: u64, tally: &
     }
 }
 
-/// A boot, what the store wants to tidy up, and a save, up to the end or the cut.
+/// Runs a boot, the store's clean-up and a save, until the end or the cut.
 fn recover(chip: &mut FlashChip, mut ledger: Ledger, step: u64) -> Ledger {
     let record = nth_save(2_000_000 + step as usize);
     if let Ok((mut store, found)) = boot(chip) {
         ledger.settle(&found);
-        // A cut ends it where it ends.
+        // A power cut ends the work at that point.
         if tidy(&mut store).is_ok() && ledger.save(&mut store, &record).is_ok() {
             let _ = tidy(&mut store);
         }

@@ -1,4 +1,4 @@
-//! The saves the power is cut in: twelve records, from one value to eight, over three changes of sector.
+//! The saves in which the power is cut: twelve records, from one value to eight, over three changes of sector.
 
 use robot_app::params::Record;
 use robot_plant::flash_chip::FlashChip;
@@ -6,13 +6,13 @@ use robot_plant::flash_chip::FlashChip;
 use crate::bench::{Contents, Ledger, boot, new_chip, record, save_all, tidy};
 
 const KEYS: u8 = 12;
-/// Slots of a sector.
+/// Number of slots in a sector.
 const SLOTS: usize = 127;
-/// The last slots of the first sector, then two whole ones and the begin of the fourth.
+/// The saves fill the last slots of the first sector, two whole sectors and the beginning of a fourth.
 const BEFORE: usize = SLOTS - 10;
 const CHANGES_OF_SECTOR: usize = 3;
 
-/// The `count`-th save of all.
+/// The save with number `count`.
 pub fn nth_save(count: usize) -> Record {
     let key = (count * 5 % usize::from(KEYS)) as u8;
     let length = [1, 1, 2, 1, 3, 1, 8, 1, 2, 1, 4, 1][usize::from(key)];
@@ -21,10 +21,10 @@ pub fn nth_save(count: usize) -> Record {
     record(key, key % 3, 1, &values)
 }
 
-/// One save, from the moment the one before was confirmed and tidied up after.
+/// One save, from the end of the previous save and its clean-up.
 pub struct Moment {
     pub chip: FlashChip,
-    /// What must be in it.
+    /// The contents that it must have.
     pub contents: Contents,
     pub record: Record,
     /// The chip's first step of the save, and its first step after it.
@@ -32,7 +32,7 @@ pub struct Moment {
 }
 
 impl Moment {
-    /// Saves `record`; `contents` is what must be in the chip before, then after.
+    /// Saves `record`. `contents` holds the required contents of the chip before, and is updated to those after.
     pub fn at(chip: &mut FlashChip, contents: &mut Contents, record: Record) -> Self {
         let mut moment = Self {
             chip: chip.clone(),
@@ -45,20 +45,20 @@ impl Moment {
         moment
     }
 
-    /// The save and what follows, up to the end or the power cut.
+    /// Runs the save and its clean-up, until the end or the power cut.
     pub fn run(&self, chip: &mut FlashChip) -> Ledger {
         let mut ledger = Ledger::of(self.contents.clone());
         if let Ok((mut store, _)) = boot(chip)
             && ledger.save(&mut store, &self.record).is_ok()
         {
-            // A cut ends it where it ends.
+            // A power cut ends the work at that point.
             let _ = tidy(&mut store);
         }
         ledger
     }
 }
 
-/// All saves of the workload, and how often the active sector changed in it.
+/// All saves of the workload, and the number of changes of the active sector.
 pub fn moments() -> Vec<Moment> {
     let mut chip = new_chip(1);
     let before: Vec<_> = (0..BEFORE).map(nth_save).collect();

@@ -49,7 +49,7 @@ pub fn chip(generation: u32, slots: &[Vec<u8>]) -> Chip {
     chip
 }
 
-/// Slots of all sectors that hold this, guard and proof aside.
+/// Slots of all sectors with these contents, apart from guard and proof.
 pub fn copies(dump: &[u8], slot: &[u8]) -> usize {
     let same = |found: &&[u8]| found[4..120] == slot[4..120] && found[124..] == slot[124..];
     dump.chunks_exact(SLOT).filter(same).count()

@@ -1,5 +1,5 @@
-//! Settings between the parameter task and the cells of the flash, through the public interface: what a boot makes of
-//! what is there, and when and how changes get there.
+//! Settings between the parameter task and the cells of the flash, through the public interface: how a boot
+//! uses the contents, and when and how changes are written.
 
 mod boot;
 mod dump;

@@ -25,13 +25,13 @@ const NEXT: Save = Save {
     number: 1_000_000,
 };
 
-/// Cut points, and after how many of them something is wrong.
+/// Number of cut points, and of those after which something is wrong.
 #[derive(Debug, Default)]
 struct Figures {
     cuts: u32,
     /// A record acknowledged before the cut is missing or older afterwards, and nothing says so.
     lost: u32,
-    /// The crate repaired what it can, and still a boot or the next save fails: erasing everything is what it advises.
+    /// A boot or the next save fails even after the crate's repair. The crate then advises to erase everything.
     needs_erase_all: u32,
     /// The interrupted save was there in the first boot and is gone after the next save.
     undone: u32,
@@ -47,7 +47,7 @@ impl Figures {
     }
 }
 
-/// What a cut in the middle of a step tears.
+/// The object that a cut in the middle of a step tears.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Step {
     /// The first or last word of a sector, by which the crate tells whether it is open, in use or closed.
@@ -95,7 +95,7 @@ impl Before {
         self.cut_chip(chip, step, phase)
     }
 
-    /// Saves on that chip until the power goes.
+    /// Saves on that chip until the power cut.
     fn cut_chip(&self, mut chip: FlashChip, step: u64, phase: Phase) -> Cut {
         chip.cut_at(step, phase);
         let acknowledged = self.keeper.save(&mut chip, self.save);
@@ -104,7 +104,7 @@ impl Before {
         Cut { chip, acknowledged }
     }
 
-    /// Told by what the step leaves changed.
+    /// Determined from the change that the step makes.
     fn kind(&self, step: u64) -> Step {
         let before = &mut self.cut(step, Phase::Before, 0).chip;
         let after = &mut self.cut(step, Phase::After, 0).chip;

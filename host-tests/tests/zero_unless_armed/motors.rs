@@ -45,7 +45,7 @@ impl JointMotor {
         }
     }
 
-    /// Its reply, identifier first.
+    /// The motor's reply, identifier first.
     pub fn hear(&mut self, frame: JointFrame, behaviour: Behaviour) -> Option<(u16, [u8; 8])> {
         let reply_id = match self.make {
             Make::Dm4310 => 0x10 + u16::from(self.number),
@@ -110,7 +110,7 @@ impl JointMotor {
             Behaviour::Hot(celsius) => celsius,
             _ => 35,
         };
-        // A frozen one claims to turn at 1 rad/s, at the angle it always had.
+        // A frozen motor reports 1 rad/s at a constant angle.
         let velocity: u16 = if behaviour == Behaviour::Frozen {
             2_116
         } else {
@@ -156,7 +156,7 @@ pub struct WheelMotor {
 }
 
 impl WheelMotor {
-    /// Each millisecond, told this current in counts.
+    /// Advances by one millisecond with this commanded current in counts.
     pub fn report(&mut self, counts: i32, behaviour: Behaviour) -> Option<[u8; 8]> {
         let [current_h, current_l] = (counts as i16).to_be_bytes();
         self.angle = (self.angle + 8) % 8_192;

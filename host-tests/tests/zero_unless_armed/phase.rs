@@ -8,12 +8,12 @@ use robot_app::{
 
 use crate::motors::Behaviour;
 
-/// How the clock runs.
+/// Behaviour of the clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Clock {
     Runs,
     Stands,
-    /// µs a tick.
+    /// Length of a tick in µs.
     RunsBack(u16),
     Rushes(u32),
 }
@@ -37,11 +37,11 @@ pub struct Phase {
     pub mag: [f32; 3],
     pub calibrated: bool,
     pub buses: [BusErrorState; 2],
-    /// Frames that failed to leave, since the last that did.
+    /// Number of frames that could not be sent since the last that was.
     pub tx_failures: [u32; 2],
     pub late_task: bool,
     pub logic_sends: bool,
-    /// Past the controller: current of both wheels in mA, and every joint's command.
+    /// Command that bypasses the controller: current of both wheels in mA, and every joint's command.
     pub direct: Option<(f32, JointCommand)>,
     pub imu_errors: u32,
     pub battery_v: f32,
@@ -49,11 +49,11 @@ pub struct Phase {
     pub joints: [Behaviour; 4],
     pub time_jump_us: u64,
     pub clock: Clock,
-    /// Sent again in every tick, on both buses.
+    /// Frame that is sent in every tick on both buses.
     pub frame: (u16, Vec<u8>),
 }
 
-/// Mostly as it should be, with anything possible.
+/// Draws inputs that are mostly good, but may have any value.
 fn mostly<T: Clone + std::fmt::Debug + 'static>(
     usual: T,
     odd: impl Strategy<Value = T> + 'static,
@@ -73,7 +73,7 @@ fn behaviour() -> impl Strategy<Value = Behaviour> {
     ]
 }
 
-/// Any numbers, and such that a controller might really send.
+/// Draws arbitrary commands, and some that a controller might send.
 pub fn joint_command() -> impl Strategy<Value = JointCommand> {
     let mode = prop_oneof![
         1 => Just(JointMode::Off),
@@ -93,7 +93,7 @@ pub fn joint_command() -> impl Strategy<Value = JointCommand> {
     })
 }
 
-/// Any frame, with a liking for those that somebody listens to: motors, tuning and bring-up.
+/// Draws any frame, but prefers those with a receiver: motors, tuning and bring-up.
 fn frame() -> impl Strategy<Value = (u16, Vec<u8>)> {
     let bytes = || prop::collection::vec(any::<u8>(), 0..=8);
     let heard = prop_oneof![0x201u16..=0x204, 0x011u16..=0x014, Just(0x0FD), Just(0x7FF)];
@@ -212,7 +212,7 @@ pub fn phases() -> impl Strategy<Value = Vec<Phase>> {
     prop::collection::vec(phase(), 1..12)
 }
 
-/// Everything in order.
+/// Inputs without any fault.
 pub fn good(ticks: u16, enabled: bool) -> Phase {
     Phase {
         ticks,

@@ -2,11 +2,11 @@
 
 use crate::wire::{Make, Motion};
 
-/// Replies take a tick.
+/// Replies arrive one tick later.
 pub struct Replies {
     make: Make,
     under_way: Vec<(u16, [u8; 8])>,
-    /// The last one of each joint that is a report beyond doubt, and those after it that may be one.
+    /// For each joint, the last reply that is certainly a report, and the later ones that may be reports.
     believable: [Vec<Motion>; 4],
     faults: [bool; 4],
 }
@@ -29,7 +29,7 @@ impl Replies {
         std::mem::take(&mut self.under_way)
     }
 
-    /// Every frame that comes in on the joints' bus, whoever sent it.
+    /// Takes every frame on the joints' bus, whatever its sender.
     pub fn note(&mut self, id: u16, data: &[u8]) {
         let Ok(data) = <[u8; 8]>::try_from(data) else {
             return;
@@ -51,7 +51,7 @@ impl Replies {
                 self.believable[joint].clear();
             }
             self.believable[joint].push(self.make.motion(data));
-            // Enough to hold the last report beyond doubt of a motor that is heard in each tick.
+            // This is enough to hold the last certain report of a motor that replies in each tick.
             if self.believable[joint].len() > 400 {
                 self.believable[joint].remove(0);
             }
@@ -63,7 +63,7 @@ impl Replies {
         &self.believable[joint]
     }
 
-    /// True if the last word of a DM4310 was a fault.
+    /// Whether the last reply of a DM4310 reported a fault.
     pub fn tell_of_fault(&self) -> bool {
         self.faults.contains(&true)
     }

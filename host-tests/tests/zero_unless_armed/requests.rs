@@ -33,7 +33,7 @@ fn bring_up(step: u8, motor: u8, action: u8, value: i16) -> Phase {
     )
 }
 
-/// Enabled, with the dead-man stick held or not.
+/// A phase with the robot enabled, and the dead-man stick held or not.
 fn stick(ticks: u16, held: bool) -> Phase {
     let mut phase = good(ticks, true);
     phase.channels[3] = if held { 1.0 } else { 0.0 };
@@ -41,7 +41,7 @@ fn stick(ticks: u16, held: bool) -> Phase {
 }
 
 fn run_all(make: Make, phases: &[Phase]) -> Vec<Tick> {
-    // Asks for much, all the time.
+    // Requests large values all the time.
     let rogue = Rogue {
         current_ma: 5_000.0,
         joint: JointCommand {

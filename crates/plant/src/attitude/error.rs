@@ -1,4 +1,4 @@
-//! How far one attitude is from another (D. Laidig et al., "BROAD", Data 6 (7), 2021, section 4).
+//! The error between two attitudes (D. Laidig et al., "BROAD", Data 6 (7), 2021, section 4).
 
 use super::quaternion::{Quaternion, conjugate, multiply};
 
@@ -12,7 +12,7 @@ pub struct AttitudeError {
 }
 
 impl AttitudeError {
-    /// Both unit quaternions.
+    /// Both arguments are unit quaternions.
     pub fn between(estimate: Quaternion, reference: Quaternion) -> Self {
         let [w, x, y, z] = multiply(estimate, conjugate(reference));
         Self { w, x, y, z }
@@ -36,7 +36,7 @@ impl AttitudeError {
         2.0 * x.hypot(y).atan2(w.hypot(z)).to_degrees()
     }
 
-    /// What is left when the estimate is turned by this much to the right.
+    /// The error that is left when the estimate is turned by this angle to the right.
     pub fn without_heading(self, heading_rad: f64) -> Self {
         let (sin, cos) = (heading_rad / 2.0).sin_cos();
         Self {

@@ -31,7 +31,7 @@ pub(super) fn conjugate([w, x, y, z]: Quaternion) -> Quaternion {
     [w, -x, -y, -z]
 }
 
-/// `None` for what is not a number and for zero.
+/// Scales to unit length. `None` for zero and for values that are not numbers.
 pub fn normalised(q: Quaternion) -> Option<Quaternion> {
     let norm = q.iter().map(|c| c * c).sum::<f64>().sqrt();
     (norm.is_finite() && norm > 0.0).then(|| q.map(|c| c / norm))
@@ -46,7 +46,7 @@ pub fn to_body(q: Quaternion, earth: [f64; 3]) -> [f64; 3] {
     [x, y, z]
 }
 
-/// Straight line between two attitudes, the short way round, put back on the sphere; `None` where one is not a number.
+/// Interpolates linearly between two attitudes, the short way round, and normalises. `None` if one is not a number.
 pub fn between(a: Quaternion, b: Quaternion, share: f64) -> Option<Quaternion> {
     let dot: f64 = a.iter().zip(b).map(|(a, b)| a * b).sum();
     let sign = if dot < 0.0 { -1.0 } else { 1.0 };

@@ -1,11 +1,11 @@
-//! What both dies of the BMI088 have in common.
+//! Common parts of both dies of the BMI088.
 
 use crate::{
     physics::PHYSICS_STEP,
     time::{Ps, SECOND},
 };
 
-/// Starts the die anew when it is written to its SOFTRESET register.
+/// Value that restarts the die when written to its SOFTRESET register.
 pub(super) const SOFTRESET: u8 = 0xB6;
 /// "Data ready" in the status register of either die.
 pub(super) const DATA_READY: u8 = 1 << 7;
@@ -17,9 +17,9 @@ pub(super) trait Die {
     /// A burst reads this register again and again; after any other register it reads the next.
     const FIFO_DATA: u8;
     fn read(&mut self, register: u8, now: Ps) -> u8;
-    /// The chip select is low since `selected_at`.
+    /// Notes that the chip select is low since `selected_at`.
     fn write(&mut self, register: u8, value: u8, selected_at: Ps, now: Ps);
-    /// The chip select rises.
+    /// Notes that the chip select rises.
     fn deselected(&mut self, now: Ps);
     /// False while the die leaves MISO to the pull-up.
     fn drives_miso(&self) -> bool;

@@ -1,4 +1,4 @@
-//! What every joint motor has in common.
+//! Common parts of all joint motors.
 
 use super::{
     actuator::{Actuator, Rating},
@@ -23,22 +23,22 @@ pub(crate) struct DriveFaults {
     pub frozen: bool,
     /// The winding is at 120 °C.
     pub hot: bool,
-    /// Somebody gave the motor another identifier.
+    /// The motor has been given another identifier.
     pub wrong_id: bool,
-    /// The driver finds a fault and lets go.
+    /// The driver detects a fault and switches off.
     pub tripped: bool,
     /// A register write takes as long as storing does (DM4310).
     pub slow_writes: bool,
 }
 
-/// What a motor did with a frame.
+/// Reaction of a motor to a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Reception {
     /// The frame is not addressed to this motor.
     Ignored,
     /// The motor took the frame.
     Accepted,
-    /// The frame is addressed to this motor, but the model lacks what it asks for.
+    /// The frame is addressed to this motor, but requests something that is not modelled.
     NotModelled(String),
 }
 
@@ -89,7 +89,7 @@ pub(super) trait Drive: Send {
 
     fn enabled(&self) -> bool;
 
-    /// Torque that the present command asks for, before the limits of motor and supply.
+    /// Torque that the current command demands, before the limits of motor and supply.
     fn commanded_nm(&self, shaft: Shaft) -> f64;
 
     /// False while the motor has no supply.

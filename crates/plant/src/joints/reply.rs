@@ -56,7 +56,7 @@ impl ReplyBox {
         });
     }
 
-    /// When the waiting reply is ready for the bus.
+    /// Time at which the waiting reply is ready for the bus.
     pub(super) fn ready_at(&self) -> Option<Ps> {
         self.waiting.map(|reply| reply.ready_at)
     }

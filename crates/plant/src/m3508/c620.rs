@@ -29,12 +29,12 @@ pub(crate) struct EscFaults {
     pub frozen: bool,
     /// Winding at 120 °C.
     pub hot: bool,
-    /// Somebody pressed its button and gave it another number.
+    /// The controller has been given another number with its button.
     pub wrong_id: bool,
 }
 
 pub(crate) struct C620 {
-    /// 1 … 4, as set by its button.
+    /// Number of the controller, 1 … 4, as set by its button.
     id: u8,
     pub(crate) motor: M3508,
     faults: EscFaults,
@@ -144,8 +144,8 @@ impl C620 {
         amperes(self.commanded_raw) * 1_000.0
     }
 
-    /// Returns true if the frame is a command to this controller. The last command holds for ever: whether a C620 stops by
-    /// itself is unknown, so the board must send zero.
+    /// Returns true if the frame is a command to this controller. The last command is held indefinitely. Whether a C620
+    /// stops by itself is unknown, so the board must send zero.
     pub(crate) fn receive(&mut self, frame: &CanFrame) -> bool {
         if !self.powered()
             || self.faults.wrong_id

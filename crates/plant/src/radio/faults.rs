@@ -1,4 +1,4 @@
-//! What can be wrong with the radio link.
+//! Faults of the radio link.
 
 /// The faults in force at the moment.
 #[derive(Clone, Copy, Debug, Default)]

@@ -36,7 +36,7 @@ impl Rs00 {
                 self.reply_faults(now);
                 return Reception::Accepted;
             }
-            // Identifiers, saving, reports of its own accord, another protocol.
+            // Identifiers, saving, unsolicited reports and another protocol are not modelled.
             (0xF7..=0xFA | STOP, _) if is_service => {
                 return Reception::NotModelled(format!(
                     "RS00: {:02x?} is not modelled",
@@ -49,7 +49,7 @@ impl Rs00 {
         Reception::Accepted
     }
 
-    /// Assumed: only while stopped.
+    /// Sets the mode. It is assumed that this works only while stopped.
     fn set_mode(&mut self, mode: u8) {
         if self.running {
             return;
@@ -62,7 +62,7 @@ impl Rs00 {
         }
     }
 
-    /// The goal becomes 0 with it.
+    /// Sets the zero. The goal also becomes 0.
     fn set_zero(&mut self, shaft: Shaft) {
         self.parts.zero_rad = shaft.pos_rad;
         match &mut self.target {
@@ -72,7 +72,7 @@ impl Rs00 {
         }
     }
 
-    /// A fault whose cause is still there comes back at once.
+    /// Clears a fault. A fault whose cause persists returns at once.
     fn clear_faults(&mut self) {
         if !self.parts.faults.tripped {
             self.fault_word = 0;
