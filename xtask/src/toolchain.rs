@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use crate::tool;
 
-/// Whether the target's core library is installed.
+/// True if the target's core library is installed.
 pub fn has(target: &str) -> bool {
     let mut rustc = tool::command("rustc");
     rustc.args(["--print", "target-libdir", "--target", target]);

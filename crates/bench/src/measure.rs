@@ -56,7 +56,7 @@ pub struct WorstTick {
     pub blocks: Blocks,
 }
 
-/// How much a run notes.
+/// Selects how much a run notes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Detail {
     Totals,

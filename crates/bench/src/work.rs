@@ -18,7 +18,7 @@ use crate::{
     scenarios,
 };
 
-/// What is to be measured.
+/// What to measure: the image on the board, and the filters over motions.
 pub struct Plan {
     /// `None` if the board is not measured.
     pub board: Option<Board>,

@@ -1,7 +1,7 @@
-//! The checks for whoever first has a board, in their order: what to connect, what to type, what must be seen, what to
-//! note. docs/first-board.md is the same list for reading.
+//! Makes the checks of a first board in their order. Each one says what to connect, what to type, what must be seen and
+//! what to note. docs/first-board.md has the same list for reading.
 //!
-//! Nothing here moves a motor: where one has to, the user is told how to do it with bring-up.
+//! Nothing here moves a motor. Where one has to move, the check says how to do it with bring-up.
 
 mod checks;
 mod measured;

@@ -2,18 +2,18 @@
 //!
 //! | place | does |
 //! |---|---|
-//! | [`recording`] | files → samples of a sensor |
-//! | [`calibration`] | samples → corrections the firmware applies |
-//! | [`report`] | a correction → an HTML page |
-//! | [`mounting`] | a robot tilted by hand → how its sensors sit |
-//! | [`radio`] | a transmitter's controls, moved one by one → which channel is which |
-//! | [`settings`] | the robot's settings by name, and their values in words |
-//! | [`parameter_file`] | parameters by name, in TOML |
-//! | [`can_link`] | a CAN bus through an slcan adapter or SocketCAN |
-//! | [`tuning`] | the settings of the robot on a bus, and its live values |
-//! | [`status`] | live values → words and JSON |
-//! | [`recorder`] | samples of the robot on a bus → a table |
-//! | [`first_board`] | the checks of a first board, and their report |
+//! | [`recording`] | reads samples of a sensor from files |
+//! | [`calibration`] | finds the corrections that the firmware applies |
+//! | [`report`] | shows a correction as an HTML page |
+//! | [`mounting`] | finds how the sensors are mounted while the user tilts the robot |
+//! | [`radio`] | finds the channel of each control of a transmitter while the pilot moves it |
+//! | [`settings`] | names the robot's settings and puts their values into words |
+//! | [`parameter_file`] | reads and writes parameters in TOML |
+//! | [`can_link`] | reaches a CAN bus through an slcan adapter or SocketCAN |
+//! | [`tuning`] | reads and changes the robot's settings over CAN, and reads its live values |
+//! | [`status`] | shows live values as words or JSON |
+//! | [`recorder`] | records the robot's samples over CAN into a table |
+//! | [`first_board`] | makes the checks of a first board and writes their report |
 
 pub mod calibration;
 pub mod can_link;

@@ -102,7 +102,8 @@ fn a_magnetometer_table_becomes_values_and_a_page() {
     let directory = directory("calibrate-mag");
     let mut text = String::from("t,mx,my,mz\n");
     for row in 0..600 {
-        // From pole to pole in fifteen turns; a magnet of 30 µT in y, and x twice as much stretched as y and z shrink.
+        // The field goes from pole to pole in fifteen turns. A magnet adds 30 µT in y. The stretch of x is twice as
+        // large as the shrinkage of y and z.
         let (height, turn) = (1.0 - (f64::from(row) + 0.5) / 300.0, f64::from(row) * 0.157);
         let radius = (1.0 - height * height).sqrt();
         let [x, y, z] = [radius * turn.cos(), radius * turn.sin(), height].map(|v| v * 50.0);

@@ -4,7 +4,7 @@ use std::{convert::Infallible, fmt, str::FromStr};
 
 use super::{CanLink, CanLinkError, slcan::Slcan};
 
-/// Where the CAN bus is.
+/// The device through which a CAN bus is reached.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum CanDevice {
     /// The serial port of a LAWICEL (slcan) adapter, or a pseudo-terminal of the emulated board.

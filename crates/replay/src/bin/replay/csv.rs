@@ -8,7 +8,7 @@ use std::{
 
 use robot_replay::Run;
 
-/// `t,qw,qx,qy,qz`: time in the recording in s, unit quaternion sensor → ENU earth.
+/// Writes the columns `t,qw,qx,qy,qz`: time in the recording in s, and unit quaternion from sensor to ENU earth.
 pub fn write(run: &Run, path: &Path) -> io::Result<()> {
     let mut file = BufWriter::new(File::create(path)?);
     rows(run, &mut file)?;

@@ -2,7 +2,7 @@
 
 use crate::tuning::{LiveReading, TuningClient, TuningError, live_page};
 
-/// Whether a check passed.
+/// The verdict on a check.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Verdict {
     #[default]
@@ -40,7 +40,7 @@ impl Measured {
     }
 }
 
-/// How a check is measured.
+/// A function that measures what a check is about.
 pub type MeasureFn = fn(&mut TuningClient) -> Result<Measured, TuningError>;
 
 /// Reads a page of one part, 0 for a page about the whole robot.
