@@ -7,5 +7,6 @@
 
 pub mod core;
 pub mod soc;
-pub mod time;
 pub mod wire;
+
+pub use robot_wire::time;

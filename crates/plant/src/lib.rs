@@ -11,7 +11,6 @@ pub mod complaint;
 pub mod flash_chip;
 pub mod mounting;
 pub mod recording;
-pub mod time;
 pub mod wire;
 pub mod world;
 
@@ -26,3 +25,5 @@ mod physics;
 mod radio;
 mod random;
 mod supply;
+
+pub use robot_wire::time;

@@ -20,7 +20,7 @@ use robot_emulator::{
 use robot_plant::{complaint::Severity, flash_chip::FlashChip, world::World};
 
 use outputs::Levels;
-use wires::{board_frame, bus_id, chip_character, chip_frame};
+use wires::bus_id;
 
 /// The battery's divider, 200 kΩ over 22 kΩ, as the converter sees it.
 const BATTERY_DIVIDER_OHMS: f64 = 19_820.0;
@@ -47,6 +47,11 @@ impl CBoard {
 impl Board for CBoard {
     fn flash_cells(&mut self) -> &mut dyn FlashCells {
         self
+    }
+
+    /// The crystal of `docs/hardware.md#chip-and-clocks`.
+    fn hse_hz(&self) -> u32 {
+        12_000_000
     }
 
     fn next_event(&self) -> Ps {
@@ -128,7 +133,7 @@ impl Board for CBoard {
     }
 
     fn usart3_character(&mut self, now: Ps) -> Option<UartChar> {
-        self.world.radio_char(now).map(chip_character)
+        self.world.radio_char(now)
     }
 
     fn can_nodes(&self, port: CanPort) -> usize {
@@ -148,8 +153,7 @@ impl Board for CBoard {
     }
 
     fn can_pending(&self, port: CanPort, node: usize, now: Ps) -> Option<CanFrame> {
-        let frame = self.world.can_pending(bus_id(port), node, now);
-        frame.map(chip_frame)
+        self.world.can_pending(bus_id(port), node, now)
     }
 
     fn can_sent(&mut self, port: CanPort, node: usize, now: Ps) {
@@ -157,8 +161,7 @@ impl Board for CBoard {
     }
 
     fn can_received(&mut self, port: CanPort, node: usize, frame: &CanFrame, now: Ps) {
-        let frame = board_frame(*frame);
-        self.world.can_received(bus_id(port), node, &frame, now);
+        self.world.can_received(bus_id(port), node, frame, now);
     }
 }
 

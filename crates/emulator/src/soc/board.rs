@@ -19,6 +19,9 @@ pub trait Board: Any {
     /// The cells of flash sectors 1–3.
     fn flash_cells(&mut self) -> &mut dyn FlashCells;
 
+    /// Frequency of the crystal at OSC_IN and OSC_OUT, Hz.
+    fn hse_hz(&self) -> u32;
+
     /// Time of the next event on the board that the chip does not cause.
     fn next_event(&self) -> Ps {
         Ps::MAX

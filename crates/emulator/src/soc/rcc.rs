@@ -5,7 +5,7 @@ mod oscillator;
 mod registers;
 
 pub use frequencies::SystemClock;
-use frequencies::{BusClocks, HSE_HZ, HSI_HZ, Pll};
+use frequencies::{BusClocks, HSI_HZ, Pll};
 use oscillator::Oscillator;
 use registers::{bdcr, cr, csr, reg};
 
@@ -184,7 +184,7 @@ impl Rcc {
         if bypass && value & cr::HSEON != 0 {
             ctx.errors.report(
                 ctx.now,
-                "RCC: HSEBYP is set, but the board has a 12 MHz crystal and no clock input: HSE never gets ready",
+                "RCC: HSEBYP is set, but the board has a crystal and no clock input: HSE never gets ready",
             );
             self.cr |= cr::HSEON;
             return;
@@ -193,11 +193,11 @@ impl Rcc {
     }
 
     fn check_pll_start(&self, ctx: &mut Ctx<'_>) {
-        let pll = Pll::from_pllcfgr(self.pllcfgr);
+        let pll = Pll::from_pllcfgr(self.pllcfgr, ctx.board.hse_hz());
         for problem in pll.problems() {
             ctx.errors.report(ctx.now, problem);
         }
-        let source = if pll.uses_hse() {
+        let source = if frequencies::uses_hse(self.pllcfgr) {
             Oscillator::Hse
         } else {
             Oscillator::Hsi
@@ -248,7 +248,7 @@ impl Rcc {
     }
 
     fn drives_sysclk(&self, oscillator: Oscillator) -> bool {
-        let by_pll = Pll::from_pllcfgr(self.pllcfgr).uses_hse();
+        let by_pll = frequencies::uses_hse(self.pllcfgr);
         match (self.source, oscillator) {
             (SystemClock::Hsi, Oscillator::Hsi)
             | (SystemClock::Hse, Oscillator::Hse)
@@ -299,8 +299,8 @@ impl Rcc {
     fn publish_frequencies(&mut self, ctx: &mut Ctx<'_>) {
         let sysclk_hz = match self.source {
             SystemClock::Hsi => HSI_HZ,
-            SystemClock::Hse => HSE_HZ,
-            SystemClock::Pll => Pll::from_pllcfgr(self.pllcfgr).output_hz(),
+            SystemClock::Hse => ctx.board.hse_hz(),
+            SystemClock::Pll => Pll::from_pllcfgr(self.pllcfgr, ctx.board.hse_hz()).output_hz(),
         };
         let buses = BusClocks::new(sysclk_hz, self.cfgr);
         for problem in buses.problems() {

@@ -84,13 +84,20 @@ impl FlashCells for Cells {
     }
 }
 
-/// A chip without a board.
+/// Crystal of both boards, Hz.
+const CRYSTAL_HZ: u32 = 12_000_000;
+
+/// A chip on a board that has nothing but a crystal.
 #[derive(Default)]
 pub struct NoBoard(Cells);
 
 impl Board for NoBoard {
     fn flash_cells(&mut self) -> &mut dyn FlashCells {
         &mut self.0
+    }
+
+    fn hse_hz(&self) -> u32 {
+        CRYSTAL_HZ
     }
 }
 
@@ -186,6 +193,10 @@ fn flooder(port: CanPort) -> usize {
 impl Board for TestBoard {
     fn flash_cells(&mut self) -> &mut dyn FlashCells {
         &mut self.cells
+    }
+
+    fn hse_hz(&self) -> u32 {
+        CRYSTAL_HZ
     }
 
     fn next_event(&self) -> Ps {

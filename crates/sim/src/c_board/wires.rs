@@ -1,12 +1,8 @@
-//! Conversions between the frames, characters and flash cells of the chip and those of the world.
+//! The chip's CAN controllers and flash cells as those of the world.
 
-use robot_emulator::{
-    soc::flash_cells::FlashCells,
-    wire::{self as chip, CanPort},
-};
+use robot_emulator::{soc::flash_cells::FlashCells, wire::CanPort};
 use robot_plant::{
     flash_chip::{FlashChip, FlashError, Phase},
-    wire as plant,
     world::CanBusId,
 };
 
@@ -16,44 +12,6 @@ pub(super) fn bus_id(port: CanPort) -> CanBusId {
     match port {
         CanPort::Can1 => CanBusId::Can1,
         CanPort::Can2 => CanBusId::Can2,
-    }
-}
-
-pub(super) fn chip_frame(frame: plant::CanFrame) -> chip::CanFrame {
-    chip::CanFrame {
-        id: frame.id,
-        extended: frame.extended,
-        remote: frame.remote,
-        dlc: frame.dlc,
-        data: frame.data,
-    }
-}
-
-pub(super) fn board_frame(frame: chip::CanFrame) -> plant::CanFrame {
-    plant::CanFrame {
-        id: frame.id,
-        extended: frame.extended,
-        remote: frame.remote,
-        dlc: frame.dlc,
-        data: frame.data,
-    }
-}
-
-pub(super) fn chip_character(character: plant::UartChar) -> chip::UartChar {
-    let format = character.format;
-    chip::UartChar {
-        start: character.start,
-        byte: character.byte,
-        format: chip::LineFormat {
-            baud: format.baud,
-            data_bits: format.data_bits,
-            parity: match format.parity {
-                plant::Parity::None => chip::Parity::None,
-                plant::Parity::Even => chip::Parity::Even,
-                plant::Parity::Odd => chip::Parity::Odd,
-            },
-            stop_bits: format.stop_bits,
-        },
     }
 }
 

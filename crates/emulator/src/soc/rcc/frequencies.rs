@@ -1,7 +1,5 @@
 //! Computes frequencies from register values, and reports settings that RM0090 7.3 and datasheet table 14 forbid.
 
-/// The board's crystal, Hz.
-pub const HSE_HZ: u32 = 12_000_000;
 pub const HSI_HZ: u32 = 16_000_000;
 
 /// Source of SYSCLK (CFGR.SW).
@@ -28,6 +26,11 @@ impl SystemClock {
     }
 }
 
+/// PLLCFGR.PLLSRC: whether the PLL runs from the crystal, not from the HSI.
+pub fn uses_hse(pllcfgr: u32) -> bool {
+    pllcfgr >> 22 & 1 == 1
+}
+
 /// The fields of PLLCFGR.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pll {
@@ -35,30 +38,23 @@ pub struct Pll {
     n: u32,
     p: u32,
     q: u32,
-    from_hse: bool,
+    input_hz: u32,
 }
 
 impl Pll {
-    pub fn from_pllcfgr(value: u32) -> Self {
+    /// `hse_hz` is the board's crystal.
+    pub fn from_pllcfgr(value: u32, hse_hz: u32) -> Self {
         Self {
             m: value & 0x3F,
             n: value >> 6 & 0x1FF,
             p: 2 * ((value >> 16 & 3) + 1),
             q: value >> 24 & 0xF,
-            from_hse: value >> 22 & 1 == 1,
+            input_hz: if uses_hse(value) { hse_hz } else { HSI_HZ },
         }
     }
 
-    pub fn uses_hse(self) -> bool {
-        self.from_hse
-    }
-
-    fn input_hz(self) -> u32 {
-        if self.from_hse { HSE_HZ } else { HSI_HZ }
-    }
-
     fn vco_hz(self) -> u64 {
-        u64::from(self.input_hz()) * u64::from(self.n) / u64::from(self.m.max(1))
+        u64::from(self.input_hz) * u64::from(self.n) / u64::from(self.m.max(1))
     }
 
     /// Output P, which may become SYSCLK.
@@ -68,7 +64,7 @@ impl Pll {
 
     /// Reasons why this setting does not work on silicon.
     pub fn problems(self) -> Vec<String> {
-        let vco_in_khz = self.input_hz() / 1000 / self.m.max(1);
+        let vco_in_khz = self.input_hz / 1000 / self.m.max(1);
         let vco_mhz = self.vco_hz() / 1_000_000;
         let mut problems = Vec::new();
         if self.m < 2 || !(950..=2100).contains(&vco_in_khz) {
@@ -156,6 +152,8 @@ fn apb(hclk_hz: u32, ppre: u32) -> (u32, u32) {
 mod tests {
     use super::*;
 
+    const CRYSTAL_HZ: u32 = 12_000_000;
+
     fn pllcfgr(m: u32, n: u32, p: u32, q: u32) -> u32 {
         m | n << 6 | (p / 2 - 1) << 16 | 1 << 22 | q << 24
     }
@@ -163,7 +161,7 @@ mod tests {
     #[test]
     fn both_settings_found_on_c_boards_give_168_mhz() {
         for value in [pllcfgr(6, 168, 2, 7), pllcfgr(12, 336, 2, 7)] {
-            let pll = Pll::from_pllcfgr(value);
+            let pll = Pll::from_pllcfgr(value, CRYSTAL_HZ);
             assert_eq!(pll.output_hz(), 168_000_000);
             assert_eq!(pll.problems(), Vec::<String>::new());
         }
@@ -172,9 +170,13 @@ mod tests {
     #[test]
     fn a_pll_out_of_its_range_is_named() {
         // 12 MHz / 4 = 3 MHz into the VCO.
-        assert!(Pll::from_pllcfgr(pllcfgr(4, 112, 2, 7)).problems()[0].contains("3000 kHz"));
+        assert!(
+            Pll::from_pllcfgr(pllcfgr(4, 112, 2, 7), CRYSTAL_HZ).problems()[0].contains("3000 kHz")
+        );
         // 2 MHz × 300 = 600 MHz.
-        assert!(Pll::from_pllcfgr(pllcfgr(6, 300, 2, 7)).problems()[0].contains("600 MHz"));
+        assert!(
+            Pll::from_pllcfgr(pllcfgr(6, 300, 2, 7), CRYSTAL_HZ).problems()[0].contains("600 MHz")
+        );
     }
 
     #[test]
