@@ -22,7 +22,7 @@ use super::{
 };
 use crate::machine::LogLine;
 
-/// The least severe level still shown.
+/// The least severe level that is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, clap::ValueEnum)]
 pub enum LogLevel {
     Trace,
@@ -82,7 +82,7 @@ fn painted(text: &str, paint: Paint, colours: bool) -> String {
     }
 }
 
-/// Prints the log as it comes and keeps the bar going.
+/// Prints the log as it arrives, and updates the bar.
 pub struct Terminal {
     bar: ProgressBar,
     level: LogLevel,
@@ -117,7 +117,7 @@ impl Terminal {
         }
     }
 
-    /// Takes the bar away and prints verdict, budgets, failures and files.
+    /// Removes the bar and prints verdict, budgets, failures and files.
     pub fn conclude(&self, outcome: &Outcome) {
         self.bar.finish_and_clear();
         let summary = &outcome.summary;

@@ -1,4 +1,4 @@
-//! The board screwed on in other ways: with the right setting it is the same robot, with another it does not arm.
+//! The board in other orientations. With the right setting the robot behaves the same; with another it does not arm.
 
 mod support;
 
@@ -51,7 +51,7 @@ at = 5.5
 has_flag = \"tilt\"
 ";
 
-/// `mag` is what the setting says, if anything; the magnetometer sits as `mag_sits` on the board.
+/// `mag` is the setting, if any, and `mag_sits` the true orientation of the magnetometer on the board.
 fn run(board: &str, mag_sits: &str, settings: [u8; 2], body: &str) -> Outcome {
     let [board_number, mag_number] = settings;
     let text = format!(
@@ -73,7 +73,7 @@ fn a_robot_that_knows_how_its_sensors_sit_drives_as_before() {
         ("x-right-z-up", 12, "x-down-z-right", 23),
         ("x-up-z-left", 18, "x-forward-z-down", 1),
         ("x-down-z-forward", 20, "x-up-z-backward", 17),
-        // Nobody said how the magnetometer sits: the gyro alone carries the heading.
+        // The magnetometer's orientation is not set, so the gyro alone provides the heading.
         ("x-left-z-backward", 11, "x-right-z-backward", UNSET),
         ("x-forward-z-right", 3, "x-backward-z-up", UNSET),
     ] {

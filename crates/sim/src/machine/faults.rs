@@ -17,7 +17,7 @@ pub enum FaultError {
     NotThere { fault: &'static str, what: String },
 }
 
-/// Where a fault strikes.
+/// The place at which a fault takes effect.
 #[derive(Clone, Copy, Debug)]
 enum Place {
     ControlTick,
@@ -103,8 +103,8 @@ pub fn of_the_program() -> impl Iterator<Item = &'static FaultInfo> {
 }
 
 impl Machine {
-    /// Starts or ends one of [`all`]. Ending what has already struck changes nothing, but a task that is stuck goes on,
-    /// and a debugger no longer insists.
+    /// Starts or ends one of [`all`]. The end of a fault that has taken effect changes nothing, except that a stuck task
+    /// continues and a debugger no longer sets its catches again.
     pub fn set_fault(&mut self, name: &str, active: bool) -> Result<(), FaultError> {
         let entry = ENTRIES
             .iter()

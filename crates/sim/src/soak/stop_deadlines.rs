@@ -1,4 +1,4 @@
-//! Which faults must stop which actuators, and how soon (`tests/matrix` measures each of them alone).
+//! The actuators that each fault must stop, and the deadlines (`tests/matrix` measures each fault alone).
 
 use robot_plant::time::{MS, Ps};
 
@@ -21,7 +21,7 @@ pub struct StopDeadline {
 /// After a switch of the pilot: two radio frames, 7 ms apart and 3 ms long, then 3 ms to zero torque.
 pub const AFTER_SWITCH: Ps = (2 * 7 + 3 + 3) * MS;
 
-/// The deadlines that follow from a fault; none for a fault that must stop nothing.
+/// The deadlines that follow from a fault. The list is empty for a fault that must stop nothing.
 pub fn after(fault: &str) -> Vec<StopDeadline> {
     let all = |ms: Ps| vec![deadline(Group::Wheels, ms), deadline(Group::Joints, ms)];
     match fault {

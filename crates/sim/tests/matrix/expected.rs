@@ -1,20 +1,20 @@
-//! Expected outcome of every fault, from the rules of docs/safety.md and the devices' datasheets. Nothing here is taken
-//! from what the firmware does. Times count from the start of the fault.
+//! Expected outcome of every fault, from the rules of docs/safety.md and the devices' datasheets. Nothing here is derived
+//! from the firmware's behaviour. Times count from the start of the fault.
 
-/// Reaction of the actuators of one kind while the fault is there.
+/// Reaction of the actuators of one kind during the fault.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Group {
     /// No torque from this many ms on.
     Zero(f64),
-    /// The actuator obeys as before.
+    /// The actuator follows its commands as before.
     Runs,
-    /// The actuator runs on or stops: the fault is at the edge of a limit.
+    /// The actuator may run on or stop, because the fault is at the edge of a limit.
     Either,
     /// No frame reaches the actuator; the device itself decides.
     Unreachable,
 }
 
-/// Actuators that move when the fault is gone, while the pilot only keeps pushing the stick.
+/// Actuators that move after the fault, while the pilot only keeps pushing the stick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum After {
     /// Nothing.
@@ -27,9 +27,9 @@ pub enum After {
     JointsOnly,
     /// Actuators that the fault stopped stay off, the others drive on.
     WhatRan,
-    /// The wheels stay off until the stick has been centred, then all drives; the joints go on at once.
+    /// The wheels stay off until the stick has been centred, then all drives; the joints continue at once.
     WheelsWait,
-    /// The joints stay off until the stick has been centred, then all drives; the wheels go on at once.
+    /// The joints stay off until the stick has been centred, then all drives; the wheels continue at once.
     JointsWait,
 }
 
@@ -42,7 +42,7 @@ pub struct Armed {
     pub after: After,
 }
 
-/// The disarmed phase: nothing moves; does the enable switch arm while the fault is there, and after it?
+/// The disarmed phase, in which nothing moves: whether the enable switch arms the robot during the fault, and after it.
 #[derive(Clone, Debug)]
 pub struct Disarmed {
     pub flags: Flags,
@@ -72,7 +72,7 @@ pub struct Row {
     pub driving: Armed,
     pub idle: Armed,
     pub disarmed: Disarmed,
-    /// How long after the end of the fault it may take until all is back.
+    /// Longest time from the end of the fault until everything works again.
     pub back_within_ms: f64,
     /// The chip is reset.
     pub resets: bool,
@@ -87,7 +87,7 @@ fn flags(must: &[&'static str], may: &[&'static str]) -> Flags {
     }
 }
 
-/// A fault with the same outcome in both armed phases; while it is there, a disarmed robot cannot be armed.
+/// A fault with the same outcome in both armed phases, during which a disarmed robot cannot be armed.
 fn row(fault: &'static str, wheels: Group, joints: Group, flags: Flags, after: After) -> Row {
     let armed = Armed {
         wheels,
@@ -116,7 +116,7 @@ fn global(fault: &'static str, within_ms: f64, flags: Flags) -> Row {
     row(fault, zero, zero, flags, After::Off)
 }
 
-/// A fault of something that is not needed.
+/// A fault of a part that is not needed.
 fn harmless(fault: &'static str, flags: Flags) -> Row {
     row(fault, Group::Runs, Group::Runs, flags, After::Drives).arms_during(Arms::Yes)
 }
@@ -133,14 +133,14 @@ impl Row {
         self
     }
 
-    /// While the stick is pushed, what got its supply or its bus back does not set off.
+    /// Actuators that regain their supply or bus do not start while the stick is pushed.
     fn waiting(mut self, after: After) -> Self {
         self.driving.after = after;
         self.driving.flags.may.push("sticks-awaited");
         self
     }
 
-    /// Cannot be seen while nothing turns.
+    /// The fault cannot be detected while nothing turns.
     fn unseen_at_rest(mut self) -> Self {
         self.idle = Armed {
             wheels: Group::Runs,
@@ -264,7 +264,7 @@ fn buses() -> Vec<Row> {
         )
         .waiting(After::WheelsWait)
     };
-    // A DM4310 that receives nothing for 100 ms goes limp by itself and reports that until it is cleared.
+    // A DM4310 that receives nothing for 100 ms switches off by itself and reports that until it is cleared.
     let can2 = |fault, must: &[&'static str], may: &[&'static str]| {
         row(
             fault,
@@ -338,7 +338,7 @@ fn wheels() -> Vec<Row> {
             After::JointsOnly,
         );
         rows.push(stopped.unseen_at_rest());
-        // Not latched: what has cooled down may go on.
+        // The stop is not latched: a motor that has cooled down may continue.
         let stopped = row(
             hot,
             Group::Zero(600.0),
@@ -390,7 +390,7 @@ fn joints() -> Vec<Row> {
         let waits = |row: Row| row.waiting(After::JointsWait);
         rows.push(waits(joints(gone, 60.0, silent(), After::Drives)));
         rows.push(waits(joints(wrong_id, 110.0, silent(), After::Drives)));
-        // A leg at rest repeats its position rightly.
+        // A leg at rest legitimately repeats its position.
         rows.push(harmless(frozen, Flags::default()));
         rows.push(waits(joints(
             hot,
@@ -415,7 +415,7 @@ fn power_and_pose() -> Vec<Row> {
             flags(&["battery-low", "battery-empty"], &[]),
         )
         .latched(),
-        // The chip's own reference shows it.
+        // The chip's own reference shows the error.
         harmless("vdda-high", Flags::default()),
         harmless("vdda-low", Flags::default()),
         // 0.9 rad at 2 rad/s, and 50 ms to be sure.
@@ -427,9 +427,9 @@ fn power_and_pose() -> Vec<Row> {
     ]
 }
 
-/// Nothing is saved while armed, and a robot whose settings cannot be kept drives all the same.
+/// Nothing is saved while armed, and a robot whose settings cannot be saved still drives.
 fn supply_and_flash() -> Vec<Row> {
-    // The motors have power of their own: a DM4310 that receives nothing for 100 ms goes limp by itself. The board boots
+    // The motors have their own power. A DM4310 that receives nothing for 100 ms switches off by itself. The board boots
     // disarmed, and takes the sensors' calibration and the motors' set-up first.
     let power_cut = row(
         "power-cut",
@@ -495,7 +495,7 @@ fn image() -> Vec<Row> {
         rows.push(global(fault, 80.0, late()).resetting());
     }
     for row in &mut rows {
-        // The new boot knows nothing of the fault.
+        // The new boot has no record of the fault.
         row.disarmed.arms_during = Arms::Yes;
     }
     rows

@@ -28,8 +28,8 @@ impl std::fmt::Display for Phase {
     }
 }
 
-/// The last torque on the wire of one motor: the commanded current of a wheel (mA), the state of a joint
-/// (1 = enabled). Times since the fault started; nothing before it.
+/// Changes on the wire of one motor since the fault started: the commanded current of a wheel (mA), or the state of a joint
+/// (1 = enabled).
 #[derive(Clone, Debug, Default)]
 pub struct Wire {
     /// Value at the instant of the fault.
@@ -64,7 +64,7 @@ impl Wire {
         zero
     }
 
-    /// A new command asks for torque; an old one that is still in force does not count.
+    /// Whether a new command demands torque. An old one that is still in force does not count.
     pub fn told_torque_in(&self, from: Ps, to: Ps) -> bool {
         let inside = self
             .changes
@@ -83,34 +83,34 @@ impl Wire {
     }
 }
 
-/// One run.
+/// The observations of one run.
 #[derive(Clone, Debug, Default)]
 pub struct Observed {
     /// Left, right.
     pub wheels: [Wire; 2],
     pub joints: [Wire; 4],
-    /// When the fault took effect: a failure of the image waits for the function it strikes.
+    /// Time at which the fault took effect. A failure of the image waits for a call of its function.
     pub struck: Ps,
-    /// When the fault ended, and the run; since the fault started.
+    /// Ends of the fault and of the run, since the start of the fault.
     pub fault_ended: Ps,
     pub ended: Ps,
-    /// When the pilot let go of the stick that was pushed until then.
+    /// Time at which the pilot released the stick, which was pushed until then.
     pub centred: Option<Ps>,
-    /// Safety flags that rose while the fault was there.
+    /// Safety flags that rose during the fault.
     pub flags: BTreeSet<String>,
-    /// While the fault was there: resets of the chip.
+    /// Number of resets of the chip during the fault.
     pub resets: usize,
     pub armed_at_fault_end: bool,
     pub armed_at_end: bool,
-    /// Disarmed phase: the switch went off and on while the fault was there, and once more after it.
+    /// In the disarmed phase: whether the robot armed when the switch went off and on during the fault, and after it.
     pub armed_during_fault: bool,
     pub armed_after_fault: bool,
-    /// Instants with torque on a wire though the firmware was not armed.
+    /// Instants with torque on a wire although the firmware was not armed.
     pub torque_unarmed: Vec<Ps>,
     pub board_errors: Vec<String>,
 }
 
-/// The firmware's word is up to two samples old, and a command is on its way for a millisecond.
+/// The firmware's diagnostics are up to two samples old, and a command takes up to a millisecond to the motor.
 pub const ARMED_SLACK: Ps = 5 * MS;
 
 #[cfg(test)]

@@ -83,7 +83,7 @@ fn records_of_a_later_firmware_survive_saves_and_a_change_of_sectors() {
         assert_eq!(stored.get(&id), Some(&record), "{id:?}");
     }
 
-    // Whoever changes the group decides.
+    // A change of the group replaces its record.
     robot.set((3, 0), 19.0);
     robot
         .wait(3 * SECOND, |robot| robot.is_saved(1))

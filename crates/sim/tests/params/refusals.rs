@@ -8,7 +8,7 @@ use crate::{
     settings::{Make, image},
 };
 
-/// Calibration and set-up of the motors are over.
+/// By this time calibration and set-up of the motors are over.
 const READY: u64 = 2_400 * MS;
 const JOINT: u8 = 16;
 const ZERO_RAD: u8 = 1;
@@ -29,7 +29,7 @@ fn a_robot_with_refused_settings_is_not_armed_until_they_are_saved_again() {
     robot.until(READY);
     robot.enable(true);
     robot.run_for(500 * MS);
-    // The request is used up besides.
+    // The request is also used up.
     let blockers = ["enable-not-cycled", "settings-refused"];
     assert_eq!(robot.names_in("arming.blockers"), blockers);
     robot.enable(false);

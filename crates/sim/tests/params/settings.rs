@@ -33,8 +33,8 @@ const TRAVEL: [f32; 21] = [
     992.0, 1801.0, 182.0, 992.0, 1801.0, 182.0, 992.0, 1801.0,
 ];
 
-/// Allowed values with which the robot drives. They differ from the defaults, except for directions and what the pilot
-/// needs.
+/// Allowed values with which the robot drives. They differ from the defaults, except for directions and settings that
+/// the pilot needs.
 #[rustfmt::skip] // One line a group.
 const CALIBRATED: [(u8, &[f32]); 14] = [
     (1, &[0.07, 0.45, 17.5, 1.0, -1.0]),

@@ -1,4 +1,4 @@
-//! Where the tests find the image and the scenarios.
+//! Places of the image and the scenarios.
 
 use std::path::{Path, PathBuf};
 
@@ -8,7 +8,7 @@ pub fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// The release image: `ROBOT_ELF`, or where `cargo xtask` builds it.
+/// The release image: the file that `ROBOT_ELF` names, or the one that `cargo xtask` builds.
 pub fn image() -> PathBuf {
     let built = "target/firmware/thumbv7em-none-eabihf/release/robot-firmware";
     let path =

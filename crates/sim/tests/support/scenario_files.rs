@@ -13,7 +13,7 @@ use robot_sim::{
 
 use crate::support;
 
-/// Every scenario in `folder` must hold on `elf`; says which did.
+/// Asserts that every scenario in `folder` holds on `elf`, and prints which did.
 pub fn must_hold(folder: &Path, elf: &Path) {
     let files = files(folder);
     assert!(!files.is_empty());
@@ -69,7 +69,7 @@ fn run(path: &Path, elf: &Path) -> Vec<String> {
     }
 }
 
-/// What went wrong, one line each.
+/// The failures of a run, one line each.
 fn problems(outcome: &Outcome) -> Vec<String> {
     let summary = &outcome.summary;
     let stopped = summary.stopped.iter().map(|why| format!("stopped: {why}"));

@@ -19,12 +19,12 @@ pub const LAST_SLOT: usize = 127;
 
 const CLEAN: [u8; 4] = [0xC1, 0xEA, 0x5E, 0xD0];
 const MAGIC: [u8; 4] = *b"PRM1";
-/// Where in the head, in bytes.
+/// Offsets in the head, in bytes.
 const OPENED_AT: usize = 4;
 const COPIES_AT: [usize; 2] = [8, 24];
 const COPY_BYTES: usize = 16;
 const HEAD_PROOF_AT: usize = 40;
-/// Where in a slot, in bytes.
+/// Offsets in a slot, in bytes.
 const HEADER_AT: usize = 4;
 const VALUES_AT: usize = 8;
 const PROOF_AT: usize = 120;
@@ -34,11 +34,11 @@ const MAX_VALUES: usize = 28;
 /// Key and variant.
 pub type Id = (u8, u8);
 
-/// What a record holds.
+/// Contents of a record.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Stored {
     pub version: u8,
-    /// Bits of an `f32` each, where the key is one of today's.
+    /// Each value is the bits of an `f32`, if the key is one of the current groups.
     pub values: Vec<u32>,
 }
 
