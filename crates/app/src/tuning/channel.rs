@@ -31,6 +31,31 @@ pub struct TuningAccess<'a> {
 }
 
 /// Executes tuning requests.
+///
+/// ```
+/// use robot_app::{
+///     bring_up::BringUp,
+///     diagnostics::DiagnosticsSnapshot,
+///     domain::{BusId, CanFrame, RobotConfig, SensorsSnapshot},
+///     motor::layout::ROBOT_LAYOUT,
+///     tuning::{READ_ID, REPLY_ID, TuningAccess, TuningChannel, TuningGate, opcode},
+/// };
+///
+/// let mut channel = TuningChannel::new(&ROBOT_LAYOUT);
+/// channel.begin_slot();
+/// // Reading is allowed while the robot is armed too.
+/// let request = CanFrame::from_payload(READ_ID, &[opcode::READ_GEOMETRY]).unwrap();
+/// let access = TuningAccess {
+///     config: &mut RobotConfig::default(),
+///     bring_up: &mut BringUp::default(),
+///     sensors: &SensorsSnapshot::default(),
+///     diagnostics: &DiagnosticsSnapshot::default(),
+///     stationary_angle_rad: &|_joint| None,
+/// };
+/// let reply = channel.on_frame(BusId::Can1, &request, TuningGate::Shut, access).unwrap();
+/// assert_eq!(reply.id(), REPLY_ID);
+/// assert_eq!(reply.payload()[..2], [opcode::READ_GEOMETRY, 60], "a radius of 60 mm");
+/// ```
 #[derive(Clone, Debug)]
 pub struct TuningChannel {
     /// Provides the defaults.
