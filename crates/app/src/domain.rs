@@ -30,7 +30,7 @@ pub use health::{
 };
 pub use imu_status::{
     CalibrationState, CalibrationStatus, GyroBufferStatus, HeaterState, HeaterStatus, ImuRejects,
-    ImuStatus, Warmth,
+    ImuStatus, TemperatureGateState,
 };
 pub use logic_bus::LogicBus;
 pub use mounting::Orientation;

@@ -18,7 +18,7 @@ pub const OURS: Filter = Filter {
 };
 
 /// Filters of published crates, each with its own settings.
-pub const RIVALS: [Filter; 4] = [
+pub const PUBLISHED_FILTERS: [Filter; 4] = [
     Filter {
         program: "vqf-rs",
         title: "vqf-rs",

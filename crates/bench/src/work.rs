@@ -11,7 +11,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use robot_sim::{scenario::Scenario, summary::Summary};
 
 use crate::{
-    filters::{EMPTY, Filter, OURS, RIVALS},
+    filters::{EMPTY, Filter, OURS, PUBLISHED_FILTERS},
     measure::{self, Detail, Measured},
     motion::{Motion, TICKS_A_SAMPLE, Wheels},
     program::Program,
@@ -170,7 +170,10 @@ impl Task<'_> {
 /// recording has.
 fn entries() -> impl Iterator<Item = Entry> {
     let of = |wheels| move |filter| Entry { filter, wheels };
-    let silent = [OURS].into_iter().chain(RIVALS).map(of(Wheels::Silent));
+    let silent = [OURS]
+        .into_iter()
+        .chain(PUBLISHED_FILTERS)
+        .map(of(Wheels::Silent));
     silent.chain([OURS].map(of(Wheels::Turning)))
 }
 

@@ -161,8 +161,8 @@ impl FlashChip {
     }
 
     /// Frees all stuck cells.
-    pub fn mend_bits(&mut self) {
-        self.defects.mend_bits();
+    pub fn repair_bits(&mut self) {
+        self.defects.repair_bits();
     }
 
     /// Makes erases of the sector fail in this way, or work again.

@@ -83,7 +83,7 @@ pub fn record(
     let mut samples = Samples::default();
     let mut heard_at = Instant::now();
     let report = loop {
-        let heard = client.hear_samples(Instant::now() + timeouts.look)?;
+        let heard = client.receive_samples(Instant::now() + timeouts.look)?;
         if !heard.is_empty() {
             heard_at = Instant::now();
         }
@@ -99,7 +99,7 @@ pub fn record(
         }
     };
     // Samples that came before the last reply.
-    samples.extend(&client.hear_samples(Instant::now())?);
+    samples.extend(&client.receive_samples(Instant::now())?);
     if report.state == Ok(RecordingState::CutShort) {
         return Err(RecordError::CutShort);
     }

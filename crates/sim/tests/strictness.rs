@@ -70,7 +70,7 @@ fn must_report(patch: RegisterPatch, parts: &[&str]) {
 }
 
 /// Asserts that the run does not fail and that one suspicion contains all of `parts`.
-fn must_doubt(patch: RegisterPatch, parts: &[&str]) {
+fn assert_suspicious(patch: RegisterPatch, parts: &[&str]) {
     let all = reported(&[patch]);
     assert_eq!(all.failing, Vec::<String>::new());
     must_name(&all.suspicious, parts);
@@ -214,7 +214,7 @@ fn imu_clock_just_above_its_limit() {
         mask: 7 << 3,
         value: 2 << 3,
     };
-    must_doubt(patch, &["BMI088: SCK at 10500000 Hz"]);
+    assert_suspicious(patch, &["BMI088: SCK at 10500000 Hz"]);
 }
 
 /// 42 MHz / (3 × 30) = 467 kHz, fast mode ends at 400 kHz: I2C3_CCR bits 11:0.
@@ -342,7 +342,7 @@ fn an_open_drain_buzzer_is_mute() {
 #[test]
 fn an_open_drain_reset_of_the_magnetometer_is_suspicious() {
     let (address, mask, value) = open_drain('G', 6);
-    must_doubt(patch(address, mask, value), &["PG6 is open-drain"]);
+    assert_suspicious(patch(address, mask, value), &["PG6 is open-drain"]);
 }
 
 /// GPIOF_AFRL bits 27:24: TIM10 is AF3 on PF6.
@@ -362,7 +362,7 @@ fn an_output_where_the_radio_comes_in() {
 /// GPIOB_OSPEEDR bits 7:6: the slowest stage is made for 4 MHz, the clock has 5.25 MHz.
 #[test]
 fn a_slow_output_stage_on_the_imu_clock() {
-    must_doubt(
+    assert_suspicious(
         patch(0x4002_0408, 3 << 6, 0),
         &["SPI1_SCK: PB3 switches 5250000 Hz"],
     );
@@ -378,7 +378,7 @@ fn can_bits_sampled_where_no_other_device_does() {
         (0x4000_681C, 0x7F << 16, late, &["CAN2: samples at 92.8 %"]),
     ]);
     // 9 + 4.
-    must_doubt(
+    assert_suspicious(
         patch(0x4000_641C, 0x7F << 16, 3 << 20 | 8 << 16),
         &["CAN1: samples at 71.4 %"],
     );
@@ -417,7 +417,7 @@ fn flash_without_prefetch_and_caches() {
 #[test]
 fn a_battery_sampled_too_shortly() {
     let patch = patch(0x4001_2210, 7 << 24, 0);
-    must_doubt(
+    assert_suspicious(
         patch,
         &["ADC3: a source of 19820 ohms is sampled for 142 ns"],
     );

@@ -16,12 +16,12 @@ fn stop_frames(robot: &Robot) -> f64 {
     (0..4).map(frames).sum()
 }
 
-fn assert_limp(robot: &Robot) {
+fn assert_joints_disabled(robot: &Robot) {
     assert_eq!(enabled(robot), [false; 4], "at {} s", robot.seconds());
 }
 
 /// Milliseconds until no joint is enabled.
-fn ms_to_limp(robot: &mut Robot) -> f64 {
+fn ms_until_disabled(robot: &mut Robot) -> f64 {
     let start = robot.seconds();
     let mut last_enabled = start;
     robot.run_until(start + 0.5, |robot| {
@@ -50,7 +50,7 @@ fn clear(robot: &mut Robot) {
 #[test]
 fn joints_are_released_until_armed_and_then_hold_their_pose() {
     let mut robot = Robot::new(PlantKind::Stand, RadioKind::Sbus);
-    robot.run_until(2.5, assert_limp);
+    robot.run_until(2.5, assert_joints_disabled);
     robot.remote(ENABLE);
     robot.run_until(2.7, |_| ());
     let pose = robot.diagnostics().command.joints;
@@ -63,9 +63,9 @@ fn joints_are_released_until_armed_and_then_hold_their_pose() {
     }
     robot.remote(DISABLE);
     // The frame may start 7 ms later and lasts 3 ms; a joint's slot comes every 2 ms.
-    assert!(ms_to_limp(&mut robot) <= 13.0);
+    assert!(ms_until_disabled(&mut robot) <= 13.0);
     let before = stop_frames(&robot);
-    robot.run_until(robot.seconds() + 0.1, assert_limp);
+    robot.run_until(robot.seconds() + 0.1, assert_joints_disabled);
     let sent = stop_frames(&robot) - before;
     assert!(
         (sent - 200.0).abs() <= 4.0,
@@ -169,12 +169,12 @@ fn a_fallen_robot_is_released_until_upright_and_cleared() {
     );
     robot.run_until(8.0, |robot| {
         assert_still(robot);
-        assert_limp(robot);
+        assert_joints_disabled(robot);
     });
     robot.fault("tilted", false);
     robot.run_until(12.0, |robot| {
         assert_still(robot);
-        assert_limp(robot);
+        assert_joints_disabled(robot);
     });
     clear(&mut robot);
     let latched = robot.diagnostics().safety.latched;
@@ -205,7 +205,7 @@ fn a_low_battery_blocks_the_next_drive_and_an_empty_one_ends_the_present() {
     robot.fault("battery-empty", false);
     robot.run_until(8.0, |robot| {
         assert_still(robot);
-        assert_limp(robot);
+        assert_joints_disabled(robot);
     });
     let latched = robot.diagnostics().safety.latched;
     assert_eq!(latched, SafetyFlags::BATTERY_EMPTY);
@@ -213,6 +213,6 @@ fn a_low_battery_blocks_the_next_drive_and_an_empty_one_ends_the_present() {
 
 fn assert_limp_later(robot: &Robot) {
     if robot.seconds() > 7.25 {
-        assert_limp(robot);
+        assert_joints_disabled(robot);
     }
 }

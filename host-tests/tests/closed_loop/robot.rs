@@ -134,7 +134,7 @@ impl Robot {
     fn tick(&mut self) {
         self.now += MS;
         self.world.advance(self.now);
-        self.hear_radio();
+        self.receive_radio();
         self.receive_can();
         if self.now.is_multiple_of(5 * MS) {
             self.read_imu();
@@ -162,7 +162,7 @@ impl Robot {
         self.control_tick();
     }
 
-    fn hear_radio(&mut self) {
+    fn receive_radio(&mut self) {
         let mut bytes = Vec::new();
         let mut last_us = self.now_us();
         while let Some(character) = self.world.radio_char(self.now) {

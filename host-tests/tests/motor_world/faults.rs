@@ -121,7 +121,7 @@ const ENABLE: [u8; 8] = [0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFC];
 #[test]
 fn a_motor_disabled_by_another_sender_is_enabled_again() {
     let mut robot = armed_holding(JointKind::Dm4310);
-    robot.hear_from_a_stranger(1, DISABLE);
+    robot.receive_unknown_frame(1, DISABLE);
     assert_eq!(robot.joint_signals("can.joint.{}.enabled")[0], 0.0);
     robot.run(0.3);
     assert_eq!(robot.states(), [JointState::Enabled; 4]);
@@ -130,7 +130,7 @@ fn a_motor_disabled_by_another_sender_is_enabled_again() {
     for ms in 0..1_000 {
         // Between two of them there is time to set the motor up anew.
         if ms % 50 == 0 {
-            robot.hear_from_a_stranger(1, DISABLE);
+            robot.receive_unknown_frame(1, DISABLE);
         }
         robot.run(1e-3);
         enable_frames += robot

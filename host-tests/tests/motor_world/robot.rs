@@ -100,7 +100,7 @@ impl Robot {
     }
 
     /// Reports the stall to the tick, as the firmware does.
-    pub fn tell_of_stall(&mut self, ms: u32) {
+    pub fn report_stall(&mut self, ms: u32) {
         let now_us = self.now_us();
         self.control.after_stall(ms * 1_000, now_us);
     }
@@ -227,7 +227,7 @@ impl Robot {
     }
 
     /// Sends a frame of another node on CAN2.
-    pub fn hear_from_a_stranger(&mut self, id: u16, data: [u8; 8]) {
+    pub fn receive_unknown_frame(&mut self, id: u16, data: [u8; 8]) {
         let id = StandardId::new(id).expect("11 bits");
         self.world
             .deliver(BusId::Can2, &CanFrame::new(id, data), self.now);

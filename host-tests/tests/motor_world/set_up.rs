@@ -39,7 +39,7 @@ fn states_after_stall(kind: JointKind, told: bool) -> Vec<JointState> {
     robot.run(1.5);
     robot.stall(ERASE_MS.into());
     if told {
-        robot.tell_of_stall(ERASE_MS);
+        robot.report_stall(ERASE_MS);
     }
     let mut states = Vec::new();
     robot.run_watching(0.1, |robot| states.push(robot.joint(0).state));

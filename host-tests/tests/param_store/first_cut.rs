@@ -36,12 +36,12 @@ fn cut(moment: &Moment, step: u64, phase: Phase, seed: u64, tally: &mut Tally) {
     assert!(!chip.is_powered(), "{case}: the step was never done");
     tally.cuts += 1;
     chip.power_up();
-    look_without_settling(&mut chip, &ledger, tally, &case);
-    settle_and_go_on(chip, ledger, step as usize, tally, &case);
+    read_without_recovery(&mut chip, &ledger, tally, &case);
+    recover_and_continue(chip, ledger, step as usize, tally, &case);
 }
 
 /// A boot that is not allowed to program anything.
-fn look_without_settling(chip: &mut FlashChip, ledger: &Ledger, tally: &mut Tally, case: &str) {
+fn read_without_recovery(chip: &mut FlashChip, ledger: &Ledger, tally: &mut Tally, case: &str) {
     let mut store = Store::open(chip);
     tally.check_report(&store, case);
     let found = read(&mut store);
@@ -49,7 +49,7 @@ fn look_without_settling(chip: &mut FlashChip, ledger: &Ledger, tally: &mut Tall
 }
 
 /// What the first boot finds stays. The next saves work and stay as well.
-pub fn settle_and_go_on(
+pub fn recover_and_continue(
     mut chip: FlashChip,
     mut ledger: Ledger,
     count: usize,

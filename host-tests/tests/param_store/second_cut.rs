@@ -4,7 +4,7 @@ use robot_plant::flash_chip::{FlashChip, Phase};
 
 use crate::{
     bench::{Ledger, Tally, boot, tidy},
-    first_cut::settle_and_go_on,
+    first_cut::recover_and_continue,
     workload::{Moment, moments, nth_save},
 };
 
@@ -80,7 +80,7 @@ fn cut_again(chip: &FlashChip, ledger: &Ledger, step: u64, stride: u64, tally: &
         let ledger = recover(&mut chip, ledger.clone(), step);
         tally.cuts += 1;
         chip.power_up();
-        settle_and_go_on(chip, ledger, second as usize, tally, &case);
+        recover_and_continue(chip, ledger, second as usize, tally, &case);
     }
 }
 

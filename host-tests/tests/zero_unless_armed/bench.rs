@@ -102,7 +102,7 @@ impl<C: ChassisController> Bench<C> {
                     Clock::Rushes(us) => self.now_us.saturating_add(us.into()),
                 };
                 self.producers.run(phase, tick, self.now_us);
-                self.hear_buses(phase);
+                self.receive_from_buses(phase);
                 self.tick(phase);
             }
         }
@@ -120,7 +120,7 @@ impl<C: ChassisController> Bench<C> {
             .on_can_frame(bus, &frame, self.now_us, &self.diagnostics);
     }
 
-    fn hear_buses(&mut self, phase: &Phase) {
+    fn receive_from_buses(&mut self, phase: &Phase) {
         let (id, data) = &phase.frame;
         for bus in BusId::ALL {
             self.hear(bus, *id, data);
@@ -138,7 +138,7 @@ impl<C: ChassisController> Bench<C> {
 
     fn tick(&mut self, phase: &Phase) {
         let inputs = self.producers.inputs();
-        let fault = self.replies.tell_of_fault();
+        let fault = self.replies.has_reported_fault();
         let allowed = self.rules.allow(
             &inputs,
             phase.wheels,

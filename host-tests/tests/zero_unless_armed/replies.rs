@@ -64,7 +64,7 @@ impl Replies {
     }
 
     /// Whether the last reply of a DM4310 reported a fault.
-    pub fn tell_of_fault(&self) -> bool {
+    pub fn has_reported_fault(&self) -> bool {
         self.faults.contains(&true)
     }
 }

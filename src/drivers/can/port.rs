@@ -60,7 +60,7 @@ impl CanPort {
         }
         let (overruns, queue_full) = self.losses();
         let [fifo0, _] = &self.sources;
-        fifo0.forgive(&Losses {
+        fifo0.discount(&Losses {
             overruns: overruns.wrapping_sub(self.health.rx_overruns),
             queue_full: queue_full.wrapping_sub(self.health.rx_queue_full),
         });

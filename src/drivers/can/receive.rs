@@ -48,7 +48,7 @@ impl FrameSource {
     }
 
     /// Subtracts losses that do not count as faults.
-    pub fn forgive(&self, losses: &Losses) {
+    pub fn discount(&self, losses: &Losses) {
         let counters = self.losses;
         counters
             .overruns

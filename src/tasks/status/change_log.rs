@@ -2,7 +2,8 @@
 
 use robot_app::diagnostics::{ChangeThrottle, DiagnosticsSnapshot};
 use robot_app::domain::{
-    BusErrorState, BusId, CalibrationState, DebugProbe, HeaterState, RadioLineHealth, Warmth,
+    BusErrorState, BusId, CalibrationState, DebugProbe, HeaterState, RadioLineHealth,
+    TemperatureGateState,
 };
 use robot_app::safety::{ArmingBlockers, ArmingState, SafetyFlags};
 
@@ -131,7 +132,7 @@ impl ChangeLog {
             Some(CalibrationState::Done) => {
                 let [x, y, z] = d.sensors.imu.gyro_bias_dps;
                 defmt::info!("gyro offset found: {=f32} {=f32} {=f32} dps", x, y, z);
-                if calibration.warmth == Warmth::Unknown {
+                if calibration.warmth == TemperatureGateState::Unknown {
                     defmt::warn!("the imu tells no temperature: the gyro offset may drift");
                 }
             }

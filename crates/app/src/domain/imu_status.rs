@@ -51,7 +51,7 @@ pub enum CalibrationState {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
-pub enum Warmth {
+pub enum TemperatureGateState {
     /// The temperature is changing.
     #[default]
     Unsettled = 0,
@@ -72,7 +72,7 @@ pub struct CalibrationStatus {
     /// State of the calibration.
     pub state: CalibrationState,
     /// The temperature state it relies on, frozen when it is done.
-    pub warmth: Warmth,
+    pub warmth: TemperatureGateState,
 }
 
 /// Samples rejected since boot, by reason.

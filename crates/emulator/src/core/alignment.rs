@@ -22,7 +22,7 @@ const PC: usize = 15;
 
 /// The two lowest bits of a register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Low {
+enum LowBits {
     /// The bits of this register before the block, plus a constant.
     Start {
         register: usize,
@@ -32,7 +32,7 @@ enum Low {
     Lost,
 }
 
-impl Low {
+impl LowBits {
     fn plus(self, more: u32) -> Self {
         match self {
             Self::Start { register, plus } => Self::Start {
@@ -65,7 +65,7 @@ pub fn word_accesses(code: &[u8]) -> WordAccesses {
 }
 
 struct Block {
-    registers: [Low; 16],
+    registers: [LowBits; 16],
     /// Instructions left in an IT block.
     conditional: u32,
     may_be_skipped: bool,
@@ -74,10 +74,10 @@ struct Block {
 
 impl Default for Block {
     fn default() -> Self {
-        let mut registers = std::array::from_fn(|register| Low::Start { register, plus: 0 });
-        registers[SP] = Low::Known(0);
+        let mut registers = std::array::from_fn(|register| LowBits::Start { register, plus: 0 });
+        registers[SP] = LowBits::Known(0);
         // ADR uses the PC rounded down to a word.
-        registers[PC] = Low::Known(0);
+        registers[PC] = LowBits::Known(0);
         Self {
             registers,
             conditional: 0,
@@ -88,20 +88,24 @@ impl Default for Block {
 }
 
 impl Block {
-    fn get(&self, register: u32) -> Low {
+    fn get(&self, register: u32) -> LowBits {
         self.registers[register as usize & 15]
     }
 
-    fn set(&mut self, register: u32, low: Low) {
+    fn set(&mut self, register: u32, low: LowBits) {
         let register = register as usize & 15;
         if LOOKED_AT.contains(&register) {
-            self.registers[register] = if self.may_be_skipped { Low::Lost } else { low };
+            self.registers[register] = if self.may_be_skipped {
+                LowBits::Lost
+            } else {
+                low
+            };
             self.accesses.after &= !(1 << register);
         }
     }
 
     fn lose(&mut self, register: u32) {
-        self.set(register, Low::Lost);
+        self.set(register, LowBits::Lost);
     }
 
     fn lose_all(&mut self, list: u32) {
@@ -117,12 +121,12 @@ impl Block {
             return;
         }
         match self.registers[register] {
-            Low::Start { register, plus } if LOOKED_AT.contains(&register) => {
+            LowBits::Start { register, plus } if LOOKED_AT.contains(&register) => {
                 self.accesses.before |= 1 << (4 * register as u32 + plus);
             }
-            Low::Start { .. } => {}
-            Low::Known(low) => self.accesses.wrong |= low != 0,
-            Low::Lost => self.accesses.after |= 1 << register,
+            LowBits::Start { .. } => {}
+            LowBits::Known(low) => self.accesses.wrong |= low != 0,
+            LowBits::Lost => self.accesses.after |= 1 << register,
         }
     }
 
@@ -138,7 +142,7 @@ impl Block {
                 self.set(rd, self.get(rn).plus((op >> 6 & 7).wrapping_neg()));
             }
             0b00000..=0b00011 => self.lose(rd),
-            0b00100 => self.set(upper, Low::Known(imm8 & 3)),
+            0b00100 => self.set(upper, LowBits::Known(imm8 & 3)),
             0b00110 => self.set(upper, self.get(upper).plus(imm8)),
             0b00111 => self.set(upper, self.get(upper).plus(imm8.wrapping_neg())),
             0b01000 => self.data_processing(op),
@@ -146,7 +150,7 @@ impl Block {
             0b01010 | 0b01011 if op >> 9 & 7 >= 3 => self.lose(rd),
             0b01101 | 0b01111 | 0b10001 => self.lose(rd),
             // ADR, and an address on the stack.
-            0b10100 | 0b10101 => self.set(upper, Low::Known(0)),
+            0b10100 | 0b10101 => self.set(upper, LowBits::Known(0)),
             0b10110 | 0b10111 => match op >> 8 {
                 0xB2 | 0xBA => self.lose(rd),
                 0xBC | 0xBD => self.lose_all(imm8),
@@ -235,21 +239,21 @@ impl Block {
             match first >> 4 & 0x1F {
                 0x00 => before.plus(imm12),
                 0x0A => before.plus(imm12.wrapping_neg()),
-                0x04 => Low::Known(imm12 & 3),
+                0x04 => LowBits::Known(imm12 & 3),
                 // MOVT leaves the lower half.
                 0x0C => self.get(rd),
-                _ => Low::Lost,
+                _ => LowBits::Lost,
             }
         } else {
             let low = expanded(imm12) & 3;
             match (first >> 5 & 15, low) {
-                (0, 0) | (1, 3) => Low::Known(0),
+                (0, 0) | (1, 3) => LowBits::Known(0),
                 (0, 3) | (1 | 2, 0) if rn != 15 => before,
                 // MOV, and a bit set for sure.
-                (2, _) => Low::Known(low),
+                (2, _) => LowBits::Known(low),
                 (8, _) => before.plus(low),
                 (13, _) => before.plus(low.wrapping_neg()),
-                _ => Low::Lost,
+                _ => LowBits::Lost,
             }
         };
         self.set(rd, low);

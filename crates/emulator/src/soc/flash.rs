@@ -118,7 +118,7 @@ impl Flash {
         ctx.irq.set(FLASH_IRQ, ended || failed);
     }
 
-    fn give_key(&mut self, key: u32, ctx: &mut Ctx<'_>) {
+    fn write_key(&mut self, key: u32, ctx: &mut Ctx<'_>) {
         self.lock = match (self.lock, key) {
             (Lock::Locked, key) if key == KEYS[0] => Lock::FirstKeyGiven,
             (Lock::FirstKeyGiven, key) if key == KEYS[1] => Lock::Open,
@@ -264,7 +264,7 @@ impl Peripheral for Flash {
         let access = Access::new(offset, size);
         match access.register {
             reg::ACR => self.write_access_control(access.written_over(self.acr, value), ctx),
-            reg::KEYR => self.give_key(value, ctx),
+            reg::KEYR => self.write_key(value, ctx),
             reg::SR => {
                 self.sr &= !(access.written_over(0, value) & sr::CLEARABLE);
                 self.update_interrupt(ctx);

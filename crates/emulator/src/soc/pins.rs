@@ -88,7 +88,7 @@ impl PinSettings {
 
 /// Connection of a pin on the board.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Outside {
+pub enum ExternalConnection {
     /// Nothing outside the chip gives the pin a level.
     #[default]
     Nothing,
@@ -102,7 +102,7 @@ pub enum Outside {
 #[derive(Debug)]
 pub struct PinBank {
     settings: [[PinSettings; 16]; 9],
-    outside: [[Outside; 16]; 9],
+    outside: [[ExternalConnection; 16]; 9],
 }
 
 impl Default for PinBank {
@@ -114,7 +114,7 @@ impl Default for PinBank {
         }
         Self {
             settings,
-            outside: [[Outside::Nothing; 16]; 9],
+            outside: [[ExternalConnection::Nothing; 16]; 9],
         }
     }
 }
@@ -136,12 +136,12 @@ impl PinBank {
     }
 
     /// The pin's connection on the board.
-    pub fn outside(&self, pin: Pin) -> Outside {
+    pub fn outside(&self, pin: Pin) -> ExternalConnection {
         self.outside[usize::from(pin.port)][usize::from(pin.number)]
     }
 
     /// Changes the pin's connection on the board.
-    pub fn set_outside(&mut self, pin: Pin, outside: Outside) {
+    pub fn connect(&mut self, pin: Pin, outside: ExternalConnection) {
         self.outside[usize::from(pin.port)][usize::from(pin.number)] = outside;
     }
 
@@ -153,10 +153,10 @@ impl PinBank {
             return Some(settings.high);
         }
         match (self.outside(pin), settings.pull) {
-            (Outside::Drives(high), _) => Some(high),
-            (Outside::PullUp, _) | (Outside::Nothing, Pull::Up) => Some(true),
-            (Outside::Nothing, Pull::Down) => Some(false),
-            (Outside::Nothing, Pull::None) => None,
+            (ExternalConnection::Drives(high), _) => Some(high),
+            (ExternalConnection::PullUp, _) | (ExternalConnection::Nothing, Pull::Up) => Some(true),
+            (ExternalConnection::Nothing, Pull::Down) => Some(false),
+            (ExternalConnection::Nothing, Pull::None) => None,
         }
     }
 
@@ -164,7 +164,7 @@ impl PinBank {
     pub fn contested(&self, pin: Pin) -> bool {
         let settings = self.settings(pin);
         settings.mode == PinMode::Output
-            && self.outside(pin) == Outside::Drives(!settings.high)
+            && self.outside(pin) == ExternalConnection::Drives(!settings.high)
             && !(settings.open_drain && settings.high)
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::soc::{
     peripheral::Ctx,
-    pins::{Outside, PinSettings, Pull},
+    pins::{ExternalConnection, PinSettings, Pull},
     signals::{Signal, Stage},
 };
 
@@ -35,9 +35,9 @@ pub fn check(signal: Signal, ctx: &mut Ctx<'_>) -> bool {
 fn stage_misfit(
     stage: Stage,
     pin: PinSettings,
-    outside: Outside,
+    outside: ExternalConnection,
 ) -> Option<(&'static str, &'static str)> {
-    let pulled_up = outside == Outside::PullUp || pin.pull == Pull::Up;
+    let pulled_up = outside == ExternalConnection::PullUp || pin.pull == Pull::Up;
     match stage {
         // A push-pull stage would drive against a device that pulls the line down (RM0090 27.3.2).
         Stage::Shared if !pin.open_drain => Some(("push-pull", "open-drain")),

@@ -6,7 +6,7 @@ use crate::{
     soc::{
         board::{AnalogSource, Board},
         flash_cells::FlashCells,
-        pins::{Outside, Pin, PinBank},
+        pins::{ExternalConnection, Pin, PinBank},
         signals::{Route, Signal, Stage},
     },
     time::{MS, Ps, US},
@@ -209,10 +209,10 @@ impl Board for TestBoard {
 
     fn connect(&self, pins: &mut PinBank) {
         for pin in [('A', 0), ('A', 8), ('C', 9)] {
-            pins.set_outside(Pin::new(pin.0, pin.1), Outside::PullUp);
+            pins.connect(Pin::new(pin.0, pin.1), ExternalConnection::PullUp);
         }
         for pin in [('C', 11), ('D', 0), ('B', 5)] {
-            pins.set_outside(Pin::new(pin.0, pin.1), Outside::Drives(true));
+            pins.connect(Pin::new(pin.0, pin.1), ExternalConnection::Drives(true));
         }
     }
 

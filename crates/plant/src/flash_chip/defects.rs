@@ -33,7 +33,7 @@ impl Defects {
         self.stuck.push(bit);
     }
 
-    pub fn mend_bits(&mut self) {
+    pub fn repair_bits(&mut self) {
         self.stuck.clear();
     }
 

@@ -242,7 +242,10 @@ impl TuningClient {
     }
 
     /// Returns the samples received since the last call and until `deadline`.
-    pub fn hear_samples(&mut self, deadline: Instant) -> Result<Vec<RecordedSample>, TuningError> {
+    pub fn receive_samples(
+        &mut self,
+        deadline: Instant,
+    ) -> Result<Vec<RecordedSample>, TuningError> {
         while let Some(frame) = self.link.receive(deadline)? {
             self.recorded.extend(RecordedSample::decode(&frame));
         }

@@ -39,10 +39,10 @@ struct Args {
     flash: Option<PathBuf>,
     /// CAN1 as a LAWICEL (slcan) adapter on a pseudo-terminal; implies --realtime, and the run is not reproducible.
     #[arg(long, value_enum, value_name = "pty")]
-    can1: Option<CanOutside>,
+    can1: Option<CanConnection>,
     /// CAN2 likewise.
     #[arg(long, value_enum, value_name = "pty")]
-    can2: Option<CanOutside>,
+    can2: Option<CanConnection>,
     /// Start as `probe-rs run` does by default, with reset and hard fault caught; the robot must do all it does without.
     #[arg(long)]
     probe: bool,
@@ -68,7 +68,7 @@ struct Args {
 
 /// Where the frames of a bus go in addition to the simulated robot.
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum CanOutside {
+enum CanConnection {
     /// A pseudo-terminal.
     Pty,
 }

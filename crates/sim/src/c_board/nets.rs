@@ -1,6 +1,6 @@
 //! Resistors and devices that give the chip's pins a level.
 
-use robot_emulator::soc::pins::{Outside, Pin, PinBank};
+use robot_emulator::soc::pins::{ExternalConnection, Pin, PinBank};
 use robot_plant::world::World;
 
 const MAG_DRDY: Pin = Pin::new('G', 3);
@@ -21,10 +21,10 @@ const RESTING_HIGH: [Pin; 3] = [Pin::new('C', 11), Pin::new('D', 0), Pin::new('B
 /// Connects everything that gives a pin its level from power-on.
 pub fn connect(pins: &mut PinBank) {
     for pin in PULLED_UP {
-        pins.set_outside(pin, Outside::PullUp);
+        pins.connect(pin, ExternalConnection::PullUp);
     }
     for pin in RESTING_HIGH {
-        pins.set_outside(pin, Outside::Drives(true));
+        pins.connect(pin, ExternalConnection::Drives(true));
     }
 }
 
@@ -35,11 +35,11 @@ pub fn drives_input(pin: Pin) -> bool {
 
 /// Sets the levels that devices now drive onto the chip's pins.
 pub fn drive_inputs(pins: &mut PinBank, world: &World) {
-    pins.set_outside(MAG_DRDY, Outside::Drives(world.mag_drdy_pin()));
+    pins.connect(MAG_DRDY, ExternalConnection::Drives(world.mag_drdy_pin()));
     let key = if world.user_key_pin() {
-        Outside::PullUp
+        ExternalConnection::PullUp
     } else {
-        Outside::Drives(false)
+        ExternalConnection::Drives(false)
     };
-    pins.set_outside(USER_KEY, key);
+    pins.connect(USER_KEY, key);
 }

@@ -122,7 +122,7 @@ impl Machine {
             Kind::PowerCut => self.switch_power(!active),
             Kind::FlashStuckBits => self.set_worn_words(active),
             Kind::FlashEraseFails => self.set_erases_fail(active),
-            Kind::ProbeInsists => self.insist_on_catches(active),
+            Kind::ProbeInsists => self.keep_catches_set(active),
             Kind::ProbeAttached if active => self.attach_probe(),
             Kind::ProbeBreakpoints if active => self.leave_breakpoints(),
             Kind::ProbeHalts(ms) if active => self.halt_core(ms * MS),

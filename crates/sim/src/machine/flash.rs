@@ -70,7 +70,7 @@ impl Machine {
     pub(super) fn set_worn_words(&mut self, worn: bool) {
         self.with_flash(|flash| {
             if !worn {
-                return flash.mend_bits();
+                return flash.repair_bits();
             }
             for address in parameter_words() {
                 // The stuck bit differs from word to word.

@@ -38,10 +38,10 @@ impl Machine {
     }
 
     /// Simulates a debugger that sets its catch bits again whenever they are cleared.
-    pub(super) fn insist_on_catches(&mut self, insists: bool) {
+    pub(super) fn keep_catches_set(&mut self, insists: bool) {
         let debug = self.cpu.debug();
         debug.attach(0);
-        debug.insist(if insists { CAUGHT_BY_DEFAULT } else { 0 });
+        debug.keep_catches_set(if insists { CAUGHT_BY_DEFAULT } else { 0 });
     }
 
     /// Attaching and detaching halt the core for many SWD transactions.

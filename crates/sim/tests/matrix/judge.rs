@@ -8,7 +8,7 @@ use crate::{
 };
 
 /// The span before an instant that shows the state at that instant.
-const LATELY: Ps = 200 * MS;
+const STATE_WINDOW: Ps = 200 * MS;
 
 /// Differences from the expectation, as text.
 pub fn violations(row: &Row, phase: Phase, seen: &Observed) -> Vec<String> {
@@ -63,7 +63,7 @@ fn waited(name: &str, wires: &[Wire], seen: &Observed) -> Vec<String> {
     };
     let moved = wires
         .iter()
-        .any(|wire| wire.had_torque_in(centred - LATELY, centred));
+        .any(|wire| wire.had_torque_in(centred - STATE_WINDOW, centred));
     if moved {
         vec![format!("{name} do not wait for a centred stick")]
     } else {
@@ -73,7 +73,7 @@ fn waited(name: &str, wires: &[Wire], seen: &Observed) -> Vec<String> {
 
 /// Violations by motors that do not follow their commands at the end of the run.
 fn back(seen: &Observed) -> Vec<String> {
-    let (from, to) = (seen.ended - LATELY, seen.ended);
+    let (from, to) = (seen.ended - STATE_WINDOW, seen.ended);
     let wheels = wheels(seen)
         .iter()
         .all(|wheel| wheel.told_torque_in(from, to));
@@ -121,11 +121,11 @@ fn group(
         (Group::Zero(limit), Some(at)) if at > limit => {
             format!("{name} have no torque after {at:.2} ms only, limit {limit}")
         }
-        (Group::Runs, Some(at)) if seen_to_run && at < ms(end - LATELY) => {
+        (Group::Runs, Some(at)) if seen_to_run && at < ms(end - STATE_WINDOW) => {
             format!("{name} stopped after {at:.2} ms and should not")
         }
         (Group::Runs, _) if !seen.armed_at_fault_end => format!("{name}: disarmed"),
-        (Group::Unreachable, _) if wires.iter().any(|w| w.spoke_in(end - LATELY, end)) => {
+        (Group::Unreachable, _) if wires.iter().any(|w| w.spoke_in(end - STATE_WINDOW, end)) => {
             format!("{name} get frames, and the fault should keep them away")
         }
         _ => return Vec::new(),
@@ -134,7 +134,7 @@ fn group(
 }
 
 fn after(name: &str, moves: bool, moved: impl Fn(Ps, Ps) -> bool, seen: &Observed) -> Vec<String> {
-    let violation = if moves && !moved(seen.ended - LATELY, seen.ended) {
+    let violation = if moves && !moved(seen.ended - STATE_WINDOW, seen.ended) {
         format!("{name} do not come back after the fault")
     } else if !moves && moved(seen.fault_ended, seen.ended) {
         format!("{name} move by themselves after the fault")

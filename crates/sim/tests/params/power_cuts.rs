@@ -22,7 +22,7 @@ const NEXT: (Setting, f32) = ((5, 3), 1.03);
 const FOREIGN: [((u8, u8), u8); 2] = [((16, 2), 1), ((77, 3), 9)];
 const OFF_TIME: Ps = 5 * MS;
 const RUNS: usize = 400;
-const PATIENCE: Ps = 4 * SECOND;
+const TIMEOUT: Ps = 4 * SECOND;
 
 /// The work that the cut interrupts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,7 +103,7 @@ fn do_work(
             robot.run_for(5 * MS);
         }
     }
-    robot.wait(PATIENCE, |robot| {
+    robot.wait(TIMEOUT, |robot| {
         if cut(robot) {
             return true;
         }
@@ -150,7 +150,7 @@ fn run(cell: &Cell) -> Seen {
     let mut seen = Seen::default();
     if robot.machine.resets() == 0
         && robot
-            .wait(PATIENCE, |robot| robot.machine.resets() > 0)
+            .wait(TIMEOUT, |robot| robot.machine.resets() > 0)
             .is_none()
     {
         seen.wrong.push("the power was never cut".into());
@@ -187,7 +187,7 @@ fn next_save(robot: &mut Robot, known: &mut Known, seen: &mut Seen) {
     let (setting, value) = ((5, 6), 0.625);
     let changes = robot.diag("tuning.revision").unwrap_or(0.0) as usize;
     robot.set(setting, value);
-    let saved = robot.wait(PATIENCE, |robot| robot.is_saved(changes + 1));
+    let saved = robot.wait(TIMEOUT, |robot| robot.is_saved(changes + 1));
     if saved.is_none() {
         seen.wrong.push("the next save was never done".into());
     }

@@ -30,7 +30,7 @@ use trial::SensorErrors;
 /// Length of the recording, nearly the whole trial.
 const RECORDED_S: u16 = 24;
 /// In time of the computer, on which the board may run slowly.
-const PATIENCE: RecordTimeouts = RecordTimeouts {
+const TIMEOUT: RecordTimeouts = RecordTimeouts {
     look: Duration::from_millis(50),
     silence: Duration::from_secs(60),
 };
@@ -144,7 +144,7 @@ fn a_recording_of_the_image_corrects_its_sensors() {
     let (before, after) = (directory.join("before"), directory.join("after"));
 
     let recorded = play(&trial, &before, |client| {
-        Ok(recorder::record(client, RECORDED_S, PATIENCE, |_| {})?)
+        Ok(recorder::record(client, RECORDED_S, TIMEOUT, |_| {})?)
     });
     let (imu, field) = recorded.samples.counts();
     assert!(imu >= 199 * u32::from(RECORDED_S), "{imu}");

@@ -14,7 +14,7 @@ use robotctl::{
 use crate::{support, tool::Tool};
 
 /// In time of the computer, on which the board may run slowly.
-const PATIENCE: SaveTimeouts = SaveTimeouts {
+const TIMEOUT: SaveTimeouts = SaveTimeouts {
     pause: Duration::from_millis(2),
     looks: 20_000,
 };
@@ -25,7 +25,7 @@ fn track(client: &mut TuningClient) -> anyhow::Result<f32> {
 }
 
 fn saved(client: &mut TuningClient) -> anyhow::Result<StoreReport> {
-    Ok(tuning::wait_until_saved(client, PATIENCE)?)
+    Ok(tuning::wait_until_saved(client, TIMEOUT)?)
 }
 
 /// One robot, switched off at the end of each run.

@@ -22,7 +22,7 @@ const START: Ps = 200 * MS;
 /// must end long before the run does.
 const LET_THE_TOOL_WORK: Duration = Duration::from_micros(500);
 /// On a busy computer a thread may rest for long.
-const PATIENCE: Timeouts = Timeouts {
+const TIMEOUT: Timeouts = Timeouts {
     each_try: Duration::from_secs(20),
     tries: 2,
 };
@@ -58,7 +58,7 @@ impl<T: Send + 'static> Observer for Tool<T> {
         if let Some(device) = self.device.take_if(|_| at >= START) {
             let work = self.work.take().expect("there is one device");
             self.running = Some(thread::spawn(move || {
-                work(&mut TuningClient::new(device.open()?, PATIENCE))
+                work(&mut TuningClient::new(device.open()?, TIMEOUT))
             }));
         }
         if self.running.as_ref().is_some_and(|r| !r.is_finished()) {

@@ -2,7 +2,7 @@
 
 use super::{startup_gyro_bias::StartupGyroBias, temperature_gate::TemperatureGate};
 use crate::{
-    domain::{CalibrationState, CalibrationStatus, Warmth},
+    domain::{CalibrationState, CalibrationStatus, TemperatureGateState},
     math::Vector3,
     sensing::heater::Heater,
 };
@@ -44,7 +44,7 @@ impl StartupCalibration {
             return;
         }
         self.status.warmth = self.gate.step(sample.temperature_c, heater, sample.ts_us);
-        self.status.state = if self.status.warmth == Warmth::Unsettled {
+        self.status.state = if self.status.warmth == TemperatureGateState::Unsettled {
             self.gyro.restart();
             CalibrationState::WaitingForTemperature
         } else {
@@ -125,7 +125,7 @@ mod tests {
 
         let half_way = bench.run(100, 37.5, 0.0);
         assert_eq!(half_way.state, CalibrationState::Measuring);
-        assert_eq!(half_way.warmth, Warmth::AtTarget);
+        assert_eq!(half_way.warmth, TemperatureGateState::AtTarget);
         assert!((half_way.progress - 0.5).abs() < 0.02);
 
         let done = bench.run(105, 37.5, 0.0);
@@ -182,6 +182,6 @@ mod tests {
         bench.run(210, 40.0, 0.0);
         let after = bench.run(500, 20.0, 90.0);
         assert_eq!(after.state, CalibrationState::Done);
-        assert_eq!(after.warmth, Warmth::AtTarget);
+        assert_eq!(after.warmth, TemperatureGateState::AtTarget);
     }
 }

@@ -1,7 +1,7 @@
 //! Whether the package is as warm as it will get, so that a gyro bias measured now stays valid.
 
 use super::super::heater::{Heater, NEAR_TARGET_K};
-use crate::domain::{HeaterState, Warmth, age_us};
+use crate::domain::{HeaterState, TemperatureGateState, age_us};
 
 /// A heater that has been at a limit for this long cannot reach the target.
 const AT_LIMIT_US: u32 = 15_000_000;
@@ -30,13 +30,18 @@ pub struct TemperatureGate {
 
 impl TemperatureGate {
     /// `temperature_c` and `heater` are those of this sample.
-    pub fn step(&mut self, temperature_c: Option<f32>, heater: &Heater, ts_us: u64) -> Warmth {
+    pub fn step(
+        &mut self,
+        temperature_c: Option<f32>,
+        heater: &Heater,
+        ts_us: u64,
+    ) -> TemperatureGateState {
         let known_us = *self.known_us.get_or_insert(ts_us);
         let Some(celsius) = temperature_c else {
             return if age_us(known_us, ts_us) >= UNKNOWN_AFTER_US {
-                Warmth::Unknown
+                TemperatureGateState::Unknown
             } else {
-                Warmth::Unsettled
+                TemperatureGateState::Unsettled
             };
         };
         self.known_us = Some(ts_us);
@@ -44,17 +49,17 @@ impl TemperatureGate {
         let at_limit = self.is_at_limit(heater, ts_us);
         if heater.status().state == HeaterState::Off {
             return if steady {
-                Warmth::Settled
+                TemperatureGateState::Settled
             } else {
-                Warmth::Unsettled
+                TemperatureGateState::Unsettled
             };
         }
         if (celsius - heater.target_c()).abs() <= NEAR_TARGET_K {
-            Warmth::AtTarget
+            TemperatureGateState::AtTarget
         } else if steady && at_limit {
-            Warmth::Settled
+            TemperatureGateState::Settled
         } else {
-            Warmth::Unsettled
+            TemperatureGateState::Unsettled
         }
     }
 
@@ -83,7 +88,10 @@ mod tests {
     use crate::domain::HeaterConfig;
 
     /// The warmth after each whole second, at 50 Hz. `celsius` gives the temperature at a time in s.
-    fn warmth(config: HeaterConfig, celsius: impl Fn(f32) -> Option<f32>) -> Vec<Warmth> {
+    fn warmth(
+        config: HeaterConfig,
+        celsius: impl Fn(f32) -> Option<f32>,
+    ) -> Vec<TemperatureGateState> {
         let mut gate = TemperatureGate::default();
         let mut heater = Heater::new(config);
         let mut each_second = Vec::new();
@@ -99,7 +107,7 @@ mod tests {
         each_second
     }
 
-    fn first(warmths: &[Warmth], wanted: Warmth) -> Option<usize> {
+    fn first(warmths: &[TemperatureGateState], wanted: TemperatureGateState) -> Option<usize> {
         warmths.iter().position(|warmth| *warmth == wanted)
     }
 
@@ -107,9 +115,9 @@ mod tests {
     #[test]
     fn a_temperature_near_the_target_is_accepted_at_once() {
         let warmths = warmth(HeaterConfig::default(), |t| Some((22.0 + t).min(40.0)));
-        assert_eq!(first(&warmths, Warmth::AtTarget), Some(15));
+        assert_eq!(first(&warmths, TemperatureGateState::AtTarget), Some(15));
         let warm = warmth(HeaterConfig::default(), |_| Some(38.0));
-        assert_eq!(first(&warm, Warmth::AtTarget), Some(0));
+        assert_eq!(first(&warm, TemperatureGateState::AtTarget), Some(0));
     }
 
     /// On USB the heater ends at 34 °C. With a time constant of 4 s from 24 °C, the temperature moves by less than 0.3
@@ -118,15 +126,19 @@ mod tests {
     fn a_heater_that_cannot_reach_the_target_is_accepted_once_steady() {
         let usb = |t: f32| Some(34.0 - 10.0 * (-t / 4.0).exp());
         let warmths = warmth(HeaterConfig::default(), usb);
-        let settled = first(&warmths, Warmth::Settled).unwrap();
+        let settled = first(&warmths, TemperatureGateState::Settled).unwrap();
         assert!((15..=20).contains(&settled), "{settled}");
-        assert_eq!(first(&warmths, Warmth::AtTarget), None);
+        assert_eq!(first(&warmths, TemperatureGateState::AtTarget), None);
     }
 
     #[test]
     fn a_moving_temperature_is_not_accepted() {
         let drifting = warmth(HeaterConfig::default(), |t| Some(10.0 + 0.1 * t));
-        assert!(drifting.iter().all(|warmth| *warmth == Warmth::Unsettled));
+        assert!(
+            drifting
+                .iter()
+                .all(|warmth| *warmth == TemperatureGateState::Unsettled)
+        );
     }
 
     /// 3.5 K below the target the duty is 0.7, and grows by 0.035 a second. It reaches its limit after 9 s; the gate
@@ -134,7 +146,7 @@ mod tests {
     #[test]
     fn a_heater_below_its_limit_is_waited_for() {
         let warmths = warmth(HeaterConfig::default(), |_| Some(36.5));
-        let settled = first(&warmths, Warmth::Settled).unwrap();
+        let settled = first(&warmths, TemperatureGateState::Settled).unwrap();
         assert!((23..=26).contains(&settled), "{settled}");
     }
 
@@ -145,17 +157,25 @@ mod tests {
             ..HeaterConfig::default()
         };
         let warmths = warmth(off, |_| Some(25.0));
-        assert_eq!(first(&warmths, Warmth::Settled), Some(5));
+        assert_eq!(first(&warmths, TemperatureGateState::Settled), Some(5));
     }
 
     #[test]
     fn without_temperature_it_goes_on_after_twenty_seconds() {
         let warmths = warmth(HeaterConfig::default(), |_| None);
-        assert_eq!(first(&warmths, Warmth::Unknown), Some(20));
+        assert_eq!(first(&warmths, TemperatureGateState::Unknown), Some(20));
         let back = warmth(HeaterConfig::default(), |t| (t > 30.0).then_some(22.0));
-        assert_eq!(back[31], Warmth::Unsettled, "it is waited for again");
+        assert_eq!(
+            back[31],
+            TemperatureGateState::Unsettled,
+            "it is waited for again"
+        );
         let lost = warmth(HeaterConfig::default(), |t| (t < 30.0).then_some(22.0));
-        assert_eq!(lost[49], Warmth::Unsettled, "20 s from the last one");
-        assert_eq!(lost[50], Warmth::Unknown);
+        assert_eq!(
+            lost[49],
+            TemperatureGateState::Unsettled,
+            "20 s from the last one"
+        );
+        assert_eq!(lost[50], TemperatureGateState::Unknown);
     }
 }

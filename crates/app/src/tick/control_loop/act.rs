@@ -8,7 +8,7 @@ use crate::{
 };
 
 /// The source of this tick's commands.
-enum Demand<'a> {
+enum CommandSource<'a> {
     /// No motor may move, or no command is fresh and valid.
     Stop,
     /// The logic bus or bring-up, bypassing the controller.
@@ -35,15 +35,15 @@ impl<C: ChassisController> ControlLoop<C> {
             joints: !self.motors.joints_may_move(permit),
         };
         let demand = if stopped.wheels && stopped.joints {
-            Demand::Stop
+            CommandSource::Stop
         } else if let Some(command) = trial {
-            Demand::Direct(command)
+            CommandSource::Direct(command)
         } else {
             self.demand(inputs.logic, now_us)
         };
         let output;
         let wanted = match demand {
-            Demand::Control(hl_cmd) => {
+            CommandSource::Control(hl_cmd) => {
                 output = self.control(inputs, hl_cmd, &stopped);
                 if output.cmd_valid {
                     &output.cmd
@@ -51,11 +51,11 @@ impl<C: ChassisController> ControlLoop<C> {
                     &ChassisCommand::STOP
                 }
             }
-            Demand::Direct(command) => {
+            CommandSource::Direct(command) => {
                 self.controller.reset();
                 command
             }
-            Demand::Stop => {
+            CommandSource::Stop => {
                 self.controller.reset();
                 &ChassisCommand::STOP
             }
@@ -68,15 +68,15 @@ impl<C: ChassisController> ControlLoop<C> {
             .compose(wanted, permit, &self.config, now_us, &mut self.frames);
     }
 
-    fn demand<'a>(&self, logic: &'a LogicBus, now_us: u64) -> Demand<'a> {
+    fn demand<'a>(&self, logic: &'a LogicBus, now_us: u64) -> CommandSource<'a> {
         if age_us(logic.ts_us, now_us) > self.config.safety.command_timeout_us {
-            Demand::Stop
+            CommandSource::Stop
         } else if logic.cmd_valid {
-            Demand::Direct(&logic.cmd)
+            CommandSource::Direct(&logic.cmd)
         } else if logic.hl_valid {
-            Demand::Control(logic.hl_cmd)
+            CommandSource::Control(logic.hl_cmd)
         } else {
-            Demand::Stop
+            CommandSource::Stop
         }
     }
 

@@ -241,7 +241,7 @@ fn stored(engine: &mut Unicorn<'_, State>, done: Result<(), Unmodelled>) {
 }
 
 fn read_peripheral(engine: &mut Unicorn<'_, State>, offset: u64, size: usize) -> u64 {
-    it_state::mend(engine);
+    it_state::clear(engine);
     let addr = (PERIPHERALS.0 + offset) as u32;
     let value = with_soc(engine, |soc, now, memory| {
         soc.read(addr, size as u8, now, memory)
@@ -250,7 +250,7 @@ fn read_peripheral(engine: &mut Unicorn<'_, State>, offset: u64, size: usize) ->
 }
 
 fn write_peripheral(engine: &mut Unicorn<'_, State>, offset: u64, size: usize, value: u64) {
-    it_state::mend(engine);
+    it_state::clear(engine);
     let addr = (PERIPHERALS.0 + offset) as u32;
     let done = with_soc(engine, |soc, now, memory| {
         soc.write(addr, size as u8, value as u32, now, memory)
@@ -259,7 +259,7 @@ fn write_peripheral(engine: &mut Unicorn<'_, State>, offset: u64, size: usize, v
 }
 
 fn load_data_flash(engine: &mut Unicorn<'_, State>, offset: u64, size: usize) -> u64 {
-    it_state::mend(engine);
+    it_state::clear(engine);
     let addr = DATA_FLASH.base + offset as u32;
     let value = with_soc(engine, |soc, now, memory| {
         soc.load_data_flash(addr, size as u8, now, memory)
@@ -268,7 +268,7 @@ fn load_data_flash(engine: &mut Unicorn<'_, State>, offset: u64, size: usize) ->
 }
 
 fn store_data_flash(engine: &mut Unicorn<'_, State>, offset: u64, size: usize, value: u64) {
-    it_state::mend(engine);
+    it_state::clear(engine);
     let addr = DATA_FLASH.base + offset as u32;
     let done = with_soc(engine, |soc, now, memory| {
         soc.store_data_flash(addr, size as u8, value as u32, now, memory)
@@ -277,7 +277,7 @@ fn store_data_flash(engine: &mut Unicorn<'_, State>, offset: u64, size: usize, v
 }
 
 fn read_private(engine: &mut Unicorn<'_, State>, offset: u64, size: usize) -> u64 {
-    it_state::mend(engine);
+    it_state::clear(engine);
     let addr = (PRIVATE_PERIPHERALS.0 + offset) as u32;
     if context::is_unprivileged(engine) {
         return refuse_unprivileged(engine, addr);
@@ -289,7 +289,7 @@ fn read_private(engine: &mut Unicorn<'_, State>, offset: u64, size: usize) -> u6
 }
 
 fn write_private(engine: &mut Unicorn<'_, State>, offset: u64, size: usize, value: u64) {
-    it_state::mend(engine);
+    it_state::clear(engine);
     let addr = (PRIVATE_PERIPHERALS.0 + offset) as u32;
     let system = &engine.get_data().system;
     if !system.may_be_written_unprivileged(addr) && context::is_unprivileged(engine) {

@@ -13,7 +13,7 @@ const IT_STATE: u64 = 0x0600_FC00;
 
 /// Clears the state in the access itself, before any code can be looked up. The rest of the block contains its own
 /// conditions, and a block that ends within an IT block sets the state again at its end.
-pub(super) fn mend(engine: &mut Unicorn<'_, State>) {
+pub(super) fn clear(engine: &mut Unicorn<'_, State>) {
     if let Ok(xpsr) = engine.reg_read(RegisterARM::XPSR)
         && xpsr & IT_STATE != 0
     {

@@ -38,7 +38,7 @@ pub struct Debug {
     enabled: bool,
     demcr: u32,
     /// A probe sets these bits of DEMCR again at once when they are cleared.
-    insisted: u32,
+    kept_catches: u32,
     /// The comparators of the FPB.
     pub breakpoints: Breakpoints,
     counting: bool,
@@ -57,8 +57,8 @@ impl Debug {
     }
 
     /// Sets catch bits that a probe sets again as soon as they are cleared.
-    pub fn insist(&mut self, catches: u32) {
-        self.insisted = catches;
+    pub fn keep_catches_set(&mut self, catches: u32) {
+        self.kept_catches = catches;
         self.demcr |= catches;
     }
 
@@ -134,7 +134,7 @@ impl Debug {
             }
             reg::DWT_LAR => {} // LAR
             reg::FP_CTRL..FPB_END => return self.breakpoints.write(register, value),
-            reg::DEMCR => self.demcr = value & (DEMCR_TRCENA | DEMCR_VC_ALL) | self.insisted,
+            reg::DEMCR => self.demcr = value & (DEMCR_TRCENA | DEMCR_VC_ALL) | self.kept_catches,
             reg::DBGMCU_CR..=reg::DBGMCU_APB2_FZ => {
                 self.dbgmcu[((register - reg::DBGMCU_CR) / 4) as usize] = value
             }

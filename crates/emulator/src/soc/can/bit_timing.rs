@@ -82,7 +82,7 @@ impl BitTiming {
     }
 
     /// The reason why this timing is not recommended, if it is not.
-    pub fn doubt(self) -> Option<String> {
+    pub fn suspicion(self) -> Option<String> {
         let sample = self.sample_permille();
         (!RECOMMENDED_PERMILLE.contains(&sample)).then(|| sample_text(sample))
     }
@@ -109,7 +109,7 @@ mod tests {
         // docs/hardware.md#can-bit-timing: 42 MHz, prescaler 3, 10 + 3 quanta; prescaler 6, 5 + 1 quanta.
         for btr in [0x0029_0002, 0x0004_0005] {
             let timing = BitTiming(btr);
-            assert_eq!(timing.doubt(), None);
+            assert_eq!(timing.suspicion(), None);
             assert_eq!(timing.bits_per_second(42_000_000), 1_000_000);
             assert_eq!(timing.bit(42_000_000), US);
             assert_eq!(timing.misfit(42_000_000), None);
@@ -146,7 +146,7 @@ mod tests {
         ] {
             let timing = timing(ts1, ts2, 1);
             assert_eq!(timing.misfit(42_000_000).is_none(), fits, "{ts1} + {ts2}");
-            assert_eq!(timing.doubt().is_none(), advised, "{ts1} + {ts2}");
+            assert_eq!(timing.suspicion().is_none(), advised, "{ts1} + {ts2}");
         }
     }
 

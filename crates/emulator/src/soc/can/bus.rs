@@ -115,7 +115,7 @@ impl CanBus {
         let timing_misfit = board.timing.misfit(ctx.clocks.pclk1_hz);
         if let Some(why) = board
             .timing
-            .doubt()
+            .suspicion()
             .filter(|_| timing_misfit.is_none() && board.on_bus())
         {
             ctx.errors

@@ -10,7 +10,7 @@ use crate::{
 };
 
 /// Drivers may raise a request shortly before they enable its stream. A longer wait is an error.
-const PATIENCE: Ps = MS;
+const TIMEOUT: Ps = MS;
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Waiting {
@@ -45,7 +45,7 @@ impl Unserved {
                 waiting.since = None;
             } else if !waiting.served_before {
                 let since = *waiting.since.get_or_insert(now);
-                if now - since >= PATIENCE {
+                if now - since >= TIMEOUT {
                     errors.report(now, message(line, dma));
                     waiting.since = Some(now);
                 }

@@ -30,7 +30,8 @@ fn a_caught_hard_fault_halts_before_its_handler() {
 #[test]
 fn catches_do_nothing_while_debugging_is_off() {
     let mut cpu = faulting_board(&LOAD_FROM_NOWHERE);
-    cpu.debug().insist(DEMCR_VC_HARDERR | DEMCR_VC_CORERESET);
+    cpu.debug()
+        .keep_catches_set(DEMCR_VC_HARDERR | DEMCR_VC_CORERESET);
     cpu.reset();
     assert_eq!(run_and_hear(&mut cpu, "debugger"), (vec![3], false));
 }

@@ -1,6 +1,6 @@
 use super::*;
 use crate::{
-    soc::pins::{Outside, Pin, PinMode},
+    soc::pins::{ExternalConnection, Pin, PinMode},
     time::US,
 };
 
@@ -46,7 +46,10 @@ fn an_open_drain_output_pulls_down_and_lets_go() {
     assert_eq!(bench.soc.pins.level(pa5), Some(false));
     bench.write(GPIOA + 0x18, 1 << 5);
     assert_eq!(bench.soc.pins.level(pa5), None);
-    bench.soc.pins.set_outside(pa5, Outside::Drives(false));
+    bench
+        .soc
+        .pins
+        .connect(pa5, ExternalConnection::Drives(false));
     assert_eq!(bench.soc.pins.level(pa5), Some(false));
 }
 
