@@ -3,6 +3,7 @@
 
 mod control;
 mod ends;
+mod mapped_control;
 mod movement;
 mod settings;
 #[cfg(test)]
@@ -11,6 +12,7 @@ mod watch;
 
 pub use control::Control;
 pub use ends::stick;
+pub use mapped_control::MappedControl;
 pub use movement::{Frame, HeldPosition, MoveError, Movement};
-pub use settings::{ENABLE_CHANNEL, MappedControl, differing, write};
+pub use settings::{ENABLE_CHANNEL, differing, write};
 pub use watch::{Watch, WatchError};

@@ -37,9 +37,9 @@ pub struct Module {
 }
 
 impl Module {
-    /// The crate's root.
-    pub fn load(sources: &Sources) -> Self {
-        let tokens = sources.tokens(Path::new("lib.rs"));
+    /// The crate whose root is this file, `lib.rs` or `main.rs`.
+    pub fn load(sources: &Sources, root: &str) -> Self {
+        let tokens = sources.tokens(Path::new(root));
         Self::of(sources, Vec::new(), Path::new(""), tokens)
     }
 

@@ -3,7 +3,7 @@
 use robot_app::domain::RemoteChannel;
 
 use super::{
-    Frame, Movement,
+    Frame, MappedControl, Movement,
     movement::{MoveError, sorted},
 };
 
@@ -38,10 +38,15 @@ pub fn stick(moved: &Movement, frames: &[Frame]) -> Result<RemoteChannel, MoveEr
     Ok(channel(moved, low, centre, high))
 }
 
-/// Returns the settings of a switch, which was at both of its ends.
-pub(super) fn switch(moved: &Movement) -> RemoteChannel {
-    let (low, high) = (moved.from.min(moved.to), moved.from.max(moved.to));
-    channel(moved, low, low.midpoint(high), high)
+impl MappedControl {
+    /// Returns a switch, which was at both of its ends.
+    pub fn switch(moved: &Movement) -> Self {
+        let (low, high) = (moved.from.min(moved.to), moved.from.max(moved.to));
+        Self {
+            control: moved.control,
+            channel: Some(channel(moved, low, low.midpoint(high), high)),
+        }
+    }
 }
 
 fn channel(moved: &Movement, low: u16, centre: u16, high: u16) -> RemoteChannel {
