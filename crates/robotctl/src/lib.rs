@@ -10,6 +10,7 @@
 //! | [`settings`] | names the robot's settings and puts their values into words |
 //! | [`parameter_file`] | reads and writes parameters in TOML |
 //! | [`can_link`] | reaches a CAN bus through an slcan adapter or SocketCAN |
+//! | [`mcap_file`] | writes MCAP files of JSON messages |
 //! | [`tuning`] | reads and changes the robot's settings over CAN, and reads its live values |
 //! | [`status`] | shows live values as words or JSON |
 //! | [`recorder`] | records the robot's samples over CAN into a table |
@@ -18,12 +19,14 @@
 pub mod calibration;
 pub mod can_link;
 pub mod first_board;
+pub mod mcap_file;
 pub mod mounting;
 pub mod parameter_file;
 pub mod radio;
 pub mod recorder;
 pub mod recording;
 pub mod report;
+mod serial_port;
 pub mod settings;
 mod statistics;
 pub mod status;

@@ -13,6 +13,7 @@ use super::{
     CanLink, CanLinkError,
     lawicel::{self, LineParser, Received},
 };
+use crate::serial_port;
 
 /// Speed of the serial port. USB adapters and pseudo-terminals ignore it.
 const LINE_BPS: u32 = 115_200;
@@ -42,16 +43,10 @@ pub(super) struct Slcan {
 impl Slcan {
     /// Opens the adapter's channel at 1 Mbit/s. It closes the channel first, as it may be open.
     pub fn open(name: &str) -> Result<Self, CanLinkError> {
-        let port = serialport::new(name, LINE_BPS)
-            .open()
-            .map_err(|error| CanLinkError::Open {
-                device: name.to_owned(),
-                why: format!(
-                    "{}; {}",
-                    error.to_string().trim_end_matches('.'),
-                    advice(error.kind(), name, &port_names())
-                ),
-            })?;
+        let port = serial_port::open(name, LINE_BPS).map_err(|why| CanLinkError::Open {
+            device: name.to_owned(),
+            why,
+        })?;
         let mut link = Self {
             port,
             parser: LineParser::default(),
@@ -113,26 +108,6 @@ impl Slcan {
     }
 }
 
-fn port_names() -> Vec<String> {
-    let ports = serialport::available_ports().unwrap_or_default();
-    ports.into_iter().map(|port| port.port_name).collect()
-}
-
-/// Says what to do about a port that cannot be opened, given the ports of this computer.
-fn advice(error: serialport::ErrorKind, name: &str, ports: &[String]) -> String {
-    let is_denied = error == serialport::ErrorKind::Io(ErrorKind::PermissionDenied);
-    if is_denied && cfg!(target_os = "linux") {
-        "add yourself to its group, often `sudo usermod -aG dialout $USER`, and log in again"
-            .to_owned()
-    } else if is_denied || ports.iter().any(|port| port.eq_ignore_ascii_case(name)) {
-        "another program may have it open".to_owned()
-    } else if ports.is_empty() {
-        "this computer has no serial port: is the adapter plugged in?".to_owned()
-    } else {
-        format!("serial ports here: {}", ports.join(", "))
-    }
-}
-
 impl CanLink for Slcan {
     fn send(&mut self, frame: &CanFrame) -> Result<(), CanLinkError> {
         Ok(self.port.write_all(lawicel::transmit(frame).as_bytes())?)
@@ -154,23 +129,5 @@ impl Drop for Slcan {
     fn drop(&mut self) {
         // The adapter may be gone; then there is nothing to close.
         let _ = self.port.write_all(CLOSE.as_bytes());
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use serialport::ErrorKind::NoDevice;
-
-    use super::*;
-
-    /// Windows reports a port that is in use as missing.
-    #[test]
-    fn advice_on_a_closed_port_names_the_cause_or_another_port() {
-        let ports = ["COM3".to_owned(), "COM12".to_owned()];
-        let said = advice(NoDevice, "com3", &ports);
-        assert!(said.contains("another program"), "{said}");
-        let said = advice(NoDevice, "COM4", &ports);
-        assert!(said.contains("COM3, COM12"), "{said}");
-        assert!(advice(NoDevice, "COM4", &[]).contains("plugged in"));
     }
 }
