@@ -1,6 +1,6 @@
 //! Frames and characters on the wires between the chip and its board.
 
-pub use robot_wire::{CanFrame, LineFormat, Parity, UartChar};
+pub use robot_wire::{CanFrame, LineEvent, LineFormat, Parity, UartChar};
 
 /// The CAN controller of a bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -9,4 +9,15 @@ pub enum CanPort {
     Can1,
     /// bxCAN 2.
     Can2,
+}
+
+/// A USART that is modelled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum UartPort {
+    /// USART1, on APB2.
+    Usart1,
+    /// USART3, on APB1.
+    Usart3,
+    /// USART6, on APB2.
+    Usart6,
 }

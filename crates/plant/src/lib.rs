@@ -11,6 +11,7 @@ pub mod complaint;
 pub mod flash_chip;
 pub mod mounting;
 pub mod recording;
+pub mod serial_adapter;
 pub mod wire;
 pub mod world;
 

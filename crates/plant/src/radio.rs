@@ -11,7 +11,7 @@ use std::collections::VecDeque;
 use crate::{
     random::{Random, Stream},
     time::Ps,
-    wire::{LineFormat, UartChar},
+    wire::UartChar,
 };
 pub(crate) use faults::RadioFaults;
 use line_noise::LineNoise;
@@ -100,7 +100,7 @@ impl Receiver {
         // A character that was not taken within two periods is dropped, because a line has no memory.
         self.on_the_line
             .retain(|character| character.start + 2 * period > start);
-        let character_time = character_time(format);
+        let character_time = format.char_time();
         let mut characters: Vec<UartChar> = frame
             .into_iter()
             .flatten()
@@ -151,14 +151,4 @@ impl Receiver {
         }
         self.on_the_line.pop_front()
     }
-}
-
-/// Duration of one character: start bit, data, parity and stop bits.
-fn character_time(format: LineFormat) -> Ps {
-    let parity = match format.parity {
-        crate::wire::Parity::None => 0,
-        crate::wire::Parity::Even | crate::wire::Parity::Odd => 1,
-    };
-    let bits = 1 + u64::from(format.data_bits) + parity + u64::from(format.stop_bits);
-    bits * crate::time::SECOND / u64::from(format.baud)
 }

@@ -1,6 +1,6 @@
 //! What crosses a wire between the board and a device: CAN frames, UART characters, chip selects.
 
-pub use robot_wire::{CanFrame, LineFormat, Parity, UartChar};
+pub use robot_wire::{CanFrame, LineEvent, LineFormat, Parity, UartChar};
 
 /// The two dies of the BMI088 behind one SPI bus, each with a chip select of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -21,6 +21,7 @@ use crate::{
     mounting::Mounting,
     radio::Receiver,
     recording::{Playback, TrialError},
+    serial_adapter::SerialAdapter,
     supply::Battery,
     time::Ps,
 };
@@ -125,6 +126,8 @@ pub struct World {
     legs: Legs,
     /// CAN1, CAN2.
     adapters: [CanAdapter; 2],
+    /// Of the PC at the 4-pin UART2.
+    serial_adapter: SerialAdapter,
     tuning_replies: TuningReplies,
     battery: Battery,
     imu: Bmi088,

@@ -15,7 +15,7 @@ use robot_emulator::{
         signals::{Route, Signal},
     },
     time::Ps,
-    wire::{CanFrame, CanPort, UartChar},
+    wire::{CanFrame, CanPort, LineEvent, UartChar, UartPort},
 };
 use robot_plant::{complaint::Severity, flash_chip::FlashChip, world::World};
 
@@ -132,8 +132,19 @@ impl Board for CBoard {
         self.world.i2c_bus_held()
     }
 
-    fn usart3_character(&mut self, now: Ps) -> Option<UartChar> {
-        self.world.radio_char(now)
+    /// Nothing is plugged into the 3-pin UART1, which is USART6.
+    fn uart_event(&mut self, port: UartPort, now: Ps) -> Option<LineEvent> {
+        match port {
+            UartPort::Usart1 => self.world.link_event(now),
+            UartPort::Usart3 => self.world.radio_char(now).map(LineEvent::Character),
+            UartPort::Usart6 => None,
+        }
+    }
+
+    fn uart_sent(&mut self, port: UartPort, character: UartChar, now: Ps) {
+        if port == UartPort::Usart1 {
+            self.world.link_sent(character, now);
+        }
     }
 
     fn can_nodes(&self, port: CanPort) -> usize {

@@ -9,4 +9,4 @@ pub mod time;
 mod uart;
 
 pub use can::CanFrame;
-pub use uart::{LineFormat, Parity, UartChar};
+pub use uart::{LineEvent, LineFormat, Parity, UartChar};

@@ -84,7 +84,12 @@ impl Default for Blocks {
 
 impl Blocks {
     /// Blocks with an input from the board that may change by itself.
-    pub const WATCHING_THE_BOARD: [Block; 2] = [Block::Usart(3), Block::Can];
+    pub const WATCHING_THE_BOARD: [Block; 4] = [
+        Block::Usart(1),
+        Block::Usart(3),
+        Block::Usart(6),
+        Block::Can,
+    ];
 
     pub fn get(&mut self, block: Block) -> &mut dyn Peripheral {
         match block {

@@ -11,7 +11,7 @@ use crate::{
         wave::Wave,
     },
     time::Ps,
-    wire::{CanFrame, CanPort, UartChar},
+    wire::{CanFrame, CanPort, LineEvent, UartChar, UartPort},
 };
 
 /// A board with the chip on it. Every default is that of a pin or bus to which nothing is connected.
@@ -93,10 +93,13 @@ pub trait Board: Any {
         false
     }
 
-    /// The next character on the line into USART3 whose start bit falls at or before `now`.
-    fn usart3_character(&mut self, _now: Ps) -> Option<UartChar> {
+    /// What happens next on the line into a USART, if it begins at or before `now`.
+    fn uart_event(&mut self, _port: UartPort, _now: Ps) -> Option<LineEvent> {
         None
     }
+
+    /// A character left the chip: its last stop bit ends `now`.
+    fn uart_sent(&mut self, _port: UartPort, _character: UartChar, _now: Ps) {}
 
     /// Number of nodes on the bus besides the chip. They are numbered from 0.
     fn can_nodes(&self, _port: CanPort) -> usize {

@@ -292,7 +292,7 @@ impl Soc {
                 blocks.inputs_changed(&mut ctx);
                 self.board.file_errors(&mut self.errors, now);
             }
-            Block::Spi1 => self.board.file_errors(&mut self.errors, now),
+            Block::Spi1 | Block::Usart(_) => self.board.file_errors(&mut self.errors, now),
             Block::Exti => {
                 let (blocks, mut ctx) = split!(self, now);
                 blocks.exti_lines_changed(&mut ctx);

@@ -17,10 +17,14 @@ pub enum Signal {
     I2c3Sda,
     /// USART1 transmit data.
     Usart1Tx,
+    /// USART1 receive data.
+    Usart1Rx,
     /// USART3 receive data.
     Usart3Rx,
     /// USART6 transmit data.
     Usart6Tx,
+    /// USART6 receive data.
+    Usart6Rx,
     /// CAN1 transmit data.
     Can1Tx,
     /// CAN1 receive data.
@@ -43,8 +47,10 @@ impl Signal {
             Self::I2c3Scl => "I2C3_SCL",
             Self::I2c3Sda => "I2C3_SDA",
             Self::Usart1Tx => "USART1_TX",
+            Self::Usart1Rx => "USART1_RX",
             Self::Usart3Rx => "USART3_RX",
             Self::Usart6Tx => "USART6_TX",
+            Self::Usart6Rx => "USART6_RX",
             Self::Can1Tx => "CAN1_TX",
             Self::Can1Rx => "CAN1_RX",
             Self::Can2Tx => "CAN2_TX",
@@ -58,8 +64,8 @@ impl Signal {
         match self {
             Self::I2c3Scl | Self::I2c3Sda => PinMode::Alternate(4),
             Self::Spi1Sck | Self::Spi1Miso | Self::Spi1Mosi => PinMode::Alternate(5),
-            Self::Usart1Tx | Self::Usart3Rx => PinMode::Alternate(7),
-            Self::Usart6Tx => PinMode::Alternate(8),
+            Self::Usart1Tx | Self::Usart1Rx | Self::Usart3Rx => PinMode::Alternate(7),
+            Self::Usart6Tx | Self::Usart6Rx => PinMode::Alternate(8),
             Self::Can1Tx | Self::Can1Rx | Self::Can2Tx | Self::Can2Rx => PinMode::Alternate(9),
             Self::Adc3In8 => PinMode::Analog,
         }

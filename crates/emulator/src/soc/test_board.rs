@@ -10,7 +10,7 @@ use crate::{
         signals::{Route, Signal, Stage},
     },
     time::{MS, Ps, US},
-    wire::{CanFrame, CanPort, LineFormat, Parity, UartChar},
+    wire::{CanFrame, CanPort, LineEvent, LineFormat, Parity, UartChar, UartPort},
 };
 
 /// Sectors 1–3. The contents of torn words and sectors follow from a seed.
@@ -143,6 +143,8 @@ pub struct TestBoard {
     pub i2c_held: bool,
     i2c_register: Option<u8>,
     characters_sent: u64,
+    /// What the chip's USARTs have sent, with the end of each character.
+    pub sent: Vec<(UartPort, UartChar, Ps)>,
     pub can: [CanNodes; 2],
     /// Voltage at ADC3_IN8.
     pub analog_v: f64,
@@ -163,6 +165,7 @@ impl Default for TestBoard {
             i2c_held: false,
             i2c_register: None,
             characters_sent: 0,
+            sent: Vec::new(),
             can: [senders, CanNodes::default()],
             analog_v: 2.4,
             vdda_v: 3.3,
@@ -233,7 +236,9 @@ impl Board for TestBoard {
             Signal::Can2Tx => (Pin::new('B', 6), Stage::Fast),
             Signal::Can2Rx => (Pin::new('B', 5), Stage::None),
             Signal::Adc3In8 => (Pin::new('F', 10), Stage::None),
-            Signal::Usart1Tx | Signal::Usart6Tx => return None,
+            Signal::Usart1Tx => (Pin::new('A', 9), Stage::Slow),
+            Signal::Usart1Rx => (Pin::new('B', 7), Stage::None),
+            Signal::Usart6Tx | Signal::Usart6Rx => return None,
         };
         Some(Route {
             pin,
@@ -288,7 +293,10 @@ impl Board for TestBoard {
         self.i2c_held
     }
 
-    fn usart3_character(&mut self, now: Ps) -> Option<UartChar> {
+    fn uart_event(&mut self, port: UartPort, now: Ps) -> Option<LineEvent> {
+        if port != UartPort::Usart3 {
+            return None;
+        }
         let (burst, number) = (self.characters_sent / BURST, self.characters_sent % BURST);
         let start = FIRST_BURST + burst * BURST_PERIOD + number * CHARACTER;
         if start > now {
@@ -300,11 +308,15 @@ impl Board for TestBoard {
             24 => 0,
             _ => 0x40 + number as u8,
         };
-        Some(UartChar {
+        Some(LineEvent::Character(UartChar {
             start,
             byte,
             format: SENDER,
-        })
+        }))
+    }
+
+    fn uart_sent(&mut self, port: UartPort, character: UartChar, now: Ps) {
+        self.sent.push((port, character, now));
     }
 
     fn can_nodes(&self, port: CanPort) -> usize {

@@ -12,10 +12,11 @@ use crate::{
         scheduler::Target,
         signals::Signal,
     },
-    time::Ps,
-    wire::{Parity, UartChar},
+    time::{MS, Ps},
+    wire::{LineEvent, Parity, UartChar, UartPort},
 };
 
+mod mismatch;
 mod receiver;
 mod registers;
 mod waveform;
@@ -26,6 +27,19 @@ use registers::{cr1, cr3, reg, sr};
 const RECEIVED: u32 = 0;
 const IDLE: u32 = 1;
 const SENT: u32 = 2;
+const LISTENING: u32 = 3;
+
+/// Drivers may enable the receiver shortly before they set its pin up.
+const PIN_DUE: Ps = MS;
+
+/// A character on its way out.
+#[derive(Clone, Copy, Debug)]
+struct Sending {
+    character: UartChar,
+    ends_at: Ps,
+    /// Its pin carries it.
+    heard: bool,
+}
 
 /// One USART.
 #[derive(Debug)]
@@ -42,9 +56,10 @@ pub struct Usart {
     receiver: Receiver,
     received_at: Option<Ps>,
     idle_at: Option<Ps>,
-    /// A character waits in the transmit data register.
-    waiting_to_send: bool,
-    sent_at: Option<Ps>,
+    /// The character in the transmit data register.
+    waiting_to_send: Option<u16>,
+    /// The character in the transmit shift register.
+    sending: Option<Sending>,
 }
 
 impl Usart {
@@ -62,8 +77,8 @@ impl Usart {
             receiver: Receiver::default(),
             received_at: None,
             idle_at: None,
-            waiting_to_send: false,
-            sent_at: None,
+            waiting_to_send: None,
+            sending: None,
         }
     }
 
@@ -80,6 +95,22 @@ impl Usart {
             1 => (DmaRequest::Usart1Rx, DmaRequest::Usart1Tx),
             3 => (DmaRequest::Usart3Rx, DmaRequest::Usart3Tx),
             _ => (DmaRequest::Usart6Rx, DmaRequest::Usart6Tx),
+        }
+    }
+
+    fn port(&self) -> UartPort {
+        match self.number {
+            1 => UartPort::Usart1,
+            3 => UartPort::Usart3,
+            _ => UartPort::Usart6,
+        }
+    }
+
+    fn rx_signal(&self) -> Signal {
+        match self.number {
+            1 => Signal::Usart1Rx,
+            3 => Signal::Usart3Rx,
+            _ => Signal::Usart6Rx,
         }
     }
 
@@ -162,64 +193,64 @@ impl Usart {
                 self.dr = got.data;
                 self.sr |= sr::RXNE;
             }
-            self.report_mismatch(
-                &framing,
-                got.framing_error || got.parity_error || got.noise,
-                ctx,
-            );
+            if let Some(sent) = self.receiver.last_character() {
+                mismatch::report(self.number, sent.format, &framing, &got, ctx);
+            }
             self.plan_idle(start + 2 * framing.char_time(), ctx);
         }
         self.plan_reception(ctx);
     }
 
-    /// Reports the sender's format if the receiver is set to another one.
-    fn report_mismatch(&mut self, framing: &Framing, flagged: bool, ctx: &mut Ctx<'_>) {
-        let Some(sent) = self.receiver.last_char() else {
-            return;
-        };
-        let baud = (crate::time::SECOND + framing.bit / 2) / framing.bit;
-        let data_bits = framing.word_bits - u8::from(framing.parity != Parity::None);
-        let same_word = data_bits == sent.format.data_bits && framing.parity == sent.format.parity;
-        let off_by = baud.abs_diff(u64::from(sent.format.baud)) * 100;
-        let wrong_rate = off_by > 3 * u64::from(sent.format.baud);
-        // With equal settings an error flag is noise on the line, not a wrong setting.
-        if !wrong_rate && (same_word || !flagged) {
-            return;
-        }
-        let effect = if flagged {
-            "framing, parity or noise errors"
-        } else {
-            "wrong data"
-        };
-        let stop = if framing.two_stop_bits { 2 } else { 1 };
-        let message = format!(
-            "USART{}: sender sends {} {}{}{}, receiver is set to {baud} {data_bits}{}{stop}: {effect}",
-            self.number,
-            sent.format.baud,
-            sent.format.data_bits,
-            parity_letter(sent.format.parity),
-            sent.format.stop_bits,
-            parity_letter(framing.parity),
-        );
-        ctx.errors.report(ctx.now, message);
-    }
-
     fn start_sending(&mut self, ctx: &mut Ctx<'_>) {
         let on = cr1::UE | cr1::TE;
-        if !self.waiting_to_send || self.sent_at.is_some() || self.cr1 & on != on {
+        if self.sending.is_some() || self.cr1 & on != on {
             return;
         }
         let Some(framing) = self.framing(ctx) else {
             return;
         };
-        if let Some(signal) = self.tx_signal() {
-            routing::check(signal, ctx);
-        }
-        self.waiting_to_send = false;
+        let Some(data) = self.waiting_to_send.take() else {
+            return;
+        };
         self.sr |= sr::TXE;
-        let at = ctx.now + framing.char_time();
-        self.sent_at = Some(at);
-        ctx.scheduler.at(at, Target::Usart(self.number), SENT);
+        let character = UartChar {
+            start: ctx.now,
+            byte: data as u8,
+            format: framing.format(),
+        };
+        let sending = Sending {
+            character,
+            ends_at: ctx.now + framing.char_time(),
+            heard: self
+                .tx_signal()
+                .is_some_and(|signal| routing::check(signal, ctx)),
+        };
+        self.sending = Some(sending);
+        ctx.scheduler
+            .at(sending.ends_at, Target::Usart(self.number), SENT);
+    }
+
+    fn character_sent(&mut self, sent: Sending, ctx: &mut Ctx<'_>) {
+        self.sending = None;
+        if sent.heard {
+            ctx.board.uart_sent(self.port(), sent.character, ctx.now);
+        }
+        self.start_sending(ctx);
+        if self.sending.is_none() {
+            self.sr |= sr::TC;
+        }
+    }
+
+    /// Clearing TE corrupts the character that is being sent (RM0090 30.3.2).
+    fn stop_sending(&mut self, ctx: &mut Ctx<'_>) {
+        if self.sending.take().is_some() {
+            let message = format!(
+                "USART{}: TE cleared while a character is sent: it is lost",
+                self.number
+            );
+            ctx.errors.report(ctx.now, message);
+            self.sr |= sr::TC;
+        }
     }
 
     fn read_dr(&mut self) -> u16 {
@@ -228,8 +259,8 @@ impl Usart {
         self.dr
     }
 
-    fn write_dr(&mut self, ctx: &mut Ctx<'_>) {
-        if self.waiting_to_send {
+    fn write_dr(&mut self, data: u16, ctx: &mut Ctx<'_>) {
+        if self.waiting_to_send.is_some() {
             let message = format!(
                 "USART{}: DR written while TXE is 0: the character waiting there is lost",
                 self.number
@@ -238,7 +269,7 @@ impl Usart {
         }
         self.sr &= !(sr::TXE | self.shown & sr::TC);
         self.shown &= !sr::TC;
-        self.waiting_to_send = true;
+        self.waiting_to_send = Some(data);
         self.start_sending(ctx);
     }
 
@@ -251,6 +282,8 @@ impl Usart {
             self.received_at = None;
         }
         if !was_receiving && self.receiving() {
+            let by = ctx.now + PIN_DUE;
+            ctx.scheduler.at(by, Target::Usart(self.number), LISTENING);
             // From here on the enabled receiver times the idle line.
             if let Some(framing) = self.framing(ctx) {
                 self.plan_idle(ctx.now + framing.char_time(), ctx);
@@ -258,6 +291,9 @@ impl Usart {
         }
         if !self.receiving() {
             self.idle_at = None;
+        }
+        if was & !value & cr1::TE != 0 {
+            self.stop_sending(ctx);
         }
         self.start_sending(ctx);
     }
@@ -280,14 +316,6 @@ impl Usart {
             tx,
             on && wants(cr1::TE) && self.cr3 & cr3::DMAT != 0 && has(sr::TXE),
         );
-    }
-}
-
-fn parity_letter(parity: Parity) -> char {
-    match parity {
-        Parity::None => 'N',
-        Parity::Even => 'E',
-        Parity::Odd => 'O',
     }
 }
 
@@ -324,7 +352,7 @@ impl Peripheral for Usart {
         match access.register {
             // Only RXNE and TC can be cleared by writing 0.
             reg::SR => self.sr &= over(u32::MAX) | !(sr::RXNE | sr::TC),
-            reg::DR => self.write_dr(ctx),
+            reg::DR => self.write_dr(over(0) as u16, ctx),
             reg::BRR => {
                 self.brr = over(self.brr) & 0xFFFF;
                 self.received_at = None;
@@ -344,16 +372,11 @@ impl Peripheral for Usart {
         let due = |at: Option<Ps>| at.is_some_and(|at| at <= ctx.now);
         match tag {
             RECEIVED if due(self.received_at) => self.character_ended(ctx),
-            IDLE if due(self.idle_at) => {
-                self.idle_at = None;
-                self.sr |= sr::IDLE;
-            }
-            SENT if due(self.sent_at) => {
-                self.sent_at = None;
-                if self.waiting_to_send {
-                    self.start_sending(ctx);
-                } else {
-                    self.sr |= sr::TC;
+            IDLE if due(self.idle_at) => self.line_idles(ctx),
+            LISTENING if self.receiving() => self.check_input(ctx),
+            SENT => {
+                if let Some(sent) = self.sending.filter(|s| s.ends_at <= ctx.now) {
+                    self.character_sent(sent, ctx);
                 }
             }
             _ => {}
@@ -370,25 +393,58 @@ impl Peripheral for Usart {
     fn clocks_changed(&mut self, ctx: &mut Ctx<'_>) {
         self.received_at = None;
         self.receiver.restart(ctx.now);
+        self.plan_reception(ctx);
     }
 
     fn board_advanced(&mut self, ctx: &mut Ctx<'_>) {
-        // Only USART3 is connected to a line.
-        if self.number != 3 {
-            return;
+        let mut anything = false;
+        while let Some(event) = ctx.board.uart_event(self.port(), ctx.now) {
+            self.line_event(event, ctx);
+            anything = true;
         }
-        while let Some(c) = ctx.board.usart3_character(ctx.now) {
-            self.line_character(c, ctx);
+        if anything {
+            self.plan_reception(ctx);
         }
-        self.plan_reception(ctx);
-        self.update_lines(ctx);
     }
 }
 
 impl Usart {
-    fn line_character(&mut self, c: UartChar, ctx: &mut Ctx<'_>) {
-        if self.receiving() && routing::check(Signal::Usart3Rx, ctx) {
-            self.receiver.push(c);
+    fn line_event(&mut self, event: LineEvent, ctx: &mut Ctx<'_>) {
+        if self.receiving() && routing::check(self.rx_signal(), ctx) {
+            self.receiver.push(event);
+        }
+    }
+
+    /// The line has been high for a character's time, unless a device still holds it low or has just released it.
+    fn line_idles(&mut self, ctx: &mut Ctx<'_>) {
+        self.idle_at = None;
+        let Some(framing) = self.framing(ctx) else {
+            return;
+        };
+        match self.receiver.released_at(ctx.now) {
+            Some(released) if released + framing.char_time() > ctx.now => {
+                self.plan_idle(released + framing.char_time(), ctx);
+            }
+            _ => self.sr |= sr::IDLE,
+        }
+    }
+
+    /// The receiver has been on for some time, whether or not anything was sent to it.
+    fn check_input(&self, ctx: &mut Ctx<'_>) {
+        let signal = self.rx_signal();
+        if !routing::check(signal, ctx) {
+            return;
+        }
+        let Some(route) = ctx.board.route(signal) else {
+            return;
+        };
+        if ctx.pins.level(route.pin).is_none() {
+            let message = format!(
+                "{}: {} floats while nothing is plugged in, needs a pull-up: noise is received",
+                signal.name(),
+                route.pin
+            );
+            ctx.errors.suspect(ctx.now, message);
         }
     }
 }

@@ -21,13 +21,17 @@ const EARTH_FIELD_UT: [f64; 3] = [0.0, 22.0, -42.0];
 pub(super) const SHAFT_SIGN: [f64; 2] = [1.0, -1.0];
 
 impl World {
-    /// The next instant at which the board could notice something: a character on the radio line, a motor's frame, or the
+    /// The next instant at which the board could notice something: a character on the line of radio or PC, a motor's frame, or the
     /// end of a magnetometer conversion. The mechanics before it need no call of [`advance`](Self::advance).
     pub fn next_event(&self) -> Ps {
         let [left, right] = &self.escs;
         let mut next = left.next_feedback().min(right.next_feedback());
         next = next.min(self.radio.next_event(self.now));
         next = next.min(self.mag.next_event());
+        match self.serial_adapter.next_start() {
+            at if at > self.now => next = next.min(at),
+            _ => {}
+        }
         for joint in &self.joints {
             match joint.reply_at() {
                 Some(at) if at > self.now => next = next.min(at),

@@ -4,8 +4,9 @@ use super::World;
 use crate::{
     complaint::Complaint,
     faults::Fault,
+    serial_adapter::{LINK_FORMAT, SerialAdapter},
     time::Ps,
-    wire::{SpiSelect, UartChar},
+    wire::{LineEvent, SpiSelect, UartChar},
 };
 
 /// SPI1: BMI088.
@@ -129,5 +130,38 @@ impl World {
     pub fn radio_char(&mut self, now: Ps) -> Option<UartChar> {
         self.advance(now);
         self.radio.take(now)
+    }
+}
+
+/// USART1: the PC.
+impl World {
+    /// The serial adapter of the PC at the 4-pin UART2.
+    pub fn serial_adapter(&mut self) -> &mut SerialAdapter {
+        &mut self.serial_adapter
+    }
+
+    /// Level that the PC's adapter drives onto USART1 RX (PB7) while it sends nothing; `None` while none is plugged in.
+    pub fn link_rx_pin(&self) -> Option<bool> {
+        self.serial_adapter.plugged().then_some(true)
+    }
+
+    /// What happens next on the line into USART1 RX (PB7), if it begins at or before `now`.
+    pub fn link_event(&mut self, now: Ps) -> Option<LineEvent> {
+        self.advance(now);
+        let character = self.serial_adapter.next_character(now)?;
+        Some(LineEvent::Character(character))
+    }
+
+    /// The board sent a character on USART1 TX (PA9), whose last stop bit ends `now`. A character that no PC can read is
+    /// complained of even while none is plugged in.
+    pub fn link_sent(&mut self, character: UartChar, now: Ps) {
+        self.advance(now);
+        if !LINK_FORMAT.understands(character.format) {
+            self.complaints.push(Complaint::fails(format!(
+                "USART1 sends {}, the PC listens at {LINK_FORMAT}: it hears garbage",
+                character.format
+            )));
+        }
+        self.serial_adapter.receive(character, now);
     }
 }

@@ -13,6 +13,7 @@ use crate::{
     radio::Receiver,
     random::{Random, Stream},
     recording::Playback,
+    serial_adapter::SerialAdapter,
     supply::Battery,
 };
 
@@ -44,6 +45,7 @@ impl World {
             joints_reported: Default::default(),
             legs: Legs::default(),
             adapters: Default::default(),
+            serial_adapter: SerialAdapter::default(),
             tuning_replies: TuningReplies::default(),
             battery: Battery::default(),
             imu: Bmi088::new(seed, source, config.imu_temperature_c),

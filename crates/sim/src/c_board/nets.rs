@@ -5,6 +5,8 @@ use robot_plant::world::World;
 
 const MAG_DRDY: Pin = Pin::new('G', 3);
 const USER_KEY: Pin = Pin::new('A', 0);
+/// RXD of the 4-pin UART2, which has no pull-up.
+const LINK_RX: Pin = Pin::new('B', 7);
 
 /// I2C3 (4.7 kΩ), the key (10 kΩ), and both lines of the 3-pin UART (4.7 kΩ).
 const PULLED_UP: [Pin; 5] = [
@@ -30,7 +32,7 @@ pub fn connect(pins: &mut PinBank) {
 
 /// Whether a device of the model drives the pin. The BMI088's interrupt pins (PC4, PC5) are not modelled.
 pub fn drives_input(pin: Pin) -> bool {
-    matches!(pin, MAG_DRDY | USER_KEY)
+    matches!(pin, MAG_DRDY | USER_KEY | LINK_RX)
 }
 
 /// Sets the levels that devices now drive onto the chip's pins.
@@ -42,4 +44,8 @@ pub fn drive_inputs(pins: &mut PinBank, world: &World) {
         ExternalConnection::Drives(false)
     };
     pins.connect(USER_KEY, key);
+    let link = world
+        .link_rx_pin()
+        .map_or(ExternalConnection::Nothing, ExternalConnection::Drives);
+    pins.connect(LINK_RX, link);
 }

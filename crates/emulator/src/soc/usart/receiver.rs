@@ -1,8 +1,8 @@
 //! The receive half: oversampling of the line, as RM0090 30.3.3 describes it.
 
 use crate::{
-    time::Ps,
-    wire::{Parity, UartChar},
+    time::{Ps, SECOND},
+    wire::{LineEvent, LineFormat, Parity, UartChar},
 };
 
 use super::waveform::Waveform;
@@ -22,6 +22,16 @@ pub struct Framing {
 }
 
 impl Framing {
+    /// The format of the line, as a device at its other end must be set.
+    pub fn format(&self) -> LineFormat {
+        LineFormat {
+            baud: ((SECOND + self.bit / 2) / self.bit) as u32,
+            data_bits: self.word_bits - u8::from(self.parity != Parity::None),
+            parity: self.parity,
+            stop_bits: if self.two_stop_bits { 2 } else { 1 },
+        }
+    }
+
     /// Duration of a character from the start bit to the end of the stop bits.
     pub fn char_time(&self) -> Ps {
         self.bit * (1 + Ps::from(self.word_bits) + if self.two_stop_bits { 2 } else { 1 })
@@ -62,7 +72,7 @@ pub struct Received {
 #[derive(Debug, Default)]
 pub struct Receiver {
     line: Waveform,
-    last_char: Option<UartChar>,
+    last_character: Option<UartChar>,
     /// Start edge of the character being received.
     start: Option<Ps>,
     /// Start edges before this time no longer count.
@@ -70,14 +80,21 @@ pub struct Receiver {
 }
 
 impl Receiver {
-    pub fn push(&mut self, c: UartChar) {
-        self.line.push(c);
-        self.last_char = Some(c);
+    pub fn push(&mut self, event: LineEvent) {
+        self.line.push(event);
+        if let LineEvent::Character(character) = event {
+            self.last_character = Some(character);
+        }
     }
 
     /// The sender's last character, for the error message.
-    pub fn last_char(&self) -> Option<UartChar> {
-        self.last_char
+    pub fn last_character(&self) -> Option<UartChar> {
+        self.last_character
+    }
+
+    /// When the line that a device holds or held low before `now` is released; `None` if no such time is known any more.
+    pub fn released_at(&self, now: Ps) -> Option<Ps> {
+        self.line.released_at(now)
     }
 
     /// Drops what was being received; edges before `now` no longer count.
@@ -140,7 +157,7 @@ impl Receiver {
 
 #[cfg(test)]
 mod tests {
-    use crate::{time::US, wire::LineFormat};
+    use crate::time::US;
 
     use super::*;
 
@@ -167,11 +184,11 @@ mod tests {
 
     fn receive(byte: u8, framing: Framing) -> (Ps, Received) {
         let mut receiver = Receiver::default();
-        receiver.push(UartChar {
+        receiver.push(LineEvent::Character(UartChar {
             start: 50 * US,
             byte,
             format: SBUS,
-        });
+        }));
         let at = receiver.completes_at(&framing).expect("a start edge");
         (at, receiver.finish(&framing).expect("a character").1)
     }

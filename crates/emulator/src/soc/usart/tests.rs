@@ -4,7 +4,7 @@ use super::Usart;
 use crate::{
     soc::{dma_request::DmaRequest, peripheral::Peripheral, test_bench::Bench},
     time::{MS, Ps, US},
-    wire::{LineFormat, Parity, UartChar},
+    wire::{LineEvent, LineFormat, Parity, UartChar},
 };
 
 const SR: u32 = 0x00;
@@ -44,7 +44,7 @@ fn send(bench: &mut Bench, usart: &mut Usart, start: Ps, byte: u8) {
         byte,
         format: SBUS,
     };
-    usart.line_character(character, &mut bench.ctx());
+    usart.line_event(LineEvent::Character(character), &mut bench.ctx());
     usart.plan_reception(&mut bench.ctx());
 }
 

@@ -1,67 +1,105 @@
-//! The level of a UART line over time, reconstructed from the characters sent on it.
+//! The level of a UART line over time, reconstructed from what happens on it.
 
 use std::collections::VecDeque;
 
 use crate::{
     time::{Ps, SECOND},
-    wire::{Parity, UartChar},
+    wire::{LineEvent, Parity, UartChar},
 };
 
-/// The last characters on one line; idle (high) outside them.
+/// What happened last on one line, in the order of the start times; idle (high) outside of it.
 #[derive(Debug, Default)]
 pub struct Waveform {
-    chars: VecDeque<UartChar>,
+    events: VecDeque<LineEvent>,
 }
 
 impl Waveform {
-    pub fn push(&mut self, c: UartChar) {
-        self.chars.push_back(c);
+    pub fn push(&mut self, event: LineEvent) {
+        self.events.push_back(event);
     }
 
     /// Drops what ended at or before `now`.
     pub fn forget_before(&mut self, now: Ps) {
-        while self.chars.front().is_some_and(|c| end(c) <= now) {
-            self.chars.pop_front();
+        while self.events.front().is_some_and(|event| end(event) <= now) {
+            self.events.pop_front();
         }
     }
 
     pub fn is_high(&self, at: Ps) -> bool {
-        self.chars.iter().all(|c| level(c, at))
+        self.started(at).all(|event| level(event, at))
     }
 
-    /// The first change from high to low at or after `from`, among the characters known.
+    /// The first change from high to low at or after `from`, as far as the line is known.
     pub fn falling_edge_from(&self, from: Ps) -> Option<Ps> {
-        self.chars
+        self.events
             .iter()
-            .flat_map(|c| (0..bits(c)).map(|bit| edge(c, bit)))
+            .flat_map(|event| (0..edges(event)).map(|index| edge(event, index)))
             .find(|&at| at >= from && !self.is_high(at) && self.is_high(at.wrapping_sub(1)))
+    }
+
+    /// The end of the last hold that began before `now`.
+    pub fn released_at(&self, now: Ps) -> Option<Ps> {
+        let ends = self.started(now).filter_map(|event| match event {
+            LineEvent::Low { until, .. } => Some(*until),
+            LineEvent::Character(_) => None,
+        });
+        ends.max()
+    }
+
+    fn started(&self, at: Ps) -> impl Iterator<Item = &LineEvent> {
+        self.events
+            .iter()
+            .take_while(move |event| event.start() <= at)
     }
 }
 
-/// Bits of the character on the line, start and stop bits included.
-fn bits(c: &UartChar) -> u32 {
-    let parity = u32::from(c.format.parity != Parity::None);
-    1 + u32::from(c.format.data_bits) + parity + u32::from(c.format.stop_bits)
+/// Instants at which the level may fall.
+fn edges(event: &LineEvent) -> u32 {
+    match event {
+        LineEvent::Character(character) => character.format.bits(),
+        LineEvent::Low { .. } => 1,
+    }
+}
+
+fn edge(event: &LineEvent, index: u32) -> Ps {
+    match event {
+        LineEvent::Character(character) => bit_start(character, index),
+        LineEvent::Low { from, .. } => *from,
+    }
+}
+
+fn end(event: &LineEvent) -> Ps {
+    match event {
+        LineEvent::Character(character) => bit_start(character, character.format.bits()),
+        LineEvent::Low { until, .. } => *until,
+    }
 }
 
 /// Start time of bit `index`, counted from the start bit.
-fn edge(c: &UartChar, index: u32) -> Ps {
+fn bit_start(c: &UartChar, index: u32) -> Ps {
     c.start + (u128::from(index) * u128::from(SECOND) / u128::from(c.format.baud)) as Ps
 }
 
-fn end(c: &UartChar) -> Ps {
-    edge(c, bits(c))
-}
-
-fn level(c: &UartChar, at: Ps) -> bool {
-    if at < c.start || at >= end(c) {
+fn level(event: &LineEvent, at: Ps) -> bool {
+    if at < event.start() || at >= end(event) {
         return true;
     }
-    let bit = (0..bits(c)).take_while(|&i| edge(c, i) <= at).count() as u8 - 1;
+    match event {
+        LineEvent::Character(character) => bit_level(character, at),
+        LineEvent::Low { .. } => false,
+    }
+}
+
+/// The level while the character is on the line.
+fn bit_level(c: &UartChar, at: Ps) -> bool {
+    let bit = (0..c.format.bits())
+        .take_while(|&i| bit_start(c, i) <= at)
+        .count() as u8
+        - 1;
     let data_bits = c.format.data_bits;
     match bit {
         0 => false,
-        n if n <= data_bits => c.byte >> (n - 1) & 1 == 1,
+        n if n <= data_bits => u16::from(c.byte) >> (n - 1) & 1 == 1,
         n if n == data_bits + 1 && c.format.parity != Parity::None => parity_bit(c),
         _ => true,
     }
@@ -89,11 +127,11 @@ mod tests {
             stop_bits: 2,
         };
         let mut line = Waveform::default();
-        line.push(UartChar {
+        line.push(LineEvent::Character(UartChar {
             start: 100 * US,
             byte: 0x0F,
             format,
-        });
+        }));
         let seen: String = (0..12)
             .map(|bit| {
                 if line.is_high(100 * US + bit * 10 * US + 5 * US) {
