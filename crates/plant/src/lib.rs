@@ -22,6 +22,7 @@ mod ist8310;
 mod joints;
 mod m3508;
 mod motion;
+mod pc;
 mod physics;
 mod radio;
 mod random;

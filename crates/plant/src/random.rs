@@ -16,6 +16,10 @@ pub(crate) enum Stream {
     SpiGarbage = 7,
     RadioLosses = 8,
     Flash = 9,
+    LinkDown = 10,
+    LinkUp = 11,
+    LinkFlood = 12,
+    PcExtremes = 13,
 }
 
 /// PCG XSL 128/64: the same seed and stream give the same numbers on every machine.

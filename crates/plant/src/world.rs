@@ -19,6 +19,7 @@ use crate::{
     joints::{JOINTS, Joint, WireState},
     m3508::C620,
     mounting::Mounting,
+    pc::Pc,
     radio::Receiver,
     recording::{Playback, TrialError},
     serial_adapter::SerialAdapter,
@@ -31,6 +32,7 @@ pub use crate::{
     body::PlantKind,
     faults::FaultInfo,
     joints::JointKind,
+    pc::{PcInput, PcJoints, SerialAdapter},
     radio::{RadioKind, RemoteInput},
     wire::{CanBusId, SpiSelect},
 };
@@ -135,6 +137,7 @@ pub struct World {
     mounting: Mounting,
     mag_mounting: Mounting,
     radio: Receiver,
+    pc: Pc,
     playback: Option<Playback>,
     indicators: Indicators,
     faults: ActiveFaults,

@@ -1,6 +1,6 @@
 //! The passage of time.
 
-use super::World;
+use super::{WireEvent, World, signals};
 use crate::{
     attitude,
     body::{Floor, Stance},
@@ -8,6 +8,7 @@ use crate::{
     joints::{JOINTS, Shaft},
     m3508::M3508,
     motion::Motion,
+    pc::LinkFaults,
     physics::{PHYSICS_STEP, physics_step_s},
     radio::RadioFaults,
     supply::Charge,
@@ -27,6 +28,7 @@ impl World {
         let [left, right] = &self.escs;
         let mut next = left.next_feedback().min(right.next_feedback());
         next = next.min(self.radio.next_event(self.now));
+        next = next.min(self.pc.next_event(self.now));
         next = next.min(self.mag.next_event());
         match self.serial_adapter.next_start() {
             at if at > self.now => next = next.min(at),
@@ -51,10 +53,12 @@ impl World {
                     self.escs[wheel].prepare_feedback(shaft_rps[wheel]);
                 }
                 Due::Frame => self.radio.start_frame(self.radio_faults()),
+                Due::Link => self.pc.act(self.link_faults()),
                 Due::Conversion => self.mag.convert(),
             }
         }
         self.now = self.now.max(now);
+        self.advance_link();
     }
 
     /// The earliest event up to `now`. Mechanics come first among simultaneous ones, so that the others see them up to date.
@@ -64,6 +68,7 @@ impl World {
             (self.escs[0].next_feedback(), Due::Feedback(0)),
             (self.escs[1].next_feedback(), Due::Feedback(1)),
             (self.radio.next_frame(), Due::Frame),
+            (self.pc.next_due(), Due::Link),
             (self.mag.next_event(), Due::Conversion),
         ]
         .into_iter()
@@ -180,6 +185,33 @@ impl World {
         }
     }
 
+    /// Notes the frames of the PC that are whole at the board.
+    fn advance_link(&mut self) {
+        if self.pc.is_idle() {
+            return;
+        }
+        let faults = self.link_faults();
+        while let Some(at) = self.pc.advance(self.now, faults) {
+            self.wire_events.push(WireEvent {
+                at,
+                signal: signals::LINK_DOWN_FRAMES,
+                value: self.pc.down_frames as f64,
+            });
+        }
+    }
+
+    pub(super) fn link_faults(&self) -> LinkFaults {
+        let has = |fault| self.faults.has(fault);
+        LinkFaults {
+            cut_down: has(Fault::LinkCut) || has(Fault::LinkCutDown),
+            cut_up: has(Fault::LinkCut) || has(Fault::LinkCutUp),
+            noise: has(Fault::LinkNoise),
+            flood: has(Fault::LinkFlood),
+            frozen: has(Fault::PcFrozen),
+            extremes: has(Fault::PcExtremes),
+        }
+    }
+
     fn radio_loss(&self) -> f64 {
         let active = RADIO_LOSSES
             .iter()
@@ -193,5 +225,6 @@ enum Due {
     Step,
     Feedback(usize),
     Frame,
+    Link,
     Conversion,
 }

@@ -1,6 +1,6 @@
 //! Every wire of the board except CAN.
 
-use super::World;
+use super::{WireEvent, World, signals};
 use crate::{
     complaint::Complaint,
     faults::Fault,
@@ -121,6 +121,28 @@ impl World {
     /// Level of the user key (PA0), active low: nobody presses it.
     pub fn user_key_pin(&self) -> bool {
         true
+    }
+}
+
+/// USART1: PC.
+impl World {
+    /// Takes the next character on the line of the PC (USART1 RX) whose start bit begins at or before `now`.
+    pub fn pc_char(&mut self, now: Ps) -> Option<UartChar> {
+        self.advance(now);
+        self.pc.take(now)
+    }
+
+    /// Takes a character of the board (USART1 TX) to the PC. To be called when its stop bit has ended.
+    pub fn pc_received(&mut self, character: UartChar, now: Ps) {
+        self.advance(now);
+        let whole = self.pc.receive(character, self.link_faults());
+        if let Some(at) = whole {
+            self.wire_events.push(WireEvent {
+                at,
+                signal: signals::LINK_UP_FRAMES,
+                value: self.pc.meter.frames() as f64,
+            });
+        }
     }
 }
 

@@ -8,6 +8,7 @@ use crate::{
     ist8310::MagFaults,
     joints::DriveFaults,
     m3508::EscFaults,
+    pc::{PcInput, SerialAdapter},
     radio::RemoteInput,
     time::Ps,
 };
@@ -16,6 +17,16 @@ impl World {
     /// Moves sticks and switches; the next radio frame carries them.
     pub fn set_remote(&mut self, input: RemoteInput) {
         self.radio.set_remote(input);
+    }
+
+    /// Changes what the program on the PC sends over the serial link.
+    pub fn set_pc(&mut self, input: PcInput) {
+        self.pc.set(input, self.now);
+    }
+
+    /// The adapter through which a program outside of the simulation uses the serial link.
+    pub fn serial_adapter(&mut self) -> &mut SerialAdapter {
+        self.pc.adapter()
     }
 
     /// Starts or ends a fault at the present time.
@@ -28,6 +39,9 @@ impl World {
         self.faults.set(fault, active);
         match fault {
             Fault::SbusSilent if active => self.radio.unplug(self.now),
+            Fault::LinkCut | Fault::LinkCutDown | Fault::LinkFlood => {
+                self.pc.set_faults(self.link_faults(), self.now);
+            }
             Fault::ImuGone
             | Fault::ImuFrozen
             | Fault::ImuExtreme

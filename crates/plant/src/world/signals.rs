@@ -1,5 +1,7 @@
 //! Named values for reports and expectations.
 
+mod link;
+
 use super::{WireEvent, World, advance::SHAFT_SIGN};
 use crate::{body::WHEEL_RADIUS_M, recording::Playback};
 
@@ -28,6 +30,12 @@ pub(super) const TUNING_REPLIES: usize = 24;
 pub(super) fn tuning_reply(byte: usize) -> usize {
     TUNING_REPLIES + 1 + byte
 }
+
+/// Index of the count of frames of the serial link that the PC received.
+pub(super) const LINK_UP_FRAMES: usize = TUNING_REPLIES + 9;
+
+/// Index of the count of frames of the serial link that reached the board.
+pub(super) const LINK_DOWN_FRAMES: usize = LINK_UP_FRAMES + 1;
 
 /// Commanded current and fed-back rotor speed of the wheels, both in the motor's own sense of rotation.
 const CAN: &[Signal] = &[
@@ -182,6 +190,11 @@ fn signals(recording: bool) -> impl Iterator<Item = &'static Signal> {
         CAN,
         JOINT_WIRES.as_flattened(),
         TUNING,
+        link::COUNTS,
+        link::UP,
+        link::UP_MOTORS.as_flattened(),
+        link::DOWN,
+        link::DOWN_MOTORS.as_flattened(),
         RADIO,
         BODY,
         WHEELS,
@@ -201,7 +214,8 @@ pub(super) fn names(recording: bool) -> Vec<String> {
 }
 
 impl World {
-    /// Names of every signal: `truth.*` from the plant, `can.*` as decoded from the wire, `radio.*`.
+    /// Names of every signal: `truth.*` from the plant, `can.*` and `link.*` as decoded from the
+    /// wire, `radio.*`.
     pub fn signal_names(&self) -> &[String] {
         &self.signal_names
     }
@@ -259,6 +273,8 @@ mod tests {
                 format!("can.tuning.reply.{byte}")
             );
         }
+        assert_eq!(names[LINK_UP_FRAMES], "link.up.frames");
+        assert_eq!(names[LINK_DOWN_FRAMES], "link.down.frames");
         for index in 0..4 {
             let parts = ["enabled", "torque_nm", "pos_rad", "vel_rps", "stop_frames"];
             for (signal, part) in joint(index).into_iter().zip(parts) {
