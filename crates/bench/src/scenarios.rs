@@ -7,6 +7,7 @@ use robot_plant::time::{MS, Ps};
 use robot_sim::{
     job::Job,
     machine::LogLine,
+    pc::PcAccess,
     runner::Observer,
     scenario::Scenario,
     signals::{SignalTable, Values},
@@ -35,7 +36,7 @@ pub fn run(elf: &Path, scenario: Scenario, progress: impl FnMut()) -> anyhow::Re
         imu_trial: None,
         patches: Vec::new(),
         probe: false,
-        can_on_pty: Vec::new(),
+        pc: PcAccess::default(),
         flash_file: None,
     };
     let mut watcher = Watcher { next: 0, progress };

@@ -6,7 +6,7 @@ use std::{
     time::Instant,
 };
 
-use robot_plant::world::{CanBusId, World, WorldConfig, WorldError};
+use robot_plant::world::{World, WorldConfig, WorldError};
 
 use super::{
     faults::EventError,
@@ -20,7 +20,7 @@ use super::{
 use crate::{
     machine::{Machine, MachineError, RegisterPatch, flash::PARAMETER_FLASH_BYTES},
     parameter_sectors,
-    pty::CanPort,
+    pc::{PcAccess, PcError},
 };
 
 pub struct Job {
@@ -32,8 +32,8 @@ pub struct Job {
     pub patches: Vec<RegisterPatch>,
     /// Whether a debug probe's tool with default options flashed and started the board.
     pub probe: bool,
-    /// Buses that a PC takes part in through a pseudo-terminal. What it sends is not reproducible.
-    pub can_on_pty: Vec<CanBusId>,
+    /// How programs on this computer take part. What they send is not reproducible.
+    pub pc: PcAccess,
     /// Keeps the parameter sectors from one run to the next: read if it exists, instead of the scenario's image, and
     /// written at the end.
     pub flash_file: Option<PathBuf>,
@@ -45,8 +45,8 @@ pub enum JobError {
     World(#[from] WorldError),
     #[error(transparent)]
     Machine(#[from] MachineError),
-    #[error("cannot open a pseudo-terminal: {0}")]
-    Port(io::Error),
+    #[error(transparent)]
+    Pc(#[from] PcError),
     #[error(transparent)]
     Event(#[from] EventError),
     #[error(transparent)]
@@ -132,8 +132,7 @@ impl Job {
     /// Runs, and writes only the flash file.
     pub fn run(&self, observers: &mut [&mut dyn Observer]) -> Result<Outcome, JobError> {
         let mut machine = self.machine()?;
-        let ports: Result<Vec<_>, _> = self.can_on_pty.iter().copied().map(CanPort::open).collect();
-        let mut ports = ports.map_err(JobError::Port)?;
+        let mut ports = self.pc.open()?;
         let started = Instant::now();
         let result = runner::run(&mut machine, &self.scenario, &mut ports, observers)?;
         let summary = Summary::new(&self.scenario, &result, started.elapsed());

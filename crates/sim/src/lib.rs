@@ -1,16 +1,19 @@
 //! The emulated C board in a simulated world: scenarios on the shipped firmware image, judged, recorded and reported.
 //!
-//! `c_board` is the board around the chip of `robot-emulator`, `machine` joins both to a firmware image, `pty` offers
-//! the CAN buses to tools on this computer, `runner` plays a scenario on the machine, `soak` tests it for hours.
+//! `c_board` is the board around the chip of `robot-emulator`, `machine` joins both to a firmware image, `pc` says how
+//! programs on this computer reach its wires, which `pty` and `gateway` offer, `runner` plays a scenario on the machine, `soak` tests it for hours.
 
 pub mod attitude_score;
 pub mod budgets;
 mod c_board;
+pub mod can_port;
 pub mod expectation;
 pub mod faults;
+pub mod gateway;
 pub mod job;
 pub mod machine;
 pub mod parameter_sectors;
+pub mod pc;
 mod pty;
 mod recording;
 mod report;

@@ -1,7 +1,5 @@
 //! Runs a scenario: applies its events, samples signals at 1 kHz and judges every expectation.
 
-use std::path::Path;
-
 use robot_plant::{
     time::{self, Ps},
     world::{CanBusId, WireEvent},
@@ -17,8 +15,9 @@ use super::{
     simulation::Simulation,
 };
 use crate::{
+    can_port::{CanDevice, PortStats},
     machine::{LogLine, Stats},
-    pty::{CanPort, PortStats},
+    pc::PcPorts,
 };
 use robot_emulator::soc::board_errors::BoardError;
 
@@ -33,8 +32,8 @@ pub trait Observer {
     fn sample(&mut self, at: Ps, table: &SignalTable, values: &Values);
     fn log(&mut self, line: &LogLine);
 
-    /// A bus is on the pseudo-terminal `device`; the run begins.
-    fn can_port(&mut self, _bus: CanBusId, _device: &Path) {}
+    /// Programs find a bus on `device`; the run begins.
+    fn can_port(&mut self, _bus: CanBusId, _device: &CanDevice) {}
 }
 
 /// The result of a run.
@@ -73,16 +72,16 @@ impl RunResult {
     }
 }
 
-/// Runs `scenario` from power-on to its end, or to where the machine stops. PCs on `ports` take part every sample.
+/// Runs `scenario` from power-on to its end, or to where the machine stops. Programs on `ports` take part every sample.
 pub fn run<B: Simulation>(
     board: &mut B,
     scenario: &Scenario,
-    ports: &mut [CanPort],
+    ports: &mut PcPorts,
     observers: &mut [&mut dyn Observer],
 ) -> Result<RunResult, EventError> {
-    for port in ports.iter() {
+    for port in &ports.can {
         for observer in observers.iter_mut() {
-            observer.can_port(port.bus(), port.path());
+            observer.can_port(port.bus(), &port.device());
         }
     }
     let mut run = Run::new(board, scenario);
@@ -104,7 +103,7 @@ pub fn run<B: Simulation>(
         }
         now = until;
         if let Err(why) = run.board.serve(ports) {
-            stopped = Some(format!("the pseudo-terminal of a CAN bus failed: {why}"));
+            stopped = Some(format!("the way of a PC into the simulation failed: {why}"));
             run.drain_log(observers);
             break;
         }
@@ -113,7 +112,7 @@ pub fn run<B: Simulation>(
         }
     }
     let mut result = run.finish(scenario, now, stopped);
-    result.ports = ports.iter().map(|p| (p.bus(), p.stats())).collect();
+    result.ports = ports.can.iter().map(|p| (p.bus(), p.stats())).collect();
     Ok(result)
 }
 

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     machine::{LogLine, Machine, MachineError, Progress, Stats, diagnostics::meaning::Meaning},
-    pty::CanPort,
+    pc::PcPorts,
 };
 use robot_emulator::soc::board_errors::BoardError;
 
@@ -18,8 +18,8 @@ use robot_emulator::soc::board_errors::BoardError;
 pub trait Simulation {
     fn run_until(&mut self, until: Ps) -> Result<(), MachineError>;
     fn apply(&mut self, event: &Event) -> Result<(), EventError>;
-    /// Exchanges frames between the world and the PCs on `ports`.
-    fn serve(&mut self, ports: &mut [CanPort]) -> io::Result<()>;
+    /// Exchanges frames between the world and the programs on `ports`.
+    fn serve(&mut self, ports: &mut PcPorts) -> io::Result<()>;
     fn world_names(&mut self) -> Vec<String>;
     fn sample_world(&mut self, out: &mut Vec<f64>);
     fn drain_wire_events(&mut self, out: &mut Vec<WireEvent>);
@@ -67,11 +67,11 @@ impl Simulation for Machine {
         }
     }
 
-    fn serve(&mut self, ports: &mut [CanPort]) -> io::Result<()> {
+    fn serve(&mut self, ports: &mut PcPorts) -> io::Result<()> {
         if ports.is_empty() {
             return Ok(());
         }
-        self.with_world(|world| ports.iter_mut().try_for_each(|port| port.serve(world)))
+        self.with_world(|world| ports.serve(world))
     }
 
     fn world_names(&mut self) -> Vec<String> {

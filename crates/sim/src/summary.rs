@@ -14,8 +14,8 @@ use super::{
     tree::Tree,
 };
 use crate::{
+    can_port::PortStats,
     machine::{CanStats, Distribution, FlashUse, LongestGapUs},
-    pty::PortStats,
 };
 use robot_emulator::soc::board_errors::BoardError;
 

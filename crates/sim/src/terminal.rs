@@ -2,7 +2,6 @@
 
 use std::{
     io::IsTerminal,
-    path::Path,
     thread,
     time::{Duration, Instant},
 };
@@ -20,7 +19,7 @@ use super::{
     runner::Observer,
     signals::{SignalTable, Values},
 };
-use crate::machine::LogLine;
+use crate::{can_port::CanDevice, machine::LogLine};
 
 /// The least severe level that is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, clap::ValueEnum)]
@@ -158,11 +157,13 @@ impl Terminal {
         }
         for (bus, port) in &outcome.result.ports {
             println!(
-                "{}: {} frames to the PC, {} from it, {} dropped as it did not read",
+                "{}: {} frames to the PC, {} dropped as it did not read; {} from it, {} refused as the bus was busy, {} malformed",
                 bus_name(*bus),
                 port.to_pc,
+                port.dropped,
                 port.from_pc,
-                port.dropped
+                port.refused,
+                port.malformed
             );
         }
         for file in &outcome.files {
@@ -236,9 +237,13 @@ fn bus_name(bus: CanBusId) -> &'static str {
 }
 
 impl Observer for Terminal {
-    fn can_port(&mut self, bus: CanBusId, device: &Path) {
-        let (bus, device) = (bus_name(bus), device.display());
-        let text = format!("{bus} on {device}: slcand or any slcan tool, 1 Mbit/s (S8)");
+    fn can_port(&mut self, bus: CanBusId, device: &CanDevice) {
+        let bus = bus_name(bus);
+        let tools = match device {
+            CanDevice::Terminal(_) => "slcand or any slcan tool, 1 Mbit/s (S8)".to_owned(),
+            CanDevice::Gateway(..) => format!("13 bytes a frame; robotctl --can {device}"),
+        };
+        let text = format!("{bus} on {device}: {tools}");
         self.bar.suspend(|| println!("{text}"));
     }
 

@@ -6,7 +6,6 @@ use std::{
     fs::{File, OpenOptions},
     io::{ErrorKind, Read, Write},
     os::unix::fs::OpenOptionsExt,
-    path::Path,
 };
 
 use robot_plant::{
@@ -14,6 +13,7 @@ use robot_plant::{
     world::CanBusId,
 };
 use robot_sim::{
+    can_port::CanDevice,
     job::Outcome,
     machine::LogLine,
     runner::Observer,
@@ -61,13 +61,13 @@ impl Observer for Pc {
 
     fn log(&mut self, _: &LogLine) {}
 
-    fn can_port(&mut self, bus: CanBusId, device: &Path) {
+    fn can_port(&mut self, bus: CanBusId, device: &CanDevice) {
         assert_eq!(bus, CanBusId::Can1);
         let opened = OpenOptions::new()
             .read(true)
             .write(true)
             .custom_flags((OFlags::NOCTTY | OFlags::NONBLOCK).bits().cast_signed())
-            .open(device);
+            .open(device.path().expect("a terminal"));
         self.device = Some(opened.expect("the device is there"));
     }
 }
@@ -75,7 +75,7 @@ impl Observer for Pc {
 fn run(pc: &mut Pc, seconds: f64) -> Outcome {
     let text = format!("name = \"pc\"\nseconds = {seconds}\nplant = \"stand\"\n");
     let mut job = support::job(Scenario::parse(&text, "pc").expect("it parses"));
-    job.can_on_pty = vec![CanBusId::Can1];
+    job.pc.can_on_pty = vec![CanBusId::Can1];
     let outcome = job.run(&mut [pc]).expect("the machine starts");
     assert!(outcome.summary.ok, "{:?}", outcome.summary.board_errors);
     outcome

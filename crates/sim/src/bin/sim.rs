@@ -7,8 +7,10 @@ use clap::Parser;
 use robot_plant::{recording, time, world::CanBusId};
 use robot_sim::{
     faults,
+    gateway::GatewayAddress,
     job::Job,
     machine::RegisterPatch,
+    pc::PcAccess,
     run_signals::RunSignals,
     scenario::Scenario,
     signals::SignalTable,
@@ -18,7 +20,7 @@ use robot_sim::{
 
 /// Boot the firmware in an emulated RoboMaster C board wired to a simulated robot.
 #[derive(Parser)]
-#[command(name = "sim")]
+#[command(name = "sim", after_help = EXAMPLES)]
 struct Args {
     /// Scenario to run; default: a 10 s drive, or a quiet stand with --imu.
     scenario: Option<PathBuf>,
@@ -43,6 +45,9 @@ struct Args {
     /// CAN2 likewise.
     #[arg(long, value_enum, value_name = "pty")]
     can2: Option<CanConnection>,
+    /// Both buses behind a Waveshare CAN-TO-ETH: CAN1 at PORT, CAN2 at the next one; 0: any free ports. Likewise.
+    #[arg(long, value_name = "tcp:PORT|udp:PORT", conflicts_with_all = ["can1", "can2"])]
+    gateway: Option<GatewayAddress>,
     /// Start as `probe-rs run` does by default, with reset and hard fault caught; the robot must do all it does without.
     #[arg(long)]
     probe: bool,
@@ -73,6 +78,11 @@ enum CanConnection {
     Pty,
 }
 
+const EXAMPLES: &str = "Examples:
+  cargo xtask sim scenarios/remote-loss.toml
+  cargo xtask sim --can1 pty --seconds 3600      # then: robotctl --can /dev/pts/N status
+  cargo xtask sim --gateway tcp:20001 --seconds 3600   # then: robotctl --can tcp:127.0.0.1:20001 status";
+
 const DRIVE: &str = include_str!("../../../../scenarios/drive.toml");
 
 /// What `--imu` runs without a scenario: nobody touches the radio, and the robot has saved that the magnetometer sits as
@@ -91,7 +101,7 @@ fn main() -> anyhow::Result<ExitCode> {
     if args.list_signals {
         return list_signals(&job);
     }
-    let realtime = args.realtime || !job.can_on_pty.is_empty();
+    let realtime = args.realtime || job.pc.is_offered();
     if realtime && !args.realtime {
         println!("a PC takes part: real time, and not reproducible");
     }
@@ -106,10 +116,13 @@ fn main() -> anyhow::Result<ExitCode> {
 }
 
 impl Args {
-    fn can_on_pty(&self) -> Vec<CanBusId> {
+    fn pc(&self) -> PcAccess {
         let buses = [(self.can1, CanBusId::Can1), (self.can2, CanBusId::Can2)];
         let outside = buses.into_iter().filter(|(place, _)| place.is_some());
-        outside.map(|(_, bus)| bus).collect()
+        PcAccess {
+            can_on_pty: outside.map(|(_, bus)| bus).collect(),
+            gateway: self.gateway,
+        }
     }
 }
 
@@ -148,7 +161,7 @@ fn job(args: &Args) -> anyhow::Result<Job> {
         imu_trial: args.imu.clone(),
         patches: args.patch.clone(),
         probe: args.probe,
-        can_on_pty: args.can_on_pty(),
+        pc: args.pc(),
         flash_file: args.flash.clone(),
     })
 }

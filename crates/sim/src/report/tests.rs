@@ -11,7 +11,7 @@ use super::*;
 use crate::{
     faults::EventError,
     machine::{CanStats, LogLine, MachineError, Progress, Stats},
-    pty::CanPort,
+    pc::PcPorts,
     runner,
     scenario::{Event, Scenario},
     simulation::Simulation,
@@ -63,7 +63,7 @@ impl Simulation for Waves {
     fn apply(&mut self, _: &Event) -> Result<(), EventError> {
         Ok(())
     }
-    fn serve(&mut self, _: &mut [CanPort]) -> std::io::Result<()> {
+    fn serve(&mut self, _: &mut PcPorts) -> std::io::Result<()> {
         Ok(())
     }
 
@@ -177,7 +177,13 @@ const SCENARIO: &str = r#"
 fn rendered(board: &mut impl Simulation) -> String {
     let scenario = Scenario::parse(SCENARIO, "waves.toml").unwrap();
     let mut traces = Traces::new(scenario.length);
-    let result = runner::run(board, &scenario, &mut [], &mut [&mut traces]).unwrap();
+    let result = runner::run(
+        board,
+        &scenario,
+        &mut PcPorts::default(),
+        &mut [&mut traces],
+    )
+    .unwrap();
     let summary = Summary::new(&scenario, &result, Duration::from_secs(1));
     render(&Report {
         scenario: &scenario,

@@ -50,7 +50,7 @@ impl Simulation for FakeBoard {
         Ok(())
     }
 
-    fn serve(&mut self, _: &mut [CanPort]) -> std::io::Result<()> {
+    fn serve(&mut self, _: &mut PcPorts) -> std::io::Result<()> {
         Ok(())
     }
 
@@ -114,7 +114,7 @@ impl Simulation for FakeBoard {
 fn run_double(board: &mut FakeBoard, body: &str) -> RunResult {
     let text = format!("name = \"n\"\nseconds = 0.05\nplant = \"stand\"\n{body}");
     let scenario = Scenario::parse(&text, "t.toml").unwrap();
-    run(board, &scenario, &mut [], &mut []).unwrap()
+    run(board, &scenario, &mut PcPorts::default(), &mut []).unwrap()
 }
 
 const PULSE: &str = "

@@ -38,7 +38,7 @@ const TIMEOUT: RecordTimeouts = RecordTimeouts {
 fn job() -> Job {
     let text = "name = \"tool\"\nseconds = 2\nplant = \"stand\"\n";
     let mut job = support::job(Scenario::parse(text, "tool").expect("it parses"));
-    job.can_on_pty = vec![CanBusId::Can1];
+    job.pc.can_on_pty = vec![CanBusId::Can1];
     job
 }
 

@@ -96,7 +96,7 @@ fn a_robot_tilted_by_hand_shows_how_its_sensors_sit() {
         sits[0], sits[1]
     );
     let mut job = support::job(Scenario::parse(&text, "by hand").expect("it parses"));
-    job.can_on_pty = vec![CanBusId::Can1];
+    job.pc.can_on_pty = vec![CanBusId::Can1];
     let flash = directory.join("flash.bin");
     std::fs::write(&flash, crate::clean_flash()).expect("a file for its flash");
     job.flash_file = Some(flash);

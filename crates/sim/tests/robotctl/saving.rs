@@ -42,7 +42,7 @@ impl Robot {
         // A quick computer emulates several seconds while the tool waits for an answer.
         let text = "name = \"saving\"\nseconds = 8\nplant = \"stand\"\n";
         let mut job = support::job(Scenario::parse(text, "saving").expect("it parses"));
-        job.can_on_pty = vec![CanBusId::Can1];
+        job.pc.can_on_pty = vec![CanBusId::Can1];
         job.flash_file = Some(self.flash.clone());
         let mut tool = Tool::new(work);
         let outcome = job.run(&mut [&mut tool]).expect("the machine starts");

@@ -1,12 +1,13 @@
 //! `robotctl` in a thread of its own, on the pseudo-terminal of a running board.
 
-use std::{path::Path, thread, time::Duration};
+use std::{thread, time::Duration};
 
 use robot_plant::{
     time::{MS, Ps},
     world::CanBusId,
 };
 use robot_sim::{
+    can_port,
     machine::LogLine,
     runner::Observer,
     signals::{SignalTable, Values},
@@ -68,7 +69,7 @@ impl<T: Send + 'static> Observer for Tool<T> {
 
     fn log(&mut self, _: &LogLine) {}
 
-    fn can_port(&mut self, _: CanBusId, device: &Path) {
-        self.device = Some(CanDevice::Slcan(device.display().to_string()));
+    fn can_port(&mut self, _: CanBusId, device: &can_port::CanDevice) {
+        self.device = device.to_string().parse().ok();
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use robot_sim::{job::Job, scenario::Scenario};
+use robot_sim::{job::Job, pc::PcAccess, scenario::Scenario};
 
 pub fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
@@ -28,7 +28,7 @@ pub fn job(scenario: Scenario) -> Job {
         imu_trial: None,
         patches: Vec::new(),
         probe: false,
-        can_on_pty: Vec::new(),
+        pc: PcAccess::default(),
         flash_file: None,
     }
 }

@@ -1,6 +1,6 @@
 //! One CAN bus on one pseudo-terminal.
 
-use std::{io, path::Path};
+use std::io;
 
 use robot_plant::{
     can_adapter::CanAdapter,
@@ -13,6 +13,7 @@ use super::{
     lawicel::{self, Lawicel, Request, flags},
     terminal::Terminal,
 };
+use crate::can_port::{CanDevice, CanPort, PortStats};
 
 /// Limit of text that waits for the PC, a quarter of a second at full bus load.
 const WAITING: usize = 64 * 1024;
@@ -21,17 +22,8 @@ const READ: u64 = 4 * 1024;
 /// Time stamps run from 0 to 59,999.
 const STAMP_MS: Ps = 60_000;
 
-/// Frames between the bus and the PC since power-on.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
-pub struct PortStats {
-    pub to_pc: u64,
-    pub from_pc: u64,
-    /// Frames received while the PC did not read.
-    pub dropped: u64,
-}
-
-/// A LAWICEL adapter on a bus, which a PC can use.
-pub struct CanPort {
+/// A LAWICEL adapter on a bus.
+pub struct SlcanPort {
     bus: CanBusId,
     terminal: Terminal,
     lawicel: Lawicel,
@@ -43,7 +35,7 @@ pub struct CanPort {
     stats: PortStats,
 }
 
-impl CanPort {
+impl SlcanPort {
     pub fn open(bus: CanBusId) -> io::Result<Self> {
         Ok(Self {
             bus,
@@ -55,34 +47,6 @@ impl CanPort {
             dropped: 0,
             stats: PortStats::default(),
         })
-    }
-
-    pub fn bus(&self) -> CanBusId {
-        self.bus
-    }
-
-    /// Path of the device that a tool opens.
-    pub fn path(&self) -> &Path {
-        self.terminal.path()
-    }
-
-    pub fn stats(&self) -> PortStats {
-        self.stats
-    }
-
-    /// Carries out the PC's requests since the last call and passes frames of the bus on. It never waits.
-    pub fn serve(&mut self, world: &mut World) -> io::Result<()> {
-        let adapter = world.can_adapter(self.bus);
-        self.terminal.read(&mut self.arrived, READ)?;
-        for byte in std::mem::take(&mut self.arrived) {
-            if let Some(request) = self.lawicel.feed(byte, adapter.mode()) {
-                self.answer(request, adapter);
-            }
-        }
-        self.pass_on(adapter);
-        let written = self.terminal.write(self.waiting.as_bytes())?;
-        self.waiting.drain(..written);
-        Ok(())
     }
 
     fn answer(&mut self, request: Request, adapter: &mut CanAdapter) {
@@ -97,6 +61,7 @@ impl CanPort {
                 let taken = adapter.send(frame);
                 if !taken {
                     self.flags |= flags::TRANSMIT_FULL;
+                    self.stats.refused += 1;
                 }
                 lawicel::sent_reply(&frame, taken)
             }
@@ -126,5 +91,33 @@ impl CanPort {
         }
         self.stats.dropped = dropped;
         self.stats.from_pc = adapter.sent();
+    }
+}
+
+impl CanPort for SlcanPort {
+    fn bus(&self) -> CanBusId {
+        self.bus
+    }
+
+    fn device(&self) -> CanDevice {
+        CanDevice::Terminal(self.terminal.path().to_owned())
+    }
+
+    fn stats(&self) -> PortStats {
+        self.stats
+    }
+
+    fn serve(&mut self, world: &mut World) -> io::Result<()> {
+        let adapter = world.can_adapter(self.bus);
+        self.terminal.read(&mut self.arrived, READ)?;
+        for byte in std::mem::take(&mut self.arrived) {
+            if let Some(request) = self.lawicel.feed(byte, adapter.mode()) {
+                self.answer(request, adapter);
+            }
+        }
+        self.pass_on(adapter);
+        let written = self.terminal.write(self.waiting.as_bytes())?;
+        self.waiting.drain(..written);
+        Ok(())
     }
 }
