@@ -10,6 +10,7 @@ mod imu_status;
 mod logic_bus;
 mod mounting;
 mod param_store;
+mod pc;
 mod remote;
 mod remote_mapping;
 mod sensors;
@@ -35,6 +36,7 @@ pub use imu_status::{
 pub use logic_bus::LogicBus;
 pub use mounting::Orientation;
 pub use param_store::{FlashRequest, ParamError, ParamState, ParamStatus};
+pub use pc::{JointTarget, LinkHealth, PcCommand, WheelTarget};
 pub use remote::{DriveMode, OperatorState, RemoteDiagnostics, RemoteState, RemoteUpdate};
 pub use remote_mapping::{NO_CHANNEL, RemoteChannel, RemoteMapping};
 pub use sensors::{

@@ -18,6 +18,7 @@
 //! | [`diagnostics`] | one `DiagnosticsSnapshot` of all of the above |
 //! | [`tuning`] | CAN requests → changed `RobotConfig`, replies |
 //! | [`params`] | `RobotConfig` ↔ flash; which sector, when, and what to do when it fails |
+//! | [`link`] | serial bytes ↔ commands of the PC, the robot's state, tunnelled CAN frames |
 //! | [`indication`] | state → what LED and buzzer tell people |
 //! | [`tick`] | the 1 kHz tick: all stages from CAN frames in to CAN frames out |
 //!
@@ -63,6 +64,7 @@ pub mod domain;
 pub mod estimation;
 pub mod indication;
 pub mod input;
+pub mod link;
 pub mod logic;
 mod math;
 pub mod motor;

@@ -1,0 +1,163 @@
+//! The robot's end of the line: bytes → commands of the PC.
+
+use super::{
+    BAUD, DOWNLINK_LEN, Downlink, HEADER, TUNNEL_HEADER, TUNNEL_LEN, Tunnelled,
+    scanner::{Found, Frame, Scanner},
+};
+use crate::domain::{CanFrame, LinkHealth, PcCommand};
+
+/// A frame of which nothing more comes for this long is given up.
+const SILENCE_US: u64 = 20_000;
+/// Time of a byte on the line, with start and stop bit.
+const BYTE_NS: u32 = 1_000_000_000 / (BAUD / 10);
+
+/// What a frame from the PC brings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Received {
+    /// Targets for the motors.
+    Command(PcCommand),
+    /// A request on the tuning channel.
+    Tunnel(CanFrame),
+}
+
+/// Decodes what the PC sends.
+///
+/// A command that follows on damaged bytes is counted as good, but not given out: 8 bits of CRC alone would let about
+/// one false command a second through on a line full of noise. The next command in an unbroken row is given out again.
+///
+/// ```
+/// use robot_app::link::{Downlink, Received, RobotReceiver};
+///
+/// let mut receiver = RobotReceiver::new();
+/// let mut commands = Vec::new();
+/// receiver.feed(&Downlink::default().encode(), 2_000, |received| {
+///     if let Received::Command(command) = received {
+///         commands.push(command);
+///     }
+/// });
+/// assert_eq!(commands.len(), 1);
+/// assert_eq!(commands[0].ts_us, 2_000);
+/// assert_eq!(commands[0].wheels[0].kd, 0.0);
+/// ```
+#[derive(Clone, Debug)]
+pub struct RobotReceiver {
+    scanner: Scanner<DOWNLINK_LEN>,
+    health: LinkHealth,
+    newest: PcCommand,
+    last_byte_us: u64,
+}
+
+/// A frame as it is on the line.
+#[derive(Clone, Copy, Debug)]
+enum FromPc {
+    Command(Downlink),
+    Tunnel(Tunnelled),
+}
+
+impl Frame for FromPc {
+    fn len(header: u8) -> Option<usize> {
+        match header {
+            HEADER => Some(DOWNLINK_LEN),
+            TUNNEL_HEADER => Some(TUNNEL_LEN),
+            _ => None,
+        }
+    }
+
+    fn read(bytes: &[u8]) -> Option<Self> {
+        if let Ok(frame) = bytes.try_into() {
+            return Downlink::decode(frame).map(Self::Command);
+        }
+        Tunnelled::decode(bytes.try_into().ok()?).map(Self::Tunnel)
+    }
+}
+
+impl Default for RobotReceiver {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl RobotReceiver {
+    /// A receiver that has seen no byte yet.
+    pub fn new() -> Self {
+        Self {
+            scanner: Scanner::new(),
+            health: LinkHealth::default(),
+            newest: PcCommand::default(),
+            last_byte_us: 0,
+        }
+    }
+
+    /// Takes the bytes that arrived up to `ts_us`, the time of the last one, in chunks of any length. `sink` gets what
+    /// each frame brings. After 20 ms of silence it wants a call without bytes, which gives up a frame that was cut.
+    pub fn feed(&mut self, bytes: &[u8], ts_us: u64, mut sink: impl FnMut(Received)) {
+        let Self {
+            scanner,
+            health,
+            newest,
+            last_byte_us,
+        } = self;
+        let mut accept = |found: Found<FromPc>, ts_us: u64| match found.frame {
+            FromPc::Tunnel(tunnelled) => {
+                health.tunnelled = health.tunnelled.wrapping_add(1);
+                sink(Received::Tunnel(tunnelled.can_frame()));
+            }
+            FromPc::Command(_) if !found.contiguous => {
+                health.unconfirmed = health.unconfirmed.wrapping_add(1);
+            }
+            FromPc::Command(downlink) => {
+                *newest = renewed(newest, &downlink, ts_us);
+                health.count_command(ts_us);
+                sink(Received::Command(*newest));
+            }
+        };
+        let first_us = ts_us.saturating_sub(line_time_us(bytes.len().saturating_sub(1)));
+        if scanner.held() > 0 && first_us.saturating_sub(*last_byte_us) >= SILENCE_US {
+            scanner.flush(&mut |found| accept(found, *last_byte_us));
+        }
+        for (index, byte) in bytes.iter().enumerate() {
+            let following = bytes.len().saturating_sub(index).saturating_sub(1);
+            scanner.push(*byte, &mut |found| {
+                accept(found, ts_us.saturating_sub(line_time_us(following)));
+            });
+        }
+        if !bytes.is_empty() {
+            *last_byte_us = ts_us;
+        }
+    }
+
+    /// Counts errors that the UART flagged. Bytes may be missing, so the next frame follows on none.
+    pub fn count_line_errors(&mut self, count: u32) {
+        self.health.line_errors = self.health.line_errors.wrapping_add(count);
+        self.scanner.mark_gap();
+    }
+
+    /// State of the link at `now_us`. The fields `sent` and `tunnel_dropped` are 0: the sender knows them.
+    pub fn health(&self, now_us: u64) -> LinkHealth {
+        let counters = self.scanner.counters();
+        LinkHealth {
+            good: counters.good,
+            crc_errors: counters.crc_errors,
+            resyncs: counters.resyncs,
+            discarded_bytes: counters.discarded_bytes,
+            ..self.health.at(now_us)
+        }
+    }
+}
+
+/// Time of `bytes` on the line.
+fn line_time_us(bytes: usize) -> u64 {
+    u64::from((bytes as u32).saturating_mul(BYTE_NS) / 1_000)
+}
+
+/// The command that follows `before`.
+fn renewed(before: &PcCommand, downlink: &Downlink, ts_us: u64) -> PcCommand {
+    let Downlink { wheels, joints } = *downlink;
+    let same = before.ts_us != 0 && before.wheels == wheels && before.joints == joints;
+    PcCommand {
+        wheels,
+        joints,
+        ts_us,
+        changed_us: if same { before.changed_us } else { ts_us },
+    }
+}
