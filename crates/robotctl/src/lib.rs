@@ -10,6 +10,7 @@
 //! | [`settings`] | names the robot's settings and puts their values into words |
 //! | [`parameter_file`] | reads and writes parameters in TOML |
 //! | [`can_link`] | reaches a CAN bus through an slcan adapter or SocketCAN |
+//! | [`can_recorder`] | records all frames of a bus as MCAP |
 //! | [`mcap_file`] | writes MCAP files of JSON messages |
 //! | [`tuning`] | reads and changes the robot's settings over CAN, and reads its live values |
 //! | [`status`] | shows live values as words or JSON |
@@ -18,6 +19,7 @@
 
 pub mod calibration;
 pub mod can_link;
+pub mod can_recorder;
 pub mod first_board;
 pub mod mcap_file;
 pub mod mounting;
