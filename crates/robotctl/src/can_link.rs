@@ -18,6 +18,12 @@ pub trait CanLink {
 
     /// Returns the next frame received, or `None` if there is none before `deadline`.
     fn receive(&mut self, deadline: Instant) -> Result<Option<CanFrame>, CanLinkError>;
+
+    /// Says what may be wrong if the robot does not answer.
+    fn why_silent(&self) -> String {
+        "is it on, is this one of its two CAN buses at 1 Mbit/s, and is the bus terminated?"
+            .to_owned()
+    }
 }
 
 #[derive(Debug, thiserror::Error)]
@@ -39,6 +45,13 @@ pub enum CanLinkError {
     SetUp { command: &'static str },
     #[error("the adapter refused a frame: is the bus connected, powered and terminated?")]
     FrameRefused,
+    #[error("{device} failed: is it still plugged in?")]
+    PortFailed {
+        device: String,
+        source: std::io::Error,
+    },
+    #[error("the PC link carries only the tuning channel, not a frame with identifier {id:#05x}")]
+    NotTunnelled { id: u16 },
     #[error("the CAN adapter failed: is it still connected?")]
     Failed(#[from] std::io::Error),
 }

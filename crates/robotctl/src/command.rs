@@ -4,6 +4,7 @@ mod answer;
 mod calibrate;
 mod connection;
 mod first_board;
+mod interrupt;
 mod joint;
 mod mounting;
 pub mod output;
@@ -11,6 +12,9 @@ mod radio;
 mod record;
 mod status;
 mod tune;
+
+/// The end of the tool's help.
+pub const EXAMPLES: &str = connection::examples!("status");
 
 #[derive(clap::Subcommand)]
 pub enum Command {
@@ -25,9 +29,9 @@ pub enum Command {
     Mounting(mounting::Mounting),
     /// Move the controls of an SBUS transmitter to find out their channels (docs/bring-up.md)
     Radio(radio::Radio),
-    /// Record accelerometer, gyro and magnetometer of the disarmed robot over CAN
+    /// Record the robot's state (PC link), a CAN bus, or the sensors for calibration
     Record(record::Record),
-    /// Read and change the robot's settings over CAN
+    /// Read and change the robot's settings
     Tune(tune::Tune),
     /// Set a joint's zero
     Joint(joint::JointCommand),

@@ -10,7 +10,10 @@
 //! | [`settings`] | names the robot's settings and puts their values into words |
 //! | [`parameter_file`] | reads and writes parameters in TOML |
 //! | [`can_link`] | reaches a CAN bus through an slcan adapter or SocketCAN |
+//! | [`pc_link`] | reaches the robot through the PC link |
+//! | [`transport`] | chooses between the two |
 //! | [`can_recorder`] | records all frames of a bus as MCAP |
+//! | [`link_recorder`] | records the state from the PC link as MCAP |
 //! | [`mcap_file`] | writes MCAP files of JSON messages |
 //! | [`tuning`] | reads and changes the robot's settings over CAN, and reads its live values |
 //! | [`status`] | shows live values as words or JSON |
@@ -21,9 +24,11 @@ pub mod calibration;
 pub mod can_link;
 pub mod can_recorder;
 pub mod first_board;
+pub mod link_recorder;
 pub mod mcap_file;
 pub mod mounting;
 pub mod parameter_file;
+pub mod pc_link;
 pub mod radio;
 pub mod recorder;
 pub mod recording;
@@ -32,4 +37,5 @@ mod serial_port;
 pub mod settings;
 mod statistics;
 pub mod status;
+pub mod transport;
 pub mod tuning;

@@ -1,4 +1,4 @@
-//! `robotctl`: calibrates the robot's sensors, tunes it and watches it over CAN.
+//! `robotctl`: calibrates the robot's sensors, tunes, watches, records and drives it over CAN or the PC link.
 
 mod command;
 
@@ -8,7 +8,7 @@ use clap::Parser;
 
 /// The PC's tool for the robot.
 #[derive(Parser)]
-#[command(version, arg_required_else_help = true)]
+#[command(version, arg_required_else_help = true, after_help = command::EXAMPLES)]
 struct Arguments {
     #[command(subcommand)]
     command: command::Command,

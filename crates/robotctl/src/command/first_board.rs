@@ -8,9 +8,13 @@ use std::{
 use anyhow::Result;
 use robotctl::first_board::{self, Dialogue, Outcome, Report, WalkOptions};
 
-use super::{connection::Connection, output::say};
+use super::{
+    connection::{Connection, examples},
+    output::say,
+};
 
 #[derive(clap::Args)]
+#[command(after_help = examples!("first-board"))]
 pub struct FirstBoard {
     #[command(flatten)]
     connection: Connection,

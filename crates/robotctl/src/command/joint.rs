@@ -7,9 +7,14 @@ use robotctl::{
     tuning::{self, Joint, TuningClient},
 };
 
-use super::{connection::Connection, output::say, tune::confirm_saved};
+use super::{
+    connection::{Connection, examples},
+    output::say,
+    tune::confirm_saved,
+};
 
 #[derive(clap::Args)]
+#[command(after_help = examples!("joint", " zero left-front"))]
 pub struct JointCommand {
     #[command(flatten)]
     connection: Connection,

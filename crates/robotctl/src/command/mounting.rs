@@ -5,13 +5,17 @@ use std::time::{Duration, Instant};
 use anyhow::{Result, bail};
 use robot_app::domain::Orientation;
 use robotctl::{
-    can_link::CanDevice,
     mounting::{self, BoardMounting, FieldSample, MagMounting, Poses, Watch, WatchError},
     settings,
-    tuning::{Timeouts, TuningClient},
+    tuning::TuningClient,
 };
 
-use super::{answer::ask, output::say, tune::confirm_saved};
+use super::{
+    answer::ask,
+    connection::{Connection, examples},
+    output::say,
+    tune::confirm_saved,
+};
 
 /// Longest time for turning the robot by hand.
 const TURNING: Duration = Duration::from_secs(90);
@@ -19,10 +23,10 @@ const TURNING: Duration = Duration::from_secs(90);
 const SETTLING: Duration = Duration::from_secs(30);
 
 #[derive(clap::Args)]
+#[command(after_help = examples!("mounting"))]
 pub struct Mounting {
-    /// Serial port of an slcan adapter (COM3, /dev/ttyACM0) or, on Linux, a CAN interface (can0)
-    #[arg(long, value_name = "DEVICE")]
-    can: CanDevice,
+    #[command(flatten)]
+    connection: Connection,
     /// Write the result to the robot; without this option the robot's settings are only checked
     #[arg(long)]
     write: bool,
@@ -33,7 +37,7 @@ pub struct Mounting {
 
 impl Mounting {
     pub fn run(self) -> Result<()> {
-        let mut client = TuningClient::new(self.can.open()?, Timeouts::default());
+        let mut client = self.connection.open()?;
         say!("Disarm the robot and take its weight: it is tilted by hand, motors off.\n")?;
         let found = find_board(&mut client)?;
         self.conclude(&mut client, "mounting.board", found.orientation)?;
@@ -79,7 +83,8 @@ impl Mounting {
         } else {
             say!("{name} is {}: WRONG.", named.in_words(is))?;
             say!(
-                "next:   the same with --write, or robotctl tune --can DEVICE set {name} {found_name}\n"
+                "next:   the same with --write, or robotctl tune {} set {name} {found_name}\n",
+                self.connection.words()
             )?;
         }
         Ok(())

@@ -5,22 +5,26 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, Result};
 use robot_app::{domain::NO_CHANNEL, tuning::Refusal};
 use robotctl::{
-    can_link::CanDevice,
     radio::{self, Control, HeldPosition, MappedControl, Movement, Watch, WatchError},
     settings,
-    tuning::{BringUpStep, Timeouts, TuningClient, TuningError},
+    tuning::{BringUpStep, TuningClient, TuningError},
 };
 
-use super::{answer::ask, output::say, tune::confirm_saved};
+use super::{
+    answer::ask,
+    connection::{Connection, examples},
+    output::say,
+    tune::confirm_saved,
+};
 
 /// Time for the pilot to move the sticks to all their ends.
 const ROUND: Duration = Duration::from_secs(8);
 
 #[derive(clap::Args)]
+#[command(after_help = examples!("radio"))]
 pub struct Radio {
-    /// Serial port of an slcan adapter (COM3, /dev/ttyACM0) or, on Linux, a CAN interface (can0)
-    #[arg(long, value_name = "DEVICE")]
-    can: CanDevice,
+    #[command(flatten)]
+    connection: Connection,
     /// Write the result to the robot; without this option the robot's settings are only compared
     #[arg(long)]
     write: bool,
@@ -28,7 +32,7 @@ pub struct Radio {
 
 impl Radio {
     pub fn run(self) -> Result<()> {
-        let mut client = TuningClient::new(self.can.open()?, Timeouts::default());
+        let mut client = self.connection.open()?;
         say!(
             "For SBUS; DBUS needs no settings. Robot disarmed, wheels off the ground, transmitter on."
         )?;
@@ -49,7 +53,12 @@ impl Radio {
         }
         let done = found.and_then(|found| self.conclude(&mut client, &found, enable_was));
         // After an interruption the robot stays in a state in which it cannot be armed.
-        done.context("the robot stays in bring-up and cannot be armed: `robotctl tune --can DEVICE bring-up off`")?;
+        done.with_context(|| {
+            format!(
+                "the robot stays in bring-up and cannot be armed: `robotctl tune {} bring-up off`",
+                self.connection.words()
+            )
+        })?;
         bring_up(&mut client, BringUpStep::Off, enable_was)
     }
 
@@ -76,7 +85,10 @@ impl Radio {
             radio::write(client, found)?;
             confirm_saved(client)?;
         } else if !differing.is_empty() {
-            say!("next:   the same with --write, or robotctl tune --can DEVICE set NAME VALUE")?;
+            say!(
+                "next:   the same with --write, or robotctl tune {} set NAME VALUE",
+                self.connection.words()
+            )?;
         }
         Ok(())
     }

@@ -1,25 +1,37 @@
-//! `robotctl record`: records the sensors' samples into a table.
+//! `robotctl record`: records the sensors into a table, or what comes over link or CAN into an MCAP file.
+
+mod can;
+mod link;
+mod progress;
+mod sensors;
 
 use std::path::PathBuf;
 
-use anyhow::{Context, Result, ensure};
-use indicatif::{ProgressBar, ProgressStyle};
-use robotctl::recorder::{self, RecordTimeouts};
+use anyhow::{Result, ensure};
+use robotctl::transport::Transport;
 
-use super::{connection::Connection, output::say};
-
-/// A longer gap between samples is reported. This is the time of ten samples of the IMU.
-const LONG_GAP_S: f64 = 0.05;
+use super::connection::{Connection, examples};
 
 #[derive(clap::Args)]
+#[command(
+    after_help = concat!(
+        "What is recorded:\n",
+        "  --link PORT RUN.mcap     the robot's state, 416 times a second, armed or not\n",
+        "  --can DEVICE RUN.mcap    all frames of the bus, and what the motors report in them; nothing is sent\n",
+        "  any of both, RUN.csv     accelerometer, gyro and magnetometer of the disarmed robot, for `robotctl calibrate`\n",
+        "`robotctl plot FILE` shows any of them; Foxglove and PlotJuggler open MCAP.\n\n",
+        examples!("record", " run.mcap")
+    )
+)]
 pub struct Record {
     #[command(flatten)]
     connection: Connection,
-    /// Table (CSV) to write, which `robotctl calibrate` reads
+    /// File to write: a recording (.mcap), or a table of the sensors for calibration (.csv or any other ending)
+    #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Length of the recording in s; the robot must be disarmed and its enable switch off
-    #[arg(long, value_name = "S", default_value_t = 60, value_parser = clap::value_parser!(u16).range(1..=600))]
-    seconds: u16,
+    /// Length of the recording in s [default: 60 for a table, until Ctrl-C for an MCAP file]
+    #[arg(long, value_name = "S", value_parser = clap::value_parser!(u32).range(1..))]
+    seconds: Option<u32>,
     /// Replace the file if it exists
     #[arg(long)]
     force: bool,
@@ -27,43 +39,23 @@ pub struct Record {
 
 impl Record {
     pub fn run(self) -> Result<()> {
+        let transport = self.connection.transport()?;
         ensure!(
             self.force || !self.file.exists(),
             "{} exists: name another file, or add --force",
             self.file.display()
         );
-        let mut client = self.connection.open()?;
-        let bar = ProgressBar::new(self.seconds.into());
-        bar.set_style(ProgressStyle::with_template(
-            "recording {bar:40} {pos} of {len} s",
-        )?);
-        let recorded = recorder::record(
-            &mut client,
-            self.seconds,
-            RecordTimeouts::default(),
-            |seconds| bar.set_position(seconds as u64),
-        );
-        bar.finish_and_clear();
-        let recorded = recorded?;
-        std::fs::write(&self.file, recorded.samples.table())
-            .with_context(|| format!("cannot write {}", self.file.display()))?;
-        let (imu, mag) = recorded.samples.counts();
-        let seconds = recorded.samples.duration_s();
-        say!(
-            "recorded {seconds:.1} s: {imu} samples of accelerometer and gyro, {mag} of the magnetometer, {} lost",
-            recorded.lost
-        )?;
-        let gap = recorded.samples.longest_gap_s();
-        if gap > LONG_GAP_S {
-            say!(
-                "note: {gap:.2} s are missing in one place: the robot erased flash meanwhile, or was busy"
-            )?;
+        if !self.is_mcap() {
+            return sensors::record(&self.connection, &self.file, self.seconds);
         }
-        if mag == 0 {
-            say!("note: the magnetometer gave none")?;
+        match transport {
+            Transport::Link(port) => link::record(&port, &self.file, self.seconds),
+            Transport::Can(device) => can::record(&device, &self.file, self.seconds),
         }
-        say!("written to {}", self.file.display())?;
-        say!("next:   robotctl calibrate accel {}", self.file.display())?;
-        Ok(())
+    }
+
+    fn is_mcap(&self) -> bool {
+        let ending = self.file.extension();
+        ending.is_some_and(|ending| ending.eq_ignore_ascii_case("mcap"))
     }
 }

@@ -6,11 +6,12 @@ use anyhow::{Result, ensure};
 use robotctl::{status::Status as RobotStatus, tuning::TuningClient};
 
 use super::{
-    connection::Connection,
+    connection::{Connection, examples},
     output::{self, begin, say},
 };
 
 #[derive(clap::Args)]
+#[command(after_help = examples!("status"))]
 pub struct Status {
     #[command(flatten)]
     connection: Connection,

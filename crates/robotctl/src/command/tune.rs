@@ -12,11 +12,12 @@ use robotctl::{
 };
 
 use super::{
-    connection::Connection,
+    connection::{Connection, examples},
     output::{begin, say},
 };
 
 #[derive(clap::Args)]
+#[command(after_help = examples!("tune", " get heater.kp"))]
 pub struct Tune {
     #[command(flatten)]
     connection: Connection,
@@ -26,7 +27,7 @@ pub struct Tune {
 
 #[derive(clap::Subcommand)]
 enum Action {
-    /// List all settings with unit and range and, with --can, their present values
+    /// List all settings with unit and range and, with --can or --link, their present values
     List {
         /// List only names that contain this
         filter: Option<String>,

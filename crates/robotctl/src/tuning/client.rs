@@ -36,10 +36,8 @@ impl Default for Timeouts {
 pub enum TuningError {
     #[error(transparent)]
     Link(#[from] CanLinkError),
-    #[error(
-        "the robot does not answer: is it on, is this one of its two CAN buses at 1 Mbit/s, and is the bus terminated?"
-    )]
-    Silent,
+    #[error("the robot does not answer: {0}")]
+    Silent(String),
     #[error("this firmware shows no such live values: it is older than this robotctl")]
     TooOld,
     #[error("{what}: {}", explain(*.reason, .allowed.as_deref()))]
@@ -276,6 +274,6 @@ impl TuningClient {
                 }
             }
         }
-        Err(TuningError::Silent)
+        Err(TuningError::Silent(self.link.why_silent()))
     }
 }

@@ -99,7 +99,7 @@ fn a_lost_reply_is_requested_again_and_a_dead_bus_is_reported() {
 
     bus.0.borrow_mut().to_lose = usize::MAX;
     let before = bus.0.borrow().requests;
-    assert!(matches!(client.read(target), Err(TuningError::Silent)));
+    assert!(matches!(client.read(target), Err(TuningError::Silent(_))));
     assert_eq!(bus.0.borrow().requests - before, 3);
 }
 
