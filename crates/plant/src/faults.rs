@@ -39,6 +39,7 @@ faults! {
     LinkCutUp "link-cut-up" "wire from the board to the PC cut: the robot hears the PC, but not the other way round",
     LinkNoise "link-noise" "bit errors, swallowed and stray characters and missing stop bits on the serial link, both ways",
     LinkFlood "link-flood" "random characters at full rate on the line from the PC to the board, in place of the PC's frames",
+    LinkBreak "link-break" "line from the PC to the board held low, but for an instant every 50 ms",
     PcFrozen "pc-frozen" "PC repeats its last frame",
     PcExtremes "pc-extremes" "PC sends frames whose fields are all at an end of their range, drawn anew for each frame",
     ImuGone "imu-gone" "BMI088 without supply: MISO reads 0xFF; at the end it powers up anew",

@@ -1,8 +1,7 @@
-//! The PC on the robot's serial link: its program, its adapter for programs outside of the simulation, and the cable.
+//! The PC on the robot's serial link: its program, and the cable with its faults.
 //!
 //! The codec is written from docs/pc-link.md, not taken from the firmware.
 
-mod adapter;
 mod codec;
 mod faults;
 mod line;
@@ -13,10 +12,10 @@ mod scanner;
 
 use crate::{
     random::{Random, Stream},
+    serial_adapter::LINK_FORMAT,
     time::{MS, Ps},
-    wire::UartChar,
+    wire::{LineEvent, UartChar},
 };
-pub use adapter::SerialAdapter;
 use codec::{DOWN_LEN, UP_LEN};
 pub(crate) use codec::{Downlink, Uplink};
 pub(crate) use faults::LinkFaults;
@@ -29,27 +28,28 @@ use scanner::Scanner;
 
 /// A flood is made in pieces of this length.
 const FLOOD_PIECE: Ps = MS;
+/// A line that is held low rises for an instant after this time.
+const HELD_LOW: Ps = 50 * MS;
 /// Share of the frames that a noisy line precedes with a stray byte.
 const STRAY: f64 = 0.3;
 
-/// Both directions of the cable and what is at its far end.
+/// The program at the far end of the cable, both lines, and what is heard at their ends.
 pub(crate) struct Pc {
     program: Program,
-    adapter: SerialAdapter,
     to_board: Line,
     down: Scanner<DOWN_LEN>,
     up: Scanner<UP_LEN>,
     noise_down: LineNoise,
     noise_up: LineNoise,
     garbage: Random,
-    next_flood: Ps,
+    next_disturbance: Ps,
     /// The last frame that was whole at the board, and the number of them.
     pub(crate) asked: Downlink,
     pub(crate) down_frames: u64,
     /// The last frame that was whole at the PC.
     pub(crate) told: Option<Uplink>,
     pub(crate) meter: Meter,
-    /// Characters from the board that the PC's adapter could not read: another rate or another format.
+    /// Characters from the board that the PC's adapter could not read: another rate or format, or no stop bit.
     pub(crate) unreadable: u64,
 }
 
@@ -57,14 +57,13 @@ impl Pc {
     pub(crate) fn new(seed: u64) -> Self {
         Self {
             program: Program::new(Random::new(seed, Stream::PcExtremes)),
-            adapter: SerialAdapter::default(),
             to_board: Line::default(),
             down: Scanner::default(),
             up: Scanner::default(),
             noise_down: LineNoise::new(Random::new(seed, Stream::LinkDown)),
             noise_up: LineNoise::new(Random::new(seed, Stream::LinkUp)),
             garbage: Random::new(seed, Stream::LinkFlood),
-            next_flood: Ps::MAX,
+            next_disturbance: Ps::MAX,
             asked: Downlink::default(),
             down_frames: 0,
             told: None,
@@ -78,8 +77,9 @@ impl Pc {
         self.program.set(input, self.told.as_ref(), now);
     }
 
-    pub(crate) fn adapter(&mut self) -> &mut SerialAdapter {
-        &mut self.adapter
+    /// Whether its cable is plugged into the board. It is from the first start of the program on.
+    pub(crate) fn plugged(&self) -> bool {
+        self.program.started()
     }
 
     /// Frames from the board with a wrong checksum, and bytes of it that belonged to no frame.
@@ -92,23 +92,23 @@ impl Pc {
         self.program.sent()
     }
 
-    /// When the program or a flood puts something on the line next.
+    /// When the program or a fault puts something on the line next.
     pub(crate) fn next_due(&self) -> Ps {
-        self.program.next_frame().min(self.next_flood)
+        self.program.next_frame().min(self.next_disturbance)
     }
 
-    /// Start of the first character to the board after `now`, or else when the next is put on the line.
+    /// Start of the next character to the board after `now`, or else when the next is put on the line.
     pub(crate) fn next_event(&self, now: Ps) -> Ps {
         self.to_board.next_start(now).min(self.next_due())
     }
 
     /// A fault of the line begins or ends at `now`.
     pub(crate) fn set_faults(&mut self, faults: LinkFaults, now: Ps) {
-        if faults.cut_down || faults.flood {
+        if !faults.lets_through() {
             self.to_board.drop_unstarted(now);
         }
-        let flooding = faults.flood && !faults.cut_down;
-        self.next_flood = match (flooding, self.next_flood) {
+        let disturbed = !faults.cut_down && (faults.flood || faults.held_low);
+        self.next_disturbance = match (disturbed, self.next_disturbance) {
             (false, _) => Ps::MAX,
             (true, Ps::MAX) => now,
             (true, running) => running,
@@ -118,43 +118,61 @@ impl Pc {
     /// Puts on the line what is due at [`Self::next_due`].
     pub(crate) fn act(&mut self, faults: LinkFaults) {
         let at = self.next_due();
-        if self.next_flood == at {
-            self.next_flood = at + FLOOD_PIECE;
-            while self.to_board.free_from(at) < self.next_flood {
-                let byte = self.garbage.byte();
-                self.to_board.send(byte, at);
-            }
+        if self.next_disturbance == at {
+            self.disturb(at, faults);
             return;
         }
         let frame = self.program.frame(faults, self.told.as_ref());
         if faults.noise && self.garbage.unit() < STRAY {
             let stray = self.garbage.byte();
-            self.put(stray, at, faults);
+            self.send(stray, at, faults);
         }
         for byte in frame {
-            self.put(byte, at, faults);
+            self.send(byte, at, faults);
         }
     }
 
-    fn put(&mut self, byte: u8, now: Ps, faults: LinkFaults) {
-        if faults.cut_down || faults.flood {
+    fn disturb(&mut self, at: Ps, faults: LinkFaults) {
+        if faults.held_low {
+            self.next_disturbance = at + HELD_LOW;
+            self.to_board.hold_low(at, self.next_disturbance);
             return;
         }
-        let noise = faults.noise.then_some(&mut self.noise_down);
-        self.to_board.send_through(byte, now, noise);
-    }
-
-    /// Whether nothing is on its way to the board.
-    pub(crate) fn is_idle(&self) -> bool {
-        self.adapter.is_empty() && self.to_board.is_empty()
-    }
-
-    /// Sends what waits in the adapter, and looks for a frame to the board whose last stop bit has ended by `now`. Returns
-    /// the time of that.
-    pub(crate) fn advance(&mut self, now: Ps, faults: LinkFaults) -> Option<Ps> {
-        while let Some(byte) = self.adapter.next_to_send() {
-            self.put(byte, now, faults);
+        self.next_disturbance = at + FLOOD_PIECE;
+        while self.to_board.free_from(at) < self.next_disturbance {
+            let character = self.to_board.next_character(self.garbage.byte(), at);
+            self.to_board.put(LineEvent::Character(character));
         }
+    }
+
+    fn send(&mut self, byte: u8, now: Ps, faults: LinkFaults) {
+        if faults.lets_through() {
+            let character = self.to_board.next_character(byte, now);
+            self.pass(character, faults);
+        }
+    }
+
+    /// Passes a character from the PC's end of the line to the board's.
+    pub(crate) fn pass(&mut self, character: UartChar, faults: LinkFaults) {
+        let arrives = if !faults.lets_through() {
+            None
+        } else if faults.noise {
+            self.noise_down.disturb(character)
+        } else {
+            Some(LineEvent::Character(character))
+        };
+        if let Some(event) = arrives {
+            self.to_board.put(event);
+        }
+    }
+
+    /// Takes what is next on the line to the board, if it begins at or before `now`.
+    pub(crate) fn next_on_the_line(&mut self, now: Ps) -> Option<LineEvent> {
+        self.to_board.take(now)
+    }
+
+    /// Looks for a frame to the board whose last stop bit has ended by `now`. Returns the time of that.
+    pub(crate) fn next_whole(&mut self, now: Ps) -> Option<Ps> {
         while let Some((at, byte)) = self.to_board.next_ended(now) {
             if let Some(frame) = self.down.take(byte) {
                 self.asked = Downlink::decode(&frame);
@@ -165,31 +183,33 @@ impl Pc {
         None
     }
 
-    /// Takes the next character on the line to the board whose start bit begins at or before `now`.
-    pub(crate) fn take(&mut self, now: Ps) -> Option<UartChar> {
-        self.to_board.take(now)
-    }
-
-    /// A character of the board has ended. Returns the time if a frame is whole with it.
-    pub(crate) fn receive(&mut self, sent: UartChar, faults: LinkFaults) -> Option<Ps> {
+    /// A character of the board as it arrives at the PC's adapter, if it does.
+    pub(crate) fn arrives(&mut self, sent: UartChar, faults: LinkFaults) -> Option<UartChar> {
         if faults.cut_up {
             return None;
         }
         let heard = if faults.noise {
             self.noise_up.disturb(sent)?
         } else {
-            sent
+            LineEvent::Character(sent)
         };
-        let at = heard.start + line::character_time(heard.format);
-        if !line::readable(heard.format) {
-            self.unreadable += 1;
-            return None;
+        match heard {
+            LineEvent::Character(heard) if LINK_FORMAT.understands(heard.format) => Some(heard),
+            LineEvent::Character(_) | LineEvent::Low { .. } => {
+                self.unreadable += 1;
+                None
+            }
         }
-        self.adapter.receive(heard.byte);
-        let frame = self.up.take(heard.byte)?;
+    }
+
+    /// The program takes a character that ended `now`. Returns whether a frame is whole with it.
+    pub(crate) fn receive(&mut self, heard: UartChar, now: Ps) -> bool {
+        let Some(frame) = self.up.take(heard.byte) else {
+            return false;
+        };
         self.told = Some(Uplink::decode(&frame));
-        self.meter.frame(at);
-        Some(at)
+        self.meter.frame(now);
+        true
     }
 }
 

@@ -32,7 +32,7 @@ pub use crate::{
     body::PlantKind,
     faults::FaultInfo,
     joints::JointKind,
-    pc::{PcInput, PcJoints, SerialAdapter},
+    pc::{PcInput, PcJoints},
     radio::{RadioKind, RemoteInput},
     wire::{CanBusId, SpiSelect},
 };

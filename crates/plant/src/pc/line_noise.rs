@@ -1,6 +1,9 @@
 //! Interference on the cable: flipped bits, swallowed characters, stop bits that are not there.
 
-use crate::{random::Random, wire::UartChar};
+use crate::{
+    random::Random,
+    wire::{LineEvent, UartChar},
+};
 
 const SINGLE_FLIP: f64 = 0.01;
 const DOUBLE_FLIP: f64 = 0.005;
@@ -18,7 +21,7 @@ impl LineNoise {
     }
 
     /// The character as it arrives, if it does. Without parity a flipped bit shows in the checksum only.
-    pub(super) fn disturb(&mut self, mut sent: UartChar) -> Option<UartChar> {
+    pub(super) fn disturb(&mut self, mut sent: UartChar) -> Option<LineEvent> {
         let draw = self.random.unit();
         let [swallowed, single, double, no_stop_bit] =
             sums([SWALLOWED, SINGLE_FLIP, DOUBLE_FLIP, NO_STOP_BIT]);
@@ -33,10 +36,12 @@ impl LineNoise {
             sent.byte ^= 1 << ((first + 1 + self.random.below(7)) % 8);
         }
         if (double..no_stop_bit).contains(&draw) {
-            // A ninth data bit of 0 is where the stop bit should be.
-            sent.format.data_bits += 1;
+            return Some(LineEvent::Low {
+                from: sent.start,
+                until: sent.start + sent.format.char_time() * 98 / 100,
+            });
         }
-        Some(sent)
+        Some(LineEvent::Character(sent))
     }
 }
 
@@ -52,7 +57,7 @@ fn sums(values: [f64; 4]) -> [f64; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{pc::line::FORMAT, random::Stream};
+    use crate::{random::Stream, serial_adapter::LINK_FORMAT};
 
     #[test]
     fn each_kind_of_error_has_its_share() {
@@ -62,12 +67,12 @@ mod tests {
             let sent = UartChar {
                 start: 0,
                 byte: 0x5A,
-                format: FORMAT,
+                format: LINK_FORMAT,
             };
             let kind = match noise.disturb(sent) {
                 None => 0,
-                Some(heard) if heard.format.data_bits == 9 => 3,
-                Some(heard) => match (heard.byte ^ 0x5A).count_ones() {
+                Some(LineEvent::Low { .. }) => 3,
+                Some(LineEvent::Character(heard)) => match (heard.byte ^ 0x5A).count_ones() {
                     0 => 4,
                     flips => flips as usize,
                 },

@@ -12,7 +12,7 @@ use crate::{
 /// A change of what the program sends. An unset field keeps its value.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PcInput {
-    /// Whether it sends at all. It starts with the frame that is due at once.
+    /// Whether it sends at all. It starts with the frame that is due at once. The first start plugs the cable in too.
     pub on: Option<bool>,
     /// Frames a second, up to [`MAX_RATE_HZ`](PcInput::MAX_RATE_HZ).
     pub rate_hz: Option<f64>,
@@ -60,6 +60,7 @@ pub enum PcJoints {
 #[derive(Clone, Debug)]
 pub(super) struct Program {
     on: bool,
+    started: bool,
     period: Ps,
     next_frame: Ps,
     wheels_rps: [f64; 2],
@@ -77,6 +78,7 @@ impl Program {
     pub(super) fn new(random: Random) -> Self {
         Self {
             on: false,
+            started: false,
             period: from_seconds(1.0 / 100.0),
             next_frame: 0,
             wheels_rps: [0.0; 2],
@@ -97,6 +99,7 @@ impl Program {
             self.next_frame = now;
         }
         self.on = on;
+        self.started |= on;
         if let Some(rate_hz) = input.rate_hz {
             let rate_hz = rate_hz.clamp(0.1, PcInput::MAX_RATE_HZ);
             self.period = from_seconds(1.0 / rate_hz);
@@ -116,6 +119,11 @@ impl Program {
             let [_, _, joints @ ..] = told.motors;
             self.joints = PcJoints::At(joints.map(|joint| joint.pos_rad));
         }
+    }
+
+    /// Whether it has ever been switched on.
+    pub(super) fn started(&self) -> bool {
+        self.started
     }
 
     pub(super) fn sent(&self) -> u64 {

@@ -1,4 +1,4 @@
-use super::{line::FORMAT, *};
+use super::*;
 use crate::time::{SECOND, US};
 
 const CHARACTER: Ps = 10 * SECOND / 460_800;
@@ -17,11 +17,19 @@ fn run(pc: &mut Pc, end: Ps, faults: LinkFaults) -> Vec<UartChar> {
     while pc.next_due() <= end {
         let now = pc.next_due();
         pc.act(faults);
-        characters.extend(std::iter::from_fn(|| pc.take(now)));
+        take(pc, now, &mut characters);
     }
-    characters.extend(std::iter::from_fn(|| pc.take(end)));
-    while pc.advance(end + MS, faults).is_some() {}
+    take(pc, end, &mut characters);
+    while pc.next_whole(end + MS).is_some() {}
     characters
+}
+
+fn take(pc: &mut Pc, now: Ps, characters: &mut Vec<UartChar>) {
+    while let Some(event) = pc.next_on_the_line(now) {
+        if let LineEvent::Character(character) = event {
+            characters.push(character);
+        }
+    }
 }
 
 fn up_frame(joints_code: u16) -> [u8; UP_LEN] {
@@ -38,9 +46,14 @@ fn tell(pc: &mut Pc, frame: &[u8], from: Ps, faults: LinkFaults) -> Option<Ps> {
     let characters = frame.iter().enumerate().map(|(n, byte)| UartChar {
         start: from + n as Ps * CHARACTER,
         byte: *byte,
-        format: FORMAT,
+        format: LINK_FORMAT,
     });
-    characters.fold(None, |whole, c| pc.receive(c, faults).or(whole))
+    characters.fold(None, |whole, character| {
+        let heard = pc.arrives(character, faults);
+        let end = character.start + CHARACTER;
+        let is_whole = heard.is_some_and(|heard| pc.receive(heard, end));
+        is_whole.then_some(end).or(whole)
+    })
 }
 
 #[test]
@@ -184,23 +197,29 @@ fn extremes_are_both_ends_of_every_field_and_never_between() {
 }
 
 #[test]
-fn what_an_outside_program_sends_goes_onto_the_line() {
+fn a_line_held_low_carries_breaks_and_no_frames() {
     let mut pc = Pc::new(1);
-    pc.adapter().open();
-    let frame = Downlink::default().encode();
-    assert_eq!(pc.adapter().send(&frame), DOWN_LEN);
-    assert_eq!(pc.advance(MS, LinkFaults::default()), None);
-    assert_eq!(pc.next_event(MS), MS + CHARACTER);
-    let characters = run(&mut pc, 3 * MS, LinkFaults::default());
-    assert_eq!((characters.len(), characters[0].start), (DOWN_LEN, MS));
-    tell(&mut pc, &up_frame(0), 4 * MS, LinkFaults::default());
-    assert_eq!(pc.adapter().take_all(), up_frame(0));
+    pc.set(forward(), 0);
+    let low = LinkFaults {
+        held_low: true,
+        ..LinkFaults::default()
+    };
+    pc.set_faults(low, 0);
+    while pc.next_due() <= 10 * MS {
+        pc.act(low);
+    }
+    let held = LineEvent::Low {
+        from: 0,
+        until: 50 * MS,
+    };
+    assert_eq!(pc.next_on_the_line(10 * MS), Some(held));
+    assert_eq!(pc.next_on_the_line(10 * MS), None);
 }
 
 #[test]
 fn characters_of_another_rate_cannot_be_read() {
     let mut pc = Pc::new(1);
-    let mut slow = FORMAT;
+    let mut slow = LINK_FORMAT;
     slow.baud = 115_200;
     for byte in up_frame(0) {
         let start = 0;
@@ -209,7 +228,7 @@ fn characters_of_another_rate_cannot_be_read() {
             byte,
             format: slow,
         };
-        assert_eq!(pc.receive(character, LinkFaults::default()), None);
+        assert_eq!(pc.arrives(character, LinkFaults::default()), None);
     }
     assert_eq!(pc.unreadable, 94);
 }

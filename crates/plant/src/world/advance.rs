@@ -187,11 +187,7 @@ impl World {
 
     /// Notes the frames of the PC that are whole at the board.
     fn advance_link(&mut self) {
-        if self.pc.is_idle() {
-            return;
-        }
-        let faults = self.link_faults();
-        while let Some(at) = self.pc.advance(self.now, faults) {
+        while let Some(at) = self.pc.next_whole(self.now) {
             self.wire_events.push(WireEvent {
                 at,
                 signal: signals::LINK_DOWN_FRAMES,
@@ -207,6 +203,7 @@ impl World {
             cut_up: has(Fault::LinkCut) || has(Fault::LinkCutUp),
             noise: has(Fault::LinkNoise),
             flood: has(Fault::LinkFlood),
+            held_low: has(Fault::LinkBreak),
             frozen: has(Fault::PcFrozen),
             extremes: has(Fault::PcExtremes),
         }

@@ -124,28 +124,6 @@ impl World {
     }
 }
 
-/// USART1: PC.
-impl World {
-    /// Takes the next character on the line of the PC (USART1 RX) whose start bit begins at or before `now`.
-    pub fn pc_char(&mut self, now: Ps) -> Option<UartChar> {
-        self.advance(now);
-        self.pc.take(now)
-    }
-
-    /// Takes a character of the board (USART1 TX) to the PC. To be called when its stop bit has ended.
-    pub fn pc_received(&mut self, character: UartChar, now: Ps) {
-        self.advance(now);
-        let whole = self.pc.receive(character, self.link_faults());
-        if let Some(at) = whole {
-            self.wire_events.push(WireEvent {
-                at,
-                signal: signals::LINK_UP_FRAMES,
-                value: self.pc.meter.frames() as f64,
-            });
-        }
-    }
-}
-
 /// USART3: radio.
 impl World {
     /// Takes the next character on the line of the radio receiver (USART3 RX) whose start bit begins at or before `now`.
@@ -162,16 +140,20 @@ impl World {
         &mut self.serial_adapter
     }
 
-    /// Level that the PC's adapter drives onto USART1 RX (PB7) while it sends nothing; `None` while none is plugged in.
+    /// Level that the PC's adapter drives onto USART1 RX (PB7) while it sends nothing; `None` while no cable is plugged in.
     pub fn link_rx_pin(&self) -> Option<bool> {
-        self.serial_adapter.plugged().then_some(true)
+        let plugged = self.serial_adapter.plugged() || self.pc.plugged();
+        (plugged && !self.link_faults().cut_down).then_some(true)
     }
 
     /// What happens next on the line into USART1 RX (PB7), if it begins at or before `now`.
     pub fn link_event(&mut self, now: Ps) -> Option<LineEvent> {
         self.advance(now);
-        let character = self.serial_adapter.next_character(now)?;
-        Some(LineEvent::Character(character))
+        let faults = self.link_faults();
+        while let Some(character) = self.serial_adapter.next_character(now) {
+            self.pc.pass(character, faults);
+        }
+        self.pc.next_on_the_line(now)
     }
 
     /// The board sent a character on USART1 TX (PA9), whose last stop bit ends `now`. A character that no PC can read is
@@ -184,6 +166,16 @@ impl World {
                 character.format
             )));
         }
-        self.serial_adapter.receive(character, now);
+        let Some(heard) = self.pc.arrives(character, self.link_faults()) else {
+            return;
+        };
+        self.serial_adapter.receive(heard, now);
+        if self.pc.receive(heard, now) {
+            self.wire_events.push(WireEvent {
+                at: now,
+                signal: signals::LINK_UP_FRAMES,
+                value: self.pc.meter.frames() as f64,
+            });
+        }
     }
 }

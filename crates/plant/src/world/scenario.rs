@@ -8,7 +8,7 @@ use crate::{
     ist8310::MagFaults,
     joints::DriveFaults,
     m3508::EscFaults,
-    pc::{PcInput, SerialAdapter},
+    pc::PcInput,
     radio::RemoteInput,
     time::Ps,
 };
@@ -24,11 +24,6 @@ impl World {
         self.pc.set(input, self.now);
     }
 
-    /// The adapter through which a program outside of the simulation uses the serial link.
-    pub fn serial_adapter(&mut self) -> &mut SerialAdapter {
-        self.pc.adapter()
-    }
-
     /// Starts or ends a fault at the present time.
     ///
     /// # Errors
@@ -39,7 +34,7 @@ impl World {
         self.faults.set(fault, active);
         match fault {
             Fault::SbusSilent if active => self.radio.unplug(self.now),
-            Fault::LinkCut | Fault::LinkCutDown | Fault::LinkFlood => {
+            Fault::LinkCut | Fault::LinkCutDown | Fault::LinkFlood | Fault::LinkBreak => {
                 self.pc.set_faults(self.link_faults(), self.now);
             }
             Fault::ImuGone
