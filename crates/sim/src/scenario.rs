@@ -10,7 +10,7 @@ use robot_plant::{
     mounting::Mounting,
     time::Ps,
     wire::CanFrame,
-    world::{CanBusId, JointKind, PlantKind, RadioKind, RemoteInput},
+    world::{CanBusId, JointKind, PcInput, PlantKind, RadioKind, RemoteInput},
 };
 
 use super::expectation::Expectation;
@@ -72,6 +72,8 @@ pub struct TimedEvent {
 pub enum Event {
     /// The pilot moves sticks or switches.
     Remote(RemoteInput),
+    /// The program on the PC sends something else over the serial link.
+    Pc(PcInput),
     /// The PC's adapter sends a frame.
     Can(CanBusId, CanFrame),
     StartFault(String),

@@ -52,6 +52,10 @@ impl Simulation for Machine {
                 self.with_world(|world| world.set_remote(*input));
                 Ok(())
             }
+            Event::Pc(input) => {
+                self.with_world(|world| world.set_pc(*input));
+                Ok(())
+            }
             Event::Can(bus, frame) => {
                 let taken = self.with_world(|world| {
                     let adapter = world.can_adapter(*bus);

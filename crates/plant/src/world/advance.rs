@@ -1,6 +1,6 @@
 //! The passage of time.
 
-use super::{WireEvent, World, signals};
+use super::World;
 use crate::{
     attitude,
     body::{Floor, Stance},
@@ -58,7 +58,7 @@ impl World {
             }
         }
         self.now = self.now.max(now);
-        self.advance_link();
+        self.note_whole_frames();
     }
 
     /// The earliest event up to `now`. Mechanics come first among simultaneous ones, so that the others see them up to date.
@@ -182,17 +182,6 @@ impl World {
             frame_lost: self.faults.has(Fault::SbusFrameLost),
             noise: self.faults.has(Fault::SbusNoise),
             loss: self.radio_loss(),
-        }
-    }
-
-    /// Notes the frames of the PC that are whole at the board.
-    fn advance_link(&mut self) {
-        while let Some(at) = self.pc.next_whole(self.now) {
-            self.wire_events.push(WireEvent {
-                at,
-                signal: signals::LINK_DOWN_FRAMES,
-                value: self.pc.down_frames as f64,
-            });
         }
     }
 

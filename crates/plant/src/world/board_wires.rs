@@ -156,6 +156,17 @@ impl World {
         self.pc.next_on_the_line(now)
     }
 
+    /// Notes the frames of the PC that are whole at the board.
+    pub(super) fn note_whole_frames(&mut self) {
+        while let Some(at) = self.pc.next_whole(self.now) {
+            self.wire_events.push(WireEvent {
+                at,
+                signal: signals::LINK_DOWN_FRAMES,
+                value: self.pc.down_frames as f64,
+            });
+        }
+    }
+
     /// The board sent a character on USART1 TX (PA9), whose last stop bit ends `now`. A character that no PC can read is
     /// complained of even while none is plugged in.
     pub fn link_sent(&mut self, character: UartChar, now: Ps) {

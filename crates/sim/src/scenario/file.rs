@@ -3,6 +3,7 @@
 mod events;
 mod expectations;
 mod flash;
+mod pc;
 mod problem;
 
 use std::path::Path;

@@ -4,7 +4,7 @@ use std::{collections::BTreeSet, fmt::Write};
 
 use robot_plant::{
     time::{Ps, SECOND, to_seconds},
-    world::{CanBusId, RemoteInput},
+    world::{CanBusId, PcInput, PcJoints, RemoteInput},
 };
 
 use super::invariants::Violation;
@@ -43,6 +43,7 @@ pub fn scenario(done: &[TimedEvent], violation: &Violation, seed: u64, replayed:
 /// The smallest set of events that leads to the same switches and faults.
 fn state(earlier: &[&TimedEvent]) -> Vec<Event> {
     let mut pilot = RemoteInput::default();
+    let mut pc = PcInput::default();
     let mut faults = BTreeSet::new();
     for timed in earlier {
         match &timed.event {
@@ -55,6 +56,18 @@ fn state(earlier: &[&TimedEvent]) -> Vec<Event> {
                     mode: input.mode.or(pilot.mode),
                     left_x: input.left_x.or(pilot.left_x),
                     left_y: input.left_y.or(pilot.left_y),
+                };
+            }
+            Event::Pc(input) => {
+                pc = PcInput {
+                    on: input.on.or(pc.on),
+                    rate_hz: input.rate_hz.or(pc.rate_hz),
+                    wheels_rps: input.wheels_rps.or(pc.wheels_rps),
+                    wheel_kd: input.wheel_kd.or(pc.wheel_kd),
+                    joints: input.joints.or(pc.joints),
+                    joint_kp: input.joint_kp.or(pc.joint_kp),
+                    joint_kd: input.joint_kd.or(pc.joint_kd),
+                    counts: input.counts.or(pc.counts),
                 };
             }
             Event::StartFault(name) => {
@@ -72,7 +85,9 @@ fn state(earlier: &[&TimedEvent]) -> Vec<Event> {
     };
     let faults = faults.into_iter().filter(is_of_world);
     let faults = faults.map(Event::StartFault);
+    let pc = (pc.on == Some(true)).then_some(Event::Pc(pc));
     std::iter::once(Event::Remote(pilot))
+        .chain(pc)
         .chain(faults)
         .collect()
 }
@@ -80,6 +95,7 @@ fn state(earlier: &[&TimedEvent]) -> Vec<Event> {
 fn event_text(text: &mut String, at: f64, event: &Event) {
     let what = match event {
         Event::Remote(input) => format!("remote = {{ {} }}", remote_text(input)),
+        Event::Pc(input) => format!("pc = {{ {} }}", pc_text(input)),
         Event::Can(bus, frame) => {
             let bus = match bus {
                 CanBusId::Can1 => 1,
@@ -110,6 +126,30 @@ fn remote_text(input: &RemoteInput) -> String {
     fields.join(", ")
 }
 
+fn pc_text(input: &PcInput) -> String {
+    let mut fields = Vec::new();
+    let mut field = |name: &str, value: Option<String>| {
+        fields.extend(value.map(|value| format!("{name} = {value}")));
+    };
+    let number = |value: Option<f64>| value.map(|v| format!("{v:?}"));
+    field("on", input.on.map(|v| v.to_string()));
+    field("rate_hz", number(input.rate_hz));
+    field("wheels", input.wheels_rps.map(|v| format!("{v:?}")));
+    field("kd", number(input.wheel_kd));
+    field(
+        "joints",
+        input.joints.map(|joints| match joints {
+            PcJoints::Limp => "\"limp\"".to_owned(),
+            PcJoints::Hold => "\"hold\"".to_owned(),
+            PcJoints::At(angles) => format!("{angles:?}"),
+        }),
+    );
+    field("joint_kp", number(input.joint_kp));
+    field("joint_kd", number(input.joint_kd));
+    field("counts", input.counts.map(|v| v.to_string()));
+    fields.join(", ")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -124,6 +164,15 @@ mod tests {
                 ..RemoteInput::default()
             })
         };
+        let pc = |rate_hz| {
+            Event::Pc(PcInput {
+                on: Some(true),
+                rate_hz: Some(rate_hz),
+                wheels_rps: Some([1.5, 0.0]),
+                joints: Some(PcJoints::Hold),
+                ..PcInput::default()
+            })
+        };
         let timed = |s: u64, what| TimedEvent {
             at: s * SECOND,
             event: what,
@@ -131,10 +180,12 @@ mod tests {
         let fault = |name: &str| Event::StartFault(name.to_owned());
         let done = [
             timed(10, remote(Some(true), Some(0.5))),
+            timed(10, pc(200.0)),
             timed(11, fault("mag-gone")),
             timed(12, fault("imu-gone")),
             timed(13, Event::EndFault("imu-gone".to_owned())),
             timed(50, remote(None, Some(-1.0))),
+            timed(50, pc(300.0)),
         ];
         let violation = Violation {
             at: 52 * SECOND,
@@ -153,8 +204,10 @@ mod tests {
             repeated,
             [
                 (at(3), remote(Some(true), Some(0.5))),
+                (at(3), pc(200.0)),
                 (at(3), fault("mag-gone")),
                 (at(11), remote(None, Some(-1.0))),
+                (at(11), pc(300.0)),
             ]
         );
     }

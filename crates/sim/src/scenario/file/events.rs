@@ -6,7 +6,10 @@ use robot_plant::{
 };
 use serde::Deserialize;
 
-use super::{Problem, instant};
+use super::{
+    Problem, instant,
+    pc::{Pc, read_pc},
+};
 use crate::{
     faults,
     scenario::{Event, TimedEvent},
@@ -18,6 +21,7 @@ use crate::{
 pub(super) struct At {
     t: f64,
     remote: Option<Remote>,
+    pc: Option<Pc>,
     can: Option<Can>,
     fault: Option<String>,
     end_fault: Option<String>,
@@ -48,13 +52,20 @@ struct Remote {
 
 pub(super) fn read_at(at: &At, seconds: f64, events: &mut Vec<TimedEvent>) -> Result<(), Problem> {
     let start = instant("t", at.t, seconds)?;
-    if at.remote.is_none() && at.can.is_none() && at.fault.is_none() && at.end_fault.is_none() {
+    let acts = at.remote.is_some() || at.pc.is_some() || at.can.is_some();
+    if !acts && at.fault.is_none() && at.end_fault.is_none() {
         return Err(Problem::EmptyAt);
     }
     if let Some(remote) = &at.remote {
         events.push(TimedEvent {
             at: start,
             event: Event::Remote(read_remote(remote)?),
+        });
+    }
+    if let Some(pc) = &at.pc {
+        events.push(TimedEvent {
+            at: start,
+            event: Event::Pc(read_pc(pc)?),
         });
     }
     if let Some(can) = &at.can {

@@ -26,7 +26,9 @@ pub enum Problem {
     TooManyValues { group: u8 },
     #[error("a sector holds {SLOTS} records")]
     TooManyRecords,
-    #[error("this [[at]] does nothing; add `remote`, `can`, `fault` or `end_fault`, or remove it")]
+    #[error(
+        "this [[at]] does nothing; add `remote`, `pc`, `can`, `fault` or `end_fault`, or remove it"
+    )]
     EmptyAt,
     #[error("`duration` belongs to a `fault`; name the fault")]
     DurationWithoutFault,
@@ -36,6 +38,17 @@ pub enum Problem {
     Stick(&'static str),
     #[error("`mode` is a three-position switch: write 0, 1 or 2")]
     Mode,
+    #[error("`{name}` is {value}; a frame carries {least} to {most}")]
+    PcField {
+        name: &'static str,
+        value: f64,
+        least: f64,
+        most: f64,
+    },
+    #[error("`joints` is \"{0}\"; write \"hold\", \"limp\" or four angles in rad")]
+    PcJoints(String),
+    #[error("`rate_hz` is {0}; the line carries up to 1,200 frames a second")]
+    PcRate(f64),
     #[error("`bus` is {0}; the board has 1 and 2")]
     Bus(u8),
     #[error("`id` is {0:#x}; a standard identifier ends at 0x7FF")]

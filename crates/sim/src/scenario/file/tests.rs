@@ -1,7 +1,7 @@
 use robot_plant::{
     time::{MS, SECOND},
     wire::CanFrame,
-    world::{CanBusId, RemoteInput},
+    world::{CanBusId, PcInput, PcJoints, RemoteInput},
 };
 
 use super::*;
@@ -161,6 +161,42 @@ fn a_pc_sends_frames() {
         ("{ bus = 1, id = 1, data = [256] }", "256"),
     ] {
         let error = error_of(&format!("[[at]]\nt = 1\ncan = {can}\n"));
+        assert!(error.contains(part), "{error} lacks {part}");
+    }
+}
+
+#[test]
+fn a_pc_steers_over_the_serial_link() {
+    let pc =
+        "[[at]]\nt = 1\npc = { wheels = [2, -3.5], kd = 0.5, joints = \"hold\", rate_hz = 200 }\n";
+    let s = Scenario::parse(&format!("{HEAD}{pc}"), "s.toml").unwrap();
+    let input = PcInput {
+        on: Some(true),
+        rate_hz: Some(200.0),
+        wheels_rps: Some([2.0, -3.5]),
+        wheel_kd: Some(0.5),
+        joints: Some(PcJoints::Hold),
+        ..PcInput::default()
+    };
+    assert_eq!(s.events[0].event, Event::Pc(input));
+    let off = "[[at]]\nt = 1\npc = { on = false, joints = [0.1, 0, 0, -0.1] }\n";
+    let s = Scenario::parse(&format!("{HEAD}{off}"), "s.toml").unwrap();
+    let input = PcInput {
+        on: Some(false),
+        joints: Some(PcJoints::At([0.1, 0.0, 0.0, -0.1])),
+        ..PcInput::default()
+    };
+    assert_eq!(s.events[0].event, Event::Pc(input));
+    for (pc, part) in [
+        ("{ wheels = [201, 0] }", "-200 to 200"),
+        ("{ kd = -1 }", "`kd` is -1"),
+        ("{ joint_kp = nan }", "`joint_kp` is NaN"),
+        ("{ joints = [0, 0, 0, 4] }", "-3.2 to 3.2"),
+        ("{ joints = \"held\" }", "\"hold\", \"limp\""),
+        ("{ rate_hz = 5000 }", "1,200 frames"),
+        ("{ wheel = [1, 1] }", "unknown field"),
+    ] {
+        let error = error_of(&format!("[[at]]\nt = 1\npc = {pc}\n"));
         assert!(error.contains(part), "{error} lacks {part}");
     }
 }
