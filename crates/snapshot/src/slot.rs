@@ -19,33 +19,11 @@ const fn words<T>() -> usize {
 
 #[cfg(not(loom))]
 mod target {
-    use super::{MaybeUninit, words};
+    use super::{MaybeUninit, copy_blocks, words};
     use atomic_maybe_uninit::AtomicMaybeUninit;
     use core::{cell::UnsafeCell, sync::atomic::Ordering};
 
     pub struct Slot<T>(UnsafeCell<MaybeUninit<T>>);
-
-    /// Calls `f` with 0, 1, … `count − 1`. Eight calls a round: the copies are part of the control
-    /// tick, and a compiler that is asked for small code leaves one.
-    #[inline(always)]
-    fn for_each_index(count: usize, f: impl Fn(usize)) {
-        let mut start = 0;
-        while start + 8 <= count {
-            f(start);
-            f(start + 1);
-            f(start + 2);
-            f(start + 3);
-            f(start + 4);
-            f(start + 5);
-            f(start + 6);
-            f(start + 7);
-            start += 8;
-        }
-        while start < count {
-            f(start);
-            start += 1;
-        }
-    }
 
     impl<T: Copy> Slot<T> {
         const WORDS: usize = words::<T>();
@@ -57,27 +35,32 @@ mod target {
         /// What ends up in `copy` may mix words of several values if the slot was written meanwhile.
         pub fn load(&self, copy: &mut MaybeUninit<T>) {
             let to = copy.as_mut_ptr().cast::<MaybeUninit<u32>>();
-            for_each_index(Self::WORDS, |index| {
+            // SAFETY: cell and copy both hold `WORDS` aligned words (`words::<T>` checks); `copy` is borrowed mutably,
+            // and the cell is only ever reached word by word.
+            let copied = unsafe { copy_blocks(self.0.get().cast(), to, Self::WORDS) };
+            for index in copied..Self::WORDS {
                 let word = self.word(index).load(Ordering::Relaxed);
                 // SAFETY: `index < WORDS`, so the word lies inside `copy`.
                 let place = unsafe { to.add(index) };
                 // SAFETY: `place` lies inside `copy`, which is borrowed mutably, and `words` has
                 // shown that `T` is aligned for it.
                 unsafe { place.write(word) };
-            });
+            }
         }
 
         /// Must not run twice at a time: `Snapshot` has one writer.
         pub fn store(&self, value: &T) {
             let from = core::ptr::from_ref(value).cast::<MaybeUninit<u32>>();
-            for_each_index(Self::WORDS, |index| {
+            // SAFETY: as in `load`, and `value` is borrowed.
+            let copied = unsafe { copy_blocks(from, self.0.get().cast(), Self::WORDS) };
+            for index in copied..Self::WORDS {
                 // SAFETY: `index < WORDS`, so the word lies inside `value`.
                 let place = unsafe { from.add(index) };
                 // SAFETY: `place` lies inside `value`, `words` has shown that it is aligned, and a
                 // `MaybeUninit` may be padding.
                 let word = unsafe { place.read() };
                 self.word(index).store(word, Ordering::Relaxed);
-            });
+            }
         }
 
         /// The caller keeps `index` below `WORDS`.
@@ -91,6 +74,50 @@ mod target {
             unsafe { AtomicMaybeUninit::from_ptr(word) }
         }
     }
+}
+
+/// Copies eight words at a time, as long as so many are left, and returns how many it has copied. The copies are part of
+/// the control tick, and word by word they take three instructions each.
+///
+/// # Safety
+/// `from` and `to` must be aligned and valid for `count` words. Nobody may access them meanwhile but word by word.
+#[cfg(all(not(loom), target_arch = "arm"))]
+#[inline(always)]
+unsafe fn copy_blocks(
+    mut from: *const MaybeUninit<u32>,
+    mut to: *mut MaybeUninit<u32>,
+    count: usize,
+) -> usize {
+    const BLOCK: usize = 8;
+    for _ in 0..count / BLOCK {
+        // SAFETY: one block lies ahead of both pointers (contract). Each access is of one aligned word, so it is atomic
+        // like those of `AtomicMaybeUninit`, which are written in assembly too (ARMv7-M ARM A3.5.3: LDM and STM are
+        // sequences of atomic word accesses). An interrupt may restart an instruction, which then copies words again.
+        unsafe {
+            core::arch::asm!(
+                "ldm {from}!, {{r2, r3, r4, r5, r8, r10, r12, lr}}",
+                "stm {to}!, {{r2, r3, r4, r5, r8, r10, r12, lr}}",
+                from = inout(reg) from,
+                to = inout(reg) to,
+                out("r2") _,
+                out("r3") _,
+                out("r4") _,
+                out("r5") _,
+                out("r8") _,
+                out("r10") _,
+                out("r12") _,
+                out("lr") _,
+                options(nostack, preserves_flags),
+            );
+        }
+    }
+    count / BLOCK * BLOCK
+}
+
+/// Elsewhere words are copied one by one.
+#[cfg(all(not(loom), not(target_arch = "arm")))]
+unsafe fn copy_blocks(_: *const MaybeUninit<u32>, _: *mut MaybeUninit<u32>, _: usize) -> usize {
+    0
 }
 
 /// The same storage out of loom's atomics, so that the model checker sees every word.
