@@ -18,7 +18,7 @@ use robot_emulator::soc::board_errors::BoardError;
 pub trait Simulation {
     fn run_until(&mut self, until: Ps) -> Result<(), MachineError>;
     fn apply(&mut self, event: &Event) -> Result<(), EventError>;
-    /// Exchanges frames and bytes between the world and the programs on `ports`.
+    /// Exchanges frames between the world and the programs on `ports`.
     fn serve(&mut self, ports: &mut PcPorts) -> io::Result<()>;
     fn world_names(&mut self) -> Vec<String>;
     fn sample_world(&mut self, out: &mut Vec<f64>);
@@ -75,8 +75,7 @@ impl Simulation for Machine {
         if ports.is_empty() {
             return Ok(());
         }
-        let now = self.now();
-        self.with_world(|world| ports.serve(world, now))
+        self.with_world(|world| ports.serve(world))
     }
 
     fn world_names(&mut self) -> Vec<String> {

@@ -1,7 +1,9 @@
 //! The frames of docs/hardware.md#test-vectors, computed there from the protocol tables, and the joint motors' frames as
-//! the makers' documents and C code give them, through the public interface.
+//! the makers' documents and C code give them, and those of the PC link as the tables of its document give them, through
+//! the public interface.
 
 mod dm4310;
+mod link;
 mod mit_vectors;
 mod rs00;
 

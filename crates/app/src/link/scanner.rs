@@ -43,8 +43,11 @@ pub(super) struct Found<F> {
 #[derive(Clone, Debug)]
 pub(super) struct Scanner<const N: usize> {
     held: [u8; N],
+    /// Number of bytes held.
     len: usize,
-    /// Bit n is set if a frame has ended right before the byte at place n.
+    /// Place of the first byte that is not yet done with. It is 0 between calls.
+    start: usize,
+    /// Bit n is set if a frame has ended right before the byte n places after `start`.
     ends: u128,
     counters: ScanCounters,
 }
@@ -54,6 +57,7 @@ impl<const N: usize> Scanner<N> {
         Self {
             held: [0; N],
             len: 0,
+            start: 0,
             ends: 1,
             counters: ScanCounters::default(),
         }
@@ -75,22 +79,24 @@ impl<const N: usize> Scanner<N> {
             self.len = self.len.wrapping_add(1);
         }
         while let Some(len) = self.due::<F>() {
-            if self.len < len {
-                return;
-            }
-            self.check(len, sink);
+            let Some(bytes) = self.rest().get(..len) else {
+                break;
+            };
+            let frame = read(bytes);
+            self.pass(len, frame, sink);
         }
+        self.drop_what_is_done();
     }
 
     /// Gives up the frame that is not complete and looks for shorter ones in it.
     pub(super) fn flush<F: Frame>(&mut self, sink: &mut impl FnMut(Found<F>)) {
         while let Some(len) = self.due::<F>() {
-            if self.len < len {
-                self.discard_one();
-            } else {
-                self.check(len, sink);
+            match self.rest().get(..len).map(read) {
+                Some(frame) => self.pass(len, frame, sink),
+                None => self.discard_one(),
             }
         }
+        self.drop_what_is_done();
     }
 
     /// Bytes may be missing here: the next frame follows on none.
@@ -98,10 +104,14 @@ impl<const N: usize> Scanner<N> {
         self.ends = 0;
     }
 
-    /// Drops bytes that begin no frame. Returns the length of the frame whose header is then the first byte held,
-    /// `None` if no byte is left.
+    fn rest(&self) -> &[u8] {
+        self.held.get(self.start..self.len).unwrap_or_default()
+    }
+
+    /// Discards bytes that begin no frame. Returns the length of the frame whose header is then the first byte, `None`
+    /// if no byte is left.
     fn due<F: Frame>(&mut self) -> Option<usize> {
-        while let Some(header) = self.held.first().filter(|_| self.len > 0) {
+        while let Some(header) = self.rest().first() {
             if let Some(len) = F::len(*header) {
                 return Some(len);
             }
@@ -110,15 +120,9 @@ impl<const N: usize> Scanner<N> {
         None
     }
 
-    /// Checks the frame of `len` bytes at the start of the buffer.
-    fn check<F: Frame>(&mut self, len: usize, sink: &mut impl FnMut(Found<F>)) {
+    /// Goes on behind a frame of `len` bytes, or behind its header alone if it is `None`.
+    fn pass<F>(&mut self, len: usize, frame: Option<F>, sink: &mut impl FnMut(Found<F>)) {
         let contiguous = self.ends & 1 == 1;
-        let bytes = self.held.get(..len).unwrap_or_default();
-        let frame = if crc8(bytes) == 0 {
-            F::read(bytes)
-        } else {
-            None
-        };
         let Some(frame) = frame else {
             if contiguous {
                 self.counters.crc_errors = self.counters.crc_errors.wrapping_add(1);
@@ -128,11 +132,7 @@ impl<const N: usize> Scanner<N> {
         };
         self.counters.good = self.counters.good.wrapping_add(1);
         self.ends |= 1_u128.wrapping_shl(len as u32);
-        if contiguous {
-            self.advance(len);
-        } else {
-            self.advance(1);
-        }
+        self.advance(if contiguous { len } else { 1 });
         sink(Found { frame, contiguous });
     }
 
@@ -148,8 +148,24 @@ impl<const N: usize> Scanner<N> {
     }
 
     fn advance(&mut self, count: usize) {
-        self.held.copy_within(count.min(N).., 0);
-        self.len = self.len.saturating_sub(count);
+        self.start = self.start.wrapping_add(count);
         self.ends = self.ends.wrapping_shr(count as u32);
+    }
+
+    fn drop_what_is_done(&mut self) {
+        if let Some(bytes) = self.held.get_mut(..self.len) {
+            bytes.copy_within(self.start.min(bytes.len()).., 0);
+        }
+        self.len = self.len.saturating_sub(self.start);
+        self.start = 0;
+    }
+}
+
+/// A frame with a correct CRC and sensible content.
+fn read<F: Frame>(bytes: &[u8]) -> Option<F> {
+    if crc8(bytes) == 0 {
+        F::read(bytes)
+    } else {
+        None
     }
 }
