@@ -4,7 +4,7 @@ use embassy_time::{Duration, Instant};
 use robot_app::diagnostics::DiagnosticsSnapshot;
 use robot_app::domain::FlashRequest;
 use robot_app::domain::LogicBus;
-use robot_app::domain::{CalibrationState, LateTasks, RemoteUpdate, SystemHealth};
+use robot_app::domain::{CalibrationState, LateTasks, PcCommand, RemoteUpdate, SystemHealth};
 use robot_app::tick::{ControlInputs, ControlOutputs, DIAGNOSTICS_PERIOD_TICKS, RobotLoop};
 use robot_snapshot::{Follower, Writer};
 
@@ -202,6 +202,7 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
         imu: &inputs.imu.last().state,
         mag: &inputs.mag.last().state,
         logic: inputs.logic.last(),
+        pc: &PcCommand::default(),
         health,
         params: &params.status,
         flash_request: params.request,

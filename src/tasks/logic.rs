@@ -1,4 +1,4 @@
-//! The logic task, 100 Hz: a command from the remote, the PC or the user's own logic to the logic bus.
+//! The logic task, 100 Hz: a command from the remote or the user's own logic, or the choice of the PC, to the logic bus.
 
 use embassy_time::{Duration, Instant};
 use robot_app::safety::ArmingState;
@@ -25,7 +25,6 @@ pub async fn run(exchange: &'static Exchange, mut output: Writer<'static, LogicB
         let inputs = LogicInputs {
             config: &exchange.config.latest().config.safety,
             remote: &exchange.remote.latest(),
-            pc: None,
             sensors: &diagnostics.sensors,
             estimate: &diagnostics.estimate,
             armed: diagnostics.arming.state == ArmingState::Armed,

@@ -1,4 +1,5 @@
-//! The logic stage: commands of the pilot, a PC or your own logic → one command on the logic bus.
+//! The logic stage: the pilot's switches and sticks, or your own logic → one command, or the choice of the PC, on the
+//! logic bus.
 //!
 //! Put your own logic into `user_logic.rs`.
 
@@ -6,13 +7,11 @@ mod custom_logic;
 mod decision;
 mod inputs;
 mod manual;
-mod pc_command;
 mod stage;
 mod user_logic;
 
 pub use custom_logic::CustomLogic;
 pub use decision::LogicDecision;
 pub use inputs::LogicInputs;
-pub use pc_command::PcCommand;
 pub use stage::LogicStage;
 pub use user_logic::UserLogic;

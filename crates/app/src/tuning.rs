@@ -1,7 +1,8 @@
-//! The tuning channel: reads and changes settings over CAN while the robot is disarmed (docs/tuning.md).
+//! The tuning channel: reads and changes settings over CAN, or over the PC link, while the robot is disarmed
+//! (docs/tuning.md).
 //!
-//! A request arrives with [`WRITE_ID`] or [`READ_ID`] on either bus and is answered with [`REPLY_ID`] on the same
-//! bus. [`PARAMETERS`] lists all settings.
+//! A request arrives with [`WRITE_ID`] or [`READ_ID`] at one of three ports and is answered with [`REPLY_ID`] at the
+//! same port: see [`TuningPort`]. [`PARAMETERS`] lists all settings.
 
 mod channel;
 pub(crate) mod consistency;
@@ -11,6 +12,7 @@ mod live;
 pub mod opcode;
 mod parameter;
 mod parameters;
+mod port;
 mod protocol;
 mod recording;
 mod refusal;
@@ -23,6 +25,7 @@ pub use live::{JOINTS, LIVE_PAGES, LiveField, LiveKind, LivePage, LiveSource, Li
 pub use parameter::{Parameter, ParameterGroup, ParameterKind, Scope};
 pub use parameters::PARAMETERS;
 pub(crate) use parameters::bit;
+pub use port::TuningPort;
 pub(crate) use protocol::is_request;
 pub use recording::{
     MAX_RECORDING_S, RecordedSample, RecordedSensor, Recorder, RecordingState, RecordingStatus,

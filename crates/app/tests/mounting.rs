@@ -5,7 +5,7 @@ use robot_app::{
     diagnostics::DiagnosticsSnapshot,
     domain::{
         BusId, CanFrame, FlashRequest, ImuState, LogicBus, MagState, Orientation, ParamStatus,
-        RemoteUpdate, RobotConfig, StandardId, StateEstimate, SystemHealth,
+        PcCommand, RemoteUpdate, RobotConfig, StandardId, StateEstimate, SystemHealth,
     },
     safety::WatchdogPeriod,
     tick::{ControlInputs, ControlLoop},
@@ -63,6 +63,7 @@ impl Robot {
                 imu: &self.imu,
                 mag: &self.mag,
                 logic: &LogicBus::default(),
+                pc: &PcCommand::default(),
                 health: &SystemHealth::default(),
                 params: &ParamStatus::default(),
                 flash_request: FlashRequest::None,

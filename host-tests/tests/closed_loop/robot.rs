@@ -4,8 +4,8 @@ use robot_app::{
     control::UserController,
     diagnostics::DiagnosticsSnapshot,
     domain::{
-        ChassisCommand, FlashRequest, ImuState, LogicBus, MagState, ParamStatus, RemoteUpdate,
-        RobotConfig, SafetyConfig, SystemHealth,
+        ChassisCommand, FlashRequest, ImuState, LogicBus, MagState, ParamStatus, PcCommand,
+        RemoteUpdate, RobotConfig, SafetyConfig, SystemHealth,
     },
     input::{RemoteFormat, RemoteMapping, RemoteReceiver},
     logic::{LogicInputs, LogicStage, UserLogic},
@@ -147,7 +147,6 @@ impl Robot {
             let inputs = LogicInputs {
                 config: &SafetyConfig::default(),
                 remote: &self.remote,
-                pc: None,
                 sensors: &self.diagnostics.sensors,
                 estimate: &self.diagnostics.estimate,
                 armed: self.armed(),
@@ -191,6 +190,7 @@ impl Robot {
                 imu: &self.imu,
                 mag: &self.mag,
                 logic: &self.logic,
+                pc: &PcCommand::default(),
                 health: &self.health,
                 params: &ParamStatus::default(),
                 flash_request: FlashRequest::None,

@@ -5,7 +5,7 @@ use robot_app::{
     diagnostics::DiagnosticsSnapshot,
     domain::{
         BusId, CanFrame, ChassisCommand, DriveMode, FlashRequest, ImuState, JointCommand,
-        JointFeedback, JointState, LogicBus, MagState, OperatorState, ParamStatus,
+        JointFeedback, JointState, LogicBus, MagState, OperatorState, ParamStatus, PcCommand,
         RemoteDiagnostics, RemoteState, RemoteUpdate, RobotConfig, StandardId, SystemHealth,
     },
     motor::layout::{MotorLayout, ROBOT_LAYOUT, RS00_LAYOUT},
@@ -188,6 +188,7 @@ impl Robot {
             imu: &imu,
             mag: &mag,
             logic: &logic,
+            pc: &PcCommand::default(),
             health: &health,
             params: &ParamStatus::default(),
             flash_request: self.flash_request,

@@ -4,7 +4,8 @@ use robot_app::{
     control::UserController,
     diagnostics::DiagnosticsSnapshot,
     domain::{
-        BusId, CanFrame, ImuState, LogicBus, MagState, RemoteUpdate, RobotConfig, SystemHealth,
+        BusId, CanFrame, ImuState, LogicBus, MagState, PcCommand, RemoteUpdate, RobotConfig,
+        SystemHealth,
     },
     safety::WatchdogPeriod,
     tick::{ControlInputs, ControlLoop},
@@ -21,6 +22,7 @@ fn step(robot: &mut Robot, control: &mut ControlLoop, diagnostics: &mut Diagnost
             imu: &ImuState::default(),
             mag: &MagState::default(),
             logic: &LogicBus::default(),
+            pc: &PcCommand::default(),
             health: &SystemHealth::default(),
             params: &robot.status(),
             flash_request: robot.asked(),

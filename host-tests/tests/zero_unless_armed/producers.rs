@@ -3,8 +3,8 @@
 use robot_app::{
     domain::{
         ChassisCommand, FlashRequest, HighLevelCommand, ImuState, LogicBus, MagState,
-        OperatorState, ParamStatus, RemoteDiagnostics, RemoteState, RemoteUpdate, SystemHealth,
-        WheelCommand,
+        OperatorState, ParamStatus, PcCommand, RemoteDiagnostics, RemoteState, RemoteUpdate,
+        SystemHealth, WheelCommand,
     },
     safety::WatchdogPeriod,
     tick::ControlInputs,
@@ -21,6 +21,7 @@ pub struct Producers {
     logic: LogicBus,
     health: SystemHealth,
     params: ParamStatus,
+    pc: PcCommand,
 }
 
 impl Producers {
@@ -62,6 +63,7 @@ impl Producers {
             imu: &self.imu,
             mag: &self.mag,
             logic: &self.logic,
+            pc: &self.pc,
             health: &self.health,
             params: &self.params,
             flash_request: FlashRequest::None,
@@ -81,6 +83,7 @@ fn logic_bus(phase: &Phase, now_us: u64) -> LogicBus {
             joints: [joint; 4],
         },
         cmd_valid: phase.direct.is_some(),
+        pc_selected: false,
         ts_us: now_us,
     }
 }

@@ -4,9 +4,9 @@ use super::{TickStats, UnknownFrames};
 use crate::{
     bring_up::BringUpStatus,
     domain::{
-        BusHealth, ChassisCommand, CrashCause, DebugProbe, ImuStatus, LateTasks, LogicBus,
-        OperatorState, ParamStatus, RadioLineHealth, RemoteDiagnostics, RemoteState, ResetCause,
-        SensorHealth, SensorsSnapshot, StateEstimate, TuningStatus,
+        BusHealth, ChassisCommand, CrashCause, DebugProbe, ImuStatus, LateTasks, LinkHealth,
+        LogicBus, OperatorState, ParamStatus, RadioLineHealth, RemoteDiagnostics, RemoteState,
+        ResetCause, SensorHealth, SensorsSnapshot, StateEstimate, TuningStatus,
     },
     safety::{ArmingStatus, MotorReadiness, SafetyStatus},
 };
@@ -71,4 +71,6 @@ pub struct DiagnosticsSnapshot {
     pub strangers: UnknownFrames,
     /// Raw channels: see `RemoteUpdate`.
     pub remote_raw: [u16; 16],
+    /// State of the PC link.
+    pub link: LinkHealth,
 }

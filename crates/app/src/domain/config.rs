@@ -38,7 +38,20 @@ impl WheelOdomConfig {
 
     /// Ground speed in m/s at a rotor speed of 1 rpm.
     pub fn mps_per_rpm(&self) -> f32 {
-        self.wheel_radius_m * (core::f32::consts::TAU / 60.0) / self.gear_ratio
+        self.wheel_radius_m * self.rps_per_rpm()
+    }
+
+    /// Speed of the wheel in rad/s at a rotor speed of 1 rpm.
+    pub fn rps_per_rpm(&self) -> f32 {
+        (core::f32::consts::TAU / 60.0) / self.gear_ratio
+    }
+
+    /// Current in mA that gives a torque of 1 N·m at the wheel. An M3508 gives 0.3 N·m/A at the output of its own gear
+    /// (datasheet).
+    pub fn ma_per_nm(&self) -> f32 {
+        const M3508_GEAR: f32 = 3591.0 / 187.0;
+        const M3508_MA_PER_NM: f32 = 1_000.0 / 0.3;
+        M3508_MA_PER_NM * M3508_GEAR / self.gear_ratio
     }
 }
 
@@ -154,6 +167,10 @@ pub struct SafetyConfig {
     pub clear_hold_us: u32,
     /// 1: after a partial stop the part moves only when the sticks have been centred.
     pub resume_centred: u32,
+    /// Maximum age of a PC's command in µs. Beyond it the PC is lost.
+    pub pc_timeout_us: u32,
+    /// Time in µs after which a PC that turns the wheels by an unchanging command is lost. 0 disables this check.
+    pub pc_frozen_us: u32,
 }
 
 impl Default for SafetyConfig {
@@ -175,6 +192,8 @@ impl Default for SafetyConfig {
             battery_empty_v: 19.0,
             clear_hold_us: 1_000_000,
             resume_centred: 1,
+            pc_timeout_us: 100_000,
+            pc_frozen_us: 5_000_000,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! State of the platform, filled in by the firmware and judged by `safety`.
 
-use super::{CrashCause, ImuStatus, LateTasks};
+use super::{CrashCause, ImuStatus, LateTasks, LinkHealth};
 
 /// Fault confinement state of a CAN controller (ISO 11898-1).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -166,4 +166,6 @@ pub struct SystemHealth {
     pub late_tasks: LateTasks,
     /// State of the debug interface.
     pub debug_probe: DebugProbe,
+    /// The PC link.
+    pub link: LinkHealth,
 }

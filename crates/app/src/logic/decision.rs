@@ -2,7 +2,7 @@
 
 use crate::domain::{ChassisCommand, HighLevelCommand, LogicBus};
 
-/// The command of one source. Drive and direct commands still need the torque permit of the control tick.
+/// The command of one source. Every command still needs the torque permit of the control tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum LogicDecision {
     /// No valid command: every actuator gets zero.
@@ -12,10 +12,12 @@ pub enum LogicDecision {
     Drive(HighLevelCommand),
     /// A command for the actuators that bypasses the controller.
     Direct(ChassisCommand),
+    /// The PC commands. The control tick follows it only while the mode switch is at PC.
+    Pc,
 }
 
 impl LogicDecision {
-    /// Fills in one of the two commands of the bus and leaves the other one zero.
+    /// Fills in one of the commands of the bus and leaves the others zero.
     pub(super) fn on_bus(self, ts_us: u64) -> LogicBus {
         let bus = LogicBus {
             ts_us,
@@ -31,6 +33,10 @@ impl LogicDecision {
             Self::Direct(cmd) => LogicBus {
                 cmd,
                 cmd_valid: true,
+                ..bus
+            },
+            Self::Pc => LogicBus {
+                pc_selected: true,
                 ..bus
             },
         }

@@ -1,6 +1,5 @@
 //! The inputs of a decision.
 
-use super::PcCommand;
 use crate::domain::{RemoteUpdate, SafetyConfig, SensorsSnapshot, StateEstimate};
 
 /// The newest value of each input. What the control tick gives is at most 10 ms old.
@@ -10,8 +9,6 @@ pub struct LogicInputs<'a> {
     pub config: &'a SafetyConfig,
     /// Sticks, switches and link quality.
     pub remote: &'a RemoteUpdate,
-    /// The PC's command, `None` without a PC link.
-    pub pc: Option<&'a PcCommand>,
     /// IMU, magnetometer and motors.
     pub sensors: &'a SensorsSnapshot,
     /// Attitude and motion.

@@ -5,7 +5,7 @@
 //! torque.
 
 use super::{CustomLogic, LogicDecision, LogicInputs, UserLogic, manual};
-use crate::domain::{DriveMode, LogicBus, age_us};
+use crate::domain::{DriveMode, LogicBus};
 
 /// Selects the command source and asks it for a command.
 ///
@@ -21,7 +21,6 @@ use crate::domain::{DriveMode, LogicBus, age_us};
 /// let inputs = LogicInputs {
 ///     config: &SafetyConfig::default(),
 ///     remote: &remote,
-///     pc: None,
 ///     sensors: &SensorsSnapshot::default(),
 ///     estimate: &StateEstimate::default(),
 ///     armed: true,
@@ -58,7 +57,7 @@ impl<L: CustomLogic> LogicStage<L> {
                     let stick_centre = inputs.config.stick_centre;
                     LogicDecision::Drive(manual::drive(&inputs.remote.state, stick_centre))
                 }
-                DriveMode::Pc => from_pc(inputs, now_us),
+                DriveMode::Pc => LogicDecision::Pc,
                 DriveMode::Custom => self.custom.step(inputs, now_us),
             }
         } else {
@@ -73,16 +72,6 @@ fn pilot_allows_motion(inputs: &LogicInputs<'_>, now_us: u64) -> bool {
     let link = remote.diagnostics.at(now_us);
     let connected = link.age_us <= inputs.config.remote_timeout_us && !link.failsafe;
     connected && remote.operator.enabled && !remote.operator.e_stop
-}
-
-/// Accepts the PC's command up to its maximum age.
-fn from_pc(inputs: &LogicInputs<'_>, now_us: u64) -> LogicDecision {
-    match inputs.pc {
-        Some(pc) if age_us(pc.ts_us, now_us) <= inputs.config.command_timeout_us => {
-            LogicDecision::Drive(pc.command)
-        }
-        _ => LogicDecision::Nothing,
-    }
 }
 
 #[cfg(test)]

@@ -23,6 +23,8 @@ pub struct Wheel {
     esc: EscId,
     max_current_ma: f32,
     feedback: WheelFeedback,
+    /// Counts that the rotor has turned since the first report.
+    turned_counts: i64,
     sent: MotorCurrent,
     permitted: bool,
     /// Runs only while the wheel may not move: its result forbids arming, and the armed tick has no time to spare.
@@ -39,6 +41,7 @@ impl Wheel {
             esc,
             max_current_ma,
             feedback: WheelFeedback::default(),
+            turned_counts: 0,
             sent: MotorCurrent::ZERO,
             permitted: false,
             angle_monitor: AngleMonitor::default(),
@@ -59,6 +62,23 @@ impl Wheel {
         ] {
             *ts_us = ts_us.saturating_add(stall_us.into());
         }
+    }
+
+    /// Counts that the rotor has turned since its first report, 8192 a turn. Between two reports it turns by less than
+    /// half a turn, unless reports were lost.
+    pub fn turned_counts(&self) -> i64 {
+        self.turned_counts
+    }
+
+    fn count_turned(&mut self, now: &WheelFeedback) {
+        let last = &self.feedback;
+        if last.ts_us == 0 {
+            return;
+        }
+        // The angle has 13 bits, so the sign of the difference is in bit 12.
+        let turned = now.rotor_angle.wrapping_sub(last.rotor_angle) << 3;
+        let turned = i64::from(turned.cast_signed() >> 3);
+        self.turned_counts = self.turned_counts.wrapping_add(turned);
     }
 
     /// Takes the report `now`, which follows `self.feedback`. A frozen state ends only with a different report.
@@ -96,6 +116,7 @@ impl Motor for Wheel {
         let Some(mut feedback) = m3508::decode_feedback(frame, ts_us) else {
             return false;
         };
+        self.count_turned(&feedback);
         feedback.frozen = self.is_frozen(&feedback);
         feedback.doubtful = if self.permitted {
             self.feedback.doubtful

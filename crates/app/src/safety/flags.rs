@@ -62,6 +62,10 @@ bitflags::bitflags! {
         const JOINT_NOT_READY = 1 << 25;
         /// The cause of a partial stop has ended, but the part waits until the sticks have been centred.
         const STICKS_AWAITED = 1 << 26;
+        /// In mode PC: no command of the PC is fresh, or the PC repeats one that turns the wheels.
+        const PC_LOST = 1 << 27;
+        /// In mode PC: the PC is heard, but has not yet sent a command from rest.
+        const PC_AWAITED = 1 << 28;
     }
 }
 
@@ -98,6 +102,8 @@ impl SafetyFlags {
         Self(Self::CAN1_FAULT.0 | Self::CAN1_CONGESTED.0),
         Self(Self::CAN2_FAULT.0 | Self::CAN2_CONGESTED.0),
     ];
+    /// Each of these gives every actuator zero torque, but leaves the robot armed.
+    pub const PC_STOP: Self = Self(Self::PC_LOST.0 | Self::PC_AWAITED.0);
     /// These are latched until the pilot clears them, so that a person looks first.
     pub const LATCHING: Self = Self(
         Self::IMU_ERRORS.0
@@ -133,7 +139,7 @@ impl SafetyFlags {
 }
 
 /// A static rather than a constant, as tools read the names of the bits from the image.
-static FLAG_NAMES: [(SafetyFlags, &str); 27] = [
+static FLAG_NAMES: [(SafetyFlags, &str); 29] = [
     (SafetyFlags::REMOTE_LOST, "remote-lost"),
     (SafetyFlags::REMOTE_FAILSAFE, "remote-failsafe"),
     (SafetyFlags::REMOTE_QUALITY, "remote-quality"),
@@ -161,6 +167,8 @@ static FLAG_NAMES: [(SafetyFlags, &str); 27] = [
     (SafetyFlags::JOINT_FROZEN, "joint-frozen"),
     (SafetyFlags::JOINT_NOT_READY, "joint-not-ready"),
     (SafetyFlags::STICKS_AWAITED, "sticks-awaited"),
+    (SafetyFlags::PC_LOST, "pc-lost"),
+    (SafetyFlags::PC_AWAITED, "pc-awaited"),
 ];
 
 #[cfg(feature = "defmt")]
@@ -192,7 +200,7 @@ mod tests {
     #[test]
     fn the_sets_hold_the_documented_flags() {
         let [can1, can2] = SafetyFlags::BUS_STOP;
-        let sets: [(SafetyFlags, &[&str]); 6] = [
+        let sets: [(SafetyFlags, &[&str]); 7] = [
             (
                 SafetyFlags::GLOBAL_STOP,
                 &[
@@ -220,6 +228,7 @@ mod tests {
                     "joint-not-ready",
                 ],
             ),
+            (SafetyFlags::PC_STOP, &["pc-lost", "pc-awaited"]),
             (can1, &["can1-fault", "can1-congested"]),
             (can2, &["can2-fault", "can2-congested"]),
             (

@@ -1,9 +1,15 @@
 //! The only place that decides whether outputs must stop (docs/safety.md#the-rules).
 
 use super::{
-    SafetyFlags, SafetyStatus, battery_limits::BatteryLimits, debounce::Debounce,
-    fall_detector::FallDetector, latch::Latches, leaky_bucket::LeakyBucket,
-    resume_interlock::ResumeInterlock, temperature_limits::TemperatureLimits,
+    SafetyFlags, SafetyStatus,
+    battery_limits::BatteryLimits,
+    debounce::Debounce,
+    fall_detector::FallDetector,
+    latch::Latches,
+    leaky_bucket::LeakyBucket,
+    pc_interlock::{PcInputs, PcInterlock},
+    resume_interlock::ResumeInterlock,
+    temperature_limits::TemperatureLimits,
 };
 use crate::domain::{
     BusErrorState, BusHealth, JointState, MotorFeedback, OperatorState, RemoteDiagnostics,
@@ -37,6 +43,8 @@ pub struct SafetyInputs<'a> {
     pub motor_timeout_us: u32,
     /// Time of the last decision on the logic bus, 0 = none yet.
     pub command_ts_us: u64,
+    /// The PC.
+    pub pc: PcInputs<'a>,
     /// State of buses, sensors, battery and tasks.
     pub health: &'a SystemHealth,
 }
@@ -45,7 +53,7 @@ pub struct SafetyInputs<'a> {
 ///
 /// ```
 /// use robot_app::domain::*;
-/// use robot_app::safety::{SafetyFlags, SafetyInputs, SafetyPolicy, SafetyVerdict};
+/// use robot_app::safety::{PcInputs, SafetyFlags, SafetyInputs, SafetyPolicy, SafetyVerdict};
 ///
 /// let config = SafetyConfig::default();
 /// let inputs = SafetyInputs {
@@ -58,6 +66,7 @@ pub struct SafetyInputs<'a> {
 ///     motor: &MotorFeedback::default(),
 ///     motor_timeout_us: 50_000,
 ///     command_ts_us: 0,
+///     pc: PcInputs { command: &PcCommand::default(), mode: false, steering: false },
 ///     health: &SystemHealth::default(),
 /// };
 /// let status = SafetyPolicy::default().evaluate(&inputs, 1_000_000);
@@ -75,6 +84,7 @@ pub struct SafetyPolicy {
     joint_unready: Debounce,
     latches: Latches,
     resume: ResumeInterlock,
+    pc: PcInterlock,
     flags_seen: SafetyFlags,
     ts_us: u64,
 }
@@ -102,7 +112,7 @@ impl SafetyPolicy {
             command_age_us > inputs.config.command_timeout_us,
         );
         flags.add_if(SafetyFlags::TASK_LATE, inputs.health.late_tasks.any());
-        self.summarise(flags, inputs, dt_us)
+        self.summarise(flags, inputs, dt_us, now_us)
     }
 
     /// Time since the last tick, 0 in the first one.
@@ -151,6 +161,7 @@ impl SafetyPolicy {
         present: SafetyFlags,
         inputs: &SafetyInputs<'_>,
         dt_us: u32,
+        now_us: u64,
     ) -> SafetyStatus {
         let link_bad = SafetyFlags::REMOTE_LOST
             .union(SafetyFlags::REMOTE_FAILSAFE)
@@ -164,12 +175,18 @@ impl SafetyPolicy {
         let over = self.resume.step(flags, may_resume);
         let stopping = flags.union(over);
         flags.add_if(SafetyFlags::STICKS_AWAITED, !over.is_empty());
+        let pc = &inputs.pc;
+        flags.insert(
+            self.pc
+                .step(pc, stopping, inputs.config, inputs.motor, now_us),
+        );
         self.flags_seen = self.flags_seen.union(flags);
         SafetyStatus {
             flags,
             latched,
             clear_faults,
             flags_seen: self.flags_seen,
+            pc_stop: !self.pc.is_released(),
             ..SafetyStatus::from_flags(stopping)
         }
     }

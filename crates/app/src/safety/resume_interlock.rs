@@ -6,7 +6,8 @@ use super::SafetyFlags;
 /// A silent wheel is driven open loop. When its feedback returns, both wheels wait.
 const SILENT_WHEELS: SafetyFlags =
     SafetyFlags::WHEEL_LEFT_SILENT.union(SafetyFlags::WHEEL_RIGHT_SILENT);
-const WATCHED: SafetyFlags = SafetyFlags::WHEELS_STOP
+/// The conditions that stop a part without disarming.
+pub(super) const WATCHED: SafetyFlags = SafetyFlags::WHEELS_STOP
     .union(SafetyFlags::JOINTS_STOP)
     .union(SafetyFlags::BUS_STOP[0])
     .union(SafetyFlags::BUS_STOP[1])

@@ -35,6 +35,8 @@ pub struct SafetyStatus {
     pub joints_stop: bool,
     /// All actuators of the bus are stopped. Index = `BusId`.
     pub bus_stop: [bool; 2],
+    /// The PC's command has no effect: the mode switch is elsewhere, bring-up is on, or `PC_STOP` holds.
+    pub pc_stop: bool,
     /// The pilot clears latched stops in this tick, and joints get the order to clear their faults.
     pub clear_faults: bool,
     /// Every flag raised since boot.
@@ -51,6 +53,7 @@ impl Default for SafetyStatus {
             wheels_stop: true,
             joints_stop: true,
             bus_stop: [true; 2],
+            pc_stop: true,
             clear_faults: false,
             flags_seen: SafetyFlags::NONE,
         }
@@ -58,7 +61,8 @@ impl Default for SafetyStatus {
 }
 
 impl SafetyStatus {
-    /// The stops caused by `flags`. `latched`, `clear_faults` and `flags_seen` stay empty.
+    /// The stops caused by `flags`. `latched`, `clear_faults` and `flags_seen` stay empty, and the PC
+    /// stays stopped.
     pub(super) fn from_flags(flags: SafetyFlags) -> Self {
         let global_stop = flags.intersects(SafetyFlags::GLOBAL_STOP);
         let wheels_stop = flags.intersects(SafetyFlags::WHEELS_STOP);

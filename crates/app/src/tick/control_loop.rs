@@ -3,6 +3,7 @@
 mod act;
 mod permit;
 mod record;
+mod telemetry;
 mod tune;
 
 use heapless::Vec;
@@ -11,7 +12,7 @@ use super::{ControlInputs, ControlOutputs, TickState};
 use crate::{
     bring_up::{BringUp, BringUpInputs},
     control::{ChassisController, UserController},
-    diagnostics::DiagnosticsSnapshot,
+    diagnostics::{DiagnosticsSnapshot, TELEMETRY_PERIOD_TICKS, Telemetry},
     domain::{BusId, CanFrame, ChassisCommand, MountingConfig, RobotConfig, age_us},
     estimation::{HeadingSource, InsEstimator},
     motor::{
@@ -19,7 +20,7 @@ use crate::{
         layout::{MotorLayout, ROBOT_LAYOUT},
     },
     safety::{Arming, AttitudeSettling, CentredSticks, FlashPermit, SafetyPolicy},
-    tuning::TuningChannel,
+    tuning::{TuningChannel, TuningPort, is_request},
 };
 
 /// Period of the slow part of diagnostics, in ticks: what changes slowly or only matters to an observer is updated
@@ -54,6 +55,7 @@ fn heading_source(mounting: &MountingConfig) -> HeadingSource {
 ///     imu: &ImuState::default(),
 ///     mag: &MagState::default(),
 ///     logic: &LogicBus::default(),
+///     pc: &PcCommand::default(),
 ///     health: &SystemHealth::default(),
 ///     params: &ParamStatus::default(),
 ///     flash_request: FlashRequest::None,
@@ -83,9 +85,14 @@ pub struct ControlLoop<C: ChassisController = UserController> {
     tuning: TuningChannel,
     /// Replies of the tuning channel for its next slot, one for each bus.
     replies: Vec<(BusId, CanFrame), 2>,
+    /// The same for the PC link.
+    link_reply: Option<CanFrame>,
     bring_up: BringUp,
     state: TickState,
     frames: TickFrames,
+    /// At most a reply and a recorded sample.
+    link_frames: Vec<CanFrame, 2>,
+    telemetry: Telemetry,
 }
 
 impl<C: ChassisController> ControlLoop<C> {
@@ -112,9 +119,12 @@ impl<C: ChassisController> ControlLoop<C> {
             flash: FlashPermit::default(),
             tuning: TuningChannel::new(layout),
             replies: Vec::new(),
+            link_reply: None,
             bring_up: BringUp::default(),
             state: TickState::default(),
             frames: TickFrames::new(),
+            link_frames: Vec::new(),
+            telemetry: Telemetry::default(),
         }
     }
 
@@ -129,6 +139,21 @@ impl<C: ChassisController> ControlLoop<C> {
     ) {
         if !self.motors.route_frame(bus, frame, now_us) {
             self.on_other_frame(bus, frame, now_us, diagnostics);
+        }
+    }
+
+    /// Takes a frame that came through the tunnel of the PC link. Only requests of the tuning channel count, under the
+    /// rules that hold on a bus.
+    #[cold]
+    #[inline(never)]
+    pub fn on_link_frame(
+        &mut self,
+        frame: &CanFrame,
+        now_us: u64,
+        diagnostics: &DiagnosticsSnapshot,
+    ) {
+        if is_request(frame) {
+            self.on_request(TuningPort::Link, frame, now_us, diagnostics);
         }
     }
 
@@ -159,17 +184,28 @@ impl<C: ChassisController> ControlLoop<C> {
         if self.phase == ARMING_CONDITIONS_PHASE {
             self.update_arming_conditions(inputs, now_us);
         }
-        let permit = self.decide_permit(inputs, now_us);
+        let permit = self.decide_permit(inputs, trial.is_some(), now_us);
         self.act(inputs, permit.as_ref(), trial.as_ref(), now_us);
         self.reply();
         self.record(inputs, now_us, diagnostics);
+        let brief = self.is_telemetry_tick();
+        if brief {
+            self.record_telemetry(inputs, now_us);
+        }
         ControlOutputs {
             frames: &self.frames,
+            link_frames: &self.link_frames,
+            telemetry: brief.then_some(&self.telemetry),
             estimate: &self.state.estimate,
             diagnostics,
             config: &self.config,
             flash: self.flash.grant(),
         }
+    }
+
+    fn is_telemetry_tick(&self) -> bool {
+        let count = self.state.stats.count;
+        count.is_multiple_of(TELEMETRY_PERIOD_TICKS)
     }
 
     fn sense(&mut self, inputs: &ControlInputs<'_>, now_us: u64) {

@@ -1,7 +1,10 @@
 //! The inputs of a tick.
 
 use crate::{
-    domain::{FlashRequest, ImuState, LogicBus, MagState, ParamStatus, RemoteUpdate, SystemHealth},
+    domain::{
+        FlashRequest, ImuState, LogicBus, MagState, ParamStatus, PcCommand, RemoteUpdate,
+        SystemHealth,
+    },
     safety::WatchdogPeriod,
 };
 
@@ -16,6 +19,8 @@ pub struct ControlInputs<'a> {
     pub mag: &'a MagState,
     /// From the logic task.
     pub logic: &'a LogicBus,
+    /// From the PC link, followed while the logic task selects the PC.
+    pub pc: &'a PcCommand,
     /// State of buses, sensors, battery and tasks.
     pub health: &'a SystemHealth,
     /// State of the parameter store.

@@ -36,6 +36,12 @@ impl RobotLoop {
             .on_can_frame(bus, frame, now_us, self.diagnostics);
     }
 
+    /// See [`ControlLoop::on_link_frame`].
+    pub fn on_link_frame(&mut self, frame: &CanFrame, now_us: u64) {
+        self.control_loop
+            .on_link_frame(frame, now_us, self.diagnostics);
+    }
+
     /// See [`ControlLoop::after_stall`].
     pub fn after_stall(&mut self, stall_us: u32, now_us: u64) {
         self.control_loop.after_stall(stall_us, now_us);

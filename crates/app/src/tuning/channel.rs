@@ -1,15 +1,15 @@
-//! Executes requests. In each slot there is at most one reply on a bus.
+//! Executes requests. In each slot there is at most one reply at a port.
 
 use super::{
-    LiveSource, PARAMETERS, ParameterGroup, Recorder, Refusal, TuningGate, bit, consistency, live,
-    parameters,
+    LiveSource, PARAMETERS, ParameterGroup, Recorder, Refusal, TuningGate, TuningPort, bit,
+    consistency, live, parameters,
     protocol::{self, Request, Restored},
     wheel_geometry::WheelGeometry,
 };
 use crate::{
     bring_up::BringUp,
     diagnostics::DiagnosticsSnapshot,
-    domain::{BusId, CanFrame, RobotConfig, SensorsSnapshot, TuningStatus},
+    domain::{CanFrame, RobotConfig, SensorsSnapshot, TuningStatus},
     motor::{NotStationary, layout::MotorLayout},
 };
 
@@ -36,9 +36,9 @@ pub struct TuningAccess<'a> {
 /// use robot_app::{
 ///     bring_up::BringUp,
 ///     diagnostics::DiagnosticsSnapshot,
-///     domain::{BusId, CanFrame, RobotConfig, SensorsSnapshot},
+///     domain::{CanFrame, RobotConfig, SensorsSnapshot},
 ///     motor::layout::ROBOT_LAYOUT,
-///     tuning::{READ_ID, REPLY_ID, TuningAccess, TuningChannel, TuningGate, opcode},
+///     tuning::{READ_ID, REPLY_ID, TuningAccess, TuningChannel, TuningGate, TuningPort, opcode},
 /// };
 ///
 /// let mut channel = TuningChannel::new(&ROBOT_LAYOUT);
@@ -52,7 +52,7 @@ pub struct TuningAccess<'a> {
 ///     diagnostics: &DiagnosticsSnapshot::default(),
 ///     stationary_angle_rad: &|_joint| None,
 /// };
-/// let reply = channel.on_frame(BusId::Can1, &request, TuningGate::Shut, access).unwrap();
+/// let reply = channel.on_frame(TuningPort::Link, &request, TuningGate::Shut, access).unwrap();
 /// assert_eq!(reply.id(), REPLY_ID);
 /// assert_eq!(reply.payload()[..2], [opcode::READ_GEOMETRY, 60], "a radius of 60 mm");
 /// ```
@@ -60,8 +60,8 @@ pub struct TuningAccess<'a> {
 pub struct TuningChannel {
     /// Provides the defaults.
     layout: &'static MotorLayout,
-    /// A reply has been made in this slot. Index = `BusId`.
-    replied: [bool; 2],
+    /// A reply has been made in this slot. Index = `TuningPort::index`.
+    replied: [bool; TuningPort::COUNT],
     status: TuningStatus,
     recorder: Recorder,
 }
@@ -71,7 +71,7 @@ impl TuningChannel {
     pub fn new(layout: &'static MotorLayout) -> Self {
         Self {
             layout,
-            replied: [false; 2],
+            replied: [false; TuningPort::COUNT],
             status: TuningStatus::default(),
             recorder: Recorder::default(),
         }
@@ -80,14 +80,14 @@ impl TuningChannel {
     /// Begins a slot. Called every `motor::layout::REPLY_PERIOD_TICKS`, after the replies of the previous slot have
     /// been sent.
     pub fn begin_slot(&mut self) {
-        self.replied = [false; 2];
+        self.replied = [false; TuningPort::COUNT];
     }
 
-    /// Takes any received frame and returns the reply for the same bus. A client that waits for each reply always
-    /// gets one. If several requests arrive in one slot, only the first is executed, so replies never overload a bus.
+    /// Takes any received frame and returns the reply for the same port. A client that waits for each reply always
+    /// gets one. If several requests arrive in one slot, only the first is executed, so replies never overload a port.
     pub fn on_frame(
         &mut self,
-        bus: BusId,
+        port: TuningPort,
         frame: &CanFrame,
         gate: TuningGate,
         access: TuningAccess<'_>,
@@ -101,7 +101,7 @@ impl TuningChannel {
         } = access;
         let params = &diagnostics.params;
         let request = Request::decode(frame)?;
-        if core::mem::replace(self.replied.get_mut(bus as usize)?, true) {
+        if core::mem::replace(self.replied.get_mut(port.index())?, true) {
             self.status.dropped = self.status.dropped.wrapping_add(1);
             return None;
         }
@@ -152,7 +152,7 @@ impl TuningChannel {
                     .map(|()| protocol::echo(frame))
             }
             Request::Record(seconds) => {
-                self.recorder.start(bus, seconds, sensors);
+                self.recorder.start(port, seconds, sensors);
                 Ok(protocol::echo(frame))
             }
         });

@@ -35,7 +35,7 @@ pub static PARAMETERS: [ParameterGroup; 14] = [
     ParameterGroup {
         number: 4,
         name: "safety",
-        version: 2,
+        version: 3,
         scope: Scope::Robot,
         parameters: &safety::SAFETY,
     },

@@ -1,13 +1,14 @@
 //! Records sensor samples: each sample is sent in a frame of its own for a given time while the robot is disarmed.
 //!
 //! A sample's frame holds x, y and z in steps as `i16`, and the low 16 bits of its time in units of 100 µs as `u16`,
-//! all little-endian. Frames are sent in ticks without a reply, one a tick, in the mailbox that motors leave free.
+//! all little-endian. Frames are sent in ticks without a reply, one a tick. On a bus they take the mailbox that motors
+//! leave free.
 
 use super::{
-    TuningGate,
+    TuningGate, TuningPort,
     identifiers::{ACCEL_ID, GYRO_ID, MAG_ID},
 };
-use crate::domain::{BusId, CanFrame, SensorsSnapshot, StandardId};
+use crate::domain::{CanFrame, SensorsSnapshot, StandardId};
 
 /// Longest recording in s.
 pub const MAX_RECORDING_S: u16 = 600;
@@ -110,7 +111,7 @@ pub struct RecordingStatus {
 
 #[derive(Clone, Copy, Debug)]
 struct Running {
-    bus: BusId,
+    port: TuningPort,
     until_us: u64,
     /// Times of the last samples sent.
     imu_ts_us: u64,
@@ -128,10 +129,10 @@ pub struct Recorder {
 
 impl Recorder {
     /// Starts a recording and ends any other; 0 s only ends the other one.
-    pub fn start(&mut self, bus: BusId, seconds: u16, sensors: &SensorsSnapshot) {
+    pub fn start(&mut self, port: TuningPort, seconds: u16, sensors: &SensorsSnapshot) {
         let duration_us = u64::from(seconds).saturating_mul(1_000_000);
         self.running = (seconds != 0).then(|| Running {
-            bus,
+            port,
             until_us: sensors.ts_us.saturating_add(duration_us),
             imu_ts_us: sensors.imu.ts_us,
             mag_ts_us: sensors.mag.ts_us,
@@ -163,7 +164,7 @@ impl Recorder {
         &mut self,
         gate: TuningGate,
         sensors: &SensorsSnapshot,
-    ) -> Option<(BusId, CanFrame)> {
+    ) -> Option<(TuningPort, CanFrame)> {
         let running = self.running.as_mut()?;
         if gate == TuningGate::Shut {
             self.end(RecordingState::CutShort);
@@ -188,7 +189,7 @@ impl Recorder {
         } else {
             return None;
         };
-        Some((running.bus, frame))
+        Some((running.port, frame))
     }
 
     fn end(&mut self, state: RecordingState) {
@@ -219,13 +220,13 @@ mod tests {
         sensors.imu.ts_us = 999_000;
         sensors.mag.ts_us = 998_000;
         let mut recorder = Recorder::default();
-        recorder.start(BusId::Can2, seconds, &sensors);
+        recorder.start(TuningPort::Link, seconds, &sensors);
         (recorder, sensors)
     }
 
-    fn payload(sent: Option<(BusId, CanFrame)>) -> (u16, [u8; 8]) {
-        let (bus, frame) = sent.expect("a frame");
-        assert_eq!(bus, BusId::Can2);
+    fn payload(sent: Option<(TuningPort, CanFrame)>) -> (u16, [u8; 8]) {
+        let (port, frame) = sent.expect("a frame");
+        assert_eq!(port, TuningPort::Link);
         (frame.id().raw(), frame.full_payload().unwrap())
     }
 

@@ -3,7 +3,7 @@ use std::time::Duration;
 use nalgebra::Vector3;
 use robot_app::{
     domain::BusId,
-    tuning::{RecordedSample, RecordedSensor, TuningGate},
+    tuning::{RecordedSample, RecordedSensor, TuningGate, TuningPort},
 };
 
 use super::*;
@@ -78,7 +78,8 @@ fn send(bus: &Bus, seconds: u64, lose: usize) -> impl FnMut() {
             let gate = robot.gate;
             for _ in 0..3 {
                 let recorder = robot.channel.recorder();
-                if let Some((BusId::Can2, frame)) = recorder.next(gate, &robot.diagnostics.sensors)
+                if let Some((TuningPort::Bus(BusId::Can2), frame)) =
+                    recorder.next(gate, &robot.diagnostics.sensors)
                 {
                     sent += 1;
                     if !sent.is_multiple_of(lose) {

@@ -12,7 +12,7 @@ use robot_app::{
     diagnostics::DiagnosticsSnapshot,
     domain::{BusId, CanFrame, RobotConfig, StandardId},
     motor::{NotStationary, layout::ROBOT_LAYOUT},
-    tuning::{REPLY_ID, Refusal, TuningAccess, TuningChannel, TuningGate, opcode},
+    tuning::{REPLY_ID, Refusal, TuningAccess, TuningChannel, TuningGate, TuningPort, opcode},
 };
 
 use super::{Timeouts, TuningClient};
@@ -68,7 +68,8 @@ impl Robot {
             diagnostics: &self.diagnostics,
             stationary_angle_rad: &|_| Some(self.standing),
         };
-        self.channel.on_frame(BusId::Can2, frame, self.gate, access)
+        self.channel
+            .on_frame(TuningPort::Bus(BusId::Can2), frame, self.gate, access)
     }
 }
 

@@ -1,10 +1,7 @@
 use super::*;
-use crate::{
-    domain::{
-        ChassisCommand, HighLevelCommand, OperatorState, RemoteDiagnostics, RemoteState,
-        RemoteUpdate, SafetyConfig, SensorsSnapshot, StateEstimate,
-    },
-    logic::PcCommand,
+use crate::domain::{
+    ChassisCommand, HighLevelCommand, OperatorState, RemoteDiagnostics, RemoteState, RemoteUpdate,
+    SafetyConfig, SensorsSnapshot, StateEstimate,
 };
 
 const NOW_US: u64 = 1_010_000;
@@ -51,16 +48,10 @@ impl CustomLogic for Counting {
     }
 }
 
-fn step<L: CustomLogic>(
-    stage: &mut LogicStage<L>,
-    remote: &RemoteUpdate,
-    pc: Option<&PcCommand>,
-    now_us: u64,
-) -> LogicBus {
+fn step<L: CustomLogic>(stage: &mut LogicStage<L>, remote: &RemoteUpdate, now_us: u64) -> LogicBus {
     let inputs = LogicInputs {
         config: &SafetyConfig::default(),
         remote,
-        pc,
         sensors: &SensorsSnapshot::default(),
         estimate: &StateEstimate::default(),
         armed: true,
@@ -69,36 +60,26 @@ fn step<L: CustomLogic>(
     stage.step(&inputs, now_us)
 }
 
-fn pc_command(ts_us: u64) -> PcCommand {
-    PcCommand {
-        command: HighLevelCommand { vx: 0.1, wz: 0.2 },
-        ts_us,
-    }
-}
-
 #[test]
 fn sticks_reach_the_high_level_command_in_manual_mode() {
     let mut stage = LogicStage::new(UserLogic);
-    let bus = step(&mut stage, &remote(DriveMode::Manual), None, NOW_US);
+    let bus = step(&mut stage, &remote(DriveMode::Manual), NOW_US);
     assert!(bus.hl_valid && !bus.cmd_valid);
     assert_eq!((bus.hl_cmd.vx, bus.hl_cmd.wz), (0.5, -0.25));
     assert_eq!(bus.ts_us, NOW_US);
 }
 
 #[test]
-fn in_pc_mode_the_pc_steers_while_its_command_is_fresh() {
+fn only_pc_mode_selects_the_pc() {
     let mut stage = LogicStage::new(UserLogic);
-    let mut in_mode = |mode, pc: Option<PcCommand>| {
-        let bus = step(&mut stage, &remote(mode), pc.as_ref(), NOW_US);
-        assert!(!bus.cmd_valid);
-        (bus.hl_valid, bus.hl_cmd.vx)
-    };
-    let fresh = Some(pc_command(NOW_US - 50_000));
-    assert_eq!(in_mode(DriveMode::Pc, fresh), (true, 0.1));
-    assert_eq!(in_mode(DriveMode::Manual, fresh), (true, 0.5));
-    assert_eq!(in_mode(DriveMode::Custom, fresh), (false, 0.0));
-    for silent in [None, Some(pc_command(0)), Some(pc_command(NOW_US - 50_001))] {
-        assert_eq!(in_mode(DriveMode::Pc, silent), (false, 0.0));
+    for (mode, selected) in [
+        (DriveMode::Manual, false),
+        (DriveMode::Pc, true),
+        (DriveMode::Custom, false),
+    ] {
+        let bus = step(&mut stage, &remote(mode), NOW_US);
+        assert_eq!(bus.pc_selected, selected, "{mode:?}");
+        assert!(!(bus.pc_selected && (bus.hl_valid || bus.cmd_valid)));
     }
 }
 
@@ -106,7 +87,7 @@ fn in_pc_mode_the_pc_steers_while_its_command_is_fresh() {
 fn custom_logic_decides_in_custom_mode_and_restarts_each_time() {
     let mut stage = LogicStage::new(Counting::default());
     let mut current_ma = |mode| {
-        let bus = step(&mut stage, &remote(mode), None, NOW_US);
+        let bus = step(&mut stage, &remote(mode), NOW_US);
         let wins = if bus.cmd_valid {
             bus.cmd.wheels[0].current_ma
         } else {
@@ -127,7 +108,7 @@ fn custom_logic_restarts_when_the_pilot_enables_again() {
     let mut current_ma = |enabled| {
         let mut remote = remote(DriveMode::Custom);
         remote.operator.enabled = enabled;
-        let bus = step(&mut stage, &remote, None, NOW_US);
+        let bus = step(&mut stage, &remote, NOW_US);
         bus.cmd_valid.then_some(bus.cmd.wheels[0].current_ma)
     };
     let currents = [true, true, false, true].map(&mut current_ma);
@@ -139,7 +120,6 @@ fn the_shipped_user_logic_gives_no_command() {
     let bus = step(
         &mut LogicStage::new(UserLogic),
         &remote(DriveMode::Custom),
-        None,
         NOW_US,
     );
     assert!(!bus.cmd_valid && !bus.hl_valid);
@@ -159,11 +139,10 @@ fn every_reason_to_stop_invalidates_all_commands() {
         for inject in faults {
             let mut remote = remote(mode);
             let mut stage = LogicStage::new(Counting::default());
-            let pc = pc_command(NOW_US);
-            let before = step(&mut stage, &remote, Some(&pc), NOW_US);
-            assert!(before.cmd_valid || before.hl_valid, "{mode:?}");
+            let before = step(&mut stage, &remote, NOW_US);
+            assert!(before.cmd_valid || before.hl_valid || before.pc_selected);
             inject(&mut remote);
-            let bus = step(&mut stage, &remote, Some(&pc), NOW_US);
+            let bus = step(&mut stage, &remote, NOW_US);
             let zero = LogicBus {
                 ts_us: NOW_US,
                 ..LogicBus::default()

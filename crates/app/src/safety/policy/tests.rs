@@ -1,5 +1,8 @@
 use super::*;
-use crate::{domain::BusId, safety::SafetyVerdict};
+use crate::{
+    domain::{BusId, PcCommand},
+    safety::SafetyVerdict,
+};
 
 mod battery;
 mod clearing;
@@ -18,6 +21,9 @@ struct Bench {
     imu_age_us: u64,
     command_age_us: u64,
     may_resume: bool,
+    pc: PcCommand,
+    pc_mode: bool,
+    pc_steering: bool,
     now_us: u64,
 }
 
@@ -57,6 +63,9 @@ impl Bench {
             imu_age_us: 5_000,
             command_age_us: 10_000,
             may_resume: true,
+            pc: PcCommand::default(),
+            pc_mode: false,
+            pc_steering: false,
             now_us: 10_000_000,
         };
         bench.tick();
@@ -76,6 +85,11 @@ impl Bench {
                 motor: &self.motor,
                 motor_timeout_us: 50_000,
                 command_ts_us: self.now_us - self.command_age_us,
+                pc: PcInputs {
+                    command: &self.pc,
+                    mode: self.pc_mode,
+                    steering: self.pc_steering,
+                },
                 health: &self.health,
             },
             self.now_us,

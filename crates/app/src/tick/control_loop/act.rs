@@ -2,9 +2,9 @@
 
 use super::{ControlInputs, ControlLoop};
 use crate::{
-    control::{ChassisController, ChassisControllerInput, ChassisControllerOutput},
-    domain::{ChassisCommand, HighLevelCommand, LogicBus, age_us},
-    safety::TorquePermit,
+    control::{ChassisController, ChassisControllerInput, ChassisControllerOutput, pc_law},
+    domain::{ChassisCommand, HighLevelCommand, LogicBus, PcCommand, age_us},
+    safety::{SafetyFlags, TorquePermit},
 };
 
 /// The source of this tick's commands.
@@ -14,6 +14,8 @@ enum CommandSource<'a> {
     /// The logic bus or bring-up, bypassing the controller.
     Direct(&'a ChassisCommand),
     Control(HighLevelCommand),
+    /// The PC, bypassing the controller.
+    Pc,
 }
 
 /// What is stopped in this tick.
@@ -42,6 +44,7 @@ impl<C: ChassisController> ControlLoop<C> {
             self.demand(inputs.logic, now_us)
         };
         let output;
+        let pc_command;
         let wanted = match demand {
             CommandSource::Control(hl_cmd) => {
                 output = self.control(inputs, hl_cmd, &stopped);
@@ -54,6 +57,11 @@ impl<C: ChassisController> ControlLoop<C> {
             CommandSource::Direct(command) => {
                 self.controller.reset();
                 command
+            }
+            CommandSource::Pc => {
+                self.controller.reset();
+                pc_command = self.follow_pc(inputs.pc);
+                &pc_command
             }
             CommandSource::Stop => {
                 self.controller.reset();
@@ -69,8 +77,16 @@ impl<C: ChassisController> ControlLoop<C> {
     }
 
     fn demand<'a>(&self, logic: &'a LogicBus, now_us: u64) -> CommandSource<'a> {
-        if age_us(logic.ts_us, now_us) > self.config.safety.command_timeout_us {
+        let safety = &self.state.safety;
+        let stale = age_us(logic.ts_us, now_us) > self.config.safety.command_timeout_us;
+        if stale || safety.flags.intersects(SafetyFlags::PC_STOP) {
             CommandSource::Stop
+        } else if logic.pc_selected {
+            if safety.pc_stop {
+                CommandSource::Stop
+            } else {
+                CommandSource::Pc
+            }
         } else if logic.cmd_valid {
             CommandSource::Direct(&logic.cmd)
         } else if logic.hl_valid {
@@ -78,6 +94,13 @@ impl<C: ChassisController> ControlLoop<C> {
         } else {
             CommandSource::Stop
         }
+    }
+
+    /// Kept out of line, as most robots are driven by hand.
+    #[inline(never)]
+    fn follow_pc(&self, pc: &PcCommand) -> ChassisCommand {
+        let motor = &self.state.sensors.motor;
+        pc_law(pc, motor, &self.config.wheel_odom, &self.config.wheel_ctrl)
     }
 
     fn control(

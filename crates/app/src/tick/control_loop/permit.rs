@@ -3,9 +3,10 @@
 use super::{ControlInputs, ControlLoop};
 use crate::{
     control::ChassisController,
-    domain::FlashRequest,
+    domain::{DriveMode, FlashRequest},
     safety::{
-        ArmingInputs, ArmingState, FlashPermitInputs, MotorReadiness, SafetyInputs, TorquePermit,
+        ArmingInputs, ArmingState, FlashPermitInputs, MotorReadiness, PcInputs, SafetyInputs,
+        TorquePermit,
     },
 };
 
@@ -55,6 +56,7 @@ impl<C: ChassisController> ControlLoop<C> {
     pub(super) fn decide_permit(
         &mut self,
         inputs: &ControlInputs<'_>,
+        bring_up_commands: bool,
         now_us: u64,
     ) -> Option<TorquePermit> {
         let state = &mut self.state;
@@ -69,6 +71,11 @@ impl<C: ChassisController> ControlLoop<C> {
                 motor: &state.sensors.motor,
                 motor_timeout_us: self.config.wheel_ctrl.feedback_timeout_us,
                 command_ts_us: inputs.logic.ts_us,
+                pc: PcInputs {
+                    command: inputs.pc,
+                    mode: inputs.remote.operator.mode == DriveMode::Pc && !bring_up_commands,
+                    steering: inputs.logic.pc_selected && state.arming.state == ArmingState::Armed,
+                },
                 health: inputs.health,
             },
             now_us,

@@ -53,6 +53,7 @@ fn record_slow(inputs: &ControlInputs<'_>, diagnostics: &mut DiagnosticsSnapshot
     diagnostics.last_words = health.last_words;
     diagnostics.battery_v = health.battery_v;
     diagnostics.debug_probe = health.debug_probe;
+    diagnostics.link = health.link;
     diagnostics.params = *inputs.params;
 }
 

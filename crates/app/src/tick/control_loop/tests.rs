@@ -1,8 +1,8 @@
 use super::*;
 use crate::{
     domain::{
-        FlashRequest, ImuState, LogicBus, MagState, ParamStatus, RemoteUpdate, StandardId,
-        SystemHealth,
+        FlashRequest, ImuState, LogicBus, MagState, ParamStatus, PcCommand, RemoteUpdate,
+        StandardId, SystemHealth,
     },
     motor::layout::REPLY_PERIOD_TICKS,
     safety::WatchdogPeriod,
@@ -15,6 +15,7 @@ struct Bench {
     remote: RemoteUpdate,
     mag: MagState,
     logic: LogicBus,
+    pc: PcCommand,
     health: SystemHealth,
     params: ParamStatus,
     /// Speed of the wheels, forward positive.
@@ -33,6 +34,7 @@ impl Bench {
             remote: RemoteUpdate::default(),
             mag: MagState::default(),
             logic: LogicBus::default(),
+            pc: PcCommand::default(),
             health: SystemHealth::default(),
             params: ParamStatus::default(),
             rpm: 0,
@@ -63,6 +65,7 @@ impl Bench {
             imu: &imu,
             mag: &self.mag,
             logic: &self.logic,
+            pc: &self.pc,
             health: &self.health,
             params: &self.params,
             flash_request: FlashRequest::None,

@@ -1,4 +1,4 @@
-//! Handles requests over CAN and their replies.
+//! Handles requests over CAN or the PC link, and their replies.
 
 use super::{ControlLoop, heading_source};
 use crate::{
@@ -6,7 +6,7 @@ use crate::{
     diagnostics::DiagnosticsSnapshot,
     domain::{BusId, CanFrame},
     motor::layout::REPLY_PERIOD_TICKS,
-    tuning::{TuningAccess, TuningGate, is_request},
+    tuning::{TuningAccess, TuningGate, TuningPort, is_request},
 };
 
 impl<C: ChassisController> ControlLoop<C> {
@@ -20,9 +20,20 @@ impl<C: ChassisController> ControlLoop<C> {
         now_us: u64,
         diagnostics: &DiagnosticsSnapshot,
     ) {
-        if !is_request(frame) {
-            return self.state.strangers.count(bus, frame.id());
+        if is_request(frame) {
+            self.on_request(TuningPort::Bus(bus), frame, now_us, diagnostics);
+        } else {
+            self.state.strangers.count(bus, frame.id());
         }
+    }
+
+    pub(super) fn on_request(
+        &mut self,
+        port: TuningPort,
+        frame: &CanFrame,
+        now_us: u64,
+        diagnostics: &DiagnosticsSnapshot,
+    ) {
         let gate = self.gate();
         let Self {
             tuning,
@@ -40,9 +51,13 @@ impl<C: ChassisController> ControlLoop<C> {
             diagnostics,
             stationary_angle_rad: &|joint| motors.stationary_angle_rad(joint),
         };
-        if let Some(reply) = tuning.on_frame(bus, frame, gate, access) {
-            // The channel returns at most one reply for each bus and slot.
-            let _ = self.replies.push((bus, reply));
+        // The channel returns at most one reply for each port and slot.
+        match (port, tuning.on_frame(port, frame, gate, access)) {
+            (TuningPort::Bus(bus), Some(reply)) => {
+                let _ = self.replies.push((bus, reply));
+            }
+            (TuningPort::Link, Some(reply)) => self.link_reply = Some(reply),
+            (_, None) => {}
         }
         let (mounting, revision) = before;
         if self.config.mounting != mounting {
@@ -63,6 +78,7 @@ impl<C: ChassisController> ControlLoop<C> {
     }
 
     pub(super) fn reply(&mut self) {
+        self.link_frames.clear();
         if !self.state.stats.count.is_multiple_of(REPLY_PERIOD_TICKS) {
             if self.tuning.recorder().is_running() {
                 self.send_recorded();
@@ -72,6 +88,7 @@ impl<C: ChassisController> ControlLoop<C> {
         // By the layout, motors take two of three mailboxes and a reply the third.
         let _ = self.frames.extend_from_slice(&self.replies);
         self.replies.clear();
+        self.link_frames.extend(self.link_reply.take());
         self.tuning.begin_slot();
     }
 
@@ -81,8 +98,11 @@ impl<C: ChassisController> ControlLoop<C> {
     fn send_recorded(&mut self) {
         let gate = self.gate();
         // By the layout, motors take two of three mailboxes, and no reply is sent in this tick.
-        self.frames
-            .extend(self.tuning.recorder().next(gate, &self.state.sensors));
+        match self.tuning.recorder().next(gate, &self.state.sensors) {
+            Some((TuningPort::Bus(bus), frame)) => self.frames.extend(Some((bus, frame))),
+            Some((TuningPort::Link, frame)) => self.link_frames.extend(Some(frame)),
+            None => {}
+        }
     }
 
     fn gate(&self) -> TuningGate {

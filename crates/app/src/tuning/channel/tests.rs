@@ -3,7 +3,7 @@
 use super::*;
 use crate::{
     bring_up::BringUpStep,
-    domain::{ParamError, ParamState, ParamStatus, StandardId, WheelOdomConfig},
+    domain::{BusId, ParamError, ParamState, ParamStatus, StandardId, WheelOdomConfig},
     motor::layout::ROBOT_LAYOUT,
     tuning::READ_ID,
 };
@@ -42,10 +42,10 @@ impl Bench {
     fn ask(&mut self, gate: TuningGate, id: u16, payload: &[u8]) -> Option<CanFrame> {
         let id = StandardId::new(id).unwrap();
         let frame = CanFrame::from_payload(id, payload).unwrap();
-        self.ask_on(BusId::Can1, gate, &frame)
+        self.ask_on(TuningPort::Bus(BusId::Can1), gate, &frame)
     }
 
-    fn ask_on(&mut self, bus: BusId, gate: TuningGate, frame: &CanFrame) -> Option<CanFrame> {
+    fn ask_on(&mut self, port: TuningPort, gate: TuningGate, frame: &CanFrame) -> Option<CanFrame> {
         let access = TuningAccess {
             config: &mut self.config,
             bring_up: &mut self.bring_up,
@@ -53,7 +53,7 @@ impl Bench {
             diagnostics: &self.diagnostics,
             stationary_angle_rad: &|joint| self.stationary.get(joint).copied(),
         };
-        self.channel.on_frame(bus, frame, gate, access)
+        self.channel.on_frame(port, frame, gate, access)
     }
 
     /// Returns the reply to the first request of a slot.
@@ -197,7 +197,7 @@ fn one_request_is_executed_per_slot_and_bus() {
     assert!(bench.unchanged());
     assert_eq!(bench.channel.status().dropped, 1);
     let read = CanFrame::from_payload(READ_ID, &[0x11]).unwrap();
-    let other_bus = bench.ask_on(BusId::Can2, TuningGate::Open, &read);
+    let other_bus = bench.ask_on(TuningPort::Bus(BusId::Can2), TuningGate::Open, &read);
     assert!(other_bus.is_some());
     bench.channel.begin_slot();
     assert!(bench.ask(TuningGate::Open, 0x7A0, &GEOMETRY).is_some());

@@ -4,7 +4,7 @@
 use crate::tuning::parameter::{Parameter, ParameterKind, float, integer};
 
 #[rustfmt::skip] // One line a setting.
-pub static SAFETY: [Parameter; 16] = [
+pub static SAFETY: [Parameter; 18] = [
     integer!(0, "remote-timeout-us", "us", 30_000.0, 500_000.0, safety.remote_timeout_us),
     float!(1, "min-remote-quality", "", 0.1, 1.0, safety.min_remote_quality),
     integer!(2, "imu-timeout-us", "us", 10_000.0, 100_000.0, safety.imu_timeout_us),
@@ -21,4 +21,6 @@ pub static SAFETY: [Parameter; 16] = [
     float!(13, "battery-empty-v", "V", 0.0, 60.0, safety.battery_empty_v),
     integer!(14, "clear-hold-us", "us", 200_000.0, 10_000_000.0, safety.clear_hold_us),
     integer!(15, "resume-centred", "", 0.0, 1.0, safety.resume_centred),
+    integer!(16, "pc-timeout-us", "us", 20_000.0, 500_000.0, safety.pc_timeout_us),
+    integer!(17, "pc-frozen-us", "us", 0.0, 16_000_000.0, safety.pc_frozen_us),
 ];

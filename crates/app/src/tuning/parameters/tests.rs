@@ -85,13 +85,14 @@ fn indices_begin_at_zero_without_gaps() {
 /// and a new line, and the old lines stay.
 #[test]
 fn a_group_that_grows_gets_a_new_version() {
-    let stored: [(u8, u8, usize); 16] = [
+    let stored: [(u8, u8, usize); 17] = [
         (1, 1, 5),
         (2, 1, 6),
         (3, 1, 2),
         (3, 2, 3),
         (4, 1, 15),
         (4, 2, 16),
+        (4, 3, 18),
         (5, 1, 12),
         (6, 1, 9),
         (7, 1, 4),
@@ -149,6 +150,7 @@ fn wire_numbers_do_not_change() {
     assert_eq!(read(3, 2), 0.0);
     assert_eq!(read(4, 9), 0.9);
     assert_eq!(read(4, 12), 21.0);
+    assert_eq!(read(4, 16), 100_000.0);
     assert_eq!(read(7, 0), 40.0);
     assert_eq!(read(8, 0), 0.0);
     assert_eq!(read(8, 1), 24.0);

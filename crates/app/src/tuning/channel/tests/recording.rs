@@ -23,7 +23,7 @@ fn a_recording_can_be_started_observed_and_ended() {
         .channel
         .recorder()
         .next(TuningGate::Open, &bench.diagnostics.sensors);
-    assert!(recorded.is_some_and(|(bus, _)| bus == BusId::Can1));
+    assert!(recorded.is_some_and(|(port, _)| port == TuningPort::Bus(BusId::Can1)));
     assert_eq!(bench.read(&[0x43]), [0x43, 1, 0, 0, 0, 1, 0, 0]);
     bench.write(&[0x42, 0, 0, 0, 0, 0, 0, 0]);
     assert!(!bench.channel.recorder().is_running());
