@@ -71,6 +71,12 @@ pub(super) fn for_flag(name: &str) -> Option<&'static str> {
         "joint-not-ready" => {
             "a joint's motor replies but cannot be set up: its ranges, mode or make are not those of this firmware"
         }
+        "pc-lost" => {
+            "no fresh command of the PC, or always the same one: is its program running, the cable in?"
+        }
+        "pc-awaited" => {
+            "the PC must first ask for no motion: wheels at zero, joints where they are; then it may steer"
+        }
         "sticks-awaited" => "centre the sticks: only then does what was stopped go on",
         _ => return None,
     })

@@ -99,3 +99,29 @@ fn json_has_every_value_by_name() {
     assert_eq!(json["settings"]["saved"], true);
     assert_eq!(json["found-at-boot"]["ruined-sectors"], 0);
 }
+
+#[test]
+fn the_pc_link_is_shown_with_what_it_loses() {
+    let text = status(|diagnostics| {
+        diagnostics.ts_us = 5_000_000;
+        let link = &mut diagnostics.link;
+        (link.good, link.sent, link.rate_hz) = (321, 4_000, 99.7);
+        (link.last_us, link.longest_gap_us) = (4_993_000, 12_900);
+    })
+    .to_string();
+    let line = "PC          100 Hz, last command 7 ms ago, longest gap 12 ms; 321 frames received, 4000 sent\n";
+    assert!(text.contains(line), "{text}");
+    assert!(!text.contains("PC line"), "{text}");
+    let text = status(|diagnostics| {
+        let link = &mut diagnostics.link;
+        (link.crc_errors, link.line_errors) = (3, 1);
+        (link.resyncs, link.unconfirmed) = (2, 2);
+    })
+    .to_string();
+    for line in [
+        "PC          no command yet, or none for a minute; 0 frames received, 0 sent\n",
+        "PC line     3 CRC errors, 1 line errors, 2 resyncs, 2 commands not used\n",
+    ] {
+        assert!(text.contains(line), "`{line}` in\n{text}");
+    }
+}

@@ -8,7 +8,7 @@ use super::{Status, advice};
 use crate::tuning::LiveReading;
 
 /// Pages that have their own words here. Any other page is listed with all its values.
-const PUT_INTO_WORDS: [&str; 21] = [
+const PUT_INTO_WORDS: [&str; 24] = [
     "version",
     "run",
     "boot",
@@ -30,9 +30,12 @@ const PUT_INTO_WORDS: [&str; 21] = [
     "motor-findings",
     "refused",
     "strangers",
+    "link",
+    "link-frames",
+    "link-errors",
 ];
 /// Pages that are left out here. `--json` has them.
-const LEFT_OUT: [&str; 15] = [
+const LEFT_OUT: [&str; 16] = [
     "seen",
     "radio-frames",
     "radio-line",
@@ -48,6 +51,7 @@ const LEFT_OUT: [&str; 15] = [
     "accel",
     "can-frames",
     "tick",
+    "link-tunnel",
 ];
 
 impl Display for Status {
@@ -180,7 +184,42 @@ impl Status {
                 None => write!(f, "not measured, or none")?,
             }
         }
+        self.pc(f)?;
         writeln!(f)
+    }
+
+    /// One line about the PC link, and a second one if it loses anything.
+    fn pc(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Some(link) = self.page("link") else {
+            return Ok(());
+        };
+        match link.number("age-ms") {
+            Some(age) if age < 65_535.0 => {
+                let gap = whole(link, "longest-gap-ms");
+                let rate = number(link.number("rate-hz"), 0);
+                write!(
+                    f,
+                    "\nPC          {rate} Hz, last command {age} ms ago, longest gap {gap} ms"
+                )?;
+            }
+            _ => write!(f, "\nPC          no command yet, or none for a minute")?,
+        }
+        if let Some(frames) = self.page("link-frames") {
+            let (good, sent) = (whole(frames, "good"), whole(frames, "sent"));
+            write!(f, "; {good} frames received, {sent} sent")?;
+        }
+        if let Some(errors) = self.page("link-errors") {
+            let count = |field| whole(errors, field);
+            let (crc, line) = (count("crc-errors"), count("line-errors"));
+            let (resyncs, unconfirmed) = (count("resyncs"), count("unconfirmed"));
+            if crc + line + resyncs > 0 {
+                write!(
+                    f,
+                    "\nPC line     {crc} CRC errors, {line} line errors, {resyncs} resyncs, {unconfirmed} commands not used"
+                )?;
+            }
+        }
+        Ok(())
     }
 
     fn motors(&self, f: &mut Formatter<'_>) -> fmt::Result {

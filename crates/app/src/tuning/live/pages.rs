@@ -9,6 +9,7 @@ use super::{
 };
 use crate::safety::{ArmingBlockers, SafetyFlags};
 
+mod link;
 mod motors;
 mod radio;
 mod sensors;
@@ -24,7 +25,7 @@ const ROBOT: [&str; 1] = [""];
 const CHANNELS: [&str; 4] = ["0-3", "4-7", "8-11", "12-15"];
 
 /// All pages, by number.
-pub static LIVE_PAGES: [LivePage; 36] = [
+pub static LIVE_PAGES: [LivePage; 40] = [
     page(0x00, "version", &ROBOT, &system::VERSION),
     page(0x01, "run", &ROBOT, &system::RUN),
     page(0x02, "boot", &ROBOT, &system::BOOT),
@@ -61,6 +62,10 @@ pub static LIVE_PAGES: [LivePage; 36] = [
     page(0x2E, "can-frames", &BUSES, &system::CAN_FRAMES),
     page(0x30, "strangers", &BUSES, &system::STRANGERS),
     page(0x34, "raw-channels", &CHANNELS, &radio::RAW_CHANNELS),
+    page(0x38, "link", &ROBOT, &link::COMMANDS),
+    page(0x39, "link-frames", &ROBOT, &link::FRAMES),
+    page(0x3A, "link-errors", &ROBOT, &link::ERRORS),
+    page(0x3B, "link-tunnel", &ROBOT, &link::TUNNEL),
 ];
 
 const fn page(

@@ -282,6 +282,30 @@ fn channels_are_four_a_page() {
     assert_eq!(bytes, [0xE8, 0x83, 0xC1, 0xF4, 0x01, 0x00]);
 }
 
+/// 99.7 Hz = 997 = 0x03E5, 7 ms, 12 ms; 321 = 0x141 and 4,000 = 0xFA0 frames; 3, 2, 1 and 5 errors of 12 bits each;
+/// 9 and 4 tunnelled frames, 70,000 bytes = 0x11170.
+#[test]
+fn the_pc_link_is_shown() {
+    let shown = |page| {
+        read_of(page, |diagnostics| {
+            diagnostics.ts_us = 5_000_000;
+            let link = &mut diagnostics.link;
+            (link.rate_hz, link.last_us, link.longest_gap_us) = (99.7, 4_993_000, 12_900);
+            (link.good, link.sent) = (321, 4_000);
+            (link.crc_errors, link.resyncs) = (3, 2);
+            (link.line_errors, link.unconfirmed) = (1, 5);
+            (link.tunnelled, link.tunnel_dropped) = (9, 4);
+            link.discarded_bytes = 70_000;
+        })
+    };
+    assert_eq!(shown(0x38), [0xE5, 0x03, 7, 0, 12, 0]);
+    assert_eq!(shown(0x39), [0x41, 0x01, 0, 0xA0, 0x0F, 0]);
+    assert_eq!(shown(0x3A), [0x03, 0x20, 0x00, 0x01, 0x50, 0x00]);
+    assert_eq!(shown(0x3B), [9, 0, 0x04, 0x00, 0x17, 0x11]);
+    let never = read_of(0x38, |_| {});
+    assert_eq!(never, [0, 0, 0xFF, 0xFF, 0, 0]);
+}
+
 #[test]
 fn unknown_pages_are_refused() {
     let diagnostics = DiagnosticsSnapshot::default();
