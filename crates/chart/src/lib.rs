@@ -31,6 +31,7 @@
 //! ```
 
 mod canvas;
+mod lanes;
 mod page;
 mod plot;
 mod scatter;
@@ -39,6 +40,7 @@ mod thin;
 pub use canvas::{
     Area, BLUE, DrawError, GREEN, GREY, ORANGE, PURPLE, WIDTH, label_style, svg as draw_svg,
 };
+pub use lanes::{Lane, draw_lanes};
 pub use page::{Figure, Legend, document, escaped, header, paragraph, table};
 pub use plot::{Curve, TimePlot, draw_histogram, draw_path};
 pub use plotters::style::RGBColor as Colour;

@@ -8,6 +8,7 @@ mod interrupt;
 mod joint;
 mod mounting;
 pub mod output;
+mod plot;
 mod radio;
 mod record;
 mod status;
@@ -31,6 +32,8 @@ pub enum Command {
     Radio(radio::Radio),
     /// Record the robot's state (PC link), a CAN bus, or the sensors for calibration
     Record(record::Record),
+    /// Show a recording as a page with plots
+    Plot(plot::Plot),
     /// Read and change the robot's settings
     Tune(tune::Tune),
     /// Set a joint's zero
@@ -47,6 +50,7 @@ impl Command {
             Self::Mounting(mounting) => mounting.run(),
             Self::Radio(radio) => radio.run(),
             Self::Record(record) => record.run(),
+            Self::Plot(plot) => plot.run(),
             Self::Tune(tune) => tune.run(),
             Self::Joint(joint) => joint.run(),
             Self::FirstBoard(first_board) => first_board.run(),

@@ -15,6 +15,7 @@
 //! | [`can_recorder`] | records all frames of a bus as MCAP |
 //! | [`link_recorder`] | records the state from the PC link as MCAP |
 //! | [`mcap_file`] | writes MCAP files of JSON messages |
+//! | [`plot`] | shows a recording as an HTML page |
 //! | [`tuning`] | reads and changes the robot's settings over CAN, and reads its live values |
 //! | [`status`] | shows live values as words or JSON |
 //! | [`recorder`] | records the robot's samples over CAN into a table |
@@ -29,6 +30,7 @@ pub mod mcap_file;
 pub mod mounting;
 pub mod parameter_file;
 pub mod pc_link;
+pub mod plot;
 pub mod radio;
 pub mod recorder;
 pub mod recording;

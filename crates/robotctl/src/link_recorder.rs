@@ -6,13 +6,12 @@ mod robot_time;
 use std::path::Path;
 
 use robot_app::link::{ScanCounters, Uplink};
-use serde_json::json;
 
 use crate::{
     mcap_file::{McapFile, McapFileError, Topic},
     pc_link::Traffic,
 };
-use message::State;
+pub use message::{Attitude, Gap, Joints, LinkCounters, Mode, Motor, Radio, State, Wheels};
 use robot_time::{Arrival, RobotTime};
 
 /// Topic of the robot's state, one message a frame.
@@ -119,7 +118,10 @@ impl LinkRecorder {
             self.summary.longest_gap_s = self.summary.longest_gap_s.max(arrival.after_s);
         }
         if arrival.after_s > GAP_S || arrival.restarted {
-            let gap = json!({ "seconds": arrival.after_s, "restarted": arrival.restarted });
+            let gap = Gap {
+                seconds: arrival.after_s,
+                restarted: arrival.restarted,
+            };
             self.file.write(self.topics.gap, time_ns, &gap)?;
         }
         let message = State::new(&arrival.state, t_s);
@@ -132,7 +134,7 @@ impl LinkRecorder {
         }
         if t_s >= self.statistics_at_s {
             self.statistics_at_s = t_s + STATISTICS_S;
-            let link = message::link(&self.summary);
+            let link = LinkCounters::new(&self.summary);
             self.file.write(self.topics.link, time_ns, &link)?;
         }
         Ok(())

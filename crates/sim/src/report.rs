@@ -1,7 +1,6 @@
 //! `report.html`: one self-contained page with the verdict, the plots and the log.
 
 mod attitude;
-mod lanes;
 mod page;
 mod plots;
 mod shape;

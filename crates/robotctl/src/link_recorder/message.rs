@@ -4,7 +4,7 @@ use robot_app::{
     link::{Keys, MotorState, Sticks, Uplink},
     tuning::JOINTS,
 };
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
 use super::LinkSummary;
@@ -13,72 +13,86 @@ use super::LinkSummary;
 const NOT_MEASURED_V: f32 = 20.0;
 
 /// One state frame.
-#[derive(Serialize)]
-pub(super) struct State {
-    time_s: f64,
-    armed: bool,
-    mode: Option<&'static str>,
-    battery_v: Option<f32>,
-    mcu_c: i8,
-    accel_mps2: [f32; 3],
-    gyro_rps: [f32; 3],
-    attitude: Attitude,
-    wheels: Wheels,
-    joints: Joints,
-    radio: Radio,
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct State {
+    /// The robot's time, as on the recording's axis.
+    pub time_s: f64,
+    pub armed: bool,
+    /// The mode chosen on the radio; `None` if the radio is lost.
+    pub mode: Option<Mode>,
+    /// `None` if it is not measured.
+    pub battery_v: Option<f32>,
+    pub mcu_c: i8,
+    pub accel_mps2: [f32; 3],
+    pub gyro_rps: [f32; 3],
+    pub attitude: Attitude,
+    pub wheels: Wheels,
+    pub joints: Joints,
+    pub radio: Radio,
 }
 
-#[derive(Serialize)]
-struct Attitude {
-    q_xyzw: [f32; 4],
-    roll_deg: f32,
-    pitch_deg: f32,
-    yaw_deg: f32,
+/// The mode of the robot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Mode {
+    Manual,
+    Pc,
+    Custom,
 }
 
-#[derive(Serialize)]
-struct Motor {
-    angle_rad: f32,
-    speed_rps: f32,
+/// Body to world. The angles are those about z, then y, then x.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct Attitude {
+    pub q_xyzw: [f32; 4],
+    pub roll_deg: f32,
+    pub pitch_deg: f32,
+    pub yaw_deg: f32,
 }
 
-#[derive(Serialize)]
-struct Wheels {
-    left: Motor,
-    right: Motor,
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct Motor {
+    pub angle_rad: f32,
+    pub speed_rps: f32,
 }
 
-#[derive(Serialize)]
-struct Joints {
-    left_front: Motor,
-    left_rear: Motor,
-    right_front: Motor,
-    right_rear: Motor,
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct Wheels {
+    pub left: Motor,
+    pub right: Motor,
 }
 
-#[derive(Serialize)]
-struct Radio {
-    lost: bool,
-    enable: bool,
-    estop: bool,
-    dead_man: bool,
-    keys: u16,
-    lx: f32,
-    ly: f32,
-    rx: f32,
-    ry: f32,
-    l2: f32,
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct Joints {
+    pub left_front: Motor,
+    pub left_rear: Motor,
+    pub right_front: Motor,
+    pub right_rear: Motor,
+}
+
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct Radio {
+    pub lost: bool,
+    pub enable: bool,
+    pub estop: bool,
+    pub dead_man: bool,
+    /// All keys as they came.
+    pub keys: u16,
+    pub lx: f32,
+    pub ly: f32,
+    pub rx: f32,
+    pub ry: f32,
+    pub l2: f32,
 }
 
 impl State {
-    pub fn new(state: &Uplink, time_s: f64) -> Self {
+    pub(super) fn new(state: &Uplink, time_s: f64) -> Self {
         let [left, right, left_front, left_rear, right_front, right_rear] =
             state.motors.map(Motor::new);
         let keys = state.keys;
         Self {
             time_s,
             armed: keys.contains(Keys::F1),
-            mode: mode(keys),
+            mode: Mode::chosen(keys),
             battery_v: (state.battery_v > NOT_MEASURED_V).then_some(state.battery_v),
             mcu_c: state.mcu_c,
             accel_mps2: state.accel_mps2,
@@ -96,11 +110,17 @@ impl State {
     }
 }
 
-/// Returns the mode chosen on the radio; `None` if the radio is lost.
-pub(super) fn mode(keys: Keys) -> Option<&'static str> {
-    let modes = [(Keys::A, "manual"), (Keys::B, "pc"), (Keys::X, "custom")];
-    let chosen = modes.into_iter().find(|(key, _)| keys.contains(*key));
-    chosen.map(|(_, name)| name)
+impl Mode {
+    /// Returns the mode chosen on the radio; `None` if the radio is lost.
+    pub fn chosen(keys: Keys) -> Option<Self> {
+        let modes = [
+            (Keys::A, Self::Manual),
+            (Keys::B, Self::Pc),
+            (Keys::X, Self::Custom),
+        ];
+        let chosen = modes.into_iter().find(|(key, _)| keys.contains(*key));
+        chosen.map(|(_, mode)| mode)
+    }
 }
 
 impl Motor {
@@ -158,16 +178,36 @@ pub(super) fn transform(state: &Uplink, time_ns: u64) -> Value {
     })
 }
 
-/// Returns the link's counters.
-pub(super) fn link(summary: &LinkSummary) -> Value {
-    json!({
-        "states": summary.states,
-        "crc_errors": summary.counters.crc_errors,
-        "resyncs": summary.counters.resyncs,
-        "discarded_bytes": summary.counters.discarded_bytes,
-        "implausible": summary.implausible,
-        "gaps": summary.gaps,
-    })
+/// The link's counters since the port was opened.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
+pub struct LinkCounters {
+    pub states: u64,
+    pub crc_errors: u32,
+    pub resyncs: u32,
+    pub discarded_bytes: u32,
+    pub implausible: u64,
+    pub gaps: u64,
+}
+
+impl LinkCounters {
+    pub(super) fn new(summary: &LinkSummary) -> Self {
+        Self {
+            states: summary.states,
+            crc_errors: summary.counters.crc_errors,
+            resyncs: summary.counters.resyncs,
+            discarded_bytes: summary.counters.discarded_bytes,
+            implausible: summary.implausible,
+            gaps: summary.gaps,
+        }
+    }
+}
+
+/// A time without state frames, which ends with the message's time.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+pub struct Gap {
+    pub seconds: f64,
+    /// The robot has restarted, so its length is not known.
+    pub restarted: bool,
 }
 
 fn object(fields: &[(&str, Value)]) -> Value {

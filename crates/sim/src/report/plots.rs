@@ -6,14 +6,13 @@ use std::ops::Range;
 
 use plotters::style::RGBColor;
 use robot_chart::{
-    BLUE, ChartError, Curve, Figure, GREEN, GREY, ORANGE, PURPLE, TimePlot, draw_histogram,
-    draw_path,
+    BLUE, ChartError, Curve, Figure, GREEN, GREY, Lane, ORANGE, PURPLE, TimePlot, draw_histogram,
+    draw_lanes, draw_path,
 };
 use robot_plant::time;
 
 use super::{
     Report, attitude,
-    lanes::{self, Lane},
     shape::{distinct, rises, spans},
 };
 
@@ -299,7 +298,7 @@ impl Plots<'_> {
             title: "Arming and safety".into(),
             caption: "A lane is filled while it is on. Blockers in purple, safety flags in orange; the flash to 0.1 s.".into(),
             legend: Vec::new(),
-            svg: lanes::draw(&rows, 0.0..end, &self.marks)?,
+            svg: draw_lanes(&rows, 0.0..end, &self.marks)?,
         }))
     }
 

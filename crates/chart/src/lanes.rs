@@ -2,9 +2,10 @@
 
 use std::ops::Range;
 
+use crate::{ChartError, GREY, WIDTH, canvas::svg as draw_svg, label_style};
 use plotters::prelude::*;
-use robot_chart::{ChartError, GREY, WIDTH, draw_svg, label_style};
 
+/// When one thing was on.
 pub struct Lane {
     pub label: String,
     pub colour: RGBColor,
@@ -39,7 +40,8 @@ impl Lane {
     }
 }
 
-pub fn draw(lanes: &[Lane], time: Range<f64>, marks: &[f64]) -> Result<String, ChartError> {
+/// Draws one lane below the other as SVG text, with a line at each mark.
+pub fn draw_lanes(lanes: &[Lane], time: Range<f64>, marks: &[f64]) -> Result<String, ChartError> {
     let count = lanes.len() as i32;
     let height = 48 + 26 * lanes.len() as u32;
     draw_svg((WIDTH, height), |area| {
@@ -101,7 +103,7 @@ mod tests {
             .enumerate()
             .map(|(i, v)| (i as f64, Some(*v)))
             .collect();
-        let lane = Lane::new("x", robot_chart::BLUE, &points, |v| v != 0.0);
+        let lane = Lane::new("x", crate::BLUE, &points, |v| v != 0.0);
         assert_eq!(lane.on, [(1.0, 3.0), (4.0, 4.0)]);
     }
 }
