@@ -88,6 +88,11 @@ impl Bmi088 {
         self.thermal.temperature_c()
     }
 
+    /// Temperature of the board around it, °C.
+    pub(crate) fn board_c(&self) -> f64 {
+        self.thermal.board_c()
+    }
+
     /// Complaints of writes that came too soon after another.
     pub(crate) fn take_complaints(&mut self) -> impl Iterator<Item = Complaint> {
         let dies = [

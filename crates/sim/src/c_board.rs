@@ -104,6 +104,10 @@ impl Board for CBoard {
         self.world.vdda_v()
     }
 
+    fn chip_temperature_c(&self) -> f64 {
+        self.world.chip_temperature_c()
+    }
+
     fn spi_transfer(&mut self, mosi: u8, sck_hz: u32, mode: u8, now: Ps) -> u8 {
         self.world.spi_transfer(mosi, sck_hz, mode, now)
     }

@@ -2,7 +2,10 @@
 
 use unicorn_engine::{Prot, Unicorn, uc_error};
 
-use crate::soc::{adc::vrefint_counts, guest_memory::GuestMemory};
+use crate::soc::{
+    adc::{temperature_counts, vrefint_counts},
+    guest_memory::GuestMemory,
+};
 
 /// A range of the address space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,6 +74,9 @@ const UNIQUE_ID: u32 = 0x1FFF_7A10;
 const FLASH_SIZE_KIB: u32 = 0x1FFF_7A22;
 /// VREFINT as the maker measured it at 3.3 V and 30 °C, in counts (DS8626 table 76).
 const VREFIN_CAL: u32 = 0x1FFF_7A2A;
+/// The temperature sensor as the maker measured it at 3.3 V, in counts: TS_CAL1 at 30 °C, TS_CAL2 at 110 °C (DS8626,
+/// temperature sensor calibration values).
+const TS_CAL: [(u32, f64); 2] = [(0x1FFF_7A2C, 30.0), (0x1FFF_7A2E, 110.0)];
 
 /// Maps the memories and fills them as they are at power-on: flash and OTP erased, RAM full of noise. Sectors 1–3 are
 /// left out. SRAM is not executable, because otherwise the engine would check every store for changed code.
@@ -97,6 +103,9 @@ pub fn map<D>(engine: &mut Unicorn<'_, D>) -> Result<(), uc_error> {
     engine.mem_write(HANG.base.into(), &endless_loop())?;
     engine.mem_write(UNIQUE_ID.into(), b"EMULATEDBRD1")?;
     engine.mem_write(FLASH_SIZE_KIB.into(), &1024_u16.to_le_bytes())?;
+    for (address, celsius) in TS_CAL {
+        engine.mem_write(address.into(), &temperature_counts(celsius).to_le_bytes())?;
+    }
     engine.mem_write(VREFIN_CAL.into(), &vrefint_counts(3.3).to_le_bytes())
 }
 

@@ -1,5 +1,8 @@
 //! ADC1 and ADC3 with the registers common to the three converters (RM0090 chapter 13): single conversions of
-//! IN8 and of the internal reference voltage.
+//! IN8, of the temperature sensor and of the internal reference voltage.
+//!
+//! VBAT is not modelled: VBATE stops the run. On the STM32F40x it has a channel of its own, IN18, and takes nothing from
+//! the temperature sensor (RM0090 13.11).
 
 mod converter;
 
@@ -29,12 +32,25 @@ const IRQ: u8 = 18;
 const MAX_ADC_HZ: u32 = 36_000_000;
 /// Internal reference voltage of this chip. The datasheet allows 1.18 to 1.24 V.
 const VREFINT_V: f64 = 1.217;
-/// The reference after TSVREFE (DS8626, embedded reference voltage).
-const VREFINT_START: Ps = 10 * US;
+/// The reference and the temperature sensor after TSVREFE (DS8626, embedded reference voltage and temperature sensor
+/// characteristics).
+const INTERNAL_START: Ps = 10 * US;
+/// Output of the temperature sensor at 25 °C, and its slope in V/K (DS8626, temperature sensor characteristics, typical).
+const TEMPERATURE_V25: f64 = 0.76;
+const TEMPERATURE_SLOPE: f64 = 2.5e-3;
 
 /// The internal reference in counts of 12 bits at a supply of `vdda_v`.
 pub fn vrefint_counts(vdda_v: f64) -> u16 {
     (VREFINT_V / vdda_v * 4095.0).round() as u16
+}
+
+/// The temperature sensor in counts of 12 bits at a supply of 3.3 V, as the maker calibrates it.
+pub fn temperature_counts(celsius: f64) -> u16 {
+    (temperature_v(celsius) / 3.3 * 4095.0).round() as u16
+}
+
+fn temperature_v(celsius: f64) -> f64 {
+    TEMPERATURE_V25 + TEMPERATURE_SLOPE * (celsius - 25.0)
 }
 
 mod ccr {
@@ -46,7 +62,7 @@ mod ccr {
 #[derive(Debug, Default)]
 struct Common {
     ccr: u32,
-    reference_on_at: Ps,
+    internal_on_at: Ps,
 }
 
 impl Common {
@@ -54,20 +70,17 @@ impl Common {
         ctx.clocks.pclk2_hz / (2 * ((self.ccr >> 16 & 3) + 1))
     }
 
-    /// Whether a converter can measure the reference. If not, a board error is reported.
-    fn reference_is_on(&self, ctx: &mut Ctx<'_>) -> bool {
+    /// Whether a converter can measure the reference or the temperature sensor. If not, a board error is reported.
+    fn internal_is_on(&self, source: &str, ctx: &mut Ctx<'_>) -> bool {
         if self.ccr & ccr::TSVREFE == 0 {
-            ctx.errors.report(
-                ctx.now,
-                "ADC: VREFINT converted while TSVREFE is 0: it is not connected",
-            );
+            let what = format!("ADC: {source} converted while TSVREFE is 0: it is not connected");
+            ctx.errors.report(ctx.now, what);
             return false;
         }
-        if ctx.now < self.reference_on_at {
-            ctx.errors.suspect(
-                ctx.now,
-                "ADC: VREFINT converted less than 10 us after TSVREFE: it is not settled",
-            );
+        if ctx.now < self.internal_on_at {
+            let what =
+                format!("ADC: {source} converted less than 10 us after TSVREFE: it is not settled");
+            ctx.errors.suspect(ctx.now, what);
         }
         true
     }
@@ -77,7 +90,7 @@ impl Common {
             return Err(reg::MAP.unmodelled_write("ADC", reg::CCR, value));
         }
         if value & !self.ccr & ccr::TSVREFE != 0 {
-            self.reference_on_at = ctx.now + VREFINT_START;
+            self.internal_on_at = ctx.now + INTERNAL_START;
         }
         self.ccr = value;
         Ok(())

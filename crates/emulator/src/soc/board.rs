@@ -62,6 +62,11 @@ pub trait Board: Any {
         3.3
     }
 
+    /// Temperature of the chip's die, °C.
+    fn chip_temperature_c(&self) -> f64 {
+        25.0
+    }
+
     /// Exchanges one byte on SPI1 in the SPI mode 0 … 3. Returns 0xFF if no device is selected.
     fn spi_transfer(&mut self, _mosi: u8, _sck_hz: u32, _mode: u8, _now: Ps) -> u8 {
         0xFF

@@ -40,14 +40,18 @@ pub struct Beat {
 pub struct Dma {
     number: u8,
     streams: [Stream; 8],
+    /// The request line that each stream serves on its channel.
+    serves: [Option<&'static RequestLine>; 8],
 }
 
 impl Dma {
     /// 1 or 2.
     pub fn new(number: u8) -> Self {
+        let streams = [Stream::default(); 8];
         Self {
             number,
-            streams: [Stream::default(); 8],
+            streams,
+            serves: std::array::from_fn(|index| line_served(number, index, &streams[index])),
         }
     }
 
@@ -61,9 +65,10 @@ impl Dma {
             .streams
             .iter()
             .enumerate()
+            .filter(|(_, stream)| stream.ready())
             .filter_map(|(index, stream)| {
-                let line = self.line_served_by(index)?;
-                (stream.ready() && requests.get(line.request)).then_some((index, stream, line))
+                let line = self.serves[index]?;
+                requests.get(line.request).then_some((index, stream, line))
             });
         let (index, stream, line) = waiting
             .max_by_key(|(index, stream, _)| (stream.priority(), std::cmp::Reverse(*index)))?;
@@ -71,15 +76,6 @@ impl Dma {
             stream: index,
             line,
             item: stream.next_item(),
-        })
-    }
-
-    fn line_served_by(&self, index: usize) -> Option<&'static RequestLine> {
-        let channel = self.streams[index].channel();
-        request_map::line_of(Slot {
-            controller: self.number,
-            stream: index as u8,
-            channel,
         })
     }
 
@@ -91,7 +87,7 @@ impl Dma {
 
     /// Tells the peripheral whether the next item is the last one (EOT_1).
     fn announce_last(&self, stream: usize, ctx: &mut Ctx<'_>) {
-        if let Some(line) = self.line_served_by(stream) {
+        if let Some(line) = self.serves[stream] {
             ctx.dma
                 .set_last(line.request, self.streams[stream].items_left() == 1);
         }
@@ -166,6 +162,7 @@ impl Dma {
                 let enabled = self.streams[stream]
                     .set_register(offset, value)
                     .map_err(|what| self.stream_lacks(stream, offset, what))?;
+                self.serves[stream] = line_served(self.number, stream, &self.streams[stream]);
                 if enabled {
                     self.announce_last(stream, ctx);
                     self.check_enabling(stream, ctx);
@@ -196,6 +193,14 @@ impl Dma {
             );
         }
     }
+}
+
+fn line_served(controller: u8, index: usize, stream: &Stream) -> Option<&'static RequestLine> {
+    request_map::line_of(Slot {
+        controller,
+        stream: index as u8,
+        channel: stream.channel(),
+    })
 }
 
 /// Offset of stream 0's registers, and bytes of one stream's registers.

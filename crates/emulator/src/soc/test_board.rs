@@ -1,6 +1,6 @@
 //! Boards for unit tests: one with a simple device on each bus, and one with none.
 
-use std::ops::Range;
+use std::{collections::VecDeque, ops::Range};
 
 use crate::{
     soc::{
@@ -131,8 +131,8 @@ pub struct CanNodes {
     due: [Ps; 2],
 }
 
-/// A board with the wiring of the tests: a device that answers on SPI1 and on I2C3, a sender at USART3, nodes on both
-/// CAN buses, and a voltage at ADC3_IN8.
+/// A board with the wiring of the tests: a device that answers on SPI1 and on I2C3, a sender at USART3, whatever a test
+/// wants at USART1, nodes on both CAN buses, and a voltage at ADC3_IN8.
 pub struct TestBoard {
     now: Ps,
     pub cells: Cells,
@@ -143,12 +143,15 @@ pub struct TestBoard {
     pub i2c_held: bool,
     i2c_register: Option<u8>,
     characters_sent: u64,
+    /// What happens on the line into USART1.
+    pub line: VecDeque<LineEvent>,
     /// What the chip's USARTs have sent, with the end of each character.
     pub sent: Vec<(UartPort, UartChar, Ps)>,
     pub can: [CanNodes; 2],
     /// Voltage at ADC3_IN8.
     pub analog_v: f64,
     pub vdda_v: f64,
+    pub chip_temperature_c: f64,
 }
 
 impl Default for TestBoard {
@@ -165,10 +168,12 @@ impl Default for TestBoard {
             i2c_held: false,
             i2c_register: None,
             characters_sent: 0,
+            line: VecDeque::new(),
             sent: Vec::new(),
             can: [senders, CanNodes::default()],
             analog_v: 2.4,
             vdda_v: 3.3,
+            chip_temperature_c: 25.0,
         }
     }
 }
@@ -214,7 +219,7 @@ impl Board for TestBoard {
         for pin in [('A', 0), ('A', 8), ('C', 9)] {
             pins.connect(Pin::new(pin.0, pin.1), ExternalConnection::PullUp);
         }
-        for pin in [('C', 11), ('D', 0), ('B', 5)] {
+        for pin in [('B', 7), ('C', 11), ('D', 0), ('B', 5)] {
             pins.connect(Pin::new(pin.0, pin.1), ExternalConnection::Drives(true));
         }
     }
@@ -258,6 +263,10 @@ impl Board for TestBoard {
         self.vdda_v
     }
 
+    fn chip_temperature_c(&self) -> f64 {
+        self.chip_temperature_c
+    }
+
     fn spi_transfer(&mut self, mosi: u8, _sck_hz: u32, _mode: u8, _now: Ps) -> u8 {
         if !self.spi_selected {
             return 0xFF;
@@ -294,8 +303,10 @@ impl Board for TestBoard {
     }
 
     fn uart_event(&mut self, port: UartPort, now: Ps) -> Option<LineEvent> {
-        if port != UartPort::Usart3 {
-            return None;
+        match port {
+            UartPort::Usart1 => return self.line.pop_front_if(|next| next.start() <= now),
+            UartPort::Usart3 => {}
+            UartPort::Usart6 => return None,
         }
         let (burst, number) = (self.characters_sent / BURST, self.characters_sent % BURST);
         let start = FIRST_BURST + burst * BURST_PERIOD + number * CHARACTER;

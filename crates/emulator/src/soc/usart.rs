@@ -13,15 +13,17 @@ use crate::{
         signals::Signal,
     },
     time::{MS, Ps},
-    wire::{LineEvent, Parity, UartChar, UartPort},
+    wire::{LineEvent, Parity, UartPort},
 };
 
 mod mismatch;
 mod receiver;
 mod registers;
+mod transmitter;
 mod waveform;
 
 use registers::{cr1, cr3, reg, sr};
+use transmitter::Transmitter;
 
 /// Tags of scheduled events. An event that is not due any more is ignored.
 const RECEIVED: u32 = 0;
@@ -31,15 +33,6 @@ const LISTENING: u32 = 3;
 
 /// Drivers may enable the receiver shortly before they set its pin up.
 const PIN_DUE: Ps = MS;
-
-/// A character on its way out.
-#[derive(Clone, Copy, Debug)]
-struct Sending {
-    character: UartChar,
-    ends_at: Ps,
-    /// Its pin carries it.
-    heard: bool,
-}
 
 /// One USART.
 #[derive(Debug)]
@@ -56,10 +49,9 @@ pub struct Usart {
     receiver: Receiver,
     received_at: Option<Ps>,
     idle_at: Option<Ps>,
-    /// The character in the transmit data register.
-    waiting_to_send: Option<u16>,
-    /// The character in the transmit shift register.
-    sending: Option<Sending>,
+    /// An edge has interrupted the wait for an idle line.
+    idle_awaited: bool,
+    transmitter: Transmitter,
 }
 
 impl Usart {
@@ -77,8 +69,8 @@ impl Usart {
             receiver: Receiver::default(),
             received_at: None,
             idle_at: None,
-            waiting_to_send: None,
-            sending: None,
+            idle_awaited: false,
+            transmitter: Transmitter::default(),
         }
     }
 
@@ -167,7 +159,7 @@ impl Usart {
         };
         if let Some(at) = self.receiver.completes_at(&framing) {
             self.received_at = Some(at);
-            self.idle_at = None;
+            self.idle_awaited |= self.idle_at.take().is_some();
             ctx.scheduler
                 .at(at.max(ctx.now), Target::Usart(self.number), RECEIVED);
         }
@@ -175,6 +167,7 @@ impl Usart {
 
     fn plan_idle(&mut self, at: Ps, ctx: &mut Ctx<'_>) {
         self.idle_at = Some(at);
+        self.idle_awaited = false;
         ctx.scheduler.at(at, Target::Usart(self.number), IDLE);
     }
 
@@ -197,80 +190,18 @@ impl Usart {
                 mismatch::report(self.number, sent.format, &framing, &got, ctx);
             }
             self.plan_idle(start + 2 * framing.char_time(), ctx);
+        } else if self.idle_awaited {
+            // It was a glitch.
+            let idle_at = self.receiver.searching_from() + framing.char_time();
+            self.plan_idle(idle_at.max(ctx.now), ctx);
         }
         self.plan_reception(ctx);
-    }
-
-    fn start_sending(&mut self, ctx: &mut Ctx<'_>) {
-        let on = cr1::UE | cr1::TE;
-        if self.sending.is_some() || self.cr1 & on != on {
-            return;
-        }
-        let Some(framing) = self.framing(ctx) else {
-            return;
-        };
-        let Some(data) = self.waiting_to_send.take() else {
-            return;
-        };
-        self.sr |= sr::TXE;
-        let character = UartChar {
-            start: ctx.now,
-            byte: data as u8,
-            format: framing.format(),
-        };
-        let sending = Sending {
-            character,
-            ends_at: ctx.now + framing.char_time(),
-            heard: self
-                .tx_signal()
-                .is_some_and(|signal| routing::check(signal, ctx)),
-        };
-        self.sending = Some(sending);
-        ctx.scheduler
-            .at(sending.ends_at, Target::Usart(self.number), SENT);
-    }
-
-    fn character_sent(&mut self, sent: Sending, ctx: &mut Ctx<'_>) {
-        self.sending = None;
-        if sent.heard {
-            ctx.board.uart_sent(self.port(), sent.character, ctx.now);
-        }
-        self.start_sending(ctx);
-        if self.sending.is_none() {
-            self.sr |= sr::TC;
-        }
-    }
-
-    /// Clearing TE corrupts the character that is being sent (RM0090 30.3.2).
-    fn stop_sending(&mut self, ctx: &mut Ctx<'_>) {
-        if self.sending.take().is_some() {
-            let message = format!(
-                "USART{}: TE cleared while a character is sent: it is lost",
-                self.number
-            );
-            ctx.errors.report(ctx.now, message);
-            self.sr |= sr::TC;
-        }
     }
 
     fn read_dr(&mut self) -> u16 {
         self.sr &= !(sr::RXNE | self.shown & sr::CLEARED_BY_DR_READ);
         self.shown = 0;
         self.dr
-    }
-
-    fn write_dr(&mut self, data: u16, ctx: &mut Ctx<'_>) {
-        if self.waiting_to_send.is_some() {
-            let message = format!(
-                "USART{}: DR written while TXE is 0: the character waiting there is lost",
-                self.number
-            );
-            ctx.errors.report(ctx.now, message);
-        }
-        self.sr &= !(sr::TXE | self.shown & sr::TC);
-        self.shown &= !sr::TC;
-        self.waiting_to_send = Some(data);
-        self.start_sending(ctx);
     }
 
     fn write_cr1(&mut self, value: u32, ctx: &mut Ctx<'_>) {
@@ -374,11 +305,7 @@ impl Peripheral for Usart {
             RECEIVED if due(self.received_at) => self.character_ended(ctx),
             IDLE if due(self.idle_at) => self.line_idles(ctx),
             LISTENING if self.receiving() => self.check_input(ctx),
-            SENT => {
-                if let Some(sent) = self.sending.filter(|s| s.ends_at <= ctx.now) {
-                    self.character_sent(sent, ctx);
-                }
-            }
+            SENT => self.character_sent(ctx),
             _ => {}
         }
         self.update_lines(ctx);

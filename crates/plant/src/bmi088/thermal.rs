@@ -34,6 +34,11 @@ impl Thermal {
         self.temperature_c
     }
 
+    /// The board around the package.
+    pub(super) fn board_c(&self) -> f64 {
+        self.board_c
+    }
+
     pub(super) fn step(&mut self, dt_s: f64) {
         let goal_c = self.board_c + self.heater_duty * HEATER_W * KELVIN_PER_WATT;
         self.temperature_c += (goal_c - self.temperature_c) * dt_s / TIME_CONSTANT_S;

@@ -165,9 +165,11 @@ const IMU: &[Signal] = &[
     ("truth.imu.heater_duty", |w| w.imu.heater_duty()),
 ];
 
-/// Battery voltage at the terminals, brightness of the LED 0 … 1, frequency of the buzzer, 0 while silent.
+/// Battery voltage at the terminals, temperature of the chip, brightness of the LED 0 … 1, frequency of the buzzer, 0 while
+/// silent.
 const BOARD: &[Signal] = &[
     ("truth.battery_v", |w| w.battery.volts()),
+    ("truth.chip.temperature_c", World::chip_temperature_c),
     ("truth.led.r", |w| w.indicators.leds_bgr[2]),
     ("truth.led.g", |w| w.indicators.leds_bgr[1]),
     ("truth.led.b", |w| w.indicators.leds_bgr[0]),

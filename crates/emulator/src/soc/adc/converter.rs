@@ -1,6 +1,6 @@
 //! One converter: single conversions of one input, started by software.
 
-use super::{Common, MAX_ADC_HZ, VREFINT_V};
+use super::{Common, MAX_ADC_HZ, VREFINT_V, temperature_v};
 use crate::{
     soc::{
         access::Access,
@@ -16,8 +16,9 @@ use crate::{
 
 /// tSTAB after ADON (DS8626, ADC characteristics).
 const STABLE_AFTER: Ps = 3 * US;
-/// Least sampling time of the internal reference (DS8626, embedded reference voltage).
-const VREFINT_SAMPLING: Ps = 10 * US;
+/// Least sampling time of the internal reference and of the temperature sensor (DS8626, embedded reference voltage and
+/// temperature sensor characteristics).
+const INTERNAL_SAMPLING: Ps = 10 * US;
 /// Resistance of the sampling switch, Ω, the capacitor it charges, F, and the time constants until 12 bits are right to
 /// half a count (DS8626, ADC characteristics, equation for the external input impedance).
 const SWITCH_OHMS: f64 = 6_000.0;
@@ -66,8 +67,21 @@ mod cr2 {
 enum Input {
     /// ADC3_IN8.
     In8,
+    /// ADC1_IN16.
+    Temperature,
     /// ADC1_IN17.
     Vrefint,
+}
+
+impl Input {
+    /// The name of a source within the chip.
+    fn internal(self) -> Option<&'static str> {
+        match self {
+            Self::In8 => None,
+            Self::Temperature => Some("the temperature sensor"),
+            Self::Vrefint => Some("VREFINT"),
+        }
+    }
 }
 
 /// One converter; its registers lie at 0x100 times `index`.
@@ -104,6 +118,7 @@ impl Converter {
     fn input(&self) -> Option<Input> {
         match (self.index, self.channel()) {
             (2, 8) => Some(Input::In8),
+            (0, 16) => Some(Input::Temperature),
             (0, 17) => Some(Input::Vrefint),
             _ => None,
         }
@@ -157,9 +172,9 @@ impl Converter {
             ctx.errors.suspect(ctx.now, what);
         }
         let sampling = cycles_to_ps(self.sample_cycles(), clock_hz);
-        if input == Input::Vrefint && sampling < VREFINT_SAMPLING {
+        if let Some(source) = input.internal().filter(|_| sampling < INTERNAL_SAMPLING) {
             let what =
-                format!("{name}: VREFINT is sampled for less than 10 us: the result is too low");
+                format!("{name}: {source} is sampled for less than 10 us: the result is too low");
             ctx.errors.suspect(ctx.now, what);
         }
         if input == Input::In8 {
@@ -182,11 +197,17 @@ impl Converter {
 
     fn convert(&self, common: &Common, ctx: &mut Ctx<'_>) -> u32 {
         let bits = self.resolution_bits();
-        let volts = match self.input() {
+        let input = self.input();
+        let on = match input.and_then(Input::internal) {
+            Some(source) => common.internal_is_on(source, ctx),
+            None => true,
+        };
+        let volts = match input.filter(|_| on) {
             Some(Input::In8) if routing::check(Signal::Adc3In8, ctx) => {
                 ctx.board.analog(Signal::Adc3In8).volts
             }
-            Some(Input::Vrefint) if common.reference_is_on(ctx) => VREFINT_V,
+            Some(Input::Temperature) => temperature_v(ctx.board.chip_temperature_c()),
+            Some(Input::Vrefint) => VREFINT_V,
             _ => 0.0,
         };
         let top = f64::from((1u32 << bits) - 1);

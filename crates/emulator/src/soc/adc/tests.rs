@@ -1,6 +1,6 @@
-//! Single conversions of a pin and of the internal reference.
+//! Single conversions of a pin, of the temperature sensor and of the internal reference.
 
-use super::{Adc, vrefint_counts};
+use super::{Adc, temperature_counts, vrefint_counts};
 use crate::{
     soc::{
         clocks::cycles_to_ps,
@@ -96,6 +96,75 @@ fn the_internal_reference_wants_its_bit_and_time() {
     for part in ["less than 10 us:", "less than 10 us after"] {
         assert!(texts.iter().any(|text| text.contains(part)), "{texts:?}");
     }
+}
+
+/// IN16 of ADC1 with the sampling of `smpr1`, TSVREFE.
+fn measured_temperature(bench: &mut Bench, smpr1: u32) -> f64 {
+    let mut adc = Adc::new();
+    bench.write(&mut adc, CCR, 1 << 16 | 1 << 23);
+    bench.write(&mut adc, 0x08, ADON);
+    bench.write(&mut adc, 0x0C, smpr1);
+    bench.write(&mut adc, 0x34, 16);
+    bench.now += 20 * US;
+    bench.write(&mut adc, 0x08, ADON | SWSTART);
+    bench.run(&mut adc, bench.now + 24 * US);
+    f64::from(bench.read(&mut adc, 0x4C))
+}
+
+const LONG_ENOUGH: u32 = 7 << 18;
+
+/// DS8626: 0.76 V at 25 °C and 2.5 mV/K; 0.76 V are 943 of 4096 at 3.3 V.
+#[test]
+fn the_temperature_sensor_has_the_datasheets_line_and_calibration() {
+    for celsius in [-20.0, 25.0, 38.0, 90.0] {
+        let mut bench = Bench::new();
+        bench.board.chip_temperature_c = celsius;
+        let counts = measured_temperature(&mut bench, LONG_ENOUGH);
+        let typical = (counts / 4096.0 * 3.3 - 0.76) / 2.5e-3 + 25.0;
+        assert!((typical - celsius).abs() < 0.5, "{typical}");
+        let [cold, hot] = [30.0, 110.0].map(|c| f64::from(temperature_counts(c)));
+        let calibrated = (counts - cold) * (110.0 - 30.0) / (hot - cold) + 30.0;
+        assert!((calibrated - celsius).abs() < 1.0, "{calibrated}");
+        assert!(bench.error_texts().is_empty() && bench.suspicion_texts().is_empty());
+    }
+    assert_eq!(measured_temperature(&mut Bench::new(), LONG_ENOUGH), 943.0);
+}
+
+/// A ratio to the supply: at 3.4 V the same voltage is fewer counts.
+#[test]
+fn the_temperature_is_measured_against_the_supply() {
+    let mut bench = Bench::new();
+    bench.board.vdda_v = 3.4;
+    assert_eq!(measured_temperature(&mut bench, LONG_ENOUGH), 915.0);
+}
+
+/// 112 cycles of 21 MHz are 5.3 us.
+#[test]
+fn the_temperature_sensor_wants_its_bit_and_time() {
+    let mut bench = Bench::new();
+    measured_temperature(&mut bench, 5 << 18);
+    let texts = bench.suspicion_texts();
+    let expected = "ADC1: the temperature sensor is sampled for less than 10 us";
+    assert!(
+        texts.len() == 1 && texts[0].starts_with(expected),
+        "{texts:?}"
+    );
+    let (mut bench, mut adc) = reference_ready();
+    bench.write(&mut adc, CCR, 1 << 16);
+    bench.write(&mut adc, 0x34, 16);
+    bench.write(&mut adc, 0x08, ADON | SWSTART);
+    bench.run(&mut adc, bench.now + 24 * US);
+    assert!(
+        bench.error_texts()[0].starts_with("ADC: the temperature sensor converted while TSVREFE")
+    );
+}
+
+/// The sensor hangs on ADC1 alone (RM0090 13.10).
+#[test]
+fn only_adc1_has_the_temperature_sensor() {
+    let (mut bench, mut adc) = ready();
+    bench.write(&mut adc, SQR3, 16);
+    assert!(adc.write(CR2, 4, ADON | SWSTART, &mut bench.ctx()).is_err());
 }
 
 #[test]

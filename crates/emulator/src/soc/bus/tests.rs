@@ -4,6 +4,7 @@ mod clocks;
 mod dma;
 mod pins;
 mod timers;
+mod usart;
 
 use super::Soc;
 use crate::{

@@ -92,6 +92,11 @@ impl Receiver {
         self.last_character
     }
 
+    /// Where the search for the next start edge begins.
+    pub fn searching_from(&self) -> Ps {
+        self.search_from
+    }
+
     /// When the line that a device holds or held low before `now` is released; `None` if no such time is known any more.
     pub fn released_at(&self, now: Ps) -> Option<Ps> {
         self.line.released_at(now)
@@ -121,18 +126,18 @@ impl Receiver {
             self.search_from = start + framing.bit / 2;
             return None;
         }
-        let bits: Vec<(bool, bool)> = (1..=framing.word_bits).map(sample).collect();
-        let data = bits
-            .iter()
-            .rev()
-            .fold(0u16, |word, (bit, _)| word << 1 | u16::from(*bit));
+        let (mut data, mut noise) = (0u16, start_noise);
+        for index in 0..framing.word_bits {
+            let (bit, noisy) = sample(index + 1);
+            data |= u16::from(bit) << index;
+            noise |= noisy;
+        }
         let (stop_bit, stop_noise) = sample(framing.word_bits + 1);
         let parity_error = match framing.parity {
             Parity::None => false,
             Parity::Even => data.count_ones() % 2 == 1,
             Parity::Odd => data.count_ones() % 2 == 0,
         };
-        let noise = start_noise || stop_noise || bits.iter().any(|(_, noisy)| *noisy);
         self.search_from = start + framing.completion();
         Some((
             start,
@@ -140,7 +145,7 @@ impl Receiver {
                 data,
                 framing_error: !stop_bit,
                 parity_error,
-                noise,
+                noise: noise || stop_noise,
             },
         ))
     }

@@ -1,5 +1,7 @@
 //! USART3 through its registers, with a sender on its line.
 
+mod link;
+
 use super::Usart;
 use crate::{
     soc::{dma_request::DmaRequest, peripheral::Peripheral, test_bench::Bench},

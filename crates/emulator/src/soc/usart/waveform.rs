@@ -77,7 +77,7 @@ fn end(event: &LineEvent) -> Ps {
 
 /// Start time of bit `index`, counted from the start bit.
 fn bit_start(c: &UartChar, index: u32) -> Ps {
-    c.start + (u128::from(index) * u128::from(SECOND) / u128::from(c.format.baud)) as Ps
+    c.start + Ps::from(index) * SECOND / Ps::from(c.format.baud)
 }
 
 fn level(event: &LineEvent, at: Ps) -> bool {
@@ -92,10 +92,8 @@ fn level(event: &LineEvent, at: Ps) -> bool {
 
 /// The level while the character is on the line.
 fn bit_level(c: &UartChar, at: Ps) -> bool {
-    let bit = (0..c.format.bits())
-        .take_while(|&i| bit_start(c, i) <= at)
-        .count() as u8
-        - 1;
+    // The last bit whose start time, which is rounded down, is not after `at`.
+    let bit = (((at - c.start + 1) * Ps::from(c.format.baud) - 1) / SECOND) as u8;
     let data_bits = c.format.data_bits;
     match bit {
         0 => false,
