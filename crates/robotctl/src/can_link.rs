@@ -1,6 +1,7 @@
-//! Reaches a CAN bus from this computer through an slcan adapter or SocketCAN.
+//! Reaches a CAN bus from this computer through an slcan adapter, SocketCAN or a gateway to Ethernet.
 
 mod device;
+mod gateway;
 mod lawicel;
 mod slcan;
 #[cfg(target_os = "linux")]
@@ -11,6 +12,7 @@ use std::time::Instant;
 use robot_app::domain::CanFrame;
 
 pub use device::CanDevice;
+pub use gateway::{GatewayAddress, GatewayAddressError};
 
 /// A CAN bus. It carries data frames with 11-bit identifiers; frames of other kinds are ignored.
 pub trait CanLink {
@@ -52,6 +54,8 @@ pub enum CanLinkError {
     },
     #[error("the PC link carries only the tuning channel, not a frame with identifier {id:#05x}")]
     NotTunnelled { id: u16 },
+    #[error("no connection to the gateway {device}: {why}")]
+    Gateway { device: String, why: String },
     #[error("the CAN adapter failed: is it still connected?")]
     Failed(#[from] std::io::Error),
 }

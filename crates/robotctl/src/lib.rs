@@ -9,7 +9,7 @@
 //! | [`radio`] | finds the channel of each control of a transmitter while the pilot moves it |
 //! | [`settings`] | names the robot's settings and puts their values into words |
 //! | [`parameter_file`] | reads and writes parameters in TOML |
-//! | [`can_link`] | reaches a CAN bus through an slcan adapter or SocketCAN |
+//! | [`can_link`] | reaches a CAN bus through an slcan adapter, SocketCAN or a gateway to Ethernet |
 //! | [`pc_link`] | reaches the robot through the PC link |
 //! | [`transport`] | chooses between the two |
 //! | [`can_recorder`] | records all frames of a bus as MCAP |

@@ -1,9 +1,11 @@
-//! What tests of several crates share: random numbers, rotations, the wires to the simulated world, and Python.
+//! What tests of several crates share: random numbers, rotations, the wires to the simulated world, frames of a
+//! gateway, and Python.
 //!
 //! Only ever a dev-dependency. Nothing here uses the math of `robot-app`, so tests may check it against this.
 
 #![warn(missing_docs)]
 
+mod can_to_eth;
 mod python;
 mod random;
 mod rotation;
@@ -11,6 +13,7 @@ mod vector;
 #[cfg(feature = "world")]
 mod world;
 
+pub use can_to_eth::CanToEth;
 pub use python::Python;
 pub use random::Random;
 pub use rotation::Rotation;

@@ -1,8 +1,10 @@
 //! The name that a user gives to a bus.
 
-use std::{convert::Infallible, fmt, str::FromStr};
+use std::{fmt, str::FromStr};
 
-use super::{CanLink, CanLinkError, slcan::Slcan};
+use super::{
+    CanLink, CanLinkError, GatewayAddress, GatewayAddressError, gateway::Gateway, slcan::Slcan,
+};
 
 /// The device through which a CAN bus is reached.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -11,14 +13,19 @@ pub enum CanDevice {
     Slcan(String),
     /// A CAN interface of Linux, already up at 1 Mbit/s.
     SocketCan(String),
+    /// A gateway to Ethernet.
+    Gateway(GatewayAddress),
 }
 
 impl FromStr for CanDevice {
-    type Err = Infallible;
+    type Err = GatewayAddressError;
 
-    /// Takes a path (`/dev/ttyACM0`) or a COM port (`COM3`) as a serial port, and anything else as the name of an
-    /// interface.
-    fn from_str(text: &str) -> Result<Self, Infallible> {
+    /// Takes `tcp:HOST:PORT` and `udp:HOST:PORT` as a gateway, a path (`/dev/ttyACM0`) or a COM port (`COM3`) as a serial
+    /// port, and anything else as the name of an interface.
+    fn from_str(text: &str) -> Result<Self, GatewayAddressError> {
+        if let Some(gateway) = GatewayAddress::parse(text) {
+            return gateway.map(Self::Gateway);
+        }
         let is_serial = text.contains(['/', '\\']) || is_com_port(text);
         let device = if is_serial {
             Self::Slcan
@@ -37,8 +44,10 @@ fn is_com_port(text: &str) -> bool {
 
 impl fmt::Display for CanDevice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (Self::Slcan(name) | Self::SocketCan(name)) = self;
-        name.fmt(f)
+        match self {
+            Self::Slcan(name) | Self::SocketCan(name) => name.fmt(f),
+            Self::Gateway(address) => address.fmt(f),
+        }
     }
 }
 
@@ -47,6 +56,7 @@ impl CanDevice {
     pub fn open(&self) -> Result<Box<dyn CanLink>, CanLinkError> {
         match self {
             Self::Slcan(port) => Ok(Box::new(Slcan::open(port)?)),
+            Self::Gateway(address) => Ok(Box::new(Gateway::open(address)?)),
             #[cfg(target_os = "linux")]
             Self::SocketCan(name) => Ok(Box::new(super::socketcan::Interface::open(name)?)),
             #[cfg(not(target_os = "linux"))]
@@ -77,6 +87,35 @@ mod tests {
         }
         for name in ["can0", "com", "company0"] {
             assert_eq!(device(name), CanDevice::SocketCan(name.into()));
+        }
+    }
+
+    #[test]
+    fn gateways_are_written_back_as_they_were_read() {
+        for text in [
+            "tcp:192.168.0.7:20001",
+            "udp:gateway.local:20002",
+            "tcp:[fe80::1%eth0]:20001",
+        ] {
+            let device = text.parse::<CanDevice>().unwrap();
+            assert!(matches!(device, CanDevice::Gateway(_)), "{text}");
+            assert_eq!(device.to_string(), text);
+        }
+    }
+
+    #[test]
+    fn half_an_address_is_refused_with_an_example() {
+        for text in [
+            "tcp:",
+            "tcp:20001",
+            "udp:192.168.0.7",
+            "udp:192.168.0.7:0",
+            "tcp::20001",
+            "tcp:gateway:70000",
+        ] {
+            let error = text.parse::<CanDevice>().unwrap_err().to_string();
+            let example = format!("{}:192.168.0.7:20001", &text[..3]);
+            assert!(error.contains(&example), "{error}");
         }
     }
 }
