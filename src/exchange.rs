@@ -10,15 +10,17 @@
 //! | [`Exchange::config`] | control task | imu, mag, logic, params | when tuning changed it |
 //! | [`Exchange::params`] | params task | control | when it changes |
 //! | [`Exchange::flash_grant`] | control task | params | when it changes |
-//! | [`Exchange::diagnostics`] | control task | status | 100 Hz |
+//! | [`Exchange::diagnostics`] | control task | logic, status, black box | 100 Hz |
+//! | [`Exchange::black_box`] | black box task | control | when it changes |
 //! | [`RADIO_LINE`] | radio UART interrupt | sbus, status | each radio frame |
 //! | `drivers/can/receive.rs`, queues | CAN receive interrupts | control | each CAN frame |
 //! | `deadlines.rs`, check-ins | every task below control | control | at least 100 Hz |
 //! | `stall.rs`, stalls | params task, while no other task can run | every task with a ticker, `radio_uart.rs` | each erase |
+//! | `black_box_memory.rs` | black box task | control | 100 Hz |
 //! | `debugger_view.rs` | control task | a debugger | 1 kHz |
 
 use robot_app::diagnostics::DiagnosticsSnapshot;
-use robot_app::domain::LogicBus;
+use robot_app::domain::{BlackBoxStatus, LogicBus};
 use robot_app::domain::{FlashRequest, ParamStatus};
 use robot_app::domain::{ImuState, ImuStatus, MagState, RemoteUpdate, RobotConfig, SensorHealth};
 use robot_snapshot::{Snapshot, Writer};
@@ -76,6 +78,7 @@ pub struct Exchange {
     pub params: Snapshot<ParamsReport>,
     pub flash_grant: Snapshot<FlashPermission>,
     pub diagnostics: Snapshot<DiagnosticsSnapshot>,
+    pub black_box: Snapshot<BlackBoxStatus>,
 }
 
 static EXCHANGE: StaticCell<Exchange> = StaticCell::new();
@@ -91,6 +94,7 @@ pub struct Writers {
     pub logic_bus: Writer<'static, LogicBus>,
     pub battery_v: Writer<'static, f32>,
     pub params: Writer<'static, ParamsReport>,
+    pub black_box: Writer<'static, BlackBoxStatus>,
     pub control: ControlWriters,
 }
 
@@ -121,6 +125,7 @@ impl Exchange {
             params: Snapshot::new(ParamsReport::default()),
             flash_grant: Snapshot::new(FlashPermission::default()),
             diagnostics: Snapshot::new(DiagnosticsSnapshot::default()),
+            black_box: Snapshot::new(BlackBoxStatus::default()),
         })
     }
 
@@ -133,6 +138,7 @@ impl Exchange {
             logic_bus: self.logic_bus.writer()?,
             battery_v: self.battery_v.writer()?,
             params: self.params.writer()?,
+            black_box: self.black_box.writer()?,
             control: ControlWriters {
                 config: self.config.writer()?,
                 flash_grant: self.flash_grant.writer()?,

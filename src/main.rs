@@ -15,6 +15,7 @@
     clippy::multiple_unsafe_ops_per_block
 )]
 
+mod black_box_memory;
 mod board;
 mod config;
 mod crash_record;
@@ -113,6 +114,11 @@ fn main() -> ! {
                 params,
                 exchange,
                 writers.params
+            )));
+            spawner.spawn(defmt::unwrap!(tasks::black_box::run(
+                last_run,
+                exchange,
+                writers.black_box
             )));
             spawner.spawn(defmt::unwrap!(tasks::status::run(
                 exchange,

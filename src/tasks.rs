@@ -1,5 +1,6 @@
 //! The tasks, one per file. `executors.rs` says which preempts which.
 
+pub mod black_box;
 pub mod control;
 pub mod imu;
 pub mod logic;

@@ -3,7 +3,7 @@
 use embassy_time::{Duration, Instant};
 use robot_app::diagnostics::DiagnosticsSnapshot;
 use robot_app::domain::FlashRequest;
-use robot_app::domain::LogicBus;
+use robot_app::domain::{BlackBoxStatus, LogicBus};
 use robot_app::domain::{CalibrationState, LateTasks, PcCommand, RemoteUpdate, SystemHealth};
 use robot_app::tick::{ControlInputs, ControlOutputs, DIAGNOSTICS_PERIOD_TICKS, RobotLoop};
 use robot_snapshot::{Follower, Writer};
@@ -31,6 +31,7 @@ struct Inputs {
     logic: Follower<'static, LogicBus>,
     battery_v: Follower<'static, f32>,
     params: Follower<'static, ParamsReport>,
+    black_box: Follower<'static, BlackBoxStatus>,
 }
 
 impl Inputs {
@@ -46,6 +47,9 @@ impl Inputs {
         }
         if let Some(battery_v) = self.battery_v.changed() {
             health.battery_v = *battery_v;
+        }
+        if let Some(black_box) = self.black_box.changed() {
+            health.black_box = *black_box;
         }
         self.remote.latest();
         self.logic.latest();
@@ -132,6 +136,7 @@ impl ControlContext {
                 logic: exchange.logic_bus.follower(),
                 battery_v: exchange.battery_v.follower(),
                 params: exchange.params.follower(),
+                black_box: exchange.black_box.follower(),
             },
             ports,
             watchdog,

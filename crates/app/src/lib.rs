@@ -16,6 +16,7 @@
 //! | [`motor`] | CAN frames ↔ motors; which motor sits where; the frames that stop them all |
 //! | [`bring_up`] | radio or tuning request → the command that tries out new hardware |
 //! | [`diagnostics`] | one `DiagnosticsSnapshot` of all of the above |
+//! | [`black_box`] | diagnostics → the last seconds around each stop that nobody asked for, in RAM that survives a reset |
 //! | [`tuning`] | CAN requests → changed `RobotConfig`, replies |
 //! | [`params`] | `RobotConfig` ↔ flash; which sector, when, and what to do when it fails |
 //! | [`link`] | serial bytes ↔ commands of the PC, the robot's state, tunnelled CAN frames |
@@ -41,6 +42,7 @@
 //!   millisecond with what the tick grants, and gets the next request.
 //! - The control task runs at 1 kHz. It calls `tick::RobotLoop::on_can_frame` for each received frame and then
 //!   `tick::RobotLoop::tick`. It sends `outputs.frames` and publishes the rest.
+//! - The black box task calls `black_box::BlackBox::boot` once and `BlackBox::step` every 10 ms with the diagnostics.
 //! - Boot, panic and fault handlers send the layout's `safe_frames`.
 
 #![cfg_attr(not(test), no_std)]
@@ -57,6 +59,7 @@
     )
 )]
 
+pub mod black_box;
 pub mod bring_up;
 pub mod control;
 pub mod diagnostics;

@@ -1,6 +1,5 @@
 //! The parameter store: settings that survive a power cut (docs/parameters.md).
 
-mod checksum;
 mod record;
 mod save_scheduler;
 mod sector;

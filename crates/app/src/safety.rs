@@ -18,7 +18,9 @@ mod resume_interlock;
 mod status;
 mod temperature_limits;
 
-pub use arming::{ArmedToken, Arming, ArmingBlockers, ArmingInputs, ArmingState, ArmingStatus};
+pub use arming::{
+    ArmedToken, Arming, ArmingBlockers, ArmingInputs, ArmingState, ArmingStatus, DriveEnd,
+};
 pub use attitude_settling::AttitudeSettling;
 pub use centred_sticks::CentredSticks;
 pub use flags::SafetyFlags;

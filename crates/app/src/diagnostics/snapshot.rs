@@ -4,11 +4,11 @@ use super::{TickStats, UnknownFrames};
 use crate::{
     bring_up::BringUpStatus,
     domain::{
-        BusHealth, ChassisCommand, CrashCause, DebugProbe, ImuStatus, LateTasks, LinkHealth,
-        LogicBus, OperatorState, ParamStatus, RadioLineHealth, RemoteDiagnostics, RemoteState,
-        ResetCause, SensorHealth, SensorsSnapshot, StateEstimate, TuningStatus,
+        BlackBoxStatus, BusHealth, ChassisCommand, CrashCause, DebugProbe, ImuStatus, LateTasks,
+        LinkHealth, LogicBus, OperatorState, ParamStatus, RadioLineHealth, RemoteDiagnostics,
+        RemoteState, ResetCause, SensorHealth, SensorsSnapshot, StateEstimate, TuningStatus,
     },
-    safety::{ArmingStatus, MotorReadiness, SafetyStatus},
+    safety::{ArmingStatus, DriveEnd, MotorReadiness, SafetyStatus},
 };
 
 /// The state of the robot in one tick. It is plain data, so a debugger or the emulator can read every field by name.
@@ -33,6 +33,8 @@ pub struct DiagnosticsSnapshot {
     pub command: ChassisCommand,
     /// State of arming.
     pub arming: ArmingStatus,
+    /// Why the robot was last disarmed.
+    pub drive_end: DriveEnd,
     /// Flags and stops of the safety policy.
     pub safety: SafetyStatus,
     /// Timing of the tick.
@@ -55,6 +57,8 @@ pub struct DiagnosticsSnapshot {
     pub imu_status: ImuStatus,
     /// State of the parameter store.
     pub params: ParamStatus,
+    /// State of the black box.
+    pub black_box: BlackBoxStatus,
     /// Battery voltage, 0 while not measured.
     pub battery_v: f32,
     /// How the previous run ended.

@@ -1,6 +1,6 @@
 //! State of the platform, filled in by the firmware and judged by `safety`.
 
-use super::{CrashCause, ImuStatus, LateTasks, LinkHealth};
+use super::{BlackBoxStatus, CrashCause, ImuStatus, LateTasks, LinkHealth};
 
 /// Fault confinement state of a CAN controller (ISO 11898-1).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -138,6 +138,24 @@ pub enum ResetCause {
     LowPower = 7,
 }
 
+impl ResetCause {
+    const ALL: [Self; 8] = [
+        Self::Unknown,
+        Self::PowerOn,
+        Self::Pin,
+        Self::BrownOut,
+        Self::Software,
+        Self::IndependentWatchdog,
+        Self::WindowWatchdog,
+        Self::LowPower,
+    ];
+
+    /// Decodes a cause. Returns `None` for an unknown number.
+    pub fn from_code(code: u8) -> Option<Self> {
+        Self::ALL.into_iter().find(|cause| *cause as u8 == code)
+    }
+}
+
 /// State of the platform for the safety policy.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
@@ -168,4 +186,6 @@ pub struct SystemHealth {
     pub debug_probe: DebugProbe,
     /// The PC link.
     pub link: LinkHealth,
+    /// State of the black box.
+    pub black_box: BlackBoxStatus,
 }

@@ -14,6 +14,8 @@ pub struct TuningStatus {
     pub revision: u32,
     /// Groups that were set to their defaults, one bit for each index in `PARAMETERS`.
     pub restored: u32,
+    /// Numbers of the events of the black box that were released last, 0 = none. Index = bank.
+    pub black_box_released: [u16; 2],
     /// Code of the last refusal: see `Refusal`; 0 = none yet.
     pub last_refusal: u8,
 }

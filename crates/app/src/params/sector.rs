@@ -7,10 +7,8 @@
 //! | 2–5, 6–9 | twice the same: magic and format, generation, its complement, CRC-32 of these three | after the last copied slot |
 //! | 10 | proof: anything but blank means that the head was read back | last |
 
-use super::{
-    checksum::checksum,
-    slot::{SLOT_BYTES, is_blank},
-};
+use super::slot::{SLOT_BYTES, is_blank};
+use crate::math::checksum::checksum;
 
 pub(super) const SECTORS: u8 = 3;
 pub(super) const SECTOR_BYTES: u32 = 16 * 1024;

@@ -12,7 +12,7 @@
 
 use heapless::Vec;
 
-use super::checksum::checksum;
+use crate::math::checksum::checksum;
 
 /// Largest number of values in a record.
 pub const MAX_VALUES: usize = 28;

@@ -147,6 +147,29 @@ pub struct ArmingStatus {
     pub refused: ArmingBlockers,
 }
 
+/// Why the robot was last disarmed: what blocked arming in that tick, and the safety flags. Empty since boot.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(C)]
+pub struct DriveEnd {
+    /// The blockers that disarmed the robot.
+    pub blockers: ArmingBlockers,
+    /// The flags of that tick.
+    pub flags: SafetyFlags,
+}
+
+impl DriveEnd {
+    /// Whether the pilot asked for the stop: the enable switch, the e-stop, or the read-only step of bring-up. A stop
+    /// that came in the same tick for another reason was not asked for.
+    pub fn was_asked_for(&self) -> bool {
+        let asked = ArmingBlockers::ENABLE_OFF
+            .union(ArmingBlockers::ENABLE_NOT_CYCLED)
+            .union(ArmingBlockers::BRING_UP_READ_ONLY)
+            .union(ArmingBlockers::SAFETY_STOP);
+        let failures = SafetyFlags::GLOBAL_STOP.difference(SafetyFlags::E_STOP);
+        asked.contains(self.blockers) && !self.flags.intersects(failures)
+    }
+}
+
 /// Proof that the robot is armed in this tick. It can be made only here, and cannot be copied.
 #[derive(Debug)]
 pub struct ArmedToken(());
@@ -205,6 +228,7 @@ pub struct Arming {
     state: ArmingState,
     request: Request,
     refused: ArmingBlockers,
+    drive_end: DriveEnd,
     /// Flash was being written, and the attitude has not settled since.
     unsettled: bool,
     /// Frames older than this do not move the switch.
@@ -236,6 +260,10 @@ impl Arming {
             }
             ArmingState::Armed => {
                 if !blockers.is_empty() {
+                    self.drive_end = DriveEnd {
+                        blockers,
+                        flags: inputs.safety.flags,
+                    };
                     self.disarm();
                     blockers = self.disarming_blockers(fresh, inputs);
                 }
@@ -249,6 +277,11 @@ impl Arming {
             refused: self.refused,
         };
         (status, armed.then_some(ArmedToken(())))
+    }
+
+    /// Why the robot was last disarmed.
+    pub const fn drive_end(&self) -> &DriveEnd {
+        &self.drive_end
     }
 
     /// Handles the pilot's request: arms, waits or refuses. `disarming_blockers` are the blockers that also disarm. Returns

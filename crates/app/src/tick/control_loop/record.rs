@@ -33,6 +33,7 @@ impl<C: ChassisController> ControlLoop<C> {
         diagnostics.bring_up = *self.bring_up.status();
         diagnostics.tuning = *self.tuning.status();
         if self.phase == 0 {
+            diagnostics.drive_end = *self.arming.drive_end();
             record_slow(inputs, diagnostics);
         }
     }
@@ -52,6 +53,7 @@ fn record_slow(inputs: &ControlInputs<'_>, diagnostics: &mut DiagnosticsSnapshot
     diagnostics.tick.max_jitter_cycles = health.max_jitter_cycles;
     diagnostics.last_words = health.last_words;
     diagnostics.battery_v = health.battery_v;
+    diagnostics.black_box = health.black_box;
     diagnostics.debug_probe = health.debug_probe;
     diagnostics.link = health.link;
     diagnostics.params = *inputs.params;
