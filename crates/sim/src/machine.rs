@@ -184,6 +184,11 @@ impl Machine {
         })
     }
 
+    /// The present time.
+    pub fn now(&self) -> Ps {
+        self.cpu.now()
+    }
+
     pub fn patch_register(&mut self, patch: RegisterPatch) {
         self.cpu.with_soc(|soc, _| soc.add_patch(patch));
     }

@@ -2,12 +2,15 @@
 
 use std::io;
 
-use robot_plant::world::{CanBusId, World};
+use robot_plant::{
+    time::Ps,
+    world::{CanBusId, World},
+};
 
 use crate::{
     can_port::CanPort,
     gateway::{self, GatewayAddress},
-    pty::SlcanPort,
+    pty::{LinkPort, SlcanPort},
 };
 
 /// The ways that are offered to programs.
@@ -17,6 +20,8 @@ pub struct PcAccess {
     pub can_on_pty: Vec<CanBusId>,
     /// Both buses behind a CAN-to-Ethernet gateway.
     pub gateway: Option<GatewayAddress>,
+    /// The PC link on a pseudo-terminal.
+    pub link_on_pty: bool,
 }
 
 #[derive(Debug, thiserror::Error)]
@@ -33,7 +38,7 @@ pub enum PcError {
 
 impl PcAccess {
     pub fn is_offered(&self) -> bool {
-        !self.can_on_pty.is_empty() || self.gateway.is_some()
+        !self.can_on_pty.is_empty() || self.gateway.is_some() || self.link_on_pty
     }
 
     pub(crate) fn open(&self) -> Result<PcPorts, PcError> {
@@ -49,6 +54,9 @@ impl PcAccess {
             let both = gateway::open(at).map_err(|why| PcError::Gateway { at, why })?;
             ports.can.extend(both.map(|port| Box::new(port) as _));
         }
+        if self.link_on_pty {
+            ports.link = Some(LinkPort::open().map_err(PcError::Terminal)?);
+        }
         Ok(ports)
     }
 }
@@ -57,16 +65,20 @@ impl PcAccess {
 #[derive(Default)]
 pub struct PcPorts {
     pub can: Vec<Box<dyn CanPort>>,
+    pub link: Option<LinkPort>,
 }
 
 impl PcPorts {
     pub fn is_empty(&self) -> bool {
-        self.can.is_empty()
+        self.can.is_empty() && self.link.is_none()
     }
 
     /// Serves all programs. It never waits for them.
-    pub fn serve(&mut self, world: &mut World) -> io::Result<()> {
-        self.can.iter_mut().try_for_each(|port| port.serve(world))
+    pub fn serve(&mut self, world: &mut World, now: Ps) -> io::Result<()> {
+        self.can.iter_mut().try_for_each(|port| port.serve(world))?;
+        self.link
+            .iter_mut()
+            .try_for_each(|port| port.serve(world, now))
     }
 }
 
@@ -79,6 +91,7 @@ mod tests {
         let both = PcAccess {
             can_on_pty: vec![CanBusId::Can1],
             gateway: Some("tcp:0".parse().expect("an address")),
+            link_on_pty: false,
         };
         assert!(matches!(both.open(), Err(PcError::TwoAdapters)));
     }

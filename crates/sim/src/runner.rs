@@ -1,5 +1,7 @@
 //! Runs a scenario: applies its events, samples signals at 1 kHz and judges every expectation.
 
+use std::path::Path;
+
 use robot_plant::{
     time::{self, Ps},
     world::{CanBusId, WireEvent},
@@ -18,6 +20,7 @@ use crate::{
     can_port::{CanDevice, PortStats},
     machine::{LogLine, Stats},
     pc::PcPorts,
+    pty::{LinkPort, LinkStats},
 };
 use robot_emulator::soc::board_errors::BoardError;
 
@@ -34,6 +37,9 @@ pub trait Observer {
 
     /// Programs find a bus on `device`; the run begins.
     fn can_port(&mut self, _bus: CanBusId, _device: &CanDevice) {}
+
+    /// Programs find the PC link on the serial device `device`; the run begins.
+    fn link_port(&mut self, _device: &Path) {}
 }
 
 /// The result of a run.
@@ -56,6 +62,8 @@ pub struct RunResult {
     pub attitude: AttitudeScore,
     /// Buses in which a PC took part.
     pub ports: Vec<(CanBusId, PortStats)>,
+    /// What a program exchanged with the board over the PC link, if it could.
+    pub link: Option<LinkStats>,
 }
 
 impl RunResult {
@@ -82,6 +90,11 @@ pub fn run<B: Simulation>(
     for port in &ports.can {
         for observer in observers.iter_mut() {
             observer.can_port(port.bus(), &port.device());
+        }
+    }
+    if let Some(link) = &ports.link {
+        for observer in observers.iter_mut() {
+            observer.link_port(link.path());
         }
     }
     let mut run = Run::new(board, scenario);
@@ -113,6 +126,7 @@ pub fn run<B: Simulation>(
     }
     let mut result = run.finish(scenario, now, stopped);
     result.ports = ports.can.iter().map(|p| (p.bus(), p.stats())).collect();
+    result.link = ports.link.as_ref().map(LinkPort::stats);
     Ok(result)
 }
 
@@ -297,6 +311,7 @@ impl<'a, B: Simulation> Run<'a, B> {
             safety_flags_seen: self.safety_flags_seen,
             attitude: self.attitude,
             ports: Vec::new(),
+            link: None,
             table: self.table,
         }
     }

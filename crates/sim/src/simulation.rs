@@ -18,7 +18,7 @@ use robot_emulator::soc::board_errors::BoardError;
 pub trait Simulation {
     fn run_until(&mut self, until: Ps) -> Result<(), MachineError>;
     fn apply(&mut self, event: &Event) -> Result<(), EventError>;
-    /// Exchanges frames between the world and the programs on `ports`.
+    /// Exchanges frames and bytes between the world and the programs on `ports`.
     fn serve(&mut self, ports: &mut PcPorts) -> io::Result<()>;
     fn world_names(&mut self) -> Vec<String>;
     fn sample_world(&mut self, out: &mut Vec<f64>);
@@ -75,7 +75,8 @@ impl Simulation for Machine {
         if ports.is_empty() {
             return Ok(());
         }
-        self.with_world(|world| ports.serve(world))
+        let now = self.now();
+        self.with_world(|world| ports.serve(world, now))
     }
 
     fn world_names(&mut self) -> Vec<String> {

@@ -16,6 +16,7 @@ use super::{
 use crate::{
     can_port::PortStats,
     machine::{CanStats, Distribution, FlashUse, LongestGapUs},
+    pty::LinkStats,
 };
 use robot_emulator::soc::board_errors::BoardError;
 
@@ -39,6 +40,8 @@ pub struct Summary {
     pub reproducible: bool,
     /// Frames exchanged with a PC, by bus: `can1`, `can2`.
     pub can_ports: BTreeMap<String, PortStats>,
+    /// Bytes exchanged with a PC over its link.
+    pub link_port: Option<LinkStats>,
     pub sim_seconds: f64,
     pub control: Control,
     /// Busy share of the CPU, 0 … 1.
@@ -124,6 +127,7 @@ impl Summary {
 
     pub fn new(scenario: &Scenario, result: &RunResult, wall: Duration) -> Self {
         let stats = &result.stats;
+        let external_input = !result.ports.is_empty() || result.link.is_some();
         let sim_seconds = time::to_seconds(result.ran);
         let wall_seconds = wall.as_secs_f64();
         Self {
@@ -136,9 +140,10 @@ impl Summary {
             board_errors: entries(&result.board_errors),
             allowed_board_errors: entries(&result.allowed_board_errors),
             suspicions: entries(&result.suspicions),
-            external_input: !result.ports.is_empty(),
-            reproducible: result.ports.is_empty(),
+            external_input,
+            reproducible: !external_input,
             can_ports: can_ports(result),
+            link_port: result.link,
             sim_seconds,
             control: Control {
                 ticks: stats.ticks,

@@ -2,6 +2,7 @@
 
 use std::{
     io::IsTerminal,
+    path::Path,
     thread,
     time::{Duration, Instant},
 };
@@ -166,6 +167,12 @@ impl Terminal {
                 port.malformed
             );
         }
+        if let Some(link) = &outcome.result.link {
+            println!(
+                "PC link: {} bytes to the PC, {} dropped as it did not read; {} from it",
+                link.to_pc, link.dropped, link.from_pc
+            );
+        }
         for file in &outcome.files {
             println!("wrote {}", file.display());
         }
@@ -244,6 +251,13 @@ impl Observer for Terminal {
             CanDevice::Gateway(..) => format!("13 bytes a frame; robotctl --can {device}"),
         };
         let text = format!("{bus} on {device}: {tools}");
+        self.bar.suspend(|| println!("{text}"));
+    }
+
+    fn link_port(&mut self, device: &Path) {
+        let device = device.display();
+        let text =
+            format!("PC link on {device}: robotctl --link {device}, or any program, 460800 8N1");
         self.bar.suspend(|| println!("{text}"));
     }
 

@@ -45,6 +45,9 @@ struct Args {
     /// CAN2 likewise.
     #[arg(long, value_enum, value_name = "pty")]
     can2: Option<CanConnection>,
+    /// The PC link (4-pin UART2) on a pseudo-terminal, as a USB-to-serial adapter. Likewise.
+    #[arg(long, value_enum, value_name = "pty")]
+    link: Option<LinkConnection>,
     /// Both buses behind a Waveshare CAN-TO-ETH: CAN1 at PORT, CAN2 at the next one; 0: any free ports. Likewise.
     #[arg(long, value_name = "tcp:PORT|udp:PORT", conflicts_with_all = ["can1", "can2"])]
     gateway: Option<GatewayAddress>,
@@ -78,9 +81,17 @@ enum CanConnection {
     Pty,
 }
 
+/// Where the PC's end of the link is.
+#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum LinkConnection {
+    /// A pseudo-terminal.
+    Pty,
+}
+
 const EXAMPLES: &str = "Examples:
   cargo xtask sim scenarios/remote-loss.toml
   cargo xtask sim --can1 pty --seconds 3600      # then: robotctl --can /dev/pts/N status
+  cargo xtask sim --link pty --seconds 3600      # then: robotctl --link /dev/pts/N status
   cargo xtask sim --gateway tcp:20001 --seconds 3600   # then: robotctl --can tcp:127.0.0.1:20001 status";
 
 const DRIVE: &str = include_str!("../../../../scenarios/drive.toml");
@@ -122,6 +133,7 @@ impl Args {
         PcAccess {
             can_on_pty: outside.map(|(_, bus)| bus).collect(),
             gateway: self.gateway,
+            link_on_pty: self.link.is_some(),
         }
     }
 }

@@ -12,8 +12,9 @@ use std::{
 };
 
 use rustix::{
+    event::{PollFd, PollFlags, Timespec, poll},
     fs::OFlags,
-    io::ioctl_fionbio,
+    io::{Errno, ioctl_fionbio},
     pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt},
     termios::{OptionalActions, tcgetattr, tcsetattr},
 };
@@ -21,8 +22,6 @@ use rustix::{
 /// Neither reading nor writing ever waits for the other end.
 pub struct Terminal {
     ours: File,
-    /// Held open so that a tool that closes its end does not hang up the line for the next one.
-    _theirs: File,
     path: PathBuf,
 }
 
@@ -45,7 +44,6 @@ impl Terminal {
         tcsetattr(&theirs, OptionalActions::Now, &settings)?;
         Ok(Self {
             ours: File::from(ours),
-            _theirs: theirs,
             path,
         })
     }
@@ -55,10 +53,17 @@ impl Terminal {
         &self.path
     }
 
+    /// Whether a tool has its end open.
+    pub fn is_open(&self) -> io::Result<bool> {
+        let mut state = [PollFd::new(&self.ours, PollFlags::empty())];
+        poll(&mut state, Some(&Timespec::default()))?;
+        Ok(!state[0].revents().contains(PollFlags::HUP))
+    }
+
     /// Appends the bytes that have arrived, at most `most`.
     pub fn read(&mut self, into: &mut Vec<u8>, most: u64) -> io::Result<()> {
         match (&self.ours).take(most).read_to_end(into) {
-            Err(e) if e.kind() != ErrorKind::WouldBlock => Err(e),
+            Err(e) if e.kind() != ErrorKind::WouldBlock && !nobody_there(&e) => Err(e),
             _ => Ok(()),
         }
     }
@@ -70,4 +75,9 @@ impl Terminal {
             written => written,
         }
     }
+}
+
+/// What a read returns while no tool has its end open.
+fn nobody_there(error: &io::Error) -> bool {
+    error.raw_os_error() == Some(Errno::IO.raw_os_error())
 }
