@@ -4,6 +4,7 @@
 //! through [`RobotReceiver`], a computer sends [`Downlink`] and receives through [`PcReceiver`]. [`Tunnelled`] carries
 //! CAN frames of the tuning channel both ways.
 
+mod composition;
 mod crc8;
 mod downlink;
 mod fields;
@@ -15,6 +16,7 @@ mod scanner;
 mod tunnel;
 mod uplink;
 
+pub use composition::Observation;
 pub use crc8::crc8;
 pub use downlink::{DOWNLINK_LEN, Downlink};
 pub use keys::{Keys, Sticks};

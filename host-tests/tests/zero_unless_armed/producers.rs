@@ -95,6 +95,7 @@ fn remote_update(phase: &Phase, now_us: u64) -> RemoteUpdate {
             vx: phase.sticks.0,
             wz: phase.sticks.1,
             select: phase.channels[2],
+            hold: phase.channels[3],
             ts_us: now_us,
         },
         operator: OperatorState {

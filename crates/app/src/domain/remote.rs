@@ -15,6 +15,8 @@ pub struct RemoteState {
     pub wz: f32,
     /// Left stick, vertical, −1…1, up positive. It selects the motor in bring-up.
     pub select: f32,
+    /// Left stick, horizontal, −1…1, right positive. Held to the right it is the dead-man of bring-up.
+    pub hold: f32,
     /// Time of the last frame received over the air; 0 = none yet.
     pub ts_us: u64,
 }

@@ -32,6 +32,7 @@ impl GlitchFilter {
             vx: median(older.vx, last.vx, state.vx),
             wz: median(older.wz, last.wz, state.wz),
             select: median(older.select, last.select, state.select),
+            hold: median(older.hold, last.hold, state.hold),
             ..state
         };
         if operator.mode == self.last_operator.mode {
@@ -153,16 +154,21 @@ mod tests {
     }
 
     #[test]
-    fn a_single_wrong_frame_does_not_flick_the_selector() {
+    fn a_single_wrong_frame_does_not_flick_the_left_stick() {
         let mut glitch_filter = GlitchFilter::default();
-        let selected: Vec<f32> = [0.0, 0.0, 1.0, 0.0, 1.0, 1.0]
+        let positions: Vec<(f32, f32)> = [0.0, 0.0, 1.0, 0.0, 1.0, 1.0]
             .map(|select| {
                 let (state, operator) = frame(0.0, true, false, DriveMode::Manual);
-                let state = RemoteState { select, ..state };
-                glitch_filter.filter(state, operator).0.select
+                let state = RemoteState {
+                    select,
+                    hold: -select,
+                    ..state
+                };
+                let filtered = glitch_filter.filter(state, operator).0;
+                (filtered.select, -filtered.hold)
             })
             .to_vec();
-        assert_eq!(selected, [0.0, 0.0, 0.0, 0.0, 1.0, 1.0]);
+        assert_eq!(positions, [0.0, 0.0, 0.0, 0.0, 1.0, 1.0].map(|at| (at, at)));
     }
 
     #[test]

@@ -24,6 +24,7 @@ pub(super) fn from_sbus(
         vx: stick(&mapping.drive),
         wz: -stick(&mapping.steering),
         select: stick(&mapping.select),
+        hold: stick(&mapping.dead_man),
         ts_us,
     };
     let enabled = position(&mapping.enable, raw) > SWITCH_THRESHOLD;
@@ -76,6 +77,7 @@ pub(super) fn from_dbus(frame: &DbusFrame, ts_us: u64) -> (RemoteState, Operator
         vx: right_v,
         wz: -right_h,
         select: left_v,
+        hold: left_h,
         channels,
         ts_us,
     };
@@ -167,7 +169,10 @@ mod tests {
         }
         for raw in [0, 172, 992, 1811, 2047] {
             let (state, operator) = from_sbus(&sbus([raw; 16]), &mapping, 1);
-            assert_eq!((state.vx, state.wz, state.select), (0.0, 0.0, 0.0));
+            assert_eq!(
+                (state.vx, state.wz, state.select, state.hold),
+                (0.0, 0.0, 0.0, 0.0)
+            );
             assert!(!operator.enabled && operator.disabled && operator.e_stop);
             assert!(!operator.dead_man);
             assert_eq!(operator.mode, DriveMode::Manual);
@@ -215,12 +220,12 @@ mod tests {
             let mut channels = [992; 16];
             (channels[2], channels[3]) = (select, dead_man);
             let (state, operator) = from_sbus(&sbus(channels), &RemoteMapping::default(), 1);
-            (state.select, operator.dead_man)
+            (state.select, state.hold, operator.dead_man)
         };
-        assert_eq!(of_sbus(992, 992), (0.0, false));
-        assert_eq!(of_sbus(1811, 1811), (1.0, true));
-        assert_eq!(of_sbus(172, 172), (-1.0, false));
-        assert_eq!((of_sbus(992, 1565).1, of_sbus(992, 1566).1), (false, true));
+        assert_eq!(of_sbus(992, 992), (0.0, 0.0, false));
+        assert_eq!(of_sbus(1811, 1811), (1.0, 1.0, true));
+        assert_eq!(of_sbus(172, 172), (-1.0, -1.0, false));
+        assert_eq!((of_sbus(992, 1565).2, of_sbus(992, 1566).2), (false, true));
         let dbus = |select, dead_man| {
             let frame = DbusFrame {
                 sticks: [1024, 1024, dead_man, select],
@@ -229,11 +234,11 @@ mod tests {
                 left_switch: DbusSwitch::Middle,
             };
             let (state, operator) = from_dbus(&frame, 1);
-            (state.select, operator.dead_man)
+            (state.select, state.hold, operator.dead_man)
         };
-        assert_eq!(dbus(1024, 1024), (0.0, false));
-        assert_eq!(dbus(364, 1684), (-1.0, true));
-        assert_eq!(dbus(1684, 364), (1.0, false));
-        assert_eq!((dbus(1024, 1486).1, dbus(1024, 1487).1), (false, true));
+        assert_eq!(dbus(1024, 1024), (0.0, 0.0, false));
+        assert_eq!(dbus(364, 1684), (-1.0, 1.0, true));
+        assert_eq!(dbus(1684, 364), (1.0, -1.0, false));
+        assert_eq!((dbus(1024, 1486).2, dbus(1024, 1487).2), (false, true));
     }
 }
