@@ -10,12 +10,18 @@ mod support;
 mod document;
 #[path = "matrix/drive.rs"]
 mod drive;
+#[path = "matrix/driver.rs"]
+mod driver;
 #[path = "matrix/expected.rs"]
 mod expected;
 #[path = "matrix/judge.rs"]
 mod judge;
+#[path = "matrix/link_rows.rs"]
+mod link_rows;
 #[path = "matrix/observed.rs"]
 mod observed;
+#[path = "matrix/pc_law.rs"]
+mod pc_law;
 
 use std::{
     collections::BTreeMap,
@@ -69,7 +75,7 @@ fn every_fault_in_every_phase_ends_as_it_must() {
             let seen = &cells[&(index, phase)];
             println!("{}", document::line(row, phase, seen));
             let violations = judge::violations(row, phase, seen).into_iter();
-            let fault = row.fault;
+            let fault = document::name(row);
             wrong.extend(violations.map(|what| format!("{fault}, {phase}: {what}")));
         }
     }

@@ -6,7 +6,8 @@ use robot_plant::time::MS;
 
 use crate::{
     Cells,
-    expected::{After, Armed, Arms, Disarmed, Flags, Group, Row},
+    driver::Driver,
+    expected::{After, Armed, Arms, Disarmed, Flags, Group, Moves, Row},
     judge,
     observed::{Observed, Phase, Wire},
     support,
@@ -73,10 +74,20 @@ fn table<'a>(rows: &[Row], seen: impl Fn(usize, Phase) -> Option<&'a Observed>) 
     for (index, row) in rows.iter().enumerate() {
         let cell = |phase| cell(row, phase, seen(index, phase));
         let [driving, idle, disarmed] = Phase::ALL.map(cell);
-        let fault = row.fault;
-        text += &format!("| `{fault}` | {driving} | {idle} | {disarmed} |\n");
+        let fault = name(row);
+        text += &format!("| {fault} | {driving} | {idle} | {disarmed} |\n");
     }
     text
+}
+
+/// The first column.
+pub fn name(row: &Row) -> String {
+    let fault = row.fault;
+    match row.driver {
+        Driver::Pilot => format!("`{fault}`"),
+        Driver::PilotBesidePc => format!("`{fault}`, mode manual"),
+        Driver::Pc => format!("`{fault}`, mode PC"),
+    }
 }
 
 /// One cell for the terminal.
@@ -84,8 +95,8 @@ pub fn line(row: &Row, phase: Phase, seen: &Observed) -> String {
     let flags: Vec<&str> = seen.flags.iter().map(String::as_str).collect();
     let cell = cell(row, phase, Some(seen));
     format!(
-        "{:<20} {phase:<15} {cell}; seen: {}",
-        row.fault,
+        "{:<24} {phase:<15} {cell}; seen: {}",
+        name(row),
         flags.join(" ")
     )
 }
@@ -106,6 +117,7 @@ fn armed(wanted: &Armed, seen: Option<&Observed>) -> String {
         After::WheelsOnly => "then wheels drive on",
         After::JointsOnly => "then joints hold on",
         After::WhatRan => "what stopped stays off",
+        After::PcWaits => "then all waits until the PC starts from rest",
         After::WheelsWait => "then wheels wait until the stick is centred",
         After::JointsWait => "then joints wait until the stick is centred",
     };
@@ -155,7 +167,11 @@ fn disarmed(wanted: &Disarmed) -> String {
     let flags = flags(&wanted.flags);
     let during = arms("during it", wanted.arms_during);
     let after = arms("after it", wanted.arms_after);
-    format!("{flags}{during}, {after}")
+    let still = match wanted.moves {
+        Moves::AsArmed => "",
+        Moves::Never => "; armed, all waits until the PC starts from rest",
+    };
+    format!("{flags}{during}, {after}{still}")
 }
 
 fn flags(flags: &Flags) -> String {

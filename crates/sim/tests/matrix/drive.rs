@@ -12,19 +12,21 @@ use robot_sim::{
 };
 
 use crate::{
+    driver::{Driver, PC_WHEEL_RPS},
     expected::{After, Row},
     observed::{ARMED_SLACK, Observed, Phase, Wire},
-    support,
+    pc_law, support,
 };
 
 const QUIET: &str = "name = \"matrix\"\nseconds = 10.0\nplant = \"stand\"\n";
 
+/// A PC is plugged in and sends.
+const PC_STARTS: Ps = 500 * MS;
 /// By this time calibration and set-up of the motors are over.
 const READY: Ps = 2_500 * MS;
 const DRIVES: Ps = 2_700 * MS;
 /// Start of the fault. It is not a whole millisecond, because faults are not synchronous to the control tick.
 const FAULT: Ps = 3_300 * MS + 370_000_000;
-const FAULT_LASTS: Ps = 2_000 * MS;
 const SAMPLE: Ps = MS;
 /// A stick that has been centred for 0.2 s is at rest; what moves after that is seen in the last 0.2 s.
 const CENTRED: Ps = 300 * MS;
@@ -36,36 +38,49 @@ pub const E_STOP: &str = "e-stop";
 /// The run of one cell.
 pub fn run(row: &Row, phase: Phase) -> Observed {
     let fault = row.fault;
-    let back = FAULT + FAULT_LASTS + (row.back_within_ms * MS as f64) as Ps;
-    let mut drive = Drive::new();
+    let over = FAULT + row.lasts;
+    let back = over + (row.back_within_ms * MS as f64) as Ps;
+    let mut drive = Drive::new(row, phase);
+    drive.until(PC_STARTS);
+    for event in row.driver.prepare() {
+        drive.act(&event);
+    }
     drive.until(READY);
     if phase != Phase::Disarmed {
         drive.pilot(enable(true));
     }
     drive.until(DRIVES);
-    if phase == Phase::Driving {
-        drive.pilot(stick(0.4));
+    match phase {
+        Phase::Driving => drive.act(&row.driver.push()),
+        // Nothing moves, whatever a PC asks for.
+        Phase::Disarmed if row.driver == Driver::Pc => drive.act(&row.driver.push()),
+        Phase::Idle => row.driver.idle().iter().for_each(|event| drive.act(event)),
+        Phase::Disarmed => {}
     }
     drive.until(FAULT);
     assert_eq!(drive.armed(), phase != Phase::Disarmed, "{fault}, {phase}");
     drive.begin(fault);
     match phase {
-        Phase::Disarmed => drive.try_to_arm_twice(fault, back),
+        Phase::Disarmed => drive.try_to_arm_twice(fault, over, back),
         Phase::Idle => {
-            drive.until(FAULT + FAULT_LASTS);
+            drive.until(over);
             drive.end(fault);
             drive.until(back - PUSHED);
-            drive.pilot(stick(0.4));
+            drive.act(&row.driver.push());
             drive.until(back);
         }
         Phase::Driving => {
-            drive.until(FAULT + FAULT_LASTS);
+            drive.until(over);
             drive.end(fault);
             drive.until(back);
-            if matches!(row.driving.after, After::WheelsWait | After::JointsWait) {
-                drive.centre();
+            let waits = matches!(
+                row.driving.after,
+                After::WheelsWait | After::JointsWait | After::PcWaits
+            );
+            if waits {
+                drive.centre(&row.driver.rest());
                 drive.until(back + CENTRED);
-                drive.pilot(stick(0.4));
+                drive.act(&row.driver.push());
                 drive.until(back + CENTRED + PUSHED);
             }
         }
@@ -81,17 +96,13 @@ fn enable(on: bool) -> RemoteInput {
     }
 }
 
-fn stick(vx: f64) -> RemoteInput {
-    RemoteInput {
-        vx: Some(vx),
-        ..RemoteInput::default()
-    }
-}
-
 /// Positions of signals.
 struct Places {
     currents: [usize; 2],
-    enabled: [usize; 4],
+    joints: [usize; 4],
+    wheel_rps: [usize; 2],
+    joint_pos_rad: [usize; 4],
+    joint_vel_rps: [usize; 4],
     arming: usize,
     flags: usize,
 }
@@ -113,20 +124,30 @@ struct Drive {
     fault_since: Option<Ps>,
     fault_until: Option<Ps>,
     centred_at: Option<Ps>,
+    /// What the PC asks of the wheels during the fault, if all torques must follow from that.
+    asked_rps: Option<f64>,
     observed: Observed,
 }
 
 impl Drive {
-    fn new() -> Self {
+    fn new(row: &Row, phase: Phase) -> Self {
         let job = support::job(Scenario::parse(QUIET, "matrix").expect("it parses"));
         let mut machine = job.machine().expect("the machine starts");
         let names = machine.world_names();
         let world = |name: &str| names.iter().position(|n| n == name).expect(name);
         let diag_names = machine.diag_names().to_vec();
         let diag = |name: &str| diag_names.iter().position(|n| n == name).expect(name);
+        // A PC that is lost leaves the joints enabled, without torque.
+        let joint_part = match row.driver {
+            Driver::Pc => "torque_nm",
+            Driver::Pilot | Driver::PilotBesidePc => "enabled",
+        };
         let places = Places {
             currents: [0, 1].map(|n| world(&format!("can.m3508.{n}.current_ma"))),
-            enabled: [0, 1, 2, 3].map(|n| world(&format!("can.joint.{n}.enabled"))),
+            joints: [0, 1, 2, 3].map(|n| world(&format!("can.joint.{n}.{joint_part}"))),
+            wheel_rps: [0, 1].map(|n| world(&format!("truth.wheel.{n}.speed_rps"))),
+            joint_pos_rad: [0, 1, 2, 3].map(|n| world(&format!("truth.joint.{n}.pos_rad"))),
+            joint_vel_rps: [0, 1, 2, 3].map(|n| world(&format!("truth.joint.{n}.vel_rps"))),
             arming: diag("diag.arming.state"),
             flags: diag("diag.safety.flags"),
         };
@@ -147,18 +168,25 @@ impl Drive {
             fault_since: None,
             fault_until: None,
             centred_at: None,
+            asked_rps: row.keeps_law.then_some(match phase {
+                Phase::Driving => PC_WHEEL_RPS,
+                Phase::Idle | Phase::Disarmed => 0.0,
+            }),
             observed: Observed::default(),
         }
     }
 
-    fn pilot(&mut self, input: RemoteInput) {
-        let event = Event::Remote(input);
-        Simulation::apply(&mut self.machine, &event).expect("a pilot can always act");
+    fn act(&mut self, event: &Event) {
+        Simulation::apply(&mut self.machine, event).expect("pilot and PC can always act");
     }
 
-    fn centre(&mut self) {
+    fn pilot(&mut self, input: RemoteInput) {
+        self.act(&Event::Remote(input));
+    }
+
+    fn centre(&mut self, rest: &Event) {
         self.centred_at = Some(self.now);
-        self.pilot(stick(0.0));
+        self.act(rest);
     }
 
     fn begin(&mut self, fault: &str) {
@@ -185,13 +213,13 @@ impl Drive {
     }
 
     /// On, too late to be still asking when the fault ends, off again; then off and on after the fault.
-    fn try_to_arm_twice(&mut self, fault: &str, end: Ps) {
-        self.until(FAULT + 1_500 * MS);
+    fn try_to_arm_twice(&mut self, fault: &str, over: Ps, end: Ps) {
+        self.until(over - 500 * MS);
         self.pilot(enable(true));
-        self.until(FAULT + 1_800 * MS);
+        self.until(over - 200 * MS);
         self.observed.armed_during_fault = self.armed();
         self.pilot(enable(false));
-        self.until(FAULT + FAULT_LASTS);
+        self.until(over);
         self.end(fault);
         self.until(end - 400 * MS);
         self.pilot(enable(true));
@@ -219,18 +247,44 @@ impl Drive {
         self.machine.drain_wire_events(&mut events);
         for event in events.drain(..) {
             if let Some(motor) = self.places.motor(event.signal) {
-                self.says(motor, event.at, event.value);
+                self.says(motor, event.at, settled(event.value));
             }
         }
         self.events = events;
         // A joint that loses its supply reports nothing.
         self.machine.sample_world(&mut self.world);
         for joint in 0..4 {
-            let value = self.world[self.places.enabled[joint]];
+            let value = settled(self.world[self.places.joints[joint]]);
             if value != self.wire(2 + joint).last() {
                 self.says(2 + joint, self.now, value);
             }
         }
+    }
+
+    /// Compares a torque with the PC's law at the present speeds.
+    fn check_law(&mut self, motor: usize, value: f64) {
+        let Some(asked_rps) = self.asked_rps.filter(|_| self.is_faulty()) else {
+            return;
+        };
+        let obeys = match motor.checked_sub(2) {
+            None => {
+                let speed_rps = self.world[self.places.wheel_rps[motor]];
+                pc_law::wheel_obeys(value, asked_rps, speed_rps)
+            }
+            Some(joint) => {
+                let pos_rad = self.world[self.places.joint_pos_rad[joint]];
+                let vel_rps = self.world[self.places.joint_vel_rps[joint]];
+                pc_law::joint_obeys(value, pos_rad, vel_rps)
+            }
+        };
+        if !obeys {
+            let wrong = format!("motor {motor} is told {value}, which the PC never asked for");
+            self.observed.wrong_torques.push(wrong);
+        }
+    }
+
+    fn is_faulty(&self) -> bool {
+        self.fault_since.is_some() && self.fault_until.is_none()
     }
 
     fn wire(&mut self, motor: usize) -> &mut Wire {
@@ -247,6 +301,7 @@ impl Drive {
         if value != 0.0 && !surely_armed {
             self.suspects.push(at);
         }
+        self.check_law(motor, value);
         let since = self.fault_since.filter(|since| at >= *since);
         let wire = self.wire(motor);
         match since {
@@ -267,7 +322,7 @@ impl Drive {
         self.observed.torque_unarmed.extend(guilty);
         if known {
             self.flags_now = self.diag[self.places.flags] as u64;
-            let faulty = self.fault_since.is_some() && self.fault_until.is_none();
+            let faulty = self.is_faulty();
             // What rises after a reset are the flags of a boot.
             if faulty && self.machine.resets() == 0 {
                 self.flags_during |= self.flags_now;
@@ -297,10 +352,15 @@ impl Drive {
     }
 }
 
+/// The value of a wire. An MIT frame has no code for zero torque; the nearest is less than this.
+fn settled(value: f64) -> f64 {
+    if value.abs() < 0.01 { 0.0 } else { value }
+}
+
 impl Places {
     /// 0 and 1 = wheels, 2 to 5 = joints.
     fn motor(&self, signal: usize) -> Option<usize> {
-        let all = self.currents.iter().chain(&self.enabled);
+        let all = self.currents.iter().chain(&self.joints);
         all.into_iter().position(|place| *place == signal)
     }
 }

@@ -1,6 +1,10 @@
 //! Expected outcome of every fault, from the rules of docs/safety.md and the devices' datasheets. Nothing here is derived
 //! from the firmware's behaviour. Times count from the start of the fault.
 
+use robot_plant::time::{MS, Ps};
+
+use crate::{driver::Driver, link_rows};
+
 /// Reaction of the actuators of one kind during the fault.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Group {
@@ -27,6 +31,8 @@ pub enum After {
     JointsOnly,
     /// Actuators that the fault stopped stay off, the others drive on.
     WhatRan,
+    /// Nothing moves until the PC has sent a command from rest; then all drives.
+    PcWaits,
     /// The wheels stay off until the stick has been centred, then all drives; the joints continue at once.
     WheelsWait,
     /// The joints stay off until the stick has been centred, then all drives; the wheels continue at once.
@@ -48,6 +54,15 @@ pub struct Disarmed {
     pub flags: Flags,
     pub arms_during: Arms,
     pub arms_after: Arms,
+    pub moves: Moves,
+}
+
+/// What a robot does that was armed during the fault or after it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Moves {
+    AsArmed,
+    /// It has no torque, because the PC that drives has not started from rest.
+    Never,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,6 +84,10 @@ pub struct Flags {
 #[derive(Clone, Debug)]
 pub struct Row {
     pub fault: &'static str,
+    pub driver: Driver,
+    pub lasts: Ps,
+    /// During the fault every torque is zero or what the PC asks for.
+    pub keeps_law: bool,
     pub driving: Armed,
     pub idle: Armed,
     pub disarmed: Disarmed,
@@ -80,7 +99,7 @@ pub struct Row {
     pub board_errors: &'static [&'static str],
 }
 
-fn flags(must: &[&'static str], may: &[&'static str]) -> Flags {
+pub fn flags(must: &[&'static str], may: &[&'static str]) -> Flags {
     Flags {
         must: must.to_vec(),
         may: may.to_vec(),
@@ -88,7 +107,7 @@ fn flags(must: &[&'static str], may: &[&'static str]) -> Flags {
 }
 
 /// A fault with the same outcome in both armed phases, during which a disarmed robot cannot be armed.
-fn row(fault: &'static str, wheels: Group, joints: Group, flags: Flags, after: After) -> Row {
+pub fn row(fault: &'static str, wheels: Group, joints: Group, flags: Flags, after: After) -> Row {
     let armed = Armed {
         wheels,
         joints,
@@ -97,12 +116,16 @@ fn row(fault: &'static str, wheels: Group, joints: Group, flags: Flags, after: A
     };
     Row {
         fault,
+        driver: Driver::Pilot,
+        lasts: 2_000 * MS,
+        keeps_law: false,
         driving: armed.clone(),
         idle: armed,
         disarmed: Disarmed {
             flags,
             arms_during: Arms::No,
             arms_after: Arms::Yes,
+            moves: Moves::AsArmed,
         },
         back_within_ms: 1_000.0,
         resets: false,
@@ -111,18 +134,18 @@ fn row(fault: &'static str, wheels: Group, joints: Group, flags: Flags, after: A
 }
 
 /// Everything stops within these milliseconds and stays off until the pilot arms again.
-fn global(fault: &'static str, within_ms: f64, flags: Flags) -> Row {
+pub fn global(fault: &'static str, within_ms: f64, flags: Flags) -> Row {
     let zero = Group::Zero(within_ms);
     row(fault, zero, zero, flags, After::Off)
 }
 
 /// A fault of a part that is not needed.
-fn harmless(fault: &'static str, flags: Flags) -> Row {
+pub fn harmless(fault: &'static str, flags: Flags) -> Row {
     row(fault, Group::Runs, Group::Runs, flags, After::Drives).arms_during(Arms::Yes)
 }
 
 impl Row {
-    fn arms_during(mut self, arms: Arms) -> Self {
+    pub fn arms_during(mut self, arms: Arms) -> Self {
         self.disarmed.arms_during = arms;
         self
     }
@@ -140,8 +163,13 @@ impl Row {
         self
     }
 
+    pub fn driven_by(mut self, driver: Driver) -> Self {
+        self.driver = driver;
+        self
+    }
+
     /// The fault cannot be detected while nothing turns.
-    fn unseen_at_rest(mut self) -> Self {
+    pub fn unseen_at_rest(mut self) -> Self {
         self.idle = Armed {
             wheels: Group::Runs,
             joints: Group::Runs,
@@ -152,6 +180,7 @@ impl Row {
             flags: Flags::default(),
             arms_during: Arms::Yes,
             arms_after: Arms::Yes,
+            moves: self.disarmed.moves,
         };
         self
     }
@@ -176,6 +205,7 @@ impl Row {
 pub fn rows() -> Vec<Row> {
     [
         radio(),
+        link_rows::rows(),
         sensors(),
         buses(),
         wheels(),
@@ -189,9 +219,9 @@ pub fn rows() -> Vec<Row> {
 }
 
 /// A frame every 7 ms takes 3 ms; then 3 ms to zero on both buses (docs/safety.md#reaction-times).
-const NEXT_FRAME_MS: f64 = 7.0 + 3.0 + 3.0;
+pub const NEXT_FRAME_MS: f64 = 7.0 + 3.0 + 3.0;
 /// The last good frame may be 100 ms old, and ended up to 7 ms before the fault or up to 3 ms after its start.
-const REMOTE_LOST_MS: f64 = 100.0 + 3.0 + 3.0;
+pub const REMOTE_LOST_MS: f64 = 100.0 + 3.0 + 3.0;
 
 fn radio() -> Vec<Row> {
     let lost = flags(&["remote-lost"], &["remote-quality", "remote-failsafe"]);

@@ -3,12 +3,15 @@
 use robot_plant::time::{MS, Ps};
 
 use crate::{
-    expected::{After, Armed, Arms, Disarmed, Flags, Group, Row},
+    driver::Driver,
+    expected::{After, Armed, Arms, Disarmed, Flags, Group, Moves, Row},
     observed::{Observed, Phase, Wire},
 };
 
 /// The span before an instant that shows the state at that instant.
 const STATE_WINDOW: Ps = 200 * MS;
+const MOST_CURRENT_MA: f64 = 8_000.0;
+const MOST_TORQUE_NM: f64 = 3.3;
 
 /// Differences from the expectation, as text.
 pub fn violations(row: &Row, phase: Phase, seen: &Observed) -> Vec<String> {
@@ -23,6 +26,8 @@ pub fn violations(row: &Row, phase: Phase, seen: &Observed) -> Vec<String> {
             "torque left the board unarmed at {at:.1} ms of the run"
         ));
     }
+    all.extend(seen.wrong_torques.first().cloned());
+    all.extend(beyond_limits(row, seen));
     let resets = usize::from(row.resets);
     if seen.resets != resets {
         all.push(format!("{} resets instead of {resets}", seen.resets));
@@ -31,6 +36,22 @@ pub fn violations(row: &Row, phase: Phase, seen: &Observed) -> Vec<String> {
     let errors = seen.board_errors.iter().filter(is_expected);
     all.extend(errors.map(|error| format!("board error: {error}")));
     all
+}
+
+/// A command beyond the settings' limits: 8 A for a wheel; for a joint 3 N·m and what the leg may have moved since its
+/// report.
+fn beyond_limits(row: &Row, seen: &Observed) -> Option<String> {
+    let most = |wires: &[Wire]| {
+        let values = wires.iter().flat_map(|wire| &wire.changes);
+        values.map(|(_, value)| value.abs()).fold(0.0, f64::max)
+    };
+    let (current_ma, torque_nm) = (most(&seen.wheels), most(&seen.joints));
+    if current_ma > MOST_CURRENT_MA {
+        return Some(format!("a wheel was told {current_ma} mA"));
+    }
+    let shows_torque = row.driver == Driver::Pc;
+    (shows_torque && torque_nm > MOST_TORQUE_NM)
+        .then(|| format!("a joint was told {torque_nm:.2} N·m"))
 }
 
 fn armed(wanted: &Armed, seen: &Observed, driving: bool) -> Vec<String> {
@@ -46,6 +67,7 @@ fn armed(wanted: &Armed, seen: &Observed, driving: bool) -> Vec<String> {
         After::WheelsOnly => (true, false),
         After::JointsOnly => (false, true),
         After::WhatRan => (ran(wheels) || !driving && ran(joints), ran(joints)),
+        After::PcWaits => return [all, pc_waited(seen, driving)].concat(),
         After::WheelsWait => return [all, waited("wheels", wheels, seen), back(seen)].concat(),
         After::JointsWait => return [all, waited("joints", joints, seen), back(seen)].concat(),
     };
@@ -71,6 +93,30 @@ fn waited(name: &str, wires: &[Wire], seen: &Observed) -> Vec<String> {
     }
 }
 
+/// Violations by motors that have torque after the fault, before the PC has started from rest. It does so only after a
+/// drive. Those that ran on during the fault may take a moment to stop.
+fn pc_waited(seen: &Observed, driving: bool) -> Vec<String> {
+    let until = match (driving, seen.centred) {
+        (true, None) => return vec!["the PC never started from rest".to_owned()],
+        (true, Some(centred)) => centred,
+        (false, _) => seen.ended,
+    };
+    let mut all = Vec::new();
+    for (name, wires) in [("wheels", wheels(seen)), ("joints", joints(seen))] {
+        let from = match zero_from(wires, seen) {
+            Some(_) => seen.fault_ended,
+            None => until - STATE_WINDOW,
+        };
+        if wires.iter().any(|wire| wire.had_torque_in(from, until)) {
+            all.push(format!("{name} move before the PC has started from rest"));
+        }
+    }
+    if driving {
+        all.extend(back(seen));
+    }
+    all
+}
+
 /// Violations by motors that do not follow their commands at the end of the run.
 fn back(seen: &Observed) -> Vec<String> {
     let (from, to) = (seen.ended - STATE_WINDOW, seen.ended);
@@ -83,7 +129,7 @@ fn back(seen: &Observed) -> Vec<String> {
     [("wheels", wheels), ("joints", joints)]
         .into_iter()
         .filter(|(_, obeys)| !obeys)
-        .map(|(name, _)| format!("{name} do not come back after the stick was centred"))
+        .map(|(name, _)| format!("{name} do not come back after a start from rest"))
         .collect()
 }
 
@@ -155,6 +201,10 @@ fn disarmed(wanted: &Disarmed, seen: &Observed) -> Vec<String> {
             Arms::No if did => all.push(format!("arms {when} the fault")),
             _ => {}
         }
+    }
+    let mut wires = wheels(seen).iter().chain(joints(seen));
+    if wanted.moves == Moves::Never && wires.any(|wire| wire.had_torque_in(0, seen.ended)) {
+        all.push("armed, it moves although the PC has not started from rest".to_owned());
     }
     all
 }

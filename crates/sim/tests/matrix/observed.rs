@@ -29,7 +29,7 @@ impl std::fmt::Display for Phase {
 }
 
 /// Changes on the wire of one motor since the fault started: the commanded current of a wheel (mA), or the state of a joint
-/// (1 = enabled).
+/// (1 = enabled), for which its torque in N·m stands while a PC drives.
 #[derive(Clone, Debug, Default)]
 pub struct Wire {
     /// Value at the instant of the fault.
@@ -107,6 +107,8 @@ pub struct Observed {
     pub armed_after_fault: bool,
     /// Instants with torque on a wire although the firmware was not armed.
     pub torque_unarmed: Vec<Ps>,
+    /// Torques during the fault that are neither zero nor what the PC asks for.
+    pub wrong_torques: Vec<String>,
     pub board_errors: Vec<String>,
 }
 
