@@ -169,7 +169,7 @@ fn disarmed(wanted: &Disarmed) -> String {
     let after = arms("after it", wanted.arms_after);
     let still = match wanted.moves {
         Moves::AsArmed => "",
-        Moves::Never => "; armed, all waits until the PC starts from rest",
+        Moves::Never => ", then all waits until the PC starts from rest",
     };
     format!("{flags}{during}, {after}{still}")
 }

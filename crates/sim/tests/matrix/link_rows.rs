@@ -11,11 +11,11 @@ use crate::{
     },
 };
 
-/// The command is at most 100 ms old from the end of its last byte on, which may come a frame's length of 0.9 ms after the
-/// start of the fault; then 3 ms to zero on both buses.
+/// A command is at most 100 ms old, from the end of its last byte on, which came before the fault; then 3 ms to zero on
+/// both buses.
 const PC_LOST_MS: f64 = 100.0 + 3.0;
-/// The same with the age limit of a PC that repeats itself.
-const PC_FROZEN_MS: f64 = 5_000.0 + 0.9 + 3.0;
+/// The age limit of a PC that repeats itself, a frame's length, and 3 ms to zero.
+const PC_FROZEN_MS: f64 = 5_000.0 + 1.0 + 3.0;
 
 pub fn rows() -> Vec<Row> {
     let mut rows = Vec::new();
