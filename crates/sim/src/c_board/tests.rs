@@ -8,6 +8,9 @@ use robot_plant::world::{World, WorldConfig};
 
 use super::CBoard;
 
+mod link;
+mod temperature;
+
 const RCC: u32 = 0x4002_3800;
 const AHB1ENR: u32 = RCC + 0x30;
 const APB1ENR: u32 = RCC + 0x40;
@@ -54,11 +57,14 @@ impl Bench {
             .expect("a modelled register");
     }
 
-    fn set_bits(&mut self, addr: u32, bits: u32) {
-        let old = self
-            .soc
+    fn read(&mut self, addr: u32) -> u32 {
+        self.soc
             .read(addr, 4, self.now, &mut NoMemory)
-            .expect("a modelled register");
+            .expect("a modelled register")
+    }
+
+    fn set_bits(&mut self, addr: u32, bits: u32) {
+        let old = self.read(addr);
         self.write(addr, old | bits);
     }
 
@@ -85,9 +91,13 @@ impl Bench {
         errors.map(|e| e.message.as_str()).collect()
     }
 
-    fn truth(&mut self, name: &str) -> f64 {
+    fn world(&mut self) -> &mut World {
         let board: &mut CBoard = self.soc.board_as().expect("a C board");
-        board.world.signal(name).expect(name)
+        &mut board.world
+    }
+
+    fn truth(&mut self, name: &str) -> f64 {
+        self.world().signal(name).expect(name)
     }
 }
 
