@@ -29,7 +29,7 @@ enum Joints {
 /// A program that is told anything runs, unless it is told to stop.
 pub(super) fn read_pc(pc: &Pc) -> Result<PcInput, Problem> {
     if let Some(rate_hz) = pc.rate_hz
-        && !(rate_hz >= 1.0 && rate_hz <= PcInput::MAX_RATE_HZ)
+        && !(1.0..=PcInput::MAX_RATE_HZ).contains(&rate_hz)
     {
         return Err(Problem::PcRate(rate_hz));
     }
