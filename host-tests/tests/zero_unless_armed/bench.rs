@@ -6,7 +6,7 @@ use robot_app::{
     domain::{BusId, CanFrame, RobotConfig, StandardId, StateEstimate},
     motor::layout::{ROBOT_LAYOUT, RS00_LAYOUT},
     tick::ControlLoop,
-    tuning::{READ_ID, WRITE_ID},
+    tuning::{READ_ID, REPLY_ID, WRITE_ID},
 };
 
 use crate::{
@@ -63,7 +63,8 @@ pub struct Bench<C: ChassisController> {
     counts: [i32; 2],
     replies: Replies,
     now_us: u64,
-    tuned: bool,
+    /// A request of the tuning channel has come.
+    pub tuned: bool,
     pub ticks: Vec<Tick>,
 }
 
@@ -103,6 +104,7 @@ impl<C: ChassisController> Bench<C> {
                 };
                 self.producers.run(phase, tick, self.now_us);
                 self.receive_from_buses(phase);
+                self.receive_from_pc();
                 self.tick(phase);
             }
         }
@@ -118,6 +120,14 @@ impl<C: ChassisController> Bench<C> {
         }
         self.control
             .on_can_frame(bus, &frame, self.now_us, &self.diagnostics);
+    }
+
+    fn receive_from_pc(&mut self) {
+        for frame in std::mem::take(&mut self.producers.requests) {
+            self.tuned |= [WRITE_ID, READ_ID].contains(&frame.id());
+            self.control
+                .on_link_frame(&frame, self.now_us, &self.diagnostics);
+        }
     }
 
     fn receive_from_buses(&mut self, phase: &Phase) {
@@ -152,6 +162,9 @@ impl<C: ChassisController> Bench<C> {
             .tick(&inputs, self.now_us, &mut self.diagnostics);
         assert_sound(outputs.estimate);
         let frames = outputs.frames.to_vec();
+        for frame in outputs.link_frames {
+            assert_eq!(frame.id(), REPLY_ID, "only an answer goes to the PC");
+        }
         for bus in BusId::ALL {
             let on_bus = frames.iter().filter(|(sent, _)| *sent == bus).count();
             assert!(on_bus <= 3, "{on_bus} frames for three mailboxes");

@@ -5,6 +5,7 @@
 mod bench;
 mod controllers;
 mod motors;
+mod pc;
 mod phase;
 mod producers;
 mod replies;

@@ -2,7 +2,8 @@
 
 use proptest::prelude::*;
 use robot_app::{
-    domain::{BusErrorState, DriveMode, JointCommand, JointMode},
+    domain::{BusErrorState, DriveMode, JointCommand, JointMode, JointTarget, WheelTarget},
+    link::{Downlink, crc8},
     tuning::{READ_ID, WRITE_ID, opcode},
 };
 
@@ -51,6 +52,35 @@ pub struct Phase {
     pub clock: Clock,
     /// Frame that is sent in every tick on both buses.
     pub frame: (u16, Vec<u8>),
+    pub pc: Pc,
+}
+
+/// What the computer on the PC link sends.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Pc {
+    Silent,
+    /// This command in every tenth tick.
+    Repeats(Downlink),
+    /// These bytes, 46 in each tick, over and over: about as many as the line carries.
+    Bytes(Vec<u8>),
+}
+
+impl Pc {
+    /// All wheels at this speed, and all joints at this angle.
+    pub fn asks(speed_rps: f32, pos_rad: f32) -> Self {
+        Self::Repeats(Downlink {
+            wheels: [WheelTarget {
+                speed_rps,
+                kp: 0.0,
+                kd: 0.15,
+            }; 2],
+            joints: [JointTarget {
+                pos_rad,
+                kp: 20.0,
+                kd: 1.0,
+            }; 4],
+        })
+    }
 }
 
 /// Draws inputs that are mostly good, but may have any value.
@@ -122,6 +152,39 @@ fn frame() -> impl Strategy<Value = (u16, Vec<u8>)> {
     ]
 }
 
+/// Draws a PC: at rest, in motion, with any command, or on a line full of noise, in which there may be frames.
+pub fn pc() -> impl Strategy<Value = Pc> {
+    let frame = || {
+        prop::array::uniform6(any::<[u16; 3]>()).prop_map(|motors| {
+            let mut frame = vec![0xFE];
+            frame.extend(
+                motors
+                    .iter()
+                    .flatten()
+                    .flat_map(|field| field.to_le_bytes()),
+            );
+            frame.push(crc8(&frame));
+            frame
+        })
+    };
+    let tunnel = || {
+        any::<[u8; 9]>().prop_map(|[id, data @ ..]| {
+            let mut frame = vec![0xFD, 0xA0 | id & 1, 0x87];
+            frame.extend(data);
+            frame.push(crc8(&frame));
+            frame
+        })
+    };
+    let noise = || prop::collection::vec(any::<u8>(), 0..60);
+    let piece = prop_oneof![4 => frame(), 1 => tunnel(), 1 => noise()];
+    prop_oneof![
+        2 => Just(Pc::Silent),
+        3 => Just(Pc::asks(0.0, 0.0)),
+        3 => (-20.0f32..20.0, -1.0f32..1.0).prop_map(|(speed, angle)| Pc::asks(speed, angle)),
+        2 => prop::collection::vec(piece, 1..20).prop_map(|pieces| Pc::Bytes(pieces.concat())),
+    ]
+}
+
 fn clock() -> impl Strategy<Value = Clock> {
     prop_oneof![
         Just(Clock::Stands),
@@ -131,11 +194,11 @@ fn clock() -> impl Strategy<Value = Clock> {
 }
 
 pub fn phase() -> impl Strategy<Value = Phase> {
-    let modes = prop_oneof![Just(DriveMode::Pc), Just(DriveMode::Custom)];
+    let modes = prop_oneof![4 => Just(DriveMode::Pc), 1 => Just(DriveMode::Custom)];
     let switches = (
         any::<bool>(),
         mostly(false, Just(true)),
-        mostly(DriveMode::Manual, modes),
+        prop_oneof![2 => Just(DriveMode::Manual), 1 => modes],
         mostly(false, Just(true)),
     );
     let radio = (
@@ -174,6 +237,7 @@ pub fn phase() -> impl Strategy<Value = Phase> {
         mostly(0, any::<u64>()),
         mostly(Clock::Runs, clock()),
         frame(),
+        pc(),
     );
     (1u16..300, switches, radio, imu, motors, rest).prop_map(
         |(ticks, switches, radio, imu, motors, rest)| Phase {
@@ -204,6 +268,7 @@ pub fn phase() -> impl Strategy<Value = Phase> {
             time_jump_us: rest.4,
             clock: rest.5,
             frame: rest.6,
+            pc: rest.7,
         },
     )
 }
@@ -242,5 +307,15 @@ pub fn good(ticks: u16, enabled: bool) -> Phase {
         time_jump_us: 0,
         clock: Clock::Runs,
         frame: (0x300, vec![0; 8]),
+        pc: Pc::Silent,
+    }
+}
+
+/// The same in mode PC, with a PC that sends this.
+pub fn good_pc(ticks: u16, enabled: bool, pc: Pc) -> Phase {
+    Phase {
+        mode: DriveMode::Pc,
+        pc,
+        ..good(ticks, enabled)
     }
 }

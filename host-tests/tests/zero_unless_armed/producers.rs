@@ -2,15 +2,16 @@
 
 use robot_app::{
     domain::{
-        ChassisCommand, FlashRequest, HighLevelCommand, ImuState, LogicBus, MagState,
-        OperatorState, ParamStatus, PcCommand, RemoteDiagnostics, RemoteState, RemoteUpdate,
-        SystemHealth, WheelCommand,
+        CanFrame, ChassisCommand, DriveMode, FlashRequest, HighLevelCommand, ImuState, LogicBus,
+        MagState, OperatorState, ParamStatus, PcCommand, RemoteDiagnostics, RemoteState,
+        RemoteUpdate, SystemHealth, WheelCommand,
     },
+    link::{Received, RobotReceiver},
     safety::WatchdogPeriod,
     tick::ControlInputs,
 };
 
-use crate::phase::Phase;
+use crate::phase::{Pc, Phase};
 
 /// The latest snapshot of each producer, as the tasks keep them.
 #[derive(Default)]
@@ -21,7 +22,10 @@ pub struct Producers {
     logic: LogicBus,
     health: SystemHealth,
     params: ParamStatus,
+    receiver: RobotReceiver,
     pc: PcCommand,
+    /// Requests that came over the PC link.
+    pub requests: Vec<CanFrame>,
 }
 
 impl Producers {
@@ -51,10 +55,35 @@ impl Producers {
             health.state = phase.buses[bus];
             health.tx_failures_in_row = phase.tx_failures[bus];
         }
+        self.receive_from_pc(phase, tick, now_us);
         self.health.late_tasks.mag = phase.late_task;
         self.health.imu_calibrated = phase.calibrated;
         self.health.imu.errors = phase.imu_errors;
         self.health.battery_v = phase.battery_v;
+    }
+
+    fn receive_from_pc(&mut self, phase: &Phase, tick: u16, now_us: u64) {
+        const BYTES_A_TICK: usize = 46;
+        let bytes = match &phase.pc {
+            Pc::Repeats(command) if tick.is_multiple_of(10) => command.encode().to_vec(),
+            Pc::Silent | Pc::Repeats(_) => Vec::new(),
+            Pc::Bytes(bytes) => {
+                let sent = BYTES_A_TICK * usize::from(tick);
+                let stream = bytes.iter().cycle().skip(sent % bytes.len().max(1));
+                stream.take(BYTES_A_TICK).copied().collect()
+            }
+        };
+        let Self {
+            receiver,
+            pc,
+            requests,
+            ..
+        } = self;
+        requests.clear();
+        receiver.feed(&bytes, now_us, |received| match received {
+            Received::Command(command) => *pc = command,
+            Received::Tunnel(frame) => requests.push(frame),
+        });
     }
 
     pub fn inputs(&self) -> ControlInputs<'_> {
@@ -77,13 +106,13 @@ fn logic_bus(phase: &Phase, now_us: u64) -> LogicBus {
     let (current_ma, joint) = phase.direct.unwrap_or_default();
     LogicBus {
         hl_cmd: HighLevelCommand { vx, wz },
-        hl_valid: true,
+        hl_valid: phase.mode != DriveMode::Pc,
         cmd: ChassisCommand {
             wheels: [WheelCommand { current_ma }; 2],
             joints: [joint; 4],
         },
         cmd_valid: phase.direct.is_some(),
-        pc_selected: false,
+        pc_selected: phase.mode == DriveMode::Pc,
         ts_us: now_us,
     }
 }

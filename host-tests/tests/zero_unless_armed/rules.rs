@@ -1,7 +1,10 @@
 //! The rules of docs/safety.md, written from what goes into the tick alone: as far as they can
 //! be told without knowing the estimator and the motors' set-up, so each is necessary, not sufficient.
 
-use robot_app::{domain::BusErrorState, tick::ControlInputs};
+use robot_app::{
+    domain::{BusErrorState, DriveMode, WheelTarget},
+    tick::ControlInputs,
+};
 
 use crate::motors::Behaviour;
 
@@ -9,6 +12,7 @@ const REMOTE_TIMEOUT_US: u64 = 100_000;
 const IMU_TIMEOUT_US: u64 = 25_000;
 const MAX_TX_FAILURES: u32 = 20;
 const COMMAND_TIMEOUT_US: u64 = 50_000;
+const PC_TIMEOUT_US: u64 = 100_000;
 /// A stop whose cause must last has come at the latest this long after its time: 20 ms of jumping clock and a tick.
 const SLACK_US: u64 = 25_000;
 
@@ -50,6 +54,8 @@ pub struct Rules {
     gesture: Lasting,
     battery_latched: bool,
     fault_latched: bool,
+    /// The PC has asked the wheels to rest since mode PC was chosen, the robot was stopped or the PC was lost.
+    pc_rested: bool,
 }
 
 impl Rules {
@@ -75,6 +81,9 @@ impl Rules {
         let run = self.pilot_wants(inputs, battery_ok, now_us);
         let fresh_command = is_fresh(inputs.logic.ts_us, COMMAND_TIMEOUT_US, now_us)
             || bring_up && operator.dead_man;
+        // Bring-up takes the place of the PC too.
+        let pc_ok = self.pc_may_steer(inputs, run, now_us) || bring_up;
+        let fresh_command = fresh_command && pc_ok;
         let hot = |motor: &Behaviour| matches!(motor, Behaviour::Hot(celsius) if *celsius > 90);
         let too_long = 500_000 + SLACK_US;
         let wheel_hot = self.wheel_hot.for_us(wheels.iter().any(hot), dt_us) > too_long;
@@ -118,6 +127,18 @@ impl Rules {
             self.seen_off |= operator.disabled;
         }
         self.cycled && !stopped
+    }
+
+    /// In mode PC: whether its command is fresh and it has rested since the last interruption. Of the joints only the
+    /// motors know where they are.
+    fn pc_may_steer(&mut self, inputs: &ControlInputs<'_>, run: bool, now_us: u64) -> bool {
+        let pc = inputs.pc;
+        let in_mode = inputs.remote.operator.mode == DriveMode::Pc;
+        let is_fresh = pc.ts_us <= now_us && is_fresh(pc.ts_us, PC_TIMEOUT_US, now_us);
+        let rests = |wheel: &WheelTarget| wheel.speed_rps.abs() <= 0.05 || wheel.kd == 0.0;
+        self.pc_rested &= in_mode && is_fresh && run;
+        self.pc_rested |= in_mode && is_fresh && pc.wheels.iter().all(rests);
+        !in_mode || self.pc_rested
     }
 
     /// False from the end of a second below 19 V until a clearing gesture may have ended it.

@@ -132,6 +132,14 @@ impl JointFrame {
             _ => false,
         }
     }
+
+    /// Stiffness of a MIT command.
+    pub fn stiffness(self) -> Option<f32> {
+        match self {
+            Self::Mit(mit) => Some(mit.kp),
+            _ => None,
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,6 +7,7 @@ use crate::{
 mod battery;
 mod clearing;
 mod motors;
+mod pc;
 mod resuming;
 
 /// A policy and its inputs. Initially nothing is wrong, and one tick has run.
