@@ -3,6 +3,7 @@
 mod legs;
 mod motion;
 mod mounting;
+mod pc;
 mod robot;
 mod sensors;
 

@@ -36,6 +36,10 @@ pub struct Robot {
     wheel_currents_ma: [f64; 2],
     /// Direct command of a user's logic, which bypasses the controller.
     pub direct: Option<ChassisCommand>,
+    /// What the PC sends every 10 ms.
+    pub pc: Option<PcCommand>,
+    /// What came last.
+    pc_command: PcCommand,
     /// Every byte sent on CAN so far, folded into one number.
     pub sent_digest: u64,
 }
@@ -77,6 +81,8 @@ impl Robot {
             diagnostics: DiagnosticsSnapshot::default(),
             wheel_currents_ma: [0.0; 2],
             direct: None,
+            pc: None,
+            pc_command: PcCommand::default(),
             sent_digest: 0,
         };
         robot.sensors.set_mounting(&config.mounting);
@@ -158,7 +164,21 @@ impl Robot {
                 self.logic.cmd_valid = true;
             }
         }
+        self.receive_from_pc();
         self.control_tick();
+    }
+
+    fn receive_from_pc(&mut self) {
+        if let Some(command) = self.pc
+            && self.now.is_multiple_of(10 * MS)
+        {
+            let now_us = self.now_us();
+            self.pc_command = PcCommand {
+                ts_us: now_us,
+                changed_us: now_us,
+                ..command
+            };
+        }
     }
 
     fn receive_radio(&mut self) {
@@ -190,7 +210,7 @@ impl Robot {
                 imu: &self.imu,
                 mag: &self.mag,
                 logic: &self.logic,
-                pc: &PcCommand::default(),
+                pc: &self.pc_command,
                 health: &self.health,
                 params: &ParamStatus::default(),
                 flash_request: FlashRequest::None,

@@ -201,6 +201,24 @@ mod tests {
         wheel.feedback.frozen
     }
 
+    /// A turn has 8192 counts.
+    #[test]
+    fn turned_counts_go_on_through_the_zero_of_the_rotor() {
+        let mut wheel = wheel_with_current(0.0);
+        let mut turned = |angle| {
+            report(&mut wheel, [angle, 0, 0, 30], 0);
+            wheel.turned_counts()
+        };
+        assert_eq!(turned(8_000), 0, "the first report");
+        assert_eq!(turned(8_191), 191);
+        assert_eq!(turned(9), 201);
+        assert_eq!(turned(8_191), 191);
+        assert_eq!(turned(0), 192);
+        assert_eq!(turned(4_095), 192 + 4_095);
+        assert_eq!(turned(8_190), 192 + 8_190);
+        assert_eq!(turned(4_095), 192 + 4_095);
+    }
+
     fn wheel_with_current(current_ma: f32) -> Wheel {
         let mut wheel = Wheel::new(EscId::new(1).unwrap(), 20_000.0);
         send_current(&mut wheel, current_ma);

@@ -1,8 +1,8 @@
 use super::*;
 use crate::{
     domain::{
-        FlashRequest, ImuState, LogicBus, MagState, ParamStatus, PcCommand, RemoteUpdate,
-        StandardId, SystemHealth,
+        DriveMode, FlashRequest, ImuState, LogicBus, MagState, ParamStatus, PcCommand,
+        RemoteUpdate, StandardId, SystemHealth,
     },
     motor::layout::REPLY_PERIOD_TICKS,
     safety::WatchdogPeriod,
@@ -161,4 +161,102 @@ fn slow_diagnostics_are_updated_every_tenth_tick() {
         let is_new = (seen.battery_v == 25.0, seen.params.save_ok == 7);
         assert_eq!(is_new, (ms == 10, ms == 10), "{ms} ms");
     }
+}
+
+/// `11` asks for the wheel geometry as shipped: 60 mm, 420 mm, 19.20, right wheel reversed (docs/tuning.md).
+#[test]
+fn a_request_over_the_pc_link_is_answered_there() {
+    let mut bench = Bench::new();
+    bench.run(8);
+    let id = |raw| StandardId::new(raw).unwrap();
+    let read = CanFrame::from_payload(id(0x7A1), &[0x11]).unwrap();
+    let strange = CanFrame::from_payload(id(0x201), &[0x11]).unwrap();
+    for frame in [strange, read, read] {
+        bench.control.on_link_frame(&frame, bench.now_us);
+    }
+    bench.hear(BusId::Can1, 0x7A1, [0x11, 0, 0, 0, 0, 0, 0, 0]);
+    let expected = [0x11, 60, 0, 0xA4, 0x01, 0x80, 0x07, 0x02];
+    let (mut on_link, mut on_bus) = (std::vec::Vec::new(), std::vec::Vec::new());
+    for _ in 0..2 * REPLY_PERIOD_TICKS {
+        let outputs = bench.tick();
+        on_link.extend(
+            outputs
+                .link_frames
+                .iter()
+                .map(|frame| frame.payload().to_vec()),
+        );
+        let replies = outputs
+            .frames
+            .iter()
+            .filter(|(_, frame)| frame.id() == id(0x7A2));
+        on_bus.extend(replies.map(|(bus, _)| *bus));
+    }
+    // The second request of the slot is dropped, and the bus has a slot of its own.
+    assert_eq!(on_link, [expected]);
+    assert_eq!(on_bus, [BusId::Can1]);
+    let status = bench.tick().diagnostics.tuning;
+    assert_eq!((status.accepted, status.dropped), (2, 1));
+}
+
+/// `42` starts a recording of 1 s.
+#[test]
+fn samples_that_the_pc_link_asked_for_go_there() {
+    let mut bench = Bench::new();
+    bench.run(8);
+    let id = StandardId::new(0x7A0).unwrap();
+    let start = CanFrame::new(id, [0x42, 1, 0, 0, 0, 0, 0, 0]);
+    bench.control.on_link_frame(&start, bench.now_us);
+    let (mut accel, mut on_bus) = (0, 0);
+    for _ in 0..1_100 {
+        let outputs = bench.tick();
+        let of_recording = |frame: &CanFrame| (0x7A3..=0x7A5).contains(&frame.id().raw());
+        accel += outputs
+            .link_frames
+            .iter()
+            .filter(|frame| frame.id().raw() == 0x7A3)
+            .count();
+        on_bus += outputs
+            .frames
+            .iter()
+            .filter(|(_, frame)| of_recording(frame))
+            .count();
+        assert!(outputs.link_frames.len() <= 1);
+    }
+    assert_eq!(on_bus, 0);
+    assert!((195..=201).contains(&accel), "{accel} samples of 200 Hz");
+}
+
+#[test]
+fn telemetry_shows_every_second_tick() {
+    let mut bench = Bench::new();
+    bench.rpm = 500;
+    bench.pc.ts_us = 1_500_000;
+    bench.remote.operator.mode = DriveMode::Pc;
+    let mut times = std::vec::Vec::new();
+    for _ in 0..600 {
+        let outputs = bench.tick();
+        let seen = outputs.diagnostics;
+        if let Some(brief) = outputs.telemetry {
+            times.push(brief.ts_us);
+            assert_eq!(brief.ts_us, seen.ts_us);
+            assert_eq!(brief.q_wxyz, seen.estimate.q_wxyz);
+            assert_eq!(brief.estimate_valid, seen.estimate.valid);
+            assert_eq!(brief.flags, seen.safety.flags);
+            assert_eq!((brief.wheel_rpm, brief.mode), ([500, -500], DriveMode::Pc));
+        }
+    }
+    assert_eq!(times.len(), 300);
+    assert!(times.windows(2).all(|pair| pair[1] - pair[0] == 2_000));
+    bench.run(2);
+    let age_us = bench.now_us - 1_500_000;
+    let [first, second] = [
+        bench.tick().telemetry.copied(),
+        bench.tick().telemetry.copied(),
+    ];
+    let brief = first.or(second).unwrap();
+    assert!((1..=2).contains(&((u64::from(brief.pc_age_us) - age_us) / 1_000)));
+    // The bench's rotors turn by one count a tick, and by −255 at the end of 256 of them.
+    let ticks = (brief.ts_us - 1_001_000) / 1_000;
+    let counts = (ticks as i64 + 1_001_000 / 1_000 % 256) % 256 - 1_001 % 256;
+    assert_eq!(brief.wheel_counts, [counts; 2]);
 }
