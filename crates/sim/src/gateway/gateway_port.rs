@@ -51,7 +51,7 @@ impl GatewayPort {
         })
     }
 
-    fn receive(&mut self, adapter: &mut CanAdapter) {
+    pub(super) fn receive(&mut self, adapter: &mut CanAdapter) {
         let Self { server, stats, .. } = self;
         let mut malformed = 0;
         let mut take = |bytes: &[u8; LENGTH]| match frame::decode(bytes) {
