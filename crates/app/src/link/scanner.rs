@@ -153,6 +153,9 @@ impl<const N: usize> Scanner<N> {
     }
 
     fn drop_what_is_done(&mut self) {
+        if self.start == 0 {
+            return;
+        }
         if let Some(bytes) = self.held.get_mut(..self.len) {
             bytes.copy_within(self.start.min(bytes.len()).., 0);
         }
