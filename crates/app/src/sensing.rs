@@ -10,9 +10,11 @@ mod imu_pipeline;
 mod imu_sample_error;
 pub mod ist8310;
 mod mag_pipeline;
+mod mcu_temperature;
 mod plausibility;
 
 pub use battery::BatteryMonitor;
 pub use imu_pipeline::ImuPipeline;
 pub use imu_sample_error::ImuSampleError;
 pub use mag_pipeline::{MagPipeline, MagSampleError};
+pub use mcu_temperature::McuThermometer;

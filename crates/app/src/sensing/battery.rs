@@ -91,8 +91,8 @@ impl BatteryMonitor {
         f32::from(median(&self.window)) / FULL_SCALE * self.supply_v() * DIVIDER
     }
 
-    /// Supply voltage of the ADC, which is its full scale.
-    fn supply_v(&self) -> f32 {
+    /// Supply voltage of the ADC, which is its full scale, V.
+    pub fn supply_v(&self) -> f32 {
         let measured = self
             .reference
             .map(|counts| NOMINAL_SUPPLY_V * self.calibration / counts);
