@@ -3,10 +3,9 @@
 
 use bxcan::{Rx0, Rx1};
 use embassy_stm32::adc::AdcChannel;
-use embassy_stm32::dma::{self, Channel, Request};
-use embassy_stm32::gpio::{AfType, Flex, Level, Output, OutputType, Pin, Pull, Speed};
+use embassy_stm32::dma;
+use embassy_stm32::gpio::{AfType, Flex, Level, Output, OutputType, Pull, Speed};
 use embassy_stm32::i2c::{self, I2c};
-use embassy_stm32::interrupt::typelevel::Handler;
 use embassy_stm32::interrupt::{self, InterruptExt, Priority};
 use embassy_stm32::mode::Async;
 use embassy_stm32::spi::{self, Spi};
@@ -15,24 +14,25 @@ use embassy_stm32::timer::low_level::CountingMode;
 use embassy_stm32::timer::simple_pwm::{PwmPin, SimplePwm};
 use embassy_stm32::{Config, Peri, Peripherals, bind_interrupts, pac, peripherals, rcc};
 use robot_app::input::RemoteFormat;
-use static_cell::StaticCell;
 
-use crate::drivers::battery::Battery;
+use crate::drivers::analog::{AnalogInputs, FactoryWords};
 use crate::drivers::bmi088::Bmi088;
 use crate::drivers::buzzer::Buzzer;
 use crate::drivers::can::{self, Can1, Can2, CanPort, FifoInterrupt};
 use crate::drivers::heater::Heater;
 use crate::drivers::ist8310::Ist8310;
-use crate::drivers::radio_uart::RadioUart;
 use crate::drivers::status_led::StatusLed;
-use crate::exchange::RADIO_LINE;
 use crate::executors::{ControlInterrupt, SensorInterrupt};
+use serial::{LinkInterrupt, LinkPins, LinkUart, RadioInterrupt, RadioReceiver};
+
+pub mod serial;
 
 bind_interrupts!(struct Irqs {
     CAN1_RX0 => FifoInterrupt<Rx0<Can1>>;
     CAN1_RX1 => FifoInterrupt<Rx1<Can1>>;
     CAN2_RX0 => FifoInterrupt<Rx0<Can2>>;
     CAN2_RX1 => FifoInterrupt<Rx1<Can2>>;
+    USART1 => LinkInterrupt;
     USART3 => RadioInterrupt;
     UART5 => ControlInterrupt;
     UART4 => SensorInterrupt;
@@ -43,43 +43,28 @@ bind_interrupts!(struct Irqs {
     DMA1_STREAM4 => dma::InterruptHandler<peripherals::DMA1_CH4>;
     DMA2_STREAM2 => dma::InterruptHandler<peripherals::DMA2_CH2>;
     DMA2_STREAM3 => dma::InterruptHandler<peripherals::DMA2_CH3>;
+    DMA2_STREAM5 => dma::InterruptHandler<peripherals::DMA2_CH5>;
+    DMA2_STREAM7 => dma::InterruptHandler<peripherals::DMA2_CH7>;
 });
-
-/// Handler of the receiver's UART.
-struct RadioInterrupt;
-
-impl Handler<interrupt::typelevel::USART3> for RadioInterrupt {
-    unsafe fn on_interrupt() {
-        RADIO_LINE.on_interrupt(RADIO_UART);
-    }
-}
 
 /// Interrupt of the control executor, borrowed from an unused peripheral.
 pub const CONTROL_EXECUTOR_IRQ: interrupt::Interrupt = interrupt::UART5;
 /// Interrupt of the sensor executor, borrowed from an unused peripheral.
 pub const SENSOR_EXECUTOR_IRQ: interrupt::Interrupt = interrupt::UART4;
 
-/// UART of the radio receiver.
-const RADIO_UART: pac::usart::Usart = pac::USART3;
-/// Channel of USART3_RX on DMA1 stream 1 (RM0090 table 42).
-const RADIO_DMA_REQUEST: Request = 4;
-/// Room for five SBUS frames.
-const RADIO_BUFFER_LEN: usize = 128;
-
 /// Alternate function of the CAN pins.
 const CAN_AF: u8 = 9;
-/// Alternate function of USART3.
-const USART3_AF: u8 = 7;
 
 /// The time driver releases the control tick, so nothing may delay it. CAN receive comes next, because each hardware FIFO
 /// holds only three frames. Sensor transfers may wait for a control tick, but not for the sensor executor.
-const PRIORITIES: [(interrupt::Interrupt, Priority); 10] = [
+const PRIORITIES: [(interrupt::Interrupt, Priority); 11] = [
     (interrupt::TIM2, Priority::P0),
     (interrupt::CAN1_RX0, Priority::P1),
     (interrupt::CAN1_RX1, Priority::P1),
     (interrupt::CAN2_RX0, Priority::P1),
     (interrupt::CAN2_RX1, Priority::P1),
     (CONTROL_EXECUTOR_IRQ, Priority::P2),
+    (interrupt::USART1, Priority::P3),
     (interrupt::USART3, Priority::P3),
     (interrupt::I2C3_EV, Priority::P3),
     (interrupt::I2C3_ER, Priority::P3),
@@ -90,13 +75,14 @@ const PRIORITIES: [(interrupt::Interrupt, Priority); 10] = [
 pub struct Board {
     pub can1: CanPort,
     pub can2: CanPort,
-    pub radio: RadioUart,
+    pub radio: RadioReceiver,
+    pub link: LinkUart,
     pub imu: ImuBus,
     pub heater: Heater,
     pub mag: MagBus,
     pub led: StatusLed,
     pub buzzer: Buzzer,
-    pub battery: Battery,
+    pub analog: AnalogInputs,
     pub iwdg: Peri<'static, peripherals::IWDG>,
     pub flash: Peri<'static, peripherals::FLASH>,
 }
@@ -124,7 +110,7 @@ pub struct MagBus {
 }
 
 impl Board {
-    /// Starts CAN, the radio receiver, heater, buzzer and battery measurement. `p` exists once, so this runs once.
+    /// Starts CAN, the radio receiver, the PC link, heater, buzzer and analogue inputs. `p` exists once, so this runs once.
     pub fn start(p: Peripherals, remote_format: RemoteFormat) -> Self {
         enable_flash_caches();
         watch_supply();
@@ -139,11 +125,16 @@ impl Board {
             rx2: p.PB5,
             tx2: p.PB6,
         });
-        let dma = Channel::new(p.DMA1_CH1, Irqs);
         Self {
             can1,
             can2,
-            radio: start_radio(p.PC11, dma, remote_format),
+            radio: serial::start_radio(p.PC11, p.DMA1_CH1, remote_format),
+            link: serial::start_link(LinkPins {
+                rx: p.PB7,
+                tx: p.PA9,
+                rx_dma: p.DMA2_CH5,
+                tx_dma: p.DMA2_CH7,
+            }),
             imu: ImuBus {
                 spi: p.SPI1,
                 sck: p.PB3,
@@ -169,11 +160,11 @@ impl Board {
                 blue: Output::new(p.PH10, Level::Low, Speed::Low),
             },
             buzzer: start_buzzer(p.TIM4, p.PD14),
-            battery: Battery::new(
+            analog: AnalogInputs::new(
                 (p.ADC3, pac::ADC3),
                 p.PF10.degrade_adc(),
                 (p.ADC1, pac::ADC1),
-                reference_calibration(),
+                &factory_words(),
             ),
             iwdg: p.IWDG,
             flash: p.FLASH,
@@ -271,12 +262,17 @@ fn watch_supply() {
     });
 }
 
-/// The internal reference in counts, as the maker measured it at 3.3 V and 30 °C (VREFIN_CAL).
-fn reference_calibration() -> u16 {
+/// Counts that the maker measured at 3.3 V: of the internal reference and of the temperature sensor.
+fn factory_words() -> FactoryWords {
     const VREFIN_CAL: *const u16 = 0x1FFF_7A2A as *const u16;
-    // SAFETY: a half-word of the chip's own read-only memory (STM32F405/407 datasheet, internal reference voltage
-    // calibration values), aligned and always there.
-    unsafe { VREFIN_CAL.read_volatile() }
+    const TS_CAL: *const [u16; 2] = 0x1FFF_7A2C as *const [u16; 2];
+    FactoryWords {
+        // SAFETY: a half-word of the chip's own read-only memory (STM32F405/407 datasheet, internal reference voltage
+        // calibration values), aligned and always there.
+        reference: unsafe { VREFIN_CAL.read_volatile() },
+        // SAFETY: two half-words beside it (temperature sensor calibration values).
+        temperature: unsafe { TS_CAL.read_volatile() },
+    }
 }
 
 /// PWM of the heater at 1 kHz, which its temperature cannot follow.
@@ -355,30 +351,6 @@ fn start_can(pins: CanPins) -> (CanPort, CanPort) {
         unsafe { irq.enable() };
     }
     ports
-}
-
-fn start_radio(
-    rx: Peri<'static, impl Pin>,
-    dma: Channel<'static>,
-    format: RemoteFormat,
-) -> RadioUart {
-    static BUFFER: StaticCell<[u8; RADIO_BUFFER_LEN]> = StaticCell::new();
-    rcc::enable_and_reset::<peripherals::USART3>();
-    lend(Flex::new(rx), USART3_AF, AfType::input(Pull::Up));
-    let clock = rcc::frequency::<peripherals::USART3>();
-    let buffer = BUFFER.init([0; RADIO_BUFFER_LEN]);
-    let radio = RadioUart::start(
-        RADIO_UART,
-        &RADIO_LINE,
-        clock.0,
-        format,
-        dma,
-        RADIO_DMA_REQUEST,
-        buffer,
-    );
-    // SAFETY: no critical section or lock relies on this interrupt being masked.
-    unsafe { interrupt::USART3.enable() };
-    radio
 }
 
 /// Connects a pin to a peripheral for good. Dropping the handle would disconnect it, so it is forgotten.

@@ -15,16 +15,20 @@ pub enum Watched {
     Logic,
     Status,
     Params,
+    LinkReceive,
+    LinkSend,
 }
 
 impl Watched {
-    const ALL: [Self; 6] = [
+    const ALL: [Self; 8] = [
         Self::Imu,
         Self::Mag,
         Self::Sbus,
         Self::Logic,
         Self::Status,
         Self::Params,
+        Self::LinkReceive,
+        Self::LinkSend,
     ];
 
     fn last_check_in(self) -> &'static AtomicU32 {
@@ -34,6 +38,8 @@ impl Watched {
         static LOGIC: AtomicU32 = AtomicU32::new(0);
         static STATUS: AtomicU32 = AtomicU32::new(0);
         static PARAMS: AtomicU32 = AtomicU32::new(0);
+        static LINK_RECEIVE: AtomicU32 = AtomicU32::new(0);
+        static LINK_SEND: AtomicU32 = AtomicU32::new(0);
         match self {
             Self::Imu => &IMU,
             Self::Mag => &MAG,
@@ -41,6 +47,8 @@ impl Watched {
             Self::Logic => &LOGIC,
             Self::Status => &STATUS,
             Self::Params => &PARAMS,
+            Self::LinkReceive => &LINK_RECEIVE,
+            Self::LinkSend => &LINK_SEND,
         }
     }
 
@@ -86,6 +94,8 @@ pub fn late_tasks(now_us: u64) -> LateTasks {
         logic: Watched::Logic.is_late(now_us),
         status: Watched::Status.is_late(now_us),
         params: Watched::Params.is_late(now_us),
+        link_receive: Watched::LinkReceive.is_late(now_us),
+        link_send: Watched::LinkSend.is_late(now_us),
     }
 }
 

@@ -5,28 +5,39 @@
 //! | [`Exchange::imu`] | imu task | control | 200 Hz |
 //! | [`Exchange::mag`] | mag task | control | 50 Hz |
 //! | [`Exchange::remote`] | sbus task | logic, control | each radio frame, 70 to 143 Hz |
+//! | [`Exchange::pc`] | link receive task | control | each command of the PC |
+//! | [`Exchange::link`] | link receive task | control | 100 Hz |
+//! | [`Exchange::frames_sent`] | link send task | link receive | 417 Hz |
+//! | [`Exchange::telemetry`] | control task | link send | 500 Hz |
+//! | `exchange/tunnel.rs`, queues | link receive task, control | control, link send task | tuning over the PC link |
 //! | [`Exchange::logic_bus`] | logic task | control | 100 Hz |
-//! | [`Exchange::battery_v`] | status task | control | 100 Hz |
+//! | [`Exchange::analog`] | status task | control, link send | 100 Hz |
 //! | [`Exchange::config`] | control task | imu, mag, logic, params | when tuning changed it |
 //! | [`Exchange::params`] | params task | control | when it changes |
 //! | [`Exchange::flash_grant`] | control task | params | when it changes |
 //! | [`Exchange::diagnostics`] | control task | logic, status, black box | 100 Hz |
 //! | [`Exchange::black_box`] | black box task | control | when it changes |
-//! | [`RADIO_LINE`] | radio UART interrupt | sbus, status | each radio frame |
+//! | [`RADIO_LINE`] | radio UART interrupt | sbus, control | each radio frame |
+//! | [`LINK_LINE`] | link UART interrupt, link receive task | link receive task | each frame of the PC |
 //! | `drivers/can/receive.rs`, queues | CAN receive interrupts | control | each CAN frame |
 //! | `deadlines.rs`, check-ins | every task below control | control | at least 100 Hz |
-//! | `stall.rs`, stalls | params task, while no other task can run | every task with a ticker, `radio_uart.rs` | each erase |
+//! | `stall.rs`, stalls | params task, while no other task can run | every task with a ticker, `drivers/uart/receiver.rs` | each erase |
 //! | `black_box_memory.rs` | black box task | control | 100 Hz |
 //! | `debugger_view.rs` | control task | a debugger | 1 kHz |
 
-use robot_app::diagnostics::DiagnosticsSnapshot;
-use robot_app::domain::{BlackBoxStatus, LogicBus};
+use robot_app::diagnostics::{DiagnosticsSnapshot, Telemetry};
+use robot_app::domain::BlackBoxStatus;
 use robot_app::domain::{FlashRequest, ParamStatus};
 use robot_app::domain::{ImuState, ImuStatus, MagState, RemoteUpdate, RobotConfig, SensorHealth};
+use robot_app::domain::{LinkHealth, LogicBus, PcCommand};
 use robot_snapshot::{Snapshot, Writer};
 use static_cell::StaticCell;
 
-use crate::drivers::radio_uart::RadioLine;
+use crate::drivers::uart::UartLine;
+
+mod tunnel;
+
+pub use tunnel::{ControlTunnel, Tunnel, TunnelReplies, TunnelRequests};
 
 /// The newest IMU sample with the health of the sensor.
 #[derive(Clone, Copy, Default)]
@@ -41,6 +52,15 @@ pub struct ImuReport {
 pub struct MagReport {
     pub state: MagState,
     pub health: SensorHealth,
+}
+
+/// What the converters measure.
+#[derive(Clone, Copy, Default)]
+pub struct AnalogReport {
+    /// Battery voltage, V; 0 while it is not measured.
+    pub battery_v: f32,
+    /// Temperature of the chip, °C; 0 until it was measured.
+    pub mcu_c: f32,
 }
 
 /// The settings in use.
@@ -72,8 +92,13 @@ pub struct Exchange {
     pub mag: Snapshot<MagReport>,
     pub remote: Snapshot<RemoteUpdate>,
     pub logic_bus: Snapshot<LogicBus>,
-    /// Battery voltage, V; 0 while it is not measured.
-    pub battery_v: Snapshot<f32>,
+    pub pc: Snapshot<PcCommand>,
+    /// State of the PC link.
+    pub link: Snapshot<LinkHealth>,
+    /// State frames sent on the PC link since boot.
+    pub frames_sent: Snapshot<u32>,
+    pub telemetry: Snapshot<Telemetry>,
+    pub analog: Snapshot<AnalogReport>,
     pub config: Snapshot<ConfigUpdate>,
     pub params: Snapshot<ParamsReport>,
     pub flash_grant: Snapshot<FlashPermission>,
@@ -84,7 +109,10 @@ pub struct Exchange {
 static EXCHANGE: StaticCell<Exchange> = StaticCell::new();
 
 /// Events on the line of the radio receiver.
-pub static RADIO_LINE: RadioLine = RadioLine::new();
+pub static RADIO_LINE: UartLine = UartLine::new();
+
+/// Events on the line of the PC link.
+pub static LINK_LINE: UartLine = UartLine::new();
 
 /// The one writing end of each snapshot.
 pub struct Writers {
@@ -92,7 +120,10 @@ pub struct Writers {
     pub mag: Writer<'static, MagReport>,
     pub remote: Writer<'static, RemoteUpdate>,
     pub logic_bus: Writer<'static, LogicBus>,
-    pub battery_v: Writer<'static, f32>,
+    pub pc: Writer<'static, PcCommand>,
+    pub link: Writer<'static, LinkHealth>,
+    pub frames_sent: Writer<'static, u32>,
+    pub analog: Writer<'static, AnalogReport>,
     pub params: Writer<'static, ParamsReport>,
     pub black_box: Writer<'static, BlackBoxStatus>,
     pub control: ControlWriters,
@@ -103,6 +134,7 @@ pub struct ControlWriters {
     pub config: Writer<'static, ConfigUpdate>,
     pub flash_grant: Writer<'static, FlashPermission>,
     pub diagnostics: Writer<'static, DiagnosticsSnapshot>,
+    pub telemetry: Writer<'static, Telemetry>,
 }
 
 impl Exchange {
@@ -116,7 +148,11 @@ impl Exchange {
             mag: Snapshot::new(MagReport::default()),
             remote: Snapshot::new(RemoteUpdate::default()),
             logic_bus: Snapshot::new(LogicBus::default()),
-            battery_v: Snapshot::new(0.0),
+            pc: Snapshot::new(PcCommand::default()),
+            link: Snapshot::new(LinkHealth::default()),
+            frames_sent: Snapshot::new(0),
+            telemetry: Snapshot::new(Telemetry::default()),
+            analog: Snapshot::new(AnalogReport::default()),
             config: Snapshot::new(ConfigUpdate {
                 config,
                 revision: 0,
@@ -136,13 +172,17 @@ impl Exchange {
             mag: self.mag.writer()?,
             remote: self.remote.writer()?,
             logic_bus: self.logic_bus.writer()?,
-            battery_v: self.battery_v.writer()?,
+            pc: self.pc.writer()?,
+            link: self.link.writer()?,
+            frames_sent: self.frames_sent.writer()?,
+            analog: self.analog.writer()?,
             params: self.params.writer()?,
             black_box: self.black_box.writer()?,
             control: ControlWriters {
                 config: self.config.writer()?,
                 flash_grant: self.flash_grant.writer()?,
                 diagnostics: self.diagnostics.writer()?,
+                telemetry: self.telemetry.writer()?,
             },
         })
     }

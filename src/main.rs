@@ -43,8 +43,9 @@ use drivers::debug_probe;
 use drivers::param_flash::ParamFlash;
 use drivers::reset_cause;
 use drivers::watchdog::Watchdog;
-use exchange::Exchange;
+use exchange::{Exchange, Tunnel};
 use tasks::control::ControlContext;
+use tasks::link_receive::LinkWriters;
 
 /// Longest wait for an idle bus. A working bus is idle for 11 bits within one frame of at most 0.14 ms, and a dead one must
 /// not stop the boot.
@@ -70,11 +71,13 @@ fn main() -> ! {
     let (params, config) = load_settings(ParamFlash::new(board.flash));
     ports.iter_mut().for_each(CanPort::drop_backlog);
     let exchange = Exchange::init(config);
+    let tunnel = Tunnel::init();
     let writers = defmt::unwrap!(exchange.take_writers());
     deadlines::start();
     let control = ControlContext::new(
         exchange,
         ports,
+        tunnel.control,
         watchdog,
         last_run,
         writers.control,
@@ -110,6 +113,21 @@ fn main() -> ! {
                 exchange,
                 writers.logic_bus
             )));
+            spawner.spawn(defmt::unwrap!(tasks::link_receive::run(
+                board.link.receiver,
+                exchange,
+                LinkWriters {
+                    pc: writers.pc,
+                    health: writers.link,
+                    requests: tunnel.receive,
+                }
+            )));
+            spawner.spawn(defmt::unwrap!(tasks::link_send::run(
+                board.link.transmitter,
+                exchange,
+                tunnel.send,
+                writers.frames_sent
+            )));
             spawner.spawn(defmt::unwrap!(tasks::params::run(
                 params,
                 exchange,
@@ -124,8 +142,8 @@ fn main() -> ! {
                 exchange,
                 board.led,
                 board.buzzer,
-                board.battery,
-                writers.battery_v
+                board.analog,
+                writers.analog
             )));
         })
 }

@@ -3,6 +3,8 @@
 pub mod black_box;
 pub mod control;
 pub mod imu;
+pub mod link_receive;
+pub mod link_send;
 pub mod logic;
 pub mod mag;
 pub mod params;

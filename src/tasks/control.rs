@@ -4,7 +4,9 @@ use embassy_time::{Duration, Instant};
 use robot_app::diagnostics::DiagnosticsSnapshot;
 use robot_app::domain::FlashRequest;
 use robot_app::domain::{BlackBoxStatus, LogicBus};
-use robot_app::domain::{CalibrationState, LateTasks, PcCommand, RemoteUpdate, SystemHealth};
+use robot_app::domain::{
+    CalibrationState, LateTasks, LinkHealth, PcCommand, RemoteUpdate, SystemHealth,
+};
 use robot_app::tick::{ControlInputs, ControlOutputs, DIAGNOSTICS_PERIOD_TICKS, RobotLoop};
 use robot_snapshot::{Follower, Writer};
 
@@ -16,8 +18,8 @@ use crate::drivers::cycle_jitter::CycleJitter;
 use crate::drivers::debug_probe;
 use crate::drivers::watchdog::Watchdog;
 use crate::exchange::{
-    ConfigUpdate, ControlWriters, Exchange, FlashPermission, ImuReport, MagReport, ParamsReport,
-    RADIO_LINE,
+    AnalogReport, ConfigUpdate, ControlTunnel, ControlWriters, Exchange, FlashPermission,
+    ImuReport, MagReport, ParamsReport, RADIO_LINE,
 };
 use crate::stall::{StallWatch, SteadyTicker};
 
@@ -29,7 +31,9 @@ struct Inputs {
     mag: Follower<'static, MagReport>,
     remote: Follower<'static, RemoteUpdate>,
     logic: Follower<'static, LogicBus>,
-    battery_v: Follower<'static, f32>,
+    pc: Follower<'static, PcCommand>,
+    link: Follower<'static, LinkHealth>,
+    analog: Follower<'static, AnalogReport>,
     params: Follower<'static, ParamsReport>,
     black_box: Follower<'static, BlackBoxStatus>,
 }
@@ -45,14 +49,18 @@ impl Inputs {
         if let Some(mag) = self.mag.changed() {
             health.mag = mag.health;
         }
-        if let Some(battery_v) = self.battery_v.changed() {
-            health.battery_v = *battery_v;
+        if let Some(analog) = self.analog.changed() {
+            health.battery_v = analog.battery_v;
+        }
+        if let Some(link) = self.link.changed() {
+            health.link = *link;
         }
         if let Some(black_box) = self.black_box.changed() {
             health.black_box = *black_box;
         }
         self.remote.latest();
         self.logic.latest();
+        self.pc.latest();
         self.params.latest();
     }
 }
@@ -61,6 +69,7 @@ impl Inputs {
 pub struct ControlContext {
     inputs: Inputs,
     ports: [CanPort; 2],
+    tunnel: ControlTunnel,
     watchdog: Watchdog,
     health: SystemHealth,
     stalls: StallWatch,
@@ -89,6 +98,9 @@ impl Output {
         if tuning.revision != *config_revision {
             *config_revision = tuning.revision;
             publish_config(&mut writers.config, outputs);
+        }
+        if let Some(telemetry) = outputs.telemetry {
+            writers.telemetry.publish(telemetry);
         }
         if outputs.flash.granted != *granted {
             *granted = outputs.flash.granted;
@@ -123,6 +135,7 @@ impl ControlContext {
     pub fn new(
         exchange: &'static Exchange,
         ports: [CanPort; 2],
+        tunnel: ControlTunnel,
         watchdog: Watchdog,
         last_run: LastRun,
         writers: ControlWriters,
@@ -134,11 +147,14 @@ impl ControlContext {
                 mag: exchange.mag.follower(),
                 remote: exchange.remote.follower(),
                 logic: exchange.logic_bus.follower(),
-                battery_v: exchange.battery_v.follower(),
+                pc: exchange.pc.follower(),
+                link: exchange.link.follower(),
+                analog: exchange.analog.follower(),
                 params: exchange.params.follower(),
                 black_box: exchange.black_box.follower(),
             },
             ports,
+            tunnel,
             watchdog,
             health: SystemHealth {
                 reset_cause: last_run.reset_cause,
@@ -175,6 +191,7 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
     let ControlContext {
         inputs,
         ports,
+        tunnel,
         watchdog,
         health,
         stalls,
@@ -195,6 +212,10 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
         port.drain(|frame, ts_us| control_loop.on_can_frame(bus, frame, ts_us));
     }
 
+    if let Some(request) = tunnel.request() {
+        control_loop.on_link_frame(&request, now_us);
+    }
+
     note_late_tasks(&mut health.late_tasks, now_us);
     inputs.follow(health);
     for (health, port) in health.can.iter_mut().zip(ports.iter()) {
@@ -207,7 +228,7 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
         imu: &inputs.imu.last().state,
         mag: &inputs.mag.last().state,
         logic: inputs.logic.last(),
-        pc: &PcCommand::default(),
+        pc: inputs.pc.last(),
         health,
         params: &params.status,
         flash_request: params.request,
@@ -220,6 +241,8 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
             port.send(frame);
         }
     }
+
+    tunnel.reply(outputs.link_frames);
 
     output.publish(&outputs);
     if is_diagnostics_tick(outputs.diagnostics) {

@@ -5,8 +5,8 @@ use robot_app::domain::RemoteUpdate;
 use robot_app::input::{RemoteFormat, RemoteReceiver};
 use robot_snapshot::Writer;
 
+use crate::board::serial::RadioReceiver;
 use crate::deadlines::Watched;
-use crate::drivers::radio_uart::{Burst, RadioUart};
 use crate::exchange::Exchange;
 
 /// Longest wait for bytes. Silence is no error here, since the age of the last frame shows it, but the task must check in.
@@ -14,26 +14,26 @@ const CHECK_IN_PERIOD: Duration = Duration::from_millis(10);
 
 #[embassy_executor::task]
 pub async fn run(
-    mut uart: RadioUart,
+    mut uart: RadioReceiver,
     format: RemoteFormat,
     exchange: &'static Exchange,
     mut output: Writer<'static, RemoteUpdate>,
 ) -> ! {
     let mut settings = exchange.config.follower();
     let mut receiver = RemoteReceiver::new(format, settings.last().config.radio);
-    let mut bytes = [0; 64];
     loop {
-        if let Ok(burst) = with_timeout(CHECK_IN_PERIOD, uart.read(&mut bytes)).await {
+        if with_timeout(CHECK_IN_PERIOD, uart.wait()).await.is_ok() {
             let ts_us = Instant::now().as_micros();
-            match burst {
-                Burst::Clean(arrived) => {
+            uart.take(|burst| {
+                if burst.errors > 0 {
+                    receiver.reject(burst.bytes.len(), ts_us);
+                } else if !burst.bytes.is_empty() {
                     if let Some(update) = settings.changed() {
                         receiver.set_mapping(&update.config.radio);
                     }
-                    receiver.feed(arrived, ts_us, |update| output.publish(&update));
+                    receiver.feed(burst.bytes, ts_us, |update| output.publish(&update));
                 }
-                Burst::Damaged { count } => receiver.reject(count, ts_us),
-            }
+            });
         }
         Watched::Sbus.check_in();
     }

@@ -1,5 +1,5 @@
-//! The status task: LED, buzzer, battery voltage and the log. It measures the battery at 200 Hz, checks for changes at 100 Hz
-//! and logs a summary at 4 Hz.
+//! The status task: LED, buzzer, analogue inputs and the log. It measures at 200 Hz, checks for changes at 100 Hz and
+//! logs a summary at 4 Hz.
 
 use embassy_time::{Duration, Instant};
 use robot_app::diagnostics::DiagnosticsSnapshot;
@@ -8,18 +8,20 @@ use robot_snapshot::Writer;
 
 use crate::config::LAYOUT;
 use crate::deadlines::Watched;
-use crate::drivers::battery::Battery;
+use crate::drivers::analog::AnalogInputs;
 use crate::drivers::buzzer::Buzzer;
 use crate::drivers::status_led::StatusLed;
-use crate::exchange::Exchange;
+use crate::exchange::{AnalogReport, Exchange};
 use crate::stall::SteadyTicker;
 use bring_up_log::BringUpLog;
 use change_log::ChangeLog;
+use link_log::LinkLog;
 use motor_log::MotorLog;
 use radio_log::RadioLog;
 
 mod bring_up_log;
 mod change_log;
+mod link_log;
 mod motor_log;
 mod radio_log;
 mod summary;
@@ -35,11 +37,12 @@ pub async fn run(
     exchange: &'static Exchange,
     mut led: StatusLed,
     mut buzzer: Buzzer,
-    mut battery: Battery,
-    mut battery_v: Writer<'static, f32>,
+    mut inputs: AnalogInputs,
+    mut analog: Writer<'static, AnalogReport>,
 ) -> ! {
     let mut changes = ChangeLog::default();
     let mut bring_up = BringUpLog::default();
+    let mut link = LinkLog::default();
     let mut motors = MotorLog::default();
     let mut radio = RadioLog::default();
     let mut settings = exchange.config.follower();
@@ -49,12 +52,12 @@ pub async fn run(
     loop {
         ticker.next().await;
         Watched::Status.check_in();
-        battery.sample();
+        inputs.sample();
         round = round.wrapping_add(1);
         if !round.is_multiple_of(CHANGES_DIVIDER) {
             continue;
         }
-        battery_v.publish(&battery.volts());
+        analog.publish(&inputs.report());
         let diagnostics = exchange.diagnostics.latest();
         let signal = player.step(indication(&diagnostics), Instant::now().as_micros());
         led.show(signal.led);
@@ -63,8 +66,10 @@ pub async fn run(
         bring_up.report_changes(&diagnostics);
         motors.report(&diagnostics, &settings.latest().config.joints, &LAYOUT);
         radio.report(&diagnostics);
+        link.report_changes(&diagnostics);
         if round.is_multiple_of(SUMMARY_DIVIDER) {
             summary::log(&diagnostics);
+            link.report_numbers(&diagnostics);
             bring_up.report_joints(&diagnostics);
         }
     }

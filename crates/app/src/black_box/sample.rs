@@ -351,6 +351,8 @@ fn late_bits(late: LateTasks) -> u8 {
         | u8::from(late.logic) << 3
         | u8::from(late.status) << 4
         | u8::from(late.params) << 5
+        | u8::from(late.link_receive) << 6
+        | u8::from(late.link_send) << 7
 }
 
 fn late_of(bits: u8) -> LateTasks {
@@ -361,6 +363,8 @@ fn late_of(bits: u8) -> LateTasks {
         logic: bits & 8 != 0,
         status: bits & 16 != 0,
         params: bits & 32 != 0,
+        link_receive: bits & 64 != 0,
+        link_send: bits & 128 != 0,
     }
 }
 

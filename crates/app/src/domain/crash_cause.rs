@@ -16,12 +16,17 @@ pub struct LateTasks {
     pub status: bool,
     /// The parameter task.
     pub params: bool,
+    /// The task that receives on the PC link.
+    pub link_receive: bool,
+    /// The task that sends on the PC link.
+    pub link_send: bool,
 }
 
 impl LateTasks {
     /// Whether any task is late.
     pub fn any(self) -> bool {
-        self.imu | self.mag | self.sbus | self.logic | self.status | self.params
+        let above_link = self.imu | self.mag | self.sbus | self.logic | self.status | self.params;
+        above_link | self.link_receive | self.link_send
     }
 
     /// The crash cause to record. If several tasks are late it names the one of the highest priority, which may
@@ -39,6 +44,10 @@ impl LateTasks {
             CrashCause::StatusLate
         } else if self.params {
             CrashCause::ParamsLate
+        } else if self.link_receive {
+            CrashCause::LinkReceiveLate
+        } else if self.link_send {
+            CrashCause::LinkSendLate
         } else {
             CrashCause::Silent
         }
@@ -70,10 +79,14 @@ pub enum CrashCause {
     StatusLate = 8,
     /// The parameter task was late.
     ParamsLate = 9,
+    /// The task that receives on the PC link was late.
+    LinkReceiveLate = 10,
+    /// The task that sends on the PC link was late.
+    LinkSendLate = 11,
 }
 
 impl CrashCause {
-    const ALL: [Self; 10] = [
+    const ALL: [Self; 12] = [
         Self::Silent,
         Self::Panic,
         Self::HardFault,
@@ -84,6 +97,8 @@ impl CrashCause {
         Self::LogicLate,
         Self::StatusLate,
         Self::ParamsLate,
+        Self::LinkReceiveLate,
+        Self::LinkSendLate,
     ];
 
     /// Code for memory that survives a reset.
@@ -109,6 +124,8 @@ impl CrashCause {
             Self::LogicLate => "task logic was late",
             Self::StatusLate => "task status was late",
             Self::ParamsLate => "task params was late",
+            Self::LinkReceiveLate => "task link-receive was late",
+            Self::LinkSendLate => "task link-send was late",
         }
     }
 }
@@ -129,7 +146,7 @@ mod tests {
         let known: Vec<u8> = (0..=u8::MAX)
             .filter(|&code| CrashCause::from_code(code).is_some())
             .collect();
-        assert_eq!(known, (0..=9).collect::<Vec<u8>>());
+        assert_eq!(known, (0..=11).collect::<Vec<u8>>());
         for code in known {
             assert_eq!(
                 CrashCause::from_code(code).map(CrashCause::code),
@@ -168,6 +185,20 @@ mod tests {
                     ..none
                 },
                 "params",
+            ),
+            (
+                LateTasks {
+                    link_receive: true,
+                    ..none
+                },
+                "link-receive",
+            ),
+            (
+                LateTasks {
+                    link_send: true,
+                    ..none
+                },
+                "link-send",
             ),
         ] {
             assert!(late.any());

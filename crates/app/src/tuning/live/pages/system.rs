@@ -199,7 +199,7 @@ pub(super) const RESET_CAUSES: [&str; 8] = [
 ];
 
 /// The texts of `CrashCause::text`.
-pub(super) const LAST_WORDS: [&str; 10] = [
+pub(super) const LAST_WORDS: [&str; 12] = [
     "nothing was reported",
     "panic",
     "hard fault",
@@ -210,6 +210,8 @@ pub(super) const LAST_WORDS: [&str; 10] = [
     "task logic was late",
     "task status was late",
     "task params was late",
+    "task link-receive was late",
+    "task link-send was late",
 ];
 
 const DEBUGGER: [&str; 2] = ["attached", "catches"];
