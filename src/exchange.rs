@@ -33,6 +33,7 @@ use robot_app::domain::{LinkHealth, LogicBus, PcCommand};
 use robot_snapshot::{Snapshot, Writer};
 use static_cell::StaticCell;
 
+use crate::drivers::analog::AnalogReport;
 use crate::drivers::uart::UartLine;
 
 mod tunnel;
@@ -52,15 +53,6 @@ pub struct ImuReport {
 pub struct MagReport {
     pub state: MagState,
     pub health: SensorHealth,
-}
-
-/// What the converters measure.
-#[derive(Clone, Copy, Default)]
-pub struct AnalogReport {
-    /// Battery voltage, V; 0 while it is not measured.
-    pub battery_v: f32,
-    /// Temperature of the chip, °C; 0 until it was measured.
-    pub mcu_c: f32,
 }
 
 /// The settings in use.

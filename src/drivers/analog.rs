@@ -6,13 +6,20 @@ use embassy_stm32::peripherals::{ADC1, ADC3};
 use embassy_stm32::{Peri, pac};
 use robot_app::sensing::{BatteryMonitor, McuThermometer};
 
-use crate::exchange::AnalogReport;
-
 /// 23 µs at 21 MHz. The divider charges the sampling capacitor slowly; reference and temperature sensor need 10 µs.
 const SAMPLE_TIME: SampleTime = SampleTime::CYCLES480;
 /// Inputs of ADC1 (RM0090 13.10, 13.11).
 const TEMPERATURE_INPUT: u8 = 16;
 const REFERENCE_INPUT: u8 = 17;
+
+/// What the converters measure.
+#[derive(Clone, Copy, Default)]
+pub struct AnalogReport {
+    /// Battery voltage, V; 0 while it is not measured.
+    pub battery_v: f32,
+    /// Temperature of the chip, °C; 0 until it was measured.
+    pub mcu_c: f32,
+}
 
 /// Both converters.
 pub struct AnalogInputs {

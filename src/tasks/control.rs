@@ -13,13 +13,14 @@ use robot_snapshot::{Follower, Writer};
 use crate::config::LAYOUT;
 use crate::crash_record::{self, LastRun};
 use crate::deadlines;
+use crate::drivers::analog::AnalogReport;
 use crate::drivers::can::CanPort;
 use crate::drivers::cycle_jitter::CycleJitter;
 use crate::drivers::debug_probe;
 use crate::drivers::watchdog::Watchdog;
 use crate::exchange::{
-    AnalogReport, ConfigUpdate, ControlTunnel, ControlWriters, Exchange, FlashPermission,
-    ImuReport, MagReport, ParamsReport, RADIO_LINE,
+    ConfigUpdate, ControlTunnel, ControlWriters, Exchange, FlashPermission, ImuReport, MagReport,
+    ParamsReport, RADIO_LINE,
 };
 use crate::stall::{StallWatch, SteadyTicker};
 

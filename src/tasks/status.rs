@@ -8,10 +8,10 @@ use robot_snapshot::Writer;
 
 use crate::config::LAYOUT;
 use crate::deadlines::Watched;
-use crate::drivers::analog::AnalogInputs;
+use crate::drivers::analog::{AnalogInputs, AnalogReport};
 use crate::drivers::buzzer::Buzzer;
 use crate::drivers::status_led::StatusLed;
-use crate::exchange::{AnalogReport, Exchange};
+use crate::exchange::Exchange;
 use crate::stall::SteadyTicker;
 use bring_up_log::BringUpLog;
 use change_log::ChangeLog;
