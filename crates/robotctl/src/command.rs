@@ -3,6 +3,7 @@
 mod answer;
 mod calibrate;
 mod connection;
+mod drive;
 mod first_board;
 mod interrupt;
 mod joint;
@@ -34,6 +35,8 @@ pub enum Command {
     Record(record::Record),
     /// Show a recording as a page with plots
     Plot(plot::Plot),
+    /// Drive the robot from the keyboard or with a joystick, over the PC link
+    Drive(drive::Drive),
     /// Read and change the robot's settings
     Tune(tune::Tune),
     /// Set a joint's zero
@@ -51,6 +54,7 @@ impl Command {
             Self::Radio(radio) => radio.run(),
             Self::Record(record) => record.run(),
             Self::Plot(plot) => plot.run(),
+            Self::Drive(drive) => drive.run(),
             Self::Tune(tune) => tune.run(),
             Self::Joint(joint) => joint.run(),
             Self::FirstBoard(first_board) => first_board.run(),

@@ -16,6 +16,7 @@
 //! | [`link_recorder`] | records the state from the PC link as MCAP |
 //! | [`mcap_file`] | writes MCAP files of JSON messages |
 //! | [`plot`] | shows a recording as an HTML page |
+//! | [`drive`] | steers the robot by keyboard or joystick |
 //! | [`tuning`] | reads and changes the robot's settings over CAN, and reads its live values |
 //! | [`status`] | shows live values as words or JSON |
 //! | [`recorder`] | records the robot's samples over CAN into a table |
@@ -24,6 +25,7 @@
 pub mod calibration;
 pub mod can_link;
 pub mod can_recorder;
+pub mod drive;
 pub mod first_board;
 pub mod link_recorder;
 pub mod mcap_file;

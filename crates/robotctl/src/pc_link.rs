@@ -1,8 +1,10 @@
 //! Reaches the robot through the PC link (docs/pc-link.md): its state, commands to its motors, and the tuning channel.
 
 use std::{
+    cell::RefCell,
     collections::VecDeque,
     io::{ErrorKind, Read, Write},
+    rc::Rc,
     time::{Duration, Instant},
 };
 
@@ -17,6 +19,8 @@ use crate::{
     serial_port,
 };
 
+/// A port takes a frame within this time, unless nothing empties it.
+const WRITE_TIME: Duration = Duration::from_secs(1);
 /// Shortest time-out of a port. Windows refuses zero milliseconds.
 const SHORTEST_WAIT: Duration = Duration::from_millis(1);
 
@@ -83,7 +87,10 @@ impl PcLink {
     }
 
     fn write(&mut self, bytes: &[u8]) -> Result<(), CanLinkError> {
-        let written = self.port.write_all(bytes);
+        let set = self.port.set_timeout(WRITE_TIME);
+        let written = set
+            .map_err(Into::into)
+            .and_then(|()| self.port.write_all(bytes));
         written.map_err(|error| lost(&self.name, error))
     }
 
@@ -140,6 +147,24 @@ impl CanLink for PcLink {
 
     fn why_silent(&self) -> String {
         why_silent(&self.name, &self.traffic())
+    }
+}
+
+/// A link with a second user, who has it while a tuning client asks for settings.
+#[derive(Clone)]
+pub struct SharedLink(pub Rc<RefCell<PcLink>>);
+
+impl CanLink for SharedLink {
+    fn send(&mut self, frame: &CanFrame) -> Result<(), CanLinkError> {
+        self.0.borrow_mut().send(frame)
+    }
+
+    fn receive(&mut self, deadline: Instant) -> Result<Option<CanFrame>, CanLinkError> {
+        self.0.borrow_mut().receive(deadline)
+    }
+
+    fn why_silent(&self) -> String {
+        CanLink::why_silent(&*self.0.borrow())
     }
 }
 

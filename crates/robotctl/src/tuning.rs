@@ -20,7 +20,7 @@ pub use apply::{Applied, ApplyError, apply};
 pub use boot_findings::BootFindings;
 pub use bring_up::{BringUpStep, Joint, Motor, Trial};
 pub use client::{Timeouts, TuningClient, TuningError};
-pub use live::{LiveReading, live_page};
+pub use live::{LiveQuestion, LiveReading, live_page};
 pub use recording_report::RecordingReport;
 pub use saving::{SaveError, SaveTimeouts, wait_until_saved};
 pub use store_report::StoreReport;

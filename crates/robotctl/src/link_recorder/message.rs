@@ -1,5 +1,7 @@
 //! The messages of a recording, and their schemas.
 
+use std::fmt;
+
 use robot_app::{
     link::{Keys, MotorState, Sticks, Uplink},
     tuning::JOINTS,
@@ -120,6 +122,16 @@ impl Mode {
         ];
         let chosen = modes.into_iter().find(|(key, _)| keys.contains(*key));
         chosen.map(|(_, mode)| mode)
+    }
+}
+
+impl fmt::Display for Mode {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Manual => "manual",
+            Self::Pc => "PC",
+            Self::Custom => "custom",
+        })
     }
 }
 

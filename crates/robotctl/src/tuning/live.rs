@@ -1,6 +1,11 @@
 //! The robot's live values (docs/tuning.md, `33`).
 
-use robot_app::tuning::{LIVE_PAGES, LiveKind, LivePage, LiveValue};
+use robot_app::{
+    domain::CanFrame,
+    tuning::{LIVE_PAGES, LiveKind, LivePage, LiveValue},
+};
+
+use super::request::{Reply, Request};
 
 /// A page as the robot showed it at one moment.
 #[derive(Clone, Copy, Debug)]
@@ -18,6 +23,40 @@ pub struct LiveReading {
 pub fn live_page(name: &str) -> &'static LivePage {
     let found = LIVE_PAGES.iter().find(|page| page.name == name);
     found.unwrap_or_else(|| panic!("there is no live page `{name}`"))
+}
+
+/// A request for a page that is sent and answered without waiting. The robot may be armed.
+#[derive(Clone, Copy, Debug)]
+pub struct LiveQuestion {
+    page: &'static LivePage,
+    request: Request,
+}
+
+impl LiveQuestion {
+    /// A question for a page about the whole robot.
+    ///
+    /// # Panics
+    /// If there is no such page.
+    pub fn new(name: &str) -> Self {
+        let page = live_page(name);
+        Self {
+            page,
+            request: Request::ReadLive(page.first),
+        }
+    }
+
+    pub fn frame(&self) -> CanFrame {
+        self.request.frame()
+    }
+
+    /// Returns what the robot answers, or `None` if `frame` is no answer to this question or the firmware does not have
+    /// the page.
+    pub fn answer(&self, frame: &CanFrame) -> Option<LiveReading> {
+        match self.request.reply(frame)? {
+            Reply::Done(bytes) => Some(LiveReading::new(self.page, 0, bytes)),
+            Reply::Refused(_) => None,
+        }
+    }
 }
 
 impl LiveReading {

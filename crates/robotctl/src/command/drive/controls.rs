@@ -1,0 +1,92 @@
+//! Where the user's wishes come from: the keyboard, a joystick, or both.
+
+use std::{
+    io::{IsTerminal, stdin, stdout},
+    path::Path,
+    time::Duration,
+};
+
+use anyhow::{Result, bail, ensure};
+use robotctl::drive::{Joystick, JoystickEvent, JoystickMap, Wish};
+
+use super::keys::Keys;
+
+pub struct Controls {
+    /// `None` without a terminal.
+    keys: Option<Keys>,
+    joystick: Option<Joystick>,
+    last_event: Option<JoystickEvent>,
+}
+
+/// What the controls say at one moment.
+pub enum Said {
+    Wish(Wish),
+    /// The user wants to end.
+    End,
+}
+
+impl Controls {
+    pub fn open(joystick: Option<&Path>, map: JoystickMap) -> Result<Self> {
+        if joystick.is_some() && !cfg!(target_os = "linux") {
+            bail!("joysticks work on Linux only: leave out --joystick and use the keyboard");
+        }
+        let joystick = joystick.map(|path| Joystick::open(path, map)).transpose()?;
+        let has_terminal = stdin().is_terminal() && stdout().is_terminal();
+        ensure!(
+            joystick.is_some() || has_terminal,
+            "there is no terminal to read keys from: run this in one, or name a --joystick"
+        );
+        let keys = has_terminal.then(Keys::take).transpose()?;
+        Ok(Self {
+            keys,
+            joystick,
+            last_event: None,
+        })
+    }
+
+    /// Reads keys and joystick. With a joystick, keys of direction have no effect.
+    pub fn read(&mut self, now: Duration) -> Result<Said> {
+        if let Some(keys) = &mut self.keys
+            && keys.poll(now)?
+        {
+            return Ok(Said::End);
+        }
+        let last_event = &mut self.last_event;
+        let wish = match (&mut self.joystick, &self.keys) {
+            (Some(joystick), _) => joystick.wish(|event| *last_event = Some(event))?,
+            (None, Some(keys)) => keys.keyboard().wish(now),
+            (None, None) => Wish::default(),
+        };
+        Ok(Said::Wish(wish))
+    }
+
+    pub fn has_terminal(&self) -> bool {
+        self.keys.is_some()
+    }
+
+    /// Returns a line on what the user can do.
+    pub fn help(&self) -> String {
+        match (&self.joystick, &self.keys) {
+            (Some(_), _) => format!(
+                "joystick: hold the dead-man button and push a stick{}; Esc ends",
+                self.last_event.map_or(String::new(), said)
+            ),
+            (None, Some(keys)) if keys.keyboard().reports_release() => {
+                "hold W S A D or arrows, Q E: drive and turn; Space stops, Esc ends".to_owned()
+            }
+            (None, _) => "hold W S A D or arrows, Q E: drive and turn (stops up to 0.2 s after you let go, 0.7 s after a \
+                          tap); Space stops, Esc ends"
+                .to_owned(),
+        }
+    }
+}
+
+fn said(event: JoystickEvent) -> String {
+    match event {
+        JoystickEvent::Button { number, is_down } => {
+            let word = if is_down { "pressed" } else { "let go" };
+            format!(" (button {number} {word})")
+        }
+        JoystickEvent::Axis { number, value } => format!(" (axis {number} at {value:+.2})"),
+    }
+}

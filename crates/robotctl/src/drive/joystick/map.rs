@@ -1,0 +1,112 @@
+//! Which axes and which button of a joystick count.
+
+use std::str::FromStr;
+
+/// An axis by its number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct AxisMap {
+    pub number: u8,
+    pub is_reversed: bool,
+}
+
+impl AxisMap {
+    pub(super) fn share(self, value: f64) -> f64 {
+        if self.is_reversed { -value } else { value }
+    }
+}
+
+/// The default fits gamepads of the kinds of Xbox and PlayStation: left stick drives, right stick turns, and the left
+/// shoulder button is the dead-man. Kernel drivers count up and left as negative.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct JoystickMap {
+    pub forward: AxisMap,
+    /// Left is positive.
+    pub turn: AxisMap,
+    /// Number of the button.
+    pub dead_man: u8,
+}
+
+impl Default for JoystickMap {
+    fn default() -> Self {
+        let reversed = |number| AxisMap {
+            number,
+            is_reversed: true,
+        };
+        Self {
+            forward: reversed(1),
+            turn: reversed(3),
+            dead_man: 4,
+        }
+    }
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "`{part}` is not understood: name axes and button by number, `-` reverses an axis, as in \
+     forward=1-,turn=3-,dead-man=4"
+)]
+pub struct JoystickMapError {
+    part: String,
+}
+
+impl FromStr for JoystickMap {
+    type Err = JoystickMapError;
+
+    /// Parses parts such as `forward=1-`, separated by commas. What is not named stays as it is by default.
+    fn from_str(text: &str) -> Result<Self, JoystickMapError> {
+        let mut map = Self::default();
+        for part in text.split(',') {
+            let wrong = || JoystickMapError {
+                part: part.to_owned(),
+            };
+            let (name, value) = part.split_once('=').ok_or_else(wrong)?;
+            match name.trim() {
+                "forward" => map.forward = axis(value).ok_or_else(wrong)?,
+                "turn" => map.turn = axis(value).ok_or_else(wrong)?,
+                "dead-man" => map.dead_man = value.trim().parse().map_err(|_| wrong())?,
+                _ => return Err(wrong()),
+            }
+        }
+        Ok(map)
+    }
+}
+
+fn axis(text: &str) -> Option<AxisMap> {
+    let text = text.trim();
+    let (number, is_reversed) = match text.strip_suffix('-') {
+        Some(number) => (number, true),
+        None => (text, false),
+    };
+    let number = number.parse().ok()?;
+    Some(AxisMap {
+        number,
+        is_reversed,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_named_replaces_the_default() {
+        let map: JoystickMap = "turn=0,dead-man=7".parse().unwrap();
+        let turn = AxisMap {
+            number: 0,
+            is_reversed: false,
+        };
+        assert_eq!((map.turn, map.dead_man), (turn, 7));
+        assert_eq!(map.forward, JoystickMap::default().forward);
+        assert_eq!(
+            "forward=1-".parse::<JoystickMap>().unwrap(),
+            JoystickMap::default()
+        );
+    }
+
+    #[test]
+    fn anything_else_is_refused() {
+        for text in ["", "forward", "up=1", "turn=x", "dead-man=-1"] {
+            assert!(text.parse::<JoystickMap>().is_err(), "{text}");
+        }
+    }
+}
