@@ -1,8 +1,9 @@
-//! The PC's tool against the shipped image: settings over an slcan adapter, and calibration from recording to effect.
+//! The PC's tool against the shipped image: settings over an slcan adapter or a gateway, and calibration from recording to effect.
 
 #[path = "../support/mod.rs"]
 mod support;
 
+mod every_way;
 mod mounting;
 mod saving;
 mod tool;

@@ -1,4 +1,4 @@
-//! `robotctl` in a thread of its own, on the pseudo-terminal of a running board.
+//! `robotctl` in a thread of its own, on a bus of a running board.
 
 use std::{thread, time::Duration};
 
@@ -32,6 +32,7 @@ type Work<T> = Box<dyn FnOnce(&mut TuningClient) -> anyhow::Result<T> + Send>;
 
 /// A user's single action with the tool.
 pub struct Tool<T> {
+    bus: CanBusId,
     work: Option<Work<T>>,
     device: Option<CanDevice>,
     running: Option<thread::JoinHandle<anyhow::Result<T>>>,
@@ -40,10 +41,16 @@ pub struct Tool<T> {
 impl<T: Send + 'static> Tool<T> {
     pub fn new(work: impl FnOnce(&mut TuningClient) -> anyhow::Result<T> + Send + 'static) -> Self {
         Self {
+            bus: CanBusId::Can1,
             work: Some(Box::new(work)),
             device: None,
             running: None,
         }
+    }
+
+    /// Lets it work on another bus than CAN1.
+    pub fn on(self, bus: CanBusId) -> Self {
+        Self { bus, ..self }
     }
 
     /// Result of the work, which must have ended before the run.
@@ -69,7 +76,9 @@ impl<T: Send + 'static> Observer for Tool<T> {
 
     fn log(&mut self, _: &LogLine) {}
 
-    fn can_port(&mut self, _: CanBusId, device: &can_port::CanDevice) {
-        self.device = device.to_string().parse().ok();
+    fn can_port(&mut self, bus: CanBusId, device: &can_port::CanDevice) {
+        if bus == self.bus {
+            self.device = device.to_string().parse().ok();
+        }
     }
 }
