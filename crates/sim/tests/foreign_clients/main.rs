@@ -1,5 +1,5 @@
 //! Programs that know nothing of this project play the PC while the shipped image runs: python-can with its slcan interface,
-//! python-can with the `can-waveshare` package, and a UDP client written from the gateway's document.
+//! python-can with the `can-waveshare` package, a UDP client written from the gateway's document, and pyserial on the PC link.
 
 #[path = "../support/program.rs"]
 mod program;
@@ -22,23 +22,30 @@ plant = "stand"
 group = 1
 values = [0.06, 0.4375, 19.2, 1, -1]
 "#;
-const TRACK: &str = "track 0.4375";
+const TRACK_M: f64 = 0.4375;
 
 fn script(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/foreign_clients");
     folder.join(name)
 }
 
-/// Runs the robot with a program on CAN1. Returns what it said and its frames.
-fn run(mut program: Program, pc: PcAccess) -> (Vec<String>, PortStats, Outcome) {
+/// Runs the robot with a program. Returns what it said.
+fn run(mut program: Program, pc: PcAccess) -> (Vec<String>, Outcome) {
     let mut job = support::job(Scenario::parse(SCENARIO, "foreign client").expect("it parses"));
     job.pc = pc;
     let outcome = job.run(&mut [&mut program]).expect("the machine starts");
     let said = program.said();
     assert!(outcome.summary.ok, "{:?}", outcome.summary.board_errors);
     assert_eq!(outcome.summary.control.missed, 0);
-    let port = outcome.summary.can_ports["can1"];
-    (said, port, outcome)
+    (said, outcome)
+}
+
+/// The numbers of the line that begins with `what`.
+fn numbers(said: &[String], what: &str) -> Vec<f64> {
+    let mut lines = said.iter().map(|line| line.split(' '));
+    let line = lines.find_map(|mut words| (words.next() == Some(what)).then_some(words));
+    let words = line.unwrap_or_else(|| panic!("no {what} in {said:?}"));
+    words.map(|word| word.parse().expect("a number")).collect()
 }
 
 fn gateway(address: &str) -> PcAccess {
@@ -58,23 +65,20 @@ fn python_can(interface: &str, pc: PcAccess) {
         &[interface],
         Wanted::Can(CanBusId::Can1),
     );
-    let (said, port, _) = run(program, pc);
-    let [counts, track] = &said[..] else {
-        panic!("{said:?}");
-    };
+    let (said, outcome) = run(program, pc);
     // One command a tick and one feedback of each motor.
-    let counts: Vec<u32> = counts.split(' ').filter_map(|n| n.parse().ok()).collect();
+    let counts = numbers(&said, "counts");
     assert!(
-        counts.len() == 3 && counts.iter().all(|n| (100..=102).contains(n)),
+        counts.len() == 3 && counts.iter().all(|n| (100.0..=102.0).contains(n)),
         "{counts:?}"
     );
-    assert_eq!(track, TRACK);
+    assert_eq!(numbers(&said, "track"), [TRACK_M]);
     let PortStats {
         from_pc,
         refused,
         malformed,
         ..
-    } = port;
+    } = outcome.summary.can_ports["can1"];
     assert_eq!((from_pc, refused, malformed), (4, 0, 0));
 }
 
@@ -103,16 +107,38 @@ fn a_udp_client_written_from_the_document_hears_the_motors_and_reads_a_setting()
         &[],
         Wanted::Can(CanBusId::Can1),
     );
-    let (said, port, _) = run(program, gateway("udp:0"));
-    let [batch, track] = &said[..] else {
-        panic!("{said:?}");
-    };
-    let frames: u32 = batch
-        .strip_prefix("batch ")
-        .and_then(|n| n.parse().ok())
-        .expect("a number");
-    assert!(frames >= 3, "frames of a millisecond share a packet");
-    assert_eq!(track, TRACK);
+    let (said, outcome) = run(program, gateway("udp:0"));
+    let batch = numbers(&said, "batch");
+    assert!(batch[0] >= 3.0, "frames of a millisecond share a packet");
+    assert_eq!(numbers(&said, "track"), [TRACK_M]);
+    let port = outcome.summary.can_ports["can1"];
     // Three frames that are none, and a packet with a rest.
     assert_eq!((port.from_pc, port.refused, port.malformed), (5, 0, 4));
+}
+
+#[test]
+fn pyserial_reads_whole_states_at_the_links_rate_and_its_commands_arrive() {
+    let Some(python) = Python::with_packages() else {
+        return;
+    };
+    let program = Program::new(&python, &script("serial_link.py"), &[], Wanted::Link);
+    let pc = PcAccess {
+        link_on_pty: true,
+        ..PcAccess::default()
+    };
+    let (said, outcome) = run(program, pc);
+    // A computer that is too slow loses bytes. Frames in a row tell the rate.
+    assert!(numbers(&said, "run")[0] >= 100.0, "{said:?}");
+    let [rate_hz] = numbers(&said, "rate")[..] else {
+        panic!("{said:?}");
+    };
+    assert!((410.0..425.0).contains(&rate_hz), "{said:?}");
+    // A frame every 2.4 ms has the newest of states that are 2 ms apart: never the same one again, and none is older.
+    let steps_s = numbers(&said, "steps");
+    let mut steps_s = steps_s.iter();
+    assert!(steps_s.all(|s| (0.0019..0.0041).contains(s)), "{said:?}");
+    let value = |name: &str| outcome.result.value(&format!("diag.link.{name}"));
+    assert_eq!(value("good"), Some(numbers(&said, "sent")[0]));
+    assert_eq!(value("crc_errors"), Some(0.0));
+    assert_eq!(value("resyncs"), Some(0.0));
 }
