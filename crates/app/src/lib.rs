@@ -10,14 +10,14 @@
 //! | [`input`] | radio bytes → `RemoteUpdate` (stick and switch state, operator state, link diagnostics) |
 //! | [`sensing`] | sensor register bytes → calibrated `ImuState`, `MagState`, the heater's duty; the bring-up sequences as data |
 //! | [`estimation`] | IMU, magnetometer, wheels → `StateEstimate` |
-//! | [`logic`] | remote → `LogicBus` (high-level command) |
-//! | [`control`] | `LogicBus` and estimate → `ChassisCommand`; `control/user_controller.rs` is where a user writes theirs |
+//! | [`logic`] | remote → `LogicBus` (high-level command, or the choice of the PC) |
+//! | [`control`] | `LogicBus`, or a PC's command, and estimate → `ChassisCommand`; `control/user_controller.rs` is where a user writes theirs |
 //! | [`safety`] | health → flags and verdict; arming; the permit without which no current leaves the board |
 //! | [`motor`] | CAN frames ↔ motors; which motor sits where; the frames that stop them all |
 //! | [`bring_up`] | radio or tuning request → the command that tries out new hardware |
-//! | [`diagnostics`] | one `DiagnosticsSnapshot` of all of the above |
+//! | [`diagnostics`] | one `DiagnosticsSnapshot` of all of the above; a small `Telemetry` of every second tick |
 //! | [`black_box`] | diagnostics → the last seconds around each stop that nobody asked for, in RAM that survives a reset |
-//! | [`tuning`] | CAN requests → changed `RobotConfig`, replies |
+//! | [`tuning`] | requests over CAN or the PC link → changed `RobotConfig`, replies |
 //! | [`params`] | `RobotConfig` ↔ flash; which sector, when, and what to do when it fails |
 //! | [`link`] | serial bytes ↔ commands of the PC, the robot's state, tunnelled CAN frames |
 //! | [`indication`] | state → what LED and buzzer tell people |
@@ -41,7 +41,10 @@
 //! - At boot `params::ParamService::boot` returns the settings. The params task calls `ParamService::step` every
 //!   millisecond with what the tick grants, and gets the next request.
 //! - The control task runs at 1 kHz. It calls `tick::RobotLoop::on_can_frame` for each received frame and then
-//!   `tick::RobotLoop::tick`. It sends `outputs.frames` and publishes the rest.
+//!   `tick::RobotLoop::tick`. It sends `outputs.frames` and publishes the rest. A frame that came through the tunnel of
+//!   the PC link goes to `on_link_frame`, and `outputs.link_frames` go back there.
+//! - The link tasks call `link::RobotReceiver::feed(bytes, ts_us, |received| …)`, publish the commands for
+//!   `ControlInputs::pc`, and send a `link::Uplink` made from the telemetry.
 //! - The black box task calls `black_box::BlackBox::boot` once and `BlackBox::step` every 10 ms with the diagnostics.
 //! - Boot, panic and fault handlers send the layout's `safe_frames`.
 

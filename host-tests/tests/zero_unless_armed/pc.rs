@@ -162,21 +162,3 @@ fn after_a_stop_of_everything_the_pilot_arms_and_the_pc_begins_at_rest() {
     let from_rest = [&armed_again[..], &[good_pc(10, true, rest()), drive]].concat();
     assert_eq!(driven_in_last(&from_rest), 200);
 }
-
-/// Bring-up by radio uses the mode switch for its own steps, so the PC has no part in it.
-#[test]
-fn during_bring_up_the_pc_is_not_obeyed() {
-    let request = Phase {
-        frame: (
-            robot_app::tuning::WRITE_ID.raw(),
-            vec![robot_app::tuning::opcode::BRING_UP, 2, 0, 0, 0, 0, 0, 0],
-        ),
-        ..good_pc(1_000, false, rest())
-    };
-    let phases = [
-        request,
-        good_pc(300, true, rest()),
-        good_pc(200, true, motion()),
-    ];
-    assert_eq!(driven_in_last(&phases), 0);
-}

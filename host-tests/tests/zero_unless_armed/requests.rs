@@ -1,10 +1,14 @@
 //! Requests over CAN: what tuning may change and when, and what bring-up lets through. docs/tuning.md, docs/bring-up.md.
 
-use robot_app::tuning::{WRITE_ID, opcode};
+use robot_app::{
+    domain::DriveMode,
+    tuning::{WRITE_ID, opcode},
+};
 
 use super::*;
 use crate::{
     bench::Tick,
+    phase::Pc,
     wire::{JointFrame, Motion},
 };
 
@@ -122,6 +126,34 @@ fn in_the_third_step_one_motor_turns_while_the_stick_is_held() {
         let let_go = [&held[..], &[stick(300, false)]].concat();
         let after = &run_all(make, &let_go)[held.iter().map(|p| usize::from(p.ticks)).sum()..];
         assert_eq!(torques(after, make), [0.0; 4]);
+    }
+}
+
+/// Bring-up by radio has other uses for the mode switch, so its position at PC stops nothing, and a PC has no part in it.
+#[test]
+fn bring_up_needs_no_pc_in_mode_pc() {
+    let make = Make::Dm4310;
+    for pc in [Pc::Silent, Pc::asks(0.0, 0.0), Pc::asks(6.0, 0.5)] {
+        let phases = [
+            good(1_500, false),
+            bring_up(3, 3, 0, 300),
+            stick(300, false),
+            stick(300, true),
+        ]
+        .map(|phase| in_mode_pc(&pc, phase));
+        let ticks = run_all(make, &phases);
+        let [_, chosen, ..] = torques(&ticks, make);
+        assert!((chosen - 0.3).abs() < 0.01, "{chosen} {pc:?}");
+        assert_eq!(torques(&ticks, make), [0.0, chosen, 0.0, 0.0]);
+        assert_eq!(most_counts(&ticks), 0);
+    }
+}
+
+fn in_mode_pc(pc: &Pc, phase: Phase) -> Phase {
+    Phase {
+        mode: DriveMode::Pc,
+        pc: pc.clone(),
+        ..phase
     }
 }
 
