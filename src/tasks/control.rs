@@ -50,6 +50,14 @@ impl Inputs {
         if let Some(mag) = self.mag.changed() {
             health.mag = mag.health;
         }
+        self.remote.latest();
+        self.logic.latest();
+        self.pc.latest();
+        self.params.latest();
+    }
+
+    /// Does the same for what comes at 100 Hz at most and may be 10 ms old.
+    fn follow_slow(&mut self, health: &mut SystemHealth) {
         if let Some(analog) = self.analog.changed() {
             health.battery_v = analog.battery_v;
         }
@@ -59,10 +67,6 @@ impl Inputs {
         if let Some(black_box) = self.black_box.changed() {
             health.black_box = *black_box;
         }
-        self.remote.latest();
-        self.logic.latest();
-        self.pc.latest();
-        self.params.latest();
     }
 }
 
@@ -224,7 +228,7 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
     }
 
     let params = inputs.params.last();
-    let inputs = ControlInputs {
+    let tick_inputs = ControlInputs {
         remote: inputs.remote.last(),
         imu: &inputs.imu.last().state,
         mag: &inputs.mag.last().state,
@@ -235,7 +239,7 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
         flash_request: params.request,
         watchdog: watchdog.period(),
     };
-    let outputs = control_loop.tick(&inputs, now_us);
+    let outputs = control_loop.tick(&tick_inputs, now_us);
 
     for (bus, frame) in outputs.frames {
         if let Some(port) = ports.iter_mut().find(|port| port.bus() == *bus) {
@@ -247,6 +251,7 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
 
     output.publish(&outputs);
     if is_diagnostics_tick(outputs.diagnostics) {
+        inputs.follow_slow(health);
         health.radio_line = RADIO_LINE.health();
         health.max_jitter_cycles = jitter.max_cycles();
         health.debug_probe = debug_probe::undo();
