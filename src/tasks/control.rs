@@ -10,6 +10,7 @@ use robot_app::domain::{
 use robot_app::tick::{ControlInputs, ControlOutputs, DIAGNOSTICS_PERIOD_TICKS, RobotLoop};
 use robot_snapshot::{Follower, Writer};
 
+use crate::black_box_memory;
 use crate::config::LAYOUT;
 use crate::crash_record::{self, LastRun};
 use crate::deadlines;
@@ -146,6 +147,9 @@ impl ControlContext {
         writers: ControlWriters,
         debugger_view: &'static mut DiagnosticsSnapshot,
     ) -> Self {
+        let mut control_loop =
+            RobotLoop::new(&LAYOUT, exchange.config.latest().config, debugger_view);
+        control_loop.set_black_box(black_box_memory::memory());
         Self {
             inputs: Inputs {
                 imu: exchange.imu.follower(),
@@ -168,7 +172,7 @@ impl ControlContext {
             },
             stalls: StallWatch::new(),
             jitter: CycleJitter::start(),
-            control_loop: RobotLoop::new(&LAYOUT, exchange.config.latest().config, debugger_view),
+            control_loop,
             output: Output {
                 writers,
                 config_revision: 0,

@@ -4,6 +4,7 @@
 //! A request arrives with [`WRITE_ID`] or [`READ_ID`] at one of three ports and is answered with [`REPLY_ID`] at the
 //! same port: see [`TuningPort`]. [`PARAMETERS`] lists all settings.
 
+mod block;
 mod channel;
 pub(crate) mod consistency;
 mod gate;
@@ -18,6 +19,7 @@ mod recording;
 mod refusal;
 mod wheel_geometry;
 
+pub use block::{BlockFrame, BlockSender};
 pub use channel::{TuningAccess, TuningChannel};
 pub use gate::TuningGate;
 pub use identifiers::{READ_ID, REPLY_ID, WRITE_ID};

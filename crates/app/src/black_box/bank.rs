@@ -7,9 +7,9 @@ use super::{
 };
 
 /// Records of the ring with all samples.
-const FINE: usize = 160;
+const FINE: usize = 155;
 /// Records of the ring with every fifth of the older samples.
-const COARSE: usize = 71;
+const COARSE: usize = 68;
 /// One of so many samples that leave the fine ring is kept.
 const THINNING: u32 = 5;
 /// Largest number of samples in a bank.

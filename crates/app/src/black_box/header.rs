@@ -10,7 +10,10 @@
 //!
 //! The checksums of all parts take in the recording's number. Times are in 0.1 ms.
 
-use super::memory::{BlackBoxMemory, LAYOUT_VERSION};
+use super::{
+    memory::{BlackBoxMemory, LAYOUT_VERSION},
+    sample::UNITS_A_SECOND,
+};
 use crate::{
     domain::{CrashCause, EventKind, ResetCause},
     math::checksum::checksum_of_words,
@@ -41,6 +44,13 @@ pub struct Event {
     pub blockers: ArmingBlockers,
     /// The reset that ended the recording, if one did, and what the run left in the crash record.
     pub reset: Option<(ResetCause, CrashCause)>,
+}
+
+impl Event {
+    /// Its time in s since the boot of the recorded run.
+    pub fn seconds(&self) -> f64 {
+        f64::from(self.time) / UNITS_A_SECOND
+    }
 }
 
 /// The header of one bank.

@@ -7,7 +7,7 @@ pub const LAYOUT_VERSION: u8 = 1;
 /// Number of banks.
 pub const BANK_COUNT: usize = 2;
 /// Words of a bank.
-pub(super) const BANK_WORDS: usize = 3_712;
+pub(super) const BANK_WORDS: usize = 3_584;
 /// Bytes of a bank.
 pub const BANK_BYTES: usize = BANK_WORDS * 4;
 

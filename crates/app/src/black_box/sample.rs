@@ -41,8 +41,8 @@ const RAD_STEPS: f32 = 2_500.0;
 const NM_STEPS: f32 = 6.0;
 const VOLT_STEPS: f32 = 8.0;
 const COMMAND_STEPS: f32 = 127.0;
-/// Units of a record's time in a second.
-const UNITS_A_SECOND: f64 = 10_000.0;
+/// Units of the times of records and events in a second.
+pub(super) const UNITS_A_SECOND: f64 = 10_000.0;
 const UNIT_US: u64 = 100;
 const RPM_TO_RPS: f32 = core::f32::consts::TAU / 60.0;
 
@@ -98,7 +98,7 @@ pub struct BlackBoxSample {
     pub mode: DriveMode,
     /// Where the command comes from.
     pub source: CommandSource,
-    /// Age of the last decision on the logic bus in ms; 255 stands for more.
+    /// Age of the last decision on the logic bus, or of the PC's last command, in ms; 255 stands for more.
     pub command_age_ms: u8,
     /// Age of the last radio frame in ms; 255 stands for more.
     pub radio_age_ms: u8,
@@ -123,7 +123,11 @@ impl BlackBoxSample {
         let signs = wheels.rpm_signs();
         let forward = |values: [f32; 2]| [values[0] * signs[0], values[1] * signs[1]];
         let speed = |rpm: i16| f32::from(rpm) * RPM_TO_RPS / wheels.gear_ratio;
-        let command_us = age_us(report.logic.ts_us, report.ts_us);
+        let source = CommandSource::of(report);
+        let command_us = match source {
+            CommandSource::Pc => age_us(report.link.last_us, report.ts_us),
+            _ => age_us(report.logic.ts_us, report.ts_us),
+        };
         Self {
             // It wraps after five days.
             time: (report.ts_us / UNIT_US) as u32,
@@ -141,7 +145,7 @@ impl BlackBoxSample {
             enabled: report.operator.enabled,
             estimate_valid: report.estimate.valid,
             mode: report.operator.mode,
-            source: CommandSource::of(report),
+            source,
             command_age_ms: milliseconds(command_us),
             radio_age_ms: milliseconds(report.remote_diag.age_us),
             late_tasks: report.late_tasks,
@@ -283,6 +287,8 @@ impl CommandSource {
             Self::BringUp
         } else if report.logic.cmd_valid {
             Self::Direct
+        } else if report.logic.pc_selected {
+            Self::Pc
         } else if report.logic.hl_valid {
             Self::Drive
         } else {

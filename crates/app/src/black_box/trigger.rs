@@ -2,7 +2,7 @@
 
 use crate::{
     diagnostics::DiagnosticsSnapshot,
-    domain::EventKind,
+    domain::{DriveMode, EventKind},
     safety::{ArmingBlockers, ArmingState, SafetyFlags},
 };
 
@@ -26,6 +26,8 @@ pub struct StopWatch {
     armed: bool,
     /// Flags that have counted since arming, or were there when the robot was armed.
     counted: SafetyFlags,
+    /// The PC steered in the report before.
+    pc_steered: bool,
 }
 
 /// Flags that stop something on a robot that stays armed. The last one remains after a stop that was too short to be
@@ -43,7 +45,7 @@ impl StopWatch {
         let flags = report.safety.flags;
         let was_armed = self.armed;
         self.armed = report.arming.state == ArmingState::Armed;
-        match (was_armed, self.armed) {
+        let event = match (was_armed, self.armed) {
             (false, false) => None,
             (false, true) => {
                 self.counted = flags;
@@ -58,11 +60,19 @@ impl StopWatch {
                 })
             }
             (true, true) => self.partial_stop(flags),
-        }
+        };
+        self.pc_steered = report.operator.mode == DriveMode::Pc
+            && report.logic.pc_selected
+            && !flags.intersects(SafetyFlags::PC_STOP);
+        event
     }
 
     fn partial_stop(&mut self, flags: SafetyFlags) -> Option<Trigger> {
-        let new = flags.intersection(PARTIAL).difference(self.counted);
+        let mut new = flags.intersection(PARTIAL).difference(self.counted);
+        // A PC that does not yet steer cannot be lost.
+        if self.pc_steered && flags.intersects(SafetyFlags::PC_LOST) {
+            new = new.union(SafetyFlags::PC_LOST).difference(self.counted);
+        }
         if new.is_empty() {
             return None;
         }

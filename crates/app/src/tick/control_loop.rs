@@ -10,6 +10,7 @@ use heapless::Vec;
 
 use super::{ControlInputs, ControlOutputs, TickState};
 use crate::{
+    black_box::BlackBoxMemory,
     bring_up::{BringUp, BringUpInputs},
     control::{ChassisController, UserController},
     diagnostics::{DiagnosticsSnapshot, TELEMETRY_PERIOD_TICKS, Telemetry},
@@ -83,6 +84,8 @@ pub struct ControlLoop<C: ChassisController = UserController> {
     arming: Arming,
     flash: FlashPermit,
     tuning: TuningChannel,
+    /// What requests for the black box read; `None` on a robot without one.
+    black_box: Option<&'static BlackBoxMemory>,
     /// Replies of the tuning channel for its next slot, one for each bus.
     replies: Vec<(BusId, CanFrame), 2>,
     /// The same for the PC link.
@@ -118,6 +121,7 @@ impl<C: ChassisController> ControlLoop<C> {
             arming: Arming::default(),
             flash: FlashPermit::default(),
             tuning: TuningChannel::new(layout),
+            black_box: None,
             replies: Vec::new(),
             link_reply: None,
             bring_up: BringUp::default(),
@@ -126,6 +130,11 @@ impl<C: ChassisController> ControlLoop<C> {
             link_frames: Vec::new(),
             telemetry: Telemetry::default(),
         }
+    }
+
+    /// Lets the tuning channel read this black box.
+    pub fn set_black_box(&mut self, memory: &'static BlackBoxMemory) {
+        self.black_box = Some(memory);
     }
 
     /// Takes a frame received since the last tick, in order of arrival. `diagnostics` is the report of the last tick,

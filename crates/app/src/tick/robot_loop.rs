@@ -3,6 +3,7 @@
 
 use super::{ControlInputs, ControlLoop, ControlOutputs};
 use crate::{
+    black_box::BlackBoxMemory,
     control::UserController,
     diagnostics::DiagnosticsSnapshot,
     domain::{BusId, CanFrame, RobotConfig},
@@ -27,6 +28,11 @@ impl RobotLoop {
             control_loop: ControlLoop::with_layout(layout, config, UserController::default()),
             diagnostics,
         }
+    }
+
+    /// See [`ControlLoop::set_black_box`].
+    pub fn set_black_box(&mut self, memory: &'static BlackBoxMemory) {
+        self.control_loop.set_black_box(memory);
     }
 
     /// See [`ControlLoop::on_can_frame`].

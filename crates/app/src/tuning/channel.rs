@@ -1,16 +1,17 @@
 //! Executes requests. In each slot there is at most one reply at a port.
 
 use super::{
-    LiveSource, PARAMETERS, ParameterGroup, Recorder, Refusal, TuningGate, TuningPort, bit,
-    consistency, live, parameters,
+    BlockSender, LiveSource, PARAMETERS, ParameterGroup, Recorder, Refusal, TuningGate, TuningPort,
+    bit, consistency, live, parameters,
     protocol::{self, Request, Restored},
     wheel_geometry::WheelGeometry,
 };
 use crate::{
     bring_up::BringUp,
     diagnostics::DiagnosticsSnapshot,
-    domain::{CanFrame, RobotConfig, SensorsSnapshot, TuningStatus},
+    domain::{BankState, BankStatus, CanFrame, RobotConfig, SensorsSnapshot, TuningStatus},
     motor::{NotStationary, layout::MotorLayout},
+    safety::ArmingState,
 };
 
 /// Where the motor of a joint stands, in its own coordinates; `None` if there is no such joint.
@@ -64,6 +65,7 @@ pub struct TuningChannel {
     replied: [bool; TuningPort::COUNT],
     status: TuningStatus,
     recorder: Recorder,
+    block: BlockSender,
 }
 
 impl TuningChannel {
@@ -74,6 +76,7 @@ impl TuningChannel {
             replied: [false; TuningPort::COUNT],
             status: TuningStatus::default(),
             recorder: Recorder::default(),
+            block: BlockSender::default(),
         }
     }
 
@@ -125,6 +128,19 @@ impl TuningChannel {
                 live::read(page, &source).map(|bytes| protocol::live_reply(page, bytes))
             }
             Request::ReadRecording => Ok(protocol::recording_reply(self.recorder.status())),
+            Request::ReadBlackBox(bank) => {
+                let status = bank_status(diagnostics, bank)?;
+                let overwritten = diagnostics.black_box.overwritten;
+                Ok(protocol::black_box_reply(bank, status, overwritten))
+            }
+            Request::ReadBlock { bank, at, frames } => {
+                find_event(diagnostics, bank)?;
+                self.block.start(port, bank, at, frames);
+                Ok(protocol::echo(frame))
+            }
+            Request::ReleaseEvent { bank, number } => self
+                .release_event(diagnostics, bank, number)
+                .map(|()| protocol::echo(frame)),
             _ if gate == TuningGate::Shut => Err(Refusal::Armed),
             Request::WriteGeometry(geometry) => self
                 .change(config, |candidate| geometry.apply(candidate))
@@ -162,6 +178,11 @@ impl TuningChannel {
     /// The recorder of sensor samples.
     pub fn recorder(&mut self) -> &mut Recorder {
         &mut self.recorder
+    }
+
+    /// The sender of the black box.
+    pub fn block(&mut self) -> &mut BlockSender {
+        &mut self.block
     }
 
     /// Counters for diagnostics.
@@ -236,6 +257,24 @@ impl TuningChannel {
         Ok(())
     }
 
+    /// It changes no setting, so the enable switch may be on.
+    fn release_event(
+        &mut self,
+        diagnostics: &DiagnosticsSnapshot,
+        bank: u8,
+        number: u16,
+    ) -> Result<(), Refusal> {
+        let event = find_event(diagnostics, bank)?;
+        if event.number != number {
+            return Err(Refusal::OutOfRange);
+        }
+        let mut released = self.status.black_box_released.iter_mut();
+        if let Some(released) = released.nth(bank.into()) {
+            *released = number;
+        }
+        Ok(())
+    }
+
     fn finish(&mut self, request: &CanFrame, done: Result<CanFrame, Refusal>) -> CanFrame {
         let status = &mut self.status;
         match done {
@@ -249,6 +288,24 @@ impl TuningChannel {
                 protocol::refusal_reply(request, reason)
             }
         }
+    }
+}
+
+fn bank_status(diagnostics: &DiagnosticsSnapshot, bank: u8) -> Result<&BankStatus, Refusal> {
+    let status = diagnostics.black_box.banks.get(usize::from(bank));
+    status.ok_or(Refusal::UnknownParameter)
+}
+
+/// The event in a bank. An armed robot may overwrite it at any time, so it is not read then.
+fn find_event(diagnostics: &DiagnosticsSnapshot, bank: u8) -> Result<&BankStatus, Refusal> {
+    let status = bank_status(diagnostics, bank)?;
+    if diagnostics.arming.state == ArmingState::Armed {
+        return Err(Refusal::Armed);
+    }
+    if status.state == BankState::Event {
+        Ok(status)
+    } else {
+        Err(Refusal::OutOfRange)
     }
 }
 

@@ -12,6 +12,8 @@ pub const REPLY_ID: StandardId = id(0x7A2);
 pub(super) const ACCEL_ID: StandardId = id(0x7A3);
 pub(super) const GYRO_ID: StandardId = id(0x7A4);
 pub(super) const MAG_ID: StandardId = id(0x7A5);
+/// Bytes of the black box.
+pub(super) const BLOCK_ID: StandardId = id(0x7A6);
 
 const fn id(raw: u16) -> StandardId {
     match StandardId::new(raw) {

@@ -25,11 +25,17 @@ pub const ZERO_JOINT: u8 = 0x41;
 pub const RECORD: u8 = 0x42;
 /// Asks how the recording goes.
 pub const READ_RECORDING: u8 = 0x43;
+/// Asks what a bank of the black box holds.
+pub const READ_BLACK_BOX: u8 = 0x44;
+/// Reads bytes of a bank of the black box.
+pub const READ_BLOCK: u8 = 0x45;
+/// Releases an event of the black box.
+pub const RELEASE_EVENT: u8 = 0x46;
 /// Marks the reply to a request that was refused. No old client takes it for the answer to 0x10 or 0x11.
 pub const REFUSED: u8 = 0xEE;
 
 /// All of them, in order.
-pub const ALL: [u8; 13] = [
+pub const ALL: [u8; 16] = [
     WRITE_GEOMETRY,
     READ_GEOMETRY,
     WRITE_PARAMETER,
@@ -42,5 +48,8 @@ pub const ALL: [u8; 13] = [
     ZERO_JOINT,
     RECORD,
     READ_RECORDING,
+    READ_BLACK_BOX,
+    READ_BLOCK,
+    RELEASE_EVENT,
     REFUSED,
 ];

@@ -5,14 +5,16 @@ use super::{
     identifiers::{READ_ID, REPLY_ID, WRITE_ID},
     live::PAGE_BYTES,
     opcode::{
-        BRING_UP, READ_FINDINGS, READ_GEOMETRY, READ_LIVE, READ_PARAMETER, READ_RECORDING,
-        READ_STORE, RECORD, REFUSED, RESTORE_DEFAULTS, WRITE_GEOMETRY, WRITE_PARAMETER, ZERO_JOINT,
+        BRING_UP, READ_BLACK_BOX, READ_BLOCK, READ_FINDINGS, READ_GEOMETRY, READ_LIVE,
+        READ_PARAMETER, READ_RECORDING, READ_STORE, RECORD, REFUSED, RELEASE_EVENT,
+        RESTORE_DEFAULTS, WRITE_GEOMETRY, WRITE_PARAMETER, ZERO_JOINT,
     },
     wheel_geometry::WheelGeometry,
 };
 use crate::{
+    black_box::{BANK_BYTES, LAYOUT_VERSION},
     bring_up::BringUpRequest,
-    domain::{CanFrame, ParamState, ParamStatus},
+    domain::{BankStatus, CanFrame, ParamState, ParamStatus},
 };
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,6 +44,19 @@ pub enum Request {
     /// Records for this number of seconds; 0 ends a recording.
     Record(u16),
     ReadRecording,
+    /// Asks what this bank of the black box holds.
+    ReadBlackBox(u8),
+    /// Reads a bank of the black box from this byte on.
+    ReadBlock {
+        bank: u8,
+        at: u16,
+        frames: u8,
+    },
+    /// Releases the event with this number.
+    ReleaseEvent {
+        bank: u8,
+        number: u16,
+    },
 }
 
 /// What is set to its defaults.
@@ -89,7 +104,8 @@ impl Request {
                     | RESTORE_DEFAULTS
                     | BRING_UP
                     | ZERO_JOINT
-                    | RECORD,
+                    | RECORD
+                    | RELEASE_EVENT,
                 ..
             ]
         );
@@ -123,6 +139,10 @@ impl Request {
                 seconds @ ..=MAX_RECORDING_S => Ok(Self::Record(seconds)),
                 _ => Err(Refusal::OutOfRange),
             },
+            [RELEASE_EVENT, bank, low, high, 0, 0, 0, 0] => Ok(Self::ReleaseEvent {
+                bank,
+                number: u16::from_le_bytes([low, high]),
+            }),
             // A byte that must be 0 is not.
             _ => Err(Refusal::OutOfRange),
         }
@@ -137,7 +157,15 @@ impl Request {
             [READ_FINDINGS, ..] => Ok(Self::ReadFindings),
             [READ_LIVE, page, ..] => Ok(Self::ReadLive(page)),
             [READ_RECORDING, ..] => Ok(Self::ReadRecording),
-            [] | [READ_PARAMETER | READ_LIVE, ..] => Err(Refusal::WrongLength),
+            [READ_BLACK_BOX, bank, ..] => Ok(Self::ReadBlackBox(bank)),
+            [READ_BLOCK, bank, low, high, frames, ..] => Ok(Self::ReadBlock {
+                bank,
+                at: u16::from_le_bytes([low, high]),
+                frames,
+            }),
+            [] | [READ_PARAMETER | READ_LIVE | READ_BLACK_BOX | READ_BLOCK, ..] => {
+                Err(Refusal::WrongLength)
+            }
             _ => Err(Refusal::UnknownCommand),
         }
     }
@@ -215,6 +243,24 @@ pub fn recording_reply(status: &RecordingStatus) -> CanFrame {
     let [d, e, f, _] = status.mag.to_le_bytes();
     let state = status.state as u8;
     CanFrame::new(REPLY_ID, [READ_RECORDING, state, a, b, c, d, e, f])
+}
+
+/// What a bank of the black box holds. The bank's size is in units of 256 bytes.
+pub fn black_box_reply(bank: u8, status: &BankStatus, overwritten: u32) -> CanFrame {
+    let [low, high] = status.number.to_le_bytes();
+    CanFrame::new(
+        REPLY_ID,
+        [
+            READ_BLACK_BOX,
+            bank,
+            status.state as u8 | (status.kind as u8) << 4,
+            low,
+            high,
+            (BANK_BYTES / 256) as u8,
+            LAYOUT_VERSION,
+            u8::try_from(overwritten).unwrap_or(u8::MAX),
+        ],
+    )
 }
 
 fn saturated(count: u32) -> [u8; 2] {

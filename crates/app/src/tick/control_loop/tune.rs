@@ -6,6 +6,7 @@ use crate::{
     diagnostics::DiagnosticsSnapshot,
     domain::{BusId, CanFrame},
     motor::layout::REPLY_PERIOD_TICKS,
+    safety::ArmingState,
     tuning::{TuningAccess, TuningGate, TuningPort, is_request},
 };
 
@@ -82,6 +83,8 @@ impl<C: ChassisController> ControlLoop<C> {
         if !self.state.stats.count.is_multiple_of(REPLY_PERIOD_TICKS) {
             if self.tuning.recorder().is_running() {
                 self.send_recorded();
+            } else if self.tuning.block().is_running() {
+                self.send_block();
             }
             return;
         }
@@ -98,7 +101,28 @@ impl<C: ChassisController> ControlLoop<C> {
     fn send_recorded(&mut self) {
         let gate = self.gate();
         // By the layout, motors take two of three mailboxes, and no reply is sent in this tick.
-        match self.tuning.recorder().next(gate, &self.state.sensors) {
+        let next = self.tuning.recorder().next(gate, &self.state.sensors);
+        self.send_on_port(next);
+    }
+
+    /// Kept out of line, as the black box is rarely read.
+    #[cold]
+    #[inline(never)]
+    fn send_block(&mut self) {
+        let next = match self.black_box {
+            Some(memory) if self.state.arming.state == ArmingState::Disarmed => {
+                self.tuning.block().next(memory)
+            }
+            _ => {
+                self.tuning.block().stop();
+                None
+            }
+        };
+        self.send_on_port(next);
+    }
+
+    fn send_on_port(&mut self, frame: Option<(TuningPort, CanFrame)>) {
+        match frame {
             Some((TuningPort::Bus(bus), frame)) => self.frames.extend(Some((bus, frame))),
             Some((TuningPort::Link, frame)) => self.link_frames.extend(Some(frame)),
             None => {}

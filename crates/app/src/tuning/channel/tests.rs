@@ -8,6 +8,7 @@ use crate::{
     tuning::READ_ID,
 };
 
+mod black_box;
 mod defaults;
 mod joint_zero;
 mod reading;
