@@ -1,6 +1,7 @@
 //! The commands of the tool; `--help` lists them.
 
 mod answer;
+mod black_box;
 mod calibrate;
 mod connection;
 mod drive;
@@ -37,6 +38,9 @@ pub enum Command {
     Plot(plot::Plot),
     /// Drive the robot from the keyboard or with a joystick, over the PC link
     Drive(drive::Drive),
+    /// Show what happened before and after a stop that nobody asked for (docs/black-box.md)
+    #[command(name = "blackbox")]
+    BlackBox(black_box::BlackBox),
     /// Read and change the robot's settings
     Tune(tune::Tune),
     /// Set a joint's zero
@@ -55,6 +59,7 @@ impl Command {
             Self::Record(record) => record.run(),
             Self::Plot(plot) => plot.run(),
             Self::Drive(drive) => drive.run(),
+            Self::BlackBox(black_box) => black_box.run(),
             Self::Tune(tune) => tune.run(),
             Self::Joint(joint) => joint.run(),
             Self::FirstBoard(first_board) => first_board.run(),

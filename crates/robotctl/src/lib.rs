@@ -19,9 +19,11 @@
 //! | [`drive`] | steers the robot by keyboard or joystick |
 //! | [`tuning`] | reads and changes the robot's settings over CAN, and reads its live values |
 //! | [`status`] | shows live values as words or JSON |
+//! | [`black_box`] | downloads the black box, tells its events, and writes them as MCAP |
 //! | [`recorder`] | records the robot's samples over CAN into a table |
 //! | [`first_board`] | makes the checks of a first board and writes their report |
 
+pub mod black_box;
 pub mod calibration;
 pub mod can_link;
 pub mod can_recorder;

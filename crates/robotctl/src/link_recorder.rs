@@ -11,7 +11,9 @@ use crate::{
     mcap_file::{McapFile, McapFileError, Topic},
     pc_link::Traffic,
 };
-pub use message::{Attitude, Gap, Joints, LinkCounters, Mode, Motor, Radio, State, Wheels};
+pub use message::{
+    Attitude, Gap, Joints, LinkCounters, Mode, Motor, Radio, State, Wheels, transform,
+};
 use robot_time::{Arrival, RobotTime};
 
 /// Topic of the robot's state, one message a frame.
@@ -128,7 +130,7 @@ impl LinkRecorder {
         self.file.write(self.topics.state, time_ns, &message)?;
         if t_s >= self.transform_at_s {
             self.transform_at_s = t_s + TRANSFORM_S;
-            let transform = message::transform(&arrival.state, time_ns);
+            let transform = message::transform(arrival.state.q_xyzw, time_ns);
             self.file
                 .write(self.topics.transform, time_ns, &transform)?;
         }

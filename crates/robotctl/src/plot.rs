@@ -1,5 +1,6 @@
 //! Shows a recording as an HTML page.
 
+mod black_box;
 mod can;
 mod messages;
 mod series;
@@ -11,6 +12,7 @@ use std::path::{Path, PathBuf};
 use robot_chart::{ChartError, document, header, paragraph};
 
 use crate::recording::RecordingError;
+pub use black_box::event_page;
 use messages::Messages;
 
 #[derive(Debug, thiserror::Error)]

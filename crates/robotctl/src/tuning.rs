@@ -1,6 +1,7 @@
 //! The PC's end of the robot's tuning channel (docs/tuning.md).
 
 mod apply;
+mod bank_report;
 mod boot_findings;
 mod bring_up;
 mod client;
@@ -17,6 +18,7 @@ pub(crate) mod testing;
 mod tests;
 
 pub use apply::{Applied, ApplyError, apply};
+pub use bank_report::BankReport;
 pub use boot_findings::BootFindings;
 pub use bring_up::{BringUpStep, Joint, Motor, Trial};
 pub use client::{Timeouts, TuningClient, TuningError};

@@ -145,6 +145,11 @@ impl Motor {
 }
 
 impl Attitude {
+    /// Returns the attitude of a quaternion with w first.
+    pub fn of_wxyz([w, x, y, z]: [f32; 4]) -> Self {
+        Self::new([x, y, z, w])
+    }
+
     fn new(q_xyzw: [f32; 4]) -> Self {
         let [x, y, z, w] = q_xyzw;
         let roll = (2.0 * (w * x + y * z)).atan2(1.0 - 2.0 * (x * x + y * y));
@@ -178,9 +183,9 @@ impl Radio {
 }
 
 /// Returns the body's attitude as `foxglove.FrameTransform`.
-pub(super) fn transform(state: &Uplink, time_ns: u64) -> Value {
+pub fn transform(q_xyzw: [f32; 4], time_ns: u64) -> Value {
     const NS: u64 = 1_000_000_000;
-    let [x, y, z, w] = state.q_xyzw;
+    let [x, y, z, w] = q_xyzw;
     json!({
         "timestamp": { "sec": time_ns / NS, "nsec": time_ns % NS },
         "parent_frame_id": "world",

@@ -2,12 +2,14 @@
 
 use std::time::{Duration, Instant};
 
+use robot_app::domain::CanFrame;
 use robot_app::tuning::{
-    LIVE_PAGES, LivePage, MAX_RECORDING_S, ParameterGroup, RecordedSample, Refusal,
+    BlockFrame, LIVE_PAGES, LivePage, MAX_RECORDING_S, ParameterGroup, RecordedSample, Refusal,
 };
 
 use super::{
-    BootFindings, BringUpStep, LiveReading, RecordingReport, StoreReport, WheelGeometry,
+    BankReport, BootFindings, BringUpStep, LiveReading, RecordingReport, StoreReport,
+    WheelGeometry,
     request::{self, Reply, Request},
 };
 use crate::{
@@ -105,6 +107,8 @@ pub struct TuningClient {
     timeouts: Timeouts,
     /// Samples of a recording in the order of their arrival.
     recorded: Vec<RecordedSample>,
+    /// Frames of a block of the black box in the order of their arrival.
+    block: Vec<BlockFrame>,
 }
 
 impl TuningClient {
@@ -113,6 +117,7 @@ impl TuningClient {
             link,
             timeouts,
             recorded: Vec::new(),
+            block: Vec::new(),
         }
     }
 
@@ -245,9 +250,56 @@ impl TuningClient {
         deadline: Instant,
     ) -> Result<Vec<RecordedSample>, TuningError> {
         while let Some(frame) = self.link.receive(deadline)? {
-            self.recorded.extend(RecordedSample::decode(&frame));
+            self.keep(&frame);
         }
         Ok(std::mem::take(&mut self.recorded))
+    }
+
+    /// Returns what a bank of the black box holds. The robot may be armed. It is `None` if the firmware has no black box.
+    pub fn black_box(&mut self, bank: u8) -> Result<Option<BankReport>, TuningError> {
+        self.ask_newer(Request::ReadBlackBox(bank), BankReport::from_bytes)
+    }
+
+    /// Reads a block of an event: so many frames from byte `at` of its bank on. The robot must be disarmed. Frames that got
+    /// lost are missing. `progress` gets the number of frames received so far.
+    pub fn read_block(
+        &mut self,
+        bank: u8,
+        at: u16,
+        frames: u8,
+        mut progress: impl FnMut(usize),
+    ) -> Result<Vec<BlockFrame>, TuningError> {
+        self.block.clear();
+        let request = Request::ReadBlock { bank, at, frames };
+        let done = self.exchange(request, || "black box".to_owned());
+        done.map_err(|error| error.with_allowed(|| "the event is gone".to_owned()))?;
+        let mut count = usize::MAX;
+        while self.block.len() < frames.into() && self.block.len() != count {
+            count = self.block.len();
+            progress(count);
+            let deadline = Instant::now() + self.timeouts.each_try;
+            while self.block.len() < frames.into()
+                && let Some(frame) = self.link.receive(deadline)?
+            {
+                self.keep(&frame);
+                progress(self.block.len());
+            }
+        }
+        Ok(std::mem::take(&mut self.block))
+    }
+
+    /// Makes the robot forget an event. The robot must be disarmed.
+    pub fn release_event(&mut self, bank: u8, number: u16) -> Result<(), TuningError> {
+        let request = Request::ReleaseEvent { bank, number };
+        let done = self.exchange(request, || format!("release of event {number}"));
+        done.map(drop)
+            .map_err(|error| error.with_allowed(|| "the event is gone".to_owned()))
+    }
+
+    /// Keeps a frame that the robot sends without a request for each.
+    fn keep(&mut self, frame: &CanFrame) {
+        self.recorded.extend(RecordedSample::decode(frame));
+        self.block.extend(BlockFrame::decode(frame));
     }
 
     /// Sends the request again if no reply comes. Requests are idempotent, so a second one does no harm.
@@ -270,7 +322,7 @@ impl TuningClient {
                             allowed: None,
                         });
                     }
-                    None => self.recorded.extend(RecordedSample::decode(&frame)),
+                    None => self.keep(&frame),
                 }
             }
         }

@@ -5,9 +5,9 @@ use robot_app::{
     tuning::{
         READ_ID, REPLY_ID, Refusal, WRITE_ID,
         opcode::{
-            BRING_UP, READ_FINDINGS, READ_GEOMETRY, READ_LIVE, READ_PARAMETER, READ_RECORDING,
-            READ_STORE, RECORD, REFUSED, RESTORE_DEFAULTS, WRITE_GEOMETRY, WRITE_PARAMETER,
-            ZERO_JOINT,
+            BRING_UP, READ_BLACK_BOX, READ_BLOCK, READ_FINDINGS, READ_GEOMETRY, READ_LIVE,
+            READ_PARAMETER, READ_RECORDING, READ_STORE, RECORD, REFUSED, RELEASE_EVENT,
+            RESTORE_DEFAULTS, WRITE_GEOMETRY, WRITE_PARAMETER, ZERO_JOINT,
         },
     },
 };
@@ -42,6 +42,17 @@ pub(super) enum Request {
     /// Seconds.
     Record(u16),
     ReadRecording,
+    /// The bank.
+    ReadBlackBox(u8),
+    ReadBlock {
+        bank: u8,
+        at: u16,
+        frames: u8,
+    },
+    ReleaseEvent {
+        bank: u8,
+        number: u16,
+    },
 }
 
 /// The robot's reply to a request.
@@ -82,6 +93,17 @@ impl Request {
                 let [low, high] = seconds.to_le_bytes();
                 write(RECORD, [low, high, 0, 0, 0, 0, 0])
             }
+            Self::ReadBlackBox(bank) => {
+                CanFrame::new(READ_ID, [READ_BLACK_BOX, bank, 0, 0, 0, 0, 0, 0])
+            }
+            Self::ReadBlock { bank, at, frames } => {
+                let [low, high] = at.to_le_bytes();
+                CanFrame::new(READ_ID, [READ_BLOCK, bank, low, high, frames, 0, 0, 0])
+            }
+            Self::ReleaseEvent { bank, number } => {
+                let [low, high] = number.to_le_bytes();
+                write(RELEASE_EVENT, [bank, low, high, 0, 0, 0, 0])
+            }
             Self::ReadRecording => CanFrame::new(READ_ID, [READ_RECORDING, 0, 0, 0, 0, 0, 0, 0]),
         }
     }
@@ -103,7 +125,7 @@ impl Request {
         }
         let ours = match self {
             Self::Read { .. } => frame.payload().starts_with(&asked[..4]),
-            Self::ReadLive(_) => frame.payload().starts_with(&asked[..2]),
+            Self::ReadLive(_) | Self::ReadBlackBox(_) => frame.payload().starts_with(&asked[..2]),
             Self::ReadGeometry | Self::ReadStore | Self::ReadFindings | Self::ReadRecording => {
                 command == asked[0]
             }
@@ -112,7 +134,9 @@ impl Request {
             | Self::RestoreDefaults(_)
             | Self::BringUp(_)
             | Self::ZeroJoint { .. }
-            | Self::Record(_) => frame.payload() == asked,
+            | Self::Record(_)
+            | Self::ReadBlock { .. }
+            | Self::ReleaseEvent { .. } => frame.payload() == asked,
         };
         ours.then_some(Reply::Done(rest))
     }
@@ -128,6 +152,9 @@ impl Request {
             | Self::ReadStore
             | Self::ReadFindings
             | Self::ReadRecording
+            | Self::ReadBlackBox(_)
+            | Self::ReadBlock { .. }
+            | Self::ReleaseEvent { .. }
             | Self::BringUp(_)
             | Self::ZeroJoint { .. }
             | Self::Record(_) => [0, 0],
@@ -223,6 +250,29 @@ mod tests {
         let reply = frame(0x7A2, [0x43, 1, 2, 0, 0, 1, 0, 0]);
         let bytes = [1, 2, 0, 0, 1, 0, 0];
         assert_eq!(ask.reply(&reply), Some(Reply::Done(bytes)));
+    }
+
+    #[test]
+    fn requests_for_the_black_box_are_the_documented_bytes() {
+        let ask = Request::ReadBlackBox(1);
+        assert_eq!(ask.frame(), frame(0x7A1, [0x44, 1, 0, 0, 0, 0, 0, 0]));
+        let reply = frame(0x7A2, [0x44, 1, 0x23, 3, 2, 56, 1, 0]);
+        let bytes = [1, 0x23, 3, 2, 56, 1, 0];
+        assert_eq!(ask.reply(&reply), Some(Reply::Done(bytes)));
+        assert_eq!(Request::ReadBlackBox(0).reply(&reply), None);
+        let read = Request::ReadBlock {
+            bank: 1,
+            at: 0x1234,
+            frames: 253,
+        };
+        let bytes = [0x45, 1, 0x34, 0x12, 253, 0, 0, 0];
+        assert_eq!(read.frame(), frame(0x7A1, bytes));
+        assert!(read.reply(&frame(0x7A2, bytes)).is_some());
+        let release = Request::ReleaseEvent {
+            bank: 1,
+            number: 0x0203,
+        };
+        assert_eq!(release.frame(), frame(0x7A0, [0x46, 1, 3, 2, 0, 0, 0, 0]));
     }
 
     #[test]

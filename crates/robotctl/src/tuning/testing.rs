@@ -8,6 +8,7 @@ use std::{
 };
 
 use robot_app::{
+    black_box::BlackBoxMemory,
     bring_up::BringUp,
     diagnostics::DiagnosticsSnapshot,
     domain::{BusId, CanFrame, RobotConfig, StandardId},
@@ -29,6 +30,9 @@ pub(crate) struct Robot {
     pub looks_to_save: Option<usize>,
     /// The firmware is from before there was a store.
     pub is_old: bool,
+    pub black_box: Option<&'static BlackBoxMemory>,
+    /// Number of frames of the black box that the bus will lose.
+    pub block_frames_to_lose: usize,
     /// Number of replies that the bus will lose.
     pub to_lose: usize,
     pub requests: usize,
@@ -48,11 +52,26 @@ impl Robot {
         }
     }
 
+    /// Sends the block of the black box that was asked for.
+    fn send_block(&mut self) {
+        let Some(memory) = self.black_box else { return };
+        while let Some((_, frame)) = self.channel.block().next(memory) {
+            if self.block_frames_to_lose > 0 {
+                self.block_frames_to_lose -= 1;
+            } else {
+                self.replies.push_back(frame);
+            }
+        }
+    }
+
     /// Returns the firmware's own reply. An old one answers that it does not know the command (docs/tuning.md).
     fn reply(&mut self, frame: &CanFrame) -> Option<CanFrame> {
         if self.is_old
             && let [
-                command @ (opcode::READ_STORE | opcode::READ_FINDINGS | opcode::READ_LIVE),
+                command @ (opcode::READ_STORE
+                | opcode::READ_FINDINGS
+                | opcode::READ_LIVE
+                | opcode::READ_BLACK_BOX),
                 ..,
             ] = frame.payload()
         {
@@ -90,6 +109,7 @@ impl CanLink for Bus {
         } else {
             robot.replies.extend(reply);
         }
+        robot.send_block();
         Ok(())
     }
 
@@ -105,6 +125,8 @@ pub(crate) fn robot() -> (Bus, TuningClient) {
         standing: Ok(0.75),
         looks_to_save: Some(0),
         is_old: false,
+        black_box: None,
+        block_frames_to_lose: 0,
         config: RobotConfig::default(),
         gate: TuningGate::Open,
         to_lose: 0,

@@ -1,0 +1,171 @@
+use robot_app::{
+    black_box::{BlackBox, BlackBoxMemory},
+    domain::{CrashCause, EventKind, ResetCause, WheelOdomConfig},
+    safety::{ArmingBlockers, ArmingState, DriveEnd, SafetyFlags},
+    tuning::Refusal,
+};
+
+use super::*;
+use crate::{
+    plot,
+    tuning::{
+        TuningClient, TuningError,
+        testing::{Bus, robot},
+    },
+};
+
+/// A robot that drove and then fell; its black box is complete.
+fn fallen() -> (Bus, TuningClient) {
+    let (bus, client) = robot();
+    let memory: &'static BlackBoxMemory = Box::leak(Box::default());
+    let mut black_box = BlackBox::boot(memory, ResetCause::PowerOn, CrashCause::Silent);
+    {
+        let robot = &mut *bus.0.borrow_mut();
+        robot.black_box = Some(memory);
+        let report = &mut robot.diagnostics;
+        report.safety.flags = SafetyFlags::NONE;
+        report.battery_v = 24.0;
+        let mut run = |report: &mut robot_app::diagnostics::DiagnosticsSnapshot, samples: u64| {
+            for _ in 0..samples {
+                report.ts_us += 10_000;
+                black_box.step(report, &WheelOdomConfig::default());
+            }
+            report.black_box = *black_box.status();
+        };
+        report.arming.state = ArmingState::Armed;
+        report.remote_diag.age_us = 7_000;
+        run(report, 600);
+        report.arming.state = ArmingState::Disarmed;
+        report.safety.flags = SafetyFlags::TILT;
+        report.drive_end = DriveEnd {
+            blockers: ArmingBlockers::SAFETY_STOP,
+            flags: SafetyFlags::TILT,
+        };
+        run(report, 100);
+    }
+    (bus, client)
+}
+
+#[test]
+fn an_event_is_downloaded_told_and_released() {
+    let (bus, mut client) = fallen();
+    let (banks, overwritten) = contents(&mut client).expect("it answers");
+    assert_eq!(overwritten, 0);
+    let [bank] = banks[..] else {
+        panic!("{banks:?}");
+    };
+    assert_eq!((bank.kind, bank.is_closing), (EventKind::Stop, false));
+    let mut received = Vec::new();
+    let event = download(&mut client, bank, |bytes| received.push(bytes)).expect("it is whole");
+    assert!(received.is_sorted(), "{received:?}");
+    assert_eq!(received.last(), Some(&14_336));
+    assert_eq!(event.samples.len(), 223);
+    assert!((event.seconds() - 6.01).abs() < 1e-6);
+    assert!(event.samples.is_sorted_by_key(|sample| sample.time));
+    assert!(event.just_before().armed);
+    let story = paragraphs(&event);
+    assert_eq!(
+        story[0],
+        "The robot was stopped 6.01 s after it had booted: it fell over (tilt)."
+    );
+    assert!(
+        story[1].contains("Just before (10 ms), it was armed"),
+        "{story:?}"
+    );
+    assert!(story[1].contains("battery 24.0 V; last radio frame 7 ms old"));
+    client
+        .release_event(bank.index, bank.number)
+        .expect("it is released");
+    let released = bus.0.borrow().channel.status().black_box_released;
+    assert_eq!(released, [bank.number, 0]);
+}
+
+#[test]
+fn lost_frames_are_asked_for_again() {
+    let (bus, mut client) = fallen();
+    bus.0.borrow_mut().block_frames_to_lose = 3;
+    let (banks, _) = contents(&mut client).expect("it answers");
+    let event = download(&mut client, banks[0], |_| {}).expect("it is whole");
+    assert_eq!(event.samples.len(), 223);
+    bus.0.borrow_mut().block_frames_to_lose = usize::MAX;
+    let lost = download(&mut client, banks[0], |_| {});
+    assert!(matches!(lost, Err(DownloadError::Lost)), "{lost:?}");
+}
+
+#[test]
+fn an_armed_robot_shows_what_is_there_but_gives_nothing() {
+    let (bus, mut client) = fallen();
+    bus.0.borrow_mut().diagnostics.arming.state = ArmingState::Armed;
+    let (banks, _) = contents(&mut client).expect("it answers");
+    let refused = download(&mut client, banks[0], |_| {});
+    assert!(
+        matches!(
+            refused,
+            Err(DownloadError::Robot(TuningError::Refused {
+                reason: Ok(Refusal::Armed),
+                ..
+            }))
+        ),
+        "{refused:?}"
+    );
+}
+
+#[test]
+fn a_firmware_without_a_black_box_is_told_apart() {
+    let (bus, mut client) = fallen();
+    bus.0.borrow_mut().is_old = true;
+    assert!(matches!(contents(&mut client), Err(DownloadError::TooOld)));
+}
+
+#[test]
+fn an_event_becomes_a_recording_and_a_page() {
+    let (_, mut client) = fallen();
+    let (banks, _) = contents(&mut client).expect("it answers");
+    let event = download(&mut client, banks[0], |_| {}).expect("it is whole");
+    let path = std::env::temp_dir().join(format!("robotctl-black-box-{}.mcap", std::process::id()));
+    write(&event, &path).expect("a file");
+    let bytes = std::fs::read(&path).expect("it is there");
+    let mut count = [0; 2];
+    for message in mcap::MessageStream::new(&bytes).expect("an MCAP file") {
+        let message = message.expect("a message");
+        let json: serde_json::Value = serde_json::from_slice(&message.data).expect("JSON");
+        match message.channel.topic.as_str() {
+            SAMPLE_TOPIC => {
+                count[0] += 1;
+                assert_eq!(
+                    message.log_time,
+                    (json["time_s"].as_f64().unwrap() * 1e9).round() as u64
+                );
+            }
+            EVENT_TOPIC => {
+                count[1] += 1;
+                assert_eq!(json["causes"], serde_json::json!(["tilt"]));
+            }
+            _ => {}
+        }
+    }
+    assert_eq!(count, [223, 1]);
+    let page = plot::event_page(&event).expect("a page");
+    for text in [
+        "it fell over (tilt)",
+        "Attitude",
+        "Wheel currents",
+        "tilt raised",
+    ] {
+        assert!(page.contains(text), "{text}");
+    }
+}
+
+/// No panic and no event from noise, half an event, or nothing.
+#[test]
+fn bytes_that_are_no_event_give_none() {
+    let mut noise = 1_u32;
+    let mut bytes = vec![0; 14_336];
+    assert!(RecordedEvent::decode(&bytes).is_none());
+    for byte in &mut bytes {
+        noise = noise.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        *byte = (noise >> 24) as u8;
+    }
+    assert!(RecordedEvent::decode(&bytes).is_none());
+    assert!(RecordedEvent::decode(&bytes[..100]).is_none());
+}
