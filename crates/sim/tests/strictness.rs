@@ -2,6 +2,9 @@
 
 mod support;
 
+#[path = "strictness/link.rs"]
+mod link;
+
 use robot_plant::time::SECOND;
 use robot_sim::{machine::RegisterPatch, scenario::Scenario};
 
@@ -25,7 +28,12 @@ struct Reported {
 
 /// Runs the image with these register bits overridden.
 fn reported(patches: &[RegisterPatch]) -> Reported {
-    let mut job = support::job(Scenario::parse(QUIET, "strictness").expect("it parses"));
+    reported_in(QUIET, patches)
+}
+
+/// The same in a scenario.
+fn reported_in(scenario: &str, patches: &[RegisterPatch]) -> Reported {
+    let mut job = support::job(Scenario::parse(scenario, "strictness").expect("it parses"));
     job.patches = patches.to_vec();
     let summary = job.run(&mut []).expect("the machine starts").summary;
     let errors = summary.board_errors.into_iter().map(|e| e.message);

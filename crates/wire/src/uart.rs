@@ -44,8 +44,7 @@ impl LineFormat {
 
     /// Duration of a character, from its start edge to the end of its last stop bit.
     pub fn char_time(self) -> Ps {
-        let bits = u128::from(self.bits());
-        (bits * u128::from(SECOND) / u128::from(self.baud)) as Ps
+        Ps::from(self.bits()) * SECOND / Ps::from(self.baud)
     }
 
     /// Whether a receiver set to `self` understands what was sent in the format `sent`: the same word, and a rate that
