@@ -442,5 +442,5 @@ fn an_inverted_heater_fails_the_default_drive() {
 #[test]
 fn a_control_tick_below_the_sensors_fails_the_default_drive() {
     let patch = patch(0xE000_E435, 0xFF, 0x50);
-    must_name(&drive_fails(patch), &["diag.tick.jitter_us"]);
+    must_name(&drive_fails(patch), &["diag.tick.max_jitter_us"]);
 }
