@@ -74,15 +74,18 @@ fn main() -> ! {
     let tunnel = Tunnel::init();
     let writers = defmt::unwrap!(exchange.take_writers());
     deadlines::start();
-    let control = ControlContext::new(
-        exchange,
-        ports,
-        tunnel.control,
-        watchdog,
-        last_run,
-        writers.control,
-        defmt::unwrap!(debugger_view::take()),
-    );
+    static CONTROL: StaticCell<ControlContext> = StaticCell::new();
+    let control = CONTROL.init_with(|| {
+        ControlContext::new(
+            exchange,
+            ports,
+            tunnel.control,
+            watchdog,
+            last_run,
+            writers.control,
+            defmt::unwrap!(debugger_view::take()),
+        )
+    });
 
     let sensor = executors::start_sensor(board::SENSOR_EXECUTOR_IRQ);
     sensor.spawn(defmt::unwrap!(tasks::imu::run(

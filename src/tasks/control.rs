@@ -78,6 +78,8 @@ pub struct ControlContext {
     tunnel: ControlTunnel,
     watchdog: Watchdog,
     health: SystemHealth,
+    /// Any of `health.late_tasks`.
+    late: bool,
     stalls: StallWatch,
     jitter: CycleJitter,
     control_loop: RobotLoop,
@@ -170,6 +172,7 @@ impl ControlContext {
                 last_words: last_run.crash_cause,
                 ..SystemHealth::default()
             },
+            late: false,
             stalls: StallWatch::new(),
             jitter: CycleJitter::start(),
             control_loop,
@@ -182,12 +185,13 @@ impl ControlContext {
     }
 }
 
+/// Borrows the context, because a task would hold one that it owns twice.
 #[embassy_executor::task]
-pub async fn run(mut context: ControlContext) -> ! {
+pub async fn run(context: &'static mut ControlContext) -> ! {
     let mut ticker = SteadyTicker::every(PERIOD);
     loop {
         ticker.next().await;
-        robotapp_control_tick(&mut context);
+        robotapp_control_tick(context);
     }
 }
 
@@ -203,6 +207,7 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
         tunnel,
         watchdog,
         health,
+        late,
         stalls,
         jitter,
         control_loop,
@@ -225,7 +230,7 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
         control_loop.on_link_frame(&request, now_us);
     }
 
-    note_late_tasks(&mut health.late_tasks, now_us);
+    note_late_tasks(late, &mut health.late_tasks, now_us);
     inputs.follow(health);
     for (health, port) in health.can.iter_mut().zip(ports.iter()) {
         *health = *port.health();
@@ -261,15 +266,16 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
         health.debug_probe = debug_probe::undo();
     }
     watchdog.set_long(outputs.flash.needs_long_watchdog);
-    if !health.late_tasks.any() {
+    if !*late {
         watchdog.feed();
     }
 }
 
 /// Notes late tasks, which stop the robot in this tick.
-fn note_late_tasks(noted: &mut LateTasks, now_us: u64) {
-    if deadlines::any_late(now_us) || noted.any() {
+fn note_late_tasks(late: &mut bool, noted: &mut LateTasks, now_us: u64) {
+    if deadlines::any_late(now_us) || *late {
         renew_late_tasks(noted, now_us);
+        *late = noted.any();
     }
 }
 
