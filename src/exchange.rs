@@ -5,7 +5,7 @@
 //! | [`Exchange::imu`] | imu task | control | 200 Hz |
 //! | [`Exchange::mag`] | mag task | control | 50 Hz |
 //! | [`Exchange::remote`] | sbus task | logic, control | each radio frame, 70 to 143 Hz |
-//! | [`Exchange::pc`] | link receive task | control | each command of the PC |
+//! | [`Exchange::pc`] | link receive task | control, status | each command of the PC |
 //! | [`Exchange::link`] | link receive task | control | 100 Hz |
 //! | [`Exchange::frames_sent`] | link send task | link receive | 417 Hz |
 //! | [`Exchange::telemetry`] | control task | link send | 500 Hz |

@@ -69,7 +69,9 @@ pub async fn run(
         link.report_changes(&diagnostics);
         if round.is_multiple_of(SUMMARY_DIVIDER) {
             summary::log(&diagnostics);
-            link.report_numbers(&diagnostics);
+            let now_us = Instant::now().as_micros();
+            let age_us = now_us.saturating_sub(exchange.pc.latest().ts_us);
+            link.report_numbers(&diagnostics, age_us);
             bring_up.report_joints(&diagnostics);
         }
     }

@@ -17,6 +17,8 @@ use crate::stall::StallWatch;
 /// Line events since boot. The interrupt and the reader write them.
 pub struct UartLine {
     idle: AtomicBool,
+    /// The reader waits for an idle line. At other times one does not wake it, however often the line falls idle.
+    awaited: AtomicBool,
     waker: AtomicWaker,
     rx_events: AtomicU32,
     rx_bytes: AtomicU32,
@@ -30,6 +32,7 @@ impl UartLine {
     pub const fn new() -> Self {
         Self {
             idle: AtomicBool::new(false),
+            awaited: AtomicBool::new(false),
             waker: AtomicWaker::new(),
             rx_events: AtomicU32::new(0),
             rx_bytes: AtomicU32::new(0),
@@ -73,7 +76,9 @@ impl UartLine {
         }
         if status.idle() {
             self.idle.store(true, Ordering::Release);
-            self.waker.wake();
+            if self.awaited.swap(false, Ordering::Relaxed) {
+                self.waker.wake();
+            }
         }
     }
 
@@ -163,6 +168,7 @@ impl<const N: usize> UartReceiver<N> {
     pub async fn wait(&mut self) {
         poll_fn(|cx| {
             self.line.waker.register(cx.waker());
+            self.line.awaited.store(true, Ordering::Release);
             self.ring.set_waker(cx.waker());
             let filling = self.ring.len().is_ok_and(|len| len < N / 2);
             if self.line.idle.swap(false, Ordering::Acquire) || !filling {

@@ -22,8 +22,9 @@ impl LinkLog {
         }
     }
 
-    /// Logs the numbers of a line that has carried anything; to be called a few times a second.
-    pub fn report_numbers(&self, d: &DiagnosticsSnapshot) {
+    /// Logs the numbers of a line that has carried anything; to be called a few times a second. `age_us` is that of the last
+    /// command.
+    pub fn report_numbers(&self, d: &DiagnosticsSnapshot, age_us: u64) {
         let LinkHealth {
             good,
             crc_errors,
@@ -32,7 +33,6 @@ impl LinkLog {
             line_errors,
             rate_hz,
             longest_gap_us,
-            last_us,
             ..
         } = d.link;
         if good == 0 && discarded_bytes == 0 && line_errors == 0 {
@@ -45,7 +45,7 @@ impl LinkLog {
             resyncs,
             line_errors,
             rate_hz as u32,
-            d.ts_us.saturating_sub(last_us) / 1_000,
+            age_us / 1_000,
             longest_gap_us / 1_000
         );
     }
