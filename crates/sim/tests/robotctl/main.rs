@@ -4,6 +4,7 @@
 mod support;
 
 mod every_way;
+mod link;
 mod mounting;
 mod saving;
 mod tool;

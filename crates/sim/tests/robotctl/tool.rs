@@ -1,6 +1,6 @@
-//! `robotctl` in a thread of its own, on a bus of a running board.
+//! `robotctl` in a thread of its own, on a bus or at the PC link of a running board.
 
-use std::{thread, time::Duration};
+use std::{path::Path, thread, time::Duration};
 
 use robot_plant::{
     time::{MS, Ps},
@@ -13,7 +13,7 @@ use robot_sim::{
     signals::{SignalTable, Values},
 };
 use robotctl::{
-    can_link::CanDevice,
+    transport::Transport,
     tuning::{Timeouts, TuningClient},
 };
 
@@ -23,34 +23,60 @@ const START: Ps = 200 * MS;
 /// must end long before the run does.
 const LET_THE_TOOL_WORK: Duration = Duration::from_micros(500);
 /// On a busy computer a thread may rest for long.
-const TIMEOUT: Timeouts = Timeouts {
+pub const TIMEOUT: Timeouts = Timeouts {
     each_try: Duration::from_secs(20),
     tries: 2,
 };
 
-type Work<T> = Box<dyn FnOnce(&mut TuningClient) -> anyhow::Result<T> + Send>;
+type Work<T> = Box<dyn FnOnce(&Transport) -> anyhow::Result<T> + Send>;
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Wanted {
+    Can(CanBusId),
+    Link,
+}
 
 /// A user's single action with the tool.
 pub struct Tool<T> {
-    bus: CanBusId,
+    wanted: Wanted,
     work: Option<Work<T>>,
-    device: Option<CanDevice>,
+    transport: Option<Transport>,
     running: Option<thread::JoinHandle<anyhow::Result<T>>>,
 }
 
 impl<T: Send + 'static> Tool<T> {
     pub fn new(work: impl FnOnce(&mut TuningClient) -> anyhow::Result<T> + Send + 'static) -> Self {
+        Self::with(Wanted::Can(CanBusId::Can1), |transport| {
+            work(&mut TuningClient::new(transport.open()?, TIMEOUT))
+        })
+    }
+
+    /// Lets it work at the PC link. It gets the port.
+    pub fn at_link(work: impl FnOnce(&str) -> anyhow::Result<T> + Send + 'static) -> Self {
+        Self::with(Wanted::Link, |transport| match transport {
+            Transport::Link(port) => work(port),
+            Transport::Can(device) => panic!("{device} is no link"),
+        })
+    }
+
+    fn with(
+        wanted: Wanted,
+        work: impl FnOnce(&Transport) -> anyhow::Result<T> + Send + 'static,
+    ) -> Self {
         Self {
-            bus: CanBusId::Can1,
+            wanted,
             work: Some(Box::new(work)),
-            device: None,
+            transport: None,
             running: None,
         }
     }
 
     /// Lets it work on another bus than CAN1.
     pub fn on(self, bus: CanBusId) -> Self {
-        Self { bus, ..self }
+        Self {
+            wanted: Wanted::Can(bus),
+            ..self
+        }
     }
 
     /// Result of the work, which must have ended before the run.
@@ -63,11 +89,9 @@ impl<T: Send + 'static> Tool<T> {
 
 impl<T: Send + 'static> Observer for Tool<T> {
     fn sample(&mut self, at: Ps, _: &SignalTable, _: &Values) {
-        if let Some(device) = self.device.take_if(|_| at >= START) {
+        if let Some(transport) = self.transport.take_if(|_| at >= START) {
             let work = self.work.take().expect("there is one device");
-            self.running = Some(thread::spawn(move || {
-                work(&mut TuningClient::new(device.open()?, TIMEOUT))
-            }));
+            self.running = Some(thread::spawn(move || work(&transport)));
         }
         if self.running.as_ref().is_some_and(|r| !r.is_finished()) {
             thread::sleep(LET_THE_TOOL_WORK);
@@ -77,8 +101,14 @@ impl<T: Send + 'static> Observer for Tool<T> {
     fn log(&mut self, _: &LogLine) {}
 
     fn can_port(&mut self, bus: CanBusId, device: &can_port::CanDevice) {
-        if bus == self.bus {
-            self.device = device.to_string().parse().ok();
+        if Wanted::Can(bus) == self.wanted {
+            self.transport = device.to_string().parse().ok().map(Transport::Can);
+        }
+    }
+
+    fn link_port(&mut self, device: &Path) {
+        if self.wanted == Wanted::Link {
+            self.transport = Some(Transport::Link(device.display().to_string()));
         }
     }
 }
