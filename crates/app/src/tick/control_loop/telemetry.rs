@@ -1,37 +1,51 @@
 //! Writes the tick in brief.
 
 use super::{ControlInputs, ControlLoop};
-use crate::{control::ChassisController, diagnostics::Telemetry, domain::age_us};
+use crate::{control::ChassisController, domain::age_us};
 
 impl<C: ChassisController> ControlLoop<C> {
+    /// Writes field by field, as building the whole first would take half as many instructions again.
     #[inline(never)]
     pub(super) fn record_telemetry(&mut self, inputs: &ControlInputs<'_>, now_us: u64) {
-        let state = &self.state;
+        let Self {
+            telemetry,
+            state,
+            motors,
+            ..
+        } = self;
         let motor = &state.sensors.motor;
-        let (wheels, joints) = (&motor.wheels, &motor.joints);
-        let sent_joints = self.motors.sent_joints();
-        self.telemetry = Telemetry {
-            ts_us: now_us,
-            accel_mps2: state.sensors.imu.accel_mps2,
-            gyro_dps: state.sensors.imu.gyro_dps,
-            q_wxyz: state.estimate.q_wxyz,
-            wheel_counts: self.motors.turned_counts(),
-            wheel_rpm: wheels.each_ref().map(|wheel| wheel.rpm),
-            wheel_ma: wheels.each_ref().map(|wheel| wheel.current_ma),
-            sent_wheel_ma: self.motors.sent_wheels_ma(),
-            joint_rad: joints.each_ref().map(|joint| joint.pos_rad),
-            joint_rps: joints.each_ref().map(|joint| joint.vel_rps),
-            joint_nm: joints.each_ref().map(|joint| joint.torque_nm),
-            sent_joint_rad: sent_joints.map(|sent| sent.pos_rad),
-            sent_joint_kp: sent_joints.map(|sent| sent.kp),
-            sent_joint_kd: sent_joints.map(|sent| sent.kd),
-            flags: state.safety.flags,
-            pc_age_us: age_us(inputs.pc.ts_us, now_us),
-            arming: state.arming.state,
-            mode: state.operator.mode,
-            estimate_valid: state.estimate.valid,
-            pc_steers: inputs.logic.pc_selected && !state.safety.pc_stop,
-            joint_states: joints.each_ref().map(|joint| joint.state),
-        };
+        telemetry.ts_us = now_us;
+        telemetry.accel_mps2 = state.sensors.imu.accel_mps2;
+        telemetry.gyro_dps = state.sensors.imu.gyro_dps;
+        telemetry.q_wxyz = state.estimate.q_wxyz;
+        telemetry.wheel_counts = motors.turned_counts();
+        let [left, right] = &motor.wheels;
+        telemetry.wheel_rpm = [left.rpm, right.rpm];
+        telemetry.wheel_ma = [left.current_ma, right.current_ma];
+        telemetry.sent_wheel_ma = motors.sent_wheels_ma();
+        let sent_joints = motors.sent_joints();
+        for (joint, (feedback, sent)) in motor.joints.iter().zip(sent_joints).enumerate() {
+            for (values, value) in [
+                (&mut telemetry.joint_rad, feedback.pos_rad),
+                (&mut telemetry.joint_rps, feedback.vel_rps),
+                (&mut telemetry.joint_nm, feedback.torque_nm),
+                (&mut telemetry.sent_joint_rad, sent.pos_rad),
+                (&mut telemetry.sent_joint_kp, sent.kp),
+                (&mut telemetry.sent_joint_kd, sent.kd),
+            ] {
+                if let Some(place) = values.get_mut(joint) {
+                    *place = value;
+                }
+            }
+            if let Some(place) = telemetry.joint_states.get_mut(joint) {
+                *place = feedback.state;
+            }
+        }
+        telemetry.flags = state.safety.flags;
+        telemetry.pc_age_us = age_us(inputs.pc.ts_us, now_us);
+        telemetry.arming = state.arming.state;
+        telemetry.mode = state.operator.mode;
+        telemetry.estimate_valid = state.estimate.valid;
+        telemetry.pc_steers = inputs.logic.pc_selected && !state.safety.pc_stop;
     }
 }
