@@ -139,11 +139,6 @@ fn is_diagnostics_tick(diagnostics: &DiagnosticsSnapshot) -> bool {
         .is_multiple_of(DIAGNOSTICS_PERIOD_TICKS)
 }
 
-fn precedes_diagnostics_tick(diagnostics: &DiagnosticsSnapshot) -> bool {
-    let next = diagnostics.tick.count.wrapping_add(1);
-    next.is_multiple_of(DIAGNOSTICS_PERIOD_TICKS)
-}
-
 impl ControlContext {
     pub fn new(
         exchange: &'static Exchange,
@@ -265,12 +260,10 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
 
     output.publish(&outputs);
     if is_diagnostics_tick(outputs.diagnostics) {
+        inputs.follow_slow(health);
         health.radio_line = RADIO_LINE.health();
         health.max_jitter_cycles = jitter.max_cycles();
         health.debug_probe = debug_probe::undo();
-    }
-    if precedes_diagnostics_tick(outputs.diagnostics) {
-        inputs.follow_slow(health);
     }
     watchdog.set_long(outputs.flash.needs_long_watchdog);
     if !*late {

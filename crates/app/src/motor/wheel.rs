@@ -90,15 +90,20 @@ impl Wheel {
             && now.current_ma == last.current_ma
             && now.temperature_c == last.temperature_c;
         let implausible_current = (now.current_ma - self.sent.ma()).abs() > CURRENT_TOLERANCE_MA;
-        if !same_angle || last.ts_us == 0 {
+        let is_first = last.ts_us == 0;
+        let stuck_angle = if same_angle && !is_first {
+            now.rpm.unsigned_abs() >= MOVING_RPM
+                && now.ts_us.saturating_sub(self.angle_changed_us) >= STUCK_ANGLE_US
+        } else {
             self.angle_changed_us = now.ts_us;
-        }
-        if !same_report || !implausible_current || last.ts_us == 0 {
+            false
+        };
+        let stuck_report = if same_report && implausible_current && !is_first {
+            now.ts_us.saturating_sub(self.plausible_us) >= STUCK_REPORT_US
+        } else {
             self.plausible_us = now.ts_us;
-        }
-        let stuck_angle = now.rpm.unsigned_abs() >= MOVING_RPM
-            && now.ts_us.saturating_sub(self.angle_changed_us) >= STUCK_ANGLE_US;
-        let stuck_report = now.ts_us.saturating_sub(self.plausible_us) >= STUCK_REPORT_US;
+            false
+        };
         stuck_angle || stuck_report || (self.feedback.frozen && same_report)
     }
 }
