@@ -3,8 +3,8 @@
 /// 0x31 in reflected form.
 const POLYNOMIAL: u8 = 0x8C;
 
-/// CRC of each single byte. With it a byte takes one look-up, and a line full of false headers stays cheap.
-static TABLE: [u8; 256] = table();
+/// CRC of each single byte, which is also the state after a byte of zero.
+static TABLE: [u8; 256] = after_zeros(1);
 
 /// CRC over `bytes`. Over a whole frame, its CRC included, it is 0.
 ///
@@ -12,26 +12,35 @@ static TABLE: [u8; 256] = table();
 /// assert_eq!(robot_app::link::crc8(b"123456789"), 0xA1);
 /// ```
 pub fn crc8(bytes: &[u8]) -> u8 {
-    bytes.iter().fold(0, |crc, byte| {
-        TABLE
-            .get(usize::from(crc ^ byte))
-            .copied()
-            .unwrap_or_default()
-    })
+    bytes.iter().fold(0, |crc, byte| next(crc, *byte))
 }
 
-const fn table() -> [u8; 256] {
+/// State of the CRC after one more byte.
+pub(super) fn next(crc: u8, byte: u8) -> u8 {
+    let entry = TABLE.get(usize::from(crc ^ byte));
+    entry.copied().unwrap_or_default()
+}
+
+/// State of the CRC after `len` bytes of zero, by its state before.
+pub(super) const fn after_zeros(len: usize) -> [u8; 256] {
     let mut table = [0; 256];
-    let mut byte = 0_u8;
+    let mut state = 0_u8;
     let mut rest: &mut [u8] = &mut table;
     while let Some((slot, others)) = rest.split_first_mut() {
-        *slot = crc_of(byte);
-        byte = byte.wrapping_add(1);
+        let mut crc = state;
+        let mut zeros = 0_usize;
+        while zeros < len {
+            crc = crc_of(crc);
+            zeros = zeros.wrapping_add(1);
+        }
+        *slot = crc;
+        state = state.wrapping_add(1);
         rest = others;
     }
     table
 }
 
+/// CRC of a single byte.
 const fn crc_of(byte: u8) -> u8 {
     let mut crc = byte;
     let mut bit = 0_u8;

@@ -1,10 +1,13 @@
 //! The computer's end of the line: bytes → the robot's state.
 
 use super::{
-    HEADER, ScanCounters, TUNNEL_HEADER, TUNNEL_LEN, Tunnelled, UPLINK_LEN, Uplink,
-    scanner::{Frame, Scanner},
+    HEADER, ScanCounters, TUNNEL_HEADER, Tunnelled, UPLINK_LEN, Uplink,
+    scanner::{Found, Frame, Scanner, Shape},
+    tunnel::TUNNEL_SHAPE,
 };
 use crate::domain::CanFrame;
+
+static STATE_SHAPE: Shape = Shape::new(UPLINK_LEN);
 
 /// What a frame from the robot brings.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,14 +40,14 @@ pub enum Heard {
 /// ```
 #[derive(Clone, Debug)]
 pub struct PcReceiver {
-    scanner: Scanner<UPLINK_LEN>,
+    scanner: Scanner,
 }
 
 impl Frame for Heard {
-    fn len(header: u8) -> Option<usize> {
+    fn shape(header: u8) -> Option<&'static Shape> {
         match header {
-            HEADER => Some(UPLINK_LEN),
-            TUNNEL_HEADER => Some(TUNNEL_LEN),
+            HEADER => Some(&STATE_SHAPE),
+            TUNNEL_HEADER => Some(&TUNNEL_SHAPE),
             _ => None,
         }
     }
@@ -74,12 +77,8 @@ impl PcReceiver {
 
     /// Takes bytes in chunks of any length. `sink` gets what each frame brings.
     pub fn feed(&mut self, bytes: &[u8], mut sink: impl FnMut(Heard)) {
-        for byte in bytes {
-            self.scanner
-                .push(*byte, &mut |found: super::scanner::Found<Heard>| {
-                    sink(found.frame);
-                });
-        }
+        let mut sink = |found: Found<Heard>, _following| sink(found.frame);
+        self.scanner.feed(bytes, &mut sink);
     }
 
     /// What was received since the start.

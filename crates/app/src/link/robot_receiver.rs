@@ -1,8 +1,9 @@
 //! The robot's end of the line: bytes → commands of the PC.
 
 use super::{
-    BAUD, DOWNLINK_LEN, Downlink, HEADER, TUNNEL_HEADER, TUNNEL_LEN, Tunnelled,
-    scanner::{Found, Frame, Scanner},
+    BAUD, DOWNLINK_LEN, Downlink, HEADER, TUNNEL_HEADER, Tunnelled,
+    scanner::{Found, Frame, Scanner, Shape},
+    tunnel::TUNNEL_SHAPE,
 };
 use crate::domain::{CanFrame, LinkHealth, PcCommand};
 
@@ -10,6 +11,8 @@ use crate::domain::{CanFrame, LinkHealth, PcCommand};
 const SILENCE_US: u64 = 20_000;
 /// Time of a byte on the line, with start and stop bit.
 const BYTE_NS: u32 = 1_000_000_000 / (BAUD / 10);
+
+static COMMAND_SHAPE: Shape = Shape::new(DOWNLINK_LEN);
 
 /// What a frame from the PC brings.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,7 +44,7 @@ pub enum Received {
 /// ```
 #[derive(Clone, Debug)]
 pub struct RobotReceiver {
-    scanner: Scanner<DOWNLINK_LEN>,
+    scanner: Scanner,
     health: LinkHealth,
     newest: PcCommand,
     last_byte_us: u64,
@@ -55,10 +58,10 @@ enum FromPc {
 }
 
 impl Frame for FromPc {
-    fn len(header: u8) -> Option<usize> {
+    fn shape(header: u8) -> Option<&'static Shape> {
         match header {
-            HEADER => Some(DOWNLINK_LEN),
-            TUNNEL_HEADER => Some(TUNNEL_LEN),
+            HEADER => Some(&COMMAND_SHAPE),
+            TUNNEL_HEADER => Some(&TUNNEL_SHAPE),
             _ => None,
         }
     }
@@ -115,12 +118,9 @@ impl RobotReceiver {
         if scanner.held() > 0 && first_us.saturating_sub(*last_byte_us) >= SILENCE_US {
             scanner.flush(&mut |found| accept(found, *last_byte_us));
         }
-        for (index, byte) in bytes.iter().enumerate() {
-            let following = bytes.len().saturating_sub(index).saturating_sub(1);
-            scanner.push(*byte, &mut |found| {
-                accept(found, ts_us.saturating_sub(line_time_us(following)));
-            });
-        }
+        scanner.feed(bytes, &mut |found, following| {
+            accept(found, ts_us.saturating_sub(line_time_us(following)));
+        });
         if !bytes.is_empty() {
             *last_byte_us = ts_us;
         }

@@ -1,12 +1,17 @@
 //! Finds frames in a stream of bytes that may be damaged anywhere.
 //!
-//! The scanner waits at a header for the length that belongs to it and then checks the frame. If that fails, it drops
-//! only one byte and looks again at what it holds, so damage never hides the frame after it.
+//! The scanner waits at a header for the length that belongs to it and then checks the frame. If that fails, it goes on
+//! by only one byte, so damage never hides the frame after it.
 //!
 //! One of 256 false headers has a matching CRC by chance. So a frame that does not follow directly on another one is
 //! reported as not contiguous, and its bytes are searched for further frames: it hides none either.
+//!
+//! Each byte is taken into the CRC once, and looked at once as a header, whatever the line carries.
 
 use super::crc8;
+
+/// Places in the ring, a power of two above the length of the longest frame.
+const PLACES: u8 = 128;
 
 /// What a scanner has counted. The counters wrap.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -21,10 +26,35 @@ pub struct ScanCounters {
     pub discarded_bytes: u32,
 }
 
+/// Length of a kind of frame, and what its CRC needs.
+#[derive(Debug)]
+pub(super) struct Shape {
+    len: u8,
+    /// The CRC's state after `len` bytes of zero, by its state before.
+    after_zeros: [u8; 256],
+}
+
+impl Shape {
+    /// `len` is below [`PLACES`].
+    pub(super) const fn new(len: usize) -> Self {
+        assert!(len < PLACES as usize);
+        Self {
+            len: len as u8,
+            after_zeros: crc8::after_zeros(len),
+        }
+    }
+
+    /// Whether the CRC over `len` bytes is right, from its running state before and after them. The CRC is linear: a
+    /// frame, over which it is 0 from a start of 0, changes any other state as zeros do.
+    fn is_right(&self, before: u8, after: u8) -> bool {
+        self.after_zeros.get(usize::from(before)) == Some(&after)
+    }
+}
+
 /// A kind of frame on the line.
 pub(super) trait Frame: Sized {
-    /// Length of the frames that begin with `header`, `None` if none does. At most the scanner's `N`.
-    fn len(header: u8) -> Option<usize>;
+    /// Shape of the frames that begin with `header`, `None` if none does.
+    fn shape(header: u8) -> Option<&'static Shape>;
     /// Reads a frame of that length. The CRC is correct.
     fn read(bytes: &[u8]) -> Option<Self>;
 }
@@ -37,28 +67,59 @@ pub(super) struct Found<F> {
     pub(super) contiguous: bool,
 }
 
-/// A scanner for frames of at most `N` bytes, `N` below 128.
+/// A scanner for frames of any number of kinds.
 ///
-/// Each byte costs at most one CRC over `N` bytes: that is so on a line full of headers.
+/// The byte with number n in the stream is in place n modulo [`PLACES`], and numbers are kept modulo 256.
 #[derive(Clone, Debug)]
-pub(super) struct Scanner<const N: usize> {
-    held: [u8; N],
-    /// Number of bytes held.
-    len: usize,
-    /// Place of the first byte that is not yet done with. It is 0 between calls.
-    start: usize,
-    /// Bit n is set if a frame has ended right before the byte n places after `start`.
-    ends: u128,
+pub(super) struct Scanner {
+    bytes: Ring<u8>,
+    /// State of the running CRC before each byte.
+    crcs: Ring<u8>,
+    /// A frame has ended right before the byte.
+    follows_frame: Ring<bool>,
+    /// Number of the first byte that is not done with.
+    first: u8,
+    /// Number of the next byte.
+    next: u8,
+    /// There is nothing to decide before so many bytes are held.
+    wanted: u8,
+    /// Bytes from `first` on that belong to a frame already found.
+    covered: u8,
     counters: ScanCounters,
 }
 
-impl<const N: usize> Scanner<N> {
+#[derive(Clone, Debug)]
+struct Ring<T>([T; PLACES as usize]);
+
+impl<T: Copy + Default> Ring<T> {
+    fn new() -> Self {
+        Self([T::default(); PLACES as usize])
+    }
+
+    fn get(&self, number: u8) -> T {
+        let place = self.0.get(usize::from(number % PLACES));
+        place.copied().unwrap_or_default()
+    }
+
+    fn set(&mut self, number: u8, value: T) {
+        if let Some(place) = self.0.get_mut(usize::from(number % PLACES)) {
+            *place = value;
+        }
+    }
+}
+
+impl Scanner {
     pub(super) fn new() -> Self {
+        let mut follows_frame = Ring::new();
+        follows_frame.set(0, true);
         Self {
-            held: [0; N],
-            len: 0,
-            start: 0,
-            ends: 1,
+            bytes: Ring::new(),
+            crcs: Ring::new(),
+            follows_frame,
+            first: 0,
+            next: 0,
+            wanted: 0,
+            covered: 0,
             counters: ScanCounters::default(),
         }
     }
@@ -67,108 +128,112 @@ impl<const N: usize> Scanner<N> {
         self.counters
     }
 
-    /// Number of bytes of a frame that is not complete.
-    pub(super) fn held(&self) -> usize {
-        self.len
+    /// Number of bytes that are not done with.
+    pub(super) fn held(&self) -> u8 {
+        self.next.wrapping_sub(self.first)
     }
 
-    /// Takes one byte. A frame of the greatest length is found with its last byte, so at most one such is found.
-    pub(super) fn push<F: Frame>(&mut self, byte: u8, sink: &mut impl FnMut(Found<F>)) {
-        if let Some(place) = self.held.get_mut(self.len) {
-            *place = byte;
-            self.len = self.len.wrapping_add(1);
+    /// Takes bytes. `sink` gets each frame, and the number of bytes among them that came after its last one; that is
+    /// exact for the longest kind of frame, which is found with its last byte.
+    pub(super) fn feed<F: Frame>(&mut self, bytes: &[u8], sink: &mut impl FnMut(Found<F>, usize)) {
+        let mut rest = bytes;
+        while let Some((byte, following)) = rest.split_first() {
+            rest = following;
+            if self.held() == 0 && F::shape(*byte).is_none() {
+                self.discard_one();
+                self.next = self.first;
+                continue;
+            }
+            self.append(*byte);
+            if self.held() >= self.wanted {
+                self.decide(&mut |found| sink(found, following.len()));
+            }
         }
-        while let Some(len) = self.due::<F>() {
-            let Some(bytes) = self.rest().get(..len) else {
-                break;
-            };
-            let frame = read(bytes);
-            self.pass(len, frame, sink);
-        }
-        self.drop_what_is_done();
     }
 
     /// Gives up the frame that is not complete and looks for shorter ones in it.
     pub(super) fn flush<F: Frame>(&mut self, sink: &mut impl FnMut(Found<F>)) {
-        while let Some(len) = self.due::<F>() {
-            match self.rest().get(..len).map(read) {
-                Some(frame) => self.pass(len, frame, sink),
-                None => self.discard_one(),
-            }
+        while self.held() > 0 {
+            self.discard_one();
+            self.decide(sink);
         }
-        self.drop_what_is_done();
     }
 
     /// Bytes may be missing here: the next frame follows on none.
     pub(super) fn mark_gap(&mut self) {
-        self.ends = 0;
+        self.follows_frame = Ring::new();
     }
 
-    fn rest(&self) -> &[u8] {
-        self.held.get(self.start..self.len).unwrap_or_default()
+    fn append(&mut self, byte: u8) {
+        let crc = crc8::next(self.crcs.get(self.next), byte);
+        self.bytes.set(self.next, byte);
+        self.next = self.next.wrapping_add(1);
+        self.crcs.set(self.next, crc);
     }
 
-    /// Discards bytes that begin no frame. Returns the length of the frame whose header is then the first byte, `None`
-    /// if no byte is left.
-    fn due<F: Frame>(&mut self) -> Option<usize> {
-        while let Some(header) = self.rest().first() {
-            if let Some(len) = F::len(*header) {
-                return Some(len);
+    /// Goes on until a frame is not complete or no byte is left.
+    fn decide<F: Frame>(&mut self, sink: &mut impl FnMut(Found<F>)) {
+        self.wanted = 0;
+        while self.held() > 0 {
+            let Some(shape) = F::shape(self.bytes.get(self.first)) else {
+                self.discard_one();
+                continue;
+            };
+            if self.held() < shape.len {
+                self.wanted = shape.len;
+                return;
             }
-            self.discard_one();
+            let end = self.first.wrapping_add(shape.len);
+            let is_right = shape.is_right(self.crcs.get(self.first), self.crcs.get(end));
+            if !is_right || !self.accept(shape.len, sink) {
+                let due = self.follows_frame.get(self.first);
+                self.counters.crc_errors = self.counters.crc_errors.wrapping_add(due.into());
+                self.discard_one();
+            }
         }
-        None
     }
 
-    /// Goes on behind a frame of `len` bytes, or behind its header alone if it is `None`.
-    fn pass<F>(&mut self, len: usize, frame: Option<F>, sink: &mut impl FnMut(Found<F>)) {
-        let contiguous = self.ends & 1 == 1;
-        let Some(frame) = frame else {
-            if contiguous {
-                self.counters.crc_errors = self.counters.crc_errors.wrapping_add(1);
-            }
-            self.discard_one();
-            return;
+    /// Goes on behind the frame of `len` bytes at the first byte, or behind its header alone if it is not contiguous.
+    /// Returns whether its content makes sense. It is out of line, as it is rarely reached on a line full of headers.
+    #[inline(never)]
+    fn accept<F: Frame>(&mut self, len: u8, sink: &mut impl FnMut(Found<F>)) -> bool {
+        let Some(frame) = self.read(len) else {
+            return false;
         };
+        let contiguous = self.follows_frame.get(self.first);
+        let end = self.first.wrapping_add(len);
         self.counters.good = self.counters.good.wrapping_add(1);
-        self.ends |= 1_u128.wrapping_shl(len as u32);
-        self.advance(if contiguous { len } else { 1 });
+        self.covered = self.covered.max(len);
+        for _ in 0..if contiguous { len } else { 1 } {
+            self.advance();
+        }
+        self.follows_frame.set(end, true);
         sink(Found { frame, contiguous });
+        true
+    }
+
+    /// Reads the first `len` bytes.
+    fn read<F: Frame>(&self, len: u8) -> Option<F> {
+        let mut bytes = [0; PLACES as usize];
+        for (byte, offset) in bytes.iter_mut().zip(0..len) {
+            *byte = self.bytes.get(self.first.wrapping_add(offset));
+        }
+        F::read(bytes.get(..usize::from(len))?)
     }
 
     fn discard_one(&mut self) {
-        if self.ends & 1 == 1 {
+        if self.follows_frame.get(self.first) {
             self.counters.resyncs = self.counters.resyncs.wrapping_add(1);
         }
-        // A later end means that a frame covers this byte.
-        if self.ends <= 1 {
+        if self.covered == 0 {
             self.counters.discarded_bytes = self.counters.discarded_bytes.wrapping_add(1);
         }
-        self.advance(1);
+        self.advance();
     }
 
-    fn advance(&mut self, count: usize) {
-        self.start = self.start.wrapping_add(count);
-        self.ends = self.ends.wrapping_shr(count as u32);
-    }
-
-    fn drop_what_is_done(&mut self) {
-        if self.start == 0 {
-            return;
-        }
-        if let Some(bytes) = self.held.get_mut(..self.len) {
-            bytes.copy_within(self.start.min(bytes.len()).., 0);
-        }
-        self.len = self.len.saturating_sub(self.start);
-        self.start = 0;
-    }
-}
-
-/// A frame with a correct CRC and sensible content.
-fn read<F: Frame>(bytes: &[u8]) -> Option<F> {
-    if crc8(bytes) == 0 {
-        F::read(bytes)
-    } else {
-        None
+    fn advance(&mut self) {
+        self.follows_frame.set(self.first, false);
+        self.first = self.first.wrapping_add(1);
+        self.covered = self.covered.saturating_sub(1);
     }
 }

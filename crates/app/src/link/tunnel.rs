@@ -3,11 +3,13 @@
 use super::{
     TUNNEL_HEADER,
     fields::{FrameReader, FrameWriter},
+    scanner::Shape,
 };
 use crate::domain::{CanFrame, StandardId};
 
 /// Length of a frame with a CAN frame inside.
 pub const TUNNEL_LEN: usize = 12;
+pub(super) static TUNNEL_SHAPE: Shape = Shape::new(TUNNEL_LEN);
 /// Identifiers of the tuning channel. No other frame goes through the link.
 const TUNING_IDS: core::ops::RangeInclusive<u16> = 0x7A0..=0x7AF;
 
