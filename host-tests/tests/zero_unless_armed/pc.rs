@@ -139,7 +139,7 @@ fn the_pilot_takes_over_and_gives_back_only_from_rest() {
     let phases = armed_then(&[drive.clone(), manual.clone()]);
     // The controller takes over with the next decision.
     assert!(driven_in_last(&phases) >= 190);
-    let phases = [&phases[..], &[drive.clone()]].concat();
+    let phases = [&phases[..], std::slice::from_ref(&drive)].concat();
     assert_eq!(driven_in_last(&phases), 0);
     let phases = [&phases[..], &[good_pc(10, true, rest()), drive]].concat();
     assert_eq!(driven_in_last(&phases), 200);
@@ -151,7 +151,7 @@ fn after_a_stop_of_everything_the_pilot_arms_and_the_pc_begins_at_rest() {
     let mut stop = good_pc(100, true, motion());
     stop.e_stop = true;
     let stopped = armed_then(&[drive.clone(), stop]);
-    let phases = [&stopped[..], &[drive.clone()]].concat();
+    let phases = [&stopped[..], std::slice::from_ref(&drive)].concat();
     assert_eq!(driven_in_last(&phases), 0, "not armed");
     let armed_again = [
         &stopped[..],
