@@ -16,12 +16,15 @@ pub(super) struct Messages {
     /// Counters of the link with their times in s.
     pub link: Vec<(f64, LinkCounters)>,
     pub can: Vec<CanMessage>,
-    /// Reports and commands of motors by topic: time in s and fields.
-    pub motors: BTreeMap<String, Vec<(f64, BTreeMap<String, f64>)>>,
+    /// Reports and commands of motors by topic, with their times in s.
+    pub motors: BTreeMap<String, Vec<(f64, Fields)>>,
     pub topics: BTreeSet<String>,
     /// The file ends in the middle.
     pub is_cut_off: bool,
 }
+
+/// The values of a message by name.
+pub(super) type Fields = BTreeMap<String, f64>;
 
 /// A frame of a bus.
 pub(super) struct CanMessage {

@@ -46,11 +46,7 @@ impl Keys {
     pub fn poll(&mut self, now: Duration) -> Result<bool> {
         while event::poll(Duration::ZERO)? {
             match event::read()? {
-                Event::Key(key) => {
-                    if self.key(key, now) {
-                        return Ok(true);
-                    }
-                }
+                Event::Key(key) if self.key(key, now) => return Ok(true),
                 Event::FocusLost => self.keyboard.release_all(),
                 _ => {}
             }

@@ -146,7 +146,7 @@ impl Session {
         self.commands += 1;
         if self.commands.is_multiple_of(QUESTION_EVERY) {
             let number = (self.commands / QUESTION_EVERY) as usize % self.questions.len();
-            let asked = self.questions.iter().nth(number).map(LiveQuestion::frame);
+            let asked = self.questions.get(number).map(LiveQuestion::frame);
             if let Some(frame) = asked {
                 robotctl::can_link::CanLink::send(&mut self.link, &frame)?;
             }
