@@ -64,20 +64,19 @@ impl Controls {
         self.keys.is_some()
     }
 
-    /// Returns a line on what the user can do.
-    pub fn help(&self) -> String {
-        match (&self.joystick, &self.keys) {
-            (Some(_), _) => format!(
-                "joystick: hold the dead-man button and push a stick{}; Esc ends",
-                self.last_event.map_or(String::new(), said)
-            ),
-            (None, Some(keys)) if keys.keyboard().reports_release() => {
-                "hold W S A D or arrows, Q E: drive and turn; Space stops, Esc ends".to_owned()
-            }
-            (None, _) => "hold W S A D or arrows, Q E: drive and turn (stops up to 0.2 s after you let go, 0.7 s after a \
-                          tap); Space stops, Esc ends"
-                .to_owned(),
-        }
+    /// Returns lines on what the user can do.
+    pub fn help(&self) -> Vec<String> {
+        let keys = "keys      hold W S A D or arrows to drive and turn, Q E for both; Space stops, Esc ends";
+        let lines: &[&str] = match (&self.joystick, &self.keys) {
+            (Some(_), _) => &["joystick  hold the dead-man button and push a stick; Esc ends"],
+            (None, Some(taken)) if taken.keyboard().reports_release() => &[keys],
+            (None, _) => &[
+                keys,
+                "          stops up to 0.2 s after you let go, 0.7 s after a tap",
+            ],
+        };
+        let lines = lines.iter().map(|line| (*line).to_owned());
+        lines.chain(self.last_event.map(said)).collect()
     }
 }
 
@@ -85,8 +84,8 @@ fn said(event: JoystickEvent) -> String {
     match event {
         JoystickEvent::Button { number, is_down } => {
             let word = if is_down { "pressed" } else { "let go" };
-            format!(" (button {number} {word})")
+            format!("          button {number} {word}")
         }
-        JoystickEvent::Axis { number, value } => format!(" (axis {number} at {value:+.2})"),
+        JoystickEvent::Axis { number, value } => format!("          axis {number} at {value:+.2}"),
     }
 }

@@ -207,7 +207,7 @@ impl Session {
         } else {
             "disarmed"
         };
-        vec![
+        let mut lines = vec![
             String::new(),
             format!("robot     mode {mode}, {armed}"),
             format!(
@@ -227,7 +227,8 @@ impl Session {
                 self.rate_hz, self.commands, traffic.counters.crc_errors
             ),
             String::new(),
-            self.controls.help(),
-        ]
+        ];
+        lines.extend(self.controls.help());
+        lines
     }
 }
