@@ -48,7 +48,8 @@ struct Args {
     /// The PC link (4-pin UART2) on a pseudo-terminal, as a USB-to-serial adapter. Likewise.
     #[arg(long, value_enum, value_name = "pty")]
     link: Option<LinkConnection>,
-    /// Both buses behind a Waveshare CAN-TO-ETH: CAN1 at PORT, CAN2 at the next one; 0: any free ports. Likewise.
+    /// Both buses behind a Waveshare CAN-TO-ETH: CAN1 at PORT, CAN2 at the next one; 0: any free ports. As with --can1,
+    /// it implies --realtime.
     #[arg(long, value_name = "tcp:PORT|udp:PORT", conflicts_with_all = ["can1", "can2"])]
     gateway: Option<GatewayAddress>,
     /// Start as `probe-rs run` does by default, with reset and hard fault caught; the robot must do all it does without.
@@ -90,8 +91,8 @@ enum LinkConnection {
 
 const EXAMPLES: &str = "Examples:
   cargo xtask sim scenarios/remote-loss.toml
-  cargo xtask sim --can1 pty --seconds 3600      # then: robotctl --can /dev/pts/N status
-  cargo xtask sim --link pty --seconds 3600      # then: robotctl --link /dev/pts/N status
+  cargo xtask sim --can1 pty --seconds 3600            # then: robotctl --can /dev/pts/N status
+  cargo xtask sim --link pty --seconds 3600            # then: robotctl --link /dev/pts/N status
   cargo xtask sim --gateway tcp:20001 --seconds 3600   # then: robotctl --can tcp:127.0.0.1:20001 status";
 
 const DRIVE: &str = include_str!("../../../../scenarios/drive.toml");

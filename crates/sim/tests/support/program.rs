@@ -26,6 +26,9 @@ const START: Ps = 200 * MS;
 /// Pause of the board in each simulated millisecond while the program works. The board runs faster than real time, and the
 /// program must end long before the run does.
 const LET_THE_PROGRAM_WORK: Duration = Duration::from_millis(1);
+/// From here on the computer seems to be busy with other things, and the board waits longer.
+const SLOW: Ps = START + 2_000 * MS;
+const LET_A_BUSY_COMPUTER_WORK: Duration = Duration::from_millis(10);
 /// The line by which a program says that it has opened its device.
 const READY: &str = "ready";
 
@@ -99,7 +102,11 @@ impl Observer for Program {
         if let Some((child, _)) = &mut self.running
             && child.try_wait().is_ok_and(|ended| ended.is_none())
         {
-            thread::sleep(LET_THE_PROGRAM_WORK);
+            thread::sleep(if at < SLOW {
+                LET_THE_PROGRAM_WORK
+            } else {
+                LET_A_BUSY_COMPUTER_WORK
+            });
         }
     }
 
