@@ -3,6 +3,7 @@
 mod device;
 mod gateway;
 mod lawicel;
+mod named;
 mod slcan;
 #[cfg(target_os = "linux")]
 mod socketcan;

@@ -3,7 +3,10 @@
 use std::{fmt, str::FromStr};
 
 use super::{
-    CanLink, CanLinkError, GatewayAddress, GatewayAddressError, gateway::Gateway, slcan::Slcan,
+    CanLink, CanLinkError, GatewayAddress, GatewayAddressError,
+    gateway::Gateway,
+    named::{Named, named},
+    slcan::Slcan,
 };
 
 /// The device through which a CAN bus is reached.
@@ -54,6 +57,12 @@ impl fmt::Display for CanDevice {
 impl CanDevice {
     /// Opens the bus to send and receive.
     pub fn open(&self) -> Result<Box<dyn CanLink>, CanLinkError> {
+        let device = self.to_string();
+        let link = self.open_link().map_err(|error| named(&device, error))?;
+        Ok(Box::new(Named { device, link }))
+    }
+
+    fn open_link(&self) -> Result<Box<dyn CanLink>, CanLinkError> {
         match self {
             Self::Slcan(port) => Ok(Box::new(Slcan::open(port)?)),
             Self::Gateway(address) => Ok(Box::new(Gateway::open(address)?)),

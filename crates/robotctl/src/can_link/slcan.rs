@@ -38,6 +38,10 @@ pub(super) struct Slcan {
     port: Box<dyn SerialPort>,
     parser: LineParser,
     received: VecDeque<Received>,
+    name: String,
+    bytes: u64,
+    /// The adapter has said something that an slcan adapter says.
+    is_understood: bool,
 }
 
 impl Slcan {
@@ -51,6 +55,9 @@ impl Slcan {
             port,
             parser: LineParser::default(),
             received: VecDeque::new(),
+            name: name.to_owned(),
+            bytes: 0,
+            is_understood: false,
         };
         // The empty line ends a line that another program may have left unfinished.
         link.port.write_all(b"\r")?;
@@ -98,8 +105,11 @@ impl Slcan {
         match self.port.read(&mut bytes) {
             Ok(count) => {
                 let said = bytes[..count].iter();
+                let before = self.received.len();
                 self.received
                     .extend(said.filter_map(|byte| self.parser.feed(*byte)));
+                self.bytes += count as u64;
+                self.is_understood |= self.received.len() > before;
                 Ok(())
             }
             Err(e) if matches!(e.kind(), ErrorKind::TimedOut | ErrorKind::Interrupted) => Ok(()),
@@ -123,11 +133,48 @@ impl CanLink for Slcan {
             }
         }
     }
+
+    fn why_silent(&self) -> String {
+        why_silent(&self.name, self.bytes, self.is_understood)
+    }
+}
+
+/// Says what may be wrong if the robot does not answer, given the bytes that came from the port.
+fn why_silent(name: &str, bytes: u64, is_understood: bool) -> String {
+    if bytes == 0 {
+        format!(
+            "{name} says nothing at all: is it an slcan adapter, and is the bus connected, at 1 Mbit/s and terminated, \
+             and the robot on?"
+        )
+    } else if is_understood {
+        format!(
+            "the adapter at {name} works: is the robot on, is this one of its two CAN buses at 1 Mbit/s, and is the bus \
+             terminated?"
+        )
+    } else {
+        format!(
+            "{bytes} bytes came from {name}, but none as an slcan adapter says them: is it the PC link (--link {name}), \
+             or another device?"
+        )
+    }
 }
 
 impl Drop for Slcan {
     fn drop(&mut self) {
         // The adapter may be gone; then there is nothing to close.
         let _ = self.port.write_all(CLOSE.as_bytes());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::why_silent;
+
+    /// A user may name the port of the PC link.
+    #[test]
+    fn silence_is_explained_by_what_the_port_said() {
+        assert!(why_silent("COM3", 0, false).contains("nothing at all"));
+        assert!(why_silent("COM3", 940, false).contains("--link COM3"));
+        assert!(why_silent("COM3", 12, true).contains("works"));
     }
 }
