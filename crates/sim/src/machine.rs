@@ -23,6 +23,7 @@ pub mod diagnostics;
 pub mod faults;
 pub mod flash;
 mod log;
+mod memory;
 mod power;
 mod probe;
 mod rtt;

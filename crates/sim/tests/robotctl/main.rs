@@ -3,6 +3,7 @@
 #[path = "../support/mod.rs"]
 mod support;
 
+mod black_box;
 mod every_way;
 mod link;
 mod mounting;

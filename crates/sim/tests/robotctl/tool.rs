@@ -39,6 +39,8 @@ enum Wanted {
 /// A user's single action with the tool.
 pub struct Tool<T> {
     wanted: Wanted,
+    /// It begins at this time.
+    start: Ps,
     work: Option<Work<T>>,
     transport: Option<Transport>,
     running: Option<thread::JoinHandle<anyhow::Result<T>>>,
@@ -65,6 +67,7 @@ impl<T: Send + 'static> Tool<T> {
     ) -> Self {
         Self {
             wanted,
+            start: START,
             work: Some(Box::new(work)),
             transport: None,
             running: None,
@@ -79,6 +82,11 @@ impl<T: Send + 'static> Tool<T> {
         }
     }
 
+    /// Lets it begin at this time.
+    pub fn starting_at(self, start: Ps) -> Self {
+        Self { start, ..self }
+    }
+
     /// Result of the work, which must have ended before the run.
     pub fn result(self) -> anyhow::Result<T> {
         let running = self.running.expect("the run was long enough to start it");
@@ -89,7 +97,7 @@ impl<T: Send + 'static> Tool<T> {
 
 impl<T: Send + 'static> Observer for Tool<T> {
     fn sample(&mut self, at: Ps, _: &SignalTable, _: &Values) {
-        if let Some(transport) = self.transport.take_if(|_| at >= START) {
+        if let Some(transport) = self.transport.take_if(|_| at >= self.start) {
             let work = self.work.take().expect("there is one device");
             self.running = Some(thread::spawn(move || work(&transport)));
         }
