@@ -1,4 +1,4 @@
-//! The PC's tools for the robot: they calibrate its sensors, and tune and watch it over CAN.
+//! The PC's tools for the robot: they calibrate its sensors, and tune, watch, record and drive it over CAN or the PC link.
 //!
 //! | place | does |
 //! |---|---|
