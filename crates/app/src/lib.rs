@@ -35,8 +35,9 @@
 //!   `bmi088::BUFFER_RESET` if `take_buffer_reset` says so. Every 20 ms they write `ist8310::START_SINGLE_SHOT`, wait
 //!   `ist8310::MEASUREMENT_US`, read `ist8310::READ_LEN` bytes from `ist8310::READ_FROM` and pass them to
 //!   `sensing::MagPipeline::process`.
-//! - The status task calls `sensing::BatteryMonitor::feed` at 200 Hz. At 100 Hz it selects an
-//!   `indication::Indication` by the diagnostics and plays it with `indication::IndicationPlayer::step`.
+//! - The status task calls `sensing::BatteryMonitor::feed` at 200 Hz, and every other time
+//!   `sensing::McuThermometer::feed`. At 100 Hz it selects an `indication::Indication` by the diagnostics and plays it
+//!   with `indication::IndicationPlayer::step`.
 //! - The logic task calls `logic::LogicStage::step` at 100 Hz.
 //! - At boot `params::ParamService::boot` returns the settings. The params task calls `ParamService::step` every
 //!   millisecond with what the tick grants, and gets the next request.

@@ -79,6 +79,8 @@ const ENTRIES: &[Entry] = &[
     entry("task-asleep-logic", Place::Task("logic"), Failure::Asleep, "the logic task is never run, all others are"),
     entry("task-asleep-status", Place::Task("status"), Failure::Asleep, "the status task is never run, all others are"),
     entry("task-asleep-params", Place::Task("params"), Failure::Asleep, "the params task is never run, all others are"),
+    entry("task-asleep-link-receive", Place::Task("link_receive"), Failure::Asleep, "the link receive task is never run, all others are"),
+    entry("task-asleep-link-send", Place::Task("link_send"), Failure::Asleep, "the link send task is never run, all others are"),
     board("power-cut", Kind::PowerCut, "the board and its sensors have no power; motors, radio and PC have; then it boots"),
     board("flash-stuck-bits", Kind::FlashStuckBits, "one bit in every word of the parameter sectors is stuck at 1"),
     board("flash-erase-fails", Kind::FlashEraseFails, "erasing a parameter sector takes its time and does nothing"),

@@ -521,6 +521,8 @@ fn image() -> Vec<Row> {
         "task-asleep-logic",
         "task-asleep-status",
         "task-asleep-params",
+        "task-asleep-link-receive",
+        "task-asleep-link-send",
     ] {
         rows.push(global(fault, 80.0, late()).resetting());
     }
