@@ -108,6 +108,8 @@ fn late_names(late: LateTasks) -> Vec<&'static str> {
         (late.logic, "logic"),
         (late.status, "status"),
         (late.params, "params"),
+        (late.link_receive, "link receive"),
+        (late.link_send, "link send"),
     ];
     let late = tasks.into_iter().filter(|(is_late, _)| *is_late);
     late.map(|(_, name)| name).collect()
