@@ -14,9 +14,10 @@ pub enum Driver {
     Pc,
 }
 
-/// Speed that the PC asks of both wheels, and the angle that it asks of every joint, which takes some torque to hold.
+/// Speed that the PC asks of both wheels, and the angle that it asks of every joint, to which friction does not hold a leg
+/// that is let go.
 pub const PC_WHEEL_RPS: f64 = 8.0;
-pub const PC_JOINT_RAD: f64 = 0.2;
+pub const PC_JOINT_RAD: f64 = 0.5;
 pub const PC_WHEEL_KD: f64 = 1.0;
 pub const PC_JOINT_KP: f64 = 20.0;
 pub const PC_JOINT_KD: f64 = 1.0;

@@ -88,6 +88,8 @@ pub struct Row {
     pub lasts: Ps,
     /// During the fault every torque is zero or what the PC asks for.
     pub keeps_law: bool,
+    /// Largest torque of a joint while a PC drives.
+    pub most_torque_nm: f64,
     pub driving: Armed,
     pub idle: Armed,
     pub disarmed: Disarmed,
@@ -98,6 +100,9 @@ pub struct Row {
     /// Parts of the board errors that the fault causes.
     pub board_errors: &'static [&'static str],
 }
+
+/// The setting of 3 N·m, and what a leg may have moved since its report.
+const MOST_TORQUE_NM: f64 = 3.3;
 
 pub fn flags(must: &[&'static str], may: &[&'static str]) -> Flags {
     Flags {
@@ -119,6 +124,7 @@ pub fn row(fault: &'static str, wheels: Group, joints: Group, flags: Flags, afte
         driver: Driver::Pilot,
         lasts: 2_000 * MS,
         keeps_law: false,
+        most_torque_nm: MOST_TORQUE_NM,
         driving: armed.clone(),
         idle: armed,
         disarmed: Disarmed {

@@ -11,7 +11,6 @@ use crate::{
 /// The span before an instant that shows the state at that instant.
 const STATE_WINDOW: Ps = 200 * MS;
 const MOST_CURRENT_MA: f64 = 8_000.0;
-const MOST_TORQUE_NM: f64 = 3.3;
 
 /// Differences from the expectation, as text.
 pub fn violations(row: &Row, phase: Phase, seen: &Observed) -> Vec<String> {
@@ -38,8 +37,7 @@ pub fn violations(row: &Row, phase: Phase, seen: &Observed) -> Vec<String> {
     all
 }
 
-/// A command beyond the settings' limits: 8 A for a wheel; for a joint 3 N·m and what the leg may have moved since its
-/// report.
+/// A command beyond the settings' limits: 8 A for a wheel; for a joint what its row says.
 fn beyond_limits(row: &Row, seen: &Observed) -> Option<String> {
     let most = |wires: &[Wire]| {
         let values = wires.iter().flat_map(|wire| &wire.changes);
@@ -50,7 +48,7 @@ fn beyond_limits(row: &Row, seen: &Observed) -> Option<String> {
         return Some(format!("a wheel was told {current_ma} mA"));
     }
     let shows_torque = row.driver == Driver::Pc;
-    (shows_torque && torque_nm > MOST_TORQUE_NM)
+    (shows_torque && torque_nm > row.most_torque_nm)
         .then(|| format!("a joint was told {torque_nm:.2} N·m"))
 }
 
