@@ -94,7 +94,8 @@ pub fn id(group: u8, make: Make) -> Id {
 /// Version of the group's record.
 fn version(group: u8) -> u8 {
     match group {
-        3 | 4 => 2,
+        3 => 2,
+        4 => 3,
         _ => 1,
     }
 }
