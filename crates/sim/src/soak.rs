@@ -4,6 +4,7 @@ mod flash_at_rest;
 mod initial_flash;
 mod invariants;
 mod missing_signal;
+mod pc_program;
 mod plan;
 mod reproduction;
 mod rng;

@@ -5,10 +5,11 @@ use std::{cmp::Reverse, collections::BinaryHeap};
 use robot_plant::{
     time::{MS, Ps, SECOND},
     wire::CanFrame,
-    world::{CanBusId, RemoteInput, World},
+    world::{CanBusId, PcInput, RemoteInput, World},
 };
 
 use super::{
+    pc_program,
     rng::Rng,
     tuning_frames::{self, READ, WRITE},
 };
@@ -31,6 +32,7 @@ enum Actor {
     Chip,
     Pc,
     Tuner,
+    Driver,
 }
 
 /// Events in order of time. They are drawn as they are needed.
@@ -53,6 +55,7 @@ impl Plan {
             (20 * SECOND, Actor::Chip),
             (SECOND, Actor::Pc),
             (SECOND, Actor::Tuner),
+            (SECOND / 2, Actor::Driver),
         ];
         Self {
             rng: Rng::new(seed),
@@ -75,6 +78,7 @@ impl Plan {
                 Actor::World => self.world(at),
                 Actor::Chip => self.chip(at),
                 Actor::Pc => self.pc(at),
+                Actor::Driver => self.driver(at),
                 Actor::Tuner => {
                     self.tune(at);
                     at + self.rng.time(500.0, 10_000.0)
@@ -236,7 +240,9 @@ impl Plan {
         let (vx, wz) = (axis(), axis());
         // The dead-man stick of bring-up.
         let left_x = self.rng.chance(0.5);
-        let mode = self.rng.chance(0.1).then(|| (self.rng.bits() % 3) as u8);
+        // Mode PC as often as both others.
+        let mode = self.rng.chance(0.2).then(|| (self.rng.bits() % 4) as u8);
+        let mode = mode.map(|mode| if mode == 3 { 1 } else { mode });
         RemoteInput {
             vx: Some(vx),
             wz: Some(wz),
@@ -287,6 +293,32 @@ impl Plan {
         let frame = self.request();
         self.then(at, Event::Can(bus, frame));
         at + self.rng.time(5.0, 2_000.0)
+    }
+
+    /// A program on the serial link rests, asks for some motions, and may end or seem frozen. Returns when the next turn
+    /// begins.
+    fn driver(&mut self, start: Ps) -> Ps {
+        let mut at = start;
+        if self.rng.chance(0.8) {
+            let rest = pc_program::rest(&mut self.rng);
+            self.then(at, Event::Pc(rest));
+            at += self.rng.time(20.0, 1_000.0);
+        }
+        let end = at + self.rng.time(500.0, 8_000.0);
+        while at < end {
+            let motion = pc_program::motion(&mut self.rng);
+            self.then(at, Event::Pc(motion));
+            at += self.rng.time(5.0, 2_000.0);
+        }
+        if self.rng.chance(0.3) {
+            let off = PcInput {
+                on: Some(false),
+                ..PcInput::default()
+            };
+            self.then(at, Event::Pc(off));
+            at += self.rng.time(20.0, 2_000.0);
+        }
+        at
     }
 
     fn request(&mut self) -> CanFrame {
@@ -381,6 +413,7 @@ mod tests {
         assert!(count(|d| matches!(d, Event::Remote(r) if r.enable == Some(true))) > 20);
         assert!(count(|d| matches!(d, Event::StartFault(_))) > 30);
         assert!(count(|d| matches!(d, Event::Can(..))) > 300);
+        assert!(count(|d| matches!(d, Event::Pc(_))) > 100);
     }
 
     #[test]
