@@ -18,6 +18,8 @@
 //! | [`Exchange::diagnostics`] | control task | logic, status, black box | 100 Hz |
 //! | [`Exchange::black_box`] | black box task | control | when it changes |
 //! | [`RADIO_LINE`] | radio UART interrupt | sbus, control | each radio frame |
+//! | [`REPORT_PULSE`] | control task | black box | 100 Hz |
+//! | [`TICK_PULSE`] | control task | link receive task | 1 kHz |
 //! | [`LINK_LINE`] | link UART interrupt, link receive task | link receive task | each frame of the PC |
 //! | `drivers/can/receive.rs`, queues | CAN receive interrupts | control | each CAN frame |
 //! | `deadlines.rs`, check-ins | every task below control | control | at least 100 Hz |
@@ -25,6 +27,8 @@
 //! | `black_box_memory.rs` | black box task | control | 100 Hz |
 //! | `debugger_view.rs` | control task | a debugger | 1 kHz |
 
+use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
+use embassy_sync::signal::Signal;
 use robot_app::diagnostics::{DiagnosticsSnapshot, Telemetry};
 use robot_app::domain::BlackBoxStatus;
 use robot_app::domain::{FlashRequest, ParamStatus};
@@ -105,6 +109,13 @@ pub static RADIO_LINE: UartLine = UartLine::new();
 
 /// Events on the line of the PC link.
 pub static LINK_LINE: UartLine = UartLine::new();
+
+/// Given when the control task has published its diagnostics.
+pub static REPORT_PULSE: Signal<CriticalSectionRawMutex, ()> = Signal::new();
+
+/// Given at the end of each control tick. A task that runs at 1 kHz and waits for it has no timer of its own, whose
+/// handling with interrupts off would delay the release of the tick.
+pub static TICK_PULSE: Signal<CriticalSectionRawMutex, ()> = Signal::new();
 
 /// The one writing end of each snapshot.
 pub struct Writers {

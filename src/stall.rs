@@ -6,7 +6,7 @@ pub mod clock_repair;
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
-use embassy_time::{Duration, Instant, Ticker};
+use embassy_time::{Duration, Ticker};
 
 use crate::deadlines;
 
@@ -48,11 +48,6 @@ impl StallWatch {
         self.seen = stalls;
         Some(LAST_STALL_US.load(Ordering::Relaxed))
     }
-}
-
-/// The end of the period that begins at `due`, or now if it is over, as after a stall.
-pub fn next_due(due: Instant, period: Duration) -> Instant {
-    due.saturating_add(period).max(Instant::now())
 }
 
 /// A ticker that skips the ticks lost in a stall instead of catching up.

@@ -1,17 +1,13 @@
 //! The black box task, 100 Hz: records the report of the control task, and keeps it around every stop that nobody asked for.
 //! No task waits for it, so it has no deadline.
 
-use embassy_time::Duration;
 use robot_app::black_box::BlackBox;
 use robot_app::domain::{BankState, BlackBoxStatus, EventKind};
 use robot_snapshot::Writer;
 
 use crate::black_box_memory;
 use crate::crash_record::LastRun;
-use crate::exchange::Exchange;
-use crate::stall::SteadyTicker;
-
-const PERIOD: Duration = Duration::from_hz(100);
+use crate::exchange::{Exchange, REPORT_PULSE};
 
 #[embassy_executor::task]
 pub async fn run(
@@ -19,7 +15,6 @@ pub async fn run(
     exchange: &'static Exchange,
     mut output: Writer<'static, BlackBoxStatus>,
 ) -> ! {
-    let mut ticker = SteadyTicker::every(PERIOD);
     let LastRun {
         reset_cause,
         crash_cause,
@@ -33,7 +28,7 @@ pub async fn run(
             shown = status;
             output.publish(&status);
         }
-        ticker.next().await;
+        REPORT_PULSE.wait().await;
         let wheels = exchange.config.latest().config.wheel_odom;
         black_box.step(&exchange.diagnostics.latest(), &wheels);
     }

@@ -21,7 +21,7 @@ use crate::drivers::debug_probe;
 use crate::drivers::watchdog::Watchdog;
 use crate::exchange::{
     ConfigUpdate, ControlTunnel, ControlWriters, Exchange, FlashPermission, ImuReport, MagReport,
-    ParamsReport, RADIO_LINE,
+    ParamsReport, RADIO_LINE, REPORT_PULSE, TICK_PULSE,
 };
 use crate::stall::{StallWatch, SteadyTicker};
 
@@ -116,6 +116,7 @@ impl Output {
         }
         if is_diagnostics_tick(outputs.diagnostics) {
             writers.diagnostics.publish(outputs.diagnostics);
+            REPORT_PULSE.signal(());
         }
     }
 }
@@ -259,6 +260,7 @@ pub fn robotapp_control_tick(context: &mut ControlContext) {
     tunnel.reply(outputs.link_frames);
 
     output.publish(&outputs);
+    TICK_PULSE.signal(());
     if is_diagnostics_tick(outputs.diagnostics) {
         inputs.follow_slow(health);
         health.radio_line = RADIO_LINE.health();

@@ -1,20 +1,19 @@
 //! The receiving half of the PC link: commands of the PC, and requests for the tuning channel.
 //!
-//! The task takes bytes every millisecond, and once more in each when the line falls idle. So a command waits for no
-//! more than a task switch, and no line, whatever it carries, runs the task more than 2,000 times a second.
+//! The task takes bytes after every control tick, and once more in between when the line falls idle. So a command waits for
+//! no more than a task switch, and no line, whatever it carries, runs the task more than 2,000 times a second.
 
-use embassy_time::{Duration, Instant, Timer, with_deadline};
+use embassy_futures::select::{Either, select};
+use embassy_time::Instant;
 use robot_app::domain::{LinkHealth, PcCommand};
 use robot_app::link::{Received, RobotReceiver};
 use robot_snapshot::Writer;
 
 use crate::board::serial::LinkReceiver;
 use crate::deadlines::Watched;
-use crate::exchange::{Exchange, Tunnel, TunnelRequests};
-use crate::stall::next_due;
+use crate::exchange::{Exchange, TICK_PULSE, Tunnel, TunnelRequests};
 
-const PERIOD: Duration = Duration::from_hz(1_000);
-/// Periods between two reports about the link, 10 ms.
+/// Ticks between two reports about the link, 10 ms.
 const HEALTH_DIVIDER: u32 = 10;
 
 /// Where this task writes to.
@@ -31,16 +30,14 @@ pub async fn run(
     mut output: LinkWriters,
 ) -> ! {
     let mut receiver = RobotReceiver::new();
-    let mut due = Instant::now();
     let mut round: u32 = 0;
     loop {
-        if with_deadline(due, uart.wait()).await.is_ok() {
+        if let Either::First(()) = select(uart.wait(), TICK_PULSE.wait()).await {
             receive(&mut uart, &mut receiver, &mut output);
-            Timer::at(due).await;
+            TICK_PULSE.wait().await;
         }
         receive(&mut uart, &mut receiver, &mut output);
         Watched::LinkReceive.check_in();
-        due = next_due(due, PERIOD);
         round = round.wrapping_add(1);
         if round.is_multiple_of(HEALTH_DIVIDER) {
             output.health.publish(&LinkHealth {
