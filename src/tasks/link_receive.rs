@@ -1,7 +1,8 @@
 //! The receiving half of the PC link: commands of the PC, and requests for the tuning channel.
 //!
 //! The task takes bytes after every control tick, and once more in between when the line falls idle. So a command waits for
-//! no more than a task switch, and no line, whatever it carries, runs the task more than 2,000 times a second.
+//! a task switch, or for the next tick at most, and no line, whatever it carries, runs the task more than 2,000 times a
+//! second.
 
 use embassy_futures::select::{Either, select};
 use embassy_time::Instant;
@@ -54,7 +55,7 @@ fn receive(uart: &mut LinkReceiver, receiver: &mut RobotReceiver, output: &mut L
     let ts_us = Instant::now().as_micros();
     uart.take(|burst| {
         if burst.errors > 0 {
-            receiver.count_line_errors(burst.errors);
+            return receiver.feed_damaged(burst.bytes, burst.errors, ts_us);
         }
         receiver.feed(burst.bytes, ts_us, |received| match received {
             Received::Command(command) => pc.publish(&command),

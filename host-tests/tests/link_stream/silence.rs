@@ -55,9 +55,10 @@ fn after_a_cut_and_silence_the_next_frames_need_no_further_bytes() {
     }
 }
 
-/// A false header hides a request only until the line has been silent: a call without bytes is enough.
+/// A false header hides a request only until the line has been silent: a call without bytes is enough to find it. It is
+/// used when it is repeated.
 #[test]
-fn a_request_behind_a_false_header_arrives_after_silence() {
+fn a_request_behind_a_false_header_arrives_when_repeated() {
     let mut random = Random::new(3);
     for garbage in [&[0xFE][..], &[0xFE, 0x00, 0x00], &[0xFD], &[0x12, 0xFE]] {
         let mut receiver = RobotReceiver::new();
@@ -65,7 +66,9 @@ fn a_request_behind_a_false_header_arrives_after_silence() {
         let bytes = [garbage, &request].concat();
         let before = received(&mut receiver, &bytes, 1_000_000);
         let after = received(&mut receiver, &[], 1_020_000);
-        assert_eq!(before[1] + after[1], 1, "{garbage:?}");
+        assert_eq!((before[1], after[1]), (0, 0), "{garbage:?}");
+        assert_eq!(receiver.health(1_020_000).unconfirmed, 1, "{garbage:?}");
+        assert_eq!(received(&mut receiver, &request, 1_250_000)[1], 1);
     }
 }
 
@@ -93,9 +96,8 @@ fn after_a_line_error_one_frame_is_not_used() {
         received(&mut receiver, &command(1.0), 1_000_000);
         let second = command(2.0);
         let early = received(&mut receiver, &second[..at], 1_010_000)[0];
-        receiver.count_line_errors(2);
-        let late = received(&mut receiver, &second[at..], 1_011_000)[0];
-        assert_eq!((early, late), (usize::from(at == 38), 0), "{at}");
+        assert_eq!(early, usize::from(at == 38), "{at}");
+        receiver.feed_damaged(&second[at..], 2, 1_011_000);
         let expected = usize::from(at != 38);
         assert_eq!(
             received(&mut receiver, &command(3.0), 1_020_000)[0],
@@ -103,6 +105,24 @@ fn after_a_line_error_one_frame_is_not_used() {
         );
         assert_eq!(received(&mut receiver, &command(4.0), 1_030_000)[0], 1);
         assert_eq!(receiver.health(1_030_000).line_errors, 2);
+    }
+}
+
+/// The flagged byte may lie in any of the frames that are among the damaged bytes, in whole or in part.
+#[test]
+fn no_frame_among_damaged_bytes_is_used() {
+    for cut in 0..=38 {
+        let mut receiver = RobotReceiver::new();
+        let [first, second, third] = [1.0, 2.0, 3.0].map(command);
+        received(&mut receiver, &first, 1_000_000);
+        let damaged = [&first[..], &second, &third[..cut]].concat();
+        receiver.feed_damaged(&damaged, 1, 1_002_000);
+        let rest = received(&mut receiver, &third[cut..], 1_003_000)[0];
+        // A third frame that is not among them follows directly on the second one.
+        assert_eq!(rest, usize::from(cut == 0), "{cut}");
+        assert_eq!(received(&mut receiver, &command(4.0), 1_004_000)[0], 1);
+        let unconfirmed = 2 + u32::from(cut != 0);
+        assert_eq!(receiver.health(1_004_000).unconfirmed, unconfirmed);
     }
 }
 

@@ -1,9 +1,6 @@
-//! What an observer at a high rate gets of a tick: the PC link and the black box.
+//! What the PC link gets of a tick.
 
-use crate::{
-    domain::{DriveMode, JointState},
-    safety::{ArmingState, SafetyFlags},
-};
+use crate::safety::{ArmingState, SafetyFlags};
 
 /// Period of telemetry in ticks.
 pub const TELEMETRY_PERIOD_TICKS: u32 = 2;
@@ -24,36 +21,12 @@ pub struct Telemetry {
     pub wheel_counts: [i64; 2],
     /// Rotor speed, in the motor's own direction.
     pub wheel_rpm: [i16; 2],
-    /// Measured current of each wheel, in the motor's own direction.
-    pub wheel_ma: [f32; 2],
-    /// Current sent to each wheel in this tick, in the motor's own direction.
-    pub sent_wheel_ma: [f32; 2],
     /// Angle of each joint in rad.
     pub joint_rad: [f32; 4],
     /// Speed of each joint in rad/s.
     pub joint_rps: [f32; 4],
-    /// Torque that each joint reports in N·m.
-    pub joint_nm: [f32; 4],
-    /// Target angle of the command that each joint follows in rad.
-    pub sent_joint_rad: [f32; 4],
-    /// Stiffness of that command in N·m/rad.
-    pub sent_joint_kp: [f32; 4],
-    /// Damping of that command in N·m·s/rad.
-    pub sent_joint_kd: [f32; 4],
     /// Safety flags.
     pub flags: SafetyFlags,
-    /// Age of the PC's command in µs; `u32::MAX` before the first.
-    pub pc_age_us: u32,
     /// Whether the robot is armed.
     pub arming: ArmingState,
-    /// Position of the mode switch.
-    pub mode: DriveMode,
-    /// The estimate can be trusted.
-    pub estimate_valid: bool,
-    /// The PC's command is in force.
-    pub pc_steers: bool,
-    /// State of each joint.
-    pub joint_states: [JointState; 4],
 }
-
-const _: () = assert!(size_of::<Telemetry>() <= 208);

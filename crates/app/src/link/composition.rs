@@ -143,7 +143,8 @@ impl Observation<'_> {
     }
 }
 
-/// Angle of a wheel within ±π. Its turns are taken off in integers, so it is as exact after a day as at once.
+/// Angle of a wheel within ±π. Its turns are taken off in integers, so it stays exact to the rounding of the
+/// gear ratio: some hundredths of a radian after 100,000 turns.
 fn wheel_angle(counts: i64, gear_ratio: f32) -> f32 {
     // Exact: a ratio from 1 on is a multiple of 2⁻²³, and the factor is 2²³.
     let turn = (gear_ratio * COUNTS_PER_ROTOR_TURN * COUNT_PARTS as f32) as i64;

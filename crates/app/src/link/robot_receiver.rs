@@ -25,8 +25,8 @@ pub enum Received {
 
 /// Decodes what the PC sends.
 ///
-/// A command that follows on damaged bytes is counted as good, but not given out: 8 bits of CRC alone would let about
-/// one false command a second through on a line full of noise. The next command in an unbroken row is given out again.
+/// A frame that follows on damaged bytes is counted as good, but not used: 8 bits of CRC alone would let about one false
+/// command a second through on a line full of noise. The next frame in an unbroken row is used again.
 ///
 /// ```
 /// use robot_app::link::{Downlink, Received, RobotReceiver};
@@ -48,6 +48,14 @@ pub struct RobotReceiver {
     health: LinkHealth,
     newest: PcCommand,
     last_byte_us: u64,
+}
+
+/// Which frames are used.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Trust {
+    /// Those in an unbroken row.
+    InARow,
+    None,
 }
 
 /// A frame as it is on the line.
@@ -93,7 +101,22 @@ impl RobotReceiver {
 
     /// Takes the bytes that arrived up to `ts_us`, the time of the last one, in chunks of any length. `sink` gets what
     /// each frame brings. After 20 ms of silence it wants a call without bytes, which gives up a frame that was cut.
-    pub fn feed(&mut self, bytes: &[u8], ts_us: u64, mut sink: impl FnMut(Received)) {
+    pub fn feed(&mut self, bytes: &[u8], ts_us: u64, sink: impl FnMut(Received)) {
+        self.scan(bytes, ts_us, Trust::InARow, sink);
+    }
+
+    /// Takes bytes of which the UART flagged or lost some, with `errors` errors. Nothing that is even in part among them
+    /// is used, nor is the first frame after them, unless it follows directly on one.
+    pub fn feed_damaged(&mut self, bytes: &[u8], errors: u32, ts_us: u64) {
+        self.health.line_errors = self.health.line_errors.wrapping_add(errors);
+        self.scanner.mark_gap();
+        self.scan(bytes, ts_us, Trust::None, |_| ());
+        if self.scanner.held() > 0 {
+            self.scanner.mark_gap();
+        }
+    }
+
+    fn scan(&mut self, bytes: &[u8], ts_us: u64, trust: Trust, mut sink: impl FnMut(Received)) {
         let Self {
             scanner,
             health,
@@ -101,12 +124,12 @@ impl RobotReceiver {
             last_byte_us,
         } = self;
         let mut accept = |found: Found<FromPc>, ts_us: u64| match found.frame {
+            _ if !found.contiguous || trust == Trust::None => {
+                health.unconfirmed = health.unconfirmed.wrapping_add(1);
+            }
             FromPc::Tunnel(tunnelled) => {
                 health.tunnelled = health.tunnelled.wrapping_add(1);
                 sink(Received::Tunnel(tunnelled.can_frame()));
-            }
-            FromPc::Command(_) if !found.contiguous => {
-                health.unconfirmed = health.unconfirmed.wrapping_add(1);
             }
             FromPc::Command(downlink) => {
                 *newest = renewed(newest, &downlink, ts_us);
@@ -124,12 +147,6 @@ impl RobotReceiver {
         if !bytes.is_empty() {
             *last_byte_us = ts_us;
         }
-    }
-
-    /// Counts errors that the UART flagged. Bytes may be missing, so the next frame follows on none.
-    pub fn count_line_errors(&mut self, count: u32) {
-        self.health.line_errors = self.health.line_errors.wrapping_add(count);
-        self.scanner.mark_gap();
     }
 
     /// State of the link at `now_us`. The fields `sent` and `tunnel_dropped` are 0: the sender knows them.

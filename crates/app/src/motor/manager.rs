@@ -11,8 +11,7 @@ use super::{
 };
 use crate::{
     domain::{
-        BusId, CanFrame, ChassisCommand, JointCommand, MotorCurrent, MotorFeedback, RobotConfig,
-        WheelCommand,
+        BusId, CanFrame, ChassisCommand, MotorCurrent, MotorFeedback, RobotConfig, WheelCommand,
     },
     safety::TorquePermit,
 };
@@ -126,16 +125,6 @@ impl MotorManager {
     /// Counts that each rotor has turned since its first report; see `Telemetry`.
     pub fn turned_counts(&self) -> [i64; 2] {
         self.wheels.each_ref().map(Wheel::turned_counts)
-    }
-
-    /// Currents sent to the wheels in this tick.
-    pub fn sent_wheels_ma(&self) -> [f32; 2] {
-        self.sent_wheels.map(|wheel| wheel.current_ma)
-    }
-
-    /// The command that each joint follows, zero unless its motor is enabled.
-    pub fn sent_joints(&self) -> [&JointCommand; 4] {
-        self.joints.each_ref().map(Joint::sent)
     }
 
     /// Writes the commands that the frames of this tick carry, after limits and permit.

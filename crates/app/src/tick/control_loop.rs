@@ -199,7 +199,7 @@ impl<C: ChassisController> ControlLoop<C> {
         self.record(inputs, now_us, diagnostics);
         let brief = self.is_telemetry_tick();
         if brief {
-            self.record_telemetry(inputs, now_us);
+            self.record_telemetry(now_us);
         }
         ControlOutputs {
             frames: &self.frames,

@@ -1,8 +1,8 @@
 use super::*;
 use crate::{
     domain::{
-        DriveMode, FlashRequest, ImuState, LogicBus, MagState, ParamStatus, PcCommand,
-        RemoteUpdate, StandardId, SystemHealth,
+        FlashRequest, ImuState, LogicBus, MagState, ParamStatus, PcCommand, RemoteUpdate,
+        StandardId, SystemHealth,
     },
     motor::layout::REPLY_PERIOD_TICKS,
     safety::WatchdogPeriod,
@@ -230,8 +230,6 @@ fn samples_that_the_pc_link_asked_for_go_there() {
 fn telemetry_shows_every_second_tick() {
     let mut bench = Bench::new();
     bench.rpm = 500;
-    bench.pc.ts_us = 1_500_000;
-    bench.remote.operator.mode = DriveMode::Pc;
     let mut times = std::vec::Vec::new();
     for _ in 0..600 {
         let outputs = bench.tick();
@@ -240,21 +238,18 @@ fn telemetry_shows_every_second_tick() {
             times.push(brief.ts_us);
             assert_eq!(brief.ts_us, seen.ts_us);
             assert_eq!(brief.q_wxyz, seen.estimate.q_wxyz);
-            assert_eq!(brief.estimate_valid, seen.estimate.valid);
             assert_eq!(brief.flags, seen.safety.flags);
-            assert_eq!((brief.wheel_rpm, brief.mode), ([500, -500], DriveMode::Pc));
+            assert_eq!(brief.wheel_rpm, [500, -500]);
         }
     }
     assert_eq!(times.len(), 300);
     assert!(times.windows(2).all(|pair| pair[1] - pair[0] == 2_000));
     bench.run(2);
-    let age_us = bench.now_us - 1_500_000;
     let [first, second] = [
         bench.tick().telemetry.copied(),
         bench.tick().telemetry.copied(),
     ];
     let brief = first.or(second).unwrap();
-    assert!((1..=2).contains(&((u64::from(brief.pc_age_us) - age_us) / 1_000)));
     // The bench's rotors turn by one count a tick, and by −255 at the end of 256 of them.
     let ticks = (brief.ts_us - 1_001_000) / 1_000;
     let counts = (ticks as i64 + 1_001_000 / 1_000 % 256) % 256 - 1_001 % 256;
