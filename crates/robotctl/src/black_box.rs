@@ -4,12 +4,14 @@ mod download;
 mod event;
 mod file;
 mod json;
+mod release;
 mod story;
 
 pub use download::{Bank, DownloadError, contents, download};
 pub use event::RecordedEvent;
 pub use file::{EVENT_TOPIC, SAMPLE_TOPIC, write};
 pub use json::summary;
+pub use release::{ReleaseTimeouts, release};
 pub use story::{first_sentence, paragraphs};
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use robot_app::{
     black_box::{BANK_BYTES, BANK_COUNT, LAYOUT_VERSION},
     domain::{BankState, EventKind},
-    tuning::BlockFrame,
+    tuning::{BlockFrame, Refusal},
 };
 
 use super::event::RecordedEvent;
@@ -31,6 +31,10 @@ pub enum DownloadError {
          serial line?"
     )]
     Lost,
+    #[error("the event is gone: another program released it, or the robot drove again meanwhile")]
+    Gone,
+    #[error("the robot accepted the release of the event but still holds it: try again")]
+    NotReleased,
     #[error(
         "the event was downloaded, but its checksums are wrong: the robot's memory was damaged"
     )]
@@ -111,6 +115,10 @@ fn block(
         let mut found = vec![None; count];
         let frames = client.read_block(bank, at as u16, count as u8, |received| {
             progress(BANK_BYTES.min(at + received * BlockFrame::BYTES));
+        });
+        let frames = frames.map_err(|error| match is_gone(&error) {
+            true => DownloadError::Gone,
+            false => error.into(),
         })?;
         for frame in frames {
             if let Some(place) = found.get_mut(usize::from(frame.number)) {
@@ -122,4 +130,9 @@ fn block(
         }
     }
     Err(DownloadError::Lost)
+}
+
+/// True if the robot refuses a request because its bank does not hold the event.
+pub(super) fn is_gone(error: &TuningError) -> bool {
+    matches!(error, TuningError::Refused { reason, .. } if *reason == Ok(Refusal::OutOfRange))
 }

@@ -1,3 +1,5 @@
+use std::time::Duration;
+
 use robot_app::{
     black_box::{BlackBox, BlackBoxMemory},
     domain::{CrashCause, EventKind, ResetCause, WheelOdomConfig},
@@ -12,6 +14,11 @@ use crate::{
         TuningClient, TuningError,
         testing::{Bus, robot},
     },
+};
+
+const AT_ONCE: ReleaseTimeouts = ReleaseTimeouts {
+    pause: Duration::ZERO,
+    looks: 10,
 };
 
 /// A robot that drove and then fell; its black box is complete.
@@ -73,11 +80,25 @@ fn an_event_is_downloaded_told_and_released() {
         "{story:?}"
     );
     assert!(story[1].contains("battery 24.0 V; last radio frame 7 ms old"));
-    client
-        .release_event(bank.index, bank.number)
-        .expect("it is released");
-    let released = bus.0.borrow().channel.status().black_box_released;
-    assert_eq!(released, [bank.number, 0]);
+    // The robot empties the bank some time after its reply.
+    bus.0.borrow_mut().looks_to_release = Some(5);
+    release(&mut client, bank, AT_ONCE).expect("it is released");
+    let (banks, _) = contents(&mut client).expect("it answers");
+    assert_eq!(banks, []);
+    // As a request does whose first reply was lost.
+    release(&mut client, bank, AT_ONCE).expect("it was released before");
+}
+
+#[test]
+fn an_event_that_stays_or_is_gone_is_told_without_riddles() {
+    let (bus, mut client) = fallen();
+    let (banks, _) = contents(&mut client).expect("it answers");
+    bus.0.borrow_mut().looks_to_release = None;
+    let stays = release(&mut client, banks[0], AT_ONCE).expect_err("it stays");
+    assert!(stays.to_string().contains("still holds it"), "{stays}");
+    bus.0.borrow_mut().diagnostics.black_box.banks = Default::default();
+    let gone = download(&mut client, banks[0], |_| {}).expect_err("nothing is there");
+    assert!(gone.to_string().starts_with("the event is gone"), "{gone}");
 }
 
 #[test]

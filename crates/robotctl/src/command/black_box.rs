@@ -6,7 +6,7 @@ use anyhow::{Context, Result, bail};
 use indicatif::{ProgressBar, ProgressStyle};
 use robot_app::black_box::BANK_BYTES;
 use robotctl::{
-    black_box::{self, Bank, RecordedEvent},
+    black_box::{self, Bank, RecordedEvent, ReleaseTimeouts},
     plot,
     tuning::TuningClient,
 };
@@ -60,7 +60,7 @@ impl BlackBox {
             let event = fetch(&mut client, *bank)?;
             written.push(self.write(event)?);
             if !self.keep {
-                client.release_event(bank.index, bank.number)?;
+                black_box::release(&mut client, *bank, ReleaseTimeouts::default())?;
             }
         }
         if self.json {

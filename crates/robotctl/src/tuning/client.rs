@@ -271,8 +271,7 @@ impl TuningClient {
     ) -> Result<Vec<BlockFrame>, TuningError> {
         self.block.clear();
         let request = Request::ReadBlock { bank, at, frames };
-        let done = self.exchange(request, || "black box".to_owned());
-        done.map_err(|error| error.with_allowed(|| "the event is gone".to_owned()))?;
+        self.exchange(request, || "black box".to_owned())?;
         let mut count = usize::MAX;
         while self.block.len() < frames.into() && self.block.len() != count {
             count = self.block.len();
@@ -288,12 +287,11 @@ impl TuningClient {
         Ok(std::mem::take(&mut self.block))
     }
 
-    /// Makes the robot forget an event. The robot must be disarmed.
+    /// Makes the robot forget an event, which takes it a moment after its reply. The robot must be disarmed.
     pub fn release_event(&mut self, bank: u8, number: u16) -> Result<(), TuningError> {
         let request = Request::ReleaseEvent { bank, number };
-        let done = self.exchange(request, || format!("release of event {number}"));
-        done.map(drop)
-            .map_err(|error| error.with_allowed(|| "the event is gone".to_owned()))
+        self.exchange(request, || format!("release of event {number}"))
+            .map(drop)
     }
 
     /// Keeps a frame that the robot sends without a request for each.

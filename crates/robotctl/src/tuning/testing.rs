@@ -11,7 +11,7 @@ use robot_app::{
     black_box::BlackBoxMemory,
     bring_up::BringUp,
     diagnostics::DiagnosticsSnapshot,
-    domain::{BusId, CanFrame, RobotConfig, StandardId},
+    domain::{BankStatus, BusId, CanFrame, RobotConfig, StandardId},
     motor::{NotStationary, layout::ROBOT_LAYOUT},
     tuning::{REPLY_ID, Refusal, TuningAccess, TuningChannel, TuningGate, TuningPort, opcode},
 };
@@ -31,6 +31,8 @@ pub(crate) struct Robot {
     /// The firmware is from before there was a store.
     pub is_old: bool,
     pub black_box: Option<&'static BlackBoxMemory>,
+    /// A released event is shown for this many more reads of a bank's state; `None` for ever.
+    pub looks_to_release: Option<usize>,
     /// Number of frames of the black box that the bus will lose.
     pub block_frames_to_lose: usize,
     /// Number of replies that the bus will lose.
@@ -40,13 +42,27 @@ pub(crate) struct Robot {
 }
 
 impl Robot {
-    /// Counts the reads of the store's state, and saves everything after the last one.
+    /// Counts the reads of the store's and a bank's state. After the last one everything is saved, or the bank emptied.
     fn look(&mut self, frame: &CanFrame) {
-        if frame.payload().first() != Some(&opcode::READ_STORE) {
+        match frame.payload().first() {
+            Some(&opcode::READ_STORE) => match &mut self.looks_to_save {
+                Some(0) => self.diagnostics.params.seen = self.channel.status().revision,
+                Some(left) => *left -= 1,
+                None => {}
+            },
+            Some(&opcode::READ_BLACK_BOX) => self.look_at_bank(),
+            _ => {}
+        }
+    }
+
+    fn look_at_bank(&mut self) {
+        let [bank, _] = &mut self.diagnostics.black_box.banks;
+        let [released, _] = self.channel.status().black_box_released;
+        if released == 0 || bank.number != released {
             return;
         }
-        match &mut self.looks_to_save {
-            Some(0) => self.diagnostics.params.seen = self.channel.status().revision,
+        match &mut self.looks_to_release {
+            Some(0) => *bank = BankStatus::default(),
             Some(left) => *left -= 1,
             None => {}
         }
@@ -126,6 +142,7 @@ pub(crate) fn robot() -> (Bus, TuningClient) {
         looks_to_save: Some(0),
         is_old: false,
         black_box: None,
+        looks_to_release: Some(0),
         block_frames_to_lose: 0,
         config: RobotConfig::default(),
         gate: TuningGate::Open,
