@@ -53,6 +53,11 @@ pub enum JobError {
     Recording(#[from] RecordingError),
     #[error(transparent)]
     Report(#[from] robot_chart::ChartError),
+    #[error(
+        "the scenario has a PC of its own, whose bytes would mix with your program's: leave out its `pc = …`, or --link; \
+         scenarios/pc-pilot.toml has only the pilot"
+    )]
+    TwoPcs,
     #[error("cannot read {path}: {source}")]
     Read { path: PathBuf, source: io::Error },
     #[error("{path} has {bytes} bytes; the parameter sectors have {PARAMETER_FLASH_BYTES}")]
@@ -131,6 +136,9 @@ impl Job {
 
     /// Runs, and writes only the flash file.
     pub fn run(&self, observers: &mut [&mut dyn Observer]) -> Result<Outcome, JobError> {
+        if self.pc.link_on_pty && self.scenario.has_pc() {
+            return Err(JobError::TwoPcs);
+        }
         let mut machine = self.machine()?;
         let mut ports = self.pc.open()?;
         let started = Instant::now();
@@ -168,5 +176,29 @@ impl Job {
         std::fs::write(report_path, html).map_err(|e| failed(report_path, e))?;
         outcome.files = files.to_vec();
         Ok(outcome)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_pcs_do_not_share_the_link() {
+        let text =
+            "name = \"two\"\nseconds = 1\nplant = \"stand\"\n[[at]]\nt = 0.5\npc = { on = true }\n";
+        let job = Job {
+            elf: PathBuf::new(),
+            scenario: Scenario::parse(text, "two").expect("it parses"),
+            imu_trial: None,
+            patches: Vec::new(),
+            probe: false,
+            pc: PcAccess {
+                link_on_pty: true,
+                ..PcAccess::default()
+            },
+            flash_file: None,
+        };
+        assert!(matches!(job.run(&mut []), Err(JobError::TwoPcs)));
     }
 }

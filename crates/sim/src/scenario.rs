@@ -105,6 +105,12 @@ impl Scenario {
         Self::parse(&text, &path.display().to_string())
     }
 
+    /// Whether a simulated program on the PC sends commands over the serial link.
+    pub fn has_pc(&self) -> bool {
+        let mut events = self.events.iter();
+        events.any(|timed| matches!(timed.event, Event::Pc(_)))
+    }
+
     /// Cuts the run to `length`. Returns the number of expectations that are dropped because they reach beyond it.
     pub fn cut_to(&mut self, length: Ps) -> usize {
         let before = self.expectations.len();

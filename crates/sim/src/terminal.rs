@@ -247,8 +247,10 @@ impl Observer for Terminal {
     fn can_port(&mut self, bus: CanBusId, device: &CanDevice) {
         let bus = bus_name(bus);
         let tools = match device {
-            CanDevice::Terminal(_) => "slcand or any slcan tool, 1 Mbit/s (S8)".to_owned(),
-            CanDevice::Gateway(..) => format!("13 bytes a frame; robotctl --can {device}"),
+            CanDevice::Terminal(_) => {
+                format!("robotctl status --can {device}, slcand, or any slcan tool, 1 Mbit/s (S8)")
+            }
+            CanDevice::Gateway(..) => format!("13 bytes a frame; robotctl status --can {device}"),
         };
         let text = format!("{bus} on {device}: {tools}");
         self.bar.suspend(|| println!("{text}"));
@@ -256,8 +258,9 @@ impl Observer for Terminal {
 
     fn link_port(&mut self, device: &Path) {
         let device = device.display();
-        let text =
-            format!("PC link on {device}: robotctl --link {device}, or any program, 460800 8N1");
+        let text = format!(
+            "PC link on {device}: robotctl status --link {device}, or any program, 460800 8N1"
+        );
         self.bar.suspend(|| println!("{text}"));
     }
 

@@ -91,9 +91,10 @@ enum LinkConnection {
 
 const EXAMPLES: &str = "Examples:
   cargo xtask sim scenarios/remote-loss.toml
-  cargo xtask sim --can1 pty --seconds 3600            # then: robotctl --can /dev/pts/N status
-  cargo xtask sim --link pty --seconds 3600            # then: robotctl --link /dev/pts/N status
-  cargo xtask sim --gateway tcp:20001 --seconds 3600   # then: robotctl --can tcp:127.0.0.1:20001 status";
+  cargo xtask sim --can1 pty --seconds 3600            # then: robotctl status --can /dev/pts/N
+  cargo xtask sim --gateway tcp:20001 --seconds 3600   # then: robotctl status --can tcp:127.0.0.1:20001
+  cargo xtask sim scenarios/pc-pilot.toml --link pty --seconds 600
+                                                       # then: robotctl drive --link /dev/pts/N";
 
 const DRIVE: &str = include_str!("../../../../scenarios/drive.toml");
 
