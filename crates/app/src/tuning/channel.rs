@@ -135,6 +135,9 @@ impl TuningChannel {
             }
             Request::ReadBlock { bank, at, frames } => {
                 find_event(diagnostics, bank)?;
+                if self.recorder.is_running() {
+                    return Err(Refusal::Recording);
+                }
                 self.block.start(port, bank, at, frames);
                 Ok(protocol::echo(frame))
             }

@@ -27,10 +27,12 @@ pub enum Refusal {
     JointNotReady = 9,
     /// The joint is turning.
     JointMoving = 10,
+    /// The sensors are being recorded, which takes the ticks that the frames would need.
+    Recording = 11,
 }
 
 impl Refusal {
-    const ALL: [Self; 10] = [
+    const ALL: [Self; 11] = [
         Self::WrongLength,
         Self::UnknownCommand,
         Self::UnknownParameter,
@@ -41,6 +43,7 @@ impl Refusal {
         Self::Calibrated,
         Self::JointNotReady,
         Self::JointMoving,
+        Self::Recording,
     ];
 
     /// Its number on the wire.

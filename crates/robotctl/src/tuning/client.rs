@@ -94,6 +94,10 @@ fn explain(reason: Result<Refusal, u8>, allowed: Option<&str>) -> String {
              (`robotctl status` shows its state)"
         }
         Ok(Refusal::JointMoving) => "refused, the joint turns: hold it still",
+        Ok(Refusal::Recording) => {
+            "refused while the robot sends a recording of its sensors: wait for the program that started it, or 600 s at \
+             most, and try again"
+        }
         Err(code) => {
             return format!("refused for reason {code}, which this robotctl does not know");
         }

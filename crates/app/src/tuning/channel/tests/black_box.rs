@@ -61,3 +61,17 @@ fn only_the_event_of_a_disarmed_robot_is_read_and_released() {
     assert_eq!(bench.channel.status().black_box_released, [0, 0x0203]);
     assert!(bench.unchanged());
 }
+
+/// Both would come in the same ticks.
+#[test]
+fn a_block_is_refused_while_the_sensors_are_recorded() {
+    let mut bench = bench();
+    let read = [0x45, 1, 0, 0, 3];
+    let record = |seconds| [0x42, seconds, 0, 0, 0, 0, 0, 0];
+    bench.write(&record(60));
+    assert_eq!(bench.read(&read), [0xEE, 0x45, 11, 0, 0, 0, 0, 0]);
+    assert!(!bench.channel.block().is_running());
+    bench.write(&record(0));
+    assert_eq!(bench.read(&read), [0x45, 1, 0, 0, 3, 0, 0, 0]);
+    assert!(bench.channel.block().is_running());
+}
