@@ -108,9 +108,9 @@ pub struct BlackBoxSample {
     pub can: [BusErrorState; 2],
     /// Ticks missed since boot, modulo 16.
     pub missed_ticks: u8,
-    /// Commanded speed as a share of the highest, forward positive.
+    /// Commanded speed as a share of the highest, forward positive. It is 0 while the PC commands.
     pub drive: f32,
-    /// Commanded turn as a share of the highest, counter-clockwise positive.
+    /// Commanded turn as a share of the highest, counter-clockwise positive. It is 0 while the PC commands.
     pub turn: f32,
 }
 
@@ -125,7 +125,7 @@ impl BlackBoxSample {
         let speed = |rpm: i16| f32::from(rpm) * RPM_TO_RPS / wheels.gear_ratio;
         let source = CommandSource::of(report);
         let command_us = match source {
-            CommandSource::Pc => age_us(report.link.last_us, report.ts_us),
+            CommandSource::Pc => report.pc_age_us,
             _ => age_us(report.logic.ts_us, report.ts_us),
         };
         Self {

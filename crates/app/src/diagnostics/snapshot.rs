@@ -77,4 +77,6 @@ pub struct DiagnosticsSnapshot {
     pub remote_raw: [u16; 16],
     /// State of the PC link.
     pub link: LinkHealth,
+    /// Age of the PC's last command in µs at the time of a report; `u32::MAX` before the first.
+    pub pc_age_us: u32,
 }

@@ -106,13 +106,15 @@ fn the_pc_link_is_shown_with_what_it_loses() {
         diagnostics.ts_us = 5_000_000;
         let link = &mut diagnostics.link;
         (link.good, link.sent, link.rate_hz) = (321, 4_000, 99.7);
-        (link.last_us, link.longest_gap_us) = (4_993_000, 12_900);
+        link.longest_gap_us = 12_900;
+        diagnostics.pc_age_us = 7_000;
     })
     .to_string();
     let line = "PC          100 Hz, last command 7 ms ago, longest gap 12 ms; 321 frames received, 4000 sent\n";
     assert!(text.contains(line), "{text}");
     assert!(!text.contains("PC line"), "{text}");
     let text = status(|diagnostics| {
+        diagnostics.pc_age_us = u32::MAX;
         let link = &mut diagnostics.link;
         (link.crc_errors, link.line_errors) = (3, 1);
         (link.resyncs, link.unconfirmed) = (2, 2);

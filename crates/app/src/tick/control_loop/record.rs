@@ -4,7 +4,7 @@ use super::{ControlInputs, ControlLoop};
 use crate::{
     control::ChassisController,
     diagnostics::{DiagnosticsSnapshot, TickStats},
-    domain::{SensorsSnapshot, StateEstimate},
+    domain::{SensorsSnapshot, StateEstimate, age_us},
     tick::TickState,
 };
 
@@ -34,13 +34,13 @@ impl<C: ChassisController> ControlLoop<C> {
         diagnostics.tuning = *self.tuning.status();
         if self.phase == 0 {
             diagnostics.drive_end = *self.arming.drive_end();
-            record_slow(inputs, diagnostics);
+            record_slow(inputs, now_us, diagnostics);
         }
     }
 }
 
 /// Records what changes slowly or only matters to an observer.
-fn record_slow(inputs: &ControlInputs<'_>, diagnostics: &mut DiagnosticsSnapshot) {
+fn record_slow(inputs: &ControlInputs<'_>, now_us: u64, diagnostics: &mut DiagnosticsSnapshot) {
     let health = inputs.health;
     diagnostics.remote_raw = inputs.remote.raw;
     diagnostics.can = health.can;
@@ -56,6 +56,8 @@ fn record_slow(inputs: &ControlInputs<'_>, diagnostics: &mut DiagnosticsSnapshot
     diagnostics.black_box = health.black_box;
     diagnostics.debug_probe = health.debug_probe;
     diagnostics.link = health.link;
+    // The link's state is older than the tick by up to two reports.
+    diagnostics.pc_age_us = age_us(inputs.pc.ts_us, now_us);
     diagnostics.params = *inputs.params;
 }
 

@@ -226,6 +226,26 @@ fn samples_that_the_pc_link_asked_for_go_there() {
     assert!((195..=201).contains(&accel), "{accel} samples of 200 Hz");
 }
 
+/// The link's own state may be two reports old.
+#[test]
+fn the_report_has_the_age_of_the_command_that_the_tick_used() {
+    let mut bench = Bench::new();
+    bench.run(10);
+    let age_us = |bench: &mut Bench| {
+        let report = bench.tick().diagnostics;
+        (report.tick.count % 10, report.ts_us, report.pc_age_us)
+    };
+    assert_eq!(age_us(&mut bench).2, u32::MAX);
+    bench.health.link.last_us = 1_000_000;
+    for _ in 0..20 {
+        bench.pc.ts_us = bench.now_us - 3_000;
+        if let (0, ts_us, age_us) = age_us(&mut bench) {
+            assert_eq!(ts_us - u64::from(age_us), bench.pc.ts_us);
+            assert_eq!(age_us, 4_000);
+        }
+    }
+}
+
 #[test]
 fn telemetry_shows_every_second_tick() {
     let mut bench = Bench::new();

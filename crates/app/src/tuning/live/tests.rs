@@ -289,8 +289,11 @@ fn the_pc_link_is_shown() {
     let shown = |page| {
         read_of(page, |diagnostics| {
             diagnostics.ts_us = 5_000_000;
+            diagnostics.pc_age_us = 7_000;
             let link = &mut diagnostics.link;
-            (link.rate_hz, link.last_us, link.longest_gap_us) = (99.7, 4_993_000, 12_900);
+            (link.rate_hz, link.longest_gap_us) = (99.7, 12_900);
+            // As of the last exchange, two reports ago.
+            link.last_us = 4_973_000;
             (link.good, link.sent) = (321, 4_000);
             (link.crc_errors, link.resyncs) = (3, 2);
             (link.line_errors, link.unconfirmed) = (1, 5);
@@ -302,7 +305,7 @@ fn the_pc_link_is_shown() {
     assert_eq!(shown(0x39), [0x41, 0x01, 0, 0xA0, 0x0F, 0]);
     assert_eq!(shown(0x3A), [0x03, 0x20, 0x00, 0x01, 0x50, 0x00]);
     assert_eq!(shown(0x3B), [9, 0, 0x04, 0x00, 0x17, 0x11]);
-    let never = read_of(0x38, |_| {});
+    let never = read_of(0x38, |diagnostics| diagnostics.pc_age_us = u32::MAX);
     assert_eq!(never, [0, 0, 0xFF, 0xFF, 0, 0]);
 }
 

@@ -1,14 +1,13 @@
 //! Pages of the PC link.
 
 use super::*;
-use crate::domain::{LinkHealth, age_us};
+use crate::domain::LinkHealth;
 
 /// Commands of the PC. A robot that has never heard one shows the highest age.
 pub const COMMANDS: [LiveField; 3] = [
     measure!("rate-hz", "Hz", 16, 10, |live, _| link(live).rate_hz),
-    count!("age-ms", "ms", 16, |live, _| {
-        age_us(link(live).last_us, live.diagnostics.ts_us) / 1_000
-    }),
+    count!("age-ms", "ms", 16, |live, _| live.diagnostics.pc_age_us
+        / 1_000),
     count!("longest-gap-ms", "ms", 16, |live, _| link(live)
         .longest_gap_us
         / 1_000),
