@@ -48,6 +48,13 @@ impl BlackBoxMemory {
         }
     }
 
+    /// Fills a bank with zeros.
+    pub(super) fn erase(&self, bank: usize) {
+        for word in self.words(bank, 0, BANK_WORDS) {
+            word.store(0, Ordering::Relaxed);
+        }
+    }
+
     /// Reads words; they are 0 beyond the end of a bank.
     #[inline(never)]
     pub(super) fn read(&self, bank: usize, first: usize, values: &mut [u32]) {

@@ -63,13 +63,15 @@ impl BlackBox {
         black_box
     }
 
+    /// A bank without an event is erased whole. Numbers may begin anew now, and no record of an older recording may then
+    /// count for one with the same number.
     #[inline(never)]
     fn take_over(&mut self, index: usize, reset: ResetCause, crash: CrashCause) {
         let bank = Bank::new(self.memory, index);
         let header = bank.header();
         let number = header.number();
         let (Some(number), true) = (number, reset != ResetCause::PowerOn) else {
-            header.clear();
+            self.memory.erase(index);
             return;
         };
         let newest = bank.newest();
@@ -97,7 +99,7 @@ impl BlackBox {
                     self.last_number = number;
                 }
             }
-            _ => header.clear(),
+            _ => self.memory.erase(index),
         }
     }
 

@@ -2,6 +2,7 @@
 
 use robot_app::{
     black_box::{Bank, BlackBoxMemory, BlackBoxSample, Event},
+    domain::EventKind,
     safety::SafetyFlags,
 };
 
@@ -67,6 +68,13 @@ impl RecordedEvent {
             .union(SafetyFlags::COMMAND_STALE)
             .union(SafetyFlags::STICKS_AWAITED)
             .union(SafetyFlags::PC_LOST);
-        self.event.flags.intersection(stopping)
+        match self.event.kind {
+            EventKind::PartialStop => {
+                let stopping = stopping.union(SafetyFlags::PC_AWAITED);
+                self.event.flags.intersection(stopping)
+            }
+            // Then it only says that the PC did not steer.
+            _ => self.event.flags.intersection(stopping),
+        }
     }
 }

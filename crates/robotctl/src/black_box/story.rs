@@ -145,6 +145,9 @@ fn flag_words(flag: SafetyFlags, late: &[&str]) -> String {
         SafetyFlags::JOINT_NOT_READY => "a joint motor could not be set up",
         SafetyFlags::STICKS_AWAITED => "a stop that was too short to be recorded",
         SafetyFlags::PC_LOST => "the PC was lost: no fresh command came over the link",
+        SafetyFlags::PC_AWAITED => {
+            "the PC had to begin from rest again, after a short gap in its commands or because a motor had come back"
+        }
         _ => "a condition that this robotctl does not know",
     };
     let name = flag.names().next();

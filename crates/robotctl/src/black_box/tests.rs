@@ -132,6 +132,42 @@ fn an_armed_robot_shows_what_is_there_but_gives_nothing() {
 }
 
 #[test]
+fn a_recording_of_the_sensors_refuses_the_download_with_advice() {
+    let (_, mut client) = fallen();
+    let (banks, _) = contents(&mut client).expect("it answers");
+    client.start_recording(60).expect("it is disarmed");
+    let refused = download(&mut client, banks[0], |_| {}).expect_err("it is refused");
+    let text = refused.to_string();
+    assert!(
+        text.contains("wait for the program that started it"),
+        "{text}"
+    );
+    client.start_recording(0).expect("it ends");
+    download(&mut client, banks[0], |_| {}).expect("it is whole");
+}
+
+/// A partial stop whose only trace is that the PC must begin from rest.
+#[test]
+fn a_short_gap_in_the_pcs_commands_is_told() {
+    let (_, mut client) = fallen();
+    let (banks, _) = contents(&mut client).expect("it answers");
+    let mut event = download(&mut client, banks[0], |_| {}).expect("it is whole");
+    event.event.flags = SafetyFlags::PC_AWAITED.union(SafetyFlags::TILT);
+    assert_eq!(event.causes(), SafetyFlags::TILT, "the PC did not stop it");
+    event.event.kind = EventKind::PartialStop;
+    event.event.flags = SafetyFlags::PC_AWAITED;
+    assert_eq!(summary(&event)["causes"], serde_json::json!(["pc-awaited"]));
+    let story = first_sentence(&event);
+    for words in [
+        "had to begin from rest again",
+        "gap in its commands",
+        "(pc-awaited)",
+    ] {
+        assert!(story.contains(words), "{story}");
+    }
+}
+
+#[test]
 fn a_firmware_without_a_black_box_is_told_apart() {
     let (bus, mut client) = fallen();
     bus.0.borrow_mut().is_old = true;

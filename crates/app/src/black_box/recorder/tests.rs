@@ -1,6 +1,6 @@
 use super::*;
 use crate::{
-    black_box::SAMPLES_A_BANK,
+    black_box::{CommandSource, SAMPLES_A_BANK},
     domain::{DriveMode, LogicBus, OperatorState},
     safety::{ArmingState, DriveEnd, SafetyFlags},
 };
@@ -194,6 +194,88 @@ fn only_a_pc_that_steered_can_be_lost() {
     assert_eq!(event.flags, SafetyFlags::PC_LOST);
 }
 
+/// A gap of 105 ms can begin and end between two reports. What remains is that the PC must begin from rest.
+#[test]
+fn a_loss_of_the_pc_too_short_to_be_seen_counts_too() {
+    let mut bench = steered_by_a_pc();
+    bench.report.safety.flags = SafetyFlags::PC_AWAITED;
+    bench.run(SECOND);
+    let event = bench.event(0).expect("an event");
+    assert_eq!(event.kind, EventKind::PartialStop);
+    assert_eq!(event.flags, SafetyFlags::PC_AWAITED);
+}
+
+/// The robot is armed before the PC's program runs.
+#[test]
+fn a_pc_that_was_missing_when_the_robot_was_armed_can_be_lost_later() {
+    for flags in [SafetyFlags::PC_LOST, SafetyFlags::PC_AWAITED] {
+        let mut bench = Bench::new();
+        bench.report.operator.mode = DriveMode::Pc;
+        bench.report.logic.pc_selected = true;
+        bench.report.safety.flags = flags;
+        bench.arm();
+        bench.run(SECOND);
+        bench.report.safety.flags = SafetyFlags::NONE;
+        bench.run(SECOND);
+        assert_eq!(bench.event(0), None);
+        bench.report.safety.flags = flags;
+        bench.run(SECOND);
+        assert_eq!(bench.event(0).expect("an event").flags, flags);
+    }
+}
+
+#[test]
+fn a_pc_that_the_pilot_lets_go_is_not_lost() {
+    let mut bench = steered_by_a_pc();
+    for selected in [false, true] {
+        bench.report.logic.pc_selected = selected;
+        bench.report.safety.flags = SafetyFlags::PC_AWAITED;
+        bench.run(SECOND);
+    }
+    assert_eq!(bench.event(0), None);
+}
+
+/// The PC must begin from rest after any stop. That is no event of its own.
+#[test]
+fn what_follows_from_another_stop_is_not_the_pcs() {
+    let mut bench = Bench::new();
+    bench.report.safety.flags = SafetyFlags::WHEEL_HOT;
+    bench.arm();
+    bench.report.operator.mode = DriveMode::Pc;
+    bench.report.logic.pc_selected = true;
+    bench.run(SECOND);
+    bench.report.safety.flags = SafetyFlags::PC_AWAITED;
+    bench.run(SECOND);
+    assert_eq!(bench.event(0), None, "a motor cooled down");
+    let mut bench = steered_by_a_pc();
+    bench.report.safety.flags = SafetyFlags::COMMAND_STALE.union(SafetyFlags::PC_AWAITED);
+    bench.run(SECOND);
+    let event = bench.event(0).expect("an event");
+    assert_eq!(event.flags, SafetyFlags::COMMAND_STALE);
+}
+
+/// A bad cable: the first loss is kept, the gaps after it do not overwrite it.
+#[test]
+fn a_gap_after_a_loss_is_no_other_event() {
+    let mut bench = steered_by_a_pc();
+    for flags in [SafetyFlags::PC_LOST, SafetyFlags::PC_AWAITED] {
+        bench.report.safety.flags = flags;
+        bench.run(SECOND);
+        bench.report.safety.flags = SafetyFlags::NONE;
+        bench.run(SECOND);
+    }
+    assert_eq!(bench.states(), [BankState::Event, BankState::Recording]);
+}
+
+fn steered_by_a_pc() -> Bench {
+    let mut bench = Bench::new();
+    bench.arm();
+    bench.report.operator.mode = DriveMode::Pc;
+    bench.report.logic.pc_selected = true;
+    bench.run(SECOND);
+    bench
+}
+
 /// Only what remains of a stop that began and ended between two reports.
 #[test]
 fn a_partial_stop_too_short_to_be_seen_counts_too() {
@@ -330,6 +412,27 @@ fn a_power_on_empties_it() {
     assert_eq!(bench.event(0), None);
 }
 
+/// RAM may keep its content over a short loss of power. Numbers then begin anew, so the old records must be gone.
+#[test]
+fn nothing_of_an_older_run_shows_in_a_recording_of_the_same_number() {
+    let mut bench = Bench::new();
+    bench.arm();
+    bench.run(60 * SECOND);
+    bench.reset(ResetCause::PowerOn, CrashCause::Silent);
+    bench.run(SECOND);
+    bench.reset(ResetCause::Pin, CrashCause::Silent);
+    assert_eq!(bench.event(0), None);
+    // Nor after a reset that is no event.
+    bench.run(60 * SECOND);
+    bench.reset(ResetCause::Pin, CrashCause::Silent);
+    bench.arm();
+    bench.run(SECOND);
+    let last = (bench.report.ts_us / 100) as u32;
+    bench.reset(ResetCause::IndependentWatchdog, CrashCause::Panic);
+    assert_eq!(bench.event(0).expect("an event").time, last);
+    assert_eq!(bench.times(0).len(), SECOND as usize + 1);
+}
+
 /// Every word of the header damaged in turn: the event is whole, or loses what its damaged part held, or is gone.
 #[test]
 fn a_damaged_header_shows_nothing_wrong() {
@@ -439,4 +542,11 @@ fn a_sample_of_the_report_has_the_robots_directions() {
     assert_eq!(sample.command_age_ms, 12);
     assert_eq!(sample.radio_age_ms, 0);
     assert!(sample.enabled && !sample.armed);
+    // The PC's command is younger than the link's state says.
+    report.operator.mode = DriveMode::Pc;
+    (report.logic.hl_valid, report.logic.pc_selected) = (false, true);
+    (report.link.last_us, report.pc_age_us) = (1_975_000, 5_900);
+    let sample = BlackBoxSample::of(&report, &WheelOdomConfig::default());
+    assert_eq!(sample.source, CommandSource::Pc);
+    assert_eq!(sample.command_age_ms, 5);
 }
