@@ -3,7 +3,7 @@
 use robot_app::{
     diagnostics::DiagnosticsSnapshot,
     domain::{CrashCause, JointState, ResetCause},
-    safety::{ArmingBlockers, ArmingState, SafetyVerdict},
+    safety::{ArmingBlockers, ArmingState, SafetyFlags, SafetyVerdict},
 };
 
 use super::*;
@@ -123,6 +123,28 @@ fn the_pc_link_is_shown_with_what_it_loses() {
     for line in [
         "PC          no command yet, or none for a minute; 0 frames received, 0 sent\n",
         "PC line     3 CRC errors, 1 line errors, 2 resyncs, 2 commands not used\n",
+    ] {
+        assert!(text.contains(line), "`{line}` in\n{text}");
+    }
+}
+
+/// The joints stay enabled then, and the motors say so.
+#[test]
+fn without_a_fresh_command_of_the_pc_nothing_has_torque() {
+    let text = status(|diagnostics| {
+        diagnostics.arming.state = ArmingState::Armed;
+        diagnostics.safety.verdict = SafetyVerdict::Run;
+        diagnostics.safety.flags = SafetyFlags::PC_LOST;
+        let [first, second, ..] = &mut diagnostics.sensors.motor.joints;
+        for (joint, state) in [(first, JointState::Enabled), (second, JointState::Disabled)] {
+            (joint.state, joint.ts_us, joint.reports_enabled) = (state, 1, true);
+        }
+    })
+    .to_string();
+    for line in [
+        "stopped     wheels and joints, without torque (pc-lost)\n",
+        "joint left-front   enabled, +0.000 rad, 0 degC\n",
+        "joint left-rear    disabled, +0.000 rad, 0 degC, BUT REPORTS THAT IT IS ENABLED\n",
     ] {
         assert!(text.contains(line), "`{line}` in\n{text}");
     }

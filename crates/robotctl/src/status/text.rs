@@ -54,6 +54,11 @@ const LEFT_OUT: [&str; 16] = [
     "link-tunnel",
 ];
 
+/// Flags that leave wheels and joints without torque while the robot is armed.
+const PC_STOPS: [&str; 2] = ["pc-lost", "pc-awaited"];
+/// Mark of a joint's motor that reports it is enabled. It says nothing of the torque commanded.
+const REPORTS_ENABLED: &str = "gives-torque";
+
 impl Display for Status {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         self.firmware(f)?;
@@ -133,13 +138,21 @@ impl Status {
         let Some(safety) = self.page("safety") else {
             return Ok(());
         };
+        let flags = safety.set("flags");
+        // These stop nothing by the verdict: commands count as zero.
+        let of_pc = flags
+            .iter()
+            .filter(|flag| PC_STOPS.contains(&flag.as_str()));
+        let without_torque = of_pc.cloned().collect::<Vec<_>>().join(", ");
         let stopped = match safety.choice("verdict").as_str() {
-            "run" => "nothing".to_owned(),
             "global-stop" => "everything".to_owned(),
+            _ if !without_torque.is_empty() => {
+                format!("wheels and joints, without torque ({without_torque})")
+            }
+            "run" => "nothing".to_owned(),
             _ => safety.set("stopped").join(", "),
         };
         writeln!(f, "\nstopped     {stopped}")?;
-        let flags = safety.set("flags");
         if !flags.is_empty() {
             writeln!(f, "flags:")?;
             list(f, &flags, advice::for_flag)?;
@@ -261,6 +274,11 @@ impl Status {
             }
             if self.is_found("joints-out-of-limits", name) {
                 write!(f, ", OUT OF ITS LIMITS")?;
+            }
+            if joint.has("marks", REPORTS_ENABLED)
+                && !matches!(state.as_str(), "enabled" | "enabling")
+            {
+                write!(f, ", BUT REPORTS THAT IT IS ENABLED")?;
             }
             marks(f, joint)?;
         }
@@ -409,7 +427,8 @@ fn rest(f: &mut Formatter<'_>, reading: &LiveReading) -> fmt::Result {
 }
 
 fn marks(f: &mut Formatter<'_>, reading: &LiveReading) -> fmt::Result {
-    for mark in reading.set("marks") {
+    let marks = reading.set("marks");
+    for mark in marks.iter().filter(|mark| *mark != REPORTS_ENABLED) {
         write!(f, ", {}", mark.to_uppercase())?;
     }
     writeln!(f)
