@@ -43,11 +43,18 @@ pub enum CanLinkError {
         example: &'static str,
     },
     #[error(
-        "the adapter refuses `{command}`: is another program using it, or does it not know 1 Mbit/s?"
+        "the adapter at {device} refuses `{command}`: is another program using it, or does it not know 1 Mbit/s?"
     )]
-    SetUp { command: &'static str },
-    #[error("the adapter refused a frame: is the bus connected, powered and terminated?")]
-    FrameRefused,
+    SetUp {
+        device: String,
+        command: &'static str,
+    },
+    #[error("{device} speaks the PC link, not slcan: use --link {device}")]
+    SpeaksPcLink { device: String },
+    #[error(
+        "the adapter at {device} refused a frame: is the bus connected, powered and terminated?"
+    )]
+    FrameRefused { device: String },
     #[error("{device} failed: is it still plugged in?")]
     PortFailed {
         device: String,

@@ -23,7 +23,7 @@ pub enum CanDevice {
 impl FromStr for CanDevice {
     type Err = GatewayAddressError;
 
-    /// Takes `tcp:HOST:PORT` and `udp:HOST:PORT` as a gateway, a path (`/dev/ttyACM0`) or a COM port (`COM3`) as a serial
+    /// Takes `tcp:HOST:PORT` and `udp:HOST:PORT` as a gateway and refuses an address without either, takes a path (`/dev/ttyACM0`) or a COM port (`COM3`) as a serial
     /// port, and anything else as the name of an interface.
     fn from_str(text: &str) -> Result<Self, GatewayAddressError> {
         if let Some(gateway) = GatewayAddress::parse(text) {
@@ -87,6 +87,7 @@ mod tests {
         let names = [
             "/dev/ttyACM0",
             "/dev/cu.usbmodem1101",
+            "/dev/serial/by-path/pci-0000:00:14.0-usb-0:1:1",
             "COM3",
             "com17",
             r"\\.\COM17",
@@ -125,6 +126,11 @@ mod tests {
             let error = text.parse::<CanDevice>().unwrap_err().to_string();
             let example = format!("{}:192.168.0.7:20001", &text[..3]);
             assert!(error.contains(&example), "{error}");
+        }
+        for text in ["192.168.0.7:20001", "192.168.0.7", "gateway.local:20001"] {
+            let error = text.parse::<CanDevice>().unwrap_err().to_string();
+            assert!(error.contains(&format!("write tcp:{text}")), "{error}");
+            assert!(error.contains(&format!(" or udp:{text}")), "{error}");
         }
     }
 }

@@ -6,7 +6,10 @@ use std::{
     time::{Duration, Instant},
 };
 
-use robot_app::domain::CanFrame;
+use robot_app::{
+    domain::CanFrame,
+    link::{BAUD, Heard, PcReceiver},
+};
 use serialport::SerialPort;
 
 use super::{
@@ -42,6 +45,8 @@ pub(super) struct Slcan {
     bytes: u64,
     /// The adapter has said something that an slcan adapter says.
     is_understood: bool,
+    /// A byte came that no slcan adapter says.
+    is_foreign: bool,
 }
 
 impl Slcan {
@@ -58,15 +63,45 @@ impl Slcan {
             name: name.to_owned(),
             bytes: 0,
             is_understood: false,
+            is_foreign: false,
         };
         // The empty line ends a line that another program may have left unfinished.
         link.port.write_all(b"\r")?;
         link.port.write_all(CLOSE.as_bytes())?;
         let settled = Instant::now() + SETTLE_TIME;
         while link.next(settled)?.is_some() {}
+        if link.is_foreign && link.speaks_pc_link()? {
+            return Err(CanLinkError::SpeaksPcLink {
+                device: link.name.clone(),
+            });
+        }
         link.command(BIT_RATE_1M)?;
         link.command(OPEN)?;
         Ok(link)
+    }
+
+    /// Listens at the PC link's speed for the robot's state. One state may be there by chance.
+    fn speaks_pc_link(&mut self) -> Result<bool, CanLinkError> {
+        let port = &mut self.port;
+        port.set_baud_rate(BAUD).map_err(std::io::Error::from)?;
+        let mut link = PcReceiver::new();
+        let mut states = 0;
+        let until = Instant::now() + SETTLE_TIME;
+        while states < 2 && Instant::now() < until {
+            let mut bytes = [0; 4096];
+            port.set_timeout(SETTLE_TIME)
+                .map_err(std::io::Error::from)?;
+            let count = match port.read(&mut bytes) {
+                Ok(count) => count,
+                Err(e) if matches!(e.kind(), ErrorKind::TimedOut | ErrorKind::Interrupted) => 0,
+                Err(e) => return Err(e.into()),
+            };
+            link.feed(&bytes[..count], |heard| {
+                states += u32::from(matches!(heard, Heard::Uplink(_)));
+            });
+        }
+        port.set_baud_rate(LINE_BPS).map_err(std::io::Error::from)?;
+        Ok(states >= 2)
     }
 
     fn command(&mut self, command: &'static str) -> Result<(), CanLinkError> {
@@ -77,8 +112,10 @@ impl Slcan {
                 Some(Received::Done) | None => return Ok(()),
                 Some(Received::Frame(_)) => {}
                 Some(Received::Refused) => {
-                    let command = command.trim_end();
-                    return Err(CanLinkError::SetUp { command });
+                    return Err(CanLinkError::SetUp {
+                        device: self.name.clone(),
+                        command: command.trim_end(),
+                    });
                 }
             }
         }
@@ -110,6 +147,7 @@ impl Slcan {
                     .extend(said.filter_map(|byte| self.parser.feed(*byte)));
                 self.bytes += count as u64;
                 self.is_understood |= self.received.len() > before;
+                self.is_foreign |= !bytes[..count].is_ascii();
                 Ok(())
             }
             Err(e) if matches!(e.kind(), ErrorKind::TimedOut | ErrorKind::Interrupted) => Ok(()),
@@ -127,7 +165,11 @@ impl CanLink for Slcan {
         loop {
             match self.next(deadline)? {
                 Some(Received::Frame(frame)) => return Ok(Some(frame)),
-                Some(Received::Refused) => return Err(CanLinkError::FrameRefused),
+                Some(Received::Refused) => {
+                    return Err(CanLinkError::FrameRefused {
+                        device: self.name.clone(),
+                    });
+                }
                 Some(Received::Done) => {}
                 None => return Ok(None),
             }

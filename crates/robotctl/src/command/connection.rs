@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result, ensure};
 use robotctl::{
-    can_link::CanDevice,
+    can_link::{CanDevice, GatewayAddress},
     transport::Transport,
     tuning::{Timeouts, TuningClient},
 };
@@ -18,8 +18,16 @@ pub struct Connection {
     #[arg(long, value_name = "DEVICE", global = true, conflicts_with = "link", help_heading = HEADING)]
     can: Option<CanDevice>,
     /// PC link: the serial port (/dev/ttyUSB0, COM4, the emulated board's /dev/pts/N) at UART2 of the C board
-    #[arg(long, value_name = "PORT", global = true, help_heading = HEADING)]
+    #[arg(long, value_name = "PORT", global = true, value_parser = serial_port, help_heading = HEADING)]
     link: Option<String>,
+}
+
+/// Takes the name of a serial port.
+pub fn serial_port(text: &str) -> Result<String, String> {
+    if GatewayAddress::parse(text).is_some() {
+        return Err("a gateway carries CAN, not the PC link: use --can".to_owned());
+    }
+    Ok(text.to_owned())
 }
 
 impl Connection {

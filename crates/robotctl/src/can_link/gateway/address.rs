@@ -3,7 +3,7 @@
 use std::{
     fmt,
     io::{self, ErrorKind},
-    net::{SocketAddr, ToSocketAddrs},
+    net::{IpAddr, SocketAddr, ToSocketAddrs},
 };
 
 use super::super::CanLinkError;
@@ -29,30 +29,33 @@ pub enum Protocol {
 )]
 pub struct GatewayAddressError {
     text: String,
-    example: &'static str,
+    example: String,
 }
 
 impl GatewayAddress {
-    /// Returns `None` if the text does not begin with `tcp:` or `udp:`.
+    /// Returns `None` for text that does not look like the address of a gateway. An address without `tcp:` or `udp:` is
+    /// an error.
     pub fn parse(text: &str) -> Option<Result<Self, GatewayAddressError>> {
-        let (protocol, place) = text.split_once(':')?;
-        let (protocol, example) = match protocol {
-            "tcp" => (Protocol::Tcp, "tcp:192.168.0.7:20001"),
-            "udp" => (Protocol::Udp, "udp:192.168.0.7:20001"),
+        let wrong = |example: String| {
+            let text = text.to_owned();
+            Some(Err(GatewayAddressError { text, example }))
+        };
+        let (protocol, place) = match text.split_once(':') {
+            Some(("tcp", place)) => (Protocol::Tcp, place),
+            Some(("udp", place)) => (Protocol::Udp, place),
+            _ if is_place(text) => return wrong(format!("tcp:{text} or udp:{text}")),
+            _ if text.parse::<IpAddr>().is_ok() => {
+                return wrong(format!("tcp:{text}:20001 or udp:{text}:20001"));
+            }
             _ => return None,
         };
-        let is_place = place.rsplit_once(':').is_some_and(|(host, port)| {
-            !host.is_empty() && port.parse::<u16>().is_ok_and(|port| port != 0)
-        });
-        Some(if is_place {
-            Ok(Self {
-                protocol,
-                place: place.to_owned(),
-            })
-        } else {
-            let text = text.to_owned();
-            Err(GatewayAddressError { text, example })
-        })
+        if !is_place(place) {
+            return wrong(format!("{protocol}:192.168.0.7:20001"));
+        }
+        Some(Ok(Self {
+            protocol,
+            place: place.to_owned(),
+        }))
     }
 
     pub fn resolve(&self) -> io::Result<Vec<SocketAddr>> {
@@ -111,12 +114,26 @@ impl GatewayAddress {
     }
 }
 
+/// True for a host and a port with a colon between. Names of serial ports may have colons too.
+fn is_place(text: &str) -> bool {
+    text.rsplit_once(':').is_some_and(|(host, port)| {
+        !host.is_empty()
+            && !host.contains(['/', '\\'])
+            && port.parse::<u16>().is_ok_and(|port| port != 0)
+    })
+}
+
 impl fmt::Display for GatewayAddress {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let protocol = match self.protocol {
-            Protocol::Tcp => "tcp",
-            Protocol::Udp => "udp",
-        };
-        write!(f, "{protocol}:{}", self.place)
+        write!(f, "{}:{}", self.protocol, self.place)
+    }
+}
+
+impl fmt::Display for Protocol {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Tcp => "tcp",
+            Self::Udp => "udp",
+        })
     }
 }
