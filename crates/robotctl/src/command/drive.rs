@@ -12,11 +12,10 @@ use robotctl::{
     drive::{Driver, Gains, JoystickMap, Limits, Wheels},
     pc_link::{PcLink, SharedLink},
     settings,
-    transport::Transport,
     tuning::{Timeouts, TuningClient},
 };
 
-use super::connection::Connection;
+use super::connection::serial_port;
 use controls::Controls;
 use session::Session;
 
@@ -38,8 +37,12 @@ Examples:
   robotctl drive --link /dev/ttyUSB0 --joystick /dev/input/js0 --map forward=1-,turn=0-,dead-man=0
       with another joystick; the screen shows the numbers of what you move")]
 pub struct Drive {
-    #[command(flatten)]
-    connection: Connection,
+    /// PC link: the serial port (/dev/ttyUSB0, COM4, the emulated board's /dev/pts/N) at UART2 of the C board
+    #[arg(long, value_name = "PORT", value_parser = serial_port)]
+    link: Option<String>,
+    /// CAN carries no commands of a PC.
+    #[arg(long, hide = true)]
+    can: Option<String>,
     /// Joystick of Linux, such as /dev/input/js0
     #[arg(long, value_name = "DEVICE")]
     joystick: Option<PathBuf>,
@@ -62,9 +65,13 @@ pub struct Drive {
 
 impl Drive {
     pub fn run(self) -> Result<()> {
-        let Transport::Link(port) = self.connection.transport()? else {
-            anyhow::bail!("driving needs the PC link: --link PORT instead of --can");
-        };
+        ensure!(
+            self.can.is_none(),
+            "driving needs the PC link: --link PORT instead of --can"
+        );
+        let port = self.link.clone().context(
+            "say where the robot is: --link /dev/ttyUSB0 or --link COM4, the port of the PC link",
+        )?;
         for (name, value) in [
             ("speed", self.speed),
             ("turn", self.turn),

@@ -36,6 +36,9 @@ impl fmt::Display for Obstacle {
             Self::Disarmed(blockers) if blockers.is_empty() => {
                 write!(f, "not armed: flip the enable switch off and on")
             }
+            Self::Disarmed(blockers) if blockers.iter().eq(["enable-off"]) => {
+                write!(f, "not armed: switch enable on")
+            }
             Self::Disarmed(blockers) => write!(
                 f,
                 "not armed ({}): `robotctl status` says what to do; then enable off and on",
@@ -52,5 +55,20 @@ impl fmt::Display for Obstacle {
                 flags.join(", ")
             ),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_switch_that_is_off_is_the_only_thing_to_do() {
+        let said = |blockers: &[&str]| {
+            let blockers = blockers.iter().map(|name| (*name).to_owned());
+            Obstacle::Disarmed(blockers.collect()).to_string()
+        };
+        assert_eq!(said(&["enable-off"]), "not armed: switch enable on");
+        assert!(said(&["enable-off", "battery-low"]).contains("battery-low"));
     }
 }

@@ -20,7 +20,7 @@ const PERIOD: Duration = Duration::from_millis(10);
 /// A question for a live page goes out every so many commands.
 const QUESTION_EVERY: u64 = 10;
 const REPAINT_EVERY: u64 = 10;
-/// The robot's state comes 416 times a second. Without one for this long, the link is down.
+/// The robot's state comes 417 times a second. Without one for this long, the link is down.
 const UPLINK_LOST: Duration = Duration::from_millis(300);
 /// The first state must come within this time.
 const FIRST_STATE: Duration = Duration::from_secs(2);
