@@ -55,7 +55,8 @@ struct Topics {
 pub struct LinkSummary {
     /// State frames.
     pub states: u64,
-    /// Frames whose time contradicts those around it. They were damaged, and their CRC fits by chance.
+    /// Frames with values that no robot sends, or whose time contradicts those around it. They were damaged, and their
+    /// CRC fits by chance.
     pub implausible: u64,
     /// How often the robot's time began again.
     pub restarts: u64,
@@ -65,7 +66,7 @@ pub struct LinkSummary {
     pub missing_s: f64,
     /// Time from the first frame to the last.
     pub duration_s: f64,
-    /// What the receiver has counted since the port was opened.
+    /// What the receiver has counted since its first good frame.
     pub counters: ScanCounters,
 }
 
@@ -104,7 +105,7 @@ impl LinkRecorder {
         for arrival in self.time.add(state) {
             self.add_arrival(&arrival)?;
         }
-        self.summary.implausible = self.time.implausible();
+        self.summary.implausible = traffic.implausible + self.time.implausible();
         Ok(())
     }
 

@@ -1,5 +1,8 @@
 //! Reaches the robot through the PC link (docs/pc-link.md): its state, commands to its motors, and the tuning channel.
 
+mod plausible;
+mod receiver;
+
 use std::{
     cell::RefCell,
     collections::VecDeque,
@@ -10,7 +13,7 @@ use std::{
 
 use robot_app::{
     domain::CanFrame,
-    link::{BAUD, Downlink, Heard, PcReceiver, ScanCounters, Tunnelled},
+    link::{BAUD, Downlink, Heard, ScanCounters, Tunnelled},
 };
 use serialport::{ClearBuffer, SerialPort};
 
@@ -18,6 +21,8 @@ use crate::{
     can_link::{CanLink, CanLinkError},
     serial_port,
 };
+use plausible::is_plausible;
+use receiver::Receiver;
 
 /// A port takes a frame within this time, unless nothing empties it.
 const WRITE_TIME: Duration = Duration::from_secs(1);
@@ -28,7 +33,7 @@ const SHORTEST_WAIT: Duration = Duration::from_millis(1);
 pub struct PcLink {
     name: String,
     port: Box<dyn SerialPort>,
-    receiver: PcReceiver,
+    receiver: Receiver,
     heard: VecDeque<Heard>,
     traffic: Traffic,
 }
@@ -39,6 +44,9 @@ pub struct Traffic {
     pub bytes: u64,
     /// Frames with the robot's state.
     pub states: u64,
+    /// Frames with values that no robot sends. They were damaged, and their CRC fits by chance.
+    pub implausible: u64,
+    /// Damage before the first good frame is not counted, as the port is opened in the middle of one.
     pub counters: ScanCounters,
 }
 
@@ -54,7 +62,7 @@ impl PcLink {
         Ok(Self {
             name: name.to_owned(),
             port,
-            receiver: PcReceiver::new(),
+            receiver: Receiver::default(),
             heard: VecDeque::new(),
             traffic: Traffic::default(),
         })
@@ -111,7 +119,14 @@ impl PcLink {
         } = self;
         traffic.bytes += count as u64;
         receiver.feed(&bytes[..count], |frame| {
-            traffic.states += u64::from(matches!(frame, Heard::Uplink(_)));
+            match &frame {
+                Heard::Uplink(state) if !is_plausible(state) => {
+                    traffic.implausible += 1;
+                    return;
+                }
+                Heard::Uplink(_) => traffic.states += 1,
+                Heard::Tunnel(_) => {}
+            }
             heard.push_back(frame);
         });
         Ok(())
@@ -173,17 +188,22 @@ pub fn why_silent(name: &str, traffic: &Traffic) -> String {
     let Traffic {
         bytes,
         states,
+        implausible,
         counters,
     } = traffic;
     if *bytes == 0 {
         format!(
             "nothing comes from {name}: is the robot on, is this the adapter at UART2 of the C board, and do ground, TX \
-             to RX and RX to TX connect the two (docs/pc-link.md)?"
+             to RX and RX to TX connect the two (docs/pc-link.md)? Or is it an slcan adapter: --can {name}?"
         )
     } else if counters.good == 0 {
         format!(
-            "{bytes} bytes came from {name}, but no frame of the robot: is another device there, or does its line not \
-             have {BAUD} baud, 8N1 and 3.3 V?"
+            "{bytes} bytes came from {name}, but no frame of the robot: does its line not have {BAUD} baud, 8N1 and \
+             3.3 V, or is another device there, such as an slcan adapter (--can {name})?"
+        )
+    } else if *states == 0 && *implausible > 0 {
+        format!(
+            "{name} brings states with values that no robot sends: does another program have it open, or is the line noisy?"
         )
     } else if *states == 0 {
         format!("{name} carries tunnelled frames, but not the robot's state: is a robot there?")
@@ -202,7 +222,9 @@ mod tests {
     #[test]
     fn silence_is_explained_by_what_was_heard() {
         let mut traffic = Traffic::default();
-        assert!(why_silent("COM4", &traffic).starts_with("nothing comes from COM4"));
+        let nothing = why_silent("COM4", &traffic);
+        assert!(nothing.starts_with("nothing comes from COM4"), "{nothing}");
+        assert!(nothing.contains("--can COM4"), "{nothing}");
         traffic.bytes = 7;
         assert!(why_silent("COM4", &traffic).contains("460800 baud"));
         traffic.counters.good = 1;

@@ -228,3 +228,33 @@ fn settings_are_read_through_the_link() {
     let said = String::from_utf8_lossy(&output.stdout).into_owned();
     assert_eq!(said, "wheel-geometry.radius-m = 0.5 m\n");
 }
+
+fn error_of(arguments: &[&str]) -> String {
+    let output = robotctl(arguments).output().expect("it runs");
+    assert!(!output.status.success(), "{arguments:?}");
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+#[test]
+fn a_wrong_way_to_the_robot_is_told_with_the_right_one() {
+    let robot = Robot::new(ARMED);
+    let port = &robot.port;
+    let said = error_of(&["status", "--can", port]);
+    let expected = format!("{port} speaks the PC link, not slcan: use --link {port}");
+    assert!(said.contains(&expected), "{said}");
+    let said = error_of(&["status", "--link", "tcp:192.168.0.7:20001"]);
+    assert!(said.contains("use --can"), "{said}");
+    let said = error_of(&["status", "--can", "192.168.0.7:20001"]);
+    assert!(said.contains("write tcp:192.168.0.7:20001"), "{said}");
+}
+
+/// As pyserial does with `exclusive=True`.
+#[test]
+fn a_port_that_another_program_has_locked_is_refused() {
+    let robot = Robot::new(ARMED);
+    let port = File::open(&robot.port).expect("it is there");
+    port.try_lock().expect("nobody else has it");
+    let said = error_of(&["status", "--link", &robot.port]);
+    assert!(said.contains("another program may have it open"), "{said}");
+    port.unlock().expect("it was locked");
+}

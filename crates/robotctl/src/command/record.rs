@@ -16,7 +16,7 @@ use super::connection::{Connection, examples};
 #[command(
     after_help = concat!(
         "What is recorded:\n",
-        "  --link PORT RUN.mcap     the robot's state, 416 times a second, armed or not\n",
+        "  --link PORT RUN.mcap     the robot's state, 417 times a second, armed or not\n",
         "  --can DEVICE RUN.mcap    all frames of the bus, and what the motors report in them; nothing is sent\n",
         "  any of both, RUN.csv     accelerometer, gyro and magnetometer of the disarmed robot, for `robotctl calibrate`\n",
         "`robotctl plot FILE` shows any of them; Foxglove and PlotJuggler open MCAP.\n\n",

@@ -195,7 +195,7 @@ pub fn transform(q_xyzw: [f32; 4], time_ns: u64) -> Value {
     })
 }
 
-/// The link's counters since the port was opened.
+/// The link's counters since the first good frame.
 #[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
 pub struct LinkCounters {
     pub states: u64,

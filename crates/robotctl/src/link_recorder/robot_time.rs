@@ -38,10 +38,6 @@ pub(super) struct RobotTime {
 impl RobotTime {
     /// Returns the frames that are known to be good now, in their order.
     pub fn add(&mut self, state: &Uplink) -> Vec<Arrival> {
-        if !plausible(state) {
-            self.implausible += 1;
-            return Vec::new();
-        }
         if self.first_s.is_some() && self.follows(state) {
             // A doubtful frame before it was a damaged one.
             self.implausible += u64::from(self.doubtful.take().is_some());
@@ -112,11 +108,6 @@ fn seconds(state: &Uplink) -> f64 {
 /// Returns the step of the robot's time.
 fn resolution_s(state: &Uplink) -> f64 {
     f64::from(state.time_s.next_up() - state.time_s)
-}
-
-/// No robot sends a negative time or one of years.
-fn plausible(state: &Uplink) -> bool {
-    (0.0..1e8).contains(&state.time_s)
 }
 
 fn confirms(before: &Uplink, state: &Uplink) -> bool {

@@ -235,7 +235,7 @@ impl<'a> StatePage<'a> {
             .map(|(n, count)| ((n as f64 + 0.5) * RATE_BIN_S, Some(count / RATE_BIN_S)));
         let words = Words {
             title: "State frames a second",
-            caption: "The robot sends 416 a second, fewer while it answers on the tuning channel.",
+            caption: "The robot sends 417 a second, fewer while it answers on the tuning channel.",
             unit: "1/s",
         };
         self.axis

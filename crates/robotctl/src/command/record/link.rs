@@ -69,6 +69,12 @@ fn report(summary: &LinkSummary) -> Result<()> {
         summary.counters.resyncs,
         summary.implausible
     )?;
+    if summary.implausible > 0 {
+        say!(
+            "note: a frame that is implausible was damaged: is the line noisy, or does another program have the port open? \
+             Only one may"
+        )?;
+    }
     match summary.gaps {
         0 => say!("gaps:   none longer than {:.1} ms", GAP_S * 1e3)?,
         gaps => say!(
