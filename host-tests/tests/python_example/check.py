@@ -1,5 +1,6 @@
 """Checks examples/pc_link.py against the golden frames: check.py EXAMPLE VECTORS, both folders."""
 
+import contextlib
 import csv
 import io
 import math
@@ -58,9 +59,9 @@ for row in rows("link_down.csv"):
 assert checked > 250, checked
 
 up = rows("link_up.csv")
-# Whole frames with garbage and a cut frame between them.
+# Whole frames with garbage and a cut frame between them. What follows on garbage does not count.
 stream = bytes.fromhex(up[0][31])[40:]
-stream += b"".join(bytes.fromhex(row[31]) + bytes(range(place % 3)) for place, row in enumerate(up))
+stream += b"".join(bytes.fromhex(row[31]) * 2 + bytes(range(1 + place % 3)) for place, row in enumerate(up))
 states = states_of(stream)
 assert len(states) == len(up), (len(states), len(up))
 for (seconds, key1, key2, angles, speeds), row in zip(states, up):
@@ -89,17 +90,15 @@ def drive(frames):
     def read():
         frame = next(source, None)
         if frame is None:
-            raise EOFError
+            raise EOFError("the drive does not end")
         return frame
 
     def write(frame):
         assert len(frame) == 38 and frame[0] == 0xFE and frame[37] == pc_link.crc8(frame[:37])
         commands.append(struct.unpack_from("<18H", frame, 1))
 
-    try:
-        pc_link.drive(read, write)
-    except EOFError:
-        return commands
+    pc_link.drive(read, write)
+    return commands
 
 
 def speed(command):
@@ -111,23 +110,31 @@ def joints(command):
     return [code / 65535 * 6.4 - 3.2 for code in command[6::3]]
 
 
-# Not ready for a second, then ready for five, then not ready, and ready again with other angles.
-ready = [False] * 400 + [True] * 2000 + [False] * 400 + [True] * 2000
+# Not ready for a second, ready for two, not ready for one, and ready for the rest with other angles.
+ready = [False] * 400 + [True] * 800 + [False] * 400 + [True] * 2000
 angle = [0.1 + place * 1e-4 for place in range(len(ready))]
 frames = [state_frame(place / 400, *pair) for place, pair in enumerate(zip(ready, angle))]
-commands = drive(frames)
-assert len(commands) == len(frames) / 4
-for first, last in ((0, 100), (600, 700)):
+frames.insert(0, frames[0])
+printed = io.StringIO()
+with contextlib.redirect_stdout(printed):
+    commands = drive(frames)
+for first, last in ((0, 100), (301, 400)):
     assert all(abs(speed(command)) < 0.01 for command in commands[first:last]), "it waits at rest"
-for begin in (100, 700):
-    at_rest, moving = commands[begin : begin + 50], commands[begin : begin + 300]
+for begin, end in ((100, 300), (400, len(commands))):
+    at_rest, moving = commands[begin : begin + 50], commands[begin:end]
     assert all(abs(speed(command)) < 0.01 for command in at_rest), "it starts from rest"
-    assert 1.0 < max(map(speed, moving)) <= 2.01, max(map(speed, moving))
+    assert abs(max(map(speed, moving)) - 1.25) < 0.02, max(map(speed, moving))
     steps = [later - earlier for earlier, later in zip(map(speed, moving), map(speed, moving[1:]))]
     assert max(map(abs, steps)) < 0.03, "1 rad/s each second"
     # The joints hold where they were when the robot became ready.
     for command in moving[1:]:
         assert all(abs(joint - angle[begin * 4]) < 0.001 for joint in joints(command))
-    assert speed(commands[begin + 310]) < 0.01, "it stops by itself"
+assert 740 < len(commands) < 760, "it ends half a second after the drive"
+assert all(abs(speed(command)) < 0.01 for command in commands[700:]), "it ends at rest"
 assert all(a != b for a, b in zip(commands, commands[1:])), "no two frames in a row are equal"
+told = [line.split(", ", 1)[1] for line in printed.getvalue().splitlines() if "target" not in line]
+waiting = "waiting: the radio's mode is not PC"
+assert told == [waiting, "driving", waiting, "driving", "done"], told
+assert pc_link.obstacle(0x01, 0x00) == "the radio is lost"
+assert pc_link.obstacle(0x20, 0x40).startswith("the robot is not armed")
 print("as in the golden frames")
