@@ -41,3 +41,20 @@ pub fn label_style() -> TextStyle<'static> {
         .color(&INK)
         .pos(Pos::new(HPos::Left, VPos::Top))
 }
+
+/// The label of a time in s.
+pub fn seconds(t_s: &f64) -> String {
+    // The zero makes a negative zero positive.
+    format!("{} s", (t_s * 1e4).round() / 1e4 + 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_short_and_have_their_unit() {
+        let labels = [-1e-9, 0.1 + 0.2, 12.0].map(|t| seconds(&t));
+        assert_eq!(labels, ["0 s", "0.3 s", "12 s"]);
+    }
+}

@@ -2,7 +2,11 @@
 
 use std::ops::Range;
 
-use crate::{ChartError, GREY, WIDTH, canvas::svg as draw_svg, label_style};
+use crate::{
+    ChartError, GREY, WIDTH,
+    canvas::{seconds, svg as draw_svg},
+    label_style,
+};
 use plotters::prelude::*;
 
 /// When one thing was on.
@@ -65,6 +69,7 @@ pub fn draw_lanes(lanes: &[Lane], time: Range<f64>, marks: &[f64]) -> Result<Str
             .axis_style(GREY)
             .label_style(label_style())
             .x_labels(12)
+            .x_label_formatter(&seconds)
             .y_labels(lanes.len())
             .y_label_formatter(&name)
             .draw()?;

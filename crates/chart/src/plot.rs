@@ -79,7 +79,7 @@ impl TimePlot<'_> {
             .margin(8)
             .margin_right(16)
             .x_label_area_size(26)
-            .y_label_area_size(64)
+            .y_label_area_size(UNIT_AND_LABELS)
             .build_cartesian_2d(self.time.clone(), range.clone())?;
         chart
             .configure_mesh()
@@ -89,6 +89,7 @@ impl TimePlot<'_> {
             .y_desc(self.unit)
             .label_style(label_style())
             .x_labels(12)
+            .x_label_formatter(&canvas::seconds)
             .y_labels(6)
             .draw()?;
         let tint = BLUE.mix(0.07).filled();
@@ -115,11 +116,16 @@ impl TimePlot<'_> {
     }
 }
 
+/// Room for the unit and labels of eight characters beside each other, in pixels.
+const UNIT_AND_LABELS: u32 = 90;
 /// Values smaller than this are shown as zero.
 const SHOWN_AS_ZERO: f64 = 1e-6;
+/// A range is at least this wide, and this share of its values. Labels have five decimals, so they differ then, and the
+/// noise of a value that stands still looks like it.
+const LEAST_SPAN: f64 = 0.02;
+const LEAST_SHARE: f64 = 0.005;
 
-/// Returns a range around all finite values, with room above and below. It is never empty, and where all values are zero
-/// it is wide enough for its labels to differ.
+/// Returns a range around all finite values, with room above and below. It is wide enough for its labels to differ.
 fn padded(values: impl Iterator<Item = f64>) -> Range<f64> {
     let finite = values.filter(|v| v.is_finite());
     let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
@@ -132,7 +138,8 @@ fn padded(values: impl Iterator<Item = f64>) -> Range<f64> {
     if size < SHOWN_AS_ZERO {
         return -1.0..1.0;
     }
-    let room = ((high - low) * 0.08).max(size * 1e-3);
+    let least = LEAST_SPAN.max(size * LEAST_SHARE);
+    let room = ((high - low) * 0.08).max(0.5 * (least - (high - low)));
     low - room..high + room
 }
 
@@ -211,4 +218,42 @@ pub fn draw_histogram(bins: &[u64], bin_width: f64, unit: &str) -> Result<String
         chart.draw_series(bars)?;
         Ok(())
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The labels are the texts of the drawing.
+    fn labels(value: f64) -> Vec<String> {
+        let plot = TimePlot {
+            unit: "",
+            height: 220,
+            time: 0.0..2.0,
+            marks: &[],
+            shaded: &[],
+            curves: vec![Curve {
+                label: String::new(),
+                colour: BLUE,
+                faint: false,
+                points: vec![(0.0, Some(value)), (2.0, Some(value))],
+            }],
+        };
+        let svg = plot.draw().unwrap().unwrap();
+        let lines = svg.lines().map(str::trim);
+        lines
+            .filter(|line| !line.is_empty() && !line.starts_with('<'))
+            .map(str::to_owned)
+            .collect()
+    }
+
+    #[test]
+    fn the_labels_of_a_constant_differ() {
+        for value in [0.0, 0.0005, -0.25, 24.0, 12_345.0] {
+            let labels = labels(value);
+            let different: std::collections::BTreeSet<_> = labels.iter().collect();
+            assert!(labels.len() > 10, "{value}: {labels:?}");
+            assert_eq!(different.len(), labels.len(), "{value}: {labels:?}");
+        }
+    }
 }

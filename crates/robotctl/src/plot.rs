@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 use robot_chart::{ChartError, document, header, paragraph};
 
-use crate::recording::RecordingError;
+use crate::{black_box::EVENT_TOPIC, recording::RecordingError};
 pub use black_box::event_page;
 use messages::Messages;
 
@@ -32,6 +32,10 @@ pub enum PlotError {
          has its plots in the report.html beside it"
     )]
     Unknown { path: PathBuf, topics: String },
+    #[error(
+        "{path} is an event of the black box; its page is {page}, which `robotctl blackbox` wrote with it"
+    )]
+    BlackBox { path: PathBuf, page: PathBuf },
     #[error(transparent)]
     Table(#[from] RecordingError),
     #[error(transparent)]
@@ -74,6 +78,11 @@ fn of_mcap(path: &Path) -> Result<Content, PlotError> {
         state::content(&messages)?
     } else if !messages.can.is_empty() {
         can::content(&messages)?
+    } else if messages.topics.contains(EVENT_TOPIC) {
+        return Err(PlotError::BlackBox {
+            path: path.to_owned(),
+            page: path.with_extension("html"),
+        });
     } else {
         let topics: Vec<&str> = messages.topics.iter().map(String::as_str).collect();
         return Err(PlotError::Unknown {

@@ -181,6 +181,12 @@ fn an_event_becomes_a_recording_and_a_page() {
     let event = download(&mut client, banks[0], |_| {}).expect("it is whole");
     let path = std::env::temp_dir().join(format!("robotctl-black-box-{}.mcap", std::process::id()));
     write(&event, &path).expect("a file");
+    let refused = plot::page(&path).expect_err("it has a page already");
+    let its_page = path.with_extension("html");
+    assert!(
+        refused.to_string().contains(&*its_page.to_string_lossy()),
+        "{refused}"
+    );
     let bytes = std::fs::read(&path).expect("it is there");
     let mut count = [0; 2];
     for message in mcap::MessageStream::new(&bytes).expect("an MCAP file") {

@@ -97,11 +97,15 @@ fn curves(messages: &Messages, start_s: f64, field: &str, topics: &str) -> Vec<(
                 false => *name == field,
             });
             for (name, value) in found {
-                let label = match topic == topics {
+                let motor = match topic == topics {
                     true => name.trim_start_matches(field).trim_end_matches("_a"),
                     false => topic.trim_start_matches(topics),
                 };
-                let points = curves.entry(label.to_owned()).or_default();
+                let label = match topics.starts_with("/esc/") {
+                    true => format!("ESC {motor}"),
+                    false => motor.to_owned(),
+                };
+                let points = curves.entry(label).or_default();
                 points.push((t_s - start_s, Some(*value)));
             }
         }

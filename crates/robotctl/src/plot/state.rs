@@ -315,7 +315,10 @@ impl<'a> StatePage<'a> {
             ),
             (
                 "gaps",
-                format!("{}, {missing_s:.2} s in all", self.axis.gaps.len()),
+                match self.axis.gaps.len() {
+                    0 => "none".to_owned(),
+                    gaps => format!("{gaps}, {missing_s:.2} s in all"),
+                },
             ),
             (
                 "CRC errors, discarded bytes",

@@ -85,7 +85,13 @@ fn a_recording_of_a_bus_shows_motors_and_identifiers() {
     }
     recorder.finish().unwrap();
     let page = page_of(&path);
-    for text in ["Rotor speeds", "Currents measured", "0x201", "0 silences"] {
+    for text in [
+        "Rotor speeds",
+        "Currents measured",
+        "0x201",
+        "0 silences",
+        "ESC 1<",
+    ] {
         assert!(page.contains(text), "{text}");
     }
     assert!(!page.contains("Joint angles"));

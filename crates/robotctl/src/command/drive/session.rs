@@ -198,7 +198,7 @@ impl Session {
         let (forward_mps, turn_rps) = self.driver.targets();
         let [left, right] = self.driver.wheel_targets_rps();
         let [left_is, right_is, joints @ ..] = state.motors;
-        let joints = joints.map(|joint| format!("{:+.2}", joint.pos_rad));
+        let joints = joints.map(|joint| signed(joint.pos_rad.into()));
         let traffic = self.link.traffic();
         let mode = self.robot.mode();
         let mode = mode.map_or("unknown".to_owned(), |mode| mode.to_string());
@@ -211,11 +211,16 @@ impl Session {
             String::new(),
             format!("robot     mode {mode}, {armed}"),
             format!(
-                "target    forward {forward_mps:+.2} m/s, turn {turn_rps:+.2} rad/s (left positive)"
+                "target    forward {} m/s, turn {} rad/s (left positive)",
+                signed(forward_mps),
+                signed(turn_rps)
             ),
             format!(
-                "wheels    left {:+.2} (target {left:+.2}), right {:+.2} (target {right:+.2}) rad/s",
-                left_is.vel_rps, right_is.vel_rps
+                "wheels    left {} (target {}), right {} (target {}) rad/s",
+                signed(left_is.vel_rps.into()),
+                signed(left),
+                signed(right_is.vel_rps.into()),
+                signed(right)
             ),
             format!("joints    {} rad", joints.join("  ")),
             format!(
@@ -230,5 +235,21 @@ impl Session {
         ];
         lines.extend(self.controls.help());
         lines
+    }
+}
+
+/// Two decimals with a sign. What rounds to zero is +0.00.
+fn signed(value: f64) -> String {
+    format!("{:+.2}", (value * 100.0).round() / 100.0 + 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::signed;
+
+    #[test]
+    fn a_negative_zero_is_shown_as_zero() {
+        let shown = [-0.001, -0.0, 0.016, -1.5].map(signed);
+        assert_eq!(shown, ["+0.00", "+0.00", "+0.02", "-1.50"]);
     }
 }
