@@ -54,7 +54,17 @@ pub fn succeeds(mut command: Command) -> bool {
     command.output().is_ok_and(|output| output.status.success())
 }
 
+/// Runs it to its end in front of the user, in our place: Ctrl-C reaches it alone, and the shell waits for it.
+#[cfg(unix)]
+pub fn exit_code_of(mut command: Command) -> anyhow::Result<ExitCode> {
+    use std::os::unix::process::CommandExt;
+
+    let name = command.get_program().to_string_lossy().into_owned();
+    Err(command.exec()).with_context(|| format!("cannot start {name}"))
+}
+
 /// Runs it to its end in front of the user. Its exit code becomes ours.
+#[cfg(not(unix))]
 pub fn exit_code_of(mut command: Command) -> anyhow::Result<ExitCode> {
     let name = command.get_program().to_string_lossy().into_owned();
     let status = command

@@ -40,6 +40,11 @@ pub trait Observer {
 
     /// Programs find the PC link on the serial device `device`; the run begins.
     fn link_port(&mut self, _device: &Path) {}
+
+    /// Returns whether the user wants the run to end now.
+    fn ends_run(&self) -> bool {
+        false
+    }
 }
 
 /// The result of a run.
@@ -54,6 +59,8 @@ pub struct RunResult {
     /// Suspicious settings and accesses, which do not fail the run.
     pub suspicions: Vec<BoardError>,
     pub stats: Stats,
+    /// Expectations that look past the time at which the user ended the run. They are not judged.
+    pub left_out: usize,
     /// Time that was actually simulated.
     pub ran: Ps,
     pub last_values: Values,
@@ -101,14 +108,15 @@ pub fn run<B: Simulation>(
     let mut events = scenario.events.iter().peekable();
     let mut now = 0;
     let mut stopped = None;
+    let mut end = scenario.length;
     run.sample(now, scenario.length == 0, observers);
-    while now < scenario.length {
+    while now < end {
         while let Some(timed) = events.next_if(|a| a.at <= now) {
             run.board.apply(&timed.event)?;
         }
         let next_sample = (now / SAMPLE_PERIOD + 1) * SAMPLE_PERIOD;
         let next_event_at = events.peek().map_or(Ps::MAX, |a| a.at);
-        let until = next_sample.min(next_event_at).min(scenario.length);
+        let until = next_sample.min(next_event_at).min(end);
         if let Err(why) = run.board.run_until(until) {
             stopped = Some(why.to_string());
             run.drain_log(observers);
@@ -120,10 +128,14 @@ pub fn run<B: Simulation>(
             run.drain_log(observers);
             break;
         }
-        if now == next_sample || now == scenario.length {
-            run.sample(now, now == scenario.length, observers);
+        if observers.iter().any(|observer| observer.ends_run()) {
+            end = now;
+        }
+        if now == next_sample || now == end {
+            run.sample(now, now == end, observers);
         }
     }
+    run.leave_out_after(end, scenario);
     let mut result = run.finish(scenario, now, stopped);
     result.ports = ports.can.iter().map(|p| (p.bus(), p.stats())).collect();
     result.link = ports.link.as_ref().map(LinkPort::stats);
@@ -203,6 +215,7 @@ struct Run<'a, B> {
     diag_seen: Option<Ps>,
     events: Vec<WireEvent>,
     watched: Vec<Watched>,
+    left_out: usize,
     flags: Option<usize>,
     safety_flags_seen: u64,
     attitude: AttitudeScore,
@@ -218,6 +231,7 @@ impl<'a, B: Simulation> Run<'a, B> {
         .with_meanings(board.diag_meanings());
         Self {
             watched: Watched::all(scenario, &table),
+            left_out: 0,
             signals: RunSignals::new(&table),
             flags: table.index("diag.safety.flags"),
             attitude: AttitudeScore::new(&table),
@@ -248,6 +262,14 @@ impl<'a, B: Simulation> Run<'a, B> {
         for observer in observers {
             observer.sample(now, &self.table, &self.values);
         }
+    }
+
+    /// Does not judge what looks past `end`, where the user ended the run.
+    fn leave_out_after(&mut self, end: Ps, scenario: &Scenario) {
+        let before = self.watched.len();
+        let inside = |w: &Watched| scenario.expectations[w.expectation].window.end <= end;
+        self.watched.retain(inside);
+        self.left_out = before - self.watched.len();
     }
 
     fn drain_log(&mut self, observers: &mut [&mut dyn Observer]) {
@@ -306,6 +328,7 @@ impl<'a, B: Simulation> Run<'a, B> {
             allowed_board_errors,
             suspicions: self.board.suspicions(),
             stats: self.board.stats(),
+            left_out: self.left_out,
             ran: end,
             last_values: self.values,
             safety_flags_seen: self.safety_flags_seen,

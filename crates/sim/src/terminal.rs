@@ -3,6 +3,10 @@
 use std::{
     io::IsTerminal,
     path::Path,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
     thread,
     time::{Duration, Instant},
 };
@@ -88,11 +92,13 @@ pub struct Terminal {
     level: LogLevel,
     colours: bool,
     realtime: bool,
+    interrupted: Arc<AtomicBool>,
     started: Instant,
 }
 
 impl Terminal {
-    pub fn new(length: Ps, level: LogLevel, realtime: bool) -> Self {
+    /// A run of `length`, which ends early once `interrupted` is true.
+    pub fn new(length: Ps, level: LogLevel, realtime: bool, interrupted: Arc<AtomicBool>) -> Self {
         let bar = ProgressBar::with_draw_target(
             Some(length / time::MS),
             ProgressDrawTarget::stderr_with_hz(10),
@@ -106,6 +112,7 @@ impl Terminal {
             level,
             colours: std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none(),
             realtime,
+            interrupted,
             started: Instant::now(),
         }
     }
@@ -144,6 +151,12 @@ impl Terminal {
             let text = format!("stopped at {:.4} s: {why}", summary.sim_seconds);
             println!("{}", painted(&text, Paint::Red, self.colours));
         }
+        if self.ends_run() {
+            println!(
+                "ended by Ctrl-C at {:.3} s: {} expectations look past that and are not judged",
+                summary.sim_seconds, outcome.result.left_out
+            );
+        }
         for verdict in &outcome.result.verdicts {
             self.print_failure(verdict);
         }
@@ -181,7 +194,9 @@ impl Terminal {
 
     fn print_budgets(&self, outcome: &Outcome) {
         let mut rows = outcome.summary.budgets.clone();
-        rows.push(budgets::speed_budget(outcome.summary.wall.realtime_factor));
+        if !self.realtime {
+            rows.push(budgets::speed_budget(outcome.summary.wall.realtime_factor));
+        }
         for Budget {
             name,
             limit,
@@ -262,6 +277,10 @@ impl Observer for Terminal {
             "PC link on {device}: robotctl status --link {device}, or any program, 460800 8N1"
         );
         self.bar.suspend(|| println!("{text}"));
+    }
+
+    fn ends_run(&self) -> bool {
+        self.interrupted.load(Ordering::Relaxed)
     }
 
     fn sample(&mut self, at: Ps, _: &SignalTable, _: &Values) {

@@ -1,6 +1,13 @@
 //! Boots a firmware image in the emulated C board and runs a scenario (`cargo xtask sim`).
 
-use std::{path::PathBuf, process::ExitCode};
+use std::{
+    path::PathBuf,
+    process::{self, ExitCode},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+};
 
 use anyhow::{Context, bail};
 use clap::Parser;
@@ -27,7 +34,7 @@ struct Args {
     /// Firmware image to boot.
     #[arg(long, required_unless_present = "list_faults")]
     elf: Option<PathBuf>,
-    /// Run for so long, instead of the scenario's own length.
+    /// Run for so long, instead of the scenario's own length. Ctrl-C ends it earlier, with a report.
     #[arg(long, value_name = "N")]
     seconds: Option<f64>,
     /// Folder for report.html, summary.json and run.mcap.
@@ -118,7 +125,8 @@ fn main() -> anyhow::Result<ExitCode> {
     if realtime && !args.realtime {
         println!("a PC takes part: real time, and not reproducible");
     }
-    let mut terminal = Terminal::new(job.scenario.length, args.log, realtime);
+    let interrupted = catch_interrupt()?;
+    let mut terminal = Terminal::new(job.scenario.length, args.log, realtime, interrupted);
     let outcome = job.run_into(&args.out, &mut terminal)?;
     terminal.conclude(&outcome);
     Ok(if outcome.summary.ok {
@@ -126,6 +134,19 @@ fn main() -> anyhow::Result<ExitCode> {
     } else {
         ExitCode::FAILURE
     })
+}
+
+/// From now on, the first Ctrl-C only sets this flag, and the second one ends the program.
+fn catch_interrupt() -> anyhow::Result<Arc<AtomicBool>> {
+    let flag = Arc::new(AtomicBool::new(false));
+    let caught = flag.clone();
+    ctrlc::set_handler(move || {
+        if caught.swap(true, Ordering::Relaxed) {
+            process::exit(130);
+        }
+    })
+    .context("cannot catch Ctrl-C")?;
+    Ok(flag)
 }
 
 impl Args {

@@ -150,6 +150,53 @@ fn a_pulse_between_two_samples_is_judged_by_its_frame() {
     assert!(run_double(&mut FakeBoard::default(), expect).ok());
 }
 
+/// A user who ends the run at that time, and the time of the last sample.
+struct Impatient {
+    ends_at: Ps,
+    last: Ps,
+}
+
+impl Observer for Impatient {
+    fn sample(&mut self, at: Ps, _: &SignalTable, _: &Values) {
+        self.last = at;
+    }
+
+    fn log(&mut self, _: &LogLine) {}
+
+    fn ends_run(&self) -> bool {
+        self.last >= self.ends_at
+    }
+}
+
+#[test]
+fn a_run_that_the_user_ends_is_judged_up_to_there() {
+    let until = |to: f64, bound: &str| {
+        format!("[[expect]]\nsignal = \"can.current_ma\"\nfrom = 0.0\nto = {to}\n{bound}\n")
+    };
+    let ended = |bound: &str| {
+        let body = until(0.01, bound) + &until(0.05, "min = 1000.0");
+        let text = format!("name = \"n\"\nseconds = 0.05\nplant = \"stand\"\n{body}");
+        let scenario = Scenario::parse(&text, "t.toml").unwrap();
+        let mut user = Impatient {
+            ends_at: 19 * MS,
+            last: 0,
+        };
+        let ports = &mut PcPorts::default();
+        let result = run(
+            &mut FakeBoard::default(),
+            &scenario,
+            ports,
+            &mut [&mut user],
+        );
+        result.unwrap()
+    };
+    let result = ended("max_abs = 0.0");
+    assert!(result.ok());
+    let left = (result.ran, result.verdicts.len(), result.left_out);
+    assert_eq!(left, (20 * MS, 1, 1));
+    assert!(!ended("min = 1000.0").ok(), "what was judged before counts");
+}
+
 #[test]
 fn diagnostics_that_are_not_there_or_stale_never_pass() {
     let expect = |from: f64, to: f64| {
