@@ -59,7 +59,7 @@ struct Seen {
 }
 
 fn start(work: Work) -> Image {
-    let full = image(Make::Dm4310, 126);
+    let full = image(Make::Dm4310, 124);
     let foreign = FOREIGN.into_iter().zip(125..);
     let full = foreign.fold(full, |image, ((id, version), slot)| {
         image.record(0, slot, id, &foreign_record(id, version))
