@@ -50,6 +50,7 @@ pub type LinkTransmitter = UartTransmitter<LINK_FRAME_LEN>;
 pub struct RadioInterrupt;
 
 impl Handler<interrupt::typelevel::USART3> for RadioInterrupt {
+    // SAFETY: `bind_interrupts` alone calls it, from the UART's interrupt; the body is safe code.
     unsafe fn on_interrupt() {
         RADIO_LINE.serve(RADIO_UART);
     }
@@ -59,6 +60,7 @@ impl Handler<interrupt::typelevel::USART3> for RadioInterrupt {
 pub struct LinkInterrupt;
 
 impl Handler<interrupt::typelevel::USART1> for LinkInterrupt {
+    // SAFETY: `bind_interrupts` alone calls it, from the UART's interrupt; the body is safe code.
     unsafe fn on_interrupt() {
         LINK_LINE.serve(LINK_UART);
     }

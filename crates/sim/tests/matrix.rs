@@ -22,6 +22,8 @@ mod link_rows;
 mod observed;
 #[path = "matrix/pc_law.rs"]
 mod pc_law;
+#[path = "matrix/row.rs"]
+mod row;
 
 use std::{
     collections::BTreeMap,
@@ -29,9 +31,9 @@ use std::{
     thread,
 };
 
-use expected::Row;
 use observed::{Observed, Phase};
 use robot_sim::faults;
+use row::Row;
 
 /// Observations by row and phase.
 type Cells = BTreeMap<(usize, Phase), Observed>;

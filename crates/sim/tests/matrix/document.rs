@@ -7,9 +7,9 @@ use robot_plant::time::MS;
 use crate::{
     Cells,
     driver::Driver,
-    expected::{After, Armed, Arms, Disarmed, Flags, Group, Moves, Row},
     judge,
     observed::{Observed, Phase, Wire},
+    row::{After, Armed, Arms, Disarmed, Flags, Group, Moves, Row},
     support,
 };
 

@@ -13,9 +13,10 @@ use robot_sim::{
 
 use crate::{
     driver::{Driver, PC_WHEEL_RPS},
-    expected::{After, Row},
     observed::{ARMED_SLACK, Observed, Phase, Wire},
-    pc_law, support,
+    pc_law,
+    row::{After, Row},
+    support,
 };
 
 const QUIET: &str = "name = \"matrix\"\nseconds = 10.0\nplant = \"stand\"\n";

@@ -4,8 +4,8 @@ use robot_plant::time::{MS, Ps};
 
 use crate::{
     driver::Driver,
-    expected::{After, Armed, Arms, Disarmed, Flags, Group, Moves, Row},
     observed::{Observed, Phase, Wire},
+    row::{After, Armed, Arms, Disarmed, Flags, Group, Moves, Row},
 };
 
 /// The span before an instant that shows the state at that instant.

@@ -5,10 +5,8 @@ use robot_plant::time::MS;
 
 use crate::{
     driver::Driver,
-    expected::{
-        After, Arms, Flags, Group, Moves, NEXT_FRAME_MS, REMOTE_LOST_MS, Row, flags, global,
-        harmless, row,
-    },
+    expected::{NEXT_FRAME_MS, REMOTE_LOST_MS},
+    row::{After, Arms, Flags, Group, Moves, Row, flags, global, harmless, row},
 };
 
 /// A command is at most 100 ms old, from the end of its last byte on, which came before the fault; then 3 ms to zero on
