@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::{event::RecordedEvent, json::summary};
 use crate::{
-    link_recorder::{Attitude, transform},
+    link_recorder::{Attitude, Joints, Wheels, transform},
     mcap_file::{McapFile, McapFileError},
 };
 
@@ -64,8 +64,8 @@ struct Message {
     gyro_rps: [f32; 3],
     attitude: Attitude,
     attitude_valid: bool,
-    wheels: Wheels,
-    joints: Joints,
+    wheels: Wheels<Wheel>,
+    joints: Joints<Joint>,
     flags: Vec<&'static str>,
     flag_bits: u32,
     can1: &'static str,
@@ -74,24 +74,10 @@ struct Message {
 }
 
 #[derive(Serialize)]
-struct Wheels {
-    left: Wheel,
-    right: Wheel,
-}
-
-#[derive(Serialize)]
 struct Wheel {
     speed_rps: f32,
     sent_a: f32,
     measured_a: f32,
-}
-
-#[derive(Serialize)]
-struct Joints {
-    left_front: Joint,
-    left_rear: Joint,
-    right_front: Joint,
-    right_rear: Joint,
 }
 
 #[derive(Serialize)]

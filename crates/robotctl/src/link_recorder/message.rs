@@ -58,17 +58,17 @@ pub struct Motor {
 }
 
 #[derive(Clone, Debug, Deserialize, Serialize)]
-pub struct Wheels {
-    pub left: Motor,
-    pub right: Motor,
+pub struct Wheels<T = Motor> {
+    pub left: T,
+    pub right: T,
 }
 
 #[derive(Clone, Debug, Deserialize, Serialize)]
-pub struct Joints {
-    pub left_front: Motor,
-    pub left_rear: Motor,
-    pub right_front: Motor,
-    pub right_rear: Motor,
+pub struct Joints<T = Motor> {
+    pub left_front: T,
+    pub left_rear: T,
+    pub right_front: T,
+    pub right_rear: T,
 }
 
 #[derive(Clone, Debug, Deserialize, Serialize)]
