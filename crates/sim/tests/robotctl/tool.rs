@@ -44,6 +44,7 @@ pub struct Tool<T> {
     work: Option<Work<T>>,
     transport: Option<Transport>,
     running: Option<thread::JoinHandle<anyhow::Result<T>>>,
+    ends_run: bool,
 }
 
 impl<T: Send + 'static> Tool<T> {
@@ -71,6 +72,7 @@ impl<T: Send + 'static> Tool<T> {
             work: Some(Box::new(work)),
             transport: None,
             running: None,
+            ends_run: false,
         }
     }
 
@@ -85,6 +87,18 @@ impl<T: Send + 'static> Tool<T> {
     /// Lets it begin at this time.
     pub fn starting_at(self, start: Ps) -> Self {
         Self { start, ..self }
+    }
+
+    /// Ends the run with the work. A tool that drives the robot takes as much of the robot's time as the computer is busy.
+    pub fn ending_the_run(self) -> Self {
+        Self {
+            ends_run: true,
+            ..self
+        }
+    }
+
+    fn is_done(&self) -> bool {
+        self.running.as_ref().is_some_and(|r| r.is_finished())
     }
 
     /// Result of the work, which must have ended before the run.
@@ -107,6 +121,10 @@ impl<T: Send + 'static> Observer for Tool<T> {
     }
 
     fn log(&mut self, _: &LogLine) {}
+
+    fn ends_run(&self) -> bool {
+        self.ends_run && self.is_done()
+    }
 
     fn can_port(&mut self, bus: CanBusId, device: &can_port::CanDevice) {
         if Wanted::Can(bus) == self.wanted {
