@@ -6,7 +6,9 @@ mod pose;
 mod rolling;
 mod shaft;
 mod stand;
+mod start;
 mod tilt;
+mod variation;
 mod wheels;
 
 use crate::{m3508::Friction, motion::Motion};
@@ -15,7 +17,9 @@ pub(crate) use legs::Legs;
 use pose::Pose;
 use rolling::Rolling;
 use stand::Stand;
+pub use start::Start;
 pub(crate) use tilt::{Stance, Tilt};
+pub use variation::Variation;
 pub(crate) use wheels::WHEEL_RADIUS_M;
 use wheels::WheelTorques;
 

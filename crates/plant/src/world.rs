@@ -29,7 +29,7 @@ use crate::{
 use tuning_replies::TuningReplies;
 
 pub use crate::{
-    body::PlantKind,
+    body::{PlantKind, Start, Variation},
     faults::FaultInfo,
     joints::JointKind,
     pc::{PcInput, PcJoints},
@@ -58,6 +58,10 @@ pub struct WorldConfig {
     pub mounting: Mounting,
     /// How the magnetometer sits on the board, relative to the IMU's axes, which no public source proves.
     pub mag_mounting: Mounting,
+    /// How the free robot lies or stands at power-on.
+    pub start: Start,
+    /// How the free robot differs from its file.
+    pub variation: Variation,
 }
 
 /// Why the world cannot be made or changed.

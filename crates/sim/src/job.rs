@@ -86,6 +86,7 @@ impl Job {
             mag_mounting: self.scenario.mag_mounting,
             seed: self.scenario.seed,
             imu_trial: self.imu_trial.clone(),
+            ..WorldConfig::default()
         })?;
         let mut machine = Machine::new(&self.elf, world)?;
         for patch in &self.patches {

@@ -17,6 +17,14 @@ pub struct RemoteInput {
     pub left_x: Option<f64>,
     /// Left stick, −1 … 1, up positive.
     pub left_y: Option<f64>,
+    /// Stand switch: up asks the robot to stand up and balance.
+    pub stand: Option<bool>,
+    /// Body height, −1 … 1, tall positive.
+    pub height: Option<f64>,
+    /// Roll of the body, −1 … 1, right side down positive.
+    pub roll: Option<f64>,
+    /// Jump button.
+    pub jump: Option<bool>,
 }
 
 /// Sticks in −1 … 1, switches as set. Starts disabled, centred, mode 0.
@@ -34,6 +42,12 @@ pub(crate) struct Pilot {
     pub left_y: f64,
     /// 0, 1 or 2.
     pub mode: u8,
+    pub stand: bool,
+    /// Tall positive.
+    pub height: f64,
+    /// Right side down positive.
+    pub roll: f64,
+    pub jump: bool,
 }
 
 impl Pilot {
@@ -45,5 +59,9 @@ impl Pilot {
         self.left_x = input.left_x.unwrap_or(self.left_x).clamp(-1.0, 1.0);
         self.left_y = input.left_y.unwrap_or(self.left_y).clamp(-1.0, 1.0);
         self.mode = input.mode.unwrap_or(self.mode).min(2);
+        self.stand = input.stand.unwrap_or(self.stand);
+        self.height = input.height.unwrap_or(self.height).clamp(-1.0, 1.0);
+        self.roll = input.roll.unwrap_or(self.roll).clamp(-1.0, 1.0);
+        self.jump = input.jump.unwrap_or(self.jump);
     }
 }

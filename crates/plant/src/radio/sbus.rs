@@ -36,7 +36,8 @@ pub(crate) fn frame(pilot: &Pilot, faults: RadioFaults) -> [u8; 25] {
 }
 
 /// Channel map of this robot's transmitter: 0 steering (right = high), 1 drive (forward = high), 2 left stick's vertical
-/// (up = high), 3 left stick's horizontal (right = high), 4 enable, 5 mode, 6 emergency stop.
+/// (up = high), 3 left stick's horizontal (right = high), 4 enable, 5 mode, 6 emergency stop, 7 stand,
+/// 8 jump, 9 height (tall = high), 10 roll (right side down = high).
 fn channels(pilot: &Pilot) -> [u16; 16] {
     let mut channels = [CENTRE; 16];
     channels[0] = stick(-pilot.wz);
@@ -46,6 +47,10 @@ fn channels(pilot: &Pilot) -> [u16; 16] {
     channels[4] = stick(if pilot.enable { 1.0 } else { -1.0 });
     channels[5] = stick(f64::from(pilot.mode) - 1.0);
     channels[6] = stick(if pilot.e_stop { 1.0 } else { -1.0 });
+    channels[7] = stick(if pilot.stand { 1.0 } else { -1.0 });
+    channels[8] = stick(if pilot.jump { 1.0 } else { -1.0 });
+    channels[9] = stick(pilot.height);
+    channels[10] = stick(pilot.roll);
     channels
 }
 
@@ -107,19 +112,15 @@ mod tests {
             left_x: 1.0,
             left_y: -1.0,
             mode: 2,
+            stand: true,
+            jump: false,
+            height: -1.0,
+            roll: 1.0,
         };
         let channels = channels(&pilot);
-        assert_eq!(channels[0], 172);
         assert_eq!(
-            [
-                channels[1],
-                channels[2],
-                channels[3],
-                channels[4],
-                channels[5],
-                channels[6]
-            ],
-            [992, 172, 1811, 1811, 1811, 172]
+            channels[..11],
+            [172, 992, 172, 1811, 1811, 1811, 172, 1811, 172, 172, 1811]
         );
     }
 }

@@ -56,6 +56,10 @@ fn state(earlier: &[&TimedEvent]) -> Vec<Event> {
                     mode: input.mode.or(pilot.mode),
                     left_x: input.left_x.or(pilot.left_x),
                     left_y: input.left_y.or(pilot.left_y),
+                    stand: input.stand.or(pilot.stand),
+                    height: input.height.or(pilot.height),
+                    roll: input.roll.or(pilot.roll),
+                    jump: input.jump.or(pilot.jump),
                 };
             }
             Event::Pc(input) => {
@@ -123,6 +127,10 @@ fn remote_text(input: &RemoteInput) -> String {
     field("left_x", input.left_x.map(|v| format!("{v:?}")));
     field("left_y", input.left_y.map(|v| format!("{v:?}")));
     field("mode", input.mode.map(|v| v.to_string()));
+    field("stand", input.stand.map(|v| v.to_string()));
+    field("height", input.height.map(|v| format!("{v:?}")));
+    field("roll", input.roll.map(|v| format!("{v:?}")));
+    field("jump", input.jump.map(|v| v.to_string()));
     fields.join(", ")
 }
 

@@ -48,6 +48,10 @@ struct Remote {
     mode: Option<u8>,
     left_x: Option<f64>,
     left_y: Option<f64>,
+    stand: Option<bool>,
+    height: Option<f64>,
+    roll: Option<f64>,
+    jump: Option<bool>,
 }
 
 pub(super) fn read_at(at: &At, seconds: f64, events: &mut Vec<TimedEvent>) -> Result<(), Problem> {
@@ -107,6 +111,8 @@ fn read_remote(remote: &Remote) -> Result<RemoteInput, Problem> {
         ("wz", remote.wz),
         ("left_x", remote.left_x),
         ("left_y", remote.left_y),
+        ("height", remote.height),
+        ("roll", remote.roll),
     ] {
         if value.is_some_and(|v| !(-1.0..=1.0).contains(&v)) {
             return Err(Problem::Stick(name));
@@ -123,6 +129,10 @@ fn read_remote(remote: &Remote) -> Result<RemoteInput, Problem> {
         mode: remote.mode,
         left_x: remote.left_x,
         left_y: remote.left_y,
+        stand: remote.stand,
+        height: remote.height,
+        roll: remote.roll,
+        jump: remote.jump,
     })
 }
 
