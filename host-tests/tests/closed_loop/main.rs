@@ -19,6 +19,10 @@ const ENABLE: RemoteInput = RemoteInput {
     mode: None,
     left_x: None,
     left_y: None,
+    stand: None,
+    height: None,
+    roll: None,
+    jump: None,
 };
 const DISABLE: RemoteInput = RemoteInput {
     enable: Some(false),
