@@ -1,4 +1,4 @@
-//! Python with the packages that foreign clients need, in an environment of its own below `target`.
+//! Python with the packages that a test needs, in environments of their own below `target`.
 
 use std::{
     fs::{self, File},
@@ -8,14 +8,39 @@ use std::{
     sync::LazyLock,
 };
 
-/// Packages with their versions, and all that they depend on, as `pip freeze` lists them.
-const PACKAGES: &str = include_str!("python_packages.txt");
-/// `can-waveshare` needs it.
-const IS_NEW_ENOUGH: &str =
-    "import sys; sys.version_info >= (3, 10) or sys.exit('it is ' + sys.version)";
-const IMPORTS_ALL: &str = "import can, can_waveshare, serial";
+/// Packages for one purpose, and what is made of them.
+struct Packages {
+    /// Folder of the environment, below `target`.
+    folder: &'static str,
+    /// Packages with their versions, and all that they depend on, as `pip freeze` lists them.
+    list: &'static str,
+    /// Python runs it if it is new enough for the list.
+    is_new_enough: &'static str,
+    /// Oldest version that is.
+    oldest: &'static str,
+    /// Python runs it if the environment is whole.
+    imports_all: &'static str,
+}
 
-/// An interpreter that imports `can`, `can_waveshare` and `serial`, in pinned versions.
+const CLIENTS: Packages = Packages {
+    folder: "python",
+    list: include_str!("python_packages.txt"),
+    // `can-waveshare` needs it.
+    is_new_enough: "import sys; sys.version_info >= (3, 10) or sys.exit('it is ' + sys.version)",
+    oldest: "3.10",
+    imports_all: "import can, can_waveshare, serial",
+};
+
+const SCIENCE: Packages = Packages {
+    folder: "python-science",
+    list: include_str!("python_science_packages.txt"),
+    // NumPy and SciPy need it.
+    is_new_enough: "import sys; sys.version_info >= (3, 11) or sys.exit('it is ' + sys.version)",
+    oldest: "3.11",
+    imports_all: "import mujoco, numpy, scipy, yourdfpy",
+};
+
+/// An interpreter that imports the packages of one purpose, in pinned versions.
 pub struct Python {
     interpreter: PathBuf,
 }
@@ -25,22 +50,21 @@ pub struct Python {
 struct Missing(String);
 
 impl Python {
-    /// Returns the interpreter. The first call on a computer makes the environment, and the others use it, also those of
-    /// other processes.
+    /// Returns an interpreter that imports `can`, `can_waveshare` and `serial`. The first call on a computer makes the
+    /// environment, and the others use it, also those of other processes.
     ///
     /// Returns `None` without Python 3.10, its module `venv`, or the network, and prints why: a test that then returns
     /// counts as skipped.
     pub fn with_packages() -> Option<Self> {
-        static MADE: LazyLock<Result<PathBuf, Missing>> = LazyLock::new(|| make(&folder()));
-        match &*MADE {
-            Ok(interpreter) => Some(Self {
-                interpreter: interpreter.clone(),
-            }),
-            Err(Missing(why)) => {
-                println!("skipped: no Python with its packages: {why}");
-                None
-            }
-        }
+        static MADE: LazyLock<Result<PathBuf, Missing>> = LazyLock::new(|| make(&CLIENTS));
+        found(&MADE)
+    }
+
+    /// As [`with_packages`](Self::with_packages), but imports `mujoco`, `numpy`, `scipy` and `yourdfpy`, and needs Python
+    /// 3.11. MuJoCo computes, but opens no window.
+    pub fn with_science() -> Option<Self> {
+        static MADE: LazyLock<Result<PathBuf, Missing>> = LazyLock::new(|| make(&SCIENCE));
+        found(&MADE)
     }
 
     /// Returns the command that runs `script`. What it prints is not held back in a buffer.
@@ -48,18 +72,36 @@ impl Python {
         let mut command = Command::new(&self.interpreter);
         // -I: nothing of the user's own packages and variables takes part.
         command.args(["-I", "-u"]).arg(script.as_ref());
+        command.env("MUJOCO_GL", "disable");
         command
     }
 }
 
-fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target/python")
+fn found(made: &Result<PathBuf, Missing>) -> Option<Python> {
+    match made {
+        Ok(interpreter) => Some(Python {
+            interpreter: interpreter.clone(),
+        }),
+        Err(Missing(why)) => {
+            println!("skipped: no Python with its packages: {why}");
+            None
+        }
+    }
 }
 
-/// Makes the environment in `folder` unless it is there already. Processes wait for each other.
-fn make(folder: &Path) -> Result<PathBuf, Missing> {
+impl Packages {
+    fn folder(&self) -> PathBuf {
+        Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("../../target")
+            .join(self.folder)
+    }
+}
+
+/// Makes the environment unless it is there already. Processes wait for each other.
+fn make(packages: &Packages) -> Result<PathBuf, Missing> {
+    let folder = packages.folder();
     let failed = |error: io::Error| Missing(format!("{}: {error}", folder.display()));
-    fs::create_dir_all(folder).map_err(failed)?;
+    fs::create_dir_all(&folder).map_err(failed)?;
     let lock = File::create(folder.join("lock")).map_err(failed)?;
     lock.lock().map_err(failed)?;
     let environment = folder.join("environment");
@@ -70,29 +112,35 @@ fn make(folder: &Path) -> Result<PathBuf, Missing> {
     });
     // Written last, so that an environment left half made is made anew.
     let list = environment.join("packages.txt");
-    let is_made = fs::read_to_string(&list).is_ok_and(|made_of| made_of == PACKAGES)
-        && run(Command::new(&interpreter).args(["-I", "-c", IMPORTS_ALL])).is_ok();
+    let is_made = fs::read_to_string(&list).is_ok_and(|made_of| made_of == packages.list)
+        && imports_all(packages, &interpreter).is_ok();
     if !is_made {
-        create(&environment, &interpreter)?;
-        fs::write(&list, PACKAGES).map_err(failed)?;
+        create(packages, &environment, &interpreter)?;
+        fs::write(&list, packages.list).map_err(failed)?;
     }
     Ok(interpreter)
 }
 
-fn create(environment: &Path, interpreter: &Path) -> Result<(), Missing> {
+fn create(packages: &Packages, environment: &Path, interpreter: &Path) -> Result<(), Missing> {
     let python = if cfg!(windows) { "python" } else { "python3" };
-    run(Command::new(python).args(["-c", IS_NEW_ENOUGH]))
-        .map_err(|Missing(why)| Missing(format!("it needs 3.10 or newer: {why}")))?;
+    run(Command::new(python).args(["-c", packages.is_new_enough]))
+        .map_err(|Missing(why)| Missing(format!("it needs {} or newer: {why}", packages.oldest)))?;
     run(Command::new(python)
         .args(["-m", "venv", "--clear"])
         .arg(environment))?;
     let wanted = environment.join("wanted.txt");
-    fs::write(&wanted, PACKAGES).map_err(|error| Missing(error.to_string()))?;
+    fs::write(&wanted, packages.list).map_err(|error| Missing(error.to_string()))?;
     run(Command::new(interpreter)
         .args(["-m", "pip", "install", "--quiet", "--no-input", "--no-deps"])
         .args(["--disable-pip-version-check", "--retries", "2", "-r"])
         .arg(wanted))?;
-    run(Command::new(interpreter).args(["-I", "-c", IMPORTS_ALL]))
+    imports_all(packages, interpreter)
+}
+
+fn imports_all(packages: &Packages, interpreter: &Path) -> Result<(), Missing> {
+    run(Command::new(interpreter)
+        .args(["-I", "-c", packages.imports_all])
+        .env("MUJOCO_GL", "disable"))
 }
 
 /// Runs a command to its end. The reason of a failure is the last line that it printed.
@@ -126,15 +174,18 @@ mod tests {
 
     #[test]
     fn the_packages_are_those_of_the_list() {
-        let Some(python) = Python::with_packages() else {
-            return;
-        };
-        let script = folder().join("versions.py");
-        fs::write(&script, VERSIONS).expect("a folder for it");
-        let output = python.command(script).output().expect("it starts");
-        let versions = String::from_utf8(output.stdout).expect("text");
-        for package in PACKAGES.lines() {
-            assert!(versions.lines().any(|line| line == package), "{versions}");
+        for (python, packages) in [
+            (Python::with_packages(), &CLIENTS),
+            (Python::with_science(), &SCIENCE),
+        ] {
+            let Some(python) = python else { continue };
+            let script = packages.folder().join("versions.py");
+            fs::write(&script, VERSIONS).expect("a folder for it");
+            let output = python.command(script).output().expect("it starts");
+            let versions = String::from_utf8(output.stdout).expect("text");
+            for package in packages.list.lines() {
+                assert!(versions.lines().any(|line| line == package), "{versions}");
+            }
         }
     }
 
