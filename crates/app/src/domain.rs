@@ -1,5 +1,6 @@
 //! Types that all stages share. They are plain `repr(C)` data, so a debugger and the emulator can read them by name.
 
+mod balance;
 mod black_box_status;
 mod can;
 mod command;
@@ -17,6 +18,7 @@ mod remote_mapping;
 mod sensors;
 mod tuning_status;
 
+pub use balance::{BalanceState, BalanceStatus, StandPermit, StandUpPhase};
 pub use black_box_status::{BankState, BankStatus, BlackBoxStatus, EventKind};
 pub use can::{BusId, CanFrame, MotorBuses, StandardId};
 pub use command::{

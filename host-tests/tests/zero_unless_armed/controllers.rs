@@ -2,7 +2,7 @@
 
 use robot_app::{
     control::{ChassisController, ChassisControllerInput, ChassisControllerOutput},
-    domain::{ChassisCommand, JointCommand, WheelCommand},
+    domain::{BalanceStatus, ChassisCommand, JointCommand, WheelCommand},
 };
 
 /// A faulty user controller that requests arbitrary commands.
@@ -30,6 +30,7 @@ impl ChassisController for Rogue {
                 joints: [self.joint; 4],
             },
             cmd_valid: true,
+            balance: BalanceStatus::SIT,
         }
     }
 

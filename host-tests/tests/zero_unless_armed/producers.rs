@@ -105,7 +105,11 @@ fn logic_bus(phase: &Phase, now_us: u64) -> LogicBus {
     let (vx, wz) = phase.sticks;
     let (current_ma, joint) = phase.direct.unwrap_or_default();
     LogicBus {
-        hl_cmd: HighLevelCommand { vx, wz },
+        hl_cmd: HighLevelCommand {
+            vx,
+            wz,
+            ..HighLevelCommand::default()
+        },
         hl_valid: phase.mode != DriveMode::Pc,
         cmd: ChassisCommand {
             wheels: [WheelCommand { current_ma }; 2],

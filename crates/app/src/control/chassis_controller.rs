@@ -1,8 +1,8 @@
 //! The interface of a controller.
 
 use crate::domain::{
-    ChassisCommand, HighLevelCommand, JointControllerConfig, OperatorState, SensorsSnapshot,
-    StateEstimate, WheelControllerConfig, WheelOdomConfig,
+    BalanceStatus, ChassisCommand, HighLevelCommand, JointControllerConfig, OperatorState,
+    SensorsSnapshot, StandPermit, StateEstimate, WheelControllerConfig, WheelOdomConfig,
 };
 
 /// What a controller gets in one tick.
@@ -22,6 +22,8 @@ pub struct ChassisControllerInput<'a> {
     pub operator_state: &'a OperatorState,
     /// The command to follow. Its components are meant to lie in −1…1, but may not.
     pub hl_cmd: HighLevelCommand,
+    /// Whether the robot may stand up or stand. A controller stands only while this and the command say so.
+    pub stand: StandPermit,
     /// The wheel commands of this tick are discarded. Controllers restart what integrates wheel errors.
     pub wheels_stopped: bool,
     /// The joint commands of this tick are discarded.
@@ -35,6 +37,8 @@ pub struct ChassisControllerOutput {
     pub cmd: ChassisCommand,
     /// Whether `cmd` is valid. If not, every actuator gets zero.
     pub cmd_valid: bool,
+    /// State of the balance controller. Any state but `Sit` makes every stop of a part a stop of everything.
+    pub balance: BalanceStatus,
 }
 
 /// A control algorithm. It is called at 1 kHz while the robot is armed and a valid, fresh high-level command is

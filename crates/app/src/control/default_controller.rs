@@ -5,8 +5,8 @@ use super::{
 };
 use crate::{
     domain::{
-        ChassisCommand, HighLevelCommand, WheelCommand, WheelControllerConfig, WheelFeedback,
-        WheelOdomConfig,
+        BalanceStatus, ChassisCommand, HighLevelCommand, WheelCommand, WheelControllerConfig,
+        WheelFeedback, WheelOdomConfig,
     },
     math::scalar,
 };
@@ -15,7 +15,8 @@ use crate::{
 ///
 /// ```
 /// use robot_app::control::{ChassisController, ChassisControllerInput, DefaultController};
-/// use robot_app::domain::{HighLevelCommand, OperatorState, RobotConfig, SensorsSnapshot, StateEstimate};
+/// use robot_app::domain::{HighLevelCommand, OperatorState, RobotConfig, SensorsSnapshot, StandPermit};
+/// use robot_app::domain::StateEstimate;
 ///
 /// let config = RobotConfig::default();
 /// let output = DefaultController::default().step(&ChassisControllerInput {
@@ -25,7 +26,8 @@ use crate::{
 ///     wheel_ctrl_cfg: &config.wheel_ctrl,
 ///     joint_ctrl_cfg: &config.joint_ctrl,
 ///     operator_state: &OperatorState::default(),
-///     hl_cmd: HighLevelCommand { vx: 0.05, wz: 0.0 },
+///     hl_cmd: HighLevelCommand { vx: 0.05, ..Default::default() },
+///     stand: StandPermit::Ready,
 ///     wheels_stopped: false,
 ///     joints_stopped: false,
 /// });
@@ -56,6 +58,7 @@ impl ChassisController for DefaultController {
                 joints: self.pose.step(&motor.joints, input.joint_ctrl_cfg),
             },
             cmd_valid: true,
+            balance: BalanceStatus::SIT,
         }
     }
 
@@ -99,7 +102,8 @@ fn wheel_command(
 mod tests {
     use super::*;
     use crate::domain::{
-        JointControllerConfig, JointState, OperatorState, SensorsSnapshot, StateEstimate,
+        JointControllerConfig, JointState, OperatorState, SensorsSnapshot, StandPermit,
+        StateEstimate,
     };
 
     fn command(
@@ -115,11 +119,20 @@ mod tests {
             joint_ctrl_cfg: &JointControllerConfig::default(),
             operator_state: &OperatorState::default(),
             hl_cmd,
+            stand: StandPermit::Ready,
             wheels_stopped: false,
             joints_stopped: false,
         });
         assert!(output.cmd_valid);
         output.cmd
+    }
+
+    fn drive(vx: f32, wz: f32) -> HighLevelCommand {
+        HighLevelCommand {
+            vx,
+            wz,
+            ..HighLevelCommand::default()
+        }
     }
 
     fn step(hl_cmd: HighLevelCommand, rpm: [i16; 2], age_us: u32) -> [f32; 2] {
@@ -155,7 +168,7 @@ mod tests {
     /// 0.05 · 1.5 m/s = 0.075 m/s, times 60 A per m/s = 4.5 A. The right motor sits mirrored.
     #[test]
     fn driving_forward_pushes_both_wheels_forward() {
-        let [left, right] = step(HighLevelCommand { vx: 0.05, wz: 0.0 }, [0, 0], 0);
+        let [left, right] = step(drive(0.05, 0.0), [0, 0], 0);
         assert!((left - 4_500.0).abs() < 0.5 && (right + 4_500.0).abs() < 0.5);
     }
 
@@ -163,26 +176,26 @@ mod tests {
     /// right.
     #[test]
     fn a_left_turn_drives_the_right_wheel_forward() {
-        let [left, right] = step(HighLevelCommand { vx: 0.0, wz: 0.05 }, [0, 0], 0);
+        let [left, right] = step(drive(0.0, 0.05), [0, 0], 0);
         assert!((left + 2_520.0).abs() < 0.5 && (right + 2_520.0).abs() < 0.5);
     }
 
     /// A wheel of 0.06 m radius at 0.6 m/s turns at 10 rad/s, which is 95.49 rpm, or 1833.8 rpm at the rotor.
     #[test]
     fn at_the_target_speed_the_current_is_close_to_zero() {
-        let [left, right] = step(HighLevelCommand { vx: 0.4, wz: 0.0 }, [1834, -1834], 0);
+        let [left, right] = step(drive(0.4, 0.0), [1834, -1834], 0);
         assert!(left.abs() < 20.0 && right.abs() < 20.0, "{left} {right}");
     }
 
     #[test]
     fn the_current_at_full_stick_from_standstill_is_limited() {
-        let [left, right] = step(HighLevelCommand { vx: 1.0, wz: 0.0 }, [0, 0], 0);
+        let [left, right] = step(drive(1.0, 0.0), [0, 0], 0);
         assert_eq!((left, right), (8_000.0, -8_000.0));
     }
 
     #[test]
     fn without_feedback_the_current_is_proportional_to_the_stick() {
-        let [left, right] = step(HighLevelCommand { vx: 1.0, wz: 0.0 }, [3000, 0], 50_001);
+        let [left, right] = step(drive(1.0, 0.0), [3000, 0], 50_001);
         assert_eq!((left, right), (1_500.0, -1_500.0));
     }
 }

@@ -10,6 +10,14 @@ pub struct HighLevelCommand {
     pub vx: f32,
     /// Turn, −1…1, counter-clockwise from above positive.
     pub wz: f32,
+    /// Leg length while standing, −1…1: shortest, middle, longest.
+    pub height: f32,
+    /// Roll while standing, −1…1, right side down positive.
+    pub roll: f32,
+    /// Jump. It is set from the pilot's request on for a tenth of a second.
+    pub jump: bool,
+    /// Stand up and balance. Without it the robot sits down.
+    pub stand: bool,
 }
 
 /// Current of one wheel motor in the motor's own direction (see `WheelFeedback`). A requested current may have any

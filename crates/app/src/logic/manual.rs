@@ -11,6 +11,7 @@ pub(super) fn drive(remote: &RemoteState, stick_centre: f32) -> HighLevelCommand
     HighLevelCommand {
         vx: outside_dead_band(remote.vx, stick_centre),
         wz: outside_dead_band(remote.wz, stick_centre),
+        ..HighLevelCommand::default()
     }
 }
 

@@ -36,7 +36,10 @@ impl CustomLogic for Counting {
         self.0 += 1;
         if self.0 > 2 {
             let vx = inputs.battery_v;
-            return LogicDecision::Drive(HighLevelCommand { vx, wz: 0.0 });
+            return LogicDecision::Drive(HighLevelCommand {
+                vx,
+                ..HighLevelCommand::default()
+            });
         }
         let mut command = ChassisCommand::default();
         command.wheels[0].current_ma = f32::from(self.0);

@@ -3,7 +3,7 @@
 use super::{ControlInputs, ControlLoop};
 use crate::{
     control::{ChassisController, ChassisControllerInput, ChassisControllerOutput, pc_law},
-    domain::{ChassisCommand, HighLevelCommand, LogicBus, PcCommand, age_us},
+    domain::{ChassisCommand, HighLevelCommand, LogicBus, PcCommand, StandPermit, age_us},
     safety::{SafetyFlags, TorquePermit},
 };
 
@@ -117,6 +117,7 @@ impl<C: ChassisController> ControlLoop<C> {
             joint_ctrl_cfg: &self.config.joint_ctrl,
             operator_state: &inputs.remote.operator,
             hl_cmd,
+            stand: StandPermit::SwitchMustGoDown,
             wheels_stopped: stopped.wheels,
             joints_stopped: stopped.joints,
         })
