@@ -4,11 +4,9 @@ mod legs;
 mod motion;
 mod mounting;
 mod pc;
-mod robot;
-mod sensors;
 
-use robot::Robot;
 use robot_app::safety::{ArmingBlockers, SafetyFlags, SafetyVerdict};
+use robot_host_loop::Robot;
 use robot_plant::world::{PlantKind, RadioKind, RemoteInput};
 
 const ENABLE: RemoteInput = RemoteInput {
@@ -231,6 +229,6 @@ fn rolling_covers_the_commanded_distance_and_turn() {
 
 #[test]
 fn the_same_run_sends_the_same_bytes() {
-    let digest = || driving(PlantKind::Stand, RadioKind::Sbus).sent_digest;
+    let digest = || driving(PlantKind::Stand, RadioKind::Sbus).sent_digest();
     assert_eq!(digest(), digest());
 }

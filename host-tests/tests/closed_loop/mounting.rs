@@ -3,7 +3,7 @@
 use robot_app::domain::{MountingConfig, Orientation, RobotConfig};
 use robot_plant::world::{PlantKind, WorldConfig};
 
-use crate::{ENABLE, FORWARD, assert_still, blockers, robot::Robot, sticks};
+use crate::{ENABLE, FORWARD, Robot, assert_still, blockers, sticks};
 
 /// Names as the world understands them.
 fn robot(board: &str, mag: &str, mounting: MountingConfig) -> Robot {
@@ -17,7 +17,7 @@ fn robot(board: &str, mag: &str, mounting: MountingConfig) -> Robot {
         mounting,
         ..RobotConfig::default()
     };
-    Robot::in_world(world, config)
+    Robot::in_world(world, config).expect("there is no recording to load")
 }
 
 #[test]

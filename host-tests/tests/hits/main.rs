@@ -9,8 +9,6 @@ mod board;
 mod motion;
 mod record;
 mod run;
-#[path = "../closed_loop/sensors.rs"]
-mod sensors;
 
 use motion::{Base, Impact};
 use robot_test_support::{Random, Vector};

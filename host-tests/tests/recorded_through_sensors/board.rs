@@ -9,14 +9,13 @@ use robot_app::{
     },
     estimation::InsEstimator,
 };
+use robot_host_loop::Sensors;
 use robot_plant::{
     recording,
     time::{MS, Ps, US},
     world::{PlantKind, World, WorldConfig},
 };
 use robot_replay::{Mode, Run, Tick};
-
-use crate::sensors::Sensors;
 
 const IMU_PERIOD: Ps = 5 * MS;
 const MAG_PERIOD: Ps = 20 * MS;
@@ -121,7 +120,7 @@ impl Board {
                 self.mag_at += MAG_PERIOD;
             }
         }
-        if let Some(Ok(state)) = self.sensors.fetch_mag(world, self.tick_at) {
+        if let Ok(Some(state)) = self.sensors.fetch_mag(world, self.tick_at) {
             self.mag = state;
         }
         let now_us = self.tick_at / US;

@@ -5,8 +5,6 @@
 //! this is built. Without them these tests count as ignored.
 
 mod board;
-#[path = "../closed_loop/sensors.rs"]
-mod sensors;
 
 use std::path::{Path, PathBuf};
 

@@ -25,8 +25,7 @@ impl World {
     /// The next instant at which the board could notice something: a character on the line of radio or PC, a motor's frame, or the
     /// end of a magnetometer conversion. The mechanics before it need no call of [`advance`](Self::advance).
     pub fn next_event(&self) -> Ps {
-        let [left, right] = &self.escs;
-        let mut next = left.next_feedback().min(right.next_feedback());
+        let mut next = self.next_can_event();
         next = next.min(self.radio.next_event(self.now));
         next = next.min(self.pc.next_event(self.now));
         next = next.min(self.mag.next_event());
@@ -34,6 +33,13 @@ impl World {
             at if at > self.now => next = next.min(at),
             _ => {}
         }
+        next
+    }
+
+    /// The next instant at which a motor has a frame to send. One that waits already does not count.
+    pub fn next_can_event(&self) -> Ps {
+        let [left, right] = &self.escs;
+        let mut next = left.next_feedback().min(right.next_feedback());
         for joint in &self.joints {
             match joint.reply_at() {
                 Some(at) if at > self.now => next = next.min(at),

@@ -1,32 +1,50 @@
-//! The whole app without a chip. Every wire of the simulated world leads to the app's own decoders.
+//! The robot: stages of the app, joined by the simulated world instead of the tasks of the image.
 
 use robot_app::{
     control::UserController,
     diagnostics::DiagnosticsSnapshot,
     domain::{
         ChassisCommand, FlashRequest, ImuState, LogicBus, MagState, ParamStatus, PcCommand,
-        RemoteUpdate, RobotConfig, SafetyConfig, SystemHealth,
+        RemoteUpdate, RobotConfig, SystemHealth,
     },
-    input::{RemoteFormat, RemoteMapping, RemoteReceiver},
+    input::{RemoteFormat, RemoteReceiver},
     logic::{LogicInputs, LogicStage, UserLogic},
+    motor::layout::{MotorLayout, ROBOT_LAYOUT, RS00_LAYOUT},
     safety::{ArmingState, WatchdogPeriod},
     tick::{ControlInputs, ControlLoop},
 };
 use robot_plant::{
-    time::{MS, Ps, US},
-    world::{PlantKind, RadioKind, RemoteInput, WireEvent, World, WorldConfig},
+    time::{MS, Ps, US, to_seconds},
+    world::{
+        JointKind, PlantKind, RadioKind, RemoteInput, WireEvent, World, WorldConfig, WorldError,
+    },
 };
-use robot_test_support::CanWires;
 
-use crate::sensors::Sensors;
+use crate::{buses::Buses, sensors::Sensors};
 
+const TICK: Ps = MS;
+const IMU_PERIOD: Ps = 5 * MS;
+/// The IMU is read this long before the tick that uses its sample.
+const IMU_LEAD: Ps = 200 * US;
+const MAG_PERIOD: Ps = 20 * MS;
+const LOGIC_PERIOD: Ps = 10 * MS;
+const BATTERY_PERIOD: Ps = 240 * MS;
+/// Duration of a tick up to its first frame: about 8,000 instructions at 168 MHz.
+const TICK_COMPUTES: Ps = 50 * US;
+/// A radio character with its start and stop bits at 100 kBd.
+const CHARACTER: Ps = 120 * US;
+
+/// A robot and the world around it.
 pub struct Robot {
     world: World,
     now: Ps,
+    buses: Buses,
     receiver: RemoteReceiver,
+    radio_bytes: Vec<u8>,
     sensors: Sensors,
     logic_stage: LogicStage,
     control: ControlLoop<UserController>,
+    config: RobotConfig,
     remote: RemoteUpdate,
     imu: ImuState,
     mag: MagState,
@@ -34,45 +52,63 @@ pub struct Robot {
     health: SystemHealth,
     diagnostics: DiagnosticsSnapshot,
     wheel_currents_ma: [f64; 2],
+    wire_events: Vec<WireEvent>,
     /// Direct command of a user's logic, which bypasses the controller.
     pub direct: Option<ChassisCommand>,
     /// What the PC sends every 10 ms.
     pub pc: Option<PcCommand>,
     /// What came last.
     pc_command: PcCommand,
-    /// Every byte sent on CAN so far, folded into one number.
-    pub sent_digest: u64,
+    sent_digest: u64,
 }
 
 impl Robot {
     /// A robot that is powered on and has its sensors brought up. Its time is slightly above zero.
+    ///
+    /// # Panics
+    /// A sensor does not answer.
     pub fn new(plant: PlantKind, radio: RadioKind) -> Self {
         let world = WorldConfig {
             plant,
             radio,
+            seed: 7,
             ..WorldConfig::default()
         };
-        Self::in_world(world, RobotConfig::default())
+        Self::in_world(world, RobotConfig::default()).expect("there is no recording to load")
     }
 
-    pub fn in_world(world: WorldConfig, config: RobotConfig) -> Self {
+    /// The same in any world, with these settings.
+    ///
+    /// # Errors
+    /// The recorded trial of the world cannot be read.
+    ///
+    /// # Panics
+    /// A sensor does not answer.
+    pub fn in_world(world: WorldConfig, config: RobotConfig) -> Result<Self, WorldError> {
         let format = match world.radio {
             RadioKind::Sbus => RemoteFormat::Sbus,
             RadioKind::Dbus => RemoteFormat::Dbus,
         };
-        let world = World::new(WorldConfig {
-            seed: 7,
-            imu_trial: None,
-            ..world
-        })
-        .expect("no recording to load");
-        let mut robot = Self {
+        let layout: &'static MotorLayout = match world.joints {
+            JointKind::Dm4310 => &ROBOT_LAYOUT,
+            JointKind::Rs00 => &RS00_LAYOUT,
+        };
+        let mut world = World::new(world)?;
+        let mut sensors = Sensors::new();
+        sensors.set_mounting(&config.mounting);
+        let up = sensors.bring_up(&mut world, 0);
+        let now = up.next_multiple_of(20 * MS);
+        world.advance(now);
+        Ok(Self {
             world,
-            now: 0,
-            receiver: RemoteReceiver::new(format, RemoteMapping::default()),
-            sensors: Sensors::new(),
+            now,
+            buses: Buses::new(),
+            receiver: RemoteReceiver::new(format, config.radio),
+            radio_bytes: Vec::new(),
+            sensors,
             logic_stage: LogicStage::new(UserLogic),
-            control: ControlLoop::new(config, UserController::default()),
+            control: ControlLoop::with_layout(layout, config, UserController::default()),
+            config,
             remote: RemoteUpdate::default(),
             imu: ImuState::default(),
             mag: MagState::default(),
@@ -80,27 +116,30 @@ impl Robot {
             health: SystemHealth::default(),
             diagnostics: DiagnosticsSnapshot::default(),
             wheel_currents_ma: [0.0; 2],
+            wire_events: Vec::new(),
             direct: None,
             pc: None,
             pc_command: PcCommand::default(),
             sent_digest: 0,
-        };
-        robot.sensors.set_mounting(&config.mounting);
-        let up = robot.sensors.bring_up(&mut robot.world, robot.now);
-        robot.now = up.next_multiple_of(20 * MS);
-        robot
+        })
     }
 
+    /// Moves sticks and switches.
     pub fn remote(&mut self, input: RemoteInput) {
         self.world.set_remote(input);
     }
 
+    /// Begins or ends a fault.
+    ///
+    /// # Panics
+    /// No fault has this name.
     pub fn fault(&mut self, name: &str, active: bool) {
         self.world.set_fault(name, active).expect("a known fault");
     }
 
+    /// Time since power-on.
     pub fn seconds(&self) -> f64 {
-        self.now as f64 / (1_000.0 * MS as f64)
+        to_seconds(self.now)
     }
 
     /// Runs until `seconds` after power-on and calls `look` after each tick.
@@ -111,12 +150,24 @@ impl Robot {
         }
     }
 
+    /// True while the motors may move.
     pub fn armed(&self) -> bool {
         self.diagnostics.arming.state == ArmingState::Armed
     }
 
+    /// The report of the last tick.
     pub fn diagnostics(&self) -> &DiagnosticsSnapshot {
         &self.diagnostics
+    }
+
+    /// The world, to look at.
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// The world, to change it.
+    pub fn world_mut(&mut self) -> &mut World {
+        &mut self.world
     }
 
     /// The currents read from the wire, in the motors' own direction.
@@ -124,10 +175,23 @@ impl Robot {
         self.wheel_currents_ma
     }
 
+    /// Every byte sent on CAN so far, folded into one number.
+    pub fn sent_digest(&self) -> u64 {
+        self.sent_digest
+    }
+
+    /// Present value of a signal of the world.
+    ///
+    /// # Panics
+    /// No signal has this name.
     pub fn signal(&self, name: &str) -> f64 {
         self.world.signal(name).expect(name)
     }
 
+    /// Error of the estimated attitude: total, of the heading, of the inclination.
+    ///
+    /// # Panics
+    /// A recording plays and has a gap here.
     pub fn attitude_error_deg(&self) -> [f64; 3] {
         let q = self.diagnostics.estimate.q_wxyz.map(f64::from);
         self.world.attitude_error_deg(q).expect("truth has no gaps")
@@ -138,41 +202,51 @@ impl Robot {
     }
 
     fn tick(&mut self) {
-        self.now += MS;
-        self.world.advance(self.now);
-        self.receive_radio();
-        self.receive_can();
-        if self.now.is_multiple_of(5 * MS) {
+        let at = self.now + TICK;
+        if at.is_multiple_of(IMU_PERIOD) {
+            self.run_world(at - IMU_LEAD);
             self.read_imu();
         }
+        self.run_world(at);
+        self.buses.drop_waiting();
+        self.receive_radio();
         self.serve_mag();
-        if self.now.is_multiple_of(240 * MS) {
+        if self.now.is_multiple_of(BATTERY_PERIOD) {
             self.health.battery_v = self.signal("truth.battery_v") as f32;
         }
-        if self.now.is_multiple_of(10 * MS) {
-            let inputs = LogicInputs {
-                config: &SafetyConfig::default(),
-                remote: &self.remote,
-                sensors: &self.diagnostics.sensors,
-                estimate: &self.diagnostics.estimate,
-                armed: self.armed(),
-                battery_v: self.diagnostics.battery_v,
-            };
-            self.logic = self.logic_stage.step(&inputs, self.now / US);
-            if let Some(command) = self.direct {
-                self.logic.cmd = command;
-                self.logic.cmd_valid = true;
-            }
+        if self.now.is_multiple_of(LOGIC_PERIOD) {
+            self.step_logic();
+            self.receive_from_pc();
         }
-        self.receive_from_pc();
+        self.receive_can();
         self.control_tick();
+        self.follow_wire();
+    }
+
+    fn run_world(&mut self, until: Ps) {
+        self.buses.run(&mut self.world, self.now, until);
+        self.now = until;
+    }
+
+    fn step_logic(&mut self) {
+        let inputs = LogicInputs {
+            config: &self.config.safety,
+            remote: &self.remote,
+            sensors: &self.diagnostics.sensors,
+            estimate: &self.diagnostics.estimate,
+            armed: self.armed(),
+            battery_v: self.diagnostics.battery_v,
+        };
+        self.logic = self.logic_stage.step(&inputs, self.now_us());
+        if let Some(command) = self.direct {
+            self.logic.cmd = command;
+            self.logic.cmd_valid = true;
+        }
     }
 
     fn receive_from_pc(&mut self) {
-        if let Some(command) = self.pc
-            && self.now.is_multiple_of(10 * MS)
-        {
-            let now_us = self.now_us();
+        let now_us = self.now_us();
+        if let Some(command) = self.pc {
             self.pc_command = PcCommand {
                 ts_us: now_us,
                 changed_us: now_us,
@@ -182,22 +256,21 @@ impl Robot {
     }
 
     fn receive_radio(&mut self) {
-        let mut bytes = Vec::new();
+        self.radio_bytes.clear();
         let mut last_us = self.now_us();
         while let Some(character) = self.world.radio_char(self.now) {
-            bytes.push(character.byte);
-            last_us = (character.start + 120 * US) / US;
+            self.radio_bytes.push(character.byte);
+            last_us = (character.start + CHARACTER) / US;
         }
         let remote = &mut self.remote;
         self.receiver
-            .feed(&bytes, last_us, |update| *remote = update);
+            .feed(&self.radio_bytes, last_us, |update| *remote = update);
     }
 
     fn receive_can(&mut self) {
-        let now_us = self.now_us();
-        self.world.take_frames(self.now, |bus, frame| {
+        self.buses.take_received(|bus, frame, at| {
             self.control
-                .on_can_frame(bus, frame, now_us, &self.diagnostics);
+                .on_can_frame(bus, frame, at / US, &self.diagnostics);
         });
     }
 
@@ -220,20 +293,18 @@ impl Robot {
             &mut self.diagnostics,
         );
         for (bus, frame) in outputs.frames {
-            self.world.deliver(*bus, frame, self.now);
+            self.buses.send(*bus, frame, self.now + TICK_COMPUTES);
             for byte in frame.padded_payload() {
                 self.sent_digest = self.sent_digest.rotate_left(5) ^ u64::from(byte);
             }
         }
-        self.follow_wire();
     }
 
+    /// Notes the currents that have arrived at the wheels.
     fn follow_wire(&mut self) {
-        let mut events: Vec<WireEvent> = Vec::new();
-        self.world.drain_wire_events(&mut events);
-        let names = self.world.signal_names();
-        for event in events {
-            match names[event.signal].as_str() {
+        self.world.drain_wire_events(&mut self.wire_events);
+        for event in self.wire_events.drain(..) {
+            match self.world.signal_names()[event.signal].as_str() {
                 "can.m3508.0.current_ma" => self.wheel_currents_ma[0] = event.value,
                 "can.m3508.1.current_ma" => self.wheel_currents_ma[1] = event.value,
                 _ => {}
@@ -249,13 +320,13 @@ impl Robot {
     }
 
     fn serve_mag(&mut self) {
-        if self.now.is_multiple_of(20 * MS) {
+        if self.now.is_multiple_of(MAG_PERIOD) {
             self.sensors.start_mag(&mut self.world, self.now);
         }
         match self.sensors.fetch_mag(&mut self.world, self.now) {
-            Some(Ok(state)) => self.mag = state,
-            Some(Err(())) => self.health.mag.errors += 1,
-            None => {}
+            Ok(Some(state)) => self.mag = state,
+            Ok(None) => {}
+            Err(_) => self.health.mag.errors += 1,
         }
     }
 }

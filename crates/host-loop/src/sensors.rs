@@ -4,7 +4,7 @@
 use robot_app::{
     domain::{HeaterConfig, ImuCalibration, ImuState, MagCalibration, MagState, MountingConfig},
     sensing::{
-        ImuPipeline, ImuSampleError, MagPipeline,
+        ImuPipeline, ImuSampleError, MagPipeline, MagSampleError,
         bmi088::{self, ACCEL_READ, BUFFER_READ, GYRO_READ, GyroBuffer},
         ist8310,
     },
@@ -18,13 +18,21 @@ const SCK_HZ: u32 = 5_250_000;
 const SPI_MODE: u8 = 3;
 const SCL_HZ: u32 = 400_000;
 
+/// The pipelines behind IMU and magnetometer.
 pub struct Sensors {
     imu: ImuPipeline,
     mag: MagPipeline,
     mag_started_at: Option<Ps>,
 }
 
+impl Default for Sensors {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl Sensors {
+    /// Pipelines without calibration.
     pub fn new() -> Self {
         Self {
             imu: ImuPipeline::new(ImuCalibration::default(), HeaterConfig::default()),
@@ -33,21 +41,30 @@ impl Sensors {
         }
     }
 
+    /// Sets how the board and its magnetometer sit in the robot.
     pub fn set_mounting(&mut self, mounting: &MountingConfig) {
         self.imu.set_mounting(mounting.board);
         self.mag.set_mounting(mounting);
     }
 
+    /// True once the offset of the gyro is known.
     pub fn imu_calibrated(&self) -> bool {
         self.imu.calibrated()
     }
 
-    /// Brings up both from `start` on; when that is done.
+    /// Brings up both from `start` on, and returns the time at which that is done.
+    ///
+    /// # Panics
+    /// A register does not hold what the datasheet says.
     pub fn bring_up(&self, world: &mut World, start: Ps) -> Ps {
         let imu_up = bring_up_imu(world, start);
         bring_up_mag(world, imu_up)
     }
 
+    /// Reads one IMU sample.
+    ///
+    /// # Errors
+    /// The sample is not one of a working sensor.
     pub fn read_imu(&mut self, world: &mut World, now: Ps) -> Result<ImuState, ImuSampleError> {
         let (mut accel, mut gyro, mut buffer) = (ACCEL_READ, GYRO_READ, BUFFER_READ);
         spi(world, SpiSelect::Gyro, &mut gyro, now);
@@ -69,21 +86,30 @@ impl Sensors {
         state
     }
 
+    /// Starts a measurement of the magnetometer.
     pub fn start_mag(&mut self, world: &mut World, now: Ps) {
         i2c_write(world, &ist8310::START_SINGLE_SHOT, now);
         self.mag_started_at = Some(now);
     }
 
-    /// The result of the running measurement, once it is complete; `Err` if it holds no sample.
-    pub fn fetch_mag(&mut self, world: &mut World, now: Ps) -> Option<Result<MagState, ()>> {
+    /// Takes the result of the running measurement, once it is complete.
+    ///
+    /// # Errors
+    /// The answer holds no sample.
+    pub fn fetch_mag(
+        &mut self,
+        world: &mut World,
+        now: Ps,
+    ) -> Result<Option<MagState>, MagSampleError> {
         let due = |started: &mut Ps| now - *started >= u64::from(ist8310::MEASUREMENT_US) * US;
-        let started = self.mag_started_at.take_if(due)?;
+        let Some(started) = self.mag_started_at.take_if(due) else {
+            return Ok(None);
+        };
         let mut answer = [0; ist8310::READ_LEN];
-        let read = i2c_read(world, ist8310::READ_FROM, &mut answer, now);
-        Some(match self.mag.process(&answer, started / US) {
-            Ok(state) if read => Ok(state),
-            _ => Err(()),
-        })
+        if !i2c_read(world, ist8310::READ_FROM, &mut answer, now) {
+            return Err(MagSampleError::NotReady);
+        }
+        self.mag.process(&answer, started / US).map(Some)
     }
 }
 

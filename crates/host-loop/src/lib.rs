@@ -1,0 +1,27 @@
+//! The whole app and the simulated world without a chip: every wire of the world leads to the app's own decoders.
+//!
+//! It runs what the image runs, with the timing of the image where that matters to a control loop:
+//!
+//! | what | here | in the image |
+//! |---|---|---|
+//! | control tick | at each whole millisecond | the same, 2 µs of jitter |
+//! | its frames | reach the bus 50 µs after the tick began, and each takes its time there; the lowest identifier goes first | the same |
+//! | frames of motors | contend for the same bus, and are decoded by the next tick | the same, through interrupts and a queue |
+//! | frames that still wait at the next tick | are dropped | the same |
+//! | IMU | read every 5 ms, 200 µs before a tick, in no time | the phase is that at which bring-up ended; reading takes 0.1 ms |
+//! | magnetometer | every 20 ms, its result as soon as it is complete | the same |
+//! | radio | bytes up to the tick | in pieces, at pauses of the line |
+//! | logic stage | every 10 ms, before the tick | between two ticks |
+//! | battery | every 240 ms | filtered, every 10 ms |
+//!
+//! Memory for parameters, link, indication and the recorder of the last seconds are not here. The same calls with the
+//! same seed give the same run, bit for bit.
+
+#![deny(missing_docs)]
+
+mod buses;
+mod robot;
+mod sensors;
+
+pub use robot::Robot;
+pub use sensors::Sensors;
