@@ -1,0 +1,22 @@
+//! One file a robot (`robots/*.toml`): masses, lengths, motors and limits, read and checked.
+//!
+//! Everything that the firmware, the simulated world and the gains know about a robot comes from its file. All figures
+//! are in SI units and radians.
+//!
+//! Body axes are x forward, y left, z up. Their origin is the hip centre, the middle of the four hip axes.
+
+#![deny(missing_docs)]
+
+mod error;
+mod motor;
+mod mounting;
+mod robot;
+mod source;
+
+pub use error::{Located, RobotError};
+pub use motor::JointMotor;
+pub use mounting::Mounting;
+pub use robot::{
+    Body, Bus, Carrier, Control, HipRange, Imu, JointRanges, Joints, Legs, Limits, Link, Robot,
+    Weights, Wheels,
+};

@@ -1,0 +1,84 @@
+//! Reading a file and finding the line of each field.
+
+use std::{fs, ops::Range, path::Path};
+
+use toml::de::DeTable;
+
+use crate::{Located, Robot, RobotError};
+
+impl Robot {
+    /// Reads a file.
+    ///
+    /// # Errors
+    ///
+    /// As for [`parse`](Self::parse), or if the file cannot be read.
+    pub fn read(path: &Path) -> Result<Self, RobotError> {
+        let file = path.display().to_string();
+        match fs::read_to_string(path) {
+            Ok(text) => Self::parse(&text, &file),
+            Err(error) => Err(RobotError::Unreadable { file, error }),
+        }
+    }
+
+    /// Reads the text of a file, which messages call `file`.
+    ///
+    /// # Errors
+    ///
+    /// If the text is no TOML, lacks a field, has an unknown one, or a value of another type.
+    pub fn parse(text: &str, file: &str) -> Result<Self, RobotError> {
+        toml::from_str(text).map_err(|error| {
+            let at = error.span().unwrap_or(0..0);
+            RobotError::Malformed(Located {
+                file: file.to_owned(),
+                line: line_at(text, at.start),
+                field: field_at(text, &at),
+                message: error.message().to_owned(),
+            })
+        })
+    }
+}
+
+/// The line of a byte, from 1.
+fn line_at(text: &str, byte: usize) -> usize {
+    let before = text.bytes().take(byte);
+    1 + before.filter(|it| *it == b'\n').count()
+}
+
+/// The innermost field that holds a range of bytes, such as `legs.thigh.mass_kg`. It is empty for none.
+fn field_at(text: &str, range: &Range<usize>) -> String {
+    let mut path = Vec::new();
+    if let Ok(table) = DeTable::parse(text) {
+        descend(table.get_ref(), range, &mut path);
+    }
+    path.join(".")
+}
+
+fn descend(table: &DeTable<'_>, range: &Range<usize>, path: &mut Vec<String>) {
+    for (key, value) in table {
+        let inner = value.get_ref().as_table();
+        if holds(key.span(), range) || holds(value.span(), range) {
+            path.push(key.get_ref().to_string());
+            if let Some(inner) = inner {
+                descend(inner, range, path);
+            }
+            return;
+        }
+        // A table's span is that of its header, and inner tables have headers of their own.
+        if let Some(inner) = inner {
+            path.push(key.get_ref().to_string());
+            let depth = path.len();
+            descend(inner, range, path);
+            if path.len() > depth {
+                return;
+            }
+            path.pop();
+        }
+    }
+}
+
+fn holds(outer: Range<usize>, inner: &Range<usize>) -> bool {
+    outer.start <= inner.start && inner.end <= outer.end
+}
+
+#[cfg(test)]
+mod tests;
