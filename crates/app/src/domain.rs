@@ -1,6 +1,7 @@
 //! Types that all stages share. They are plain `repr(C)` data, so a debugger and the emulator can read them by name.
 
 mod balance;
+mod balance_profile;
 mod black_box_status;
 mod can;
 mod command;
@@ -19,6 +20,9 @@ mod sensors;
 mod tuning_status;
 
 pub use balance::{BalanceState, BalanceStatus, StandPermit, StandUpPhase};
+pub use balance_profile::{
+    BalanceLimits, BalanceProfile, Carrier, GainSchedule, LegGeometry, MassModel,
+};
 pub use black_box_status::{BankState, BankStatus, BlackBoxStatus, EventKind};
 pub use can::{BusId, CanFrame, MotorBuses, StandardId};
 pub use command::{
