@@ -14,10 +14,9 @@ use robot_app::{
     tick::{ControlInputs, ControlLoop},
 };
 use robot_plant::{
+    robots::JointMotor,
     time::{MS, Ps, US, to_seconds},
-    world::{
-        JointKind, PlantKind, RadioKind, RemoteInput, WireEvent, World, WorldConfig, WorldError,
-    },
+    world::{PlantKind, RadioKind, RemoteInput, WireEvent, World, WorldConfig, WorldError},
 };
 
 use crate::{buses::Buses, sensors::Sensors};
@@ -89,9 +88,9 @@ impl Robot {
             RadioKind::Sbus => RemoteFormat::Sbus,
             RadioKind::Dbus => RemoteFormat::Dbus,
         };
-        let layout: &'static MotorLayout = match world.joints {
-            JointKind::Dm4310 => &ROBOT_LAYOUT,
-            JointKind::Rs00 => &RS00_LAYOUT,
+        let layout: &'static MotorLayout = match world.robot.joints.motor {
+            JointMotor::Dm4310 => &ROBOT_LAYOUT,
+            JointMotor::Rs00 => &RS00_LAYOUT,
         };
         let mut world = World::new(world)?;
         let mut sensors = Sensors::new();

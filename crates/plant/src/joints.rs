@@ -1,7 +1,6 @@
 //! The four leg joints' drives: left front, left rear, right front, right rear.
 //!
-//! A drive counts in its own sense of rotation. The joint angle of a leg is `DIRECTION` times the angle of the shaft, since
-//! the right side is mirrored.
+//! A drive counts in its own sense of rotation and from its own zero. The robot's file says how it sits on the joint.
 
 mod actuator;
 mod dm4310;
@@ -11,6 +10,8 @@ mod reply;
 mod rs00;
 mod speed_loop;
 
+use robot_description::JointMotor;
+
 use crate::{physics::physics_step_s, time::Ps, wire::CanFrame};
 use dm4310::Dm4310;
 use drive::Drive;
@@ -19,18 +20,6 @@ use mit_frame::Feedback;
 use rs00::Rs00;
 
 pub(crate) const JOINTS: usize = 4;
-/// Joint angle per shaft angle.
-const DIRECTION: [f64; JOINTS] = [1.0, 1.0, -1.0, -1.0];
-
-/// The motor that drives every joint.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum JointKind {
-    /// Damiao DM4310.
-    #[default]
-    Dm4310,
-    /// RobStride RS00, set to its MIT protocol.
-    Rs00,
-}
 
 /// A quantity of a drive that wire events report.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -42,20 +31,23 @@ pub(crate) struct WireState {
 
 pub(crate) struct Joint {
     drive: Box<dyn Drive>,
+    /// Joint angle per shaft angle.
     direction: f64,
+    /// Shaft angle at joint angle 0.
+    zero_rad: f64,
 }
 
-/// Drives with ESC_ID or motor identifier 1 to 4. DM4310 reply under 0x11 to 0x14, RS00 under the host identifiers 0xF1 to
-/// 0xF4.
-pub(crate) fn drives(kind: JointKind, rs00_timeout: Ps) -> [Joint; JOINTS] {
+/// The drives that the robot's file names.
+pub(crate) fn drives(joints: &robot_description::Joints, rs00_timeout: Ps) -> [Joint; JOINTS] {
     std::array::from_fn(|joint| {
-        let id = joint as u32 + 1;
+        let (id, reply) = (joints.ids[joint].into(), joints.replies[joint].into());
         Joint {
-            drive: match kind {
-                JointKind::Dm4310 => Box::new(Dm4310::new(id, 0x10 + id)),
-                JointKind::Rs00 => Box::new(Rs00::new(id, 0xF0 + id, rs00_timeout)),
+            drive: match joints.motor {
+                JointMotor::Dm4310 => Box::new(Dm4310::new(id, reply)),
+                JointMotor::Rs00 => Box::new(Rs00::new(id, reply, rs00_timeout)),
             },
-            direction: DIRECTION[joint],
+            direction: joints.directions[joint].into(),
+            zero_rad: joints.zeros_rad[joint],
         }
     })
 }
@@ -64,7 +56,7 @@ impl Joint {
     /// The state of the drive's shaft for a joint at this angle and speed.
     pub(crate) fn shaft(&self, pos_rad: f64, vel_rps: f64) -> Shaft {
         Shaft {
-            pos_rad: self.direction * pos_rad,
+            pos_rad: self.zero_rad + self.direction * pos_rad,
             vel_rps: self.direction * vel_rps,
         }
     }

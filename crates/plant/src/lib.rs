@@ -11,6 +11,7 @@ pub mod complaint;
 pub mod flash_chip;
 pub mod mounting;
 pub mod recording;
+pub mod robots;
 pub mod serial_adapter;
 pub mod wire;
 pub mod world;
@@ -28,5 +29,4 @@ mod radio;
 mod random;
 mod supply;
 
-pub use body::free;
 pub use robot_wire::time;

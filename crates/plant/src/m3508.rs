@@ -4,4 +4,6 @@ mod c620;
 mod motor;
 
 pub(crate) use c620::{C620, EscFaults};
-pub(crate) use motor::{Friction, M3508};
+pub(crate) use motor::Friction;
+#[cfg(test)]
+pub(crate) use motor::M3508;

@@ -41,6 +41,12 @@ impl FromStr for Mounting {
 }
 
 impl Mounting {
+    /// That of the board in a robot.
+    pub(crate) fn of(imu: &robot_description::Imu) -> Self {
+        let name = imu.mounting.name().parse();
+        name.expect("a robot's file knows the same names")
+    }
+
     /// Converts a vector from the carrier's axes to the sensor's axes.
     pub(crate) fn to_sensor(self, [x, y, z]: [f64; 3]) -> [f64; 3] {
         self.axes

@@ -5,13 +5,14 @@ mod board_wires;
 mod can_buses;
 mod joint_wires;
 mod power_on;
+mod push;
 mod scenario;
 mod signals;
 mod tuning_replies;
 
 use crate::{
     bmi088::Bmi088,
-    body::{Body, Legs, Tilt},
+    body::{Body, OutsideForce},
     can_adapter::CanAdapter,
     complaint::Complaint,
     faults::ActiveFaults,
@@ -22,30 +23,36 @@ use crate::{
     pc::Pc,
     radio::Receiver,
     recording::{Playback, TrialError},
+    robots,
     serial_adapter::SerialAdapter,
     supply::Battery,
     time::Ps,
+    wire::CanFrame,
 };
+use can_buses::Node;
+use robot_description::{JointMotor, Robot};
+use std::{collections::VecDeque, sync::Arc};
 use tuning_replies::TuningReplies;
+
+pub use push::Push;
 
 pub use crate::{
     body::{PlantKind, Start, Variation},
     faults::FaultInfo,
-    joints::JointKind,
     pc::{PcInput, PcJoints},
     radio::{RadioKind, RemoteInput},
     wire::{CanBusId, SpiSelect},
 };
 
 /// What stands around the board.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct WorldConfig {
     /// Body and wheels.
     pub plant: PlantKind,
     /// The radio receiver.
     pub radio: RadioKind,
-    /// The leg joints' motors.
-    pub joints: JointKind,
+    /// The robot: its motors with their numbers and senses, the board's place, and the masses of the free robot.
+    pub robot: Arc<Robot>,
     /// CAN time-out that somebody has set in the RS00 joints; 0 is off, as shipped.
     pub rs00_timeout: Ps,
     /// Seed of all noise: the same seed gives the same world.
@@ -54,14 +61,33 @@ pub struct WorldConfig {
     pub imu_trial: Option<std::path::PathBuf>,
     /// Temperature of the IMU's package at power-on, °C. Unset, the board was on before and is at 40 °C.
     pub imu_temperature_c: Option<f64>,
-    /// How the board sits in the robot.
-    pub mounting: Mounting,
+    /// How the board sits in the robot. Unset, as the robot's file says.
+    pub mounting: Option<Mounting>,
     /// How the magnetometer sits on the board, relative to the IMU's axes, which no public source proves.
     pub mag_mounting: Mounting,
     /// How the free robot lies or stands at power-on.
     pub start: Start,
     /// How the free robot differs from its file.
     pub variation: Variation,
+}
+
+impl Default for WorldConfig {
+    /// A robot of `robots/fivebar.toml` on a stand.
+    fn default() -> Self {
+        Self {
+            plant: PlantKind::default(),
+            radio: RadioKind::default(),
+            robot: robots::with_joints(JointMotor::Dm4310),
+            rs00_timeout: 0,
+            seed: 0,
+            imu_trial: None,
+            imu_temperature_c: None,
+            mounting: None,
+            mag_mounting: Mounting::default(),
+            start: Start::default(),
+            variation: Variation::default(),
+        }
+    }
 }
 
 /// Why the world cannot be made or changed.
@@ -123,13 +149,19 @@ pub struct World {
     now: Ps,
     next_step: Ps,
     body: Body,
-    tilt: Tilt,
+    robot: Arc<Robot>,
+    variation: Variation,
+    /// Commands that the variation delays, with the time at which their motor hears them.
+    late: VecDeque<(Ps, Node, CanFrame)>,
+    /// The present push and its end.
+    push: Option<(OutsideForce, Ps)>,
+    /// On CAN1 and CAN2, the board's own node left out.
+    nodes: [Vec<Node>; 2],
     /// Left, right wheel.
     escs: [C620; 2],
     joints: [Joint; JOINTS],
     /// State of each joint as the last wire events reported it.
     joints_reported: [WireState; JOINTS],
-    legs: Legs,
     /// CAN1, CAN2.
     adapters: [CanAdapter; 2],
     /// Of the PC at the 4-pin UART2.

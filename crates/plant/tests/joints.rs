@@ -2,9 +2,10 @@
 //! docs/hardware.md#mit-frames, docs/hardware.md#dm4310-frames and docs/hardware.md#test-vectors.
 
 use robot_plant::{
+    robots::{self, JointMotor},
     time::{MS, Ps, US},
     wire::CanFrame,
-    world::{CanBusId, JointKind, World, WorldConfig},
+    world::{CanBusId, World, WorldConfig},
 };
 
 const BUS: CanBusId = CanBusId::Can2;
@@ -22,9 +23,9 @@ fn service(tail: u8) -> [u8; 8] {
 }
 
 impl Bench {
-    fn new(joints: JointKind) -> Self {
+    fn new(joints: JointMotor) -> Self {
         let config = WorldConfig {
-            joints,
+            robot: robots::with_joints(joints),
             ..WorldConfig::default()
         };
         let mut world = World::new(config).expect("no file is read");
@@ -90,7 +91,7 @@ impl Bench {
 
 #[test]
 fn four_dm4310_answer_under_their_own_identifiers() {
-    let mut bench = Bench::new(JointKind::Dm4310);
+    let mut bench = Bench::new(JointMotor::Dm4310);
     for id in 1..=4 {
         bench.send(id, service(0xFD));
         let replies = bench.wait(MS);
@@ -103,7 +104,7 @@ fn four_dm4310_answer_under_their_own_identifiers() {
 
 #[test]
 fn four_rs00_answer_under_the_hosts_they_are_set_to() {
-    let mut bench = Bench::new(JointKind::Rs00);
+    let mut bench = Bench::new(JointMotor::Rs00);
     for id in 1..=4 {
         bench.send(id, service(0xFC));
         let replies = bench.wait(MS);
@@ -117,7 +118,7 @@ fn four_rs00_answer_under_the_hosts_they_are_set_to() {
 /// sin 0.5 = 0.48 N·m there, which gives way by 0.02 rad, and friction may hold it 0.01 rad off.
 #[test]
 fn held_poses_are_mirrored_on_the_right() {
-    let mut bench = Bench::new(JointKind::Dm4310);
+    let mut bench = Bench::new(JointMotor::Dm4310);
     for id in [1, 3] {
         bench.send(id, service(0xFC));
         bench.wait(MS);
@@ -149,7 +150,7 @@ fn held_poses_are_mirrored_on_the_right() {
 
 #[test]
 fn enabling_torque_and_stopping_are_events_at_their_instants() {
-    let mut bench = Bench::new(JointKind::Dm4310);
+    let mut bench = Bench::new(JointMotor::Dm4310);
     bench.wait(5 * MS);
     bench.send(2, service(0xFC));
     bench.wait(MS);
@@ -181,7 +182,7 @@ fn enabling_torque_and_stopping_are_events_at_their_instants() {
 
 #[test]
 fn a_timeout_or_a_fault_disables_without_a_frame_and_is_an_event() {
-    let mut bench = Bench::new(JointKind::Dm4310);
+    let mut bench = Bench::new(JointMotor::Dm4310);
     // TIMEOUT 2000 · 50 µs on the fourth motor.
     bench.send(0x7FF, [4, 0, 0x55, 9, 0xD0, 0x07, 0, 0]);
     bench.wait(200 * MS);
@@ -205,7 +206,7 @@ fn a_timeout_or_a_fault_disables_without_a_frame_and_is_an_event() {
 
 #[test]
 fn motors_2_to_5_are_the_joints() {
-    let mut bench = Bench::new(JointKind::Dm4310);
+    let mut bench = Bench::new(JointMotor::Dm4310);
     for (motor, id) in (2..6).zip(1..) {
         let joint = id as usize - 1;
         bench.fault(&format!("motor-{motor}-gone"), true);
@@ -223,7 +224,7 @@ fn motors_2_to_5_are_the_joints() {
 
 #[test]
 fn wheels_get_hot_and_change_their_numbers() {
-    let mut bench = Bench::new(JointKind::Dm4310);
+    let mut bench = Bench::new(JointMotor::Dm4310);
     bench.fault("motor-0-hot", true);
     bench.fault("motor-1-wrong-id", true);
     bench.world.advance(5 * MS);
@@ -245,7 +246,7 @@ fn wheels_get_hot_and_change_their_numbers() {
 #[test]
 fn the_adapter_records_replies_of_the_tuning_channel() {
     use robot_plant::can_adapter::AdapterMode;
-    let mut bench = Bench::new(JointKind::Dm4310);
+    let mut bench = Bench::new(JointMotor::Dm4310);
     let reply = [0x21, 3, 1, 0, 0, 0, 0x80, 0x3F];
     bench.send(0x7A2, reply);
     assert_eq!(bench.signal("can.tuning.replies"), 0.0, "nobody listens");
@@ -263,7 +264,7 @@ fn the_adapter_records_replies_of_the_tuning_channel() {
 /// Frames of every kind with random payloads, floats at their worst, and faults in between.
 #[test]
 fn no_frame_makes_a_joint_stronger_than_its_motor_or_its_numbers_infinite() {
-    for (kind, peak_nm) in [(JointKind::Dm4310, 7.0), (JointKind::Rs00, 14.0)] {
+    for (kind, peak_nm) in [(JointMotor::Dm4310, 7.0), (JointMotor::Rs00, 14.0)] {
         let mut bench = Bench::new(kind);
         // A generator of its own: the numbers of Knuth's MMIX.
         let mut state = 1_u64;
@@ -323,7 +324,7 @@ fn no_frame_makes_a_joint_stronger_than_its_motor_or_its_numbers_infinite() {
 
 #[test]
 fn a_frame_beyond_the_model_is_reported() {
-    let mut bench = Bench::new(JointKind::Dm4310);
+    let mut bench = Bench::new(JointMotor::Dm4310);
     bench.send(0x7FF, [1, 0, 0x33, 0x50, 0, 0, 0, 0]);
     let complaints = bench.world.take_complaints();
     assert!(complaints[0].text.contains("0x50"), "{complaints:?}");

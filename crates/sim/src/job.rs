@@ -3,6 +3,7 @@
 use std::{
     io,
     path::{Path, PathBuf},
+    sync::Arc,
     time::Instant,
 };
 
@@ -79,7 +80,8 @@ impl Job {
         let world = World::new(WorldConfig {
             plant: self.scenario.plant,
             radio: self.scenario.radio,
-            joints: self.scenario.joints,
+            robot: Arc::clone(&self.scenario.robot),
+            variation: self.scenario.variation,
             rs00_timeout: self.scenario.rs00_timeout,
             imu_temperature_c: self.scenario.imu_temperature_c,
             mounting: self.scenario.mounting,

@@ -4,13 +4,17 @@ mod file;
 
 pub use file::Problem;
 
-use std::path::{Path, PathBuf};
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
+use robot_description::Robot;
 use robot_plant::{
     mounting::Mounting,
     time::Ps,
     wire::CanFrame,
-    world::{CanBusId, JointKind, PcInput, PlantKind, RadioKind, RemoteInput},
+    world::{CanBusId, PcInput, PlantKind, Push, RadioKind, RemoteInput, Variation},
 };
 
 use super::expectation::Expectation;
@@ -24,13 +28,16 @@ pub struct Scenario {
     pub length: Ps,
     pub plant: PlantKind,
     pub radio: RadioKind,
-    pub joints: JointKind,
+    /// Its motors, the board's place, and the masses of the free robot.
+    pub robot: Arc<Robot>,
+    /// How the free robot differs from its file.
+    pub variation: Variation,
     /// CAN time-out that is set in the RS00 drives; 0 = off.
     pub rs00_timeout: Ps,
     /// Temperature of the IMU's package at power-on, °C; `None` for a board that has been on before.
     pub imu_temperature_c: Option<f64>,
-    /// Orientation of the board in the robot.
-    pub mounting: Mounting,
+    /// Orientation of the board in the robot; `None` for that of the robot's file.
+    pub mounting: Option<Mounting>,
     /// Orientation of the magnetometer against the IMU.
     pub mag_mounting: Mounting,
     pub seed: u64,
@@ -76,6 +83,8 @@ pub enum Event {
     Pc(PcInput),
     /// The PC's adapter sends a frame.
     Can(CanBusId, CanFrame),
+    /// Somebody pushes the free robot.
+    Push(Push),
     StartFault(String),
     EndFault(String),
 }

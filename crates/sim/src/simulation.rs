@@ -66,6 +66,10 @@ impl Simulation for Machine {
                 });
                 taken.then_some(()).ok_or(EventError::AdapterFull)
             }
+            Event::Push(push) => {
+                self.with_world(|world| world.push(*push));
+                Ok(())
+            }
             Event::StartFault(name) => faults::set(self, name, true),
             Event::EndFault(name) => faults::set(self, name, false),
         }

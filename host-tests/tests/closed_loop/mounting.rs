@@ -9,7 +9,7 @@ use crate::{ENABLE, FORWARD, Robot, assert_still, blockers, sticks};
 fn robot(board: &str, mag: &str, mounting: MountingConfig) -> Robot {
     let world = WorldConfig {
         plant: PlantKind::Rolling,
-        mounting: board.parse().expect("a mounting"),
+        mounting: Some(board.parse().expect("a mounting")),
         mag_mounting: mag.parse().expect("a mounting"),
         ..WorldConfig::default()
     };

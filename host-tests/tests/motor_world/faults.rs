@@ -1,11 +1,11 @@
 //! Motors that vanish, report faults, freeze or have another identifier.
 
 use robot_app::domain::{JointCommand, JointMode, JointState};
-use robot_plant::world::JointKind;
+use robot_plant::robots::JointMotor;
 
 use crate::robot::Robot;
 
-const BOTH: [JointKind; 2] = [JointKind::Dm4310, JointKind::Rs00];
+const BOTH: [JointMotor; 2] = [JointMotor::Dm4310, JointMotor::Rs00];
 
 const HOLD: JointCommand = JointCommand {
     mode: JointMode::Mit,
@@ -17,7 +17,7 @@ const HOLD: JointCommand = JointCommand {
 };
 
 /// Joint 0 is motor 2 of the fault names.
-fn armed_holding(kind: JointKind) -> Robot {
+fn armed_holding(kind: JointMotor) -> Robot {
     let mut robot = Robot::armed(kind);
     robot.command_joints(HOLD);
     robot.run(0.5);
@@ -73,8 +73,8 @@ fn a_fault_is_named_and_stays_until_the_pilot_clears_it() {
         assert_eq!(robot.joint(0).state, JointState::Fault, "{kind:?}");
         match kind {
             // Over-current.
-            JointKind::Dm4310 => assert_eq!(code, 0xA),
-            JointKind::Rs00 => assert_ne!(code, 0),
+            JointMotor::Dm4310 => assert_eq!(code, 0xA),
+            JointMotor::Rs00 => assert_ne!(code, 0),
         }
         robot.fault("motor-2-fault", false);
         robot.run(0.5);
@@ -104,7 +104,7 @@ fn a_persisting_fault_returns_at_once() {
 /// The interruption is too short to count as silence, but it resets a DM4310's time-out to the factory setting: none.
 #[test]
 fn a_motor_whose_supply_fails_briefly_is_set_up_again() {
-    let mut robot = armed_holding(JointKind::Dm4310);
+    let mut robot = armed_holding(JointMotor::Dm4310);
     robot.fault("motor-2-gone", true);
     robot.run(0.03);
     robot.fault("motor-2-gone", false);
@@ -120,7 +120,7 @@ const ENABLE: [u8; 8] = [0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFC];
 /// A motor that something else disabled is enabled again, a few times a second at most.
 #[test]
 fn a_motor_disabled_by_another_sender_is_enabled_again() {
-    let mut robot = armed_holding(JointKind::Dm4310);
+    let mut robot = armed_holding(JointMotor::Dm4310);
     robot.receive_unknown_frame(1, DISABLE);
     assert_eq!(robot.joint_signals("can.joint.{}.enabled")[0], 0.0);
     robot.run(0.3);
@@ -196,7 +196,7 @@ fn a_joint_that_repeats_its_last_reply_at_rest_is_frozen_once_commanded() {
 
 #[test]
 fn a_wheel_that_repeats_its_last_feedback_is_frozen() {
-    let mut robot = Robot::armed(JointKind::Dm4310);
+    let mut robot = Robot::armed(JointMotor::Dm4310);
     robot.command.wheels[0].current_ma = 1_500.0;
     robot.run(0.5);
     assert!(robot.diagnostics().sensors.motor.wheels[0].rpm > 60);
@@ -210,7 +210,7 @@ fn a_wheel_that_repeats_its_last_feedback_is_frozen() {
 
 #[test]
 fn a_wheel_that_repeats_its_last_feedback_at_rest_is_frozen_once_commanded() {
-    let mut robot = Robot::armed(JointKind::Dm4310);
+    let mut robot = Robot::armed(JointMotor::Dm4310);
     robot.fault("motor-0-frozen", true);
     robot.run(0.3);
     assert!(!robot.diagnostics().sensors.motor.wheels[0].frozen);
@@ -223,7 +223,7 @@ fn a_wheel_that_repeats_its_last_feedback_at_rest_is_frozen_once_commanded() {
 
 #[test]
 fn a_stalled_wheel_is_not_frozen() {
-    let mut robot = Robot::armed(JointKind::Dm4310);
+    let mut robot = Robot::armed(JointMotor::Dm4310);
     robot.command.wheels[0].current_ma = 900.0;
     robot.run_watching(1.0, |robot| {
         assert!(!robot.diagnostics().sensors.motor.wheels[0].frozen);

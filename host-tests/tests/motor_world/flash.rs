@@ -4,11 +4,11 @@ use robot_app::{
     domain::{FlashRequest, JointState},
     safety::{ArmingBlockers, FlashGrant},
 };
-use robot_plant::world::JointKind;
+use robot_plant::robots::JointMotor;
 
 use crate::robot::Robot;
 
-const BOTH: [JointKind; 2] = [JointKind::Dm4310, JointKind::Rs00];
+const BOTH: [JointMotor; 2] = [JointMotor::Dm4310, JointMotor::Rs00];
 
 #[test]
 fn arming_waits_until_the_record_is_written() {

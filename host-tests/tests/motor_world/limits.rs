@@ -1,11 +1,11 @@
 //! No command of the controller exceeds the joints' limits.
 
 use robot_app::domain::{JointCommand, JointMode};
-use robot_plant::world::JointKind;
+use robot_plant::robots::JointMotor;
 
 use crate::robot::Robot;
 
-const BOTH: [JointKind; 2] = [JointKind::Dm4310, JointKind::Rs00];
+const BOTH: [JointMotor; 2] = [JointMotor::Dm4310, JointMotor::Rs00];
 /// Default of `JointConfig`.
 const MAX_TORQUE_NM: f64 = 3.0;
 const MAX_POS_RAD: f64 = 1.5;

@@ -1,11 +1,11 @@
 //! Every control mode moves the leg as commanded, on both sides of the robot.
 
 use robot_app::domain::{JointCommand, JointMode, JointState};
-use robot_plant::world::JointKind;
+use robot_plant::robots::JointMotor;
 
 use crate::robot::Robot;
 
-const BOTH: [JointKind; 2] = [JointKind::Dm4310, JointKind::Rs00];
+const BOTH: [JointMotor; 2] = [JointMotor::Dm4310, JointMotor::Rs00];
 const POSITIONS: &str = "truth.joint.{}.pos_rad";
 
 /// Gravity pulls 1 N·m at most, so a spring of 50 N·m/rad is off by at most 0.02 rad.

@@ -13,8 +13,9 @@ use robot_app::{
     tick::{ControlInputs, ControlLoop},
 };
 use robot_plant::{
+    robots::{self, JointMotor},
     time::{MS, Ps, US},
-    world::{JointKind, World, WorldConfig},
+    world::{World, WorldConfig},
 };
 use robot_test_support::CanWires;
 
@@ -33,15 +34,15 @@ pub struct Robot {
 }
 
 impl Robot {
-    pub fn new(joints: JointKind) -> Self {
+    pub fn new(joints: JointMotor) -> Self {
         let layout: &'static MotorLayout = match joints {
-            JointKind::Dm4310 => &ROBOT_LAYOUT,
-            JointKind::Rs00 => &RS00_LAYOUT,
+            JointMotor::Dm4310 => &ROBOT_LAYOUT,
+            JointMotor::Rs00 => &RS00_LAYOUT,
         };
         let mut config = RobotConfig::default();
         config.joint_ctrl.rs00_timeout_set = 1;
         let world = World::new(WorldConfig {
-            joints,
+            robot: robots::with_joints(joints),
             seed: 3,
             ..WorldConfig::default()
         })
@@ -61,7 +62,7 @@ impl Robot {
     }
 
     /// Set up, armed and enabled with the command `Off`.
-    pub fn armed(joints: JointKind) -> Self {
+    pub fn armed(joints: JointMotor) -> Self {
         let mut robot = Self::new(joints);
         robot.run(1.5);
         robot.enabled = true;

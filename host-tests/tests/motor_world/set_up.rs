@@ -1,11 +1,11 @@
 //! From power-on to enabled motors.
 
 use robot_app::domain::JointState;
-use robot_plant::world::JointKind;
+use robot_plant::robots::JointMotor;
 
 use crate::robot::Robot;
 
-const BOTH: [JointKind; 2] = [JointKind::Dm4310, JointKind::Rs00];
+const BOTH: [JointMotor; 2] = [JointMotor::Dm4310, JointMotor::Rs00];
 
 #[test]
 fn motors_are_verified_before_they_count_as_ready() {
@@ -34,7 +34,7 @@ fn motors_are_verified_before_they_count_as_ready() {
 const ERASE_MS: u32 = 500;
 
 /// States of joint 0 in the tenth of a second after an erase.
-fn states_after_stall(kind: JointKind, told: bool) -> Vec<JointState> {
+fn states_after_stall(kind: JointMotor, told: bool) -> Vec<JointState> {
     let mut robot = Robot::new(kind);
     robot.run(1.5);
     robot.stall(ERASE_MS.into());
@@ -64,7 +64,7 @@ fn joints_are_not_set_up_again_because_the_board_stood_still() {
 /// A motor from the factory has no time-out. The firmware sets one of 100 ms, after which the motor releases torque.
 #[test]
 fn an_abandoned_dm4310_releases_torque() {
-    let mut robot = Robot::armed(JointKind::Dm4310);
+    let mut robot = Robot::armed(JointMotor::Dm4310);
     assert_eq!(robot.joint_signals("can.joint.{}.enabled"), [1.0; 4]);
     let mut let_go_after_ms = 0;
     robot.run_without_board(200, |robot, ms| {
@@ -94,7 +94,7 @@ fn motors_are_enabled_only_while_armed() {
 /// The zero of an MIT frame is half a torque step: 10/4095 and 14/4095 N·m.
 #[test]
 fn off_is_the_torque_code_nearest_to_zero() {
-    for (kind, half_step_nm) in [(JointKind::Dm4310, 2.45e-3), (JointKind::Rs00, 3.42e-3)] {
+    for (kind, half_step_nm) in [(JointMotor::Dm4310, 2.45e-3), (JointMotor::Rs00, 3.42e-3)] {
         let mut robot = Robot::armed(kind);
         robot.run_watching(0.1, |robot| {
             for torque_nm in robot.joint_signals("can.joint.{}.torque_nm") {
@@ -120,7 +120,7 @@ fn the_pilots_stop_reaches_every_joint_within_two_ticks() {
 
 #[test]
 fn each_joint_gets_a_frame_in_every_second_tick() {
-    let mut robot = Robot::new(JointKind::Dm4310);
+    let mut robot = Robot::new(JointMotor::Dm4310);
     let mut told = Vec::new();
     robot.run(0.5);
     robot.run_watching(4e-3, |robot| {

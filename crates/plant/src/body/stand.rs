@@ -33,16 +33,21 @@ impl Stand {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::m3508::M3508;
+    use crate::{m3508::M3508, robots};
+    use robot_description::JointMotor;
+
+    fn motor() -> M3508 {
+        M3508::new(&robots::with_joints(JointMotor::Dm4310).wheels)
+    }
 
     /// Runs one motor at a wanted current and supply until it is steady: (output rpm, current in A).
     fn steady_state(wanted_a: f64, supply_v: f64) -> (f64, f64) {
         let dt_s = 250e-6;
         let mut stand = Stand::default();
-        let mut motor = M3508::default();
+        let mut motor = motor();
         for _ in 0..40_000 {
             motor.step(wanted_a, stand.wheel_rps[0], supply_v, 0.22, dt_s);
-            stand.step([motor.torque_nm(), 0.0], M3508::friction(), dt_s);
+            stand.step([motor.torque_nm(), 0.0], motor.friction(), dt_s);
         }
         let rpm = stand.wheel_rps[0] * 60.0 / std::f64::consts::TAU;
         (rpm, motor.current_a())
@@ -75,7 +80,7 @@ mod tests {
         // 1 N·m less friction on 0.0105 kg·m² for 0.1 s: 9.52 rad/s less 0.1404/0.0105·0.1 = 1.34 and viscous drag.
         let mut stand = Stand::default();
         for _ in 0..400 {
-            stand.step([1.0, -1.0], M3508::friction(), 250e-6);
+            stand.step([1.0, -1.0], motor().friction(), 250e-6);
         }
         assert!(
             (stand.wheel_rps[0] - 8.12).abs() < 0.08,

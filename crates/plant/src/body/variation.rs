@@ -13,7 +13,7 @@ pub struct Variation {
     pub grip: f64,
     /// Factor of the torque that each motor makes of its current.
     pub torque: f64,
-    /// Delay of every command from the bus to the motor, beyond that of the motor models.
+    /// Delay of every frame from the bus to a motor, beyond that of the motor models.
     pub delay: Ps,
     /// Turn of the board in the robot, which nobody has told the firmware: a rotation vector in body axes, rad.
     pub imu_rad: [f64; 3],

@@ -1,6 +1,8 @@
 //! C620 motor controller: command in, current loop, feedback out.
 
-use super::motor::{GEAR, M3508};
+use robot_description::Wheels;
+
+use super::motor::M3508;
 use crate::{
     physics::{PHYSICS_STEP, physics_step_s},
     random::Random,
@@ -48,11 +50,12 @@ pub(crate) struct C620 {
 }
 
 impl C620 {
-    pub(crate) fn new(id: u8, mut random: Random) -> Self {
+    /// The controller with number `id` of these wheels.
+    pub(crate) fn new(id: u8, wheels: &Wheels, mut random: Random) -> Self {
         let ppm = random.symmetric(CRYSTAL_PPM);
         Self {
             id,
-            motor: M3508::default(),
+            motor: M3508::new(wheels),
             faults: EscFaults::default(),
             commanded_raw: 0,
             follow: 1.0 - (-physics_step_s() / CURRENT_LOOP_S).exp(),
@@ -95,7 +98,7 @@ impl C620 {
 
     pub(crate) fn step(&mut self, shaft_rps: f64, supply_v: f64) {
         let dt_s = physics_step_s();
-        self.rotor_turns += shaft_rps * GEAR * dt_s / std::f64::consts::TAU;
+        self.rotor_turns += shaft_rps * self.motor.gear() * dt_s / std::f64::consts::TAU;
         if self.powered() {
             let wanted_a = amperes(self.commanded_raw);
             self.motor
@@ -118,7 +121,8 @@ impl C620 {
             return;
         }
         let angle = (self.rotor_turns.rem_euclid(1.0) * ENCODER_STEPS) as u16;
-        let rotor_rpm = (shaft_rps * GEAR * 60.0 / std::f64::consts::TAU).round() as i16;
+        let rotor_rpm =
+            (shaft_rps * self.motor.gear() * 60.0 / std::f64::consts::TAU).round() as i16;
         let current = (self.motor.current_a() * FULL_SCALE_RAW / FULL_SCALE_A).round() as i16;
         self.feedback[0..2].copy_from_slice(&angle.to_be_bytes());
         self.feedback[2..4].copy_from_slice(&rotor_rpm.to_be_bytes());
@@ -170,10 +174,12 @@ fn amperes(raw: i16) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Stream;
+    use crate::{random::Stream, robots};
+    use robot_description::JointMotor;
 
     fn esc(id: u8) -> C620 {
-        C620::new(id, Random::new(1, Stream::LeftMotor))
+        let robot = robots::with_joints(JointMotor::Dm4310);
+        C620::new(id, &robot.wheels, Random::new(1, Stream::LeftMotor))
     }
 
     // docs/hardware.md#test-vectors: +1000, −1000, +16384, −16384.
@@ -236,7 +242,7 @@ mod tests {
         let before = angle(&esc);
         // A quarter turn of the rotor in 40 steps of 250 µs: 25 turns a second.
         for _ in 0..40 {
-            esc.step(25.0 * std::f64::consts::TAU / GEAR, 24.0);
+            esc.step(25.0 * std::f64::consts::TAU / esc.motor.gear(), 24.0);
         }
         esc.prepare_feedback(0.0);
         let moved = (angle(&esc) - before).rem_euclid(8_192.0);

@@ -1,17 +1,12 @@
 //! Torque, friction and heat of the M3508 at its output shaft.
 
-/// Rotor turns per turn of the output shaft.
-pub(crate) const GEAR: f64 = 3591.0 / 187.0;
-/// N·m at the output shaft per ampere of torque current (docs/hardware.md#c620-and-m3508).
-const TORQUE_NM_PER_A: f64 = 0.3;
-/// Datasheet: 482 rpm and 0.78 A without load at 24 V.
-const NO_LOAD_RPS: f64 = 482.0 * std::f64::consts::TAU / 60.0;
+use robot_description::Wheels;
+
+/// Datasheet: 0.78 A without load at 24 V.
 const NO_LOAD_A: f64 = 0.78;
 const RATED_V: f64 = 24.0;
 /// An assumption: no public source gives the phase resistance. It limits the current at high speed and heats the winding.
 const RESISTANCE_OHM: f64 = 0.194;
-/// Back-EMF per output speed, so that 24 V give the no-load speed.
-const BACK_EMF_V_PER_RPS: f64 = (RATED_V - RESISTANCE_OHM * NO_LOAD_A) / NO_LOAD_RPS;
 /// Assumed share of the no-load torque that is dry friction of gear and seals; the rest grows with speed.
 const DRY_SHARE: f64 = 0.6;
 const AMBIENT_C: f64 = 30.0;
@@ -32,27 +27,39 @@ pub(crate) struct Friction {
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct M3508 {
+    /// Rotor turns per turn of the output shaft.
+    gear: f64,
+    /// At the output shaft per ampere of torque current.
+    torque_nm_per_a: f64,
+    /// Speed of the output shaft without load at 24 V.
+    no_load_rps: f64,
     current_a: f64,
     winding_c: f64,
     pub(super) heated: bool,
 }
 
-impl Default for M3508 {
-    fn default() -> Self {
+impl M3508 {
+    /// A motor of these wheels.
+    pub(crate) fn new(wheels: &Wheels) -> Self {
         Self {
+            gear: wheels.gear_ratio,
+            torque_nm_per_a: wheels.torque_nm_per_a,
+            no_load_rps: wheels.no_load_rps,
             current_a: 0.0,
             winding_c: AMBIENT_C,
             heated: false,
         }
     }
-}
 
-impl M3508 {
-    pub(crate) fn friction() -> Friction {
-        let no_load_nm = TORQUE_NM_PER_A * NO_LOAD_A;
+    pub(crate) fn gear(&self) -> f64 {
+        self.gear
+    }
+
+    pub(crate) fn friction(&self) -> Friction {
+        let no_load_nm = self.torque_nm_per_a * NO_LOAD_A;
         Friction {
             dry_nm: DRY_SHARE * no_load_nm,
-            viscous_nm_per_rps: (1.0 - DRY_SHARE) * no_load_nm / NO_LOAD_RPS,
+            viscous_nm_per_rps: (1.0 - DRY_SHARE) * no_load_nm / self.no_load_rps,
         }
     }
 
@@ -63,7 +70,7 @@ impl M3508 {
 
     /// Electromagnetic torque at the output shaft, before friction.
     pub(crate) fn torque_nm(&self) -> f64 {
-        self.current_a * TORQUE_NM_PER_A
+        self.current_a * self.torque_nm_per_a
     }
 
     pub(crate) fn temperature_c(&self) -> f64 {
@@ -79,7 +86,8 @@ impl M3508 {
         follow: f64,
         dt_s: f64,
     ) {
-        let back_emf_v = BACK_EMF_V_PER_RPS * shaft_rps;
+        // 24 V give the no-load speed.
+        let back_emf_v = (RATED_V - RESISTANCE_OHM * NO_LOAD_A) * shaft_rps / self.no_load_rps;
         let max_a = (supply_v - back_emf_v) / RESISTANCE_OHM;
         let min_a = (-supply_v - back_emf_v) / RESISTANCE_OHM;
         let goal_a = wanted_a.clamp(min_a, max_a.max(min_a));

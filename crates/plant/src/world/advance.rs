@@ -3,10 +3,9 @@
 use super::World;
 use crate::{
     attitude,
-    body::{Floor, Stance},
+    body::{BodyInputs, Floor, OutsideForce, Stance},
     faults::{Fault, RADIO_LOSSES},
     joints::{JOINTS, Shaft},
-    m3508::M3508,
     motion::Motion,
     pc::LinkFaults,
     physics::{PHYSICS_STEP, physics_step_s},
@@ -18,8 +17,6 @@ use crate::{
 /// Earth's magnetic field in ENU, µT: 22 north and 42 into the ground, as in the middle of Europe or China, without
 /// declination.
 const EARTH_FIELD_UT: [f64; 3] = [0.0, 22.0, -42.0];
-/// Sign of a right-hand turn about the outward shaft when the wheel rolls forward: left, right.
-pub(super) const SHAFT_SIGN: [f64; 2] = [1.0, -1.0];
 
 impl World {
     /// The next instant at which the board could notice something: a character on the line of radio or PC, a motor's frame, or the
@@ -29,6 +26,7 @@ impl World {
         next = next.min(self.radio.next_event(self.now));
         next = next.min(self.pc.next_event(self.now));
         next = next.min(self.mag.next_event());
+        next = next.min(self.next_late());
         match self.serial_adapter.next_start() {
             at if at > self.now => next = next.min(at),
             _ => {}
@@ -61,6 +59,7 @@ impl World {
                 Due::Frame => self.radio.start_frame(self.radio_faults()),
                 Due::Link => self.pc.act(self.link_faults()),
                 Due::Conversion => self.mag.convert(),
+                Due::Late => self.hear_late(),
             }
         }
         self.now = self.now.max(now);
@@ -76,6 +75,7 @@ impl World {
             (self.radio.next_frame(), Due::Frame),
             (self.pc.next_due(), Due::Link),
             (self.mag.next_event(), Due::Conversion),
+            (self.next_late(), Due::Late),
         ]
         .into_iter()
         .min_by_key(|(at, _)| *at)
@@ -86,14 +86,16 @@ impl World {
         self.next_step += PHYSICS_STEP;
         let shaft_rps = self.shaft_rps();
         let supply_v = self.battery.volts();
+        let (signs, strength) = (self.shaft_signs(), self.variation.torque);
         let mut torques_nm = [0.0; 2];
         let mut power_w = 0.0;
         for (wheel, esc) in self.escs.iter_mut().enumerate() {
             esc.step(shaft_rps[wheel], supply_v);
-            torques_nm[wheel] = SHAFT_SIGN[wheel] * esc.motor.torque_nm();
+            torques_nm[wheel] = signs[wheel] * strength * esc.motor.torque_nm();
             power_w += esc.motor.torque_nm() * shaft_rps[wheel];
         }
-        power_w += self.step_joints(at, supply_v);
+        let joints = self.step_joints(at, supply_v);
+        power_w += joints.power_w;
         self.battery.set_charge(self.charge());
         self.battery.load(power_w);
         let floor = if self.faults.has(Fault::FloorSlippery) {
@@ -101,9 +103,16 @@ impl World {
         } else {
             Floor::Clean
         };
-        self.body
-            .step(torques_nm, M3508::friction(), floor, physics_step_s());
-        self.tilt.step(self.stance(), physics_step_s());
+        let inputs = BodyInputs {
+            wheel_nm: torques_nm,
+            wheel_friction: self.escs[0].motor.friction(),
+            joint_nm: joints.torque_nm.map(|nm| strength * nm),
+            joint_friction_nm: joints.friction_nm,
+            floor,
+            stance: self.stance(),
+            outside: self.outside_force(at),
+        };
+        self.body.step(&inputs, physics_step_s());
         let body_motion = self.motion(at);
         let board_motion = Motion {
             accel_mps2: self.mounting.to_sensor(body_motion.accel_mps2),
@@ -117,6 +126,14 @@ impl World {
         }
     }
 
+    fn outside_force(&mut self, at: Ps) -> Option<OutsideForce> {
+        let (force, ends) = self.push?;
+        if at > ends {
+            self.push = None;
+        }
+        self.push.is_some().then_some(force)
+    }
+
     fn charge(&self) -> Charge {
         if self.faults.has(Fault::BatteryEmpty) {
             Charge::Empty
@@ -127,33 +144,39 @@ impl World {
         }
     }
 
-    /// Steps the joints and returns the mechanical power of their motors, W.
-    fn step_joints(&mut self, at: Ps, supply_v: f64) -> f64 {
-        let mut power_w = 0.0;
+    /// Steps the joints' drives.
+    fn step_joints(&mut self, at: Ps, supply_v: f64) -> JointTorques {
+        let vel_rps = self.body.joint_vel_rps();
+        let mut torques = JointTorques::default();
         for index in 0..JOINTS {
             let shaft = self.joint_shaft(index);
             let joint = &mut self.joints[index];
             let was_enabled = joint.enabled();
             joint.step(shaft, supply_v, at);
-            power_w += joint.torque_nm() * self.legs.vel_rps[index];
-            let (torque_nm, friction_nm) = (joint.torque_nm(), joint.friction_nm());
+            torques.torque_nm[index] = joint.torque_nm();
+            torques.friction_nm = joint.friction_nm();
+            torques.power_w += joint.torque_nm() * vel_rps[index];
             if joint.enabled() != was_enabled {
                 self.report_joint(index, at);
             }
-            self.legs
-                .step(index, torque_nm, friction_nm, physics_step_s());
         }
-        power_w
+        torques
     }
 
     pub(super) fn joint_shaft(&self, joint: usize) -> Shaft {
-        self.joints[joint].shaft(self.legs.pos_rad[joint], self.legs.vel_rps[joint])
+        let (pos_rad, vel_rps) = (self.body.joint_pos_rad(), self.body.joint_vel_rps());
+        self.joints[joint].shaft(pos_rad[joint], vel_rps[joint])
     }
 
     /// Speeds of the wheels' output shafts in their own sense of rotation, rad/s.
     pub(super) fn shaft_rps(&self) -> [f64; 2] {
-        let wheel_rps = self.body.wheel_rps();
-        [SHAFT_SIGN[0] * wheel_rps[0], SHAFT_SIGN[1] * wheel_rps[1]]
+        let (wheel_rps, signs) = (self.body.wheel_rps(), self.shaft_signs());
+        [signs[0] * wheel_rps[0], signs[1] * wheel_rps[1]]
+    }
+
+    /// Sense of each shaft's own rotation when its wheel rolls forward: left, right.
+    pub(super) fn shaft_signs(&self) -> [f64; 2] {
+        self.robot.wheels.signs.map(f64::from)
     }
 
     fn stance(&self) -> Stance {
@@ -170,14 +193,14 @@ impl World {
     pub(super) fn motion(&self, at: Ps) -> Motion {
         match &self.playback {
             Some(playback) => playback.motion(at),
-            None => self.tilt.apply(self.body.motion()),
+            None => self.body.motion(),
         }
     }
 
     fn field_ut(&self, at: Ps) -> [f64; 3] {
         match &self.playback {
             Some(playback) => playback.field_ut(at),
-            None => attitude::to_body(self.tilt.attitude(self.body.pose().yaw_rad), EARTH_FIELD_UT),
+            None => attitude::to_body(self.body.attitude(), EARTH_FIELD_UT),
         }
     }
 
@@ -212,6 +235,15 @@ impl World {
     }
 }
 
+/// What the joints' motors do during one step.
+#[derive(Clone, Copy, Debug, Default)]
+struct JointTorques {
+    torque_nm: [f64; JOINTS],
+    friction_nm: f64,
+    /// Mechanical power of all four.
+    power_w: f64,
+}
+
 #[derive(Clone, Copy, Debug)]
 enum Due {
     Step,
@@ -219,4 +251,5 @@ enum Due {
     Frame,
     Link,
     Conversion,
+    Late,
 }

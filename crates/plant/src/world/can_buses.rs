@@ -1,9 +1,12 @@
 //! The nodes on the CAN buses, numbered from 0 on each bus. The bus model asks every node at each start of frame.
 
+use robot_description::{Bus, Robot};
+
 use super::{WireEvent, World, signals};
 use crate::{
     can_adapter::{AdapterMode, CanAdapter},
     faults::Fault,
+    joints::JOINTS,
     time::Ps,
     wire::{CanBusId, CanFrame},
 };
@@ -12,7 +15,7 @@ use crate::{
 const ROGUE_FRAME: CanFrame = CanFrame::with_data(0, [0; 8]);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Node {
+pub(super) enum Node {
     /// Wheel controller.
     Esc(usize),
     /// Motor of a leg joint.
@@ -22,32 +25,29 @@ enum Node {
     Rogue(Fault),
 }
 
-const CAN1: &[Node] = &[
-    Node::Esc(0),
-    Node::Esc(1),
-    Node::Rogue(Fault::RogueNodeCan1),
-    Node::Adapter,
-];
-const CAN2: &[Node] = &[
-    Node::Joint(0),
-    Node::Joint(1),
-    Node::Joint(2),
-    Node::Joint(3),
-    Node::Rogue(Fault::RogueNodeCan2),
-    Node::Adapter,
-];
-
-fn nodes(bus: CanBusId) -> &'static [Node] {
-    match bus {
-        CanBusId::Can1 => CAN1,
-        CanBusId::Can2 => CAN2,
-    }
+/// The nodes of CAN1 and CAN2: the motors that the robot's file puts there, a rogue one and a PC's adapter.
+pub(super) fn nodes(robot: &Robot) -> [Vec<Node>; 2] {
+    let buses = [
+        (Bus::Can1, Fault::RogueNodeCan1),
+        (Bus::Can2, Fault::RogueNodeCan2),
+    ];
+    buses.map(|(bus, rogue)| {
+        let mut nodes = Vec::new();
+        if robot.wheels.bus == bus {
+            nodes.extend([Node::Esc(0), Node::Esc(1)]);
+        }
+        if robot.joints.bus == bus {
+            nodes.extend((0..JOINTS).map(Node::Joint));
+        }
+        nodes.extend([Node::Rogue(rogue), Node::Adapter]);
+        nodes
+    })
 }
 
 impl World {
     /// Number of nodes on this bus, present or not, without the board.
     pub fn can_nodes(&self, bus: CanBusId) -> usize {
-        nodes(bus).len()
+        self.nodes[bus as usize].len()
     }
 
     fn unplugged(&self, bus: CanBusId) -> bool {
@@ -60,7 +60,7 @@ impl World {
     /// False for a node without power or unplugged, which neither sends nor acknowledges.
     pub fn can_present(&self, bus: CanBusId, node: usize) -> bool {
         !self.unplugged(bus)
-            && match nodes(bus)[node] {
+            && match self.nodes[bus as usize][node] {
                 Node::Esc(wheel) => self.escs[wheel].powered(),
                 Node::Joint(joint) => self.joints[joint].powered(),
                 Node::Adapter => self.adapter(bus).mode() == AdapterMode::Active,
@@ -70,7 +70,7 @@ impl World {
 
     /// True for every node that receives: the present ones and an adapter that only listens.
     pub fn can_hears(&self, bus: CanBusId, node: usize) -> bool {
-        let listens = nodes(bus)[node] == Node::Adapter
+        let listens = self.nodes[bus as usize][node] == Node::Adapter
             && self.adapter(bus).mode() == AdapterMode::ListenOnly;
         self.can_present(bus, node) || listens && !self.unplugged(bus)
     }
@@ -89,7 +89,7 @@ impl World {
         if !self.can_present(bus, node) {
             return None;
         }
-        match nodes(bus)[node] {
+        match self.nodes[bus as usize][node] {
             Node::Esc(wheel) => self.escs[wheel].pending(),
             Node::Joint(joint) => self.joints[joint].pending(now),
             Node::Adapter => self.adapter(bus).pending(),
@@ -100,7 +100,7 @@ impl World {
     /// Tells the node that its pending frame was sent and acknowledged.
     pub fn can_sent(&mut self, bus: CanBusId, node: usize, now: Ps) {
         self.advance(now);
-        match nodes(bus)[node] {
+        match self.nodes[bus as usize][node] {
             Node::Esc(wheel) => {
                 self.escs[wheel].sent();
                 self.wire_events.push(WireEvent {
@@ -118,7 +118,34 @@ impl World {
     /// Delivers a frame that ended without error. To be called once for each node that receives, except the sender.
     pub fn can_received(&mut self, bus: CanBusId, node: usize, frame: &CanFrame, now: Ps) {
         self.advance(now);
-        match nodes(bus)[node] {
+        match self.nodes[bus as usize][node] {
+            Node::Adapter => {
+                self.record_tuning_reply(frame, now);
+                self.can_adapter(bus).receive(frame, now);
+            }
+            Node::Rogue(_) => {}
+            motor if self.variation.delay == 0 => self.motor_received(motor, frame, now),
+            motor => {
+                let heard = now + self.variation.delay;
+                self.late.push_back((heard, motor, *frame));
+            }
+        }
+    }
+
+    /// When the next command that the variation delays reaches its motor.
+    pub(super) fn next_late(&self) -> Ps {
+        self.late.front().map_or(Ps::MAX, |(heard, ..)| *heard)
+    }
+
+    /// Lets the first delayed command reach its motor.
+    pub(super) fn hear_late(&mut self) {
+        if let Some((heard, motor, frame)) = self.late.pop_front() {
+            self.motor_received(motor, &frame, heard);
+        }
+    }
+
+    fn motor_received(&mut self, motor: Node, frame: &CanFrame, now: Ps) {
+        match motor {
             Node::Esc(wheel) if self.escs[wheel].receive(frame) => {
                 self.wire_events.push(WireEvent {
                     at: now,
@@ -126,12 +153,8 @@ impl World {
                     value: self.escs[wheel].commanded_ma(),
                 });
             }
-            Node::Adapter => {
-                self.record_tuning_reply(frame, now);
-                self.can_adapter(bus).receive(frame, now);
-            }
             Node::Joint(joint) => self.joint_received(joint, frame, now),
-            Node::Esc(_) | Node::Rogue(_) => {}
+            Node::Esc(_) | Node::Adapter | Node::Rogue(_) => {}
         }
     }
 

@@ -1,14 +1,19 @@
 //! The world at time 0.
 
-use super::{Indicators, World, WorldConfig, WorldError, signals, tuning_replies::TuningReplies};
+use std::collections::VecDeque;
+
+use super::{
+    Indicators, World, WorldConfig, WorldError, can_buses, signals, tuning_replies::TuningReplies,
+};
 use crate::{
     bmi088::Bmi088,
-    body::{Body, Legs, Tilt},
+    body::Body,
     faults::ActiveFaults,
     ist8310::Ist8310,
     joints,
     m3508::C620,
     motion::MotionSource,
+    mounting::Mounting,
     pc::Pc,
     physics::PHYSICS_STEP,
     radio::Receiver,
@@ -33,28 +38,33 @@ impl World {
             None => MotionSource::Physics,
         };
         let seed = config.seed;
+        let robot = config.robot;
+        let [left, right] = robot.wheels.escs;
         Ok(Self {
             now: 0,
             next_step: PHYSICS_STEP,
             body: Body::new(config.plant),
-            tilt: Tilt::default(),
             escs: [
-                C620::new(1, Random::new(seed, Stream::LeftMotor)),
-                C620::new(2, Random::new(seed, Stream::RightMotor)),
+                C620::new(left, &robot.wheels, Random::new(seed, Stream::LeftMotor)),
+                C620::new(right, &robot.wheels, Random::new(seed, Stream::RightMotor)),
             ],
-            joints: joints::drives(config.joints, config.rs00_timeout),
+            joints: joints::drives(&robot.joints, config.rs00_timeout),
             joints_reported: Default::default(),
-            legs: Legs::default(),
             adapters: Default::default(),
             serial_adapter: SerialAdapter::default(),
             tuning_replies: TuningReplies::default(),
             battery: Battery::default(),
             imu: Bmi088::new(seed, source, config.imu_temperature_c),
             mag: Ist8310::new(seed, source),
-            mounting: config.mounting,
+            mounting: config.mounting.unwrap_or_else(|| Mounting::of(&robot.imu)),
             mag_mounting: config.mag_mounting,
             radio: Receiver::new(config.radio, seed),
             pc: Pc::new(seed),
+            nodes: can_buses::nodes(&robot),
+            robot,
+            variation: config.variation,
+            late: VecDeque::new(),
+            push: None,
             signal_names: signals::names(playback.is_some()),
             playback,
             indicators: Indicators::default(),

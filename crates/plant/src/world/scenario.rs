@@ -1,9 +1,10 @@
 //! What a scenario changes in the world, and what it asks about it.
 
-use super::{World, WorldError};
+use super::{Push, World, WorldError};
 use crate::{
     attitude::{self, Quaternion},
     bmi088::ImuFaults,
+    body::OutsideForce,
     faults::{self, Fault, FaultInfo, MOTORS},
     ist8310::MagFaults,
     joints::DriveFaults,
@@ -22,6 +23,18 @@ impl World {
     /// Changes what the program on the PC sends over the serial link.
     pub fn set_pc(&mut self, input: PcInput) {
         self.pc.set(input, self.now);
+    }
+
+    /// Pushes the free robot from now on; a push before it ends. No other robot minds.
+    pub fn push(&mut self, push: Push) {
+        let (com_m, shift_m) = (self.robot.body.com_m, self.variation.com_m);
+        let force = OutsideForce {
+            force_n: push.force_n(self.body.pose().yaw_rad),
+            at_m: push
+                .at_m
+                .unwrap_or_else(|| std::array::from_fn(|axis| com_m[axis] + shift_m[axis])),
+        };
+        self.push = Some((force, self.now + push.lasts));
     }
 
     /// Starts or ends a fault at the present time.
@@ -55,12 +68,21 @@ impl World {
         Ok(())
     }
 
-    /// Gives the left controller number 1 and the right one 2, unless a fault gives both the same.
+    /// Gives each controller the number of the robot's file, unless a fault gives both the same.
     fn number_escs(&mut self) {
         let [left, right] = &mut self.escs;
+        let [left_id, right_id] = self.robot.wheels.escs;
         let has = |fault| self.faults.has(fault);
-        left.set_number(if has(Fault::Motor1Doubled) { 2 } else { 1 });
-        right.set_number(if has(Fault::Motor0Doubled) { 1 } else { 2 });
+        left.set_number(if has(Fault::Motor1Doubled) {
+            right_id
+        } else {
+            left_id
+        });
+        right.set_number(if has(Fault::Motor0Doubled) {
+            left_id
+        } else {
+            right_id
+        });
     }
 
     /// Switches the power of the board and its sensors. Motors, radio and PC have their own.
@@ -137,7 +159,7 @@ impl World {
     pub(super) fn true_attitude(&self) -> Option<Quaternion> {
         match &self.playback {
             Some(playback) => playback.reference(self.now),
-            None => Some(self.tilt.attitude(self.body.pose().yaw_rad)),
+            None => Some(self.body.attitude()),
         }
     }
 }

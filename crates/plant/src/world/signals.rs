@@ -2,7 +2,7 @@
 
 mod link;
 
-use super::{WireEvent, World, advance::SHAFT_SIGN};
+use super::{WireEvent, World};
 use crate::{body::WHEEL_RADIUS_M, recording::Playback};
 
 type Signal = (&'static str, fn(&World) -> f64);
@@ -97,8 +97,12 @@ const JOINT_WIRES: [[Signal; 5]; 4] = [
 macro_rules! joint_truth {
     ($name:literal, $joint:literal) => {
         [
-            (concat!($name, ".pos_rad"), |w| w.legs.pos_rad[$joint]),
-            (concat!($name, ".vel_rps"), |w| w.legs.vel_rps[$joint]),
+            (concat!($name, ".pos_rad"), |w| {
+                w.body.joint_pos_rad()[$joint]
+            }),
+            (concat!($name, ".vel_rps"), |w| {
+                w.body.joint_vel_rps()[$joint]
+            }),
             (concat!($name, ".torque_nm"), |w| {
                 w.joints[$joint].torque_nm()
             }),
@@ -250,7 +254,7 @@ fn rim_mps(world: &World, wheel: usize) -> f64 {
 }
 
 fn torque_nm(world: &World, wheel: usize) -> f64 {
-    SHAFT_SIGN[wheel] * world.escs[wheel].motor.torque_nm()
+    world.shaft_signs()[wheel] * world.escs[wheel].motor.torque_nm()
 }
 
 fn coil_ma(world: &World, wheel: usize) -> f64 {

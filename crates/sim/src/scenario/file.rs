@@ -5,13 +5,14 @@ mod expectations;
 mod flash;
 mod pc;
 mod problem;
+mod robot;
 
 use std::path::Path;
 
 use robot_plant::{
     mounting::Mounting,
     time::{self, Ps},
-    world::{JointKind, PlantKind, RadioKind},
+    world::{PlantKind, RadioKind, Variation},
 };
 use serde::Deserialize;
 use toml::Spanned;
@@ -21,6 +22,7 @@ use events::{At, read_at};
 use expectations::{Expect, read_expect};
 use flash::{Flash, read_flash};
 pub use problem::Problem;
+use robot::{Joints, Vary, read_robot, read_variation};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -30,8 +32,9 @@ struct File {
     plant: Plant,
     #[serde(default)]
     radio: Radio,
-    #[serde(default)]
-    joints: Joints,
+    joints: Option<Spanned<Joints>>,
+    robot: Option<Spanned<String>>,
+    variation: Option<Spanned<Vary>>,
     #[serde(default)]
     rs00_timeout_ms: u32,
     imu_temperature_c: Option<f64>,
@@ -61,14 +64,6 @@ enum Radio {
     #[default]
     Sbus,
     Dbus,
-}
-
-#[derive(Default, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-enum Joints {
-    #[default]
-    Dm4310,
-    Rs00,
 }
 
 /// Turns positions in the text into errors that name file and line.
@@ -114,7 +109,16 @@ pub(super) fn parse(text: &str, file: &str) -> Result<Scenario, ScenarioError> {
         None => FlashSetup::default(),
     };
     let mounting = read_mounting(raw.mounting, &source)?;
-    let mag_mounting = read_mounting(raw.mag_mounting, &source)?;
+    let mag_mounting = read_mounting(raw.mag_mounting, &source)?.unwrap_or_default();
+    let offset = raw.robot.as_ref().map_or(0, |robot| robot.span().start);
+    let joints = raw.joints.as_ref().map(|joints| *joints.get_ref());
+    let robot = read_robot(raw.robot.as_ref().map(|r| r.get_ref().as_str()), joints)
+        .map_err(|problem| source.wrong(offset, problem))?;
+    let variation = match &raw.variation {
+        Some(vary) => read_variation(vary.get_ref())
+            .map_err(|problem| source.wrong(vary.span().start, problem))?,
+        None => Variation::default(),
+    };
     let mut events = Vec::new();
     for at in &raw.at {
         read_at(at.get_ref(), seconds, &mut events)
@@ -141,10 +145,8 @@ pub(super) fn parse(text: &str, file: &str) -> Result<Scenario, ScenarioError> {
             Radio::Sbus => RadioKind::Sbus,
             Radio::Dbus => RadioKind::Dbus,
         },
-        joints: match raw.joints {
-            Joints::Dm4310 => JointKind::Dm4310,
-            Joints::Rs00 => JointKind::Rs00,
-        },
+        robot,
+        variation,
         rs00_timeout: u64::from(raw.rs00_timeout_ms) * time::MS,
         imu_temperature_c: raw.imu_temperature_c,
         mounting,
@@ -160,13 +162,15 @@ pub(super) fn parse(text: &str, file: &str) -> Result<Scenario, ScenarioError> {
 fn read_mounting(
     raw: Option<Spanned<String>>,
     source: &Source<'_>,
-) -> Result<Mounting, ScenarioError> {
+) -> Result<Option<Mounting>, ScenarioError> {
     let Some(name) = raw else {
-        return Ok(Mounting::default());
+        return Ok(None);
     };
     let offset = name.span().start;
     let mounting = name.into_inner().parse::<Mounting>();
-    mounting.map_err(|error| source.wrong(offset, Problem::Mounting(error.to_string())))
+    mounting
+        .map(Some)
+        .map_err(|error| source.wrong(offset, Problem::Mounting(error.to_string())))
 }
 
 /// The instant `t`, which the key `name` gives, if it lies in the run.

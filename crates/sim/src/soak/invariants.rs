@@ -164,7 +164,7 @@ impl Invariants {
         let at = timed.at;
         match &timed.event {
             Event::Remote(input) => self.pilot(at, input.enable, input.e_stop),
-            Event::Pc(_) => {}
+            Event::Pc(_) | Event::Push(_) => {}
             Event::Can(bus, frame) => {
                 self.tally.frames += 1;
                 self.settings.sent(*bus, frame);

@@ -80,7 +80,7 @@ fn state(earlier: &[&TimedEvent]) -> Vec<Event> {
             Event::EndFault(name) => {
                 faults.remove(name);
             }
-            Event::Can(..) => {}
+            Event::Can(..) | Event::Push(_) => {}
         }
     }
     let is_of_world = |name: &String| {
@@ -109,6 +109,7 @@ fn event_text(text: &mut String, at: f64, event: &Event) {
             let id = frame.id;
             format!("can = {{ bus = {bus}, id = {id:#x}, data = {data:?} }}")
         }
+        Event::Push(push) => format!("push = {{ impulse_ns = {:?} }}", push.impulse_ns),
         Event::StartFault(name) => format!("fault = \"{name}\""),
         Event::EndFault(name) => format!("end_fault = \"{name}\""),
     };

@@ -1,8 +1,9 @@
 //! The tables `[[at]]`, which say what happens at which time.
 
 use robot_plant::{
+    time,
     wire::CanFrame,
-    world::{CanBusId, RemoteInput},
+    world::{CanBusId, Push, RemoteInput},
 };
 use serde::Deserialize;
 
@@ -23,6 +24,7 @@ pub(super) struct At {
     remote: Option<Remote>,
     pc: Option<Pc>,
     can: Option<Can>,
+    push: Option<Shove>,
     fault: Option<String>,
     end_fault: Option<String>,
     duration: Option<f64>,
@@ -36,6 +38,15 @@ struct Can {
     bus: u8,
     id: u32,
     data: Vec<u8>,
+}
+
+/// A push against the free robot.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Shove {
+    impulse_ns: [f64; 3],
+    at_m: Option<[f64; 3]>,
+    ms: Option<f64>,
 }
 
 #[derive(Deserialize)]
@@ -56,7 +67,7 @@ struct Remote {
 
 pub(super) fn read_at(at: &At, seconds: f64, events: &mut Vec<TimedEvent>) -> Result<(), Problem> {
     let start = instant("t", at.t, seconds)?;
-    let acts = at.remote.is_some() || at.pc.is_some() || at.can.is_some();
+    let acts = at.remote.is_some() || at.pc.is_some() || at.can.is_some() || at.push.is_some();
     if !acts && at.fault.is_none() && at.end_fault.is_none() {
         return Err(Problem::EmptyAt);
     }
@@ -77,6 +88,12 @@ pub(super) fn read_at(at: &At, seconds: f64, events: &mut Vec<TimedEvent>) -> Re
         events.push(TimedEvent {
             at: start,
             event: Event::Can(bus, frame),
+        });
+    }
+    if let Some(shove) = &at.push {
+        events.push(TimedEvent {
+            at: start,
+            event: Event::Push(read_push(shove)?),
         });
     }
     if let Some(name) = &at.fault {
@@ -158,6 +175,22 @@ fn read_can(can: &Can) -> Result<(CanBusId, CanFrame), Problem> {
         data,
     };
     Ok((bus, frame))
+}
+
+fn read_push(shove: &Shove) -> Result<Push, Problem> {
+    let weak = |values: [f64; 3], most: f64| values.iter().all(|v| v.abs() <= most);
+    let ms = shove.ms.unwrap_or(10.0);
+    let sound = weak(shove.impulse_ns, 100.0)
+        && shove.at_m.is_none_or(|at_m| weak(at_m, 1.0))
+        && (1.0..=1_000.0).contains(&ms);
+    if !sound {
+        return Err(Problem::Push);
+    }
+    Ok(Push {
+        impulse_ns: shove.impulse_ns,
+        at_m: shove.at_m,
+        lasts: time::from_seconds(ms * 1e-3),
+    })
 }
 
 fn known_fault(name: &str) -> Result<String, Problem> {

@@ -27,7 +27,7 @@ pub enum Problem {
     #[error("a sector holds {SLOTS} records")]
     TooManyRecords,
     #[error(
-        "this [[at]] does nothing; add `remote`, `pc`, `can`, `fault` or `end_fault`, or remove it"
+        "this [[at]] does nothing; add `remote`, `pc`, `can`, `push`, `fault` or `end_fault`, or remove it"
     )]
     EmptyAt,
     #[error("`duration` belongs to a `fault`; name the fault")]
@@ -49,6 +49,23 @@ pub enum Problem {
     PcJoints(String),
     #[error("`rate_hz` is {0}; the line carries up to 1,200 frames a second")]
     PcRate(f64),
+    #[error("{0}")]
+    Robot(String),
+    #[error("`robot` names its joints; leave `joints` out")]
+    RobotAndJoints,
+    #[error("`{name}` of the variation is {value}; write {least} to {most}")]
+    Variation {
+        name: &'static str,
+        value: f64,
+        least: f64,
+        most: f64,
+    },
+    #[error(
+        "a push has an `impulse_ns` of three numbers up to 100 N·s, an `at_m` up to 1 m, and `ms` from 1 to 1000"
+    )]
+    Push,
+    #[error("`{0}` belongs to `plant = \"free\"`: no other robot can fall or meet terrain")]
+    NotFree(&'static str),
     #[error("`bus` is {0}; the board has 1 and 2")]
     Bus(u8),
     #[error("`id` is {0:#x}; a standard identifier ends at 0x7FF")]

@@ -1,4 +1,5 @@
 use robot_plant::{
+    robots::JointMotor,
     time::{MS, SECOND},
     wire::CanFrame,
     world::{CanBusId, PcInput, PcJoints, RemoteInput},
@@ -87,7 +88,7 @@ fn the_robot_may_have_saved_settings_before() {
 fn the_board_may_sit_otherwise() {
     let text = format!("{HEAD}mounting = \"x-left-z-up\"\nmag_mounting = \"x-up-z-left\"\n");
     let read = Scenario::parse(&text, "s.toml").unwrap();
-    assert_eq!(Ok(read.mounting), "x-left-z-up".parse());
+    assert_eq!(Ok(read.mounting.unwrap()), "x-left-z-up".parse());
     assert_eq!(Ok(read.mag_mounting), "x-up-z-left".parse());
     let wrong = error_of("mounting = \"upside-down\"\n");
     assert!(
@@ -214,14 +215,14 @@ fn flags_are_expected_by_name() {
 fn the_robot_may_have_other_joints_and_a_cold_board() {
     let plain = Scenario::parse(HEAD, "s.toml").unwrap();
     assert_eq!(
-        (plain.joints, plain.imu_temperature_c),
-        (JointKind::Dm4310, None)
+        (plain.robot.joints.motor, plain.imu_temperature_c),
+        (JointMotor::Dm4310, None)
     );
     let text = format!("{HEAD}joints = \"rs00\"\nimu_temperature_c = 22.0\n");
     let cold = Scenario::parse(&text, "s.toml").unwrap();
     assert_eq!(
-        (cold.joints, cold.imu_temperature_c),
-        (JointKind::Rs00, Some(22.0))
+        (cold.robot.joints.motor, cold.imu_temperature_c),
+        (JointMotor::Rs00, Some(22.0))
     );
     assert!(error_of("imu_temperature_c = 200.0\n").contains("BMI088"));
 }
