@@ -2,14 +2,12 @@
 //!
 //! Put your own algorithm into `user_controller.rs`. A PC on the link bypasses it: its command goes through `pc_law.rs`.
 
-mod balance;
 mod chassis_controller;
 mod default_controller;
 mod pc_law;
 mod pose_hold;
 mod user_controller;
 
-pub use balance::Leg;
 pub use chassis_controller::{ChassisController, ChassisControllerInput, ChassisControllerOutput};
 pub use default_controller::DefaultController;
 pub use pc_law::pc_law;

@@ -9,6 +9,7 @@
 //! | [`domain`] | the types all stages share, plain `repr(C)` data in SI units unless the name says otherwise |
 //! | [`input`] | radio bytes → `RemoteUpdate` (stick and switch state, operator state, link diagnostics) |
 //! | [`sensing`] | sensor register bytes → calibrated `ImuState`, `MagState`, the heater's duty; the bring-up sequences as data |
+//! | [`kinematics`] | joint angles and speeds → where axles and shanks are and how they move |
 //! | [`estimation`] | IMU, magnetometer, wheels → `StateEstimate` |
 //! | [`logic`] | remote → `LogicBus` (high-level command, or the choice of the PC) |
 //! | [`control`] | `LogicBus`, or a PC's command, and estimate → `ChassisCommand`; `control/user_controller.rs` is where a user writes theirs |
@@ -71,6 +72,7 @@ pub mod domain;
 pub mod estimation;
 pub mod indication;
 pub mod input;
+pub mod kinematics;
 pub mod link;
 pub mod logic;
 mod math;

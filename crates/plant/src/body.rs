@@ -1,6 +1,7 @@
 //! The robot's mechanics. Body axes: x forward, y left, z up; wheel 0 = left, 1 = right.
 
 mod floor;
+pub mod free;
 mod legs;
 mod pose;
 mod rolling;

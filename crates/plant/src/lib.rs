@@ -29,4 +29,5 @@ mod radio;
 mod random;
 mod supply;
 
+pub use body::free;
 pub use robot_wire::time;

@@ -47,6 +47,8 @@ pub struct MassModel {
     pub roll_kgm2: f32,
     /// Moment of inertia of a wheel and its rotor about the axle in kg·m².
     pub wheel_kgm2: f32,
+    /// Moment of inertia of a hip's rotor, seen at the joint, in kg·m².
+    pub hip_kgm2: f32,
 }
 
 /// State feedback for every pair of leg lengths. `robot gains` computes it from the robot's file.

@@ -47,7 +47,7 @@ impl Leg {
     /// number counts as zero. All results are finite.
     ///
     /// ```
-    /// use robot_app::{control::Leg, domain::LegGeometry};
+    /// use robot_app::{kinematics::Leg, domain::LegGeometry};
     /// let leg = Leg::new(&LegGeometry::EXAMPLE, [0.0, 0.0], [0.0, 0.0]);
     /// // Both thighs level: the knees are 0.34 m apart, and √(0.22² − 0.17²) = 0.1396.
     /// assert!((leg.length_m - 0.139_64).abs() < 1e-5 && leg.angle_rad.abs() < 1e-6);
@@ -160,3 +160,6 @@ fn dot([ax, az]: Point, [bx, bz]: Point) -> f32 {
 fn cross([ax, az]: Point, [bx, bz]: Point) -> f32 {
     ax * bz - az * bx
 }
+
+#[cfg(test)]
+mod tests;

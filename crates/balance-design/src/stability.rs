@@ -1,0 +1,52 @@
+//! Whether the loop holds, with torques that come late.
+
+use nalgebra::DMatrix;
+
+use crate::{
+    discrete::DiscreteModel,
+    model::{GainMatrix, INPUTS, STATES},
+};
+
+/// After 2¹⁷ ticks, two minutes, whatever does not vanish counts as unstable.
+const MOST_DOUBLINGS: usize = 17;
+
+/// Returns what a tick does to the states and the torques that are on their way: newest torque last.
+pub fn closed_loop(model: &DiscreteModel, gains: &GainMatrix, delay_ticks: usize) -> DMatrix<f64> {
+    let size = STATES + INPUTS * delay_ticks;
+    let mut matrix = DMatrix::zeros(size, size);
+    matrix
+        .view_mut((0, 0), (STATES, STATES))
+        .copy_from(&model.a);
+    if delay_ticks == 0 {
+        let feedback = model.b * gains;
+        let mut block = matrix.view_mut((0, 0), (STATES, STATES));
+        block -= feedback;
+        return matrix;
+    }
+    matrix
+        .view_mut((0, STATES), (STATES, INPUTS))
+        .copy_from(&model.b);
+    for i in STATES..size - INPUTS {
+        matrix[(i, i + INPUTS)] = 1.0;
+    }
+    matrix
+        .view_mut((size - INPUTS, 0), (INPUTS, STATES))
+        .copy_from(&-gains);
+    matrix
+}
+
+/// True if every motion of the loop vanishes.
+pub fn is_stable(model: &DiscreteModel, gains: &GainMatrix, delay_ticks: usize) -> bool {
+    let mut matrix = closed_loop(model, gains, delay_ticks);
+    for _ in 0..MOST_DOUBLINGS {
+        matrix = &matrix * &matrix;
+        let largest = matrix.amax();
+        if largest < 1e-3 {
+            return true;
+        }
+        if !(largest < 1e12) {
+            return false;
+        }
+    }
+    false
+}

@@ -1,0 +1,262 @@
+//! Equations of motion: mass matrix, bias forces, and the accelerations that follow.
+//!
+//! Coordinates are the specific force at the body's origin and the angular acceleration of the body, both in body axes, and
+//! three of each leg: front hip, rear hip, wheel against its shank. Gravity is a uniform acceleration: with the specific force
+//! as unknown it needs no term. Legs meet in the body only, so the matrix is an arrow: a leg's block is eliminated by its own 3 × 3
+//! inverse, and 6 × 6 remain.
+
+use super::{
+    Vec2, Vec3,
+    model::{Model, SIDES},
+    parts::{LEG_COORDINATES, Leg, PARTS, lift},
+};
+use nalgebra::{Cholesky, Const, Matrix3, Matrix6, Matrix6x3, Vector3, Vector6};
+
+/// Forces along the coordinates, or accelerations of them: body first, then each leg.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Coordinates {
+    /// Linear, then angular.
+    pub body: Vector6<f64>,
+    pub legs: [Vector3<f64>; SIDES],
+}
+
+impl Coordinates {
+    pub fn zeros() -> Self {
+        Self {
+            body: Vector6::zeros(),
+            legs: [Vector3::zeros(); SIDES],
+        }
+    }
+
+    pub fn linear(&self) -> Vec3 {
+        self.body.fixed_rows::<3>(0).into_owned()
+    }
+
+    pub fn angular(&self) -> Vec3 {
+        self.body.fixed_rows::<3>(3).into_owned()
+    }
+
+    /// Adds a force at a place of the body, both in body axes.
+    pub fn push_body(&mut self, force: Vec3, at: Vec3) {
+        self.turn_body(at.cross(&force));
+        self.body[0] += force.x;
+        self.body[1] += force.y;
+        self.body[2] += force.z;
+    }
+
+    pub fn turn_body(&mut self, torque: Vec3) {
+        self.body[3] += torque.x;
+        self.body[4] += torque.y;
+        self.body[5] += torque.z;
+    }
+
+    fn minus(&self, other: &Self) -> Self {
+        Self {
+            body: self.body - other.body,
+            legs: [self.legs[0] - other.legs[0], self.legs[1] - other.legs[1]],
+        }
+    }
+}
+
+/// Speeds that the bias depends on. The body's own velocity is none of them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rates {
+    /// Of the body, in body axes.
+    pub body: Vec3,
+    pub legs: [[f64; LEG_COORDINATES]; SIDES],
+}
+
+/// Mass matrix at one pose of both legs, factored.
+pub(super) struct Dynamics {
+    /// Of the body with both legs, before the legs are eliminated.
+    pub rigid: Matrix6<f64>,
+    /// Rows: body. Columns: leg.
+    pub coupling: [Matrix6x3<f64>; SIDES],
+    pub legs: [Matrix3<f64>; SIDES],
+    inverse: [Matrix3<f64>; SIDES],
+    /// coupling · inverse.
+    lever: [Matrix6x3<f64>; SIDES],
+    /// `None` where the body is clamped.
+    body: Option<Cholesky<f64, Const<6>>>,
+}
+
+impl Dynamics {
+    pub fn new(model: &Model, legs: &[Leg; SIDES], clamped: bool) -> Self {
+        let mut rigid = RigidSum::default();
+        rigid.add(model.body_kg, model.body_com, &model.body_inertia);
+        let mut blocks = [Matrix3::zeros(); SIDES];
+        let mut coupling = [Matrix6x3::zeros(); SIDES];
+        for side in 0..SIDES {
+            let rotors = [
+                model.armature_kgm2,
+                model.armature_kgm2,
+                model.disc.rotor_kgm2,
+            ];
+            blocks[side] = Matrix3::from_diagonal(&Vector3::from(rotors));
+            for part in &legs[side].parts {
+                rigid.add(part.mass_kg, part.place, &part.inertia);
+                let spin = part.inertia[(1, 1)];
+                for i in 0..LEG_COORDINATES {
+                    let slope = |i: usize| part.slope.get(i).copied().unwrap_or_else(Vec2::zeros);
+                    let force = lift(slope(i)) * part.mass_kg;
+                    let moment = part.place.cross(&force);
+                    for axis in 0..3 {
+                        coupling[side][(axis, i)] += force[axis];
+                        coupling[side][(axis + 3, i)] += moment[axis];
+                    }
+                    coupling[side][(4, i)] += part.turn[i] * spin;
+                    for j in 0..LEG_COORDINATES {
+                        blocks[side][(i, j)] += part.mass_kg * slope(i).dot(&slope(j))
+                            + part.turn[i] * part.turn[j] * spin;
+                    }
+                }
+            }
+        }
+        let rigid = rigid.matrix();
+        let inverse = blocks.map(|it| it.try_inverse().unwrap_or_else(Matrix3::zeros));
+        let lever = [coupling[0] * inverse[0], coupling[1] * inverse[1]];
+        let body = (!clamped)
+            .then(|| {
+                let legs = lever[0] * coupling[0].transpose() + lever[1] * coupling[1].transpose();
+                Cholesky::new(rigid - legs)
+            })
+            .flatten();
+        Self {
+            rigid,
+            coupling,
+            legs: blocks,
+            inverse,
+            lever,
+            body,
+        }
+    }
+
+    /// Accelerations under the given forces. The body's linear one is the specific force at its origin; a clamped body has that of
+    /// `held`.
+    pub fn accelerations(
+        &self,
+        forces: &Coordinates,
+        bias: &Coordinates,
+        held: Vec3,
+    ) -> Coordinates {
+        let mut result = forces.minus(bias);
+        match &self.body {
+            Some(body) => {
+                result.body -= self.lever[0] * result.legs[0] + self.lever[1] * result.legs[1];
+                body.solve_mut(&mut result.body);
+            }
+            None => result.body = Vector6::new(held.x, held.y, held.z, 0.0, 0.0, 0.0),
+        }
+        for side in 0..SIDES {
+            let pulled = self.coupling[side].transpose() * result.body;
+            result.legs[side] = self.inverse[side] * (result.legs[side] - pulled);
+        }
+        result
+    }
+
+    /// Kinetic energy less that of the origin's own motion: `velocity` is in body axes.
+    pub fn kinetic_j(&self, velocity: Vec3, rates: &Rates) -> f64 {
+        let body = Vector6::new(
+            velocity.x,
+            velocity.y,
+            velocity.z,
+            rates.body.x,
+            rates.body.y,
+            rates.body.z,
+        );
+        let mut double = (self.rigid * body).dot(&body);
+        for side in 0..SIDES {
+            let leg = Vector3::from(rates.legs[side]);
+            double +=
+                (self.legs[side] * leg).dot(&leg) + 2.0 * (self.coupling[side] * leg).dot(&body);
+        }
+        double / 2.0
+    }
+
+    /// Linear and angular momentum about the body's origin, in body axes. Rotors count as their reflected inertia does: not.
+    pub fn momentum(&self, velocity: Vec3, rates: &Rates) -> Vector6<f64> {
+        let body = Vector6::new(
+            velocity.x,
+            velocity.y,
+            velocity.z,
+            rates.body.x,
+            rates.body.y,
+            rates.body.z,
+        );
+        (0..SIDES).fold(self.rigid * body, |sum, side| {
+            sum + self.coupling[side] * Vector3::from(rates.legs[side])
+        })
+    }
+}
+
+/// Forces that keep all accelerations at zero, specific force included: what turning frames and links cost.
+pub(super) fn bias(model: &Model, legs: &[Leg; SIDES], rates: &Rates) -> Coordinates {
+    let mut bias = Coordinates::zeros();
+    let omega = rates.body;
+    let accel = omega.cross(&omega.cross(&model.body_com));
+    bias.push_body(accel * model.body_kg, model.body_com);
+    bias.turn_body(omega.cross(&(model.body_inertia * omega)));
+    for side in 0..SIDES {
+        let leg_rps = rates.legs[side];
+        let [front_rps, rear_rps, _] = leg_rps;
+        let terms = legs[side].centripetal(model, [front_rps, rear_rps]);
+        for index in 0..PARTS {
+            let part = &legs[side].parts[index];
+            let accel = omega.cross(&(omega.cross(&part.place) + part.velocity(leg_rps) * 2.0))
+                + lift(terms[index].place);
+            let force = accel * part.mass_kg;
+            bias.push_body(force, part.place);
+            for (hip, slope) in part.slope.iter().enumerate() {
+                bias.legs[side][hip] += slope.x * force.x + slope.y * force.z;
+            }
+            let turn = part.turn_rps(leg_rps);
+            let total = omega + Vec3::new(0.0, turn, 0.0);
+            // ω × (turn·y) + y·(turn's own acceleration).
+            let angular = Vec3::new(-omega.z * turn, terms[index].turn, omega.x * turn);
+            let torque = part.inertia * angular + total.cross(&(part.inertia * total));
+            bias.turn_body(torque);
+            for (coordinate, share) in part.turn.iter().enumerate() {
+                bias.legs[side][coordinate] += share * torque.y;
+            }
+        }
+    }
+    bias
+}
+
+/// Mass, first and second moments about the body's origin.
+struct RigidSum {
+    mass_kg: f64,
+    first: Vec3,
+    second: Matrix3<f64>,
+}
+
+impl Default for RigidSum {
+    fn default() -> Self {
+        Self {
+            mass_kg: 0.0,
+            first: Vec3::zeros(),
+            second: Matrix3::zeros(),
+        }
+    }
+}
+
+impl RigidSum {
+    fn add(&mut self, mass_kg: f64, place: Vec3, inertia: &Matrix3<f64>) {
+        self.mass_kg += mass_kg;
+        self.first += place * mass_kg;
+        let outer = place * place.transpose();
+        self.second += inertia + (Matrix3::identity() * place.norm_squared() - outer) * mass_kg;
+    }
+
+    fn matrix(&self) -> Matrix6<f64> {
+        let mut matrix = Matrix6::zeros();
+        let cross = self.first.cross_matrix();
+        matrix
+            .fixed_view_mut::<3, 3>(0, 0)
+            .copy_from(&(Matrix3::identity() * self.mass_kg));
+        matrix.fixed_view_mut::<3, 3>(0, 3).copy_from(&-cross);
+        matrix.fixed_view_mut::<3, 3>(3, 0).copy_from(&cross);
+        matrix.fixed_view_mut::<3, 3>(3, 3).copy_from(&self.second);
+        matrix
+    }
+}

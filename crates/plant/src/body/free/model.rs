@@ -1,0 +1,124 @@
+//! Masses, lengths and limits of one robot, as its equations of motion need them.
+
+use super::{Variation, Vec3, five_bar::FiveBar};
+use nalgebra::Matrix3;
+use robot_description::{Carrier, Link, Robot};
+
+/// Left, right.
+pub(super) const SIDES: usize = 2;
+
+/// A slender rod with its mass anywhere along it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rod {
+    pub mass_kg: f64,
+    /// Distance of its centre of mass from the upper end.
+    pub com_m: f64,
+    /// About each axis across the rod through its centre of mass.
+    pub inertia_kgm2: f64,
+}
+
+impl Rod {
+    fn of(link: &Link) -> Self {
+        Self {
+            mass_kg: link.mass_kg,
+            com_m: link.com_m,
+            inertia_kgm2: link.inertia_kgm2,
+        }
+    }
+}
+
+/// What turns about the axle.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Disc {
+    pub mass_kg: f64,
+    /// About the axle, without the rotor.
+    pub spin_kgm2: f64,
+    /// About a diameter.
+    pub tilt_kgm2: f64,
+    /// The rotor, seen at the axle.
+    pub rotor_kgm2: f64,
+    pub radius_m: f64,
+    /// Radius of the tyre's round cross-section.
+    pub tyre_m: f64,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Model {
+    pub body_kg: f64,
+    /// Centre of mass of the body, in body axes.
+    pub body_com: Vec3,
+    /// About that centre.
+    pub body_inertia: Matrix3<f64>,
+    /// Corners of the box that hits the ground.
+    pub corners: [Vec3; 8],
+    pub bar: FiveBar,
+    pub thigh: Rod,
+    pub shank: Rod,
+    pub motor_kg: f64,
+    pub disc: Disc,
+    /// The hip whose shank carries the wheel's motor.
+    pub carrier: usize,
+    /// Rotor of a hip motor, seen at the hip.
+    pub armature_kgm2: f64,
+    /// Place of the legs' planes along y.
+    pub plane_y: [f64; SIDES],
+    /// Place of the wheels' middle planes along y.
+    pub wheel_y: [f64; SIDES],
+    /// Lower and upper limit of the front and the rear hip.
+    pub hip_range_rad: [[f64; 2]; 2],
+    /// Usable leg lengths.
+    pub leg_m: [f64; 2],
+    pub ground_friction: f64,
+}
+
+impl Model {
+    pub fn new(robot: &Robot, variation: &Variation) -> Self {
+        let (legs, wheels) = (&robot.legs, &robot.wheels);
+        let added_kg = (variation.mass_factor - 1.0) * robot.total_mass_kg();
+        let body_kg = (robot.body.mass_kg + added_kg).max(0.1 * robot.body.mass_kg);
+        let growth = body_kg / robot.body.mass_kg;
+        Self {
+            body_kg,
+            body_com: Vec3::from(robot.body.com_m) + Vec3::from(variation.com_offset_m),
+            body_inertia: Matrix3::from_diagonal(&(Vec3::from(robot.body.inertia_kgm2) * growth)),
+            corners: corners(robot.body.box_centre_m, robot.body.box_m),
+            bar: FiveBar {
+                half_gap_m: legs.hip_gap_m / 2.0,
+                thigh_m: legs.thigh.length_m,
+                shank_m: legs.shank.length_m,
+            },
+            thigh: Rod::of(&legs.thigh),
+            shank: Rod::of(&legs.shank),
+            motor_kg: wheels.motor_mass_kg,
+            disc: Disc {
+                mass_kg: wheels.mass_kg,
+                spin_kgm2: wheels.inertia_kgm2,
+                // Half of that about the axle, as for a thin disc or hoop, and a rod of the wheel's width.
+                tilt_kgm2: wheels.inertia_kgm2 / 2.0
+                    + wheels.mass_kg * wheels.width_m.powi(2) / 12.0,
+                rotor_kgm2: wheels.rotor_inertia_kgm2,
+                radius_m: wheels.radius_m,
+                tyre_m: (wheels.width_m / 2.0).min(wheels.radius_m / 2.0),
+            },
+            carrier: match wheels.carrier {
+                Carrier::Front => 0,
+                Carrier::Rear => 1,
+            },
+            armature_kgm2: robot.joints.armature_kgm2,
+            plane_y: [legs.plane_y_m, -legs.plane_y_m],
+            wheel_y: [wheels.track_m / 2.0, -wheels.track_m / 2.0],
+            hip_range_rad: [robot.joints.range_rad.front, robot.joints.range_rad.rear],
+            leg_m: [legs.min_m, legs.max_m],
+            ground_friction: variation.ground_friction,
+        }
+    }
+}
+
+fn corners(centre_m: [f64; 3], size_m: [f64; 3]) -> [Vec3; 8] {
+    std::array::from_fn(|corner| {
+        Vec3::from_fn(|axis, _| {
+            let side = if corner >> axis & 1 == 0 { -0.5 } else { 0.5 };
+            centre_m[axis] + side * size_m[axis]
+        })
+    })
+}
