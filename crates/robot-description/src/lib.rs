@@ -8,12 +8,18 @@
 #![deny(missing_docs)]
 
 mod error;
+mod mjcf;
 mod motor;
 mod mounting;
+mod parts;
 mod robot;
 mod source;
+mod stance;
+mod urdf;
+mod xml;
 
 pub use error::{Located, RobotError};
+pub use mjcf::Hold;
 pub use motor::JointMotor;
 pub use mounting::Mounting;
 pub use robot::{

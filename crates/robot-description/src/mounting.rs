@@ -14,6 +14,33 @@ impl Mounting {
     pub fn name(&self) -> &str {
         &self.0
     }
+
+    /// The sensor's axes x, y and z as seen from the body.
+    pub fn axes(&self) -> [[f64; 3]; 3] {
+        let words = self
+            .0
+            .strip_prefix("x-")
+            .and_then(|it| it.split_once("-z-"));
+        let (x, z) = words.map_or_else(Default::default, |(x, z)| (direction(x), direction(z)));
+        let y = [
+            z[1] * x[2] - z[2] * x[1],
+            z[2] * x[0] - z[0] * x[2],
+            z[0] * x[1] - z[1] * x[0],
+        ];
+        [x, y, z]
+    }
+}
+
+/// The direction of one of the words, in body axes.
+fn direction(word: &str) -> [f64; 3] {
+    match word {
+        "forward" => [1.0, 0.0, 0.0],
+        "backward" => [-1.0, 0.0, 0.0],
+        "left" => [0.0, 1.0, 0.0],
+        "right" => [0.0, -1.0, 0.0],
+        "up" => [0.0, 0.0, 1.0],
+        _ => [0.0, 0.0, -1.0],
+    }
 }
 
 /// A text that names no [`Mounting`].
@@ -38,5 +65,17 @@ impl TryFrom<String> for Mounting {
         } else {
             Err(UnknownMounting(text))
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn axes_are_right_handed() {
+        let mounting = Mounting::try_from("x-left-z-up".to_owned()).expect("it is one");
+        let expected = [[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]];
+        assert_eq!(mounting.axes(), expected);
     }
 }
