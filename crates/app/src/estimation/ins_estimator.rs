@@ -2,10 +2,11 @@
 
 use super::{
     attitude::{AttitudeFilter, Saturation},
-    motion::{AccelSample, BodyPose, MotionEstimator},
+    motion::{AccelSample, AxlePath, BodyPose, MotionEstimator},
 };
 use crate::{
     domain::{ImuState, MagState, MotorFeedback, StateEstimate, WheelOdomConfig, age_us},
+    kinematics::Leg,
     math::{Vector3, scalar, vector},
 };
 
@@ -108,6 +109,8 @@ pub struct InsEstimator {
     /// Samples up to this time are ignored.
     ignore_until_us: u64,
     heading_source: HeadingSource,
+    /// Height of the IMU above the hip centre in m.
+    imu_up_m: f32,
     /// Time of the last tick, 0 = none yet.
     ts_us: u64,
 }
@@ -126,6 +129,7 @@ impl InsEstimator {
             trusted: false,
             ignore_until_us: 0,
             heading_source: HeadingSource::Magnetometer,
+            imu_up_m: 0.0,
             ts_us: 0,
         }
     }
@@ -133,6 +137,11 @@ impl InsEstimator {
     /// Takes effect with the next sample.
     pub fn set_heading_source(&mut self, source: HeadingSource) {
         self.heading_source = source;
+    }
+
+    /// Sets the height of the IMU above the hip centre in m. It matters on moving legs only.
+    pub fn set_imu_height(&mut self, imu_up_m: f32) {
+        self.imu_up_m = imu_up_m;
     }
 
     /// Changes the dimensions of the wheels. The estimate so far stays.
@@ -151,19 +160,33 @@ impl InsEstimator {
     ) {
         *self = Self {
             heading_source,
+            imu_up_m: self.imu_up_m,
             ignore_until_us: now_us.saturating_add(OLD_AXES_US),
             ts_us: now_us,
             ..Self::new(*odometry)
         };
     }
 
-    /// Updates `estimate` to `now_us`. The ages in `motor` refer to `now_us`. [`StateEstimate::valid`] lists what makes
-    /// the estimate invalid.
+    /// Updates `estimate` to `now_us`, for a body that sits stiffly on its axle. The ages in `motor` refer to `now_us`.
+    /// [`StateEstimate::valid`] lists what makes the estimate invalid.
     pub fn step(
         &mut self,
         imu: &ImuState,
         mag: &MagState,
         motor: &MotorFeedback,
+        now_us: u64,
+        estimate: &mut StateEstimate,
+    ) {
+        self.step_on_legs(imu, mag, motor, None, now_us, estimate);
+    }
+
+    /// The same for a body on moving legs, left and right. `None` while they are not known.
+    pub fn step_on_legs(
+        &mut self,
+        imu: &ImuState,
+        mag: &MagState,
+        motor: &MotorFeedback,
+        legs: Option<&[Leg; 2]>,
         now_us: u64,
         estimate: &mut StateEstimate,
     ) {
@@ -184,7 +207,11 @@ impl InsEstimator {
             self.process_mag(mag);
         }
         self.ts_us = now_us;
-        self.publish(sample, motor, elapsed_us, now_us, estimate);
+        let paths = legs.map(|legs| {
+            let [left, right] = legs;
+            [left, right].map(|leg| AxlePath::new(leg, self.imu_up_m))
+        });
+        self.publish(sample, motor, paths.as_ref(), elapsed_us, now_us, estimate);
     }
 
     /// Time since the last tick. If time ran backwards, stood still or jumped, it is 0, and the estimate is invalid.
@@ -258,6 +285,7 @@ impl InsEstimator {
         &mut self,
         sample: Option<AccelSample>,
         motor: &MotorFeedback,
+        legs: Option<&[AxlePath; 2]>,
         elapsed_us: u32,
         now_us: u64,
         estimate: &mut StateEstimate,
@@ -270,14 +298,16 @@ impl InsEstimator {
                 orientation,
                 rate_rps: self.attitude.rate_rps(),
             };
-            self.motion.feed(&sample, ahead_s, &pose, motor);
+            self.motion.feed(&sample, ahead_s, &pose, motor, legs);
         }
         if imu_age_us > MAX_IMU_AGE_US {
             self.motion.decay(seconds(elapsed_us));
         }
         estimate.q_wxyz = orientation.to_wxyz();
         estimate.rpy_rad = orientation.roll_pitch_yaw();
-        (estimate.vel_mps, estimate.pos_m) = self.motion.extrapolate(ahead_s);
+        let over_axle_mps =
+            legs.map(|legs| AxlePath::mean(legs).velocity(self.attitude.rate_rps()));
+        (estimate.vel_mps, estimate.pos_m) = self.motion.extrapolate(ahead_s, over_axle_mps);
         estimate.gyro_bias_rps = self.attitude.bias_rps();
         estimate.accel_bias_mps2 = self.motion.accel_bias_mps2();
         estimate.ts_us = now_us;

@@ -1,9 +1,12 @@
 //! Velocity and position: the accelerometer predicts, the wheels correct.
 //!
-//! World frame: ENU. The point described is the middle of the axle. The lever arm of the IMU is not modelled; what it adds
-//! to the specific force counts as accelerometer bias.
+//! World frame: ENU. The point described is the middle of the axle. On a robot with moving legs the filter follows a point
+//! of the body at the IMU's height above the hips, since that is what the accelerometer feels; legs and gyro lead from
+//! there to the axle. The rest of the IMU's lever arm is not modelled; what it adds to the specific force counts as
+//! accelerometer bias.
 
 mod axes;
+mod axle;
 mod position;
 mod slip;
 mod standstill;
@@ -14,7 +17,6 @@ mod wheel_selection;
 mod wheel_speed;
 mod zero_velocity;
 
-pub(super) use self::axes::BodyPose;
 use self::{
     axes::Axes,
     position::Position,
@@ -24,9 +26,10 @@ use self::{
     wheel_speed::{PerWheel, WheelSpeeds},
     zero_velocity::{WheelEvidence, ZeroVelocityDetector},
 };
+pub(super) use self::{axes::BodyPose, axle::AxlePath};
 use crate::{
     domain::{MotorFeedback, WheelOdomConfig},
-    math::{Vector3, vector},
+    math::{Quaternion, Vector3, vector},
 };
 
 /// Time constant with which the velocity decays while nothing measures it.
@@ -57,6 +60,10 @@ pub(super) struct MotionEstimator {
     kinematic_mps2: Vector3,
     /// Time since a wheel last turned.
     wheels_stood_s: f32,
+    /// The last sample showed a standstill, in which point and axle have the same velocity.
+    stands: bool,
+    /// Those of the last sample.
+    axes: Axes,
 }
 
 impl MotionEstimator {
@@ -70,6 +77,11 @@ impl MotionEstimator {
             position: Position::new(),
             kinematic_mps2: [0.0; 3],
             wheels_stood_s: 0.0,
+            stands: false,
+            axes: Axes::new(&BodyPose {
+                orientation: Quaternion::IDENTITY,
+                rate_rps: [0.0; 3],
+            }),
         }
     }
 
@@ -85,15 +97,21 @@ impl MotionEstimator {
         self.standstill = Standstill::new();
     }
 
-    /// Takes a sample that ended `age_s` ago. `pose` and `motor` are those of the present.
+    /// Takes a sample that ended `age_s` ago. `pose`, `motor` and `legs` are those of the present.
     pub fn feed(
         &mut self,
         sample: &AccelSample,
         age_s: f32,
         pose: &BodyPose,
         motor: &MotorFeedback,
+        legs: Option<&[AxlePath; 2]>,
     ) {
         let axes = Axes::new(pose);
+        self.axes = axes;
+        let over_axle_mps = match legs {
+            Some(legs) => axes.over_axle(&AxlePath::mean(legs)),
+            None => [0.0; 3],
+        };
         let force_mps2 = match sample.accel_mps2 {
             Some(accel_mps2) => {
                 // The body has rotated since the middle of the sample: transform the force to its present axes.
@@ -104,18 +122,24 @@ impl MotionEstimator {
             None => self.filter.force_at_constant_speed(&axes),
         };
         let free_mps2 = self.filter.free_accel(force_mps2, &axes);
-        let speeds = self.wheels.forward_speeds(motor, &axes);
+        let speeds = self.wheels.forward_speeds(motor, &axes, legs);
         let wheels = self.selection.standstill_evidence(speeds);
         let forces = (force_mps2, free_mps2);
         let stood = self.standstill.persists();
-        let stands = self
+        self.stands = self
             .zero_velocity
             .detect(forces, pose.rate_rps, wheels, stood, sample.dt_s);
-        self.kinematic_mps2 = if stands {
-            self.apply_standstill(free_mps2, speeds, wheels, &axes, sample.dt_s);
+        self.kinematic_mps2 = if self.stands {
+            // A robot that balances creeps at a speed that only the wheels show.
+            let creeping_mps = match legs {
+                Some(_) => self.wheels.rolling_mps(motor, speeds),
+                None => 0.0,
+            };
+            let rest_mps = axes.level_to_world([creeping_mps, 0.0, 0.0]);
+            self.apply_standstill(free_mps2, speeds, wheels, rest_mps, &axes, sample.dt_s);
             [0.0; 3]
         } else {
-            self.propagate(free_mps2, speeds, &axes, age_s, sample.dt_s)
+            self.propagate(free_mps2, speeds, over_axle_mps, &axes, age_s, sample.dt_s)
         };
         self.wheels_stood_s = if wheel_speed::any_turns(motor) {
             0.0
@@ -126,8 +150,11 @@ impl MotionEstimator {
             self.kinematic_mps2 = [0.0; 3];
         }
         self.filter.limit();
-        let step_m = vector::scale(self.filter.velocity_after(-0.5 * sample.dt_s), sample.dt_s);
-        self.position.add(step_m);
+        let mut velocity_mps = self.filter.velocity_after(-0.5 * sample.dt_s);
+        if !self.stands {
+            velocity_mps = vector::sub(velocity_mps, axes.level_to_world(over_axle_mps));
+        }
+        self.position.add(vector::scale(velocity_mps, sample.dt_s));
     }
 
     /// The robot stands: zero-velocity update.
@@ -136,6 +163,7 @@ impl MotionEstimator {
         free_mps2: Vector3,
         speeds: PerWheel,
         wheels: WheelEvidence,
+        rest_mps: Vector3,
         axes: &Axes,
         dt_s: f32,
     ) {
@@ -147,7 +175,7 @@ impl MotionEstimator {
                 .prolong(axes.forward(free_mps2), quiet, dt_s);
             return;
         }
-        self.filter.zero_velocity_update(free_mps2, dt_s);
+        self.filter.zero_velocity_update(free_mps2, rest_mps, dt_s);
         if wheels == WheelEvidence::Standing {
             self.selection.confirm_standstill();
             self.standstill.begin();
@@ -160,6 +188,7 @@ impl MotionEstimator {
         &mut self,
         free_mps2: Vector3,
         speeds: PerWheel,
+        [_, left_over_mps, up_over_mps]: Vector3,
         axes: &Axes,
         age_s: f32,
         dt_s: f32,
@@ -169,6 +198,7 @@ impl MotionEstimator {
             .predict(if known { free_mps2 } else { [0.0; 3] }, axes, dt_s);
         let [forward_mps, left_mps, up_mps] = axes.to_level(self.filter.velocity_after(age_s));
         let innovation = speeds.map(|speed| speed.map(|speed_mps| speed_mps - forward_mps));
+        let left_mps = left_over_mps - left_mps;
         if self.standstill.is_recent() {
             let quiet = self.zero_velocity.is_quiet();
             self.standstill
@@ -179,12 +209,12 @@ impl MotionEstimator {
         let aiding = self.selection.step(innovation, inertial, dt_s);
         let (forward, left) = match aiding {
             WheelAiding::Trusted(innovation_mps) | WheelAiding::Provisional(innovation_mps) => {
-                (innovation_mps, -left_mps)
+                (innovation_mps, left_mps)
             }
-            WheelAiding::Silent => (0.0, -left_mps),
+            WheelAiding::Silent => (0.0, left_mps),
             WheelAiding::Slipping => (0.0, 0.0),
             WheelAiding::Reset(innovation_mps) => {
-                let jump_mps = axes.level_to_world([innovation_mps, -left_mps, 0.0]);
+                let jump_mps = axes.level_to_world([innovation_mps, left_mps, 0.0]);
                 self.filter.shift(jump_mps);
                 return [0.0; 3];
             }
@@ -195,7 +225,7 @@ impl MotionEstimator {
         };
         // A standstill has shown the bias better than the next seconds can.
         let update_bias = matches!(aiding, WheelAiding::Trusted(_)) && !self.standstill.is_recent();
-        let innovation_mps = [forward, left, -up_mps];
+        let innovation_mps = [forward, left, up_over_mps - up_mps];
         let correction_mps2 = self.filter.update(innovation_mps, axes, dt_s, update_bias);
         match aiding {
             WheelAiding::Trusted(_) => vector::add(free_mps2, correction_mps2),
@@ -216,14 +246,20 @@ impl MotionEstimator {
         self.position.add(step_m);
     }
 
-    /// Velocity and position in ENU, extrapolated to `ahead_s` after the last sample.
-    pub fn extrapolate(&self, ahead_s: f32) -> (Vector3, Vector3) {
+    /// Velocity and position of the middle of the axle in ENU, extrapolated to `ahead_s` after the last sample.
+    /// `over_axle_mps` is the velocity of the estimated point relative to it, in body axes.
+    pub fn extrapolate(&self, ahead_s: f32, over_axle_mps: Option<Vector3>) -> (Vector3, Vector3) {
         let ahead_s = if ahead_s < MAX_AHEAD_S {
             ahead_s
         } else {
             MAX_AHEAD_S
         };
-        let velocity_mps = self.filter.velocity_after(ahead_s);
+        let mut velocity_mps = self.filter.velocity_after(ahead_s);
+        if let Some(over_axle_mps) = over_axle_mps
+            && !self.stands
+        {
+            velocity_mps = vector::sub(velocity_mps, self.axes.to_world(over_axle_mps));
+        }
         let step_m = vector::scale(velocity_mps, ahead_s);
         (velocity_mps, vector::add(self.position.total_m(), step_m))
     }

@@ -1,5 +1,6 @@
 //! Transformations between body, level and world axes.
 
+use super::axle::AxlePath;
 use crate::math::{Quaternion, Vector3, scalar, vector};
 
 /// Attitude and angular rate of the body.
@@ -15,14 +16,14 @@ pub(in crate::estimation) struct BodyPose {
 const MIN_UPRIGHT: f32 = 0.5;
 
 /// The body's attitude and angular rate, and the level axes forward, left and up that share its heading.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Axes {
     /// Body → world, by rows.
     rotation: [Vector3; 3],
     /// Unit vector of the level forward axis, east and north.
     forward: [f32; 2],
+    rate_rps: Vector3,
     yaw_rps: f32,
-    pitch_rps: f32,
 }
 
 impl Axes {
@@ -30,14 +31,13 @@ impl Axes {
     pub fn new(pose: &BodyPose) -> Self {
         let rotation = pose.orientation.rotation_matrix();
         let [[x, ..], [y, ..], up_in_body] = rotation;
-        let [_, pitch_rps, _] = pose.rate_rps;
         // Zero when the robot stands on its nose: then there is no forward axis.
         let inverse = scalar::inverse_sqrt(x * x + y * y);
         Self {
             rotation,
             forward: [x * inverse, y * inverse],
+            rate_rps: pose.rate_rps,
             yaw_rps: vector::dot(up_in_body, pose.rate_rps),
-            pitch_rps,
         }
     }
 
@@ -48,7 +48,18 @@ impl Axes {
 
     /// Angular rate about the axle.
     pub const fn pitch_rps(&self) -> f32 {
-        self.pitch_rps
+        let [_, pitch_rps, _] = self.rate_rps;
+        pitch_rps
+    }
+
+    /// Velocity relative to the axle of the point to which this way leads: forward, left and up.
+    pub fn over_axle(&self, path: &AxlePath) -> Vector3 {
+        self.to_level(self.to_world(path.velocity(self.rate_rps)))
+    }
+
+    /// Forward part of [`Self::over_axle`].
+    pub fn forward_over_axle(&self, path: &AxlePath) -> f32 {
+        self.forward(path.velocity(self.rate_rps))
     }
 
     /// The world's up axis in body axes.

@@ -2,6 +2,7 @@
 
 mod driving;
 mod gains;
+mod legs;
 mod slipping;
 mod unaided;
 
@@ -18,6 +19,7 @@ struct Bench {
     motion: MotionEstimator,
     pose: BodyPose,
     motor: MotorFeedback,
+    legs: Option<[AxlePath; 2]>,
     /// Specific force in body axes.
     accel_mps2: Vector3,
 }
@@ -32,6 +34,7 @@ impl Bench {
                 rate_rps: [0.0; 3],
             },
             motor: MotorFeedback::default(),
+            legs: None,
             accel_mps2: [0.0, 0.0, GRAVITY_MPS2],
         }
     }
@@ -60,7 +63,9 @@ impl Bench {
             accel_mps2: Some(self.accel_mps2),
             dt_s: DT_S,
         };
-        self.motion.feed(&sample, 0.0, &self.pose, &self.motor);
+        let legs = self.legs.as_ref();
+        self.motion
+            .feed(&sample, 0.0, &self.pose, &self.motor, legs);
     }
 
     fn run(&mut self, seconds: f32) {
@@ -83,11 +88,16 @@ impl Bench {
     }
 
     fn velocity_mps(&self) -> Vector3 {
-        self.motion.extrapolate(0.0).0
+        self.motion.extrapolate(0.0, self.over_axle_mps()).0
+    }
+
+    fn over_axle_mps(&self) -> Option<Vector3> {
+        let legs = self.legs.as_ref()?;
+        Some(AxlePath::mean(legs).velocity(self.pose.rate_rps))
     }
 
     fn position_m(&self) -> Vector3 {
-        self.motion.extrapolate(0.0).1
+        self.motion.extrapolate(0.0, self.over_axle_mps()).1
     }
 
     fn forward_mps(&self) -> f32 {

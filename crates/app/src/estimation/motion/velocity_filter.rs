@@ -152,9 +152,12 @@ impl VelocityFilter {
         self.decay(dt_s / STANDSTILL_S);
     }
 
-    /// Zero-velocity update: all of the free acceleration is an error of the bias.
-    pub fn zero_velocity_update(&mut self, free_mps2: Vector3, dt_s: f32) {
+    /// Zero-velocity update: all of the free acceleration is an error of the bias. What is left of the velocity is
+    /// `rest_mps`.
+    pub fn zero_velocity_update(&mut self, free_mps2: Vector3, rest_mps: Vector3, dt_s: f32) {
         self.stop(dt_s);
+        let share = scalar::min(dt_s / STANDSTILL_S, 1.0);
+        self.shift(vector::scale(rest_mps, share));
         let share = scalar::min(dt_s / STANDSTILL_BIAS_S, 1.0);
         self.accel_bias_mps2 = vector::add(self.accel_bias_mps2, vector::scale(free_mps2, share));
     }
