@@ -4,8 +4,8 @@ mod error;
 mod quaternion;
 
 pub use error::AttitudeError;
-pub(crate) use quaternion::from_yaw_pitch;
 pub use quaternion::{Quaternion, between, multiply, normalised, to_body};
+pub(crate) use quaternion::{from_yaw_pitch, to_earth};
 
 /// Total, heading and inclination error in degrees, none negative; `None` where one is not a number.
 pub(crate) fn error_deg(estimate: Quaternion, reference: Quaternion) -> Option<[f64; 3]> {

@@ -3,25 +3,34 @@
 mod floor;
 pub mod free;
 mod legs;
+mod loose;
 mod pose;
 mod rolling;
 mod shaft;
+mod shove;
 mod stand;
-mod start;
 mod tilt;
 mod upright;
 mod variation;
+mod vibration;
 mod wheels;
 
-use crate::{attitude::Quaternion, joints::JOINTS, m3508::Friction, motion::Motion};
+use robot_description::Robot;
+
+use crate::{
+    attitude::Quaternion,
+    free::{FreeBody, FreeSetup, Push},
+    joints::JOINTS,
+    m3508::Friction,
+    motion::Motion,
+};
 pub(crate) use floor::Floor;
-use pose::Pose;
-pub use start::Start;
+use loose::Loose;
+pub(crate) use pose::{Pose, roll_pitch_yaw_rad};
 pub(crate) use tilt::Stance;
 use upright::Upright;
 pub use variation::Variation;
-pub(crate) use wheels::WHEEL_RADIUS_M;
-use wheels::WheelTorques;
+use wheels::{WHEEL_RADIUS_M, WheelTorques};
 
 /// How the robot stands around the board.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -31,15 +40,8 @@ pub enum PlantKind {
     Stand,
     /// The body stays upright and rolls on flat ground.
     Rolling,
-}
-
-/// A force on the body from outside.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct OutsideForce {
-    /// In world axes.
-    pub force_n: [f64; 3],
-    /// Where it acts, in body axes.
-    pub at_m: [f64; 3],
+    /// Nothing holds the robot: it sits, stands, falls, flies.
+    Free,
 }
 
 /// What acts on the robot during one step.
@@ -55,31 +57,51 @@ pub(crate) struct BodyInputs {
     pub floor: Floor,
     pub stance: Stance,
     /// What pushes the free robot.
-    pub outside: Option<OutsideForce>,
+    pub outside: Option<Push>,
 }
 
 pub(crate) enum Body {
     Upright(Upright),
+    Free(Box<Loose>),
 }
 
 impl Body {
-    pub(crate) fn new(kind: PlantKind) -> Self {
+    /// `setup` is for the free robot.
+    pub(crate) fn new(kind: PlantKind, robot: &Robot, setup: &FreeSetup) -> Self {
         match kind {
             PlantKind::Stand => Self::Upright(Upright::stand()),
             PlantKind::Rolling => Self::Upright(Upright::rolling()),
+            PlantKind::Free => Self::Free(Box::new(Loose::new(robot, setup))),
         }
     }
 
     pub(crate) fn step(&mut self, inputs: &BodyInputs, dt_s: f64) {
         match self {
             Self::Upright(upright) => upright.step(inputs, dt_s),
+            Self::Free(loose) => loose.step(inputs, dt_s),
         }
     }
 
-    /// Wheel speeds in rad/s, forward positive.
+    /// Speeds of the wheels in the world in rad/s, forward positive.
     pub(crate) fn wheel_rps(&self) -> [f64; 2] {
         match self {
             Self::Upright(upright) => upright.wheel_rps(),
+            Self::Free(loose) => loose.mechanics().wheel_abs_rps(),
+        }
+    }
+
+    /// Speeds of the wheels against their motors in rad/s, forward positive.
+    pub(crate) fn motor_rps(&self) -> [f64; 2] {
+        match self {
+            Self::Upright(upright) => upright.wheel_rps(),
+            Self::Free(loose) => loose.mechanics().wheel_rel_rps(),
+        }
+    }
+
+    pub(crate) fn wheel_radius_m(&self) -> f64 {
+        match self {
+            Self::Upright(_) => WHEEL_RADIUS_M,
+            Self::Free(loose) => loose.wheel_radius_m(),
         }
     }
 
@@ -87,6 +109,7 @@ impl Body {
     pub(crate) fn joint_pos_rad(&self) -> [f64; JOINTS] {
         match self {
             Self::Upright(upright) => upright.legs().pos_rad,
+            Self::Free(loose) => loose.mechanics().joint_pos_rad(),
         }
     }
 
@@ -94,12 +117,14 @@ impl Body {
     pub(crate) fn joint_vel_rps(&self) -> [f64; JOINTS] {
         match self {
             Self::Upright(upright) => upright.legs().vel_rps,
+            Self::Free(loose) => loose.mechanics().joint_vel_rps(),
         }
     }
 
     pub(crate) fn pose(&self) -> Pose {
         match self {
             Self::Upright(upright) => upright.pose(),
+            Self::Free(loose) => loose.pose(),
         }
     }
 
@@ -107,6 +132,7 @@ impl Body {
     pub(crate) fn attitude(&self) -> Quaternion {
         match self {
             Self::Upright(upright) => upright.attitude(),
+            Self::Free(loose) => loose.attitude(),
         }
     }
 
@@ -114,6 +140,15 @@ impl Body {
     pub(crate) fn motion(&self) -> Motion {
         match self {
             Self::Upright(upright) => upright.motion(),
+            Self::Free(loose) => loose.motion(),
+        }
+    }
+
+    /// The mechanics of the free robot.
+    pub(crate) fn free(&self) -> Option<&FreeBody> {
+        match self {
+            Self::Upright(_) => None,
+            Self::Free(loose) => Some(loose.mechanics()),
         }
     }
 }

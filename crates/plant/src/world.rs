@@ -12,10 +12,11 @@ mod tuning_replies;
 
 use crate::{
     bmi088::Bmi088,
-    body::{Body, OutsideForce},
+    body::Body,
     can_adapter::CanAdapter,
     complaint::Complaint,
     faults::ActiveFaults,
+    free,
     ist8310::Ist8310,
     joints::{JOINTS, Joint, WireState},
     m3508::C620,
@@ -37,8 +38,9 @@ use tuning_replies::TuningReplies;
 pub use push::Push;
 
 pub use crate::{
-    body::{PlantKind, Start, Variation},
+    body::{PlantKind, Variation},
     faults::FaultInfo,
+    free::{Start, Terrain},
     pc::{PcInput, PcJoints},
     radio::{RadioKind, RemoteInput},
     wire::{CanBusId, SpiSelect},
@@ -65,6 +67,8 @@ pub struct WorldConfig {
     pub mounting: Option<Mounting>,
     /// How the magnetometer sits on the board, relative to the IMU's axes, which no public source proves.
     pub mag_mounting: Mounting,
+    /// The ground under the free robot.
+    pub terrain: Terrain,
     /// How the free robot lies or stands at power-on.
     pub start: Start,
     /// How the free robot differs from its file.
@@ -84,6 +88,7 @@ impl Default for WorldConfig {
             imu_temperature_c: None,
             mounting: None,
             mag_mounting: Mounting::default(),
+            terrain: Terrain::default(),
             start: Start::default(),
             variation: Variation::default(),
         }
@@ -154,7 +159,7 @@ pub struct World {
     /// Commands that the variation delays, with the time at which their motor hears them.
     late: VecDeque<(Ps, Node, CanFrame)>,
     /// The present push and its end.
-    push: Option<(OutsideForce, Ps)>,
+    push: Option<(free::Push, Ps)>,
     /// On CAN1 and CAN2, the board's own node left out.
     nodes: [Vec<Node>; 2],
     /// Left, right wheel.

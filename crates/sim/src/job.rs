@@ -88,7 +88,8 @@ impl Job {
             mag_mounting: self.scenario.mag_mounting,
             seed: self.scenario.seed,
             imu_trial: self.imu_trial.clone(),
-            ..WorldConfig::default()
+            start: self.scenario.start,
+            terrain: self.scenario.terrain,
         })?;
         let mut machine = Machine::new(&self.elf, world)?;
         for patch in &self.patches {

@@ -14,7 +14,9 @@ use robot_plant::{
     mounting::Mounting,
     time::Ps,
     wire::CanFrame,
-    world::{CanBusId, PcInput, PlantKind, Push, RadioKind, RemoteInput, Variation},
+    world::{
+        CanBusId, PcInput, PlantKind, Push, RadioKind, RemoteInput, Start, Terrain, Variation,
+    },
 };
 
 use super::expectation::Expectation;
@@ -27,6 +29,10 @@ pub struct Scenario {
     /// Length of the run.
     pub length: Ps,
     pub plant: PlantKind,
+    /// How the free robot lies or stands at power-on.
+    pub start: Start,
+    /// The ground under the free robot.
+    pub terrain: Terrain,
     pub radio: RadioKind,
     /// Its motors, the board's place, and the masses of the free robot.
     pub robot: Arc<Robot>,

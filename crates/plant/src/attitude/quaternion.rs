@@ -46,6 +46,11 @@ pub fn to_body(q: Quaternion, earth: [f64; 3]) -> [f64; 3] {
     [x, y, z]
 }
 
+/// A vector in body axes as one of the earth.
+pub(crate) fn to_earth(q: Quaternion, body: [f64; 3]) -> [f64; 3] {
+    to_body(conjugate(q), body)
+}
+
 /// Interpolates linearly between two attitudes, the short way round, and normalises. `None` if one is not a number.
 pub fn between(a: Quaternion, b: Quaternion, share: f64) -> Option<Quaternion> {
     let dot: f64 = a.iter().zip(b).map(|(a, b)| a * b).sum();

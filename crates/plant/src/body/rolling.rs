@@ -27,8 +27,6 @@ const IMU_M: [f64; 2] = [0.05, 0.02];
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Rolling {
     pose: Pose,
-    /// Sideways speed, left positive.
-    vy_mps: f64,
     wheel_rps: [f64; 2],
     /// Acceleration of the axle's middle in body axes over the last step.
     accel_mps2: [f64; 2],
@@ -76,7 +74,7 @@ impl Rolling {
             .max(SLIP_REFERENCE_MPS);
         let slip = [
             (rim_mps - over_ground_mps) / reference_mps,
-            -self.vy_mps / reference_mps,
+            -self.pose.vy_mps / reference_mps,
         ];
         let magnitude = slip[0].hypot(slip[1]);
         if magnitude == 0.0 {
@@ -89,15 +87,15 @@ impl Rolling {
     fn integrate(&mut self, dt_s: f64) {
         let pose = &mut self.pose;
         // Body axes turn under the velocity, hence the cross terms.
-        let (vx, vy, wz) = (pose.vx_mps, self.vy_mps, pose.wz_rps);
+        let (vx, vy, wz) = (pose.vx_mps, pose.vy_mps, pose.wz_rps);
         pose.vx_mps += (self.accel_mps2[0] + wz * vy) * dt_s;
-        self.vy_mps += (self.accel_mps2[1] - wz * vx) * dt_s;
+        pose.vy_mps += (self.accel_mps2[1] - wz * vx) * dt_s;
         pose.wz_rps += self.yaw_accel_rps2 * dt_s;
         pose.yaw_rad += pose.wz_rps * dt_s;
         pose.path_m += pose.vx_mps * dt_s;
         let (sin, cos) = pose.yaw_rad.sin_cos();
-        pose.x_m += (pose.vx_mps * cos - self.vy_mps * sin) * dt_s;
-        pose.y_m += (pose.vx_mps * sin + self.vy_mps * cos) * dt_s;
+        pose.x_m += (pose.vx_mps * cos - pose.vy_mps * sin) * dt_s;
+        pose.y_m += (pose.vx_mps * sin + pose.vy_mps * cos) * dt_s;
     }
 
     pub(crate) fn wheel_rps(&self) -> [f64; 2] {
@@ -201,7 +199,7 @@ mod tests {
         let mut rolling = Rolling::default();
         drive(&mut rolling, 2.0, hold([0.9, 1.1]));
         let energy = |r: &Rolling| {
-            0.5 * MASS_KG * (r.pose.vx_mps.powi(2) + r.vy_mps.powi(2))
+            0.5 * MASS_KG * (r.pose.vx_mps.powi(2) + r.pose.vy_mps.powi(2))
                 + 0.5 * YAW_INERTIA_KGM2 * r.pose.wz_rps.powi(2)
                 + 0.5 * WHEEL_INERTIA_KGM2 * r.wheel_rps.iter().map(|w| w * w).sum::<f64>()
         };

@@ -1,6 +1,6 @@
 //! How the robot that is simulated differs from its file.
 
-use crate::time::Ps;
+use crate::{free, time::Ps};
 
 /// Differences between the simulated robot and its file. The default has none.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,6 +28,17 @@ impl Default for Variation {
             torque: 1.0,
             delay: 0,
             imu_rad: [0.0; 3],
+        }
+    }
+}
+
+impl Variation {
+    /// What of it the mechanics have.
+    pub(crate) fn of_the_body(&self) -> free::Variation {
+        free::Variation {
+            mass_factor: self.mass,
+            com_offset_m: self.com_m,
+            ground_friction: self.grip,
         }
     }
 }

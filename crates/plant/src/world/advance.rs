@@ -3,8 +3,9 @@
 use super::World;
 use crate::{
     attitude,
-    body::{BodyInputs, Floor, OutsideForce, Stance},
+    body::{BodyInputs, Floor, Stance},
     faults::{Fault, RADIO_LOSSES},
+    free::Push,
     joints::{JOINTS, Shaft},
     motion::Motion,
     pc::LinkFaults,
@@ -126,7 +127,7 @@ impl World {
         }
     }
 
-    fn outside_force(&mut self, at: Ps) -> Option<OutsideForce> {
+    fn outside_force(&mut self, at: Ps) -> Option<Push> {
         let (force, ends) = self.push?;
         if at > ends {
             self.push = None;
@@ -170,7 +171,7 @@ impl World {
 
     /// Speeds of the wheels' output shafts in their own sense of rotation, rad/s.
     pub(super) fn shaft_rps(&self) -> [f64; 2] {
-        let (wheel_rps, signs) = (self.body.wheel_rps(), self.shaft_signs());
+        let (wheel_rps, signs) = (self.body.motor_rps(), self.shaft_signs());
         [signs[0] * wheel_rps[0], signs[1] * wheel_rps[1]]
     }
 

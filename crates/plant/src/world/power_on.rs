@@ -7,8 +7,9 @@ use super::{
 };
 use crate::{
     bmi088::Bmi088,
-    body::Body,
+    body::{Body, PlantKind},
     faults::ActiveFaults,
+    free::FreeSetup,
     ist8310::Ist8310,
     joints,
     m3508::C620,
@@ -39,11 +40,17 @@ impl World {
         };
         let seed = config.seed;
         let robot = config.robot;
+        let setup = FreeSetup {
+            variation: config.variation.of_the_body(),
+            start: config.start,
+            terrain: config.terrain,
+            ..FreeSetup::default()
+        };
         let [left, right] = robot.wheels.escs;
         Ok(Self {
             now: 0,
             next_step: PHYSICS_STEP,
-            body: Body::new(config.plant),
+            body: Body::new(config.plant, &robot, &setup),
             escs: [
                 C620::new(left, &robot.wheels, Random::new(seed, Stream::LeftMotor)),
                 C620::new(right, &robot.wheels, Random::new(seed, Stream::RightMotor)),
@@ -65,7 +72,10 @@ impl World {
             variation: config.variation,
             late: VecDeque::new(),
             push: None,
-            signal_names: signals::names(playback.is_some()),
+            signal_names: signals::names(signals::Extra {
+                recording: playback.is_some(),
+                free: config.plant == PlantKind::Free,
+            }),
             playback,
             indicators: Indicators::default(),
             faults: ActiveFaults::default(),

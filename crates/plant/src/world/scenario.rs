@@ -1,11 +1,11 @@
 //! What a scenario changes in the world, and what it asks about it.
 
-use super::{Push, World, WorldError};
+use super::{Push as Shove, World, WorldError};
 use crate::{
     attitude::{self, Quaternion},
     bmi088::ImuFaults,
-    body::OutsideForce,
     faults::{self, Fault, FaultInfo, MOTORS},
+    free::Push,
     ist8310::MagFaults,
     joints::DriveFaults,
     m3508::EscFaults,
@@ -26,9 +26,9 @@ impl World {
     }
 
     /// Pushes the free robot from now on; a push before it ends. No other robot minds.
-    pub fn push(&mut self, push: Push) {
+    pub fn push(&mut self, push: Shove) {
         let (com_m, shift_m) = (self.robot.body.com_m, self.variation.com_m);
-        let force = OutsideForce {
+        let force = Push {
             force_n: push.force_n(self.body.pose().yaw_rad),
             at_m: push
                 .at_m

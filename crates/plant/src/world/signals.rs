@@ -3,7 +3,7 @@
 mod link;
 
 use super::{WireEvent, World};
-use crate::{body::WHEEL_RADIUS_M, recording::Playback};
+use crate::{body::roll_pitch_yaw_rad, free::FreeBody, recording::Playback};
 
 type Signal = (&'static str, fn(&World) -> f64);
 
@@ -129,14 +129,19 @@ const RADIO: &[Signal] = &[
     ("radio.mode", |w| f64::from(w.radio.pilot().mode)),
 ];
 
-/// x, y and yaw in the ENU earth frame, m and rad (full turns add up); path and speed along the body's forward axis, m and
-/// m/s; attitude body → ENU, NaN in a gap of a recording's reference.
+/// x, y, z and yaw in the ENU earth frame, m and rad (full turns add up); roll right side down and pitch nose down, rad; path
+/// along the heading, m; speed along the heading, to its left and up, m/s; yaw rate, rad/s; attitude body → ENU, NaN in a gap of a recording's reference.
 const BODY: &[Signal] = &[
     ("truth.body.x", |w| w.body.pose().x_m),
     ("truth.body.y", |w| w.body.pose().y_m),
+    ("truth.body.z", |w| w.body.pose().z_m),
+    ("truth.body.roll", |w| angle_rad(w, 0)),
+    ("truth.body.pitch", |w| angle_rad(w, 1)),
     ("truth.body.yaw", |w| w.body.pose().yaw_rad),
     ("truth.body.path_m", |w| w.body.pose().path_m),
     ("truth.body.vx", |w| w.body.pose().vx_mps),
+    ("truth.body.vy", |w| w.body.pose().vy_mps),
+    ("truth.body.vz", |w| w.body.pose().vz_mps),
     ("truth.body.wz", |w| w.body.pose().wz_rps),
     ("truth.attitude.w", |w| attitude(w, 0)),
     ("truth.attitude.x", |w| attitude(w, 1)),
@@ -190,8 +195,48 @@ const RECORDING: &[Signal] = &[
     }),
 ];
 
-fn signals(recording: bool) -> impl Iterator<Item = &'static Signal> {
-    let extra = if recording { RECORDING } else { &[] };
+/// Only of the free robot. Legs and wheels are left, then right: distance from the hip centre to the axle, m; its angle in body
+/// axes, forward positive, rad; force of the ground along the leg's direction is the wheel's, N; angle of the wheel against
+/// its motor, rad; force of the ground on body and links, N.
+const FREE: &[Signal] = &[
+    ("truth.leg.0.length_m", |w| free(w, |f| f.leg_length_m()[0])),
+    ("truth.leg.0.angle_rad", |w| {
+        free(w, |f| f.leg_angle_rad()[0])
+    }),
+    ("truth.leg.1.length_m", |w| free(w, |f| f.leg_length_m()[1])),
+    ("truth.leg.1.angle_rad", |w| {
+        free(w, |f| f.leg_angle_rad()[1])
+    }),
+    ("truth.wheel.0.turned_rad", |w| {
+        free(w, |f| f.state().wheel_rad[0])
+    }),
+    ("truth.wheel.0.contact_n", |w| {
+        free(w, |f| f.wheel_contact_n()[0])
+    }),
+    ("truth.wheel.1.turned_rad", |w| {
+        free(w, |f| f.state().wheel_rad[1])
+    }),
+    ("truth.wheel.1.contact_n", |w| {
+        free(w, |f| f.wheel_contact_n()[1])
+    }),
+    ("truth.body.contact_n", |w| {
+        free(w, FreeBody::body_contact_n)
+    }),
+];
+
+/// Which signals there are.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Extra {
+    /// A recording plays.
+    pub recording: bool,
+    /// The robot is free.
+    pub free: bool,
+}
+
+fn signals(there: Extra) -> impl Iterator<Item = &'static Signal> {
+    let only = |there: bool, signals: &'static [Signal]| if there { signals } else { &[] };
+    let recording = only(there.recording, RECORDING);
+    let free = only(there.free, FREE);
     [
         CAN,
         JOINT_WIRES.as_flattened(),
@@ -207,19 +252,25 @@ fn signals(recording: bool) -> impl Iterator<Item = &'static Signal> {
         JOINTS.as_flattened(),
         IMU,
         BOARD,
-        extra,
+        free,
+        recording,
     ]
     .into_iter()
     .flatten()
 }
 
-pub(super) fn names(recording: bool) -> Vec<String> {
-    signals(recording)
-        .map(|(name, _)| (*name).to_owned())
-        .collect()
+pub(super) fn names(there: Extra) -> Vec<String> {
+    signals(there).map(|(name, _)| (*name).to_owned()).collect()
 }
 
 impl World {
+    fn extra(&self) -> Extra {
+        Extra {
+            recording: self.playback.is_some(),
+            free: self.body.free().is_some(),
+        }
+    }
+
     /// Names of every signal: `truth.*` from the plant, `can.*` and `link.*` as decoded from the
     /// wire, `radio.*`.
     pub fn signal_names(&self) -> &[String] {
@@ -228,7 +279,7 @@ impl World {
 
     /// Present value of one signal, or `None` if there is none of that name.
     pub fn signal(&self, name: &str) -> Option<f64> {
-        signals(self.playback.is_some())
+        signals(self.extra())
             .find(|(known, _)| *known == name)
             .map(|(_, read)| read(self))
     }
@@ -236,7 +287,7 @@ impl World {
     /// Replaces the contents of `out` by the present value of every signal, in the order of [`World::signal_names`].
     pub fn sample(&self, out: &mut Vec<f64>) {
         out.clear();
-        out.extend(signals(self.playback.is_some()).map(|(_, read)| read(self)));
+        out.extend(signals(self.extra()).map(|(_, read)| read(self)));
     }
 
     /// Appends the wire events since the last call to `out`. Every command that a motor receives is one.
@@ -249,8 +300,18 @@ fn attitude(world: &World, part: usize) -> f64 {
     world.true_attitude().map_or(f64::NAN, |q| q[part])
 }
 
+fn angle_rad(world: &World, part: usize) -> f64 {
+    world
+        .true_attitude()
+        .map_or(f64::NAN, |q| roll_pitch_yaw_rad(q)[part])
+}
+
+fn free(world: &World, read: impl Fn(&FreeBody) -> f64) -> f64 {
+    world.body.free().map_or(f64::NAN, read)
+}
+
 fn rim_mps(world: &World, wheel: usize) -> f64 {
-    world.body.wheel_rps()[wheel] * WHEEL_RADIUS_M
+    world.body.wheel_rps()[wheel] * world.body.wheel_radius_m()
 }
 
 fn torque_nm(world: &World, wheel: usize) -> f64 {
@@ -271,7 +332,10 @@ mod tests {
 
     #[test]
     fn wire_events_point_at_their_signals() {
-        let names = names(false);
+        let names = names(Extra {
+            recording: false,
+            free: true,
+        });
         assert_eq!(names[TUNING_REPLIES], "can.tuning.replies");
         for byte in 0..8 {
             assert_eq!(

@@ -12,7 +12,7 @@ use std::path::Path;
 use robot_plant::{
     mounting::Mounting,
     time::{self, Ps},
-    world::{PlantKind, RadioKind, Variation},
+    world::{PlantKind, RadioKind, Start, Terrain, Variation},
 };
 use serde::Deserialize;
 use toml::Spanned;
@@ -35,6 +35,8 @@ struct File {
     joints: Option<Spanned<Joints>>,
     robot: Option<Spanned<String>>,
     variation: Option<Spanned<Vary>>,
+    start: Option<Spanned<Start>>,
+    terrain: Option<Spanned<Terrain>>,
     #[serde(default)]
     rs00_timeout_ms: u32,
     imu_temperature_c: Option<f64>,
@@ -51,11 +53,12 @@ struct File {
     expect: Vec<Spanned<Expect>>,
 }
 
-#[derive(Deserialize)]
+#[derive(Clone, Copy, Deserialize, PartialEq)]
 #[serde(rename_all = "kebab-case")]
 enum Plant {
     Stand,
     Rolling,
+    Free,
 }
 
 #[derive(Default, Deserialize)]
@@ -119,9 +122,12 @@ pub(super) fn parse(text: &str, file: &str) -> Result<Scenario, ScenarioError> {
             .map_err(|problem| source.wrong(vary.span().start, problem))?,
         None => Variation::default(),
     };
+    let free = raw.plant == Plant::Free;
+    let start = only_free(raw.start, "start", free, &source)?;
+    let terrain = only_free(raw.terrain, "terrain", free, &source)?;
     let mut events = Vec::new();
     for at in &raw.at {
-        read_at(at.get_ref(), seconds, &mut events)
+        read_at(at.get_ref(), seconds, free, &mut events)
             .map_err(|problem| source.wrong(at.span().start, problem))?;
     }
     events.sort_by_key(|a| a.at);
@@ -140,7 +146,10 @@ pub(super) fn parse(text: &str, file: &str) -> Result<Scenario, ScenarioError> {
         plant: match raw.plant {
             Plant::Stand => PlantKind::Stand,
             Plant::Rolling => PlantKind::Rolling,
+            Plant::Free => PlantKind::Free,
         },
+        start,
+        terrain,
         radio: match raw.radio {
             Radio::Sbus => RadioKind::Sbus,
             Radio::Dbus => RadioKind::Dbus,
@@ -157,6 +166,20 @@ pub(super) fn parse(text: &str, file: &str) -> Result<Scenario, ScenarioError> {
         expectations,
         allow_board_errors: raw.allow_board_errors,
     })
+}
+
+/// The value of a key that only the free robot may have.
+fn only_free<T: Default>(
+    raw: Option<Spanned<T>>,
+    key: &'static str,
+    free: bool,
+    source: &Source<'_>,
+) -> Result<T, ScenarioError> {
+    match raw {
+        Some(value) if !free => Err(source.wrong(value.span().start, Problem::NotFree(key))),
+        Some(value) => Ok(value.into_inner()),
+        None => Ok(T::default()),
+    }
 }
 
 fn read_mounting(

@@ -65,7 +65,13 @@ struct Remote {
     jump: Option<bool>,
 }
 
-pub(super) fn read_at(at: &At, seconds: f64, events: &mut Vec<TimedEvent>) -> Result<(), Problem> {
+/// Adds the events of `at`. Only a `free` robot can be pushed.
+pub(super) fn read_at(
+    at: &At,
+    seconds: f64,
+    free: bool,
+    events: &mut Vec<TimedEvent>,
+) -> Result<(), Problem> {
     let start = instant("t", at.t, seconds)?;
     let acts = at.remote.is_some() || at.pc.is_some() || at.can.is_some() || at.push.is_some();
     if !acts && at.fault.is_none() && at.end_fault.is_none() {
@@ -91,6 +97,9 @@ pub(super) fn read_at(at: &At, seconds: f64, events: &mut Vec<TimedEvent>) -> Re
         });
     }
     if let Some(shove) = &at.push {
+        if !free {
+            return Err(Problem::NotFree("push"));
+        }
         events.push(TimedEvent {
             at: start,
             event: Event::Push(read_push(shove)?),

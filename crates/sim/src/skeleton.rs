@@ -1,0 +1,164 @@
+//! Where the parts of the free robot are, from its true signals.
+
+use robot_description::Robot;
+
+use crate::signals::{SignalTable, Values};
+
+/// A point or a direction: x, y, z.
+pub type Vector = [f64; 3];
+
+/// Left, right: sign of y.
+pub const SIDES: [f64; 2] = [1.0, -1.0];
+
+/// One leg in body axes, m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Leg {
+    /// Front, rear.
+    pub hips: [Vector; 2],
+    /// Front, rear.
+    pub knees: [Vector; 2],
+    /// Where both shanks meet.
+    pub axle: Vector,
+}
+
+/// The robot at one instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Skeleton {
+    /// Place of the hip centre in the ENU earth frame, m.
+    pub place_m: Vector,
+    /// Body → earth, scalar first.
+    pub q_wxyz: [f64; 4],
+    /// Nose down positive.
+    pub pitch_rad: f64,
+    /// Left, right.
+    pub legs: [Leg; 2],
+    /// How far each wheel has turned in the world, forward positive.
+    pub turned_rad: [f64; 2],
+}
+
+impl Skeleton {
+    /// A point of the body in the earth frame.
+    pub fn in_world(&self, body: Vector) -> Vector {
+        let turned = rotated(self.q_wxyz, body);
+        std::array::from_fn(|axis| self.place_m[axis] + turned[axis])
+    }
+
+    /// Centre of a wheel in body axes.
+    pub fn wheel(&self, side: usize, robot: &Robot) -> Vector {
+        let [x, _, z] = self.legs[side].axle;
+        [x, SIDES[side] * robot.wheels.track_m / 2.0, z]
+    }
+
+    /// Heading from east, counter-clockwise.
+    pub fn yaw_rad(&self) -> f64 {
+        let [x, y, _] = rotated(self.q_wxyz, [1.0, 0.0, 0.0]);
+        y.atan2(x)
+    }
+}
+
+/// Places of the signals that a skeleton needs.
+pub struct SkeletonSignals {
+    place: [usize; 3],
+    attitude: [usize; 4],
+    pitch: usize,
+    joints: [usize; 4],
+    /// Length and angle of each leg.
+    legs: [[usize; 2]; 2],
+    turned: [usize; 2],
+}
+
+impl SkeletonSignals {
+    /// `None` for a robot that is not free.
+    pub fn find(table: &SignalTable) -> Option<Self> {
+        let all = |names: &[String]| -> Option<Vec<usize>> {
+            names.iter().map(|name| table.index(name)).collect()
+        };
+        let of = |prefix: &str, parts: &[&str]| {
+            all(&parts
+                .iter()
+                .map(|part| format!("{prefix}{part}"))
+                .collect::<Vec<_>>())
+        };
+        let leg = |side| of(&format!("truth.leg.{side}."), &["length_m", "angle_rad"]);
+        let each = |prefix: &str, count: usize, part: &str| {
+            all(&(0..count)
+                .map(|index| format!("{prefix}{index}{part}"))
+                .collect::<Vec<_>>())
+        };
+        Some(Self {
+            place: of("truth.body.", &["x", "y", "z"])?.try_into().ok()?,
+            attitude: of("truth.attitude.", &["w", "x", "y", "z"])?
+                .try_into()
+                .ok()?,
+            pitch: table.index("truth.body.pitch")?,
+            joints: each("truth.joint.", 4, ".pos_rad")?.try_into().ok()?,
+            legs: [leg(0)?.try_into().ok()?, leg(1)?.try_into().ok()?],
+            turned: each("truth.wheel.", 2, ".turned_rad")?.try_into().ok()?,
+        })
+    }
+
+    /// `None` where a signal has no value.
+    pub fn read(&self, values: &Values, robot: &Robot) -> Option<Skeleton> {
+        let [lf, lr, rf, rr] = taken(values, self.joints)?;
+        let leg = |side: usize, angles_rad| -> Option<Leg> {
+            let [length_m, angle_rad] = taken(values, self.legs[side])?;
+            Some(leg(robot, SIDES[side], angles_rad, length_m, angle_rad))
+        };
+        Some(Skeleton {
+            place_m: taken(values, self.place)?,
+            q_wxyz: taken(values, self.attitude)?,
+            pitch_rad: values[self.pitch]?,
+            legs: [leg(0, [lf, lr])?, leg(1, [rf, rr])?],
+            turned_rad: taken(values, self.turned)?,
+        })
+    }
+}
+
+fn taken<const N: usize>(values: &Values, places: [usize; N]) -> Option<[f64; N]> {
+    let taken = places.map(|place| values[place]);
+    let whole = taken.iter().all(|value| value.is_some_and(f64::is_finite));
+    whole.then(|| taken.map(Option::unwrap_or_default))
+}
+
+/// The leg at `side` from the angles of its front and rear joint, and its length and angle.
+fn leg(robot: &Robot, side: f64, [front, rear]: [f64; 2], length_m: f64, angle_rad: f64) -> Leg {
+    let y = side * robot.legs.plane_y_m;
+    let half = robot.legs.hip_gap_m / 2.0;
+    let thigh_m = robot.legs.thigh.length_m;
+    Leg {
+        hips: [[half, y, 0.0], [-half, y, 0.0]],
+        knees: [
+            [half + thigh_m * front.cos(), y, thigh_m * front.sin()],
+            [-half - thigh_m * rear.cos(), y, -thigh_m * rear.sin()],
+        ],
+        axle: [length_m * angle_rad.sin(), y, -length_m * angle_rad.cos()],
+    }
+}
+
+/// `vector` turned by a unit quaternion, scalar first.
+fn rotated([w, x, y, z]: [f64; 4], vector: Vector) -> Vector {
+    let axis = [x, y, z];
+    let once = cross(axis, vector);
+    let twice = cross(axis, once);
+    std::array::from_fn(|i| vector[i] + 2.0 * (w * once[i] + twice[i]))
+}
+
+fn cross([ax, ay, az]: Vector, [bx, by, bz]: Vector) -> Vector {
+    [ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_quarter_turn_to_the_left_and_a_nose_down_pitch_turn_vectors() {
+        let h = std::f64::consts::FRAC_1_SQRT_2;
+        let close = |a: Vector, b: Vector| {
+            let off = a.iter().zip(b).map(|(a, b)| (a - b).abs());
+            assert!(off.fold(0.0, f64::max) < 1e-12, "{a:?} {b:?}");
+        };
+        close(rotated([h, 0.0, 0.0, h], [1.0, 0.0, 0.0]), [0.0, 1.0, 0.0]);
+        close(rotated([h, 0.0, h, 0.0], [1.0, 0.0, 0.0]), [0.0, 0.0, -1.0]);
+    }
+}
