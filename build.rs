@@ -7,5 +7,4 @@ fn main() {
     println!("cargo:rustc-link-search={}", out.display());
     println!("cargo:rerun-if-changed=memory.x");
     println!("cargo:rerun-if-env-changed=ROBOT_REMOTE");
-    println!("cargo:rerun-if-env-changed=ROBOT_JOINTS");
 }

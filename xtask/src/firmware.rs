@@ -3,7 +3,11 @@
 mod distribution;
 pub mod image;
 
-use std::{env, path::PathBuf, process::Command};
+use std::{
+    env,
+    path::{Path, PathBuf},
+    process::Command,
+};
 
 use anyhow::Context;
 
@@ -25,57 +29,68 @@ enum Compiler {
     Distribution,
 }
 
-/// The parts of a robot that the image is for (`src/config.rs`).
+/// What the image is for: a remote (`src/config.rs`) and a robot (`robots/`).
 pub struct Parts {
     remote: &'static str,
-    joints: &'static str,
+    robot: String,
 }
+
+const REMOTES: [&str; 2] = ["sbus", "dbus"];
 
 impl Parts {
     /// The parts that an image without variables is for.
-    pub const DEFAULT: Self = Self {
-        remote: "sbus",
-        joints: "dm4310",
-    };
-    /// The other remote and the other joints.
-    pub const OTHER: Self = Self {
-        remote: "dbus",
-        joints: "rs00",
-    };
+    pub fn default() -> Self {
+        Self::of("sbus", "fivebar")
+    }
 
-    /// Returns the parts that `ROBOT_REMOTE` and `ROBOT_JOINTS` name.
+    /// The other remote and the other robot.
+    pub fn other() -> Self {
+        Self::of("dbus", "fivebar-rs00")
+    }
+
+    /// Returns the parts that `ROBOT_REMOTE` and `ROBOT` name.
     pub fn chosen() -> anyhow::Result<Self> {
-        Ok(Self {
-            remote: chosen("ROBOT_REMOTE", &["sbus", "dbus"])?,
-            joints: chosen("ROBOT_JOINTS", &["dm4310", "rs00"])?,
-        })
+        let default = Self::default();
+        let remote = match variable("ROBOT_REMOTE")? {
+            None => default.remote,
+            Some(said) => REMOTES
+                .into_iter()
+                .find(|word| *word == said)
+                .with_context(|| {
+                    let words = REMOTES.join(" or ");
+                    format!("ROBOT_REMOTE must be {words}, or unset: it is {said:?}")
+                })?,
+        };
+        let robot = variable("ROBOT")?.unwrap_or(default.robot);
+        Ok(Self { remote, robot })
+    }
+
+    fn of(remote: &'static str, robot: &str) -> Self {
+        let robot = robot.to_owned();
+        Self { remote, robot }
     }
 
     /// Returns the target folder. Each image has its own, so that none makes another one out of date.
     fn target_dir(&self) -> PathBuf {
-        let Self { remote, joints } = self;
-        if (*remote, *joints) == (Self::DEFAULT.remote, Self::DEFAULT.joints) {
+        let Self { remote, robot } = self;
+        let default = Self::default();
+        if *remote == default.remote && *robot == default.robot {
             workspace::firmware_target_dir("firmware")
         } else {
-            workspace::firmware_target_dir(&format!("firmware-{remote}-{joints}"))
+            let file = Path::new(robot).file_stem().unwrap_or_default();
+            let file = file.to_string_lossy();
+            workspace::firmware_target_dir(&format!("firmware-{remote}-{file}"))
         }
     }
 }
 
-/// Returns the word that a variable names, or the first of `words` without the variable.
-fn chosen(variable: &str, words: &[&'static str]) -> anyhow::Result<&'static str> {
-    let said = match env::var(variable) {
-        Err(env::VarError::NotPresent) => words.first().copied(),
-        Ok(said) => words.iter().copied().find(|word| *word == said),
-        Err(env::VarError::NotUnicode(_)) => None,
-    };
-    said.with_context(|| {
-        let words = words.join(" or ");
-        format!(
-            "{variable} must be {words}, or unset: it is {:?}",
-            env::var(variable)
-        )
-    })
+/// Returns what a variable says, or `None` without it.
+fn variable(name: &str) -> anyhow::Result<Option<String>> {
+    match env::var(name) {
+        Ok(said) => Ok(Some(said)),
+        Err(env::VarError::NotPresent) => Ok(None),
+        Err(error) => Err(error).context(name.to_owned()),
+    }
 }
 
 /// Returns the job that builds the image, and the image's path. It installs what the build needs.
@@ -86,7 +101,7 @@ pub fn build(parts: &Parts) -> anyhow::Result<(Job, PathBuf)> {
     command.args(["--target", BOARD, "--target-dir"]);
     command.arg(&target_dir);
     command.env("ROBOT_REMOTE", parts.remote);
-    command.env("ROBOT_JOINTS", parts.joints);
+    command.env("ROBOT", &parts.robot);
     let name = target_dir.file_name().unwrap_or_default();
     let name = name.to_string_lossy().into_owned();
     let elf = target_dir.join(BOARD).join("release").join(PACKAGE);
@@ -140,7 +155,7 @@ fn over_programs(what: &str) -> Option<Command> {
         command.args(["--package", FILTERS, "--features"]);
         command.arg(format!("{FILTERS}/board"));
         command.args(["--target", BOARD, "--target-dir"]);
-        command.arg(Parts::DEFAULT.target_dir());
+        command.arg(Parts::default().target_dir());
         command
     })
 }

@@ -1,4 +1,4 @@
-//! The developer commands: `cargo xtask sim`, `soak`, `replay`, `data`, `bench`, `run` and `test`.
+//! The developer commands: `cargo xtask sim`, `soak`, `robot`, `replay`, `data`, `bench`, `run` and `test`.
 
 mod bench;
 mod board;
@@ -9,6 +9,7 @@ mod host_program;
 mod job;
 mod prerequisites;
 mod replay;
+mod robot;
 mod test;
 mod tool;
 mod toolchain;
@@ -33,6 +34,8 @@ enum Command {
     Sim(ForwardedArgs),
     /// Run the image for simulated hours with random faults that a seed repeats.
     Soak(ForwardedArgs),
+    /// Check a robot's file and show what holds.
+    Robot(ForwardedArgs),
     /// Run the estimator over recorded trials and show its attitude at 1 kHz, errors and plots.
     Replay(ForwardedArgs),
     /// Prepare the recorded motion that tests and replay use, or say where to get it.
@@ -49,6 +52,7 @@ fn main() -> ExitCode {
     let outcome = match Args::parse().command {
         Command::Sim(args) => emulator::run("sim", &args),
         Command::Soak(args) => emulator::run("soak", &args),
+        Command::Robot(args) => robot::run(&args),
         Command::Replay(args) => replay::run("replay", &args),
         Command::Data(args) => replay::run("data", &args),
         Command::Bench(args) => bench::run(&args),

@@ -16,8 +16,11 @@ mod param_store;
 mod pc;
 mod remote;
 mod remote_mapping;
+mod robot_profile;
+pub mod robots;
 mod sensors;
 mod tuning_status;
+mod wheel_defaults;
 
 pub use balance::{BalanceState, BalanceStatus, StandPermit, StandUpPhase};
 pub use balance_profile::{
@@ -47,6 +50,7 @@ pub use param_store::{FlashRequest, ParamError, ParamState, ParamStatus};
 pub use pc::{JointTarget, LinkHealth, PcCommand, WheelTarget};
 pub use remote::{DriveMode, OperatorState, RemoteDiagnostics, RemoteState, RemoteUpdate};
 pub use remote_mapping::{NO_CHANNEL, RemoteChannel, RemoteMapping};
+pub use robot_profile::RobotProfile;
 pub use sensors::{
     ImuState, JointFeedback, JointState, MagState, MotorFeedback, SensorsSnapshot, WheelFeedback,
 };

@@ -8,10 +8,12 @@
 #![deny(missing_docs)]
 
 mod error;
+mod mass;
 mod mjcf;
 mod motor;
 mod mounting;
 mod parts;
+mod place;
 mod robot;
 mod source;
 mod stance;
@@ -19,9 +21,11 @@ mod urdf;
 mod xml;
 
 pub use error::{Located, RobotError};
+pub use mass::MassSplit;
 pub use mjcf::Hold;
 pub use motor::JointMotor;
 pub use mounting::Mounting;
+pub use place::path_of;
 pub use robot::{
     Body, Bus, Carrier, Control, HipRange, Imu, JointRanges, Joints, Legs, Limits, Link, Robot,
     Weights, Wheels,

@@ -11,7 +11,7 @@ use std::path::PathBuf;
 fn every_scenario_with_dbus_and_rs00_holds() {
     let Some(elf) = std::env::var_os("ROBOT_ELF_DBUS_RS00").map(PathBuf::from) else {
         println!(
-            "skipped: ROBOT_ELF_DBUS_RS00 names no image built with ROBOT_REMOTE=dbus ROBOT_JOINTS=rs00"
+            "skipped: ROBOT_ELF_DBUS_RS00 names no image built with ROBOT_REMOTE=dbus ROBOT=fivebar-rs00"
         );
         return;
     };

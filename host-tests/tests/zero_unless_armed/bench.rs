@@ -21,9 +21,7 @@ use crate::{
 /// C620 counts of the 8 A limit: 8000 · 16384 / 20000, rounded up. Tuning can raise it to 10 A.
 pub const LIMIT_COUNTS: i32 = 6_554;
 const TUNED_LIMIT_COUNTS: i32 = 8_192;
-/// Default limits of each joint: N·m, rad, rad/s.
-const JOINT_NM: f32 = 3.0;
-const JOINT_RAD: f32 = 1.5;
+/// Default speed limit of each joint.
 const JOINT_RPS: f32 = 15.0;
 /// Joint angle = this times motor angle.
 const DIRECTIONS: [f32; 4] = [1.0, 1.0, -1.0, -1.0];
@@ -224,7 +222,10 @@ impl<C: ChassisController> Bench<C> {
             JointFrame::Mit(mit) => self.check_torque(joint, mit),
             JointFrame::PositionSpeed { pos_rad, max_rps } => {
                 assert!(pos_rad.is_finite() && max_rps.is_finite());
-                let inside = pos_rad.abs() <= JOINT_RAD && (0.0..=JOINT_RPS).contains(&max_rps);
+                let [min_rad, max_rad] = range_rad(self.make, joint);
+                let angle_rad = DIRECTIONS[joint] * pos_rad;
+                let inside = (min_rad..=max_rad).contains(&angle_rad)
+                    && (0.0..=JOINT_RPS).contains(&max_rps);
                 assert!(self.tuned || inside, "{frame:?}");
             }
             JointFrame::Speed { vel_rps } => {
@@ -238,23 +239,39 @@ impl<C: ChassisController> Bench<C> {
     /// Within the limit, and not outwards beyond a soft limit, for one of the motions that the firmware may believe in.
     fn check_torque(&self, joint: usize, mit: Mit) {
         let limit_nm = match (self.tuned, self.make) {
-            (false, _) => JOINT_NM,
+            (false, Make::Dm4310) => 5.0,
+            (false, Make::Rs00) => 10.0,
             (true, Make::Dm4310) => 7.0,
             (true, Make::Rs00) => 14.0,
         };
+        let [min_rad, max_rad] = range_rad(self.make, joint);
         let is_sound = self.replies.believable(joint).iter().any(|motion| {
             let asked_nm = mit.asked_nm(*motion);
             let steps_nm = 1.01 * mit.steps_nm(*motion, self.make) + 1e-3;
             let angle_rad = DIRECTIONS[joint] * motion.pos_rad;
-            let outward_nm = DIRECTIONS[joint] * asked_nm * angle_rad.signum();
-            let beyond = !self.tuned && angle_rad.abs() >= JOINT_RAD + 1e-3;
-            asked_nm.abs() <= limit_nm + steps_nm && !(beyond && outward_nm > steps_nm)
+            let turning_nm = DIRECTIONS[joint] * asked_nm;
+            let outwards = (angle_rad >= max_rad + 1e-3 && turning_nm > steps_nm)
+                || (angle_rad <= min_rad - 1e-3 && turning_nm < -steps_nm);
+            asked_nm.abs() <= limit_nm + steps_nm && (self.tuned || !outwards)
         });
         assert!(
             is_sound || mit.is_off(self.make),
             "joint {joint}: {mit:?} for {:?}",
             self.replies.believable(joint)
         );
+    }
+}
+
+/// Default soft limits of a joint in rad. Those of the rear joints mirror those of the front ones.
+fn range_rad(make: Make, joint: usize) -> [f32; 2] {
+    let [down_rad, up_rad] = match make {
+        Make::Dm4310 => [-1.35, 0.75],
+        Make::Rs00 => [-1.3, 0.65],
+    };
+    if joint % 2 == 0 {
+        [down_rad, up_rad]
+    } else {
+        [-up_rad, -down_rad]
     }
 }
 

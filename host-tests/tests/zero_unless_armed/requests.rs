@@ -157,7 +157,7 @@ fn in_mode_pc(pc: &Pc, phase: Phase) -> Phase {
     }
 }
 
-/// The joint is at 0 and its range is −1.5 to −0.5 rad, as on a new robot whose zero is not set. 5 N·m/rad to the
+/// The joint is at 0 and its range is −1.35 to −0.5 rad, as on a new robot whose zero is not set. 5 N·m/rad to the
 /// limit would be 2.5 N·m.
 #[test]
 fn a_joint_beyond_its_soft_limit_is_held_softly() {

@@ -27,8 +27,8 @@ pub fn all() -> anyhow::Result<Vec<Step>> {
         prerequisites::ensure(&EMULATOR)?;
     }
     let host = tool::host_triple()?;
-    let (build, elf) = firmware::build(&Parts::DEFAULT)?;
-    let (build_other, elf_other) = firmware::build(&Parts::OTHER)?;
+    let (build, elf) = firmware::build(&Parts::default())?;
+    let (build_other, elf_other) = firmware::build(&Parts::other())?;
     let (build_filters, filters) = firmware::build_filters()?;
     let emulator_tests = host::emulator_tests(
         &host,

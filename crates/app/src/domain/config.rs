@@ -18,18 +18,6 @@ pub struct WheelOdomConfig {
     pub rpm_sign_right: f32,
 }
 
-impl Default for WheelOdomConfig {
-    fn default() -> Self {
-        Self {
-            wheel_radius_m: 0.06,
-            wheel_track_m: 0.42,
-            gear_ratio: 3591.0 / 187.0,
-            rpm_sign_left: 1.0,
-            rpm_sign_right: -1.0,
-        }
-    }
-}
-
 impl WheelOdomConfig {
     /// Rotor directions of the left and the right wheel.
     pub const fn rpm_signs(&self) -> [f32; 2] {
@@ -71,19 +59,6 @@ pub struct WheelControllerConfig {
     pub open_loop_ma_per_mps: f32,
     /// Maximum age of wheel feedback in µs.
     pub feedback_timeout_us: u32,
-}
-
-impl Default for WheelControllerConfig {
-    fn default() -> Self {
-        Self {
-            max_vx_mps: 1.5,
-            max_wz_rps: 4.0,
-            kp_ma_per_mps: 60_000.0,
-            current_limit_ma: 8_000.0,
-            open_loop_ma_per_mps: 1_000.0,
-            feedback_timeout_us: 50_000,
-        }
-    }
 }
 
 /// How the default controller holds the legs, and what has been set on the motors by hand.

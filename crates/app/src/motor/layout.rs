@@ -4,14 +4,14 @@ mod checks;
 mod default_config;
 mod robot;
 
-pub use robot::{ROBOT_LAYOUT, RS00_LAYOUT};
+pub use robot::{CHOSEN_LAYOUT, ROBOT_LAYOUT, RS00_LAYOUT};
 
 use super::{
     dm4310::Dm4310,
     m3508::{self, EscId},
     rs00::Rs00,
 };
-use crate::domain::{BusId, CanFrame, JointConfig, MotorBuses, StandardId};
+use crate::domain::{BusId, CanFrame, JointConfig, MotorBuses, RobotProfile, StandardId};
 
 /// Ticks from one reply of the tuning channel on a bus to the next: 250 a second at most, which is what the load of the
 /// motors leaves room for.
@@ -114,7 +114,7 @@ pub struct JointSlot {
 ///     joints[3].schedule = EVERY_TICK;
 ///     joints
 /// };
-/// const LAYOUT: MotorLayout = MotorLayout::new(*ROBOT_LAYOUT.wheels(), JOINTS);
+/// const LAYOUT: MotorLayout = MotorLayout::new(ROBOT_LAYOUT.profile(), *ROBOT_LAYOUT.wheels(), JOINTS);
 /// ```
 ///
 /// In every second tick they fit:
@@ -131,7 +131,7 @@ pub struct JointSlot {
 ///     joints[3].schedule = EVEN;
 ///     joints
 /// };
-/// const LAYOUT: MotorLayout = MotorLayout::new(*ROBOT_LAYOUT.wheels(), JOINTS);
+/// const LAYOUT: MotorLayout = MotorLayout::new(ROBOT_LAYOUT.profile(), *ROBOT_LAYOUT.wheels(), JOINTS);
 /// ```
 ///
 /// A DM4310 compares only the low byte of an identifier with its number, so no other frame on its bus may have that
@@ -145,10 +145,11 @@ pub struct JointSlot {
 ///     joints[0].motor = JointMotor::Dm4310(Dm4310::new(1, 0x302, *motor.ranges()).unwrap());
 ///     joints
 /// };
-/// const LAYOUT: MotorLayout = MotorLayout::new(*ROBOT_LAYOUT.wheels(), JOINTS);
+/// const LAYOUT: MotorLayout = MotorLayout::new(ROBOT_LAYOUT.profile(), *ROBOT_LAYOUT.wheels(), JOINTS);
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct MotorLayout {
+    profile: &'static RobotProfile,
     wheels: WheelGroup,
     joints: [JointSlot; 4],
 }
@@ -158,12 +159,25 @@ impl MotorLayout {
     ///
     /// # Panics Panics if a bus is overloaded, two motors use the same identifier, or a DM4310 would react to a frame
     /// for another device.
-    pub const fn new(wheels: WheelGroup, joints: [JointSlot; 4]) -> Self {
+    pub const fn new(
+        profile: &'static RobotProfile,
+        wheels: WheelGroup,
+        joints: [JointSlot; 4],
+    ) -> Self {
         checks::no_identifier_clashes(&wheels, &joints);
         checks::load_fits_bus(&wheels, &joints);
         checks::frames_fit_mailboxes(&wheels, &joints);
         checks::limits_are_sound(&wheels, &joints);
-        Self { wheels, joints }
+        Self {
+            profile,
+            wheels,
+            joints,
+        }
+    }
+
+    /// The robot that these motors are in.
+    pub const fn profile(&self) -> &'static RobotProfile {
+        self.profile
     }
 
     /// The wheel motors.

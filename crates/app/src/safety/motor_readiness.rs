@@ -119,15 +119,15 @@ mod tests {
         }
     }
 
-    /// The default soft limits are ±1.5 rad.
+    /// The default soft limits are −1.35…0.75 rad at the front and −0.75…1.35 rad at the rear.
     #[test]
     fn a_joint_may_be_slightly_beyond_its_limits() {
-        for (joint, bit) in [(0, 1), (1, 2), (2, 4), (3, 8)] {
+        for (joint, bit, sign) in [(0, 1, 1.0), (1, 2, -1.0), (2, 4, 1.0), (3, 8, -1.0)] {
             for (pos_rad, outside) in [
-                (1.59, 0),
-                (-1.59, 0),
-                (1.61, bit),
-                (-1.61, bit),
+                (sign * 0.84, 0),
+                (sign * -1.44, 0),
+                (sign * 0.86, bit),
+                (sign * -1.46, bit),
                 (core::f32::consts::TAU, bit),
                 (f32::NAN, bit),
             ] {

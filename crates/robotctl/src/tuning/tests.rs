@@ -106,7 +106,7 @@ fn a_lost_reply_is_requested_again_and_a_dead_bus_is_reported() {
 #[test]
 fn a_file_is_applied_whatever_the_order_of_its_values() {
     let (bus, mut client) = robot();
-    // Alone, a lower limit of 2 contradicts the upper limit of 1.5.
+    // Alone, a lower limit of 2 contradicts the upper limit of 0.75.
     let values = [
         ("joint-left-front.min-rad", 2.0),
         ("joint-left-front.max-rad", 3.0),
@@ -116,7 +116,7 @@ fn a_file_is_applied_whatever_the_order_of_its_values() {
     let joint = bus.0.borrow().config.joints[0];
     assert_eq!((joint.min_rad, joint.max_rad), (2.0, 3.0));
     let max = applied.iter().find(|a| a.named.parameter.name == "max-rad");
-    assert_eq!(max.map(|a| (a.before, a.after)), Some((1.5, 3.0)));
+    assert_eq!(max.map(|a| (a.before, a.after)), Some((0.75, 3.0)));
 }
 
 /// No two functions may share a channel, not even for a moment.

@@ -27,10 +27,10 @@ const AFTER_CHIP_FAULT: Ps = 300 * MS;
 const BUS_BACK: Ps = 2 * SECOND;
 /// Time after a fault of the radio until its switches arrive without delay again.
 const RADIO_BACK: Ps = SECOND;
-/// Limits of an armed robot's commands: 8 A for a wheel; for a joint 3 N·m and what the leg may have moved since its
+/// Limits of an armed robot's commands: 8 A for a wheel; for a joint 5 N·m and what the leg may have moved since its
 /// report, with the largest gains that a PC can ask for (1.1 mrad at a Kp of 500, and 0.17 rad/s at a Kd of 5).
 const MOST_CURRENT_MA: f64 = 8_000.0;
-const MOST_TORQUE_NM: f64 = 3.0 + 0.56 + 0.86;
+const MOST_TORQUE_NM: f64 = 5.0 + 0.56 + 0.86;
 /// Board errors that a fault explains: bit errors on the radio line.
 const EXPLAINED: [&str; 1] = ["USART3"];
 

@@ -90,10 +90,10 @@ fn lasting(mut row: Row) -> Row {
     row
 }
 
-/// The setting of 3 N·m holds at the angle and speed of the joint's last report. The motor goes on by itself for up to 3 ms:
+/// The setting of 5 N·m holds at the angle and speed of the joint's last report. The motor goes on by itself for up to 3 ms:
 /// with the leg's 0.02 kg·m² and 5 N·m that is 1.1 mrad, 0.56 N·m at its largest Kp of 500; gravity and friction of
 /// 1.15 N·m change its speed by 0.17 rad/s, 0.86 N·m at its largest Kd of 5. Its own limit is 7 N·m.
-const EXTREME_GAINS_NM: f64 = 3.0 + 0.56 + 0.86;
+const EXTREME_GAINS_NM: f64 = 5.0 + 0.56 + 0.86;
 
 /// Every frame is a valid command, and some of them ask for rest.
 fn extremes(fault: &'static str) -> Row {

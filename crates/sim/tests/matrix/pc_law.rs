@@ -10,7 +10,7 @@ const CURRENT_TOLERANCE_MA: f64 = 600.0;
 const TORQUE_TOLERANCE_NM: f64 = 0.5;
 /// The limits of the settings.
 const LARGEST_CURRENT_MA: f64 = 8_000.0;
-const LARGEST_TORQUE_NM: f64 = 3.0;
+const LARGEST_TORQUE_NM: f64 = 5.0;
 
 /// Whether a wheel's current is zero or what the PC asks for, without regard to its sense.
 pub fn wheel_obeys(current_ma: f64, target_rps: f64, speed_rps: f64) -> bool {

@@ -101,8 +101,8 @@ pub struct Row {
     pub board_errors: &'static [&'static str],
 }
 
-/// The setting of 3 N·m, and what a leg may have moved since its report.
-const MOST_TORQUE_NM: f64 = 3.3;
+/// The setting of 5 N·m, and what a leg may have moved since its report.
+const MOST_TORQUE_NM: f64 = 5.3;
 
 pub fn flags(must: &[&'static str], may: &[&'static str]) -> Flags {
     Flags {

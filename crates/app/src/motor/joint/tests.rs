@@ -42,16 +42,19 @@ const HOLD: JointCommand = JointCommand {
 };
 
 /// The last report is 40 ms old. At 5 rad/s the joint has moved 0.2 rad since, where a stiffness of 20 N·m/rad gives
-/// 4 N·m. The limit is 3 N·m.
+/// 4 N·m. The limit is set to 3 N·m.
 #[test]
 fn the_torque_limit_covers_motion_since_the_last_report() {
     let mut joint = joint_in(ENABLED_PHASE, 5.0);
-    let slot = joint.slot;
+    let config = JointConfig {
+        max_torque_nm: 3.0,
+        ..joint.slot.config
+    };
     let mut kp_after = |age_us: u64| {
         let now_us = 1_000_000 + age_us;
         joint.update_age(50_000, now_us);
         joint.tick = 0;
-        joint.drive(&HOLD, &slot.config, true, now_us);
+        joint.drive(&HOLD, &config, true, now_us);
         joint.sent().kp
     };
     assert_eq!(kp_after(2_000), 20.0);

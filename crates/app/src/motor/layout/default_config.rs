@@ -2,20 +2,23 @@
 
 use super::{MotorLayout, ROBOT_LAYOUT};
 use crate::domain::{
-    HeaterConfig, ImuCalibration, JointControllerConfig, MagCalibration, MountingConfig,
-    RemoteMapping, RobotConfig, SafetyConfig, WheelControllerConfig, WheelOdomConfig,
+    HeaterConfig, ImuCalibration, JointControllerConfig, MagCalibration, RemoteMapping,
+    RobotConfig, SafetyConfig, WheelControllerConfig,
 };
 
 impl MotorLayout {
-    /// The defaults of a robot with these motors.
+    /// The defaults of this robot.
     pub fn default_config(&self) -> RobotConfig {
         RobotConfig {
-            wheel_odom: WheelOdomConfig::default(),
-            wheel_ctrl: WheelControllerConfig::default(),
+            wheel_odom: self.profile.wheel_odom,
+            wheel_ctrl: WheelControllerConfig {
+                current_limit_ma: self.profile.wheel_current_ma,
+                ..WheelControllerConfig::default()
+            },
             joint_ctrl: JointControllerConfig::default(),
             joints: self.joints.each_ref().map(|slot| slot.config),
             safety: SafetyConfig::default(),
-            mounting: MountingConfig::default(),
+            mounting: self.profile.mounting,
             imu: ImuCalibration::default(),
             mag: MagCalibration::default(),
             heater: HeaterConfig::default(),

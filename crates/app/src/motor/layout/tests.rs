@@ -1,5 +1,5 @@
 use super::*;
-use crate::motor::mit::MitRanges;
+use crate::{domain::robots, motor::mit::MitRanges};
 
 const RANGES: MitRanges = MitRanges {
     p_max_rad: 12.5,
@@ -19,7 +19,7 @@ fn rs00(number: u8, host: u8) -> JointMotor {
 fn joints(change: impl FnOnce(&mut [JointSlot; 4])) -> MotorLayout {
     let mut joints = *ROBOT_LAYOUT.joints();
     change(&mut joints);
-    MotorLayout::new(*ROBOT_LAYOUT.wheels(), joints)
+    MotorLayout::new(&robots::FIVEBAR, *ROBOT_LAYOUT.wheels(), joints)
 }
 
 #[test]
@@ -110,7 +110,7 @@ fn a_reply_among_recorded_samples() {
 fn two_wheels_with_one_number() {
     let mut wheels = *ROBOT_LAYOUT.wheels();
     wheels.escs[1] = wheels.escs[0];
-    MotorLayout::new(wheels, *ROBOT_LAYOUT.joints());
+    MotorLayout::new(&robots::FIVEBAR, wheels, *ROBOT_LAYOUT.joints());
 }
 
 /// Four commands and four replies of 135 bits each ms are a load of 108 %.

@@ -132,7 +132,7 @@ fn every_refusal_names_its_reason_and_changes_nothing() {
         (&[0x20, 2, 2, 1, 0, 0x60, 0xEA, 0x46], [0xEE, 0x20, 4, 2, 2]),
         (&[0x20, 2, 3, 0, 0, 0, 0x80, 0xBF], [0xEE, 0x20, 4, 2, 3]),
         (&[0x20, 2, 2, 0, n0, n1, n2, n3], [0xEE, 0x20, 6, 2, 2]),
-        // The lower limit of joint 0 at 2.0 rad would be above its upper one at 1.5.
+        // The lower limit of joint 0 at 2.0 rad would be above its upper one at 0.75.
         (&[0x20, 16, 2, 0, 0, 0, 0, 0x40], [0xEE, 0x20, 7, 16, 2]),
     ];
     for (payload, expected) in writes {

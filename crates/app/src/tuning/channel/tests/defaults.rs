@@ -20,7 +20,7 @@ fn one_group_or_all_groups_are_set_to_defaults() {
 static OTHER_ROBOT: MotorLayout = {
     let mut joints = *ROBOT_LAYOUT.joints();
     joints[1].config.max_kp = 50.0;
-    MotorLayout::new(*ROBOT_LAYOUT.wheels(), joints)
+    MotorLayout::new(ROBOT_LAYOUT.profile(), *ROBOT_LAYOUT.wheels(), joints)
 };
 
 #[test]

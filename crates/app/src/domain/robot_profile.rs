@@ -1,0 +1,18 @@
+//! What the firmware knows of a robot, apart from its motors.
+
+use super::{BalanceProfile, MountingConfig, WheelOdomConfig};
+
+/// Figures of a robot from its file (docs/your-robot.md). The motors are in `motor::layout`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RobotProfile {
+    /// Name, as in `ROBOT=name`.
+    pub name: &'static str,
+    /// Geometry of the wheels as delivered.
+    pub wheel_odom: WheelOdomConfig,
+    /// Limit of each wheel's current in mA as delivered.
+    pub wheel_current_ma: f32,
+    /// How the sensors are mounted as delivered.
+    pub mounting: MountingConfig,
+    /// What balancing needs.
+    pub balance: BalanceProfile,
+}
