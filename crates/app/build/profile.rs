@@ -94,7 +94,8 @@ fn mass(robot: &Robot) -> String {
              axle_kg: {axle_kg}, \
              carried_up_m: {carried_up_m}, \
              roll_kgm2: {roll_kgm2}, \
-             wheel_kgm2: {wheel_kgm2} \
+             wheel_kgm2: {wheel_kgm2}, \
+             hip_kgm2: {hip_kgm2} \
          }}",
         total_kg = f32(robot.total_mass_kg()),
         carried_kg = f32(split.carried_kg),
@@ -102,6 +103,7 @@ fn mass(robot: &Robot) -> String {
         carried_up_m = f32(split.carried_up_m),
         roll_kgm2 = f32(split.roll_kgm2),
         wheel_kgm2 = f32(robot.wheels.inertia_kgm2 + robot.wheels.rotor_inertia_kgm2),
+        hip_kgm2 = f32(robot.joints.armature_kgm2),
     )
 }
 
