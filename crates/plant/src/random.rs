@@ -20,6 +20,7 @@ pub(crate) enum Stream {
     LinkUp = 11,
     LinkFlood = 12,
     PcExtremes = 13,
+    Plates = 14,
 }
 
 /// PCG XSL 128/64: the same seed and stream give the same numbers on every machine.

@@ -17,8 +17,11 @@
 //! # Ok::<(), robot_description::RobotError>(())
 //! ```
 
+mod contacts;
 mod dynamics;
 mod five_bar;
+mod grip;
+mod ground;
 mod joint_forces;
 mod model;
 mod motion;
@@ -27,10 +30,13 @@ mod setup;
 mod start;
 mod state;
 mod terrain;
+mod tyre;
 
 use crate::physics::STANDARD_GRAVITY_MPS2;
+use contacts::{Contacts, Moment};
 use dynamics::{Coordinates, Dynamics, bias};
 use five_bar::HIPS;
+use ground::Ground;
 use joint_forces::{DryFriction, stop_torque_nm};
 use model::{Model, SIDES};
 use motion::Motion;
@@ -62,8 +68,8 @@ pub struct FreeBody {
     accelerations: Coordinates,
     hip_friction: [[DryFriction; HIPS]; SIDES],
     wheel_friction: [DryFriction; SIDES],
-    wheel_contact_n: [f64; SIDES],
-    body_contact_n: f64,
+    ground: Ground,
+    contacts: Contacts,
 }
 
 impl FreeBody {
@@ -73,12 +79,12 @@ impl FreeBody {
         let mut body = Self {
             model,
             hold: setup.hold,
-            motion: start::upright(&model, 0.0),
+            motion: start::upright(&model, 0.0, (model.leg_m[0] + model.leg_m[1]) / 2.0),
             accelerations: Coordinates::zeros(),
             hip_friction: Default::default(),
             wheel_friction: Default::default(),
-            wheel_contact_n: [0.0; SIDES],
-            body_contact_n: 0.0,
+            ground: Ground::new(&setup.terrain),
+            contacts: Contacts::default(),
         };
         start::place(&mut body, setup.start);
         body
@@ -93,7 +99,7 @@ impl FreeBody {
         let legs = self.legs();
         let clamped = self.hold == Hold::Clamped;
         let dynamics = Dynamics::new(&self.model, &legs, clamped);
-        let forces = self.forces(inputs, dt_s);
+        let forces = self.forces(inputs, &legs, dt_s);
         let held = self.motion.to_body(Vec3::z() * STANDARD_GRAVITY_MPS2);
         let accelerations_at = |motion: &Motion| {
             let bias = bias(&self.model, &legs, &motion.rates());
@@ -114,11 +120,12 @@ impl FreeBody {
         self.motion.state()
     }
 
-    /// Puts the robot into a state, with friction relaxed. A clamped body takes no speed.
+    /// Puts the robot into a state, with friction and tyres relaxed. A clamped body takes no speed.
     pub fn set_state(&mut self, state: &FreeState) {
         self.motion = Motion::of(state, self.hold);
         self.hip_friction = Default::default();
         self.wheel_friction = Default::default();
+        self.contacts = Contacts::default();
     }
 
     /// Mass of everything.
@@ -165,12 +172,12 @@ impl FreeBody {
 
     /// Normal force of the ground on each wheel over the last step.
     pub fn wheel_contact_n(&self) -> [f64; 2] {
-        self.wheel_contact_n
+        self.contacts.wheel_n
     }
 
     /// Sum of the normal forces of the ground on body and links over the last step.
     pub fn body_contact_n(&self) -> f64 {
-        self.body_contact_n
+        self.contacts.body_n
     }
 
     /// Specific force that an accelerometer at a place of the body measured over the last step, both in body axes.
@@ -240,8 +247,17 @@ impl FreeBody {
     }
 
     /// Forces along the coordinates, gravity apart.
-    fn forces(&mut self, inputs: &FreeInputs, dt_s: f64) -> Coordinates {
+    fn forces(&mut self, inputs: &FreeInputs, legs: &[Leg; SIDES], dt_s: f64) -> Coordinates {
         let mut forces = Coordinates::zeros();
+        let moment = Moment {
+            model: &self.model,
+            ground: &self.ground,
+            motion: &self.motion,
+            legs,
+            grip: inputs.grip,
+            dt_s,
+        };
+        self.contacts.act(&moment, &mut forces);
         if let Some(push) = inputs.push {
             let force = self
                 .motion

@@ -8,7 +8,7 @@
 use super::{
     Vec2, Vec3,
     model::{Model, SIDES},
-    parts::{LEG_COORDINATES, Leg, PARTS, lift},
+    parts::{LEG_COORDINATES, Leg, Part, lift},
 };
 use nalgebra::{Cholesky, Const, Matrix3, Matrix6, Matrix6x3, Vector3, Vector6};
 
@@ -48,6 +48,26 @@ impl Coordinates {
         self.body[3] += torque.x;
         self.body[4] += torque.y;
         self.body[5] += torque.z;
+    }
+
+    /// Adds a force on a part of a leg at a place, both in body axes.
+    pub fn push_part(&mut self, side: usize, part: &Part, force: Vec3, at: Vec3) {
+        self.push_body(force, at);
+        let turning_nm = (at - part.place).cross(&force).y;
+        for (hip, slope) in part.slope.iter().enumerate() {
+            self.legs[side][hip] += slope.x * force.x + slope.y * force.z;
+        }
+        for (coordinate, share) in part.turn.iter().enumerate() {
+            self.legs[side][coordinate] += share * turning_nm;
+        }
+    }
+
+    /// Adds a torque on a part of a leg, in body axes.
+    pub fn twist_part(&mut self, side: usize, part: &Part, torque: Vec3) {
+        self.turn_body(torque);
+        for (coordinate, share) in part.turn.iter().enumerate() {
+            self.legs[side][coordinate] += share * torque.y;
+        }
     }
 
     fn minus(&self, other: &Self) -> Self {
@@ -196,28 +216,20 @@ pub(super) fn bias(model: &Model, legs: &[Leg; SIDES], rates: &Rates) -> Coordin
     let accel = omega.cross(&omega.cross(&model.body_com));
     bias.push_body(accel * model.body_kg, model.body_com);
     bias.turn_body(omega.cross(&(model.body_inertia * omega)));
-    for side in 0..SIDES {
+    for (side, leg) in legs.iter().enumerate() {
         let leg_rps = rates.legs[side];
         let [front_rps, rear_rps, _] = leg_rps;
-        let terms = legs[side].centripetal(model, [front_rps, rear_rps]);
-        for index in 0..PARTS {
-            let part = &legs[side].parts[index];
-            let accel = omega.cross(&(omega.cross(&part.place) + part.velocity(leg_rps) * 2.0))
-                + lift(terms[index].place);
-            let force = accel * part.mass_kg;
-            bias.push_body(force, part.place);
-            for (hip, slope) in part.slope.iter().enumerate() {
-                bias.legs[side][hip] += slope.x * force.x + slope.y * force.z;
-            }
-            let turn = part.turn_rps(leg_rps);
-            let total = omega + Vec3::new(0.0, turn, 0.0);
-            // ω × (turn·y) + y·(turn's own acceleration).
-            let angular = Vec3::new(-omega.z * turn, terms[index].turn, omega.x * turn);
+        let terms = leg.centripetal(model, [front_rps, rear_rps]);
+        for (part, terms) in leg.parts.iter().zip(terms) {
+            let coriolis = part.velocity(leg_rps) * 2.0;
+            let accel = omega.cross(&(omega.cross(&part.place) + coriolis)) + lift(terms.place);
+            let turn_rps = part.turn_rps(leg_rps);
+            let total = omega + Vec3::new(0.0, turn_rps, 0.0);
+            // The turn's own acceleration, and that of its axis with the body.
+            let angular = Vec3::new(-omega.z * turn_rps, terms.turn, omega.x * turn_rps);
             let torque = part.inertia * angular + total.cross(&(part.inertia * total));
-            bias.turn_body(torque);
-            for (coordinate, share) in part.turn.iter().enumerate() {
-                bias.legs[side][coordinate] += share * torque.y;
-            }
+            bias.push_part(side, part, accel * part.mass_kg, part.place);
+            bias.twist_part(side, part, torque);
         }
     }
     bias

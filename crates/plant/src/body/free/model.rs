@@ -1,6 +1,7 @@
 //! Masses, lengths and limits of one robot, as its equations of motion need them.
 
-use super::{Variation, Vec3, five_bar::FiveBar};
+use super::{Variation, Vec3, five_bar::FiveBar, grip::Stiffness};
+use crate::physics::STANDARD_GRAVITY_MPS2;
 use nalgebra::Matrix3;
 use robot_description::{Carrier, Link, Robot};
 
@@ -69,6 +70,30 @@ pub(super) struct Model {
     /// Usable leg lengths.
     pub leg_m: [f64; 2],
     pub ground_friction: f64,
+    /// Of the tyres.
+    pub tyre: Stiffness,
+    /// Of body and knees.
+    pub shell: Stiffness,
+}
+
+/// How far a tyre gives under half of the robot's weight: hard rubber, an assumption.
+const TYRE_GIVES_M: f64 = 0.8e-3;
+/// Damping of the tyre's spring under the unsprung mass, as a share of the critical one. An assumption.
+const TYRE_DAMPING: f64 = 0.15;
+/// The same of the body's shell under a quarter of the robot's mass.
+const SHELL_DAMPING: f64 = 0.3;
+/// Stiffness along the ground as a share of that across it.
+const TANGENT_SHARE: f64 = 0.5;
+
+/// A contact with a spring of the given stiffness, damped as a share of critical under a mass.
+fn stiffness(n_per_m: f64, damping: f64, mass_kg: f64) -> Stiffness {
+    let n_per_mps = 2.0 * damping * (n_per_m * mass_kg).sqrt();
+    Stiffness {
+        normal_n_per_m: n_per_m,
+        normal_n_per_mps: n_per_mps,
+        tangent_n_per_m: TANGENT_SHARE * n_per_m,
+        tangent_n_per_mps: n_per_mps,
+    }
 }
 
 impl Model {
@@ -76,6 +101,8 @@ impl Model {
         let (legs, wheels) = (&robot.legs, &robot.wheels);
         let added_kg = (variation.mass_factor - 1.0) * robot.total_mass_kg();
         let body_kg = (robot.body.mass_kg + added_kg).max(0.1 * robot.body.mass_kg);
+        let load_n = robot.total_mass_kg() * STANDARD_GRAVITY_MPS2 / 2.0;
+        let n_per_m = load_n / TYRE_GIVES_M;
         let growth = body_kg / robot.body.mass_kg;
         Self {
             body_kg,
@@ -110,6 +137,8 @@ impl Model {
             hip_range_rad: [robot.joints.range_rad.front, robot.joints.range_rad.rear],
             leg_m: [legs.min_m, legs.max_m],
             ground_friction: variation.ground_friction,
+            tyre: stiffness(n_per_m, TYRE_DAMPING, wheels.mass_kg + wheels.motor_mass_kg),
+            shell: stiffness(n_per_m, SHELL_DAMPING, robot.total_mass_kg() / 4.0),
         }
     }
 }

@@ -80,6 +80,21 @@ impl Motion {
         self.attitude.transform_vector(&body)
     }
 
+    /// Takes away all speed.
+    pub fn stop(&mut self) {
+        self.velocity = Vec3::zeros();
+        self.rate = Vec3::zeros();
+        self.hip_rps = Default::default();
+        self.wheel_rps = Default::default();
+    }
+
+    /// The largest of all speeds, whatever their unit.
+    pub fn fastest(&self) -> f64 {
+        let joints = self.hip_rps.as_flattened().iter().chain(&self.wheel_rps);
+        let body = self.velocity.iter().chain(&self.rate);
+        joints.chain(body).fold(0.0, |most, it| it.abs().max(most))
+    }
+
     /// Moves on at constant speeds.
     pub fn drift(&mut self, dt_s: f64, hold: Hold) {
         if hold == Hold::Free {

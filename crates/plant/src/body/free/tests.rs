@@ -1,6 +1,8 @@
 //! Mechanics against hand calculation.
 
 mod flight;
+mod ground;
+mod legs;
 
 use super::*;
 use std::path::Path;
