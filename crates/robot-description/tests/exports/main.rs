@@ -10,7 +10,7 @@ const ROBOTS: [&str; 2] = ["fivebar", "fivebar-rs00"];
 /// Of left front, left rear, right front, right rear.
 const HIPS_RAD: [f64; 4] = [-0.5, 0.3, 0.2, -0.1];
 /// MuJoCo refuses rods without inertia about their length; this much may be seen of it in a mass matrix.
-const ALMOST_NONE: f64 = 1e-8;
+const ALMOST_NONE: f64 = 1e-11;
 
 fn robot(name: &str) -> Robot {
     let robots = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../robots");

@@ -1,0 +1,8 @@
+//! The free robot moves as MuJoCo says.
+//!
+//! MuJoCo reads what `cargo xtask robot mjcf` writes. Its equations of motion, Jacobians and energies share no code and no
+//! formulas with the plant's.
+
+mod accelerations;
+mod flight;
+mod oracle;
