@@ -34,7 +34,7 @@ enum Command {
     Sim(ForwardedArgs),
     /// Run the image for simulated hours with random faults that a seed repeats.
     Soak(ForwardedArgs),
-    /// Check a robot's file and show what holds.
+    /// Check a robot's file, show what holds, and write it for MuJoCo or as URDF.
     Robot(ForwardedArgs),
     /// Run the estimator over recorded trials and show its attitude at 1 kHz, errors and plots.
     Replay(ForwardedArgs),

@@ -1,7 +1,10 @@
 //! `cargo xtask robot`: everything about a robot's file.
 
 mod check;
+mod mjcf;
+mod model_file;
 mod robot_file;
+mod urdf;
 
 use std::process::ExitCode;
 
@@ -19,6 +22,10 @@ struct Args {
 enum Command {
     /// Show what holds of a robot, by how much, and what does not.
     Check(check::Args),
+    /// Write the robot as MJCF, for MuJoCo.
+    Mjcf(mjcf::Args),
+    /// Write the robot as URDF, with open loops.
+    Urdf(urdf::Args),
 }
 
 const EXAMPLES: &str = "\
@@ -29,6 +36,8 @@ Example:
 fn main() -> ExitCode {
     let outcome = match Args::parse().command {
         Command::Check(args) => check::run(&args),
+        Command::Mjcf(args) => mjcf::run(&args),
+        Command::Urdf(args) => urdf::run(&args),
     };
     outcome.unwrap_or_else(|error| {
         eprintln!("error: {error:#}");
