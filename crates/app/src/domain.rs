@@ -33,7 +33,8 @@ pub use command::{
 };
 pub use config::{
     HeaterConfig, ImuCalibration, JointConfig, JointControllerConfig, MagCalibration,
-    MountingConfig, RobotConfig, SafetyConfig, WheelControllerConfig, WheelOdomConfig,
+    MountingConfig, RobotConfig, SafetyConfig, StandUpConfig, WheelControllerConfig,
+    WheelOdomConfig,
 };
 pub use crash_cause::{CrashCause, LateTasks};
 pub use estimate::StateEstimate;
@@ -48,8 +49,10 @@ pub use logic_bus::LogicBus;
 pub use mounting::Orientation;
 pub use param_store::{FlashRequest, ParamError, ParamState, ParamStatus};
 pub use pc::{JointTarget, LinkHealth, PcCommand, WheelTarget};
-pub use remote::{DriveMode, OperatorState, RemoteDiagnostics, RemoteState, RemoteUpdate};
-pub use remote_mapping::{NO_CHANNEL, RemoteChannel, RemoteMapping};
+pub use remote::{
+    DriveMode, OperatorState, RemoteDiagnostics, RemoteState, RemoteUpdate, StandSwitch,
+};
+pub use remote_mapping::{BalanceChannel, NO_CHANNEL, RemoteChannel, RemoteMapping};
 pub use robot_profile::RobotProfile;
 pub use sensors::{
     ImuState, JointFeedback, JointState, MagState, MotorFeedback, SensorsSnapshot, WheelFeedback,

@@ -2,6 +2,7 @@
 
 mod channels;
 mod dbus;
+mod dbus_wheel;
 mod glitch_filter;
 mod line_diagnosis;
 mod mapping;

@@ -6,6 +6,7 @@
 mod custom_logic;
 mod decision;
 mod inputs;
+mod jump_request;
 mod manual;
 mod stage;
 mod user_logic;

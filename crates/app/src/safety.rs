@@ -15,6 +15,7 @@ mod pc_interlock;
 mod permit;
 mod policy;
 mod resume_interlock;
+mod standing;
 mod status;
 mod temperature_limits;
 

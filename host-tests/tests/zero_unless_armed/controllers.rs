@@ -9,6 +9,7 @@ use robot_app::{
 pub struct Rogue {
     pub current_ma: f32,
     pub joint: JointCommand,
+    pub balance: BalanceStatus,
 }
 
 impl Rogue {
@@ -17,6 +18,7 @@ impl Rogue {
         Self {
             current_ma,
             joint: JointCommand::default(),
+            balance: BalanceStatus::SIT,
         }
     }
 }
@@ -30,7 +32,7 @@ impl ChassisController for Rogue {
                 joints: [self.joint; 4],
             },
             cmd_valid: true,
-            balance: BalanceStatus::SIT,
+            balance: self.balance,
         }
     }
 

@@ -11,6 +11,7 @@ mod producers;
 mod replies;
 mod requests;
 mod rules;
+mod standing;
 mod stops;
 mod walk;
 mod wire;
@@ -48,7 +49,8 @@ proptest! {
         joint in joint_command(),
         make in prop_oneof![Just(Make::Dm4310), Just(Make::Rs00)],
     ) {
-        Bench::new(make, Rogue { current_ma, joint }).run(&phases);
+        let rogue = Rogue { joint, ..Rogue::wheels(current_ma) };
+        Bench::new(make, rogue).run(&phases);
     }
 }
 

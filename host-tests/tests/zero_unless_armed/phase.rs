@@ -2,7 +2,9 @@
 
 use proptest::prelude::*;
 use robot_app::{
-    domain::{BusErrorState, DriveMode, JointCommand, JointMode, JointTarget, WheelTarget},
+    domain::{
+        BusErrorState, DriveMode, JointCommand, JointMode, JointTarget, StandSwitch, WheelTarget,
+    },
     link::{Downlink, crc8},
     tuning::{READ_ID, WRITE_ID, opcode},
 };
@@ -26,6 +28,7 @@ pub struct Phase {
     pub enabled: bool,
     pub e_stop: bool,
     pub mode: DriveMode,
+    pub stand: StandSwitch,
     pub failsafe: bool,
     pub radio_sends: bool,
     pub quality: f32,
@@ -200,6 +203,11 @@ pub fn phase() -> impl Strategy<Value = Phase> {
         mostly(false, Just(true)),
         prop_oneof![2 => Just(DriveMode::Manual), 1 => modes],
         mostly(false, Just(true)),
+        prop_oneof![
+            Just(StandSwitch::Unknown),
+            Just(StandSwitch::Down),
+            Just(StandSwitch::Up)
+        ],
     );
     let radio = (
         mostly(true, Just(false)),
@@ -246,6 +254,7 @@ pub fn phase() -> impl Strategy<Value = Phase> {
             e_stop: switches.1,
             mode: switches.2,
             failsafe: switches.3,
+            stand: switches.4,
             radio_sends: radio.0,
             quality: radio.1,
             sticks: radio.2,
@@ -284,6 +293,7 @@ pub fn good(ticks: u16, enabled: bool) -> Phase {
         enabled,
         e_stop: false,
         mode: DriveMode::Manual,
+        stand: StandSwitch::Unknown,
         failsafe: false,
         radio_sends: true,
         quality: 1.0,

@@ -130,6 +130,7 @@ fn remote_update(phase: &Phase, now_us: u64) -> RemoteUpdate {
             select: phase.channels[2],
             hold: phase.channels[3],
             ts_us: now_us,
+            ..RemoteState::default()
         },
         operator: OperatorState {
             enabled: phase.enabled,
@@ -137,7 +138,9 @@ fn remote_update(phase: &Phase, now_us: u64) -> RemoteUpdate {
             e_stop: phase.e_stop,
             dead_man: phase.channels[3] > 0.7,
             mode: phase.mode,
+            stand: phase.stand,
             ts_us: now_us,
+            ..OperatorState::default()
         },
         diagnostics: RemoteDiagnostics {
             quality: phase.quality,

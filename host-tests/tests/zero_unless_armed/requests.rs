@@ -47,12 +47,12 @@ fn stick(ticks: u16, held: bool) -> Phase {
 fn run_all(make: Make, phases: &[Phase]) -> Vec<Tick> {
     // Requests large values all the time.
     let rogue = Rogue {
-        current_ma: 5_000.0,
         joint: JointCommand {
             mode: robot_app::domain::JointMode::Mit,
             tau_nm: 2.5,
             ..JointCommand::default()
         },
+        ..Rogue::wheels(5_000.0)
     };
     let mut bench = Bench::new(make, rogue);
     bench.run(phases);

@@ -12,7 +12,6 @@ use crate::{
 /// A driver of all six motors.
 fn driver() -> Rogue {
     Rogue {
-        current_ma: 2_000.0,
         joint: JointCommand {
             mode: JointMode::Mit,
             pos_rad: 0.1,
@@ -20,6 +19,7 @@ fn driver() -> Rogue {
             kd: 0.5,
             ..JointCommand::default()
         },
+        ..Rogue::wheels(2_000.0)
     }
 }
 

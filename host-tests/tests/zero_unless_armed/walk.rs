@@ -12,7 +12,6 @@ const LONGEST_JUMP_US: u64 = 1 << 40;
 
 fn rogue() -> Rogue {
     Rogue {
-        current_ma: 4_000.0,
         joint: JointCommand {
             mode: JointMode::Mit,
             pos_rad: 2.0,
@@ -21,6 +20,7 @@ fn rogue() -> Rogue {
             kd: 3.0,
             tau_nm: 9.0,
         },
+        ..Rogue::wheels(4_000.0)
     }
 }
 

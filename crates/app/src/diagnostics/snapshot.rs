@@ -4,9 +4,10 @@ use super::{TickStats, UnknownFrames};
 use crate::{
     bring_up::BringUpStatus,
     domain::{
-        BlackBoxStatus, BusHealth, ChassisCommand, CrashCause, DebugProbe, ImuStatus, LateTasks,
-        LinkHealth, LogicBus, OperatorState, ParamStatus, RadioLineHealth, RemoteDiagnostics,
-        RemoteState, ResetCause, SensorHealth, SensorsSnapshot, StateEstimate, TuningStatus,
+        BalanceStatus, BlackBoxStatus, BusHealth, ChassisCommand, CrashCause, DebugProbe,
+        ImuStatus, LateTasks, LinkHealth, LogicBus, OperatorState, ParamStatus, RadioLineHealth,
+        RemoteDiagnostics, RemoteState, ResetCause, SensorHealth, SensorsSnapshot, StateEstimate,
+        TuningStatus,
     },
     safety::{ArmingStatus, DriveEnd, MotorReadiness, SafetyStatus},
 };
@@ -37,6 +38,8 @@ pub struct DiagnosticsSnapshot {
     pub drive_end: DriveEnd,
     /// Flags and stops of the safety policy.
     pub safety: SafetyStatus,
+    /// State of the balance controller.
+    pub balance: BalanceStatus,
     /// Timing of the tick.
     pub tick: TickStats,
     /// State of bring-up.

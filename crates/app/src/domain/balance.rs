@@ -92,4 +92,9 @@ impl StandPermit {
     pub const fn permits(self) -> bool {
         matches!(self, Self::StandingUp | Self::Standing)
     }
+
+    /// Whether a fall stops nothing, as the pilot knows about it.
+    pub const fn may_lie(self) -> bool {
+        matches!(self, Self::Requested | Self::StandingUp)
+    }
 }

@@ -1,6 +1,7 @@
 //! Settings that adapt the firmware to one robot.
 
 use super::{Orientation, RemoteMapping};
+use crate::math::scalar;
 
 /// Geometry of the wheels.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -146,6 +147,11 @@ pub struct SafetyConfig {
     pub pc_timeout_us: u32,
     /// Time in µs after which a PC that turns the wheels by an unchanging command is lost. 0 disables this check.
     pub pc_frozen_us: u32,
+    /// Limit of the angle between the body's z axis and the vertical in rad while the robot balances. Beyond it the
+    /// balance is lost.
+    pub max_balance_tilt_rad: f32,
+    /// Time in µs for which a balancing robot must be beyond that limit.
+    pub balance_tilt_us: u32,
 }
 
 impl Default for SafetyConfig {
@@ -169,6 +175,54 @@ impl Default for SafetyConfig {
             resume_centred: 1,
             pc_timeout_us: 100_000,
             pc_frozen_us: 5_000_000,
+            max_balance_tilt_rad: 0.7,
+            balance_tilt_us: 20_000,
+        }
+    }
+}
+
+/// Limits of standing up. They apply beside the usual ones.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct StandUpConfig {
+    /// Longest time in µs. A robot that still lies has failed.
+    pub time_us: u32,
+    /// Torque limit of each joint in N·m.
+    pub max_joint_nm: f32,
+    /// Speed limit of each joint in rad/s.
+    pub max_joint_rps: f32,
+    /// Limit of each wheel's current in mA.
+    pub max_wheel_ma: f32,
+}
+
+impl StandUpConfig {
+    /// The stricter limits of a joint.
+    #[must_use]
+    pub fn limit_joint(&self, joint: &JointConfig) -> JointConfig {
+        JointConfig {
+            max_torque_nm: scalar::min(joint.max_torque_nm, self.max_joint_nm),
+            max_speed_rps: scalar::min(joint.max_speed_rps, self.max_joint_rps),
+            ..*joint
+        }
+    }
+
+    /// The stricter limits of the wheels.
+    #[must_use]
+    pub fn limit_wheels(&self, wheels: &WheelControllerConfig) -> WheelControllerConfig {
+        WheelControllerConfig {
+            current_limit_ma: scalar::min(wheels.current_limit_ma, self.max_wheel_ma),
+            ..*wheels
+        }
+    }
+}
+
+impl Default for StandUpConfig {
+    fn default() -> Self {
+        Self {
+            time_us: 3_000_000,
+            max_joint_nm: 5.0,
+            max_joint_rps: 10.0,
+            max_wheel_ma: 8_000.0,
         }
     }
 }
@@ -280,4 +334,6 @@ pub struct RobotConfig {
     pub heater: HeaterConfig,
     /// Channels of the radio.
     pub radio: RemoteMapping,
+    /// Limits of standing up.
+    pub stand_up: StandUpConfig,
 }

@@ -17,6 +17,10 @@ pub struct RemoteState {
     pub select: f32,
     /// Left stick, horizontal, −1…1, right positive. Held to the right it is the dead-man of bring-up.
     pub hold: f32,
+    /// Wanted leg length, −1…1, long positive.
+    pub height: f32,
+    /// Wanted roll, −1…1, right side down positive.
+    pub roll: f32,
     /// Time of the last frame received over the air; 0 = none yet.
     pub ts_us: u64,
 }
@@ -35,6 +39,20 @@ pub enum DriveMode {
     Custom = 2,
 }
 
+/// Position of the stand switch.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[repr(u8)]
+pub enum StandSwitch {
+    /// Between its ends, not yet seen, or without a channel.
+    #[default]
+    Unknown = 0,
+    /// Sit.
+    Down = 1,
+    /// Stand.
+    Up = 2,
+}
+
 /// The pilot's switches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
@@ -50,6 +68,10 @@ pub struct OperatorState {
     pub dead_man: bool,
     /// Position of the mode switch.
     pub mode: DriveMode,
+    /// Position of the stand switch.
+    pub stand: StandSwitch,
+    /// The jump button is pressed.
+    pub jump: bool,
     /// Time of the frame; 0 = none yet.
     pub ts_us: u64,
 }
@@ -63,6 +85,8 @@ impl Default for OperatorState {
             e_stop: true,
             dead_man: false,
             mode: DriveMode::Manual,
+            stand: StandSwitch::Unknown,
+            jump: false,
             ts_us: 0,
         }
     }

@@ -50,6 +50,23 @@ impl RemoteChannel {
     }
 }
 
+/// A stick or switch that only a standing robot needs. Its counts are those of a FrSky transmitter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C)]
+pub struct BalanceChannel {
+    /// 0…15, or [`NO_CHANNEL`]. A channel that another function uses is none for this one: a robot may have been set up
+    /// before this function existed.
+    pub index: u32,
+    /// 1 if the transmitter sends the channel reversed.
+    pub reversed: u32,
+}
+
+impl BalanceChannel {
+    const fn new(index: u32) -> Self {
+        Self { index, reversed: 0 }
+    }
+}
+
 /// All channels that the robot uses. DBUS does not need it: its sticks and switches are labelled on the transmitter,
 /// and their counts are fixed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,10 +86,18 @@ pub struct RemoteMapping {
     pub mode: RemoteChannel,
     /// Low = run; any other position stops the robot.
     pub e_stop: RemoteChannel,
+    /// Low = sit, high = stand.
+    pub stand: BalanceChannel,
+    /// High = jump.
+    pub jump: BalanceChannel,
+    /// High = long legs.
+    pub height: BalanceChannel,
+    /// High = right side down.
+    pub roll: BalanceChannel,
 }
 
 impl RemoteMapping {
-    /// All channels.
+    /// The channels that every robot needs.
     pub const fn all(&self) -> [&RemoteChannel; 7] {
         [
             &self.steering,
@@ -83,6 +108,18 @@ impl RemoteMapping {
             &self.mode,
             &self.e_stop,
         ]
+    }
+
+    /// Position of a channel among these of a frame, −1…1. `None` without a channel of its own.
+    pub fn balance_position(&self, channel: &BalanceChannel, positions: &[f32; 16]) -> Option<f32> {
+        let position = *positions.get(channel.index as usize)?;
+        let is_taken = self.all().iter().any(|other| other.index == channel.index);
+        let signed = if channel.reversed == 1 {
+            -position
+        } else {
+            position
+        };
+        (!is_taken).then_some(signed)
     }
 }
 
@@ -96,6 +133,10 @@ impl Default for RemoteMapping {
             enable: RemoteChannel::new(4),
             mode: RemoteChannel::new(5),
             e_stop: RemoteChannel::new(6),
+            stand: BalanceChannel::new(7),
+            jump: BalanceChannel::new(8),
+            height: BalanceChannel::new(9),
+            roll: BalanceChannel::new(10),
         }
     }
 }

@@ -3,7 +3,7 @@
 //! SBUS and DBUS have no checksum, and two flipped bits pass a parity check. A single frame is therefore trusted for
 //! one thing only: a stop.
 
-use crate::domain::{DriveMode, OperatorState, RemoteState};
+use crate::domain::{DriveMode, OperatorState, RemoteState, StandSwitch};
 
 /// Combines each frame with the two before it. It starts with centred sticks, disabled and with the e-stop set.
 #[derive(Clone, Debug, Default)]
@@ -11,6 +11,7 @@ pub(super) struct GlitchFilter {
     last: [RemoteState; 2],
     last_operator: OperatorState,
     mode: DriveMode,
+    stand: StandSwitch,
 }
 
 impl GlitchFilter {
@@ -21,7 +22,7 @@ impl GlitchFilter {
     /// - Enable, the dead-man stick and the release of the e-stop need two equal frames. Their opposites stop the
     ///   robot at once.
     /// - `disabled`, which re-arms the enable switch, needs two frames.
-    /// - The mode changes after two equal frames.
+    /// - Mode and stand switch change after two equal frames, and a jump needs two frames.
     pub fn filter(
         &mut self,
         state: RemoteState,
@@ -33,10 +34,15 @@ impl GlitchFilter {
             wz: median(older.wz, last.wz, state.wz),
             select: median(older.select, last.select, state.select),
             hold: median(older.hold, last.hold, state.hold),
+            height: median(older.height, last.height, state.height),
+            roll: median(older.roll, last.roll, state.roll),
             ..state
         };
         if operator.mode == self.last_operator.mode {
             self.mode = operator.mode;
+        }
+        if operator.stand == self.last_operator.stand {
+            self.stand = operator.stand;
         }
         let filtered_operator = OperatorState {
             enabled: operator.enabled && self.last_operator.enabled,
@@ -44,6 +50,8 @@ impl GlitchFilter {
             e_stop: operator.e_stop || self.last_operator.e_stop,
             dead_man: operator.dead_man && self.last_operator.dead_man,
             mode: self.mode,
+            stand: self.stand,
+            jump: operator.jump && self.last_operator.jump,
             ..operator
         };
         self.last = [last, state];
@@ -77,7 +85,7 @@ mod tests {
             e_stop,
             dead_man: false,
             mode,
-            ts_us: 0,
+            ..OperatorState::default()
         };
         (state, operator)
     }
@@ -211,5 +219,28 @@ mod tests {
             })
             .to_vec();
         assert_eq!(modes, [0, 1, 1, 1, 1, 2]);
+    }
+
+    #[test]
+    fn the_stand_switch_and_the_jump_button_need_two_equal_frames() {
+        use StandSwitch::{Down, Unknown, Up};
+        let mut glitch_filter = GlitchFilter::default();
+        let mut seen = |stand, jump| {
+            let (state, operator) = frame(0.0, true, false, DriveMode::Manual);
+            let operator = OperatorState {
+                stand,
+                jump,
+                ..operator
+            };
+            let filtered = feed(&mut glitch_filter, (state, operator)).2;
+            (filtered.stand, filtered.jump)
+        };
+        assert_eq!(seen(Down, true), (Unknown, false));
+        assert_eq!(seen(Down, false), (Down, false));
+        assert_eq!(seen(Up, true), (Down, false));
+        assert_eq!(seen(Down, true), (Down, true));
+        assert_eq!(seen(Up, false), (Down, false));
+        assert_eq!(seen(Up, false), (Up, false));
+        assert_eq!(seen(Unknown, false), (Up, false));
     }
 }

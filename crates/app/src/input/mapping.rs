@@ -1,7 +1,9 @@
 //! Maps the channels of a frame to sticks and switches.
 
-use super::{DbusFrame, DbusSwitch, SbusFrame, channels};
-use crate::domain::{DriveMode, OperatorState, RemoteChannel, RemoteMapping, RemoteState};
+use super::{DbusFrame, DbusSwitch, SbusFrame, channels, dbus_wheel::DbusWheel};
+use crate::domain::{
+    DriveMode, OperatorState, RemoteChannel, RemoteMapping, RemoteState, StandSwitch,
+};
 
 /// A switch counts as thrown beyond half way.
 const SWITCH_THRESHOLD: f32 = 0.5;
@@ -11,7 +13,8 @@ const DEAD_MAN_THRESHOLD: f32 = 0.7;
 /// transmitter does not have.
 const E_STOP_LOWEST: f32 = -1.2;
 
-/// A stick or switch without a channel takes its safe position: sticks centred, enable off, e-stop thrown.
+/// A stick or switch without a channel takes its safe position: sticks centred, enable off, e-stop thrown, no request to
+/// stand.
 pub(super) fn from_sbus(
     frame: &SbusFrame,
     mapping: &RemoteMapping,
@@ -19,12 +22,16 @@ pub(super) fn from_sbus(
 ) -> (RemoteState, OperatorState) {
     let raw = &frame.channels;
     let stick = |channel: &RemoteChannel| position(channel, raw).clamp(-1.0, 1.0);
+    let channels = raw.map(|raw| channels::normalise(raw, 172, 992, 1811));
+    let balance = |channel| mapping.balance_position(channel, &channels);
     let state = RemoteState {
-        channels: raw.map(|raw| channels::normalise(raw, 172, 992, 1811)),
+        height: balance(&mapping.height).unwrap_or(0.0),
+        roll: balance(&mapping.roll).unwrap_or(0.0),
         vx: stick(&mapping.drive),
         wz: -stick(&mapping.steering),
         select: stick(&mapping.select),
         hold: stick(&mapping.dead_man),
+        channels,
         ts_us,
     };
     let enabled = position(&mapping.enable, raw) > SWITCH_THRESHOLD;
@@ -39,6 +46,12 @@ pub(super) fn from_sbus(
             Some(high) if high > SWITCH_THRESHOLD => DriveMode::Custom,
             Some(_) => DriveMode::Pc,
         },
+        stand: match balance(&mapping.stand) {
+            Some(low) if low < -SWITCH_THRESHOLD => StandSwitch::Down,
+            Some(high) if high > SWITCH_THRESHOLD => StandSwitch::Up,
+            _ => StandSwitch::Unknown,
+        },
+        jump: balance(&mapping.jump).is_some_and(|at| at > SWITCH_THRESHOLD),
         ts_us,
     };
     (state, operator)
@@ -62,7 +75,12 @@ pub(super) fn raw_of_dbus(frame: &DbusFrame) -> [u16; 16] {
     raw
 }
 
-pub(super) fn from_dbus(frame: &DbusFrame, ts_us: u64) -> (RemoteState, OperatorState) {
+/// `wheel` takes each frame once, in order.
+pub(super) fn from_dbus(
+    frame: &DbusFrame,
+    wheel: &mut DbusWheel,
+    ts_us: u64,
+) -> (RemoteState, OperatorState) {
     let stick = |raw| channels::normalise(raw, 364, 1024, 1684);
     let [right_h, right_v, left_h, left_v] = frame.sticks.map(stick);
     let mut channels = [0.0; 16];
@@ -78,9 +96,12 @@ pub(super) fn from_dbus(frame: &DbusFrame, ts_us: u64) -> (RemoteState, Operator
         wz: -right_h,
         select: left_v,
         hold: left_h,
+        height: left_v,
+        roll: left_h,
         channels,
         ts_us,
     };
+    wheel.step(stick(frame.wheel));
     let enabled = frame.right_switch == DbusSwitch::Up;
     let operator = OperatorState {
         enabled,
@@ -92,6 +113,8 @@ pub(super) fn from_dbus(frame: &DbusFrame, ts_us: u64) -> (RemoteState, Operator
             DbusSwitch::Middle => DriveMode::Pc,
             DbusSwitch::Down => DriveMode::Custom,
         },
+        stand: wheel.stand(),
+        jump: wheel.jump(),
         ts_us,
     };
     (state, operator)
@@ -211,6 +234,98 @@ mod tests {
         }
     }
 
+    /// Channels 7 to 10 with the stand switch, the jump button, height and roll.
+    fn balance_of(mapping: &RemoteMapping, raw: [u16; 4]) -> (StandSwitch, bool, f32, f32) {
+        let mut channels = [992; 16];
+        channels[7..11].copy_from_slice(&raw);
+        let (state, operator) = from_sbus(&sbus(channels), mapping, 1);
+        (operator.stand, operator.jump, state.height, state.roll)
+    }
+
+    #[test]
+    fn standing_has_channels_of_its_own() {
+        let mut mapping = RemoteMapping::default();
+        let of = |raw| balance_of(&RemoteMapping::default(), raw);
+        assert_eq!(
+            of([172, 172, 172, 172]),
+            (StandSwitch::Down, false, -1.0, -1.0)
+        );
+        assert_eq!(
+            of([992, 992, 992, 992]),
+            (StandSwitch::Unknown, false, 0.0, 0.0)
+        );
+        assert_eq!(
+            of([1811, 1811, 1811, 1811]),
+            (StandSwitch::Up, true, 1.0, 1.0)
+        );
+        assert_eq!(
+            of([2047, 1402, 2047, 0]),
+            (StandSwitch::Up, true, 1.0, -1.0)
+        );
+        assert_eq!(
+            of([1401, 1401, 992, 992]),
+            (StandSwitch::Unknown, false, 0.0, 0.0)
+        );
+        for channel in [
+            &mut mapping.stand,
+            &mut mapping.jump,
+            &mut mapping.height,
+            &mut mapping.roll,
+        ] {
+            channel.reversed = 1;
+        }
+        let reversed = balance_of(&mapping, [172, 172, 172, 1811]);
+        assert_eq!(reversed, (StandSwitch::Up, true, 1.0, -1.0));
+    }
+
+    /// A robot whose e-stop was moved to channel 7 by an older firmware has no stand switch.
+    #[test]
+    fn without_a_channel_of_its_own_a_robot_sits() {
+        let nothing = (StandSwitch::Unknown, false, 0.0, 0.0);
+        let mut taken = RemoteMapping::default();
+        taken.e_stop.index = 7;
+        taken.enable.index = 8;
+        taken.drive.index = 9;
+        taken.select.index = 10;
+        let mut none = RemoteMapping::default();
+        for channel in [
+            &mut none.stand,
+            &mut none.jump,
+            &mut none.height,
+            &mut none.roll,
+        ] {
+            channel.index = NO_CHANNEL;
+        }
+        for raw in [0, 172, 992, 1811, 2047] {
+            assert_eq!(balance_of(&taken, [raw; 4]), nothing);
+            assert_eq!(balance_of(&none, [raw; 4]), nothing);
+        }
+    }
+
+    #[test]
+    fn on_dbus_the_wheel_asks_for_standing_and_the_left_stick_shapes_the_robot() {
+        let mut wheel = DbusWheel::default();
+        let mut after = |position: u16, frames| {
+            let mut found = None;
+            for _ in 0..frames {
+                let frame = DbusFrame {
+                    sticks: [1024, 1024, 364, 1684],
+                    wheel: position,
+                    right_switch: DbusSwitch::Middle,
+                    left_switch: DbusSwitch::Up,
+                };
+                found = Some(from_dbus(&frame, &mut wheel, 1));
+            }
+            let (state, operator) = found.expect("a frame");
+            assert_eq!((state.height, state.roll), (1.0, -1.0));
+            (operator.stand, operator.jump)
+        };
+        assert_eq!(after(364, 10), (StandSwitch::Down, false));
+        assert_eq!(after(1684, 10), (StandSwitch::Up, false));
+        assert_eq!(after(1024, 1), (StandSwitch::Up, false));
+        assert_eq!(after(1684, 1), (StandSwitch::Up, true));
+    }
+
     /// Low end, centre and high end are 172, 992, 1811 for SBUS and 364, 1024, 1684 for DBUS
     /// (docs/hardware.md#sbus, docs/hardware.md#dbus).
     /// The threshold of 0.7 lies at 1566 and 1487.
@@ -233,7 +348,7 @@ mod tests {
                 right_switch: DbusSwitch::Middle,
                 left_switch: DbusSwitch::Middle,
             };
-            let (state, operator) = from_dbus(&frame, 1);
+            let (state, operator) = from_dbus(&frame, &mut DbusWheel::default(), 1);
             (state.select, state.hold, operator.dead_man)
         };
         assert_eq!(dbus(1024, 1024), (0.0, 0.0, false));

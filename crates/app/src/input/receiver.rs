@@ -1,7 +1,8 @@
 //! One interface for both radio formats, with the quality of the link.
 
 use super::{
-    DbusParser, RemoteMapping, SbusParser, dbus, glitch_filter::GlitchFilter, mapping, sbus,
+    DbusParser, RemoteMapping, SbusParser, dbus, dbus_wheel::DbusWheel,
+    glitch_filter::GlitchFilter, mapping, sbus,
 };
 use crate::domain::{OperatorState, RemoteDiagnostics, RemoteState, RemoteUpdate, age_us};
 
@@ -18,7 +19,7 @@ pub enum RemoteFormat {
 #[derive(Clone, Debug)]
 enum Parser {
     Sbus(SbusParser),
-    Dbus(DbusParser),
+    Dbus(DbusParser, DbusWheel),
 }
 
 /// Decodes the radio's byte stream into one [`RemoteUpdate`] a frame.
@@ -54,7 +55,7 @@ impl RemoteReceiver {
     pub fn new(format: RemoteFormat, mapping: RemoteMapping) -> Self {
         let parser = match format {
             RemoteFormat::Sbus => Parser::Sbus(SbusParser::new()),
-            RemoteFormat::Dbus => Parser::Dbus(DbusParser::new()),
+            RemoteFormat::Dbus => Parser::Dbus(DbusParser::new(), DbusWheel::default()),
         };
         Self {
             parser,
@@ -97,9 +98,9 @@ impl RemoteReceiver {
                     sbus::FRAME_LEN,
                 );
             }
-            Parser::Dbus(parser) => {
+            Parser::Dbus(parser, wheel) => {
                 parser.feed(bytes, ts_us, |frame| {
-                    let (state, operator) = mapping::from_dbus(&frame, ts_us);
+                    let (state, operator) = mapping::from_dbus(&frame, wheel, ts_us);
                     link.raw = mapping::raw_of_dbus(&frame);
                     sink(link.accept(state, operator, LinkFlags::default(), ts_us));
                 });
@@ -126,7 +127,7 @@ impl RemoteReceiver {
                     sbus::FRAME_LEN,
                 );
             }
-            Parser::Dbus(parser) => {
+            Parser::Dbus(parser, _) => {
                 parser.reject(count, ts_us);
                 link.count_discarded(
                     parser.discarded_bytes(),

@@ -1,18 +1,55 @@
 //! Manual driving: sticks → high-level command.
 
+use super::jump_request::JumpRequest;
 use crate::{
-    domain::{HighLevelCommand, RemoteState},
+    domain::{HighLevelCommand, RemoteUpdate, StandSwitch},
     math::scalar,
 };
 
-/// Maps the sticks to a drive command. `stick_centre` is the limit up to which `Arming` takes a stick for centred, so
-/// a stick that permits arming moves nothing.
-pub(super) fn drive(remote: &RemoteState, stick_centre: f32) -> HighLevelCommand {
-    HighLevelCommand {
-        vx: outside_dead_band(remote.vx, stick_centre),
-        wz: outside_dead_band(remote.wz, stick_centre),
-        ..HighLevelCommand::default()
+/// Longest time between two rounds that counts.
+const MAX_DT_US: u64 = 20_000;
+/// Height and roll take this long from their middle to an end, in s.
+const TRAVEL_S: f32 = 0.5;
+
+/// Maps sticks and switches to the drive command. Height and roll begin in the middle and follow slowly.
+#[derive(Clone, Debug, Default)]
+pub(super) struct ManualDrive {
+    height: f32,
+    roll: f32,
+    jump: JumpRequest,
+    ts_us: u64,
+}
+
+impl ManualDrive {
+    /// Returns the command of this round. `stick_centre` is the limit up to which `Arming` takes a stick for centred, so
+    /// a stick that permits arming moves nothing.
+    pub fn step(
+        &mut self,
+        remote: &RemoteUpdate,
+        stick_centre: f32,
+        now_us: u64,
+    ) -> HighLevelCommand {
+        let last_us = core::mem::replace(&mut self.ts_us, now_us);
+        let dt_us = now_us.saturating_sub(last_us).min(MAX_DT_US);
+        let step = dt_us as f32 * (1e-6 / TRAVEL_S);
+        let (sticks, operator) = (&remote.state, &remote.operator);
+        let stick = |stick| outside_dead_band(stick, stick_centre);
+        self.height = approach(self.height, stick(sticks.height), step);
+        self.roll = approach(self.roll, stick(sticks.roll), step);
+        HighLevelCommand {
+            vx: stick(sticks.vx),
+            wz: stick(sticks.wz),
+            height: self.height,
+            roll: self.roll,
+            jump: self.jump.step(operator.jump, now_us),
+            stand: operator.stand == StandSwitch::Up,
+        }
     }
+}
+
+/// Moves `value` towards `target` by no more than `step`.
+fn approach(value: f32, target: f32, step: f32) -> f32 {
+    value + scalar::clamp(target - value, -step, step)
 }
 
 /// Removes the dead band. The output starts from 0 at `dead_band` and rises twice as steeply as the stick until it
@@ -31,14 +68,45 @@ mod tests {
     use super::*;
 
     fn vx(stick: f32, stick_centre: f32) -> f32 {
-        let remote = RemoteState {
-            vx: stick,
-            wz: -stick,
-            ..RemoteState::default()
-        };
-        let command = drive(&remote, stick_centre);
+        let mut remote = RemoteUpdate::default();
+        (remote.state.vx, remote.state.wz) = (stick, -stick);
+        let command = ManualDrive::default().step(&remote, stick_centre, 1_000_000);
         assert_eq!(command.wz, -command.vx);
         command.vx
+    }
+
+    /// 2 % of the travel in 10 ms.
+    #[test]
+    fn height_and_roll_follow_slowly() {
+        let mut drive = ManualDrive::default();
+        let mut remote = RemoteUpdate::default();
+        (remote.state.height, remote.state.roll) = (1.0, -0.04);
+        let mut last = drive.step(&remote, 0.05, 1_000_000);
+        for round in 1..=100 {
+            let command = drive.step(&remote, 0.05, 1_000_000 + round * 10_000);
+            assert!((0.0..=0.020_001).contains(&(command.height - last.height)));
+            assert_eq!(command.roll, 0.0);
+            last = command;
+        }
+        assert_eq!(last.height, 1.0);
+        // A pause counts as 20 ms.
+        (remote.state.height, remote.state.roll) = (f32::NAN, 1.0);
+        let command = drive.step(&remote, 0.05, 9_000_000);
+        assert!((command.height - 0.96).abs() < 1e-6 && (command.roll - 0.04).abs() < 1e-6);
+    }
+
+    #[test]
+    fn only_a_switch_that_is_up_asks_for_standing() {
+        for (switch, stands) in [
+            (StandSwitch::Unknown, false),
+            (StandSwitch::Down, false),
+            (StandSwitch::Up, true),
+        ] {
+            let mut remote = RemoteUpdate::default();
+            remote.operator.stand = switch;
+            let command = ManualDrive::default().step(&remote, 0.05, 1_000_000);
+            assert_eq!(command.stand, stands);
+        }
     }
 
     #[test]

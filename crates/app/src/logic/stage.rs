@@ -4,7 +4,7 @@
 //! The new source takes over in the next round, within 10 ms. Without a valid command from it the robot has no
 //! torque.
 
-use super::{CustomLogic, LogicDecision, LogicInputs, UserLogic, manual};
+use super::{CustomLogic, LogicDecision, LogicInputs, UserLogic, manual::ManualDrive};
 use crate::domain::{DriveMode, LogicBus};
 
 /// Selects the command source and asks it for a command.
@@ -35,12 +35,16 @@ use crate::domain::{DriveMode, LogicBus};
 #[derive(Clone, Debug, Default)]
 pub struct LogicStage<L: CustomLogic = UserLogic> {
     custom: L,
+    manual: ManualDrive,
 }
 
 impl<L: CustomLogic> LogicStage<L> {
     /// A stage with this custom logic.
-    pub const fn new(custom: L) -> Self {
-        Self { custom }
+    pub fn new(custom: L) -> Self {
+        Self {
+            custom,
+            manual: ManualDrive::default(),
+        }
     }
 
     /// Returns a valid command only while the remote is fresh, enabled, not in failsafe and not e-stopped. This holds
@@ -51,11 +55,14 @@ impl<L: CustomLogic> LogicStage<L> {
         if !allowed || mode != DriveMode::Custom {
             self.custom.reset();
         }
+        if !allowed || mode != DriveMode::Manual {
+            self.manual = ManualDrive::default();
+        }
         let decision = if allowed {
             match mode {
                 DriveMode::Manual => {
                     let stick_centre = inputs.config.stick_centre;
-                    LogicDecision::Drive(manual::drive(&inputs.remote.state, stick_centre))
+                    LogicDecision::Drive(self.manual.step(inputs.remote, stick_centre, now_us))
                 }
                 DriveMode::Pc => LogicDecision::Pc,
                 DriveMode::Custom => self.custom.step(inputs, now_us),

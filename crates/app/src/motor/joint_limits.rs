@@ -35,7 +35,8 @@ pub struct MotorLimits {
 ///
 /// In MIT mode the motor's torque is `kp`·(p − q) + `kd`·(v − q̇) + τ. The function scales `kp`, `kd` and τ alike
 /// until this torque is within its limit, both at the present position and at the position that the joint reaches by
-/// the next command at its present speed. At or beyond a soft limit the torque never points outwards. The target
+/// the next command at its present speed. At or beyond a soft limit the torque never points outwards, and at or above
+/// the speed limit it never accelerates. The target
 /// stays inside the soft limits. A joint that is already beyond one may keep its present angle as its target, so that
 /// holding it does not throw it back.
 ///
@@ -105,7 +106,9 @@ fn limit_mit(
     let torque_nm = predicted_torque_nm(&allowed, motion);
     let later_nm = torque_nm - allowed.kp * motion.vel_rps * motor.horizon_s;
     let largest_nm = scalar::max(torque_nm.abs(), later_nm.abs());
-    let scale = if zero_if_outwards(torque_nm, motion, config) != torque_nm {
+    let is_fast = motion.vel_rps.abs() >= config.max_speed_rps;
+    let accelerates = is_fast && torque_nm * motion.vel_rps > 0.0;
+    let scale = if accelerates || zero_if_outwards(torque_nm, motion, config) != torque_nm {
         0.0
     } else if largest_nm > limit_nm {
         limit_nm / largest_nm

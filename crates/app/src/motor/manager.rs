@@ -11,7 +11,8 @@ use super::{
 };
 use crate::{
     domain::{
-        BusId, CanFrame, ChassisCommand, MotorCurrent, MotorFeedback, RobotConfig, WheelCommand,
+        BusId, CanFrame, ChassisCommand, JointConfig, MotorCurrent, MotorFeedback, RobotConfig,
+        WheelCommand, WheelControllerConfig,
     },
     safety::TorquePermit,
 };
@@ -118,8 +119,15 @@ impl MotorManager {
         now_us: u64,
         frames: &mut TickFrames,
     ) {
-        self.drive_wheels(command, permit, config, now_us, frames);
-        self.drive_joints(command, permit, config, now_us, frames);
+        let stricter;
+        let (wheels, joints) = if permit.is_some_and(TorquePermit::is_for_standing_up) {
+            stricter = limits_standing_up(config);
+            (&stricter.0, &stricter.1)
+        } else {
+            (&config.wheel_ctrl, &config.joints)
+        };
+        self.drive_wheels(command, permit, wheels, now_us, frames);
+        self.drive_joints(command, permit, joints, now_us, frames);
     }
 
     /// Counts that each rotor has turned since its first report; see `Telemetry`.
@@ -139,7 +147,7 @@ impl MotorManager {
         &mut self,
         command: &ChassisCommand,
         permit: Option<&TorquePermit>,
-        config: &RobotConfig,
+        config: &WheelControllerConfig,
         now_us: u64,
         frames: &mut TickFrames,
     ) {
@@ -149,7 +157,7 @@ impl MotorManager {
         let wheels = self.layout.wheels().escs.iter().zip(&mut self.wheels);
         let commands = command.wheels.iter().zip(&mut self.sent_wheels);
         for ((esc, wheel), (command, sent)) in wheels.zip(commands) {
-            let current = wheel.drive(command, &config.wheel_ctrl, permitted, now_us);
+            let current = wheel.drive(command, config, permitted, now_us);
             sent.current_ma = current.ma();
             if let Some(place) = currents.get_mut(esc.index()) {
                 *place = current;
@@ -163,12 +171,12 @@ impl MotorManager {
         &mut self,
         command: &ChassisCommand,
         permit: Option<&TorquePermit>,
-        config: &RobotConfig,
+        configs: &[JointConfig; 4],
         now_us: u64,
         frames: &mut TickFrames,
     ) {
         let slots = self.layout.joints().iter().zip(&mut self.joints);
-        let orders = command.joints.iter().zip(&config.joints);
+        let orders = command.joints.iter().zip(configs);
         for ((slot, joint), (command, config)) in slots.zip(orders) {
             let permitted = permit.is_some_and(|permit| permit.allows_joints(slot.bus));
             let frame = joint.drive(command, config, permitted, now_us);
@@ -178,6 +186,18 @@ impl MotorManager {
             }
         }
     }
+}
+
+/// Kept out of line, as standing up is rare.
+#[cold]
+#[inline(never)]
+fn limits_standing_up(config: &RobotConfig) -> (WheelControllerConfig, [JointConfig; 4]) {
+    let limits = &config.stand_up;
+    let joints = config.joints.each_ref();
+    (
+        limits.limit_wheels(&config.wheel_ctrl),
+        joints.map(|joint| limits.limit_joint(joint)),
+    )
 }
 
 #[cfg(test)]

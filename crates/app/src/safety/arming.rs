@@ -10,7 +10,7 @@ use super::{SafetyFlags, SafetyStatus, SafetyVerdict, motor_readiness::MotorRead
 use crate::domain::{OperatorState, ParamStatus, SafetyConfig};
 
 /// A frame counts under new settings if it is at least this much younger than their change.
-const SETTINGS_LAG_US: u64 = 5_000;
+pub(super) const SETTINGS_LAG_US: u64 = 5_000;
 
 /// Whether the robot is armed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

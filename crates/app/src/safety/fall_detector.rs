@@ -1,4 +1,4 @@
-//! Detects that the robot has fallen over.
+//! Detects that the robot has fallen over, or is falling.
 
 use super::debounce::Debounce;
 use crate::{
@@ -17,8 +17,22 @@ pub(super) struct FallDetector {
 impl FallDetector {
     /// Returns whether the robot has fallen. An invalid estimate never says so.
     pub fn fallen(&mut self, estimate: &StateEstimate, config: &SafetyConfig, dt_us: u32) -> bool {
-        let upright = within(estimate, config.max_tilt_rad);
-        self.tilted.held(estimate.valid && !upright, dt_us, HOLD_US)
+        self.beyond(estimate, config.max_tilt_rad, HOLD_US, dt_us)
+    }
+
+    /// The same for a robot that balances. It comes earlier, so that no torque is left at the impact.
+    pub fn topples(&mut self, estimate: &StateEstimate, config: &SafetyConfig, dt_us: u32) -> bool {
+        self.beyond(
+            estimate,
+            config.max_balance_tilt_rad,
+            config.balance_tilt_us,
+            dt_us,
+        )
+    }
+
+    fn beyond(&mut self, estimate: &StateEstimate, max_rad: f32, hold_us: u32, dt_us: u32) -> bool {
+        let upright = within(estimate, max_rad);
+        self.tilted.held(estimate.valid && !upright, dt_us, hold_us)
     }
 }
 

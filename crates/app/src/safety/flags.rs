@@ -66,6 +66,10 @@ bitflags::bitflags! {
         const PC_LOST = 1 << 27;
         /// In mode PC: the PC is heard, but has not yet sent a command from rest.
         const PC_AWAITED = 1 << 28;
+        /// The robot stood and has lost its balance, or a part that it needs for that.
+        const BALANCE_LOST = 1 << 29;
+        /// The robot still lay when the time for standing up was over.
+        const STAND_UP_FAILED = 1 << 30;
     }
 }
 
@@ -85,7 +89,9 @@ impl SafetyFlags {
             | Self::MAG_ERRORS.0
             | Self::TASK_LATE.0
             | Self::TILT.0
-            | Self::BATTERY_EMPTY.0,
+            | Self::BATTERY_EMPTY.0
+            | Self::BALANCE_LOST.0
+            | Self::STAND_UP_FAILED.0,
     );
     /// Each of these stops both wheels.
     pub const WHEELS_STOP: Self = Self(Self::WHEEL_HOT.0 | Self::WHEEL_FROZEN.0);
@@ -102,8 +108,11 @@ impl SafetyFlags {
         Self(Self::CAN1_FAULT.0 | Self::CAN1_CONGESTED.0),
         Self(Self::CAN2_FAULT.0 | Self::CAN2_CONGESTED.0),
     ];
-    /// Each of these gives every actuator zero torque, but leaves the robot armed.
+    /// Each of these gives every actuator zero torque, but leaves the robot armed. A robot that stands balances on the
+    /// spot instead.
     pub const PC_STOP: Self = Self(Self::PC_LOST.0 | Self::PC_AWAITED.0);
+    /// The robot has fallen. A request to stand up lifts these stops for a while.
+    pub const FALLEN: Self = Self(Self::TILT.0 | Self::BALANCE_LOST.0);
     /// These are latched until the pilot clears them, so that a person looks first.
     pub const LATCHING: Self = Self(
         Self::IMU_ERRORS.0
@@ -113,7 +122,9 @@ impl SafetyFlags {
             | Self::JOINT_FAULT.0
             | Self::WHEEL_FROZEN.0
             | Self::JOINT_FROZEN.0
-            | Self::JOINT_NOT_READY.0,
+            | Self::JOINT_NOT_READY.0
+            | Self::BALANCE_LOST.0
+            | Self::STAND_UP_FAILED.0,
     );
 
     pub(super) fn add_if(&mut self, flag: Self, active: bool) {
@@ -139,7 +150,7 @@ impl SafetyFlags {
 }
 
 /// A static rather than a constant, as tools read the names of the bits from the image.
-static FLAG_NAMES: [(SafetyFlags, &str); 29] = [
+static FLAG_NAMES: [(SafetyFlags, &str); 31] = [
     (SafetyFlags::REMOTE_LOST, "remote-lost"),
     (SafetyFlags::REMOTE_FAILSAFE, "remote-failsafe"),
     (SafetyFlags::REMOTE_QUALITY, "remote-quality"),
@@ -169,6 +180,8 @@ static FLAG_NAMES: [(SafetyFlags, &str); 29] = [
     (SafetyFlags::STICKS_AWAITED, "sticks-awaited"),
     (SafetyFlags::PC_LOST, "pc-lost"),
     (SafetyFlags::PC_AWAITED, "pc-awaited"),
+    (SafetyFlags::BALANCE_LOST, "balance-lost"),
+    (SafetyFlags::STAND_UP_FAILED, "stand-up-failed"),
 ];
 
 #[cfg(feature = "defmt")]
@@ -200,7 +213,7 @@ mod tests {
     #[test]
     fn the_sets_hold_the_documented_flags() {
         let [can1, can2] = SafetyFlags::BUS_STOP;
-        let sets: [(SafetyFlags, &[&str]); 7] = [
+        let sets: [(SafetyFlags, &[&str]); 8] = [
             (
                 SafetyFlags::GLOBAL_STOP,
                 &[
@@ -215,8 +228,11 @@ mod tests {
                     "task-late",
                     "tilt",
                     "battery-empty",
+                    "balance-lost",
+                    "stand-up-failed",
                 ],
             ),
+            (SafetyFlags::FALLEN, &["tilt", "balance-lost"]),
             (SafetyFlags::WHEELS_STOP, &["wheel-hot", "wheel-frozen"]),
             (
                 SafetyFlags::JOINTS_STOP,
@@ -242,6 +258,8 @@ mod tests {
                     "wheel-frozen",
                     "joint-frozen",
                     "joint-not-ready",
+                    "balance-lost",
+                    "stand-up-failed",
                 ],
             ),
         ];

@@ -12,6 +12,16 @@ pub(super) struct Latches {
 }
 
 impl Latches {
+    /// The flags that are latched.
+    pub const fn latched(&self) -> SafetyFlags {
+        self.latched
+    }
+
+    /// Releases latched flags.
+    pub fn release(&mut self, flags: SafetyFlags) {
+        self.latched = self.latched.difference(flags);
+    }
+
     /// Takes the flags present in this tick. Returns the latched ones, and whether joints shall clear their faults.
     ///
     /// After `hold_us` of the gesture, a latch is released as soon as its cause has ended; a joint's fault needs a

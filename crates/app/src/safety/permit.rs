@@ -15,6 +15,11 @@ impl TorquePermit {
         Self { status: *status }
     }
 
+    /// Whether the limits of standing up apply: the robot may lie.
+    pub const fn is_for_standing_up(&self) -> bool {
+        self.status.stand.may_lie()
+    }
+
     /// Whether wheels on this bus may get current.
     pub const fn allows_wheels(&self, bus: BusId) -> bool {
         !self.status.stops_wheels(bus)

@@ -2,18 +2,21 @@
 
 use super::{
     SafetyFlags, SafetyStatus,
+    arming::SETTINGS_LAG_US,
     battery_limits::BatteryLimits,
     debounce::Debounce,
     fall_detector::FallDetector,
     latch::Latches,
     leaky_bucket::LeakyBucket,
     pc_interlock::{PcInputs, PcInterlock},
-    resume_interlock::ResumeInterlock,
+    resume_interlock::{ResumeInterlock, WATCHED},
+    standing::{Standing, StandingInputs},
     temperature_limits::TemperatureLimits,
 };
 use crate::domain::{
-    BusErrorState, BusHealth, JointState, MotorFeedback, OperatorState, RemoteDiagnostics,
-    SafetyConfig, StateEstimate, SystemHealth, age_us,
+    BalanceState, BusErrorState, BusHealth, JointState, MotorFeedback, OperatorState,
+    RemoteDiagnostics, SafetyConfig, StandSwitch, StandUpConfig, StateEstimate, SystemHealth,
+    age_us,
 };
 
 /// Longest time step that counts towards a duration, so that a jump of the clock does not.
@@ -27,10 +30,16 @@ const JOINT_READY_US: u32 = 1_000_000;
 pub struct SafetyInputs<'a> {
     /// Limits.
     pub config: &'a SafetyConfig,
+    /// Limits of standing up.
+    pub stand_up: &'a StandUpConfig,
     /// The link as of now: see `RemoteDiagnostics::at`.
     pub remote: &'a RemoteDiagnostics,
     /// The pilot's switches.
     pub operator: &'a OperatorState,
+    /// The robot was armed in the last tick.
+    pub armed: bool,
+    /// State of the balance controller in the last tick.
+    pub balance: BalanceState,
     /// The robot is disarmed, or the sticks are centred, so that no part starts at full stick.
     pub may_resume: bool,
     /// Time of the last IMU sample, 0 = none yet.
@@ -58,6 +67,9 @@ pub struct SafetyInputs<'a> {
 /// let config = SafetyConfig::default();
 /// let inputs = SafetyInputs {
 ///     config: &config,
+///     stand_up: &StandUpConfig::default(),
+///     armed: false,
+///     balance: BalanceState::Sit,
 ///     remote: &RemoteDiagnostics { age_us: config.remote_timeout_us + 1, ..Default::default() },
 ///     operator: &OperatorState::default(),
 ///     may_resume: true,
@@ -79,6 +91,10 @@ pub struct SafetyPolicy {
     imu_errors: LeakyBucket,
     mag_errors: LeakyBucket,
     tilt: FallDetector,
+    toppling: FallDetector,
+    standing: Standing,
+    /// Frames older than this do not move the stand switch.
+    trusted_from_us: u64,
     heat: TemperatureLimits,
     battery: BatteryLimits,
     joint_unready: Debounce,
@@ -104,15 +120,21 @@ impl SafetyPolicy {
         let battery_v = inputs.health.battery_v;
         self.battery
             .check(battery_v, inputs.config, dt_us, &mut flags);
-        let fallen = self.tilt.fallen(inputs.estimate, inputs.config, dt_us);
-        flags.add_if(SafetyFlags::TILT, fallen);
         let command_age_us = age_us(inputs.command_ts_us, now_us);
         flags.add_if(
             SafetyFlags::COMMAND_STALE,
             command_age_us > inputs.config.command_timeout_us,
         );
         flags.add_if(SafetyFlags::TASK_LATE, inputs.health.late_tasks.any());
+        flags.insert(self.check_standing(flags, inputs, dt_us, now_us));
         self.summarise(flags, inputs, dt_us, now_us)
+    }
+
+    /// Forgets the request to stand after a change of settings. Another channel may have become the stand switch, so it
+    /// must be seen down in frames that came after the change.
+    pub fn settings_changed(&mut self, now_us: u64) {
+        self.standing.restart();
+        self.trusted_from_us = now_us.saturating_add(SETTINGS_LAG_US);
     }
 
     /// Time since the last tick, 0 in the first one.
@@ -155,6 +177,43 @@ impl SafetyPolicy {
         flags.add_if(SafetyFlags::JOINT_NOT_READY, unready);
     }
 
+    /// Returns the flags of falls. `present` are all others.
+    fn check_standing(
+        &mut self,
+        present: SafetyFlags,
+        inputs: &SafetyInputs<'_>,
+        dt_us: u32,
+        now_us: u64,
+    ) -> SafetyFlags {
+        let (estimate, config) = (inputs.estimate, inputs.config);
+        let others = present
+            .union(self.latches.latched())
+            .difference(SafetyFlags::FALLEN);
+        let switch = if inputs.operator.ts_us >= self.trusted_from_us {
+            inputs.operator.stand
+        } else {
+            StandSwitch::Unknown
+        };
+        let flags = self.standing.step(
+            &StandingInputs {
+                switch,
+                armed: inputs.armed,
+                balance: inputs.balance,
+                fallen: self.tilt.fallen(estimate, config, dt_us),
+                topples: inputs.balance != BalanceState::Sit
+                    && self.toppling.topples(estimate, config, dt_us),
+                stopped: others.intersects(SafetyFlags::GLOBAL_STOP),
+                part_stopped: others.intersects(WATCHED),
+                time_us: inputs.stand_up.time_us,
+            },
+            now_us,
+        );
+        if self.standing.permit().may_lie() {
+            self.latches.release(SafetyFlags::FALLEN);
+        }
+        flags
+    }
+
     /// Adds the latched conditions to those that are `present`, and derives what stops.
     fn summarise(
         &mut self,
@@ -187,6 +246,8 @@ impl SafetyPolicy {
             clear_faults,
             flags_seen: self.flags_seen,
             pc_stop: !self.pc.is_released(),
+            stand: self.standing.permit(),
+            stand_up_ms: self.standing.stand_up_ms(),
             ..SafetyStatus::from_flags(stopping)
         }
     }

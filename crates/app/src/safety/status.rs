@@ -1,7 +1,7 @@
 //! The policy's result in one tick.
 
 use super::SafetyFlags;
-use crate::domain::BusId;
+use crate::domain::{BusId, StandPermit};
 
 /// How far outputs are stopped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -41,6 +41,10 @@ pub struct SafetyStatus {
     pub clear_faults: bool,
     /// Every flag raised since boot.
     pub flags_seen: SafetyFlags,
+    /// How far the pilot's request to stand has come.
+    pub stand: StandPermit,
+    /// Time in ms that standing up has taken so far. It keeps its last value afterwards.
+    pub stand_up_ms: u16,
 }
 
 impl Default for SafetyStatus {
@@ -56,13 +60,14 @@ impl Default for SafetyStatus {
             pc_stop: true,
             clear_faults: false,
             flags_seen: SafetyFlags::NONE,
+            stand: StandPermit::SwitchMustGoDown,
+            stand_up_ms: 0,
         }
     }
 }
 
 impl SafetyStatus {
-    /// The stops caused by `flags`. `latched`, `clear_faults` and `flags_seen` stay empty, and the PC
-    /// stays stopped.
+    /// The stops caused by `flags`. The other fields keep their defaults.
     pub(super) fn from_flags(flags: SafetyFlags) -> Self {
         let global_stop = flags.intersects(SafetyFlags::GLOBAL_STOP);
         let wheels_stop = flags.intersects(SafetyFlags::WHEELS_STOP);

@@ -2,7 +2,7 @@
 
 use crate::{
     diagnostics::{TickStats, UnknownFrames},
-    domain::{OperatorState, RemoteDiagnostics, SensorsSnapshot, StateEstimate},
+    domain::{BalanceStatus, OperatorState, RemoteDiagnostics, SensorsSnapshot, StateEstimate},
     safety::{ArmingStatus, MotorReadiness, SafetyStatus},
 };
 
@@ -24,5 +24,7 @@ pub struct TickState {
     pub motors: MotorReadiness,
     pub safety: SafetyStatus,
     pub arming: ArmingStatus,
+    /// `SIT` unless the controller ran.
+    pub balance: BalanceStatus,
     pub strangers: UnknownFrames,
 }

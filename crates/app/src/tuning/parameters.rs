@@ -10,7 +10,7 @@ mod sensors;
 mod wheels;
 
 /// All groups, by number.
-pub static PARAMETERS: [ParameterGroup; 14] = [
+pub static PARAMETERS: [ParameterGroup; 15] = [
     ParameterGroup {
         number: WHEEL_GEOMETRY,
         name: "wheel-geometry",
@@ -35,7 +35,7 @@ pub static PARAMETERS: [ParameterGroup; 14] = [
     ParameterGroup {
         number: 4,
         name: "safety",
-        version: 3,
+        version: 4,
         scope: Scope::Robot,
         parameters: &safety::SAFETY,
     },
@@ -70,7 +70,7 @@ pub static PARAMETERS: [ParameterGroup; 14] = [
     ParameterGroup {
         number: 9,
         name: "radio",
-        version: 1,
+        version: 2,
         scope: Scope::Robot,
         parameters: &radio::CHANNELS,
     },
@@ -80,6 +80,13 @@ pub static PARAMETERS: [ParameterGroup; 14] = [
         version: 1,
         scope: Scope::Robot,
         parameters: &radio::TRAVEL,
+    },
+    ParameterGroup {
+        number: 11,
+        name: "stand-up",
+        version: 1,
+        scope: Scope::Robot,
+        parameters: &safety::STAND_UP,
     },
     ParameterGroup {
         number: 16,

@@ -3,7 +3,7 @@
 use super::{MotorLayout, ROBOT_LAYOUT};
 use crate::domain::{
     HeaterConfig, ImuCalibration, JointControllerConfig, MagCalibration, RemoteMapping,
-    RobotConfig, SafetyConfig, WheelControllerConfig,
+    RobotConfig, SafetyConfig, StandUpConfig, WheelControllerConfig,
 };
 
 impl MotorLayout {
@@ -23,6 +23,7 @@ impl MotorLayout {
             mag: MagCalibration::default(),
             heater: HeaterConfig::default(),
             radio: RemoteMapping::default(),
+            stand_up: StandUpConfig::default(),
         }
     }
 }

@@ -9,6 +9,7 @@ mod clearing;
 mod motors;
 mod pc;
 mod resuming;
+mod standing;
 
 /// A policy and its inputs. Initially nothing is wrong, and one tick has run.
 struct Bench {
@@ -25,6 +26,9 @@ struct Bench {
     pc: PcCommand,
     pc_mode: bool,
     pc_steering: bool,
+    armed: bool,
+    balance: BalanceState,
+    stand_up: StandUpConfig,
     now_us: u64,
 }
 
@@ -67,6 +71,9 @@ impl Bench {
             pc: PcCommand::default(),
             pc_mode: false,
             pc_steering: false,
+            armed: false,
+            balance: BalanceState::Sit,
+            stand_up: StandUpConfig::default(),
             now_us: 10_000_000,
         };
         bench.tick();
@@ -78,6 +85,9 @@ impl Bench {
         self.policy.evaluate(
             &SafetyInputs {
                 config: &self.config,
+                stand_up: &self.stand_up,
+                armed: self.armed,
+                balance: self.balance,
                 remote: &self.remote,
                 operator: &self.operator,
                 may_resume: self.may_resume,

@@ -3,7 +3,10 @@
 use super::{ControlInputs, ControlLoop};
 use crate::{
     control::{ChassisController, ChassisControllerInput, ChassisControllerOutput, pc_law},
-    domain::{ChassisCommand, HighLevelCommand, LogicBus, PcCommand, StandPermit, age_us},
+    domain::{
+        BalanceState, BalanceStatus, ChassisCommand, HighLevelCommand, PcCommand, StandSwitch,
+        age_us,
+    },
     safety::{SafetyFlags, TorquePermit},
 };
 
@@ -41,14 +44,16 @@ impl<C: ChassisController> ControlLoop<C> {
         } else if let Some(command) = trial {
             CommandSource::Direct(command)
         } else {
-            self.demand(inputs.logic, now_us)
+            self.demand(inputs, now_us)
         };
         let output;
         let pc_command;
+        let mut balance = &BalanceStatus::SIT;
         let wanted = match demand {
             CommandSource::Control(hl_cmd) => {
                 output = self.control(inputs, hl_cmd, &stopped);
                 if output.cmd_valid {
+                    balance = &output.balance;
                     &output.cmd
                 } else {
                     &ChassisCommand::STOP
@@ -68,6 +73,7 @@ impl<C: ChassisController> ControlLoop<C> {
                 &ChassisCommand::STOP
             }
         };
+        self.state.balance = *balance;
         if self.state.safety.clear_faults {
             self.motors.clear_faults();
         }
@@ -76,17 +82,16 @@ impl<C: ChassisController> ControlLoop<C> {
             .compose(wanted, permit, &self.config, now_us, &mut self.frames);
     }
 
-    fn demand<'a>(&self, logic: &'a LogicBus, now_us: u64) -> CommandSource<'a> {
-        let safety = &self.state.safety;
+    fn demand<'a>(&self, inputs: &ControlInputs<'a>, now_us: u64) -> CommandSource<'a> {
+        let (safety, logic) = (&self.state.safety, inputs.logic);
         let stale = age_us(logic.ts_us, now_us) > self.config.safety.command_timeout_us;
-        if stale || safety.flags.intersects(SafetyFlags::PC_STOP) {
+        let pc_stopped = safety.flags.intersects(SafetyFlags::PC_STOP);
+        if stale {
             CommandSource::Stop
+        } else if pc_stopped || logic.pc_selected && safety.pc_stop {
+            self.without_pc()
         } else if logic.pc_selected {
-            if safety.pc_stop {
-                CommandSource::Stop
-            } else {
-                CommandSource::Pc
-            }
+            CommandSource::Pc
         } else if logic.cmd_valid {
             CommandSource::Direct(&logic.cmd)
         } else if logic.hl_valid {
@@ -94,6 +99,22 @@ impl<C: ChassisController> ControlLoop<C> {
         } else {
             CommandSource::Stop
         }
+    }
+
+    /// A robot that stands keeps its balance on the spot.
+    fn without_pc<'a>(&self) -> CommandSource<'a> {
+        if self.stands() {
+            CommandSource::Control(HighLevelCommand {
+                stand: self.state.operator.stand == StandSwitch::Up,
+                ..HighLevelCommand::default()
+            })
+        } else {
+            CommandSource::Stop
+        }
+    }
+
+    fn stands(&self) -> bool {
+        self.state.safety.stand.permits() || self.state.balance.state != BalanceState::Sit
     }
 
     /// Kept out of line, as most robots are driven by hand.
@@ -117,7 +138,7 @@ impl<C: ChassisController> ControlLoop<C> {
             joint_ctrl_cfg: &self.config.joint_ctrl,
             operator_state: &inputs.remote.operator,
             hl_cmd,
-            stand: StandPermit::SwitchMustGoDown,
+            stand: self.state.safety.stand,
             wheels_stopped: stopped.wheels,
             joints_stopped: stopped.joints,
         })

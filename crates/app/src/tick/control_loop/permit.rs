@@ -63,6 +63,9 @@ impl<C: ChassisController> ControlLoop<C> {
         state.safety = self.policy.evaluate(
             &SafetyInputs {
                 config: &self.config.safety,
+                stand_up: &self.config.stand_up,
+                armed: state.arming.state == ArmingState::Armed,
+                balance: state.balance.state,
                 remote: &state.link,
                 operator: &inputs.remote.operator,
                 may_resume: state.sticks_centred || state.arming.state == ArmingState::Disarmed,

@@ -70,6 +70,7 @@ impl TickState {
         diagnostics.motors = self.motors;
         diagnostics.safety = self.safety;
         diagnostics.arming = self.arming;
+        diagnostics.balance = self.balance;
         diagnostics.strangers = self.strangers;
     }
 }

@@ -76,6 +76,7 @@ impl<C: ChassisController> ControlLoop<C> {
         self.estimator.set_odometry(&self.config.wheel_odom);
         self.centred_sticks.restart();
         self.arming.settings_changed(now_us);
+        self.policy.settings_changed(now_us);
     }
 
     pub(super) fn reply(&mut self) {

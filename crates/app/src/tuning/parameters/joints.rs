@@ -7,8 +7,8 @@ const MAX_KP: f32 = 500.0;
 const MAX_KD: f32 = 5.0;
 /// The wider of both motors' ranges (RS00: 4π rad, 33 rad/s, 14 N·m). Each motor's own range applies as well.
 const MAX_RAD: f32 = 12.57;
-const MAX_RPS: f32 = 33.0;
-const MAX_NM: f32 = 14.0;
+pub const MAX_RPS: f32 = 33.0;
+pub const MAX_NM: f32 = 14.0;
 
 #[rustfmt::skip] // One line a setting.
 pub static CONTROLLER: [Parameter; 3] = [

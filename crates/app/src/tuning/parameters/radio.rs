@@ -4,7 +4,7 @@ use crate::tuning::parameter::{Parameter, ParameterKind, integer};
 
 /// Channel numbers from 0; 16 means no channel.
 #[rustfmt::skip] // One line a setting.
-pub static CHANNELS: [Parameter; 14] = [
+pub static CHANNELS: [Parameter; 22] = [
     integer!(0, "steering-channel", "", 0.0, 16.0, radio.steering.index),
     integer!(1, "drive-channel", "", 0.0, 16.0, radio.drive.index),
     integer!(2, "select-channel", "", 0.0, 16.0, radio.select.index),
@@ -19,6 +19,14 @@ pub static CHANNELS: [Parameter; 14] = [
     integer!(11, "enable-reversed", "", 0.0, 1.0, radio.enable.reversed),
     integer!(12, "mode-reversed", "", 0.0, 1.0, radio.mode.reversed),
     integer!(13, "e-stop-reversed", "", 0.0, 1.0, radio.e_stop.reversed),
+    integer!(14, "stand-channel", "", 0.0, 16.0, radio.stand.index),
+    integer!(15, "jump-channel", "", 0.0, 16.0, radio.jump.index),
+    integer!(16, "height-channel", "", 0.0, 16.0, radio.height.index),
+    integer!(17, "roll-channel", "", 0.0, 16.0, radio.roll.index),
+    integer!(18, "stand-reversed", "", 0.0, 1.0, radio.stand.reversed),
+    integer!(19, "jump-reversed", "", 0.0, 1.0, radio.jump.reversed),
+    integer!(20, "height-reversed", "", 0.0, 1.0, radio.height.reversed),
+    integer!(21, "roll-reversed", "", 0.0, 1.0, radio.roll.reversed),
 ];
 
 /// Counts as on the wire.

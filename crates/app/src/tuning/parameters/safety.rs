@@ -1,10 +1,14 @@
 //! Thresholds of `SafetyPolicy` and `Arming`. Their ranges do not allow disabling a rule, except for the battery
 //! limits.
 
-use crate::tuning::parameter::{Parameter, ParameterKind, float, integer};
+use super::joints::{MAX_NM as MAX_JOINT_NM, MAX_RPS as MAX_JOINT_RPS};
+use crate::{
+    domain::MotorCurrent,
+    tuning::parameter::{Parameter, ParameterKind, float, integer},
+};
 
 #[rustfmt::skip] // One line a setting.
-pub static SAFETY: [Parameter; 18] = [
+pub static SAFETY: [Parameter; 20] = [
     integer!(0, "remote-timeout-us", "us", 30_000.0, 500_000.0, safety.remote_timeout_us),
     float!(1, "min-remote-quality", "", 0.1, 1.0, safety.min_remote_quality),
     integer!(2, "imu-timeout-us", "us", 10_000.0, 100_000.0, safety.imu_timeout_us),
@@ -23,4 +27,14 @@ pub static SAFETY: [Parameter; 18] = [
     integer!(15, "resume-centred", "", 0.0, 1.0, safety.resume_centred),
     integer!(16, "pc-timeout-us", "us", 20_000.0, 500_000.0, safety.pc_timeout_us),
     integer!(17, "pc-frozen-us", "us", 0.0, 16_000_000.0, safety.pc_frozen_us),
+    float!(18, "max-balance-tilt-rad", "rad", 0.1, 1.57, safety.max_balance_tilt_rad),
+    integer!(19, "balance-tilt-us", "us", 0.0, 200_000.0, safety.balance_tilt_us),
+];
+
+#[rustfmt::skip] // One line a setting.
+pub static STAND_UP: [Parameter; 4] = [
+    integer!(0, "time-us", "us", 500_000.0, 10_000_000.0, stand_up.time_us),
+    float!(1, "max-joint-nm", "N*m", 0.0, MAX_JOINT_NM, stand_up.max_joint_nm),
+    float!(2, "max-joint-rps", "rad/s", 0.0, MAX_JOINT_RPS, stand_up.max_joint_rps),
+    float!(3, "max-wheel-ma", "mA", 0.0, MotorCurrent::FULL_SCALE_MA, stand_up.max_wheel_ma),
 ];

@@ -85,7 +85,7 @@ fn indices_begin_at_zero_without_gaps() {
 /// and a new line, and the old lines stay.
 #[test]
 fn a_group_that_grows_gets_a_new_version() {
-    let stored: [(u8, u8, usize); 17] = [
+    let stored: [(u8, u8, usize); 20] = [
         (1, 1, 5),
         (2, 1, 6),
         (3, 1, 2),
@@ -93,12 +93,15 @@ fn a_group_that_grows_gets_a_new_version() {
         (4, 1, 15),
         (4, 2, 16),
         (4, 3, 18),
+        (4, 4, 20),
         (5, 1, 12),
         (6, 1, 9),
         (7, 1, 4),
         (8, 1, 2),
         (9, 1, 14),
+        (9, 2, 22),
         (10, 1, 21),
+        (11, 1, 4),
         (16, 1, 8),
         (17, 1, 8),
         (18, 1, 8),
@@ -151,9 +154,13 @@ fn wire_numbers_do_not_change() {
     assert_eq!(read(4, 9), 0.9);
     assert_eq!(read(4, 12), 21.0);
     assert_eq!(read(4, 16), 100_000.0);
+    assert_eq!(read(4, 18), 0.7);
     assert_eq!(read(7, 0), 40.0);
     assert_eq!(read(8, 0), 0.0);
     assert_eq!(read(8, 1), 24.0);
+    assert_eq!(read(9, 14), 7.0);
+    assert_eq!(read(9, 17), 10.0);
+    assert_eq!(read(11, 0), 3_000_000.0);
     assert_eq!(read(16, 0), 1.0);
     assert_eq!(read(18, 0), -1.0);
     assert_eq!(read(19, 3), 1.35);
