@@ -46,4 +46,12 @@ pub enum RobotError {
     /// The text is no TOML, lacks a field, has an unknown one, or a value of another type.
     #[error("{0}")]
     Malformed(Located),
+    /// The figures are of no robot that could be built or would work.
+    #[error("{}", lines(.0))]
+    Unsound(Vec<Located>),
+}
+
+fn lines(complaints: &[Located]) -> String {
+    let lines: Vec<_> = complaints.iter().map(ToString::to_string).collect();
+    lines.join("\n")
 }

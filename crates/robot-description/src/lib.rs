@@ -7,7 +7,10 @@
 
 #![deny(missing_docs)]
 
+mod check;
 mod error;
+mod figures;
+mod five_bar;
 mod mass;
 mod mjcf;
 mod motor;
@@ -20,7 +23,9 @@ mod stance;
 mod urdf;
 mod xml;
 
+pub use check::{Finding, Severity};
 pub use error::{Located, RobotError};
+pub use figures::{Figures, Jump, Stand};
 pub use mass::MassSplit;
 pub use mjcf::Hold;
 pub use motor::JointMotor;
@@ -30,3 +35,4 @@ pub use robot::{
     Body, Bus, Carrier, Control, HipRange, Imu, JointRanges, Joints, Legs, Limits, Link, Robot,
     Weights, Wheels,
 };
+pub use source::Examined;

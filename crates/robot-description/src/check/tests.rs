@@ -1,0 +1,87 @@
+//! Every check has a file that fails it: `fivebar.toml` with a change.
+
+use crate::{Examined, Located, RobotError};
+
+mod balance;
+mod bodies;
+mod buses;
+mod legs;
+mod motors;
+
+const FIVEBAR: &str = include_str!("../../../../robots/fivebar.toml");
+const RS00: &str = include_str!("../../../../robots/fivebar-rs00.toml");
+
+/// Changed beginnings of lines, and what is said of the file then, as `field: message`.
+struct Case {
+    changes: &'static [(&'static str, &'static str)],
+    says: &'static [&'static str],
+}
+
+impl Case {
+    fn text(&self) -> String {
+        let mut text = FIVEBAR.to_owned();
+        for (from, to) in self.changes {
+            let from = format!("\n{from}");
+            assert_eq!(text.matches(&from).count(), 1, "{from}");
+            text = text.replace(&from, &format!("\n{to}"));
+        }
+        text
+    }
+
+    fn expected(&self) -> Vec<String> {
+        let text = self.text();
+        let lines = self.says.iter().map(|said| {
+            let (field, _) = said.split_once(": ").expect("a field");
+            format!("r.toml:{}: {said}", line_of(&text, field))
+        });
+        lines.collect()
+    }
+}
+
+/// The line of a field, found by table header and key, or that of its table's header.
+fn line_of(text: &str, field: &str) -> usize {
+    let mut table = "";
+    for (number, line) in (1..).zip(text.lines()) {
+        if let Some(header) = line.strip_prefix('[') {
+            table = header.trim_end_matches(']');
+            if table == field {
+                return number;
+            }
+        }
+        let key = line.split(' ').next().unwrap_or_default();
+        if format!("{table}.{key}") == field {
+            return number;
+        }
+    }
+    panic!("no {field}");
+}
+
+fn printed(complaints: &[Located]) -> Vec<String> {
+    complaints.iter().map(ToString::to_string).collect()
+}
+
+fn assert_refused(cases: &[Case]) {
+    for case in cases {
+        let error = Examined::parse(&case.text(), "r.toml").expect_err("refused");
+        let RobotError::Unsound(complaints) = &error else {
+            panic!("{error}");
+        };
+        assert_eq!(printed(complaints), case.expected());
+        assert_eq!(error.to_string(), case.expected().join("\n"));
+    }
+}
+
+fn assert_warned(cases: &[Case]) {
+    for case in cases {
+        let examined = Examined::parse(&case.text(), "r.toml").expect("read");
+        assert_eq!(printed(&examined.warnings), case.expected());
+    }
+}
+
+#[test]
+fn nothing_is_said_of_the_robots_of_this_repository() {
+    for text in [FIVEBAR, RS00] {
+        let examined = Examined::parse(text, "r.toml").expect("sound");
+        assert_eq!(printed(&examined.warnings), [""; 0]);
+    }
+}
