@@ -26,6 +26,7 @@ mod joint_forces;
 mod model;
 mod motion;
 mod parts;
+mod rolling;
 mod setup;
 mod start;
 mod state;
@@ -40,10 +41,11 @@ use ground::Ground;
 use joint_forces::{DryFriction, stop_torque_nm};
 use model::{Model, SIDES};
 use motion::Motion;
-use nalgebra::{Vector2, Vector3};
+use nalgebra::{Matrix2, Vector2, Vector3};
 use parts::Leg;
 use robot_description::Robot;
 
+pub use rolling::FreeAccelerations;
 pub use setup::{FreeSetup, Hold, Start, Variation};
 pub use state::{FreeInputs, FreeState, Push};
 pub use terrain::Terrain;
@@ -54,6 +56,7 @@ type Vec3 = Vector3<f64>;
 /// Inputs beyond are cut.
 const MOST_NM: f64 = 500.0;
 const MOST_N: f64 = 50_000.0;
+const MOST_M: f64 = 10.0;
 
 /// A robot in space.
 ///
@@ -70,6 +73,8 @@ pub struct FreeBody {
     wheel_friction: [DryFriction; SIDES],
     ground: Ground,
     contacts: Contacts,
+    /// Torque of motors, friction and stops on the hips over the last step.
+    hip_nm: [[f64; HIPS]; SIDES],
 }
 
 impl FreeBody {
@@ -85,6 +90,7 @@ impl FreeBody {
             wheel_friction: Default::default(),
             ground: Ground::new(&setup.terrain),
             contacts: Contacts::default(),
+            hip_nm: Default::default(),
         };
         start::place(&mut body, setup.start);
         body
@@ -170,6 +176,20 @@ impl FreeBody {
         })
     }
 
+    /// Force with which the hips pushed each axle away from the body over the last step, along the line from hip centre to
+    /// axle; zero for a leg so straight or folded that torque and force do not determine each other.
+    pub fn leg_force_n(&self) -> [f64; 2] {
+        let legs = self.legs();
+        std::array::from_fn(|side| {
+            let linkage = &legs[side].linkage;
+            let [front, rear] = linkage.axle_slope;
+            let slopes = Matrix2::new(front.x, front.y, rear.x, rear.y);
+            let torques = Vec2::from(self.hip_nm[side]);
+            let inverse = slopes.try_inverse().unwrap_or_else(Matrix2::zeros);
+            (inverse * torques).dot(&linkage.axle.normalize())
+        })
+    }
+
     /// Normal force of the ground on each wheel over the last step.
     pub fn wheel_contact_n(&self) -> [f64; 2] {
         self.contacts.wheel_n
@@ -248,7 +268,7 @@ impl FreeBody {
 
     /// Forces along the coordinates, gravity apart.
     fn forces(&mut self, inputs: &FreeInputs, legs: &[Leg; SIDES], dt_s: f64) -> Coordinates {
-        let mut forces = Coordinates::zeros();
+        let mut forces = self.outer_forces(inputs);
         let moment = Moment {
             model: &self.model,
             ground: &self.ground,
@@ -258,39 +278,47 @@ impl FreeBody {
             dt_s,
         };
         self.contacts.act(&moment, &mut forces);
+        for side in 0..SIDES {
+            for hip in 0..HIPS {
+                let rps = self.motion.hip_rps[side][hip];
+                let own_nm = stop_torque_nm(
+                    self.motion.hip_rad[side][hip],
+                    rps,
+                    self.model.hip_range_rad[hip],
+                ) + self.hip_friction[side][hip].torque_nm(
+                    rps,
+                    inputs.joint_dry_nm,
+                    self.model.armature_kgm2,
+                    dt_s,
+                ) - inputs.joint_viscous_nm_per_rps * rps;
+                let motor_nm = within(inputs.joint_nm[side * HIPS + hip], MOST_NM);
+                self.hip_nm[side][hip] = motor_nm + own_nm;
+                forces.legs[side][hip] += own_nm;
+            }
+            let rps = self.motion.wheel_rps[side];
+            forces.legs[side][HIPS] += self.wheel_friction[side].torque_nm(
+                rps,
+                inputs.wheel_dry_nm,
+                self.model.disc.rotor_kgm2,
+                dt_s,
+            ) - inputs.wheel_viscous_nm_per_rps * rps;
+        }
+        forces
+    }
+
+    /// Motor torques and pushes.
+    fn outer_forces(&self, inputs: &FreeInputs) -> Coordinates {
+        let mut forces = Coordinates::zeros();
         if let Some(push) = inputs.push {
-            let force = self
-                .motion
-                .to_body(Vec3::from(push.force_n.map(|it| within(it, MOST_N))));
-            forces.push_body(force, Vec3::from(push.at_m.map(|it| within(it, 10.0))));
+            let force = Vec3::from(push.force_n.map(|it| within(it, MOST_N)));
+            let at = Vec3::from(push.at_m.map(|it| within(it, MOST_M)));
+            forces.push_body(self.motion.to_body(force), at);
         }
         for side in 0..SIDES {
             for hip in 0..HIPS {
-                let joint = side * HIPS + hip;
-                let rps = self.motion.hip_rps[side][hip];
-                forces.legs[side][hip] += within(inputs.joint_nm[joint], MOST_NM)
-                    - inputs.joint_viscous_nm_per_rps * rps
-                    + self.hip_friction[side][hip].torque_nm(
-                        rps,
-                        inputs.joint_dry_nm,
-                        self.model.armature_kgm2,
-                        dt_s,
-                    )
-                    + stop_torque_nm(
-                        self.motion.hip_rad[side][hip],
-                        rps,
-                        self.model.hip_range_rad[hip],
-                    );
+                forces.legs[side][hip] = within(inputs.joint_nm[side * HIPS + hip], MOST_NM);
             }
-            let rps = self.motion.wheel_rps[side];
-            forces.legs[side][2] += within(inputs.wheel_nm[side], MOST_NM)
-                - inputs.wheel_viscous_nm_per_rps * rps
-                + self.wheel_friction[side].torque_nm(
-                    rps,
-                    inputs.wheel_dry_nm,
-                    self.model.disc.rotor_kgm2,
-                    dt_s,
-                );
+            forces.legs[side][HIPS] = within(inputs.wheel_nm[side], MOST_NM);
         }
         forces
     }

@@ -70,6 +70,20 @@ impl Coordinates {
         }
     }
 
+    /// Adds a multiple of other forces.
+    pub fn add(&mut self, other: &Self, times: f64) {
+        self.body += other.body * times;
+        for (leg, other) in self.legs.iter_mut().zip(&other.legs) {
+            *leg += other * times;
+        }
+    }
+
+    /// Power of these forces at speeds, or its like at accelerations.
+    pub fn dot(&self, other: &Self) -> f64 {
+        let legs = self.legs.iter().zip(&other.legs);
+        self.body.dot(&other.body) + legs.map(|(a, b)| a.dot(b)).sum::<f64>()
+    }
+
     fn minus(&self, other: &Self) -> Self {
         Self {
             body: self.body - other.body,

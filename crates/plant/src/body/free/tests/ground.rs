@@ -63,8 +63,17 @@ fn resistance_n(cart: &FreeBody) -> f64 {
 
 #[test]
 fn a_lying_robot_rests() {
-    for start in LYING {
-        let mut body = free(start);
+    let other = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../robots/fivebar-rs00.toml");
+    let other = Robot::read(&other).unwrap_or_else(|error| panic!("{error}"));
+    for (robot, start) in LYING
+        .iter()
+        .flat_map(|it| [(robot(), *it), (other.clone(), *it)])
+    {
+        let setup = FreeSetup {
+            start,
+            ..FreeSetup::default()
+        };
+        let mut body = FreeBody::new(&robot, &setup);
         let (before, energy_j) = (body.state(), body.energy_j());
         for _ in 0..20 {
             run(&mut body, 0.1, |_| LIMP);
@@ -121,6 +130,64 @@ fn torque_accelerates_by_newtons_law() {
         (rim_mps / speed_mps - 1.0).abs() < 0.02,
         "{rim_mps} {speed_mps}"
     );
+}
+
+#[test]
+fn ideal_wheels_accelerate_by_newtons_law() {
+    let cart = cart(Terrain::Flat, 0.8);
+    let inputs = FreeInputs {
+        wheel_nm: [0.3; 2],
+        ..LOCKED
+    };
+    let disc = cart.model.disc;
+    // Hips that are free to move would give way: they hold the robot up.
+    let holding = cart.holding_torque_nm([[0.0, 0.0]; 2]);
+    let joint_nm = stiff_hips(&cart, &inputs, holding);
+    let found = cart.rolling_accelerations(&FreeInputs { joint_nm, ..inputs });
+    let rolling_kg = cart.mass_kg() + 2.0 * (disc.spin_kgm2 + disc.rotor_kgm2) / 0.06_f64.powi(2);
+    let expected = 2.0 * 0.3 / 0.06 / rolling_kg;
+    assert!(
+        (found.linear_mps2[0] / expected - 1.0).abs() < 1e-3,
+        "{found:?} {expected}"
+    );
+    assert!(found.linear_mps2[2].abs() < 1e-3 && found.joint_rps2[0].abs() < 1e-3);
+    assert!(
+        (found.wheel_rps2[0] * 0.06 / expected - 1.0).abs() < 1e-3,
+        "{found:?}"
+    );
+}
+
+/// Hip torques at which no hip accelerates: accelerations are linear in the torques.
+fn stiff_hips(cart: &FreeBody, inputs: &FreeInputs, start_nm: [f64; 4]) -> [f64; 4] {
+    let hips = |joint_nm: [f64; 4]| {
+        let inputs = FreeInputs {
+            joint_nm,
+            ..*inputs
+        };
+        nalgebra::Vector4::from(cart.rolling_accelerations(&inputs).joint_rps2)
+    };
+    let base = hips(start_nm);
+    let columns: [_; 4] = std::array::from_fn(|joint| {
+        let mut more = start_nm;
+        more[joint] += 1.0;
+        hips(more) - base
+    });
+    let slopes = nalgebra::Matrix4::from_columns(&columns);
+    let change = slopes.lu().solve(&-base).unwrap_or_default();
+    std::array::from_fn(|joint| start_nm[joint] + change[joint])
+}
+
+#[test]
+fn leg_force_carries_the_body() {
+    let cart = cart(Terrain::Flat, 0.8);
+    let leg = &cart.legs()[0];
+    let carried_kg = cart.mass_kg() / 2.0 - leg.parts.iter().map(|it| it.mass_kg).sum::<f64>();
+    let [left_n, right_n] = cart.leg_force_n();
+    // Links hang between hip and axle, so that the leg force carries part of their weight, too.
+    let links_kg = 2.0 * (cart.model.thigh.mass_kg + cart.model.shank.mass_kg);
+    let range_n = carried_kg * G..(carried_kg + links_kg) * G;
+    assert!(range_n.contains(&left_n), "{left_n} {range_n:?}");
+    assert!((left_n - right_n).abs() < 1e-3);
 }
 
 #[test]

@@ -14,7 +14,7 @@ fn clamped(robot: &Robot) -> FreeBody {
 const POSES: [[f64; 4]; 3] = [
     [-0.3, 0.3, -0.3, 0.3],
     [0.2, 0.6, -0.8, 0.1],
-    [-1.0, -0.4, 0.9, 1.2],
+    [-1.0, -0.4, 0.7, 1.2],
 ];
 
 fn at_rest(body: &mut FreeBody, joint_rad: [f64; 4]) {
