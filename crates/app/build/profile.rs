@@ -17,11 +17,13 @@ pub fn constant(Constants { profile, .. }: &Constants, robot: &Robot) -> String 
              wheel_odom: {odom}, \
              wheel_current_ma: {current_ma}, \
              mounting: {mounting}, \
+             imu_up_m: {imu_up_m}, \
              balance: BalanceProfile {{ legs: {legs}, mass: {mass}, gains: {gains}, limits: {limits} }} \
          }};\n",
         odom = wheel_odom(robot),
         current_ma = f32(wheels.current_limit_a * 1e3),
         mounting = mounting(robot),
+        imu_up_m = f32(robot.imu.place_m[2]),
         legs = legs(robot),
         mass = mass(robot),
         gains = gains::schedule(robot),

@@ -13,6 +13,8 @@ pub struct RobotProfile {
     pub wheel_current_ma: f32,
     /// How the sensors are mounted as delivered.
     pub mounting: MountingConfig,
+    /// Height of the IMU above the hip centre in m.
+    pub imu_up_m: f32,
     /// What balancing needs.
     pub balance: BalanceProfile,
 }

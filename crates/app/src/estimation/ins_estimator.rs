@@ -177,16 +177,17 @@ impl InsEstimator {
         now_us: u64,
         estimate: &mut StateEstimate,
     ) {
-        self.step_on_legs(imu, mag, motor, None, now_us, estimate);
+        self.step_on_legs(imu, mag, motor, || None, now_us, estimate);
     }
 
-    /// The same for a body on moving legs, left and right. `None` while they are not known.
+    /// The same for a body on moving legs, left and right, or `None` while they are not known. `legs` is called when
+    /// there is a new IMU sample.
     pub fn step_on_legs(
         &mut self,
         imu: &ImuState,
         mag: &MagState,
         motor: &MotorFeedback,
-        legs: Option<&[Leg; 2]>,
+        legs: impl FnOnce() -> Option<[Leg; 2]>,
         now_us: u64,
         estimate: &mut StateEstimate,
     ) {
@@ -207,11 +208,8 @@ impl InsEstimator {
             self.process_mag(mag);
         }
         self.ts_us = now_us;
-        let paths = legs.map(|legs| {
-            let [left, right] = legs;
-            [left, right].map(|leg| AxlePath::new(leg, self.imu_up_m))
-        });
-        self.publish(sample, motor, paths.as_ref(), elapsed_us, now_us, estimate);
+        let sample = sample.map(|sample| (sample, legs()));
+        self.publish(sample, motor, elapsed_us, now_us, estimate);
     }
 
     /// Time since the last tick. If time ran backwards, stood still or jumped, it is 0, and the estimate is invalid.
@@ -283,9 +281,8 @@ impl InsEstimator {
 
     fn publish(
         &mut self,
-        sample: Option<AccelSample>,
+        sample: Option<(AccelSample, Option<[Leg; 2]>)>,
         motor: &MotorFeedback,
-        legs: Option<&[AxlePath; 2]>,
         elapsed_us: u32,
         now_us: u64,
         estimate: &mut StateEstimate,
@@ -293,21 +290,21 @@ impl InsEstimator {
         let imu_age_us = age_us(self.imu_ts_us, now_us);
         let ahead_s = seconds(imu_age_us.min(MAX_IMU_AGE_US));
         let orientation = self.attitude.orientation(ahead_s);
-        if let Some(sample) = sample {
+        if let Some((sample, legs)) = sample {
+            let paths = legs.map(|legs| legs.map(|leg| AxlePath::new(&leg, self.imu_up_m)));
             let pose = BodyPose {
                 orientation,
                 rate_rps: self.attitude.rate_rps(),
             };
-            self.motion.feed(&sample, ahead_s, &pose, motor, legs);
+            self.motion
+                .feed(&sample, ahead_s, &pose, motor, paths.as_ref());
         }
         if imu_age_us > MAX_IMU_AGE_US {
             self.motion.decay(seconds(elapsed_us));
         }
         estimate.q_wxyz = orientation.to_wxyz();
         estimate.rpy_rad = orientation.roll_pitch_yaw();
-        let over_axle_mps =
-            legs.map(|legs| AxlePath::mean(legs).velocity(self.attitude.rate_rps()));
-        (estimate.vel_mps, estimate.pos_m) = self.motion.extrapolate(ahead_s, over_axle_mps);
+        (estimate.vel_mps, estimate.pos_m) = self.motion.extrapolate(ahead_s);
         estimate.gyro_bias_rps = self.attitude.bias_rps();
         estimate.accel_bias_mps2 = self.motion.accel_bias_mps2();
         estimate.ts_us = now_us;

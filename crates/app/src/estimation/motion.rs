@@ -29,7 +29,7 @@ use self::{
 pub(super) use self::{axes::BodyPose, axle::AxlePath};
 use crate::{
     domain::{MotorFeedback, WheelOdomConfig},
-    math::{Quaternion, Vector3, vector},
+    math::{Vector3, vector},
 };
 
 /// Time constant with which the velocity decays while nothing measures it.
@@ -62,8 +62,8 @@ pub(super) struct MotionEstimator {
     wheels_stood_s: f32,
     /// The last sample showed a standstill, in which point and axle have the same velocity.
     stands: bool,
-    /// Those of the last sample.
-    axes: Axes,
+    /// Velocity of the point relative to the middle of the axle at the last sample, in ENU.
+    over_axle_mps: Vector3,
 }
 
 impl MotionEstimator {
@@ -78,10 +78,7 @@ impl MotionEstimator {
             kinematic_mps2: [0.0; 3],
             wheels_stood_s: 0.0,
             stands: false,
-            axes: Axes::new(&BodyPose {
-                orientation: Quaternion::IDENTITY,
-                rate_rps: [0.0; 3],
-            }),
+            over_axle_mps: [0.0; 3],
         }
     }
 
@@ -107,7 +104,6 @@ impl MotionEstimator {
         legs: Option<&[AxlePath; 2]>,
     ) {
         let axes = Axes::new(pose);
-        self.axes = axes;
         let over_axle_mps = match legs {
             Some(legs) => axes.over_axle(&AxlePath::mean(legs)),
             None => [0.0; 3],
@@ -150,10 +146,12 @@ impl MotionEstimator {
             self.kinematic_mps2 = [0.0; 3];
         }
         self.filter.limit();
-        let mut velocity_mps = self.filter.velocity_after(-0.5 * sample.dt_s);
-        if !self.stands {
-            velocity_mps = vector::sub(velocity_mps, axes.level_to_world(over_axle_mps));
-        }
+        self.over_axle_mps = if self.stands {
+            [0.0; 3]
+        } else {
+            axes.level_to_world(over_axle_mps)
+        };
+        let velocity_mps = self.axle_velocity_after(-0.5 * sample.dt_s);
         self.position.add(vector::scale(velocity_mps, sample.dt_s));
     }
 
@@ -242,24 +240,23 @@ impl MotionEstimator {
     pub fn decay(&mut self, dt_s: f32) {
         self.restart();
         self.filter.decay(dt_s / DECAY_S);
+        self.over_axle_mps = [0.0; 3];
         let step_m = vector::scale(self.filter.velocity_after(0.0), dt_s);
         self.position.add(step_m);
     }
 
+    fn axle_velocity_after(&self, ahead_s: f32) -> Vector3 {
+        vector::sub(self.filter.velocity_after(ahead_s), self.over_axle_mps)
+    }
+
     /// Velocity and position of the middle of the axle in ENU, extrapolated to `ahead_s` after the last sample.
-    /// `over_axle_mps` is the velocity of the estimated point relative to it, in body axes.
-    pub fn extrapolate(&self, ahead_s: f32, over_axle_mps: Option<Vector3>) -> (Vector3, Vector3) {
+    pub fn extrapolate(&self, ahead_s: f32) -> (Vector3, Vector3) {
         let ahead_s = if ahead_s < MAX_AHEAD_S {
             ahead_s
         } else {
             MAX_AHEAD_S
         };
-        let mut velocity_mps = self.filter.velocity_after(ahead_s);
-        if let Some(over_axle_mps) = over_axle_mps
-            && !self.stands
-        {
-            velocity_mps = vector::sub(velocity_mps, self.axes.to_world(over_axle_mps));
-        }
+        let velocity_mps = self.axle_velocity_after(ahead_s);
         let step_m = vector::scale(velocity_mps, ahead_s);
         (velocity_mps, vector::add(self.position.total_m(), step_m))
     }

@@ -14,8 +14,12 @@ use crate::{
     bring_up::{BringUp, BringUpInputs},
     control::{ChassisController, UserController},
     diagnostics::{DiagnosticsSnapshot, TELEMETRY_PERIOD_TICKS, Telemetry},
-    domain::{BusId, CanFrame, ChassisCommand, MountingConfig, RobotConfig, age_us},
+    domain::{
+        BusId, CanFrame, ChassisCommand, JointFeedback, LegGeometry, MotorFeedback, MountingConfig,
+        RobotConfig, age_us,
+    },
     estimation::{HeadingSource, InsEstimator},
+    kinematics::Leg,
     motor::{
         MotorManager, TickFrames,
         layout::{MotorLayout, ROBOT_LAYOUT},
@@ -37,6 +41,21 @@ fn heading_source(mounting: &MountingConfig) -> HeadingSource {
         Some(_) => HeadingSource::Magnetometer,
         None => HeadingSource::GyroOnly,
     }
+}
+
+/// Oldest report of a joint from which a leg is computed.
+const MAX_JOINT_AGE_US: u32 = 20_000;
+
+/// Both legs, if all joints report angles that fit the geometry.
+fn known_legs(geometry: &LegGeometry, motor: &MotorFeedback) -> Option<[Leg; 2]> {
+    let heard = |joint: &JointFeedback| joint.age_us <= MAX_JOINT_AGE_US && !joint.frozen;
+    if !motor.joints.iter().all(heard) {
+        return None;
+    }
+    let [left_front, left_rear, right_front, right_rear] = &motor.joints;
+    let left = Leg::measured(geometry, left_front, left_rear);
+    let right = Leg::measured(geometry, right_front, right_rear);
+    (left.fits && right.fits).then_some([left, right])
 }
 
 /// State of all stages of the tick. The same calls give the same results, bit for bit.
@@ -75,6 +94,7 @@ pub struct ControlLoop<C: ChassisController = UserController> {
     motors: MotorManager,
     /// See `MotorLayout::needs_manual_timeout`.
     timeout_by_hand: bool,
+    legs: LegGeometry,
     estimator: InsEstimator,
     policy: SafetyPolicy,
     /// Tick within the period of slow diagnostics.
@@ -108,11 +128,13 @@ impl<C: ChassisController> ControlLoop<C> {
     pub fn with_layout(layout: &'static MotorLayout, config: RobotConfig, controller: C) -> Self {
         let mut estimator = InsEstimator::new(config.wheel_odom);
         estimator.set_heading_source(heading_source(&config.mounting));
+        estimator.set_imu_height(layout.profile().imu_up_m);
         Self {
             config,
             controller,
             motors: MotorManager::new(layout),
             timeout_by_hand: layout.needs_manual_timeout(),
+            legs: layout.profile().balance.legs,
             estimator,
             policy: SafetyPolicy::default(),
             phase: 0,
@@ -235,8 +257,10 @@ impl<C: ChassisController> ControlLoop<C> {
             .feedback(&self.config, now_us, &mut sensors.motor);
         sensors.ts_us = now_us;
         let (imu, mag) = (&sensors.imu, &sensors.mag);
+        let (motor, geometry) = (&sensors.motor, &self.legs);
+        let legs = || known_legs(geometry, motor);
         self.estimator
-            .step(imu, mag, &sensors.motor, now_us, estimate);
+            .step_on_legs(imu, mag, motor, legs, now_us, estimate);
     }
 
     /// Returns the command of bring-up, which replaces any other.

@@ -88,16 +88,11 @@ impl Bench {
     }
 
     fn velocity_mps(&self) -> Vector3 {
-        self.motion.extrapolate(0.0, self.over_axle_mps()).0
-    }
-
-    fn over_axle_mps(&self) -> Option<Vector3> {
-        let legs = self.legs.as_ref()?;
-        Some(AxlePath::mean(legs).velocity(self.pose.rate_rps))
+        self.motion.extrapolate(0.0).0
     }
 
     fn position_m(&self) -> Vector3 {
-        self.motion.extrapolate(0.0, self.over_axle_mps()).1
+        self.motion.extrapolate(0.0).1
     }
 
     fn forward_mps(&self) -> f32 {
