@@ -36,6 +36,7 @@ use std::{collections::VecDeque, sync::Arc};
 use tuning_replies::TuningReplies;
 
 pub use push::Push;
+pub use signals::Probe;
 
 pub use crate::{
     body::{PlantKind, Variation},

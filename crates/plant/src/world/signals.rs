@@ -7,6 +7,17 @@ use crate::{body::roll_pitch_yaw_rad, free::FreeBody, recording::Playback};
 
 type Signal = (&'static str, fn(&World) -> f64);
 
+/// A signal whose name need not be looked for again. See [`World::probe`].
+#[derive(Clone, Copy, Debug)]
+pub struct Probe(fn(&World) -> f64);
+
+impl Probe {
+    /// Present value of the signal.
+    pub fn read(self, world: &World) -> f64 {
+        (self.0)(world)
+    }
+}
+
 /// Index of the current that the wheel was commanded. Signals decoded from CAN come first, two per wheel, so that wire
 /// events can point at them.
 pub(super) fn motor_current_ma(wheel: usize) -> usize {
@@ -282,6 +293,13 @@ impl World {
         signals(self.extra())
             .find(|(known, _)| *known == name)
             .map(|(_, read)| read(self))
+    }
+
+    /// One signal, to be read often; `None` if there is none of that name.
+    pub fn probe(&self, name: &str) -> Option<Probe> {
+        signals(self.extra())
+            .find(|(known, _)| *known == name)
+            .map(|(_, read)| Probe(*read))
     }
 
     /// Replaces the contents of `out` by the present value of every signal, in the order of [`World::signal_names`].
