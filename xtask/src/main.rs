@@ -3,6 +3,7 @@
 mod bench;
 mod board;
 mod emulator;
+mod envelope;
 mod firmware;
 mod forwarded_args;
 mod host_program;
@@ -38,6 +39,8 @@ enum Command {
     Robot(ForwardedArgs),
     /// Run the estimator over recorded trials and show its attitude at 1 kHz, errors and plots.
     Replay(ForwardedArgs),
+    /// Let many robots, each different, stand, drive, fall and get up without the chip, and tell how many succeed.
+    Envelope(ForwardedArgs),
     /// Prepare the recorded motion that tests and replay use, or say where to get it.
     Data(ForwardedArgs),
     /// Measure what the release image and its estimator cost, and compare that with limits and other filters.
@@ -54,6 +57,7 @@ fn main() -> ExitCode {
         Command::Soak(args) => emulator::run("soak", &args),
         Command::Robot(args) => robot::run(&args),
         Command::Replay(args) => replay::run("replay", &args),
+        Command::Envelope(args) => envelope::run(&args),
         Command::Data(args) => replay::run("data", &args),
         Command::Bench(args) => bench::run(&args),
         Command::Run(args) => board::run(&args),

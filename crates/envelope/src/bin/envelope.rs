@@ -1,0 +1,99 @@
+//! `cargo xtask envelope`: what the balancing robot survives.
+
+use std::{path::PathBuf, process::ExitCode, sync::Arc, time::Instant};
+
+use anyhow::ensure;
+use clap::Parser;
+use indicatif::{ProgressBar, ProgressStyle};
+use robot_description::Robot;
+use robot_envelope::{Report, Robots, TASKS, Task, parts, survey, table, write};
+
+/// Let many robots, each different from its file, stand, drive, fall and get up, and tell how many succeed.
+///
+/// The whole firmware logic runs on this machine in a simulated world, without the emulated chip. The exit code is 0
+/// only if the wanted rates hold.
+#[derive(Parser)]
+#[command(name = "envelope", bin_name = "cargo xtask envelope", after_help = EXAMPLES)]
+struct Args {
+    /// Number of robots for each task.
+    #[arg(long, value_name = "N", default_value_t = 20)]
+    seeds: u64,
+    /// Only tasks whose name begins with this.
+    #[arg(
+        long,
+        value_name = "NAME",
+        default_value = "",
+        hide_default_value = true
+    )]
+    task: String,
+    /// Folder for envelope.json and envelope.html.
+    #[arg(long, value_name = "DIR", default_value = "target/envelope")]
+    out: PathBuf,
+    /// The robot's file.
+    #[arg(long, value_name = "FILE", default_value = "robots/fivebar.toml")]
+    robot: PathBuf,
+    /// Robots as in their file, which differ only in the noise of their sensors.
+    #[arg(long)]
+    same: bool,
+    /// List the tasks.
+    #[arg(long)]
+    list: bool,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  cargo xtask envelope
+  cargo xtask envelope --seeds 1000 --task push --out target/pushes
+  cargo xtask envelope --list";
+
+fn main() -> ExitCode {
+    match run(&Args::parse()) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(args: &Args) -> anyhow::Result<bool> {
+    let tasks: Vec<&Task> = TASKS
+        .iter()
+        .filter(|task| task.name.starts_with(&args.task))
+        .collect();
+    ensure!(
+        !tasks.is_empty(),
+        "no task's name begins with `{}`; --list lists them",
+        args.task
+    );
+    if args.list {
+        for task in tasks {
+            println!("{:<21} {}", task.name, task.what);
+        }
+        return Ok(true);
+    }
+    let robot = Robot::read(&args.robot)?;
+    let name = robot.name.clone();
+    let robots = Robots {
+        robot: Arc::new(robot),
+        vary: !args.same,
+    };
+    let begun = Instant::now();
+    let bar = ProgressBar::new(parts(&tasks, args.seeds, true));
+    bar.set_style(ProgressStyle::with_template(
+        "{elapsed_precise} {bar:40} {pos}/{len} runs, {eta} left",
+    )?);
+    let surveys = survey(&tasks, &robots, args.seeds, true, &|| bar.inc(1));
+    bar.finish_and_clear();
+    let report = Report::new(&name, args.seeds, &tasks, &surveys);
+    print!("{}", table(&report));
+    write(&args.out, &report, &tasks, &surveys)?;
+    println!(
+        "{} and {} after {:.0} s",
+        args.out.join("envelope.json").display(),
+        args.out.join("envelope.html").display(),
+        begun.elapsed().as_secs_f64()
+    );
+    Ok(report.holds())
+}

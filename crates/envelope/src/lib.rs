@@ -1,0 +1,22 @@
+//! What the balancing robot survives: tasks, each run with many robots that differ from their file.
+//!
+//! The whole app runs without a chip (`robot-host-loop`) with its estimator and its protocols. The simulated truth judges
+//! a run and never steers it.
+
+#![deny(missing_docs)]
+
+mod course;
+mod limit;
+mod plots;
+mod report;
+mod robots;
+mod survey;
+mod tasks;
+mod trial;
+
+pub use limit::Limit;
+pub use report::{Report, TaskReport, table, write};
+pub use robots::Robots;
+pub use survey::{Run, Survey, parts, survey};
+pub use tasks::{Bound, TASKS, Task};
+pub use trial::{Failure, Sample, Trial};

@@ -1,0 +1,84 @@
+//! Standing up from wherever it lies.
+
+use robot_plant::world::{Start, Terrain};
+
+use super::{Bound, Finished, Task};
+use crate::{
+    robots::Robots,
+    trial::{STAND_AT_S, Trial},
+};
+
+/// The robot must stand after this.
+const LIMIT_S: f64 = 2.5;
+/// For this long it is watched.
+const WATCHED_S: f64 = 5.0;
+/// It must have stood for this long at the end.
+const STANDS_S: f64 = 1.0;
+/// Tilt of a robot that stands, rad.
+const UPRIGHT_RAD: f64 = 0.2;
+/// Speed of one that stands, m/s.
+const STILL_MPS: f64 = 0.5;
+
+macro_rules! stand_up {
+    ($name:literal, $what:literal, $start:expr) => {
+        Task {
+            name: $name,
+            what: $what,
+            figure: "time until it stands",
+            unit: "s",
+            limit: LIMIT_S,
+            bound: Bound::AtMost,
+            wanted: 0.99,
+            run: |robots, seed| stand_up(robots, seed, $start),
+            bisection: None,
+        }
+    };
+}
+
+pub(super) const SITTING: Task =
+    stand_up!("stand-up-sitting", "stands up from sitting", Start::Sitting);
+pub(super) const FOLDED: Task = stand_up!(
+    "stand-up-folded",
+    "stands up with folded legs",
+    Start::Folded
+);
+pub(super) const FRONT: Task =
+    stand_up!("stand-up-front", "stands up from its front", Start::Front);
+pub(super) const BACK: Task = stand_up!("stand-up-back", "stands up from its back", Start::Back);
+pub(super) const LEFT: Task =
+    stand_up!("stand-up-left", "stands up from its left side", Start::Left);
+pub(super) const RIGHT: Task = stand_up!(
+    "stand-up-right",
+    "stands up from its right side",
+    Start::Right
+);
+pub(super) const UPSIDE_DOWN: Task = stand_up!(
+    "stand-up-upside-down",
+    "stands up from its top",
+    Start::UpsideDown
+);
+
+fn stand_up(robots: &Robots, seed: u64, start: Start) -> Finished {
+    let trial = Trial::new(robots, seed, Terrain::Flat, start);
+    let least_m = robots.robot.control.limits.height_m[0] - 0.01;
+    Finished::by(trial, |trial| {
+        trial.ask_to_stand();
+        let mut since_s = None;
+        trial.watch(WATCHED_S, |sample| {
+            let stands = sample.tilt_rad() < UPRIGHT_RAD
+                && sample.body_n == 0.0
+                && sample.leg_m.iter().all(|m| *m > least_m)
+                && sample.forward_mps.abs() < STILL_MPS;
+            since_s = if stands {
+                since_s.or(Some(sample.t_s))
+            } else {
+                None
+            };
+        });
+        trial.require_upright()?;
+        match since_s {
+            Some(since_s) if trial.now().t_s - since_s >= STANDS_S => Ok(since_s - STAND_AT_S),
+            _ => Err(trial.failed("does not stand still".to_owned())),
+        }
+    })
+}

@@ -1,0 +1,278 @@
+//! One run of the robot: the pilot's moves, and what is seen of it.
+
+use robot_app::domain::RobotConfig;
+use robot_host_loop::Robot;
+use robot_plant::world::{PlantKind, Probe, Push, RemoteInput, Start, Terrain, World, WorldConfig};
+
+use crate::robots::Robots;
+
+/// The pilot arms at this time, when sensors are calibrated and motors set up.
+pub(crate) const ENABLE_AT_S: f64 = 3.0;
+/// The pilot asks for standing up at this time.
+pub(crate) const STAND_AT_S: f64 = 3.3;
+/// A robot that stands by now may be given a task.
+pub(crate) const READY_AT_S: f64 = 7.0;
+/// A body tilted by more has fallen, rad.
+const FALLEN_RAD: f64 = 1.0;
+/// Samples are kept each so many ticks.
+const KEEP_EVERY: u64 = 5;
+
+/// Why a run did not end well.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Failure {
+    /// Time in the run, s.
+    pub at_s: f64,
+    /// What happened.
+    pub what: String,
+}
+
+/// What is seen of the robot in one tick. Pairs are left, right.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Sample {
+    /// Time since power-on, s.
+    pub t_s: f64,
+    /// East, north and up of the hip centre, m.
+    pub place_m: [f64; 3],
+    /// Roll, pitch and yaw, rad.
+    pub rpy_rad: [f64; 3],
+    /// Forward speed of the body, m/s.
+    pub forward_mps: f64,
+    /// Upward speed of the body, m/s.
+    pub up_mps: f64,
+    /// Turn rate, rad/s.
+    pub yaw_rps: f64,
+    /// Leg lengths, m.
+    pub leg_m: [f64; 2],
+    /// Forces of the ground on the wheels, N.
+    pub wheel_n: [f64; 2],
+    /// Force of the ground on body and links, N.
+    pub body_n: f64,
+    /// Turn of each wheel since power-on, rad.
+    pub turned_rad: [f64; 2],
+    /// Torques of the wheels, N·m.
+    pub wheel_nm: [f64; 2],
+}
+
+impl Sample {
+    /// Angle between the body's z axis and the vertical, rad.
+    pub fn tilt_rad(&self) -> f64 {
+        let [roll, pitch, _] = self.rpy_rad;
+        (roll.cos() * pitch.cos()).clamp(-1.0, 1.0).acos()
+    }
+}
+
+/// The signals of a [`Sample`], found once.
+struct Probes {
+    place: [Probe; 3],
+    rpy: [Probe; 3],
+    forward: Probe,
+    up: Probe,
+    yaw: Probe,
+    leg: [Probe; 2],
+    wheel: [Probe; 2],
+    body: Probe,
+    turned: [Probe; 2],
+    torque: [Probe; 2],
+}
+
+impl Probes {
+    fn new(world: &World) -> Self {
+        let find = |name: &str| world.probe(name).expect(name);
+        Self {
+            place: ["truth.body.x", "truth.body.y", "truth.body.z"].map(find),
+            rpy: ["truth.body.roll", "truth.body.pitch", "truth.body.yaw"].map(find),
+            forward: find("truth.body.vx"),
+            up: find("truth.body.vz"),
+            yaw: find("truth.body.wz"),
+            leg: ["truth.leg.0.length_m", "truth.leg.1.length_m"].map(find),
+            wheel: ["truth.wheel.0.contact_n", "truth.wheel.1.contact_n"].map(find),
+            body: find("truth.body.contact_n"),
+            turned: ["truth.wheel.0.turned_rad", "truth.wheel.1.turned_rad"].map(find),
+            torque: ["truth.wheel.0.torque_nm", "truth.wheel.1.torque_nm"].map(find),
+        }
+    }
+
+    fn read(&self, robot: &Robot) -> Sample {
+        let world = robot.world();
+        Sample {
+            t_s: robot.seconds(),
+            place_m: self.place.map(|probe| probe.read(world)),
+            rpy_rad: self.rpy.map(|probe| probe.read(world)),
+            forward_mps: self.forward.read(world),
+            up_mps: self.up.read(world),
+            yaw_rps: self.yaw.read(world),
+            leg_m: self.leg.map(|probe| probe.read(world)),
+            wheel_n: self.wheel.map(|probe| probe.read(world)),
+            body_n: self.body.read(world),
+            turned_rad: self.turned.map(|probe| probe.read(world)),
+            wheel_nm: self.torque.map(|probe| probe.read(world)),
+        }
+    }
+}
+
+/// A run under way.
+pub struct Trial {
+    robot: Robot,
+    probes: Probes,
+    mass_kg: f64,
+    now: Sample,
+    kept: Vec<Sample>,
+    ticks: u64,
+}
+
+impl Trial {
+    /// Switches on specimen `seed`, which lies or stands as `start` says.
+    ///
+    /// # Panics
+    /// A sensor does not answer.
+    pub fn new(robots: &Robots, seed: u64, terrain: Terrain, start: Start) -> Self {
+        let world = WorldConfig {
+            plant: PlantKind::Free,
+            robot: robots.robot.clone(),
+            seed,
+            terrain,
+            start,
+            variation: robots.variation(seed),
+            ..WorldConfig::default()
+        };
+        let robot = Robot::in_world(world, RobotConfig::default()).expect("no recording to load");
+        let probes = Probes::new(robot.world());
+        let now = probes.read(&robot);
+        Self {
+            robot,
+            probes,
+            mass_kg: robots.mass_kg(seed),
+            now,
+            kept: Vec::new(),
+            ticks: 0,
+        }
+    }
+
+    /// A robot that sat and has stood up.
+    ///
+    /// # Errors
+    /// It does not stand.
+    pub fn standing(robots: &Robots, seed: u64, terrain: Terrain) -> Result<Self, (Failure, Self)> {
+        let mut trial = Self::new(robots, seed, terrain, Start::Sitting);
+        trial.ask_to_stand();
+        trial.run_until(READY_AT_S);
+        match trial.require_upright() {
+            Ok(()) => Ok(trial),
+            Err(failure) => Err((failure, trial)),
+        }
+    }
+
+    /// Arms and asks for standing up, at the times for that.
+    pub fn ask_to_stand(&mut self) {
+        self.run_until(ENABLE_AT_S);
+        self.pilot(RemoteInput {
+            enable: Some(true),
+            ..RemoteInput::default()
+        });
+        self.run_until(STAND_AT_S);
+        self.pilot(RemoteInput {
+            stand: Some(true),
+            ..RemoteInput::default()
+        });
+    }
+
+    /// Moves sticks and switches.
+    pub fn pilot(&mut self, input: RemoteInput) {
+        self.robot.remote(input);
+    }
+
+    /// Moves the drive sticks, −1 … 1.
+    pub fn sticks(&mut self, forward: f64, left: f64) {
+        self.pilot(RemoteInput {
+            vx: Some(forward),
+            wz: Some(left),
+            ..RemoteInput::default()
+        });
+    }
+
+    /// Pushes the robot in one instant so that its speed changes by this: forward, left, up, m/s.
+    pub fn push(&mut self, change_mps: [f64; 3]) {
+        let impulse_ns = change_mps.map(|mps| mps * self.mass_kg);
+        self.robot.world_mut().push(Push::instant(impulse_ns));
+    }
+
+    /// Runs until `t_s` after power-on.
+    pub fn run_until(&mut self, t_s: f64) {
+        self.watch_until(t_s, |_| ());
+    }
+
+    /// Runs until `t_s` after power-on, and shows each tick to `look`.
+    pub fn watch_until(&mut self, t_s: f64, mut look: impl FnMut(&Sample)) {
+        let Self {
+            robot,
+            probes,
+            now,
+            kept,
+            ticks,
+            ..
+        } = self;
+        robot.run_until(t_s, |robot| {
+            *now = probes.read(robot);
+            if ticks.is_multiple_of(KEEP_EVERY) {
+                kept.push(*now);
+            }
+            *ticks += 1;
+            look(now);
+        });
+    }
+
+    /// Runs for another `seconds` and shows each tick to `look`.
+    pub fn watch(&mut self, seconds: f64, look: impl FnMut(&Sample)) {
+        self.watch_until(self.now.t_s + seconds, look);
+    }
+
+    /// The robot as of now.
+    pub fn now(&self) -> &Sample {
+        &self.now
+    }
+
+    /// The robot with its firmware.
+    pub fn robot(&self) -> &Robot {
+        &self.robot
+    }
+
+    /// Mass of this specimen in kg.
+    pub fn mass_kg(&self) -> f64 {
+        self.mass_kg
+    }
+
+    /// The samples kept, each 5 ms.
+    pub fn kept(&self) -> &[Sample] {
+        &self.kept
+    }
+
+    /// Fails if the robot does not stand on its wheels now.
+    ///
+    /// # Errors
+    /// Why it does not.
+    pub fn require_upright(&self) -> Result<(), Failure> {
+        let now = &self.now;
+        let blockers: Vec<_> = self.robot.diagnostics().arming.blockers.names().collect();
+        if !self.robot.armed() {
+            return Err(self.failed(format!(
+                "disarmed: {blockers:?} {:?}",
+                self.robot.diagnostics().safety.flags_seen
+            )));
+        }
+        if now.tilt_rad() > FALLEN_RAD {
+            return Err(self.failed(format!("tilted by {:.0}°", now.tilt_rad().to_degrees())));
+        }
+        if now.body_n > 0.0 {
+            return Err(self.failed("the body is on the ground".to_owned()));
+        }
+        Ok(())
+    }
+
+    /// A failure as of now.
+    pub fn failed(&self, what: String) -> Failure {
+        Failure {
+            at_s: self.now.t_s,
+            what,
+        }
+    }
+}
