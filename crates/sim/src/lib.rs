@@ -22,6 +22,7 @@ pub mod runner;
 pub mod scenario;
 pub mod signals;
 pub mod simulation;
+mod skeleton;
 pub mod soak;
 pub mod summary;
 pub mod terminal;

@@ -1,5 +1,6 @@
 //! `report.html`: one self-contained page with the verdict, the plots and the log.
 
+mod animation;
 mod attitude;
 mod page;
 mod plots;

@@ -1,6 +1,6 @@
 //! Where the parts of the free robot are, from its true signals.
 
-use robot_description::Robot;
+use robot_description::{Carrier, Robot};
 
 use crate::signals::{SignalTable, Values};
 
@@ -32,8 +32,26 @@ pub struct Skeleton {
     pub pitch_rad: f64,
     /// Left, right.
     pub legs: [Leg; 2],
-    /// How far each wheel has turned in the world, forward positive.
-    pub turned_rad: [f64; 2],
+    /// Angle of each wheel about the body's y axis, from some zero.
+    pub wheels_rad: [f64; 2],
+    /// Speed along the heading.
+    pub forward_mps: f64,
+}
+
+impl Leg {
+    /// Angle about y of the shank that carries the wheel's motor.
+    fn carrier_rad(&self, carrier: Carrier) -> f64 {
+        let knee = self.knees[match carrier {
+            Carrier::Front => 0,
+            Carrier::Rear => 1,
+        }];
+        about_y_rad(knee, self.axle)
+    }
+}
+
+/// Angle about y that turns the x axis into the direction from one point to another.
+pub fn about_y_rad(from: Vector, to: Vector) -> f64 {
+    (from[2] - to[2]).atan2(to[0] - from[0])
 }
 
 impl Skeleton {
@@ -65,6 +83,7 @@ pub struct SkeletonSignals {
     /// Length and angle of each leg.
     legs: [[usize; 2]; 2],
     turned: [usize; 2],
+    forward: usize,
 }
 
 impl SkeletonSignals {
@@ -94,6 +113,7 @@ impl SkeletonSignals {
             joints: each("truth.joint.", 4, ".pos_rad")?.try_into().ok()?,
             legs: [leg(0)?.try_into().ok()?, leg(1)?.try_into().ok()?],
             turned: each("truth.wheel.", 2, ".turned_rad")?.try_into().ok()?,
+            forward: table.index("truth.body.vx")?,
         })
     }
 
@@ -104,12 +124,17 @@ impl SkeletonSignals {
             let [length_m, angle_rad] = taken(values, self.legs[side])?;
             Some(leg(robot, SIDES[side], angles_rad, length_m, angle_rad))
         };
+        let legs = [leg(0, [lf, lr])?, leg(1, [rf, rr])?];
+        let turned_rad = taken(values, self.turned)?;
         Some(Skeleton {
             place_m: taken(values, self.place)?,
             q_wxyz: taken(values, self.attitude)?,
             pitch_rad: values[self.pitch]?,
-            legs: [leg(0, [lf, lr])?, leg(1, [rf, rr])?],
-            turned_rad: taken(values, self.turned)?,
+            wheels_rad: std::array::from_fn(|side| {
+                turned_rad[side] + legs[side].carrier_rad(robot.wheels.carrier)
+            }),
+            forward_mps: values[self.forward]?,
+            legs,
         })
     }
 }

@@ -41,6 +41,11 @@ impl Traces {
         &self.log
     }
 
+    /// All values at each of `times_s`.
+    pub fn samples(&self) -> impl Iterator<Item = (f64, &Values)> {
+        self.times_s.iter().copied().zip(&self.samples)
+    }
+
     /// The values of a signal at `times_s`; `None` if there is no signal of this name.
     pub fn signal(&self, name: &str) -> Option<Vec<Option<f64>>> {
         let place = self.table.as_ref()?.index(name)?;

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use robot_chart::{Figure, escaped};
 use robot_plant::time;
 
-use super::Report;
+use super::{Report, animation};
 use crate::{
     budgets::{self, Budget},
     expectation::{Verdict, readable},
@@ -19,6 +19,7 @@ pub fn page(report: &Report, figures: &[Figure]) -> String {
         header(report),
         numbers(report),
         troubles(report),
+        animation::section(report),
         figures.iter().map(Figure::html).collect(),
         expectations(&report.result.verdicts),
         executors(report),
