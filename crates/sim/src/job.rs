@@ -165,7 +165,11 @@ impl Job {
         std::fs::create_dir_all(out).map_err(|e| failed(out, e))?;
         let files = ["report.html", "summary.json", "run.mcap"].map(|name| out.join(name));
         let [report_path, summary_path, recording_path] = &files;
-        let mut recording = Recording::create(recording_path)?;
+        let mut recording = Recording::create(
+            recording_path,
+            Arc::clone(&self.scenario.robot),
+            self.scenario.terrain,
+        )?;
         let mut traces = Traces::new(self.scenario.length);
         let mut outcome = self.run(&mut [watcher, &mut recording, &mut traces])?;
         recording.finish()?;

@@ -7,6 +7,7 @@ pub mod attitude_score;
 pub mod budgets;
 mod c_board;
 pub mod can_port;
+mod course;
 pub mod expectation;
 pub mod faults;
 pub mod gateway;

@@ -1,14 +1,22 @@
-//! `run.mcap`: every signal at 100 Hz and the firmware's log, as JSON with schemas, for Foxglove and PlotJuggler.
+//! `run.mcap`: every signal at 100 Hz, the firmware's log and the free robot's shape, as JSON with schemas, for Foxglove and
+//! PlotJuggler.
+
+mod scene;
 
 use std::{
     collections::BTreeMap,
     fs::File,
     io::BufWriter,
     path::{Path, PathBuf},
+    sync::Arc,
 };
 
 use mcap::{McapError, WriteOptions, Writer, records::MessageHeader};
-use robot_plant::time::{MS, NS, Ps, SECOND};
+use robot_description::Robot;
+use robot_plant::{
+    time::{MS, NS, Ps, SECOND},
+    world::Terrain,
+};
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -18,6 +26,7 @@ use super::{
     tree::Tree,
 };
 use crate::machine::LogLine;
+use scene::{SHAPES_PERIOD, Scene};
 
 const PERIOD: Ps = 10 * MS;
 
@@ -41,6 +50,10 @@ struct Topic {
 pub struct Recording {
     writer: Writer<BufWriter<File>>,
     topics: Vec<Topic>,
+    /// What the robot is drawn from.
+    robot: (Arc<Robot>, Terrain),
+    /// Channels of transforms and shapes.
+    scene: Option<(Scene, [u16; 2])>,
     log_channel: Option<u16>,
     sequence: u32,
     /// The first error; nothing is written after it.
@@ -48,7 +61,12 @@ pub struct Recording {
 }
 
 impl Recording {
-    pub fn create(path: &Path) -> Result<Self, RecordingError> {
+    /// A recording of this robot on this ground.
+    pub fn create(
+        path: &Path,
+        robot: Arc<Robot>,
+        terrain: Terrain,
+    ) -> Result<Self, RecordingError> {
         let file = File::create(path).map_err(|source| RecordingError::File {
             path: path.to_owned(),
             source,
@@ -59,6 +77,8 @@ impl Recording {
         Ok(Self {
             writer: options.create(BufWriter::new(file))?,
             topics: Vec::new(),
+            robot: (robot, terrain),
+            scene: None,
             log_channel: None,
             sequence: 0,
             failed: None,
@@ -102,6 +122,16 @@ impl Recording {
             let channel = self.add_channel(&format!("/{group}"), &schema, &tree.schema())?;
             self.topics.push(Topic { channel, tree });
         }
+        let (robot, terrain) = &self.robot;
+        if let Some(scene) = Scene::new(table, robot, *terrain) {
+            let transforms = scene::transforms_schema();
+            let shapes = scene::shapes_schema();
+            let channels = [
+                self.add_channel("/tf", "foxglove.FrameTransforms", &transforms)?,
+                self.add_channel("/scene", "foxglove.SceneUpdate", &shapes)?,
+            ];
+            self.scene = Some((scene, channels));
+        }
         Ok(())
     }
 
@@ -131,6 +161,20 @@ impl Recording {
             }
         }
         self.topics = topics;
+        self.write_scene(at, values)
+    }
+
+    fn write_scene(&mut self, at: Ps, values: &Values) -> Result<(), McapError> {
+        let Some((scene, [transforms, shapes])) = self.scene.take() else {
+            return Ok(());
+        };
+        if at.is_multiple_of(SHAPES_PERIOD) {
+            self.write(shapes, at, &scene.shapes(at))?;
+        }
+        if let Some(message) = scene.transforms(at, values) {
+            self.write(transforms, at, &message)?;
+        }
+        self.scene = Some((scene, [transforms, shapes]));
         Ok(())
     }
 

@@ -1,13 +1,15 @@
 //! The free robot in pictures: a strip, and a viewer that plays the run.
 
-mod ground;
 mod strip;
 mod viewer;
 
 use robot_chart::escaped;
 
 use super::Report;
-use crate::skeleton::{Skeleton, SkeletonSignals};
+use crate::{
+    course,
+    skeleton::{Skeleton, SkeletonSignals},
+};
 
 /// The robot at one instant.
 struct Frame {
@@ -22,7 +24,7 @@ pub fn section(report: &Report) -> String {
         return String::new();
     }
     let robot = &report.scenario.robot;
-    let ground = ground::profiles(&report.scenario.terrain);
+    let ground = course::profiles(&report.scenario.terrain);
     format!(
         "<h2>The robot</h2>\n<figure><figcaption>{}</figcaption>\n{}</figure>\n{}",
         escaped(

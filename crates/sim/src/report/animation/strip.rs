@@ -4,8 +4,11 @@ use std::fmt::Write;
 
 use robot_description::Robot;
 
-use super::{Frame, ground::Profiles, ground::height_m};
-use crate::skeleton::{Skeleton, Vector};
+use super::Frame;
+use crate::{
+    course::{Profiles, height_m},
+    skeleton::{Skeleton, Vector},
+};
 
 /// Pictures in a row, and rows.
 const COLUMNS: usize = 6;

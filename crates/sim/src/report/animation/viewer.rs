@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use robot_description::Robot;
 
-use super::{Frame, ground::Profiles};
-use crate::skeleton::SIDES;
+use super::Frame;
+use crate::{course::Profiles, skeleton::SIDES};
 
 const FRAMES: usize = 1_200;
 

@@ -3,10 +3,10 @@
 use robot_plant::world::Terrain;
 
 /// Points (x, z) of the ground under the left and the right wheel. The first and the last height go on for ever.
-pub(super) type Profiles = [Vec<[f64; 2]>; 2];
+pub(crate) type Profiles = [Vec<[f64; 2]>; 2];
 
 /// The ground of a course. Plates are drawn level: their heights are the plant's secret.
-pub(super) fn profiles(terrain: &Terrain) -> Profiles {
+pub(crate) fn profiles(terrain: &Terrain) -> Profiles {
     let flat = || vec![[0.0, 0.0]];
     match *terrain {
         Terrain::Flat | Terrain::Plates { .. } | Terrain::Slippery { .. } => [flat(), flat()],
@@ -52,7 +52,7 @@ fn both(profile: Vec<[f64; 2]>) -> Profiles {
 }
 
 /// Height of a profile at `x`.
-pub(super) fn height_m(profile: &[[f64; 2]], x: f64) -> f64 {
+pub(crate) fn height_m(profile: &[[f64; 2]], x: f64) -> f64 {
     let mut before: Option<[f64; 2]> = None;
     for point in profile {
         if x < point[0] {
