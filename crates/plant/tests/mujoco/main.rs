@@ -5,4 +5,5 @@
 
 mod accelerations;
 mod flight;
+mod ground;
 mod oracle;

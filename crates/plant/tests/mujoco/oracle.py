@@ -196,7 +196,59 @@ def flight(oracle, state, inputs, step_s, steps, every):
     return seen
 
 
+class OnGround(Oracle):
+    """A free robot on MuJoCo's floor, with MuJoCo's own loops, contacts and steps."""
+
+    def __init__(self, file, question):
+        super().__init__(file, "Free")
+        model = self.model
+        model.opt.disableflags = 0
+        model.opt.timestep = question["step_s"]
+        model.opt.impratio = 100.0
+        model.eq_solref[:] = [2 * question["step_s"], 1.0]
+        floor = model.geom("floor")
+        for side in SIDES:
+            wheel = model.geom(f"{side}_wheel")
+            # Friction against rolling is a length in MuJoCo: torque per newton of load.
+            for geom in (wheel, floor):
+                geom.friction = [question["friction"], 1e-6, question["rolling_m"]]
+            wheel.condim = 6
+            if "tyre_n_per_m" in question:
+                self.soften(wheel, question)
+
+    def soften(self, wheel, question):
+        """Makes a contact a spring and damper. MuJoCo asks for both per inverse weight; with a small impedance nothing of its
+        own comes in between."""
+        weight = self.model.body_invweight0[wheel.bodyid[0], 0]
+        wheel.solref = [-question["tyre_n_per_m"] * weight, -question["tyre_n_per_mps"] * weight]
+        wheel.solimp = [1e-3, 1e-3, 0.001, 0.5, 2.0]
+        wheel.priority = 1
+
+    def run(self, question):
+        """Hips held by springs and dampers at their first angles, wheels under a constant torque."""
+        model, data = self.model, self.data
+        self.pose(question["state"])
+        hips = [joint.dofadr[0] for joint in self.hips]
+        wheels = [joint.dofadr[0] for joint in self.wheels]
+        places = [joint.qposadr[0] for joint in self.hips]
+        wanted = data.qpos[places].copy()
+        seen = []
+        for n in range(question["steps"]):
+            data.qfrc_applied[hips] = (
+                question["kp"] * (wanted - data.qpos[places]) - question["kd"] * data.qvel[hips]
+            )
+            data.qfrc_applied[wheels] = question["wheel_nm"]
+            mujoco.mj_step(model, data)
+            if (n + 1) % question["every"] == 0:
+                x, _, z = data.qpos[:3]
+                w, _, y, _ = data.qpos[3:7]
+                seen.append([x, z, 2 * np.arctan2(y, w), *data.qpos[places], *data.qvel[wheels]])
+        return [list(row) for row in seen]
+
+
 def answer(files, question):
+    if question["task"] == "ground":
+        return OnGround(files["Free"], question).run(question)
     oracle = Oracle(files[question["hold"]], question["hold"])
     states = question.get("states", [])
     match question["task"]:

@@ -1,0 +1,259 @@
+//! On the floor, with MuJoCo's own contacts and steps.
+
+use robot_description::Robot;
+use robot_plant::free::{FreeBody, FreeInputs, FreeSetup, Hold, Start};
+use serde_json::{Value, json};
+
+use crate::oracle::{Oracle, numbers, robot, state_json};
+
+const STEP_S: f64 = 250e-6;
+const EVERY: u32 = 4;
+const EVERY_S: f64 = STEP_S * EVERY as f64;
+/// Springs and dampers that hold the hips.
+const KP_NM_PER_RAD: f64 = 150.0;
+const KD_NM_PER_RPS: f64 = 4.0;
+const GRAVITY_MPS2: f64 = 9.80665;
+/// Of the plant: friction, rolling resistance by load and radius, and a tyre that gives 0.8 mm under half of the robot, damped
+/// by 0.15 under wheel and motor.
+const FRICTION: f64 = 0.8;
+const ROLLING: f64 = 0.015;
+const TYRE_GIVES_M: f64 = 0.8e-3;
+const TYRE_DAMPING: f64 = 0.15;
+/// A height that stays as near to its last one has settled.
+const SETTLED_M: f64 = 1e-3;
+
+/// One moment: place x and z, pitch, hips, wheels against their shanks.
+struct Moment {
+    x_m: f64,
+    z_m: f64,
+    pitch_rad: f64,
+    joint_rad: [f64; 4],
+    wheel_rps: [f64; 2],
+}
+
+struct Run<'a> {
+    robot: &'a Robot,
+    start: Start,
+    wheel_nm: [f64; 2],
+    seconds: f64,
+}
+
+impl Run<'_> {
+    fn body(&self) -> FreeBody {
+        let setup = FreeSetup {
+            start: self.start,
+            ..FreeSetup::default()
+        };
+        FreeBody::new(self.robot, &setup)
+    }
+
+    fn moments(&self) -> usize {
+        (self.seconds / EVERY_S).round() as usize
+    }
+
+    fn in_plant(&self) -> Vec<Moment> {
+        let mut body = self.body();
+        let wanted_rad = body.joint_pos_rad();
+        let moments = (0..self.moments()).map(|_| {
+            for _ in 0..EVERY {
+                let (rad, rps) = (body.joint_pos_rad(), body.joint_vel_rps());
+                let held =
+                    |n: usize| KP_NM_PER_RAD * (wanted_rad[n] - rad[n]) - KD_NM_PER_RPS * rps[n];
+                let inputs = FreeInputs {
+                    wheel_nm: self.wheel_nm,
+                    joint_nm: std::array::from_fn(held),
+                    ..FreeInputs::default()
+                };
+                body.step(&inputs, STEP_S);
+            }
+            let state = body.state();
+            let [w, _, y, _] = state.attitude;
+            Moment {
+                x_m: state.position_m[0],
+                z_m: state.position_m[2],
+                pitch_rad: 2.0 * y.atan2(w),
+                joint_rad: state.joint_rad,
+                wheel_rps: state.wheel_rps,
+            }
+        });
+        moments.collect()
+    }
+
+    fn in_mujoco(&self, test: &str, tyre: bool) -> Option<Vec<Moment>> {
+        let oracle = Oracle::new(self.robot, test)?;
+        let mut question = json!({
+            "state": state_json(&self.body().state()),
+            "wheel_nm": self.wheel_nm,
+            "step_s": STEP_S,
+            "steps": self.moments() * EVERY as usize,
+            "every": EVERY,
+            "kp": KP_NM_PER_RAD,
+            "kd": KD_NM_PER_RPS,
+            "friction": FRICTION,
+            "rolling_m": ROLLING * self.robot.wheels.radius_m,
+        });
+        if tyre {
+            let n_per_m = self.robot.total_mass_kg() / 2.0 * GRAVITY_MPS2 / TYRE_GIVES_M;
+            let unsprung_kg = self.robot.wheels.mass_kg + self.robot.wheels.motor_mass_kg;
+            question["tyre_n_per_m"] = json!(n_per_m);
+            question["tyre_n_per_mps"] = json!(2.0 * TYRE_DAMPING * (n_per_m * unsprung_kg).sqrt());
+        }
+        let answer = oracle.ask(Hold::Free, "ground", question);
+        let rows = answer.as_array().expect("a list").iter();
+        Some(rows.map(moment).collect())
+    }
+}
+
+fn moment(row: &Value) -> Moment {
+    let [x_m, z_m, pitch_rad, a, b, c, d, left, right] =
+        <[f64; 9]>::try_from(numbers(row)).expect("nine numbers");
+    Moment {
+        x_m,
+        z_m,
+        pitch_rad,
+        joint_rad: [a, b, c, d],
+        wheel_rps: [left, right],
+    }
+}
+
+/// A robot that does not fall over within a test, since its body hardly turns.
+fn cart() -> Robot {
+    let mut robot = robot("fivebar");
+    robot.body.inertia_kgm2 = [50.0; 3];
+    robot
+}
+
+/// The largest difference of one signal over a run.
+fn apart(pairs: &[(Moment, Moment)], signal: impl Fn(&Moment) -> f64) -> f64 {
+    pairs
+        .iter()
+        .fold(0.0, |it, (a, b)| it.max((signal(a) - signal(b)).abs()))
+}
+
+/// Time after which a height stays near its last one.
+fn settled_s(moments: &[Moment]) -> f64 {
+    let last_m = moments.last().map_or(0.0, |it| it.z_m);
+    let far = |it: &Moment| (it.z_m - last_m).abs() > SETTLED_M;
+    moments
+        .iter()
+        .rposition(far)
+        .map_or(0.0, |n| n as f64 * EVERY_S)
+}
+
+/// Height and hips over the whole fall from 0.1 m, the rebound and the rest.
+#[test]
+fn a_dropped_robot_settles_as_in_mujoco() {
+    let robot = cart();
+    let run = Run {
+        robot: &robot,
+        start: Start::Dropped { height_m: 0.1 },
+        wheel_nm: [0.0; 2],
+        seconds: 0.6,
+    };
+    let Some(expected) = run.in_mujoco("drop", true) else {
+        return;
+    };
+    let found = run.in_plant();
+    let settled_s = [&found, &expected].map(|it| settled_s(it));
+    let pairs: Vec<_> = found.into_iter().zip(expected).collect();
+    let height_m = apart(&pairs, |it| it.z_m);
+    let hips_rad = [0, 1, 2, 3].map(|n| apart(&pairs, |it| it.joint_rad[n]));
+    let hip_rad = hips_rad.into_iter().fold(0.0, f64::max);
+    let rest_m = apart(&pairs[pairs.len() - 50..], |it| it.z_m);
+    println!(
+        "drop: height {height_m:.1e} m, at rest {rest_m:.1e} m, hips {hip_rad:.1e} rad apart at most; settled after \
+         {settled_s:.3?} s"
+    );
+    assert!(height_m < 1.5e-3 && rest_m < 1e-4 && hip_rad < 6e-3);
+    assert!((settled_s[0] - settled_s[1]).abs() < 0.01);
+}
+
+/// A robot at rest under a torque on both wheels, in the plant and in MuJoCo.
+struct Rolling<'a> {
+    robot: &'a Robot,
+    test: &'a str,
+    nm: f64,
+    seconds: f64,
+    /// Largest differences of place in m, pitch in rad and wheel speed in rad/s.
+    most: [f64; 3],
+}
+
+impl Rolling<'_> {
+    fn assert_as_in_mujoco(&self) {
+        let run = Run {
+            robot: self.robot,
+            start: Start::Standing,
+            wheel_nm: [self.nm; 2],
+            seconds: self.seconds,
+        };
+        let Some(expected) = run.in_mujoco(self.test, false) else {
+            return;
+        };
+        let pairs: Vec<_> = run.in_plant().into_iter().zip(expected).collect();
+        let found = [
+            apart(&pairs, |it| it.x_m),
+            apart(&pairs, |it| it.pitch_rad),
+            apart(&pairs, |it| it.wheel_rps[0]),
+        ];
+        let (here, there) = pairs.last().expect("moments");
+        println!(
+            "{}, {} N·m: {:.4} m here, {:.4} m in MuJoCo, {:.1} rad/s; apart at most {found:.6?} m, rad, rad/s",
+            self.test, self.nm, here.x_m, there.x_m, here.wheel_rps[0]
+        );
+        let near = found
+            .iter()
+            .zip(self.most)
+            .all(|(found, most)| *found < most);
+        assert!(near, "{found:?}, limits {:?}", self.most);
+    }
+}
+
+#[test]
+fn a_torque_rolls_a_cart_as_in_mujoco() {
+    let rolling = Rolling {
+        robot: &cart(),
+        test: "cart",
+        nm: 0.5,
+        seconds: 0.3,
+        most: [4e-4, 1e-4, 0.15],
+    };
+    rolling.assert_as_in_mujoco();
+}
+
+/// The torque is twice what friction passes on.
+#[test]
+fn a_cart_slips_as_in_mujoco() {
+    let rolling = Rolling {
+        robot: &cart(),
+        test: "slipping",
+        nm: 3.0,
+        seconds: 0.3,
+        most: [9e-3, 4e-4, 2.0],
+    };
+    rolling.assert_as_in_mujoco();
+}
+
+#[test]
+fn a_torque_tips_the_body_as_in_mujoco() {
+    let rolling = Rolling {
+        robot: &robot("fivebar"),
+        test: "tipping",
+        nm: 0.4,
+        seconds: 0.3,
+        most: [3e-4, 2e-3, 0.06],
+    };
+    rolling.assert_as_in_mujoco();
+}
+
+/// Until the body hits the floor.
+#[test]
+fn a_large_torque_throws_the_body_over_as_in_mujoco() {
+    let rolling = Rolling {
+        robot: &robot("fivebar"),
+        test: "thrown",
+        nm: 3.0,
+        seconds: 0.2,
+        most: [1.5e-3, 1.5e-2, 0.5],
+    };
+    rolling.assert_as_in_mujoco();
+}
