@@ -57,7 +57,7 @@ fn generate() -> Result<(), String> {
         (CHOSEN, chosen.as_str()),
     ] {
         let robot = read(name)?;
-        profiles += &profile::constant(&constants, &robot);
+        profiles += &profile::constant(&constants, &robot)?;
         layouts += &layout::constant(&constants, &robot);
     }
     write("profiles.rs", &profiles)?;

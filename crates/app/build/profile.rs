@@ -8,9 +8,9 @@ use crate::{
 };
 
 /// `pub const …: RobotProfile`.
-pub fn constant(Constants { profile, .. }: &Constants, robot: &Robot) -> String {
+pub fn constant(Constants { profile, .. }: &Constants, robot: &Robot) -> Result<String, String> {
     let Robot { name, wheels, .. } = robot;
-    format!(
+    Ok(format!(
         "/// The robot `{name}`.\n\
          pub const {profile}: RobotProfile = RobotProfile {{ \
              name: {name:?}, \
@@ -26,9 +26,9 @@ pub fn constant(Constants { profile, .. }: &Constants, robot: &Robot) -> String 
         imu_up_m = f32(robot.imu.place_m[2]),
         legs = legs(robot),
         mass = mass(robot),
-        gains = gains::schedule(robot),
+        gains = gains::schedule(robot)?,
         limits = limits(robot),
-    )
+    ))
 }
 
 fn wheel_odom(robot: &Robot) -> String {
