@@ -2,7 +2,8 @@
 
 use crate::domain::{
     BalanceStatus, ChassisCommand, HighLevelCommand, JointControllerConfig, OperatorState,
-    SensorsSnapshot, StandPermit, StateEstimate, WheelControllerConfig, WheelOdomConfig,
+    RobotProfile, SensorsSnapshot, StandPermit, StateEstimate, WheelControllerConfig,
+    WheelOdomConfig,
 };
 
 /// What a controller gets in one tick.
@@ -18,6 +19,8 @@ pub struct ChassisControllerInput<'a> {
     pub wheel_ctrl_cfg: &'a WheelControllerConfig,
     /// Gains of the joint controller.
     pub joint_ctrl_cfg: &'a JointControllerConfig,
+    /// Figures of the robot.
+    pub profile: &'a RobotProfile,
     /// The pilot's switches.
     pub operator_state: &'a OperatorState,
     /// The command to follow. Its components are meant to lie in −1…1, but may not.

@@ -16,7 +16,7 @@ use crate::{
 /// ```
 /// use robot_app::control::{ChassisController, ChassisControllerInput, DefaultController};
 /// use robot_app::domain::{HighLevelCommand, OperatorState, RobotConfig, SensorsSnapshot, StandPermit};
-/// use robot_app::domain::StateEstimate;
+/// use robot_app::domain::{StateEstimate, robots};
 ///
 /// let config = RobotConfig::default();
 /// let output = DefaultController::default().step(&ChassisControllerInput {
@@ -25,6 +25,7 @@ use crate::{
 ///     wheel_odom_cfg: &config.wheel_odom,
 ///     wheel_ctrl_cfg: &config.wheel_ctrl,
 ///     joint_ctrl_cfg: &config.joint_ctrl,
+///     profile: &robots::FIVEBAR,
 ///     operator_state: &OperatorState::default(),
 ///     hl_cmd: HighLevelCommand { vx: 0.05, ..Default::default() },
 ///     stand: StandPermit::Ready,
@@ -103,7 +104,7 @@ mod tests {
     use super::*;
     use crate::domain::{
         JointControllerConfig, JointState, OperatorState, SensorsSnapshot, StandPermit,
-        StateEstimate,
+        StateEstimate, robots,
     };
 
     fn command(
@@ -117,6 +118,7 @@ mod tests {
             wheel_odom_cfg: &WheelOdomConfig::default(),
             wheel_ctrl_cfg: &WheelControllerConfig::default(),
             joint_ctrl_cfg: &JointControllerConfig::default(),
+            profile: &robots::FIVEBAR,
             operator_state: &OperatorState::default(),
             hl_cmd,
             stand: StandPermit::Ready,

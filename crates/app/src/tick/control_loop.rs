@@ -16,7 +16,7 @@ use crate::{
     diagnostics::{DiagnosticsSnapshot, TELEMETRY_PERIOD_TICKS, Telemetry},
     domain::{
         BusId, CanFrame, ChassisCommand, JointFeedback, LegGeometry, MotorFeedback, MountingConfig,
-        RobotConfig, age_us,
+        RobotConfig, RobotProfile, age_us,
     },
     estimation::{HeadingSource, InsEstimator},
     kinematics::Leg,
@@ -89,6 +89,7 @@ fn known_legs(geometry: &LegGeometry, motor: &MotorFeedback) -> Option<[Leg; 2]>
 /// ```
 #[derive(Clone, Debug)]
 pub struct ControlLoop<C: ChassisController = UserController> {
+    profile: &'static RobotProfile,
     config: RobotConfig,
     controller: C,
     motors: MotorManager,
@@ -130,6 +131,7 @@ impl<C: ChassisController> ControlLoop<C> {
         estimator.set_heading_source(heading_source(&config.mounting));
         estimator.set_imu_height(layout.profile().imu_up_m);
         Self {
+            profile: layout.profile(),
             config,
             controller,
             motors: MotorManager::new(layout),

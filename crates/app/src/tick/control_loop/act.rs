@@ -136,6 +136,7 @@ impl<C: ChassisController> ControlLoop<C> {
             wheel_odom_cfg: &self.config.wheel_odom,
             wheel_ctrl_cfg: &self.config.wheel_ctrl,
             joint_ctrl_cfg: &self.config.joint_ctrl,
+            profile: self.profile,
             operator_state: &inputs.remote.operator,
             hl_cmd,
             stand: self.state.safety.stand,

@@ -1,0 +1,20 @@
+//! Balancing on two wheels.
+
+mod contact;
+mod controller;
+mod gains;
+mod jump;
+mod law;
+mod measured;
+mod ramp;
+mod reference;
+mod sit_down;
+mod stand_up;
+mod support;
+mod tilt;
+mod torques;
+mod trim;
+mod virtual_leg;
+
+pub use controller::BalanceController;
+pub use virtual_leg::{LegForce, force_of, hip_torques_nm, reaction_nm};

@@ -1,0 +1,260 @@
+//! The balance controller: what the robot does from sitting to jumping, and what it tells.
+
+use super::{
+    jump::{self, Jump, Legs},
+    law::{Goal, Ground, Law, Torques},
+    measured::Measured,
+    ramp::Ramp,
+    reference::Wish,
+    sit_down::SitDown,
+    stand_up::{Rising, StandUp},
+    torques::joint_command,
+};
+use crate::{
+    control::{ChassisControllerInput, ChassisControllerOutput},
+    domain::{
+        BalanceProfile, BalanceState, BalanceStatus, ChassisCommand, HighLevelCommand,
+        StandUpPhase, WheelCommand, WheelOdomConfig,
+    },
+    math::scalar,
+};
+
+/// Longest time step in s that counts, and the usual one.
+const MAX_DT_S: f32 = 0.005;
+const TICK_S: f32 = 0.001;
+/// Rate in m/s at which the pilot changes the legs' length, and in rad/s the roll.
+const LENGTH_MPS: f32 = 0.25;
+const ROLL_RPS: f32 = 0.5;
+/// Beyond this pitch, roll or lean in rad the robot cannot catch itself.
+const MAX_PITCH_RAD: f32 = 1.0;
+const MAX_ROLL_RAD: f32 = 0.7;
+const MAX_LEAN_RAD: f32 = 1.2;
+/// Time in s over which the present rate of lean counts towards a fall.
+const FALL_AHEAD_S: f32 = 0.1;
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Phase {
+    StandUp(StandUp),
+    Balance,
+    Jump(Jump),
+    SitDown(SitDown),
+    Fallen,
+}
+
+/// A robot that stands up, balances, jumps and sits down.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BalanceController {
+    phase: Phase,
+    law: Law,
+    length: Ramp,
+    roll: Ramp,
+    jump_wished: bool,
+    ts_us: u64,
+}
+
+impl BalanceController {
+    /// Begins to stand up. Returns `None` while anything that it takes is unknown or not ready.
+    pub fn stand_up(input: &ChassisControllerInput<'_>) -> Option<Self> {
+        let measured = Measured::new(&input.profile.balance.legs, input);
+        measured.known.then(|| Self {
+            phase: Phase::StandUp(StandUp::new(&measured)),
+            law: Law::new(&input.profile.balance, &measured),
+            length: Ramp::at(measured.length_m()),
+            roll: Ramp::default(),
+            jump_wished: input.hl_cmd.jump,
+            ts_us: input.sensors.ts_us,
+        })
+    }
+
+    /// The commands of this tick, or `None` once the robot sits.
+    pub fn step(&mut self, input: &ChassisControllerInput<'_>) -> Option<ChassisControllerOutput> {
+        let dt_s = self.time_step_s(input.sensors.ts_us);
+        let profile = &input.profile.balance;
+        let measured = Measured::new(&profile.legs, input);
+        let wishes_to_stand = input.hl_cmd.stand && input.stand.permits();
+        let torques = if measured.known && !self.has_fallen(&measured) {
+            self.torques(input, &measured, wishes_to_stand, dt_s)?
+        } else {
+            self.phase = Phase::Fallen;
+            None
+        };
+        if self.phase == Phase::Fallen && !wishes_to_stand {
+            return None;
+        }
+        Some(ChassisControllerOutput {
+            cmd: match torques {
+                Some(torques) => command(&torques, input.wheel_odom_cfg),
+                None => ChassisCommand::STOP,
+            },
+            cmd_valid: true,
+            balance: self.status(&measured),
+        })
+    }
+
+    fn time_step_s(&mut self, now_us: u64) -> f32 {
+        let elapsed_us = now_us.saturating_sub(self.ts_us);
+        self.ts_us = now_us;
+        match u32::try_from(elapsed_us) {
+            Ok(0) | Err(_) => TICK_S,
+            Ok(us) => scalar::min(us as f32 * 1e-6, MAX_DT_S),
+        }
+    }
+
+    /// Torques of this tick; without any the robot has fallen or given up. `None` once it sits.
+    #[allow(clippy::option_option)]
+    fn torques(
+        &mut self,
+        input: &ChassisControllerInput<'_>,
+        measured: &Measured,
+        wishes_to_stand: bool,
+        dt_s: f32,
+    ) -> Option<Option<Torques>> {
+        let profile = &input.profile.balance;
+        let odometry = input.wheel_odom_cfg;
+        if !wishes_to_stand && matches!(self.phase, Phase::Balance | Phase::Jump(_)) {
+            self.phase = Phase::SitDown(SitDown::new(self.length));
+        }
+        let jump_edge = input.hl_cmd.jump && !self.jump_wished;
+        self.jump_wished = input.hl_cmd.jump;
+        let torques = match &mut self.phase {
+            Phase::StandUp(_) if !wishes_to_stand => return None,
+            Phase::StandUp(stand_up) => {
+                let length_m = standing_length_m(profile, &input.hl_cmd);
+                match stand_up.step(&mut self.law, profile, odometry, measured, length_m, dt_s) {
+                    Rising::Torques(torques) => torques,
+                    Rising::Stands(length_m) => {
+                        self.length = Ramp::at(length_m);
+                        self.roll = Ramp::default();
+                        self.phase = Phase::Balance;
+                        self.balance(input, measured, None, dt_s)
+                    }
+                    Rising::GaveUp => {
+                        self.phase = Phase::Fallen;
+                        return Some(None);
+                    }
+                }
+            }
+            Phase::Balance => {
+                if jump_edge && !self.law.airborne() {
+                    self.phase = Phase::Jump(Jump::START);
+                }
+                self.balance(input, measured, None, dt_s)
+            }
+            Phase::Jump(jump) => {
+                let airborne = self.law.airborne();
+                let legs = jump.step(profile, measured, airborne, &self.length, dt_s);
+                if legs.is_none() {
+                    self.phase = Phase::Balance;
+                }
+                self.balance(input, measured, legs, dt_s)
+            }
+            Phase::SitDown(sit_down) => {
+                sit_down.step(&mut self.law, profile, odometry, measured, dt_s)?
+            }
+            Phase::Fallen => return Some(None),
+        };
+        Some(Some(torques))
+    }
+
+    /// Balances and follows the pilot. In a jump the legs do what it needs.
+    fn balance(
+        &mut self,
+        input: &ChassisControllerInput<'_>,
+        measured: &Measured,
+        legs: Option<Legs>,
+        dt_s: f32,
+    ) -> Torques {
+        let profile = &input.profile.balance;
+        let limits = &profile.limits;
+        let wished = |stick: f32| scalar::clamp(stick, -1.0, 1.0);
+        let command = &input.hl_cmd;
+        let airborne = self.law.airborne();
+        let (push_n, ground) = if let Some(legs) = legs {
+            self.length = legs.length;
+            (legs.push_n, legs.ground)
+        } else if airborne {
+            self.length = Ramp::at(jump::landing_length_m(profile));
+            (None, Ground::Felt)
+        } else {
+            let wished_m = standing_length_m(profile, command);
+            self.length.step(wished_m, LENGTH_MPS, dt_s);
+            (None, Ground::Felt)
+        };
+        self.roll
+            .step(wished(command.roll) * limits.max_roll_rad, ROLL_RPS, dt_s);
+        let goal = Goal {
+            wish: Wish {
+                speed_mps: wished(command.vx) * limits.max_speed_mps,
+                yaw_rps: wished(command.wz) * limits.max_yaw_rps,
+            },
+            length_m: self.length.value,
+            length_mps: self.length.rate,
+            roll_rad: self.roll.value,
+            pitch_rad: 0.0,
+            push_n,
+            learn: legs.is_none(),
+            ground,
+        };
+        self.law
+            .step(profile, input.wheel_odom_cfg, measured, &goal, dt_s)
+    }
+
+    /// Whether the robot is beyond recovery, or will be in a moment.
+    fn has_fallen(&self, measured: &Measured) -> bool {
+        if !matches!(self.phase, Phase::Balance | Phase::Jump(_)) {
+            return matches!(self.phase, Phase::Fallen);
+        }
+        let tilt = &measured.tilt;
+        let soon = |angle_rad: f32, rate_rps: f32| (angle_rad + rate_rps * FALL_AHEAD_S).abs();
+        soon(tilt.pitch_rad, tilt.pitch_rps) > MAX_PITCH_RAD
+            || soon(tilt.roll_rad, tilt.roll_rps) > MAX_ROLL_RAD
+            || soon(measured.mean_lean_rad(), measured.mean_lean_rps()) > MAX_LEAN_RAD
+    }
+
+    fn status(&self, measured: &Measured) -> BalanceStatus {
+        let mut phase = StandUpPhase::None;
+        let state = match &self.phase {
+            Phase::StandUp(stand_up) => {
+                phase = stand_up.phase;
+                BalanceState::StandUp
+            }
+            Phase::Balance => BalanceState::Balance,
+            Phase::Jump(_) => BalanceState::Jump,
+            Phase::SitDown(_) => BalanceState::SitDown,
+            Phase::Fallen => BalanceState::Fallen,
+        };
+        BalanceStatus {
+            state,
+            phase,
+            airborne: self.law.airborne(),
+            slipping: false,
+            leg_m: measured.legs.map(|leg| leg.length_m),
+            lean_rad: measured.lean_rad,
+            contact_n: self.law.contact.wheels.map(|wheel| wheel.force_n),
+        }
+    }
+}
+
+/// Leg length in m that the pilot wishes.
+fn standing_length_m(profile: &BalanceProfile, command: &HighLevelCommand) -> f32 {
+    let limits = &profile.limits;
+    let middle_m = 0.5 * (limits.min_length_m + limits.max_length_m);
+    let half_m = 0.5 * (limits.max_length_m - limits.min_length_m);
+    middle_m + half_m * scalar::clamp(command.height, -1.0, 1.0)
+}
+
+fn command(torques: &Torques, odometry: &WheelOdomConfig) -> ChassisCommand {
+    let [left_nm, right_nm] = torques.wheels_nm;
+    let [left_sign, right_sign] = odometry.rpm_signs();
+    let current_ma = |sign: f32, nm: f32| WheelCommand {
+        current_ma: sign * nm * odometry.ma_per_nm(),
+    };
+    let [[left_front, left_rear], [right_front, right_rear]] = torques.hips_nm;
+    ChassisCommand {
+        wheels: [
+            current_ma(left_sign, left_nm),
+            current_ma(right_sign, right_nm),
+        ],
+        joints: [left_front, left_rear, right_front, right_rear].map(joint_command),
+    }
+}

@@ -1,0 +1,137 @@
+//! A jump: crouch, push off, fly with drawn-in legs, land on longer ones.
+
+use super::{law::Ground, measured::Measured, ramp::Ramp, support::GRAVITY_MPS2};
+use crate::{domain::BalanceProfile, kinematics::Leg, math::scalar};
+
+/// Crouching: rate in m/s and longest time in s.
+const CROUCH_MPS: f32 = 0.5;
+const CROUCH_S: f32 = 0.6;
+/// The legs are down or up when they are this close to their length, in m.
+const CLOSE_M: f32 = 0.012;
+/// Part of the hips' torque that pushes off. The rest keeps the balance.
+const PUSH_PART: f32 = 0.9;
+/// Pushing off ends so much before the legs' full length, in m.
+const STOP_SHORT_M: f32 = 0.03;
+const PUSH_S: f32 = 0.3;
+/// Legs are this much longer than the shortest while they are drawn in, for this part of the time up to the top.
+const DRAWN_IN_M: f32 = 0.01;
+const DRAWN_IN_PART: f32 = 1.3;
+/// Rate in m/s at which legs change their length in the air.
+const FLIGHT_MPS: f32 = 1.5;
+/// Time in s for which a robot that has pushed off is in the air whatever it feels, and after which it has landed.
+const RISE_S: f32 = 0.08;
+const FLIGHT_S: f32 = 1.0;
+
+/// Parts of a jump.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Part {
+    Crouch,
+    Push,
+    Flight {
+        /// Speed upwards at take-off in m/s.
+        start_mps: f32,
+    },
+}
+
+/// A jump under way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Jump {
+    part: Part,
+    elapsed_s: f32,
+}
+
+/// What the legs do in a tick of a jump.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Legs {
+    pub length: Ramp,
+    pub push_n: Option<f32>,
+    pub ground: Ground,
+}
+
+impl Jump {
+    pub const START: Self = Self {
+        part: Part::Crouch,
+        elapsed_s: 0.0,
+    };
+
+    /// Returns `None` when the robot has landed.
+    pub fn step(
+        &mut self,
+        profile: &BalanceProfile,
+        measured: &Measured,
+        airborne: bool,
+        length: &Ramp,
+        dt_s: f32,
+    ) -> Option<Legs> {
+        self.elapsed_s += dt_s;
+        let limits = &profile.limits;
+        let mut length = *length;
+        let mut push_n = None;
+        let mut ground = Ground::Touched;
+        match &mut self.part {
+            Part::Crouch => {
+                length.step(limits.min_length_m, CROUCH_MPS, dt_s);
+                let down = measured.length_m() < limits.min_length_m + CLOSE_M;
+                if down || self.elapsed_s > CROUCH_S {
+                    self.begin(Part::Push);
+                }
+            }
+            Part::Push => {
+                length = Ramp::at(measured.length_m());
+                push_n = Some(push(limits.hip_nm, &measured.legs));
+                let stretched = measured.length_m() > limits.reach_length_m - STOP_SHORT_M;
+                if stretched || self.elapsed_s > PUSH_S {
+                    self.begin(Part::Flight {
+                        start_mps: measured.length_mps(),
+                    });
+                }
+            }
+            Part::Flight { start_mps } => {
+                // The axles are pulled along from the ground.
+                let mass = &profile.mass;
+                let rise_s = *start_mps * mass.carried_kg / (mass.total_kg * GRAVITY_MPS2);
+                let drawn_in = self.elapsed_s < DRAWN_IN_PART * rise_s;
+                let target_m = if drawn_in {
+                    limits.min_length_m + DRAWN_IN_M
+                } else {
+                    landing_length_m(profile)
+                };
+                length.step(target_m, FLIGHT_MPS, dt_s);
+                if self.elapsed_s < RISE_S {
+                    ground = Ground::Left;
+                } else if !airborne || self.elapsed_s > FLIGHT_S {
+                    return None;
+                }
+            }
+        }
+        Some(Legs {
+            length,
+            push_n,
+            ground,
+        })
+    }
+
+    fn begin(&mut self, part: Part) {
+        *self = Self {
+            part,
+            elapsed_s: 0.0,
+        };
+    }
+}
+
+/// Leg length in m on which a robot lands: most of its way is left to slow down.
+pub fn landing_length_m(profile: &BalanceProfile) -> f32 {
+    let limits = &profile.limits;
+    limits.min_length_m + 0.8 * (limits.max_length_m - limits.min_length_m)
+}
+
+/// The push of each leg in N that its hips can give.
+fn push(hip_nm: f32, legs: &[Leg; 2]) -> f32 {
+    let mut least_n = f32::INFINITY;
+    for leg in legs {
+        for slope in leg.length_per_rad {
+            least_n = scalar::min(least_n, PUSH_PART * hip_nm / scalar::max(slope.abs(), 0.02));
+        }
+    }
+    least_n
+}

@@ -1,0 +1,277 @@
+//! The balance law: state feedback about a moving reference, support by the legs, and what is done in the air.
+
+use super::{
+    contact::Contact,
+    gains::{Gains, STATES},
+    measured::Measured,
+    reference::{Reference, Wish},
+    support::{GRAVITY_MPS2, Stance, Support},
+    torques,
+    trim::Trim,
+    virtual_leg::LegForce,
+};
+use crate::{
+    domain::{BalanceProfile, WheelOdomConfig},
+    math::scalar,
+};
+
+/// Trim is learned while the speed differs by less than this from its reference, in m/s, and that changes by less than
+/// this, in m/s².
+const LEARN_MPS: f32 = 0.4;
+const LEARN_MPS2: f32 = 0.3;
+/// Largest speed error in m/s that counts: a larger one would lean the robot further than it can catch itself.
+const MAX_SPEED_ERROR_MPS: f32 = 0.7;
+/// Damping of a wheel in the air in N·m·s/rad.
+const AIR_DAMPING: f32 = 0.05;
+
+/// Push in N that keeps a wheel on the ground while the body would lift it.
+const LEAST_PUSH_N: f32 = 6.0;
+
+/// What the robot shall do in this tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Goal {
+    pub wish: Wish,
+    /// Mean length of the legs in m and its rate in m/s.
+    pub length_m: f32,
+    pub length_mps: f32,
+    pub roll_rad: f32,
+    pub pitch_rad: f32,
+    /// Push of each leg in N instead of that which keeps the length.
+    pub push_n: Option<f32>,
+    /// Learn trim and load.
+    pub learn: bool,
+    /// How it is known whether the wheels touch the ground.
+    pub ground: Ground,
+}
+
+/// How it is known whether the wheels touch the ground.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ground {
+    /// They do.
+    Touched,
+    /// The forces of the legs tell.
+    Felt,
+    /// They do not: the robot has just pushed off.
+    Left,
+}
+
+/// Torques of all motors in N·m, left before right. Wheels are forward positive; joints are front, rear.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Torques {
+    pub wheels_nm: [f32; 2],
+    pub hips_nm: [[f32; 2]; 2],
+}
+
+/// State of the law.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Law {
+    gains: Gains,
+    reference: Reference,
+    trim: Trim,
+    support: Support,
+    pub contact: Contact,
+    wheels_nm: [f32; 2],
+    airborne: bool,
+}
+
+impl Law {
+    /// Begins with the robot's present motion.
+    pub fn new(profile: &BalanceProfile, measured: &Measured) -> Self {
+        Self {
+            gains: Gains::new(&profile.gains, measured.legs.map(|leg| leg.length_m)),
+            reference: Reference::at(measured.speed_mps, measured.tilt.yaw_rps),
+            trim: Trim::default(),
+            support: Support::default(),
+            contact: Contact::standing(&profile.mass, measured),
+            wheels_nm: [0.0; 2],
+            airborne: false,
+        }
+    }
+
+    /// No wheel touches the ground.
+    pub fn airborne(&self) -> bool {
+        self.airborne
+    }
+
+    /// Torques of this tick.
+    pub fn step(
+        &mut self,
+        profile: &BalanceProfile,
+        odometry: &WheelOdomConfig,
+        measured: &Measured,
+        goal: &Goal,
+        dt_s: f32,
+    ) -> Torques {
+        let lengths_m = measured.legs.map(|leg| leg.length_m);
+        self.gains.renew(&profile.gains, lengths_m);
+        self.contact
+            .step(&profile.mass, measured, self.wheels_nm, dt_s);
+        self.airborne = match goal.ground {
+            Ground::Touched => false,
+            Ground::Felt => self.contact.airborne(),
+            Ground::Left => true,
+        };
+        let (wheels_nm, legs) = if self.airborne {
+            self.in_air(profile, odometry, measured, goal)
+        } else {
+            self.on_ground(profile, odometry, measured, goal, dt_s)
+        };
+        let limits = &profile.limits;
+        let wheels_nm = torques::within_wheels(wheels_nm, limits.wheel_nm);
+        self.wheels_nm = wheels_nm;
+        let [left, right] = &measured.legs;
+        let [left_force, right_force] = legs;
+        let [left_nm, right_nm] = wheels_nm;
+        Torques {
+            wheels_nm,
+            hips_nm: [
+                torques::within_hips(left, left_force, left_nm, limits.hip_nm),
+                torques::within_hips(right, right_force, right_nm, limits.hip_nm),
+            ],
+        }
+    }
+
+    fn on_ground(
+        &mut self,
+        profile: &BalanceProfile,
+        odometry: &WheelOdomConfig,
+        measured: &Measured,
+        goal: &Goal,
+        dt_s: f32,
+    ) -> ([f32; 2], [LegForce; 2]) {
+        let yaw_rps = measured.tilt.yaw_rps;
+        self.reference
+            .step(goal.wish, measured.speed_mps, yaw_rps, dt_s);
+        let ahead = Ahead::new(profile, odometry, measured, self.reference.accel_mps2);
+        let error = self.error(
+            measured,
+            self.trim.lean_rad + ahead.lean_rad,
+            goal.pitch_rad,
+        );
+        let feedback_nm = self.gains.torques_nm(&error);
+        let [left_wheel, right_wheel, left_leg, right_leg] = feedback_nm;
+        let [_, speed_error, ..] = error;
+        let steady = self.reference.accel_mps2.abs() < LEARN_MPS2;
+        let calm = goal.learn && steady && speed_error.abs() < LEARN_MPS;
+        if calm {
+            let lean_rad = measured.mean_lean_rad() - ahead.lean_rad;
+            self.trim.learn(lean_rad, feedback_nm, dt_s);
+        }
+        let stance = Stance {
+            length_m: goal.length_m,
+            length_mps: goal.length_mps,
+            roll_rad: goal.roll_rad,
+            sideways_mps2: measured.speed_mps * yaw_rps,
+        };
+        let track_m = odometry.wheel_track_m;
+        let [left_n, right_n] =
+            self.support
+                .step(&profile.mass, track_m, &stance, measured, calm, dt_s);
+        // A jump replaces the mean push and keeps what levels the body.
+        let more_n = match goal.push_n {
+            Some(push_n) => push_n - 0.5 * (left_n + right_n),
+            None => 0.0,
+        };
+        let wheel_nm = self.trim.wheel_nm + ahead.wheel_nm;
+        let leg_nm = self.trim.leg_nm + ahead.leg_nm;
+        let leg = |push_n: f32, nm: f32| LegForce {
+            push_n: scalar::max(push_n + more_n, LEAST_PUSH_N),
+            lean_nm: nm + leg_nm,
+        };
+        (
+            [left_wheel + wheel_nm, right_wheel + wheel_nm],
+            [leg(left_n, left_leg), leg(right_n, right_leg)],
+        )
+    }
+
+    /// In the air the legs keep their length, and the robot its attitude.
+    fn in_air(
+        &mut self,
+        profile: &BalanceProfile,
+        odometry: &WheelOdomConfig,
+        measured: &Measured,
+        goal: &Goal,
+    ) -> ([f32; 2], [LegForce; 2]) {
+        let speed_mps = self.reference.speed_mps;
+        self.reference.let_go(speed_mps);
+        let wanted_rps = speed_mps / scalar::max(odometry.wheel_radius_m, 0.01);
+        let mut error = self.error(measured, self.trim.lean_rad, goal.pitch_rad);
+        let [distance, speed, yaw, yaw_rate, ..] = &mut error;
+        (*distance, *speed, *yaw, *yaw_rate) = (0.0, 0.0, 0.0, 0.0);
+        let [_, _, left_nm, right_nm] = self.gains.torques_nm(&error);
+        let push_n = Support::in_air(&profile.mass, goal.length_m, measured);
+        let [left_n, right_n] = push_n;
+        // Wheels are too light to turn the robot by their inertia. They keep the speed of the ground.
+        let wheels_nm = measured
+            .wheel_rps
+            .map(|rps| AIR_DAMPING * (wanted_rps - rps));
+        (
+            wheels_nm,
+            [
+                LegForce {
+                    push_n: left_n,
+                    lean_nm: left_nm,
+                },
+                LegForce {
+                    push_n: right_n,
+                    lean_nm: right_nm,
+                },
+            ],
+        )
+    }
+
+    fn error(&self, measured: &Measured, lean_rad: f32, pitch_rad: f32) -> [f32; STATES] {
+        let reference = &self.reference;
+        let [left_rad, right_rad] = measured.lean_rad;
+        let [left_rps, right_rps] = measured.lean_rps;
+        let tilt = &measured.tilt;
+        [
+            reference.distance_m,
+            scalar::clamp(
+                measured.speed_mps - reference.speed_mps,
+                -MAX_SPEED_ERROR_MPS,
+                MAX_SPEED_ERROR_MPS,
+            ),
+            reference.yaw_error_rad,
+            tilt.yaw_rps - reference.yaw_rps,
+            left_rad - lean_rad,
+            left_rps,
+            right_rad - lean_rad,
+            right_rps,
+            tilt.pitch_rad - pitch_rad,
+            tilt.pitch_rps,
+        ]
+    }
+}
+
+/// What an acceleration takes.
+struct Ahead {
+    lean_rad: f32,
+    wheel_nm: f32,
+    leg_nm: f32,
+}
+
+impl Ahead {
+    fn new(
+        profile: &BalanceProfile,
+        odometry: &WheelOdomConfig,
+        measured: &Measured,
+        accel_mps2: f32,
+    ) -> Self {
+        let mass = &profile.mass;
+        let radius_m = scalar::max(odometry.wheel_radius_m, 0.01);
+        let length_m = measured.length_m();
+        let moved_kg = mass.total_kg + 2.0 * mass.wheel_kgm2 / (radius_m * radius_m);
+        let wheels_nm = accel_mps2 * moved_kg * radius_m;
+        let body_nm = accel_mps2 * mass.carried_kg * mass.carried_up_m;
+        let legs_nm = accel_mps2 * mass.carried_kg * length_m;
+        // The rotors' part of the torque does not reach the legs.
+        let reaction_nm = accel_mps2 * mass.total_kg * radius_m;
+        Self {
+            lean_rad: (legs_nm + body_nm + reaction_nm)
+                / (mass.carried_kg * GRAVITY_MPS2 * length_m),
+            wheel_nm: 0.5 * wheels_nm,
+            leg_nm: -0.5 * body_nm,
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! The state of the robot in this tick, from sensors, motors and the estimate.
+
+use super::tilt::Tilt;
+use crate::{
+    control::ChassisControllerInput,
+    domain::{JointFeedback, JointState, LegGeometry, WheelFeedback},
+    kinematics::Leg,
+    math::{Quaternion, scalar, vector},
+};
+
+/// Longest time in s over which a joint's angle is extrapolated from its report.
+const MAX_AHEAD_S: f32 = 0.01;
+
+/// The state of the robot. Pairs are left, right.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measured {
+    pub tilt: Tilt,
+    pub legs: [Leg; 2],
+    /// Lean of each leg in rad and its rate in rad/s, positive with the hip ahead of the axle.
+    pub lean_rad: [f32; 2],
+    pub lean_rps: [f32; 2],
+    /// Turn of each wheel in the world in rad/s, forward positive.
+    pub wheel_rps: [f32; 2],
+    /// Ground speed of the axles' middle by the wheels in m/s.
+    pub speed_mps: f32,
+    /// Specific force along the vertical in m/s²; 9.8 at rest.
+    pub up_mps2: f32,
+    /// Torques of the hip joints as they report them, in N·m.
+    pub hip_nm: [[f32; 2]; 2],
+    /// Everything above is known.
+    pub known: bool,
+}
+
+impl Measured {
+    pub fn new(geometry: &LegGeometry, input: &ChassisControllerInput<'_>) -> Self {
+        let sensors = input.sensors;
+        let [w, x, y, z] = input.estimate.q_wxyz;
+        let gyro_rps = sensors.imu.gyro_dps.map(f32::to_radians);
+        let rate_rps = vector::sub(gyro_rps, input.estimate.gyro_bias_rps);
+        let tilt = Tilt::new(Quaternion { w, x, y, z }, rate_rps);
+        let [left_front, left_rear, right_front, right_rear] = &sensors.motor.joints;
+        let legs = [
+            leg(geometry, left_front, left_rear),
+            leg(geometry, right_front, right_rear),
+        ];
+        let odometry = input.wheel_odom_cfg;
+        let [left_sign, right_sign] = odometry.rpm_signs();
+        let [left, right] = &sensors.motor.wheels;
+        let [left_leg, right_leg] = &legs;
+        let rps = odometry.rps_per_rpm();
+        // The motor counts from its shank, which turns too.
+        let wheel_rps = [
+            f32::from(left.rpm) * left_sign * rps + left_leg.carrier_rps + rate_rps[1],
+            f32::from(right.rpm) * right_sign * rps + right_leg.carrier_rps + rate_rps[1],
+        ];
+        let [left_rps, right_rps] = wheel_rps;
+        let limit_us = input.wheel_ctrl_cfg.feedback_timeout_us;
+        let heard = |wheel: &WheelFeedback| wheel.age_us <= limit_us;
+        let ready = |joint: &JointFeedback| joint.state == JointState::Enabled;
+        Self {
+            lean_rad: legs.map(|leg| tilt.pitch_rad - leg.angle_rad),
+            lean_rps: legs.map(|leg| tilt.pitch_rps - leg.angle_rps),
+            wheel_rps,
+            speed_mps: 0.5 * odometry.wheel_radius_m * (left_rps + right_rps),
+            up_mps2: vector::dot(sensors.imu.accel_mps2, tilt.up),
+            hip_nm: [
+                [left_front.torque_nm, left_rear.torque_nm],
+                [right_front.torque_nm, right_rear.torque_nm],
+            ],
+            known: input.estimate.valid
+                && sensors.motor.wheels.iter().all(heard)
+                && sensors.motor.joints.iter().all(ready),
+            tilt,
+            legs,
+        }
+    }
+
+    /// Mean length of the legs in m.
+    pub fn length_m(&self) -> f32 {
+        let [left, right] = &self.legs;
+        0.5 * (left.length_m + right.length_m)
+    }
+
+    /// Mean rate of the legs' length in m/s.
+    pub fn length_mps(&self) -> f32 {
+        let [left, right] = &self.legs;
+        0.5 * (left.length_mps + right.length_mps)
+    }
+
+    /// Mean lean in rad.
+    pub fn mean_lean_rad(&self) -> f32 {
+        let [left, right] = self.lean_rad;
+        0.5 * (left + right)
+    }
+
+    /// Mean rate of lean in rad/s.
+    pub fn mean_lean_rps(&self) -> f32 {
+        let [left, right] = self.lean_rps;
+        0.5 * (left + right)
+    }
+}
+
+/// A leg at the present time: its joints have moved on since they reported.
+fn leg(geometry: &LegGeometry, front: &JointFeedback, rear: &JointFeedback) -> Leg {
+    Leg::new(
+        geometry,
+        [angle_now_rad(front), angle_now_rad(rear)],
+        [front.vel_rps, rear.vel_rps],
+    )
+}
+
+fn angle_now_rad(joint: &JointFeedback) -> f32 {
+    let ahead_s = scalar::min(joint.age_us as f32 * 1e-6, MAX_AHEAD_S);
+    joint.pos_rad + joint.vel_rps * ahead_s
+}

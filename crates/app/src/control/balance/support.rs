@@ -1,0 +1,94 @@
+//! The legs carry the body: height, roll, and the load of a turn.
+
+use super::measured::Measured;
+use crate::{domain::MassModel, math::scalar};
+
+pub const GRAVITY_MPS2: f32 = 9.806_65;
+/// Natural frequency in rad/s and damping of the body on its legs.
+const HEAVE_RPS: f32 = 14.0;
+const HEAVE_DAMPING: f32 = 0.8;
+/// The same for roll.
+const ROLL_RPS: f32 = 12.0;
+const ROLL_DAMPING: f32 = 0.8;
+/// Part of the damping that is left in the air, where a leg carries only its wheel.
+const AIR_DAMPING: f32 = 0.4;
+/// Time constants in s in which the load is learned and the legs' lengths follow a wish.
+const LOAD_TIME_S: f32 = 1.0;
+/// Largest share of its load that a body may have too little or too much.
+const MAX_LOAD_ERROR: f32 = 0.6;
+/// Largest learned difference between the legs' pushes, as a share of the load.
+const MAX_ROLL_SHARE: f32 = 0.3;
+
+/// What the legs shall do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stance {
+    /// Mean length of the legs in m and its rate in m/s.
+    pub length_m: f32,
+    pub length_mps: f32,
+    /// Roll in rad.
+    pub roll_rad: f32,
+    /// Sideways acceleration to the left in m/s².
+    pub sideways_mps2: f32,
+}
+
+/// Pushes of the legs.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Support {
+    /// Load in N beyond that of the robot's file, and the push of the right leg beyond that of the left.
+    load_n: f32,
+    roll_n: f32,
+}
+
+impl Support {
+    /// Pushes of the left and the right leg in N.
+    pub fn step(
+        &mut self,
+        mass: &MassModel,
+        track_m: f32,
+        stance: &Stance,
+        measured: &Measured,
+        learning: bool,
+        dt_s: f32,
+    ) -> [f32; 2] {
+        let lean_rps = measured.mean_lean_rps();
+        let length_m = measured.length_m();
+        let (_, cos) = scalar::sin_cos_small(scalar::clamp(measured.mean_lean_rad(), -1.0, 1.0));
+        // A pendulum of constant length needs this push.
+        let carried_n = mass.carried_kg * (GRAVITY_MPS2 * cos - length_m * lean_rps * lean_rps);
+        let stiffness = mass.carried_kg * HEAVE_RPS * HEAVE_RPS;
+        let damping = 2.0 * HEAVE_DAMPING * HEAVE_RPS * mass.carried_kg;
+        let sag_m = stance.length_m - length_m;
+        let heave_n = stiffness * sag_m + damping * (stance.length_mps - measured.length_mps());
+
+        let height_m = length_m + mass.carried_up_m;
+        let inertia = mass.roll_kgm2 + mass.carried_kg * height_m * height_m;
+        let weight_nm = mass.carried_kg * GRAVITY_MPS2 * height_m;
+        let tilt = &measured.tilt;
+        let roll_error = tilt.roll_rad - stance.roll_rad;
+        let roll_nm = (inertia * ROLL_RPS * ROLL_RPS + weight_nm) * roll_error
+            + 2.0 * ROLL_DAMPING * ROLL_RPS * inertia * tilt.roll_rps
+            + mass.carried_kg * stance.sideways_mps2 * height_m;
+        let roll_n = roll_nm / track_m;
+        if learning {
+            let load_n = mass.carried_kg * GRAVITY_MPS2;
+            let share = dt_s / LOAD_TIME_S;
+            let most_n = MAX_LOAD_ERROR * load_n;
+            self.load_n = scalar::clamp(self.load_n + stiffness * sag_m * share, -most_n, most_n);
+            let most_n = MAX_ROLL_SHARE * load_n;
+            let beyond_n = 36.0 * inertia * roll_error / track_m;
+            self.roll_n = scalar::clamp(self.roll_n + beyond_n * share, -most_n, most_n);
+        }
+        let both_n = 0.5 * (carried_n + self.load_n + heave_n);
+        let right_n = roll_n + self.roll_n;
+        [both_n - right_n, both_n + right_n]
+    }
+
+    /// Pushes in N in the air: each leg keeps its length.
+    pub fn in_air(mass: &MassModel, goal_m: f32, measured: &Measured) -> [f32; 2] {
+        let stiffness = 0.5 * mass.carried_kg * HEAVE_RPS * HEAVE_RPS;
+        let damping = HEAVE_DAMPING * HEAVE_RPS * mass.carried_kg * AIR_DAMPING;
+        measured
+            .legs
+            .map(|leg| stiffness * (goal_m - leg.length_m) - damping * leg.length_mps)
+    }
+}
