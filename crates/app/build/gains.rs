@@ -5,26 +5,18 @@ use robot_description::Robot;
 
 use crate::literal::f32;
 
-/// The expression of a robot's gains, or why there are none.
+/// The expression of a robot's gains, or why the robot has none.
 pub fn schedule(robot: &Robot) -> Result<String, String> {
     let schedule =
-        Schedule::new(robot).map_err(|error| format!("robot {}: {error}", robot.name))?;
-    let inputs = schedule.coefficients.iter().map(|states| {
-        let states = states.iter().map(|coefficients| {
-            let coefficients = coefficients.iter().map(|value| f32(*value));
-            list(coefficients)
-        });
-        list(states)
-    });
+        Schedule::new(robot).map_err(|error| format!("the robot {}: {error}", robot.name))?;
+    let coefficients = schedule
+        .coefficients
+        .map(|states| states.map(|of| of.map(f32)));
     Ok(format!(
         "GainSchedule {{ centre_m: {centre_m}, min_m: {min_m}, max_m: {max_m}, k: {k} }}",
         centre_m = f32(schedule.centre_m),
         min_m = f32(schedule.min_m),
         max_m = f32(schedule.max_m),
-        k = list(inputs),
+        k = format!("{coefficients:?}").replace('"', ""),
     ))
-}
-
-fn list(items: impl Iterator<Item = String>) -> String {
-    format!("[{}]", items.collect::<Vec<_>>().join(", "))
 }

@@ -1,23 +1,25 @@
-//! Masses, weights and inputs of the robot on flat ground, level across, with legs of constant length.
+//! Masses, weights and inputs of the robot on flat ground, level across.
 //!
 //! Coordinates: distance s of the axles' middle, yaw ψ of the body, lean θ of the left and the right leg, pitch φ of the body,
-//! turns of the left and the right wheel. Wheels may slip here; [`Dynamics::rolling`] says how they turn when they do not.
+//! turns of the left and the right wheel, length of the left and the right leg. Wheels may slip here; [`Dynamics::rolling`]
+//! says how they turn when they do not.
 
 use nalgebra::{SMatrix, SVector, Vector2};
 use robot_description::{Carrier, Robot};
 
-use crate::leg::{Along, LegPose, LinkPose};
+use crate::leg::{LegPose, LinkPose, Shape};
 
 /// Standard gravity, m/s².
 pub(crate) const GRAVITY_MPS2: f64 = 9.80665;
-pub(crate) const COORDINATES: usize = 7;
-/// Coordinates that are left while no wheel slips.
+pub(crate) const COORDINATES: usize = 9;
+/// Coordinates that are left while no wheel slips and the legs keep their lengths.
 pub(crate) const ROLLING: usize = 5;
 const S: usize = 0;
 const YAW: usize = 1;
 const LEAN: [usize; 2] = [2, 3];
 const PITCH: usize = 4;
 const WHEEL: [usize; 2] = [5, 6];
+pub(crate) const LENGTH: [usize; 2] = [7, 8];
 
 pub(crate) type Vector = SVector<f64, COORDINATES>;
 pub(crate) type Square = SMatrix<f64, COORDINATES, COORDINATES>;
@@ -53,15 +55,15 @@ pub(crate) struct Dynamics {
     radius_m: f64,
 }
 
-/// A point of the robot: its derivatives by lean of its leg and pitch, from the hip centre; forward and up.
+/// A point of the robot from the hip centre, forward and up, and its derivatives by [`own_coordinates`].
 struct Point {
-    by: [Vector2<f64>; 2],
-    by_two: [[Vector2<f64>; 2]; 2],
     place: Vector2<f64>,
+    by: [Vector2<f64>; 3],
+    by_two: [[Vector2<f64>; 3]; 3],
 }
 
-/// A body's place in the sums: which leg, how far left, mass, inertia about the lateral and the vertical axis.
-struct Body {
+/// A mass, the leg that moves it, and how far left it is.
+struct Mass {
     leg: usize,
     left_m: f64,
     mass_kg: f64,
@@ -83,7 +85,12 @@ impl Dynamics {
         Some(sums)
     }
 
-    /// Returns how the coordinates follow (s, ψ, θ left, θ right, φ) while the wheels roll.
+    /// Returns how fast each tyre slips backwards on the ground, over the rates.
+    pub fn slip(&self) -> [Vector; 2] {
+        [0, 1].map(|leg| self.radius_m * unit(WHEEL[leg]) - self.axle[leg])
+    }
+
+    /// Returns how the coordinates follow (s, ψ, θ left, θ right, φ) while the wheels roll and the legs keep their lengths.
     pub fn rolling(&self) -> SMatrix<f64, COORDINATES, ROLLING> {
         let mut rolling = SMatrix::zeros();
         for i in 0..ROLLING {
@@ -121,12 +128,12 @@ impl Dynamics {
     fn add_body(&mut self, robot: &Robot, pose: &Pose, rates: &Vector) {
         let body = &robot.body;
         let [forward, left, up] = body.com_m;
-        let still = Along {
+        let still = Shape {
             value: Vector2::new(forward, up),
-            first: Vector2::zeros(),
-            second: Vector2::zeros(),
+            by: [Vector2::zeros(); 2],
+            by_two: [[Vector2::zeros(); 2]; 2],
         };
-        let place = Body {
+        let place = Mass {
             leg: 0,
             left_m: left,
             mass_kg: body.mass_kg,
@@ -145,7 +152,7 @@ impl Dynamics {
         leg: usize,
         link: &LinkPose,
     ) {
-        let place = Body {
+        let place = Mass {
             leg,
             left_m: side_of(leg) * robot.legs.plane_y_m,
             mass_kg: link.mass_kg,
@@ -168,24 +175,36 @@ impl Dynamics {
     ) {
         let wheels = &robot.wheels;
         let (lean, length_m) = (pose.lean_rad[leg], pose.length_m[leg]);
-        let axle = length_m * Vector2::new(-lean.sin(), -lean.cos());
-        let axle_turned = length_m * Vector2::new(-lean.cos(), lean.sin());
+        let down = Vector2::new(-lean.sin(), -lean.cos());
+        let across = Vector2::new(-lean.cos(), lean.sin());
         let zero = Vector2::zeros();
         let point = Point {
-            place: axle,
-            by: [axle_turned, zero],
-            by_two: [[-axle, zero], [zero, zero]],
+            place: length_m * down,
+            by: [length_m * across, zero, down],
+            by_two: [
+                [-length_m * down, zero, across],
+                [zero; 3],
+                [across, zero, zero],
+            ],
         };
-        let place = Body {
+        let side = side_of(leg);
+        let motor = Mass {
             leg,
-            left_m: side_of(leg) * wheels.track_m / 2.0,
-            mass_kg: wheels.mass_kg + wheels.motor_mass_kg,
+            left_m: side * robot.legs.plane_y_m,
+            mass_kg: wheels.motor_mass_kg,
         };
-        self.axle[leg] = self.add_mass(pose, rates, &place, &point);
+        self.add_mass(pose, rates, &motor, &point);
+        let wheel = Mass {
+            leg,
+            left_m: side * wheels.track_m / 2.0,
+            mass_kg: wheels.mass_kg,
+        };
+        self.axle[leg] = self.add_mass(pose, rates, &wheel, &point);
         let spin = unit(WHEEL[leg]);
         self.add_inertia(wheels.inertia_kgm2, &spin, 0.0);
-        // A thin disc: half of it about a diameter.
-        self.mass[(YAW, YAW)] += wheels.inertia_kgm2 / 2.0;
+        // A disc or hoop about a diameter, and a rod of the wheel's width.
+        self.mass[(YAW, YAW)] +=
+            wheels.inertia_kgm2 / 2.0 + wheels.mass_kg * wheels.width_m.powi(2) / 12.0;
 
         let carrier = match wheels.carrier {
             Carrier::Front => 0,
@@ -194,39 +213,44 @@ impl Dynamics {
         let (turn, bias) = pitch_of(&links.shanks[carrier], leg, rates);
         self.add_inertia(wheels.rotor_inertia_kgm2, &(spin - turn), -bias);
         for thigh in &links.thighs {
-            let turn = thigh.angle_rad.first * (unit(PITCH) - unit(LEAN[leg]));
-            let bias = thigh.angle_rad.second * turning(leg, rates).powi(2);
+            let (turn, bias) = turn_of(&thigh.angle_rad, leg, rates);
             self.add_inertia(robot.joints.armature_kgm2, &turn, bias);
         }
     }
 
     /// Adds a body's mass and returns how far it moves ahead over the coordinates.
-    fn add_mass(&mut self, pose: &Pose, rates: &Vector, body: &Body, point: &Point) -> Vector {
+    fn add_mass(&mut self, pose: &Pose, rates: &Vector, body: &Mass, point: &Point) -> Vector {
         let mass_kg = body.mass_kg;
-        let own = [LEAN[body.leg], PITCH];
+        let weight_n = mass_kg * GRAVITY_MPS2;
         let mut ahead = unit(S);
         let mut upward = Vector::zeros();
-        let (mut ahead_bias, mut upward_bias) = (0.0, 0.0);
+        let mut bias = Vector2::zeros();
         let mut axles_ahead = 0.0;
+        let mut add = |by: Vector2<f64>, i: usize| {
+            ahead[i] += by.x;
+            upward[i] += by.y;
+        };
+        let mut add_two = |by: Vector2<f64>, i: usize, j: usize| {
+            bias += by * rates[i] * rates[j];
+            self.stiffness[(i, j)] += weight_n * by.y;
+        };
+        // The hips are ahead of and above the axles' middle by the mean of both legs.
         for leg in [0, 1] {
-            // The hips are ahead of and above the axles' middle by the mean of both legs.
             let (lean, half_m) = (pose.lean_rad[leg], pose.length_m[leg] / 2.0);
-            let rate = rates[LEAN[leg]];
-            ahead[LEAN[leg]] += half_m * lean.cos();
-            upward[LEAN[leg]] -= half_m * lean.sin();
-            ahead_bias -= half_m * lean.sin() * rate * rate;
-            upward_bias -= half_m * lean.cos() * rate * rate;
-            axles_ahead -= half_m * lean.sin();
-            self.stiffness[(LEAN[leg], LEAN[leg])] -= mass_kg * GRAVITY_MPS2 * half_m * lean.cos();
+            let up = Vector2::new(lean.sin(), lean.cos());
+            let across = Vector2::new(lean.cos(), -lean.sin());
+            let (turn, stretch) = (LEAN[leg], LENGTH[leg]);
+            add(half_m * across, turn);
+            add(up / 2.0, stretch);
+            add_two(-half_m * up, turn, turn);
+            add_two(across / 2.0, turn, stretch);
+            add_two(across / 2.0, stretch, turn);
+            axles_ahead -= half_m * up.x;
         }
-        for i in [0, 1] {
-            ahead[own[i]] += point.by[i].x;
-            upward[own[i]] += point.by[i].y;
-            for j in [0, 1] {
-                let second = point.by_two[i][j];
-                ahead_bias += second.x * rates[own[i]] * rates[own[j]];
-                upward_bias += second.y * rates[own[i]] * rates[own[j]];
-                self.stiffness[(own[i], own[j])] += mass_kg * GRAVITY_MPS2 * second.y;
+        for (i, own) in own_coordinates(body.leg).into_iter().enumerate() {
+            add(point.by[i], own);
+            for (j, other) in own_coordinates(body.leg).into_iter().enumerate() {
+                add_two(point.by_two[i][j], own, other);
             }
         }
         ahead[YAW] = -body.left_m;
@@ -235,10 +259,10 @@ impl Dynamics {
         for row in [&ahead, &upward, &sideways] {
             self.mass += mass_kg * row * row.transpose();
         }
-        self.bias += mass_kg * (ahead * ahead_bias + upward * upward_bias);
-        self.slope += mass_kg * GRAVITY_MPS2 * upward;
+        self.bias += mass_kg * (ahead * bias.x + upward * bias.y);
+        self.slope += weight_n * upward;
         self.upward += mass_kg * upward;
-        self.upward_bias += mass_kg * upward_bias;
+        self.upward_bias += mass_kg * bias.y;
         self.total_mass_kg += mass_kg;
         ahead
     }
@@ -249,33 +273,52 @@ impl Dynamics {
     }
 }
 
-/// Returns the point of a body-fixed curve over β as it is seen in the world, where β = φ − θ.
-fn turned(point: &Along<Vector2<f64>>, pitch_rad: f64) -> Point {
+/// Coordinates that move a point of this leg against the hip centre.
+fn own_coordinates(leg: usize) -> [usize; 3] {
+    [LEAN[leg], PITCH, LENGTH[leg]]
+}
+
+/// Returns the point of the body or of a leg, where β = φ − θ, as it is seen in the world.
+fn turned(point: &Shape<Vector2<f64>>, pitch_rad: f64) -> Point {
     let (sin, cos) = pitch_rad.sin_cos();
     let world = |v: Vector2<f64>| Vector2::new(v.x * cos + v.y * sin, v.y * cos - v.x * sin);
     let across = |v: Vector2<f64>| Vector2::new(v.y, -v.x);
-    let (first, second) = (point.first, point.second);
-    let mixed = -world(across(first) + second);
+    let place = point.value;
+    let [turn, stretch] = point.by;
+    let [[turn_turn, turn_stretch], [_, stretch_stretch]] = point.by_two;
+    let lean_pitch = -world(across(turn) + turn_turn);
+    let lean_length = -world(turn_stretch);
+    let pitch_length = world(across(stretch) + turn_stretch);
+    let pitch_pitch = world(turn_turn + 2.0 * across(turn) - place);
     Point {
-        place: world(point.value),
-        by: [-world(first), world(across(point.value) + first)],
+        place: world(place),
+        by: [-world(turn), world(across(place) + turn), world(stretch)],
         by_two: [
-            [world(second), mixed],
-            [mixed, world(second + 2.0 * across(first) - point.value)],
+            [world(turn_turn), lean_pitch, lean_length],
+            [lean_pitch, pitch_pitch, pitch_length],
+            [lean_length, pitch_length, world(stretch_stretch)],
         ],
     }
 }
 
 /// Returns how fast a link pitches over the coordinates' rates, and its acceleration by the rates alone.
 fn pitch_of(link: &LinkPose, leg: usize, rates: &Vector) -> (Vector, f64) {
-    let angle = &link.angle_rad;
-    let turn = unit(PITCH) - angle.first * (unit(PITCH) - unit(LEAN[leg]));
-    (turn, -angle.second * turning(leg, rates).powi(2))
+    let (turn, bias) = turn_of(&link.angle_rad, leg, rates);
+    (unit(PITCH) - turn, -bias)
 }
 
-/// Returns the rate of the leg's angle β.
-fn turning(leg: usize, rates: &Vector) -> f64 {
-    rates[PITCH] - rates[LEAN[leg]]
+/// Returns the rate of an angle against the body over the coordinates' rates, and its acceleration by the rates alone.
+fn turn_of(angle: &Shape<f64>, leg: usize, rates: &Vector) -> (Vector, f64) {
+    let own = [unit(PITCH) - unit(LEAN[leg]), unit(LENGTH[leg])];
+    let turn = angle.by[0] * own[0] + angle.by[1] * own[1];
+    let own = own.map(|coordinate| coordinate.dot(rates));
+    let mut bias = 0.0;
+    for i in [0, 1] {
+        for j in [0, 1] {
+            bias += angle.by_two[i][j] * own[i] * own[j];
+        }
+    }
+    (turn, bias)
 }
 
 fn unit(index: usize) -> Vector {

@@ -9,17 +9,21 @@
 mod discrete;
 mod dynamics;
 mod leg;
+mod margins;
 mod model;
 mod regulator;
+mod response;
 mod riccati;
 mod schedule;
 mod stability;
 
 pub use discrete::DiscreteModel;
+pub use margins::{Margins, extra_delay_ticks, margins};
 pub use model::{Equilibrium, GainMatrix, INPUTS, InputMatrix, LinearModel, STATES, StateMatrix};
 pub use regulator::{Regulator, TICK_S, delay_ticks};
+pub use response::{Event, Sample, response};
 pub use schedule::{COEFFICIENTS, EXTRA_DELAY_TICKS, Schedule, lengths_m, mirrored};
-pub use stability::{closed_loop, is_stable};
+pub use stability::{closed_loop, is_stable, poles};
 
 /// Why there are no gains for a robot.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -5,7 +5,7 @@ use robot_description::Robot;
 
 use crate::{
     DesignError,
-    dynamics::{Dynamics, Pose, ROLLING, Vector},
+    dynamics::{Dynamics, Pose, ROLLING, Square, Vector},
 };
 
 /// Number of states: s, ṡ, ψ, ψ̇, θ left and its rate, θ right and its rate, φ, φ̇; m and rad.
@@ -49,7 +49,7 @@ impl LinearModel {
         let equilibrium = Equilibrium::new(robot, length_m)?;
         let dynamics = at_rest(robot, length_m, equilibrium.lean_rad)?;
         let rolling = dynamics.rolling();
-        let project = |m: &SMatrix<f64, 7, 7>| rolling.transpose() * m * rolling;
+        let project = |m: &Square| rolling.transpose() * m * rolling;
         let mass = project(&dynamics.mass);
         let inverse = mass.try_inverse().ok_or(DesignError::Mass)?;
         let by_place = -(inverse * project(&dynamics.stiffness));

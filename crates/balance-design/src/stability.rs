@@ -1,10 +1,11 @@
 //! Whether the loop holds, with torques that come late.
 
-use nalgebra::DMatrix;
+use nalgebra::{Complex, DMatrix};
 
 use crate::{
     discrete::DiscreteModel,
     model::{GainMatrix, INPUTS, STATES},
+    regulator::TICK_S,
 };
 
 /// After 2¹⁷ ticks, two minutes, whatever does not vanish counts as unstable.
@@ -49,4 +50,12 @@ pub fn is_stable(model: &DiscreteModel, gains: &GainMatrix, delay_ticks: usize) 
         }
     }
     false
+}
+
+/// Returns the loop's poles in 1/s, the slowest first: the logarithms of what a tick multiplies its motions by.
+pub fn poles(model: &DiscreteModel, gains: &GainMatrix, delay_ticks: usize) -> Vec<Complex<f64>> {
+    let eigenvalues = closed_loop(model, gains, delay_ticks).complex_eigenvalues();
+    let mut poles: Vec<_> = eigenvalues.iter().map(|z| z.ln() / TICK_S).collect();
+    poles.sort_by(|a, b| b.re.total_cmp(&a.re));
+    poles
 }

@@ -1,7 +1,7 @@
 //! The file that every command asks for.
 
 use clap::Args;
-use robot_description::{Robot, RobotError, path_of};
+use robot_description::{Examined, Robot, RobotError, path_of};
 
 /// The robot's file.
 #[derive(Args)]
@@ -12,6 +12,11 @@ pub struct RobotFile {
 }
 
 impl RobotFile {
+    /// Reads it, with warnings.
+    pub fn examine(&self) -> Result<Examined, RobotError> {
+        Examined::read(&path_of(&self.name))
+    }
+
     /// Reads it.
     pub fn read(&self) -> Result<Robot, RobotError> {
         Robot::read(&path_of(&self.name))

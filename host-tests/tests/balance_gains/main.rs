@@ -1,0 +1,3 @@
+//! Gains of the balance controller against SciPy and against the free plant.
+
+mod scipy;
