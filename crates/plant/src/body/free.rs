@@ -35,7 +35,7 @@ mod tyre;
 
 use crate::physics::STANDARD_GRAVITY_MPS2;
 use contacts::{Contacts, Moment};
-use dynamics::{Coordinates, Dynamics, bias};
+use dynamics::{Coordinates, Dynamics, Rates, bias};
 use five_bar::HIPS;
 use ground::Ground;
 use joint_forces::{DryFriction, stop_torque_nm};
@@ -107,14 +107,14 @@ impl FreeBody {
         let dynamics = Dynamics::new(&self.model, &legs, clamped);
         let forces = self.forces(inputs, &legs, dt_s);
         let held = self.motion.to_body(Vec3::z() * STANDARD_GRAVITY_MPS2);
-        let accelerations_at = |motion: &Motion| {
-            let bias = bias(&self.model, &legs, &motion.rates());
+        let accelerations_at = |rates: &Rates| {
+            let bias = bias(&self.model, &legs, rates);
             dynamics.accelerations(&forces, &bias, held)
         };
-        let early = accelerations_at(&self.motion);
-        let mut middle = self.motion.clone();
-        middle.accelerate(&early, dt_s / 2.0, self.hold);
-        let accelerations = accelerations_at(&middle);
+        let rates = self.motion.rates();
+        // A clamped body's angular acceleration is zero, so that its rate stays so.
+        let early = accelerations_at(&rates);
+        let accelerations = accelerations_at(&rates.after(dt_s / 2.0, &early));
         self.motion.accelerate(&accelerations, dt_s, self.hold);
         self.motion.drift(dt_s / 2.0, self.hold);
         self.motion.limit(&self.model);

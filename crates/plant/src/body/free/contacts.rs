@@ -39,6 +39,13 @@ pub(super) struct Moment<'a> {
     pub dt_s: f64,
 }
 
+impl Moment<'_> {
+    /// Whether body and knees are above everything that they could hit.
+    fn is_clear(&self) -> bool {
+        self.motion.position.z - self.model.reach_m > self.ground.highest_m()
+    }
+}
+
 /// A point of the robot in the world.
 struct Point {
     place: Vec3,
@@ -51,7 +58,13 @@ impl Contacts {
         for side in 0..SIDES {
             self.wheel_n[side] = self.wheel(side, moment, &frame, forces);
         }
-        self.body_n = self.corners(moment, &frame, forces) + self.knees(moment, &frame, forces);
+        self.body_n = if moment.is_clear() {
+            self.corners = Default::default();
+            self.knees = Default::default();
+            0.0
+        } else {
+            self.corners(moment, &frame, forces) + self.knees(moment, &frame, forces)
+        };
     }
 
     fn wheel(

@@ -6,7 +6,7 @@
 //! inverse, and 6 × 6 remain.
 
 use super::{
-    Vec2, Vec3,
+    Vec3,
     model::{Model, SIDES},
     parts::{LEG_COORDINATES, Leg, Part, lift},
 };
@@ -100,6 +100,18 @@ pub(super) struct Rates {
     pub legs: [[f64; LEG_COORDINATES]; SIDES],
 }
 
+impl Rates {
+    /// The rates after some time at given accelerations.
+    pub fn after(&self, dt_s: f64, by: &Coordinates) -> Self {
+        Self {
+            body: self.body + by.angular() * dt_s,
+            legs: std::array::from_fn(|side| {
+                std::array::from_fn(|i| self.legs[side][i] + by.legs[side][i] * dt_s)
+            }),
+        }
+    }
+}
+
 /// Mass matrix at one pose of both legs, factored.
 pub(super) struct Dynamics {
     /// Of the body with both legs, before the legs are eliminated.
@@ -116,34 +128,19 @@ pub(super) struct Dynamics {
 
 impl Dynamics {
     pub fn new(model: &Model, legs: &[Leg; SIDES], clamped: bool) -> Self {
-        let mut rigid = RigidSum::default();
-        rigid.add(model.body_kg, model.body_com, &model.body_inertia);
+        let mut rigid = RigidSum::of_body(model);
         let mut blocks = [Matrix3::zeros(); SIDES];
         let mut coupling = [Matrix6x3::zeros(); SIDES];
-        for side in 0..SIDES {
+        for (side, leg) in legs.iter().enumerate() {
             let rotors = [
                 model.armature_kgm2,
                 model.armature_kgm2,
                 model.disc.rotor_kgm2,
             ];
             blocks[side] = Matrix3::from_diagonal(&Vector3::from(rotors));
-            for part in &legs[side].parts {
-                rigid.add(part.mass_kg, part.place, &part.inertia);
-                let spin = part.inertia[(1, 1)];
-                for i in 0..LEG_COORDINATES {
-                    let slope = |i: usize| part.slope.get(i).copied().unwrap_or_else(Vec2::zeros);
-                    let force = lift(slope(i)) * part.mass_kg;
-                    let moment = part.place.cross(&force);
-                    for axis in 0..3 {
-                        coupling[side][(axis, i)] += force[axis];
-                        coupling[side][(axis + 3, i)] += moment[axis];
-                    }
-                    coupling[side][(4, i)] += part.turn[i] * spin;
-                    for j in 0..LEG_COORDINATES {
-                        blocks[side][(i, j)] += part.mass_kg * slope(i).dot(&slope(j))
-                            + part.turn[i] * part.turn[j] * spin;
-                    }
-                }
+            for part in &leg.parts {
+                rigid.add(part);
+                couple(part, &mut coupling[side], &mut blocks[side]);
             }
         }
         let rigid = rigid.matrix();
@@ -241,12 +238,35 @@ pub(super) fn bias(model: &Model, legs: &[Leg; SIDES], rates: &Rates) -> Coordin
             let total = omega + Vec3::new(0.0, turn_rps, 0.0);
             // The turn's own acceleration, and that of its axis with the body.
             let angular = Vec3::new(-omega.z * turn_rps, terms.turn, omega.x * turn_rps);
-            let torque = part.inertia * angular + total.cross(&(part.inertia * total));
+            let torque = part.inertia.times(angular) + total.cross(&part.inertia.times(total));
             bias.push_part(side, part, accel * part.mass_kg, part.place);
             bias.twist_part(side, part, torque);
         }
     }
     bias
+}
+
+/// Adds a part to its leg's block and to the coupling between leg and body.
+fn couple(part: &Part, coupling: &mut Matrix6x3<f64>, block: &mut Matrix3<f64>) {
+    let [x, y, z] = part.place.into();
+    let spin = part.inertia.yy;
+    for (i, slope) in part.slope.iter().enumerate() {
+        let force = slope * part.mass_kg;
+        coupling[(0, i)] += force.x;
+        coupling[(2, i)] += force.y;
+        coupling[(3, i)] += y * force.y;
+        coupling[(4, i)] += z * force.x - x * force.y;
+        coupling[(5, i)] -= y * force.x;
+        for (j, other) in part.slope.iter().enumerate() {
+            block[(i, j)] += force.dot(other);
+        }
+    }
+    for (i, turn) in part.turn.iter().enumerate() {
+        coupling[(4, i)] += turn * spin;
+        for (j, other) in part.turn.iter().enumerate() {
+            block[(i, j)] += turn * spin * other;
+        }
+    }
 }
 
 /// Mass, first and second moments about the body's origin.
@@ -256,22 +276,25 @@ struct RigidSum {
     second: Matrix3<f64>,
 }
 
-impl Default for RigidSum {
-    fn default() -> Self {
+impl RigidSum {
+    fn of_body(model: &Model) -> Self {
         Self {
-            mass_kg: 0.0,
-            first: Vec3::zeros(),
-            second: Matrix3::zeros(),
+            mass_kg: model.body_kg,
+            first: model.body_com * model.body_kg,
+            second: model.body_inertia + about_origin(model.body_com) * model.body_kg,
         }
     }
-}
 
-impl RigidSum {
-    fn add(&mut self, mass_kg: f64, place: Vec3, inertia: &Matrix3<f64>) {
-        self.mass_kg += mass_kg;
-        self.first += place * mass_kg;
-        let outer = place * place.transpose();
-        self.second += inertia + (Matrix3::identity() * place.norm_squared() - outer) * mass_kg;
+    fn add(&mut self, part: &Part) {
+        self.mass_kg += part.mass_kg;
+        self.first += part.place * part.mass_kg;
+        self.second += about_origin(part.place) * part.mass_kg;
+        let inertia = part.inertia;
+        self.second[(0, 0)] += inertia.xx;
+        self.second[(1, 1)] += inertia.yy;
+        self.second[(2, 2)] += inertia.zz;
+        self.second[(0, 2)] += inertia.xz;
+        self.second[(2, 0)] += inertia.xz;
     }
 
     fn matrix(&self) -> Matrix6<f64> {
@@ -285,4 +308,20 @@ impl RigidSum {
         matrix.fixed_view_mut::<3, 3>(3, 3).copy_from(&self.second);
         matrix
     }
+}
+
+/// Inertia of a unit mass at a place.
+fn about_origin(place: Vec3) -> Matrix3<f64> {
+    let [x, y, z] = place.into();
+    Matrix3::new(
+        y * y + z * z,
+        -x * y,
+        -x * z,
+        -x * y,
+        x * x + z * z,
+        -y * z,
+        -x * z,
+        -y * z,
+        x * x + y * y,
+    )
 }

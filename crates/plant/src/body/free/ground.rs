@@ -105,6 +105,7 @@ pub(super) struct Ground {
     sides: [Profile; 2],
     /// From, to, factor on friction.
     strip: Option<(f64, f64, f64)>,
+    highest_m: f64,
 }
 
 impl Ground {
@@ -195,7 +196,18 @@ impl Ground {
                 both(&[])
             }
         };
-        Self { sides, strip }
+        let ends = sides
+            .iter()
+            .flat_map(|side| side.0.iter().map(|face| face.end().y));
+        Self {
+            highest_m: ends.fold(0.0, f64::max),
+            sides,
+            strip,
+        }
+    }
+
+    pub fn highest_m(&self) -> f64 {
+        self.highest_m
     }
 
     pub fn profile(&self, y_m: f64) -> &Profile {

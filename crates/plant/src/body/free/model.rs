@@ -52,6 +52,8 @@ pub(super) struct Model {
     pub body_inertia: Matrix3<f64>,
     /// Corners of the box that hits the ground.
     pub corners: [Vec3; 8],
+    /// Distance from the body's origin within which all corners and knees are.
+    pub reach_m: f64,
     pub bar: FiveBar,
     pub thigh: Rod,
     pub shank: Rod,
@@ -104,11 +106,16 @@ impl Model {
         let load_n = robot.total_mass_kg() * STANDARD_GRAVITY_MPS2 / 2.0;
         let n_per_m = load_n / TYRE_GIVES_M;
         let growth = body_kg / robot.body.mass_kg;
+        let corners = corners(robot.body.box_centre_m, robot.body.box_m);
+        let knee_m = legs.hip_gap_m / 2.0 + legs.thigh.length_m;
         Self {
             body_kg,
             body_com: Vec3::from(robot.body.com_m) + Vec3::from(variation.com_offset_m),
             body_inertia: Matrix3::from_diagonal(&(Vec3::from(robot.body.inertia_kgm2) * growth)),
-            corners: corners(robot.body.box_centre_m, robot.body.box_m),
+            corners,
+            reach_m: corners
+                .iter()
+                .fold(knee_m.hypot(legs.plane_y_m), |most, it| most.max(it.norm())),
             bar: FiveBar {
                 half_gap_m: legs.hip_gap_m / 2.0,
                 thigh_m: legs.thigh.length_m,

@@ -5,7 +5,6 @@ use super::{
     five_bar::{HIPS, Linkage},
     model::{Model, Rod},
 };
-use nalgebra::Matrix3;
 
 /// Two thighs, two shanks, the wheel's motor, the wheel.
 pub(super) const PARTS: usize = 6;
@@ -25,8 +24,44 @@ pub(super) struct Part {
     pub slope: [Vec2; HIPS],
     /// Turn about +y per unit of each coordinate.
     pub turn: [f64; LEG_COORDINATES],
-    /// About its centre of mass, in body axes.
-    pub inertia: Matrix3<f64>,
+    /// About its centre of mass.
+    pub inertia: PlanarInertia,
+}
+
+/// Inertia of what is its own mirror image in the leg's plane: y is a principal axis. In body axes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PlanarInertia {
+    pub xx: f64,
+    pub yy: f64,
+    pub zz: f64,
+    pub xz: f64,
+}
+
+impl PlanarInertia {
+    const ZERO: Self = Self {
+        xx: 0.0,
+        yy: 0.0,
+        zz: 0.0,
+        xz: 0.0,
+    };
+
+    /// A rod has its inertia about all axes across it, and none about itself.
+    fn of_rod(rod: Rod, along: Vec2) -> Self {
+        Self {
+            xx: rod.inertia_kgm2 * along.y * along.y,
+            yy: rod.inertia_kgm2,
+            zz: rod.inertia_kgm2 * along.x * along.x,
+            xz: -rod.inertia_kgm2 * along.x * along.y,
+        }
+    }
+
+    pub fn times(&self, v: Vec3) -> Vec3 {
+        Vec3::new(
+            self.xx * v.x + self.xz * v.z,
+            self.yy * v.y,
+            self.xz * v.x + self.zz * v.z,
+        )
+    }
 }
 
 /// A leg at one pose.
@@ -71,7 +106,7 @@ impl Leg {
                     linkage.knee_slope[hip] * (rod.com_m / model.bar.thigh_m),
                 ),
                 turn,
-                inertia: rod_inertia(rod, linkage.thigh[hip]),
+                inertia: PlanarInertia::of_rod(rod, linkage.thigh[hip]),
             }
         };
         let shank_turn = |hip: usize| linkage.shank_slope[hip].map(|it| -it);
@@ -88,7 +123,7 @@ impl Leg {
                     knee[h] * (1.0 - share) + linkage.axle_slope[h] * share
                 }),
                 turn: [front, rear, 0.0],
-                inertia: rod_inertia(rod, linkage.shank[hip]),
+                inertia: PlanarInertia::of_rod(rod, linkage.shank[hip]),
             }
         };
         let [front, rear] = shank_turn(model.carrier);
@@ -97,18 +132,19 @@ impl Leg {
             place: Vec3::new(0.0, y, 0.0) + lift(linkage.axle),
             slope: linkage.axle_slope,
             turn: [front, rear, 0.0],
-            inertia: Matrix3::zeros(),
+            inertia: PlanarInertia::ZERO,
         };
         let disc = model.disc;
         let wheel = Part {
             mass_kg: disc.mass_kg,
             place: Vec3::new(0.0, model.wheel_y[side], 0.0) + lift(linkage.axle),
             turn: [front, rear, 1.0],
-            inertia: Matrix3::from_diagonal(&Vec3::new(
-                disc.tilt_kgm2,
-                disc.spin_kgm2,
-                disc.tilt_kgm2,
-            )),
+            inertia: PlanarInertia {
+                xx: disc.tilt_kgm2,
+                yy: disc.spin_kgm2,
+                zz: disc.tilt_kgm2,
+                xz: 0.0,
+            },
             ..motor
         };
         Self {
@@ -154,10 +190,4 @@ impl Part {
     pub fn turn_rps(&self, leg_rps: [f64; LEG_COORDINATES]) -> f64 {
         self.turn[0] * leg_rps[0] + self.turn[1] * leg_rps[1] + self.turn[2] * leg_rps[2]
     }
-}
-
-/// A rod has its inertia about all axes across it, and none about itself.
-fn rod_inertia(rod: Rod, along: Vec2) -> Matrix3<f64> {
-    let along = lift(along);
-    (Matrix3::identity() - along * along.transpose()) * rod.inertia_kgm2
 }
