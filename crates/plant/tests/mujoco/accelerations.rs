@@ -10,6 +10,8 @@ use crate::oracle::{Oracle, inputs_json, numbers, robot, state_json};
 const CASES: usize = 200;
 /// Largest difference of an acceleration, as a share of the largest one of its state.
 const ACCELERATION_SHARE: f64 = 1e-8;
+/// The same for wheels that roll ideally.
+const ROLLING_SHARE: f64 = 1e-6;
 const ENERGY_SHARE: f64 = 1e-11;
 const HOLDING_NM: f64 = 1e-9;
 
@@ -147,6 +149,65 @@ fn a_free_robot_accelerates_as_in_mujoco() {
 #[test]
 fn legs_of_a_clamped_robot_accelerate_as_in_mujoco() {
     assert_same_accelerations("fivebar", Hold::Clamped);
+}
+
+/// What linear models of the robot are made of. Both legs stand alike: with one axle ahead of the other, wheels that never
+/// slip sideways forbid to turn, and the plant gives way there by a hair.
+#[test]
+fn ideal_wheels_roll_as_in_mujoco() {
+    let robot = robot("fivebar");
+    let Some(oracle) = Oracle::new(&robot, "rolling-ideally") else {
+        return;
+    };
+    let mut random = Random::new(3);
+    let cases: Vec<_> = (0..CASES)
+        .map(|_| {
+            let state = any_state(&mut random, &robot);
+            let [front_rad, rear_rad, ..] = state.joint_rad;
+            let state = FreeState {
+                attitude: Rotation::by(random.vector(0.2)).to_wxyz(),
+                joint_rad: [front_rad, rear_rad, front_rad, rear_rad],
+                velocity_mps: [0.0; 3],
+                rate_rps: [0.0; 3],
+                joint_rps: [0.0; 4],
+                wheel_rps: [0.0; 2],
+                ..state
+            };
+            (state, any_inputs(&mut random))
+        })
+        .collect();
+    let radius_m = robot.wheels.radius_m;
+    let question = json!({
+        "states": cases.iter().map(|(state, _)| state_json(state)).collect::<Vec<_>>(),
+        "inputs": cases.iter().map(|(_, inputs)| inputs_json(inputs)).collect::<Vec<_>>(),
+        "radius_m": radius_m,
+        // The tyre's cross-section is round.
+        "tyre_m": (robot.wheels.width_m / 2.0).min(radius_m / 2.0),
+    });
+    let answer = oracle.ask(Hold::Free, "rolling", question);
+    let mut body = body(&robot, Hold::Free);
+    let mut worst = 0.0_f64;
+    for ((state, inputs), expected) in cases.iter().zip(answer.as_array().expect("a list")) {
+        body.set_state(state);
+        let all = body.rolling_accelerations(inputs);
+        let found = [
+            &all.linear_mps2[..],
+            &all.angular_rps2,
+            &all.joint_rps2,
+            &all.wheel_rps2,
+        ]
+        .concat();
+        let expected = numbers(expected);
+        let largest = expected.iter().fold(0.0_f64, |it, a| it.max(a.abs()));
+        for (found, expected) in found.iter().zip(&expected) {
+            worst = worst.max((found - expected).abs() / largest);
+        }
+        assert!(
+            worst < ROLLING_SHARE,
+            "{found:?} instead of {expected:?} at {state:?} under {inputs:?}"
+        );
+    }
+    println!("rolling ideally: accelerations differ by {worst:.1e} at most");
 }
 
 #[test]

@@ -130,6 +130,28 @@ class Oracle:
         right = np.concatenate([self.forces(inputs) - self.data.qfrc_bias, -ties_bias])
         return np.linalg.solve(system, right)[:nv][self.independent]
 
+    def rolling_accelerations(self, state, inputs, radius_m, tyre_m):
+        """Accelerations from rest, with the lowest place of each round tyre held by the ground."""
+        self.pose(state)
+        nv = self.model.nv
+        mass = np.zeros((nv, nv))
+        mujoco.mj_fullM(self.model, self.data, mass)
+        ties = [self.loop_jacobian()]
+        up = np.array([0.0, 0.0, 1.0])
+        for side in SIDES:
+            wheel = self.data.body(f"{side}_wheel")
+            axle = wheel.xmat.reshape(3, 3)[:, 1]
+            down = axle * axle[2] - up
+            lowest = wheel.xpos + down / np.linalg.norm(down) * (radius_m - tyre_m) - up * tyre_m
+            rows = np.zeros((3, nv))
+            mujoco.mj_jac(self.model, self.data, rows, None, lowest, wheel.id)
+            ties.append(rows)
+        ties = np.vstack(ties)
+        system = np.block([[mass, ties.T], [ties, np.zeros((len(ties),) * 2)]])
+        right = np.concatenate([self.forces(inputs) - self.data.qfrc_bias, np.zeros(len(ties))])
+        # Both wheels forbid one sideways motion: the forces are not determined, the accelerations are.
+        return np.linalg.lstsq(system, right, rcond=1e-12)[0][:nv][self.independent]
+
     def energy(self, state):
         """Kinetic energy, and potential energy that is zero with the centre of mass at z = 0."""
         self.pose(state)
@@ -255,6 +277,10 @@ def answer(files, question):
         case "accelerations":
             pairs = zip(states, question["inputs"])
             return [list(oracle.accelerations(*pair)) for pair in pairs]
+        case "rolling":
+            sizes = question["radius_m"], question["tyre_m"]
+            pairs = zip(states, question["inputs"])
+            return [list(oracle.rolling_accelerations(*pair, *sizes)) for pair in pairs]
         case "energies":
             return [oracle.energy(state) for state in states]
         case "holding":
