@@ -33,6 +33,7 @@
 mod canvas;
 mod lanes;
 mod page;
+mod phase;
 mod plot;
 mod scatter;
 mod thin;
@@ -42,6 +43,7 @@ pub use canvas::{
 };
 pub use lanes::{Lane, draw_lanes};
 pub use page::{Figure, Legend, document, escaped, header, paragraph, table};
+pub use phase::Phase;
 pub use plot::{Curve, TimePlot, draw_histogram, draw_path};
 pub use plotters::style::RGBColor as Colour;
 pub use scatter::{Cloud, before_and_after, draw_residuals};

@@ -126,7 +126,7 @@ const LEAST_SPAN: f64 = 0.02;
 const LEAST_SHARE: f64 = 0.005;
 
 /// Returns a range around all finite values, with room above and below. It is wide enough for its labels to differ.
-fn padded(values: impl Iterator<Item = f64>) -> Range<f64> {
+pub(crate) fn padded(values: impl Iterator<Item = f64>) -> Range<f64> {
     let finite = values.filter(|v| v.is_finite());
     let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
         (l.min(v), h.max(v))

@@ -206,18 +206,20 @@ const RECORDING: &[Signal] = &[
     }),
 ];
 
-/// Only of the free robot. Legs and wheels are left, then right: distance from the hip centre to the axle, m; its angle in body
-/// axes, forward positive, rad; force of the ground along the leg's direction is the wheel's, N; angle of the wheel against
-/// its motor, rad; force of the ground on body and links, N.
+/// Only of the free robot, left, then right. Leg: distance from the hip centre to the axle, m; its angle in body axes, forward
+/// positive, rad; force of the hip motors along it, pushing the ground positive, N. Wheel: angle against its motor, rad; force
+/// of the ground, N. Body and links: force of the ground, N.
 const FREE: &[Signal] = &[
     ("truth.leg.0.length_m", |w| free(w, |f| f.leg_length_m()[0])),
     ("truth.leg.0.angle_rad", |w| {
         free(w, |f| f.leg_angle_rad()[0])
     }),
+    ("truth.leg.0.force_n", |w| free(w, |f| f.leg_force_n()[0])),
     ("truth.leg.1.length_m", |w| free(w, |f| f.leg_length_m()[1])),
     ("truth.leg.1.angle_rad", |w| {
         free(w, |f| f.leg_angle_rad()[1])
     }),
+    ("truth.leg.1.force_n", |w| free(w, |f| f.leg_force_n()[1])),
     ("truth.wheel.0.turned_rad", |w| {
         free(w, |f| f.state().wheel_rad[0])
     }),

@@ -1,6 +1,7 @@
 //! The plots of a report.
 
 mod motion;
+mod phases;
 
 use std::ops::Range;
 
@@ -75,6 +76,7 @@ impl Plots<'_> {
     fn driven(&self) -> Result<Vec<Option<Figure>>, ChartError> {
         let mut figures = self.drive()?;
         figures.extend([self.timeline()?, self.attitude()?, self.attitude_error()?]);
+        figures.extend([self.pitch_phase()?, self.lean_phase()?]);
         figures.extend([self.can_load()?, self.jitter()?]);
         Ok(figures)
     }
@@ -195,7 +197,7 @@ impl Plots<'_> {
         });
         self.time_plot(
             "Joint angle",
-            "True angle of each joint motor's shaft, in the motor's own sense; the right side is mirrored.",
+            "True angle of each joint, in the joints' own sense.",
             "rad",
             260,
             curves.into(),

@@ -2,7 +2,7 @@ use robot_plant::{
     robots::JointMotor,
     time::{MS, SECOND},
     wire::CanFrame,
-    world::{CanBusId, PcInput, PcJoints, RemoteInput},
+    world::{CanBusId, PcInput, PcJoints, Push, RemoteInput},
 };
 
 use super::*;
@@ -198,6 +198,75 @@ fn a_pc_steers_over_the_serial_link() {
         ("{ wheel = [1, 1] }", "unknown field"),
     ] {
         let error = error_of(&format!("[[at]]\nt = 1\npc = {pc}\n"));
+        assert!(error.contains(part), "{error} lacks {part}");
+    }
+}
+
+const FREE: &str = "name = \"n\"\nseconds = 4.0\nplant = \"free\"\n";
+
+#[test]
+fn a_free_robot_has_a_start_a_ground_and_differences_from_its_file() {
+    let keys = "robot = \"fivebar-rs00\"\nstart = { dropped = { height_m = 0.28 } }\n\
+                terrain = { step = { at_m = 1.0, height_m = -0.15 } }\n\
+                variation = { mass = 1.2, delay_ms = 2, imu_deg = [0, 1, 0] }\n\
+                [[at]]\nt = 1\npush = { impulse_ns = [3, 0, 0] }\n";
+    let s = Scenario::parse(&format!("{FREE}{keys}"), "s.toml").unwrap();
+    assert_eq!(
+        (s.plant, s.robot.name.as_str()),
+        (PlantKind::Free, "fivebar-rs00")
+    );
+    assert_eq!(s.start, Start::Dropped { height_m: 0.28 });
+    assert_eq!(s.variation.delay, 2 * MS);
+    assert_eq!((s.variation.mass, s.variation.torque), (1.2, 1.0));
+    assert_eq!(
+        s.events[0].event,
+        Event::Push(Push::instant([3.0, 0.0, 0.0]))
+    );
+    let plain = Scenario::parse(FREE, "s.toml").unwrap();
+    assert_eq!(
+        (plain.start, plain.robot.name.as_str()),
+        (Start::Sitting, "fivebar")
+    );
+}
+
+#[test]
+fn what_only_a_free_robot_has_is_refused_elsewhere_and_nonsense_everywhere() {
+    for (head, body, part) in [
+        (
+            HEAD,
+            "start = \"front\"\n",
+            "s.toml:4: `start` belongs to `plant = \"free\"`",
+        ),
+        (HEAD, "terrain = \"flat\"\n", "s.toml:4: `terrain` belongs"),
+        (
+            HEAD,
+            "[[at]]\nt = 1\npush = { impulse_ns = [1, 0, 0] }\n",
+            "s.toml:4: `push` belongs",
+        ),
+        (
+            FREE,
+            "[[at]]\nt = 1\npush = { impulse_ns = [1e3, 0, 0] }\n",
+            "100 N·s",
+        ),
+        (
+            FREE,
+            "start = \"asleep\"\n",
+            "s.toml:4: unknown variant `asleep`",
+        ),
+        (
+            FREE,
+            "\nvariation = { mass = 9 }\n",
+            "s.toml:5: `mass` of the variation is 9",
+        ),
+        (FREE, "robot = \"no-such\"\n", "no-such.toml"),
+        (
+            FREE,
+            "robot = \"fivebar\"\njoints = \"rs00\"\n",
+            "leave `joints` out",
+        ),
+    ] {
+        let error = Scenario::parse(&format!("{head}{body}"), "s.toml").expect_err("refused");
+        let error = error.to_string();
         assert!(error.contains(part), "{error} lacks {part}");
     }
 }
