@@ -1,6 +1,6 @@
 //! One run of the robot: the pilot's moves, and what is seen of it.
 
-use robot_app::domain::RobotConfig;
+use robot_app::{domain::RobotConfig, safety::SafetyFlags};
 use robot_host_loop::Robot;
 use robot_plant::world::{PlantKind, Probe, Push, RemoteInput, Start, Terrain, World, WorldConfig};
 
@@ -118,6 +118,9 @@ pub struct Trial {
     now: Sample,
     kept: Vec<Sample>,
     ticks: u64,
+    /// What stopped the robot when it was last disarmed.
+    stopped_by: SafetyFlags,
+    was_armed: bool,
 }
 
 impl Trial {
@@ -145,6 +148,8 @@ impl Trial {
             now,
             kept: Vec::new(),
             ticks: 0,
+            stopped_by: SafetyFlags::NONE,
+            was_armed: false,
         }
     }
 
@@ -209,6 +214,8 @@ impl Trial {
             now,
             kept,
             ticks,
+            stopped_by,
+            was_armed,
             ..
         } = self;
         robot.run_until(t_s, |robot| {
@@ -217,6 +224,10 @@ impl Trial {
                 kept.push(*now);
             }
             *ticks += 1;
+            if *was_armed && !robot.armed() {
+                *stopped_by = robot.diagnostics().safety.flags;
+            }
+            *was_armed = robot.armed();
             look(now);
         });
     }
@@ -252,12 +263,9 @@ impl Trial {
     /// Why it does not.
     pub fn require_upright(&self) -> Result<(), Failure> {
         let now = &self.now;
-        let blockers: Vec<_> = self.robot.diagnostics().arming.blockers.names().collect();
         if !self.robot.armed() {
-            return Err(self.failed(format!(
-                "disarmed: {blockers:?} {:?}",
-                self.robot.diagnostics().safety.flags_seen
-            )));
+            let stopped_by: Vec<_> = self.stopped_by.names().collect();
+            return Err(self.failed(format!("stopped by {}", stopped_by.join(", "))));
         }
         if now.tilt_rad() > FALLEN_RAD {
             return Err(self.failed(format!("tilted by {:.0}°", now.tilt_rad().to_degrees())));

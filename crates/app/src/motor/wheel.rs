@@ -29,8 +29,8 @@ pub struct Wheel {
     permitted: bool,
     /// Runs only while the wheel may not move: its result forbids arming, and the armed tick has no time to spare.
     angle_monitor: AngleMonitor,
-    /// Time of the last report whose angle differed from the previous one.
-    angle_changed_us: u64,
+    /// Time of the last report whose angle differed from the previous one, or whose rotor stood.
+    angle_plausible_us: u64,
     /// Time of the last report that differed at all, or agreed with the current sent.
     plausible_us: u64,
 }
@@ -45,7 +45,7 @@ impl Wheel {
             sent: MotorCurrent::ZERO,
             permitted: false,
             angle_monitor: AngleMonitor::default(),
-            angle_changed_us: 0,
+            angle_plausible_us: 0,
             plausible_us: 0,
         }
     }
@@ -57,7 +57,7 @@ impl Wheel {
         }
         for ts_us in [
             &mut self.feedback.ts_us,
-            &mut self.angle_changed_us,
+            &mut self.angle_plausible_us,
             &mut self.plausible_us,
         ] {
             *ts_us = ts_us.saturating_add(stall_us.into());
@@ -91,11 +91,11 @@ impl Wheel {
             && now.temperature_c == last.temperature_c;
         let implausible_current = (now.current_ma - self.sent.ma()).abs() > CURRENT_TOLERANCE_MA;
         let is_first = last.ts_us == 0;
-        let stuck_angle = if same_angle && !is_first {
-            now.rpm.unsigned_abs() >= MOVING_RPM
-                && now.ts_us.saturating_sub(self.angle_changed_us) >= STUCK_ANGLE_US
+        let turns = now.rpm.unsigned_abs() >= MOVING_RPM;
+        let stuck_angle = if same_angle && turns && !is_first {
+            now.ts_us.saturating_sub(self.angle_plausible_us) >= STUCK_ANGLE_US
         } else {
-            self.angle_changed_us = now.ts_us;
+            self.angle_plausible_us = now.ts_us;
             false
         };
         let stuck_report = if same_report && implausible_current && !is_first {

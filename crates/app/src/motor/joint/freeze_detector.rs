@@ -15,8 +15,8 @@ const STUCK_REPORT_US: u64 = 100_000;
 #[derive(Clone, Debug, Default)]
 pub struct FreezeDetector {
     frozen: bool,
-    /// Time of the last report whose angle differed from the previous one.
-    position_changed_us: u64,
+    /// Time of the last report whose angle differed from the previous one, or whose joint stood.
+    position_plausible_us: u64,
     /// Time of the last report that differed at all, or agreed with the command.
     plausible_us: u64,
 }
@@ -32,8 +32,9 @@ impl FreezeDetector {
         ts_us: u64,
     ) -> bool {
         let same_position = last.motion.position_code == report.motion.position_code;
-        if !same_position {
-            self.position_changed_us = ts_us;
+        let turns = report.motion.vel_rps.abs() > MOVING_RPS;
+        if !same_position || !turns {
+            self.position_plausible_us = ts_us;
         }
         let same_report = same_position && last == report;
         if !same_report
@@ -41,8 +42,8 @@ impl FreezeDetector {
         {
             self.plausible_us = ts_us;
         }
-        let stuck_position = report.motion.vel_rps.abs() > MOVING_RPS
-            && ts_us.saturating_sub(self.position_changed_us) >= STUCK_POSITION_US;
+        let stuck_position =
+            turns && ts_us.saturating_sub(self.position_plausible_us) >= STUCK_POSITION_US;
         let stuck_report = ts_us.saturating_sub(self.plausible_us) >= STUCK_REPORT_US;
         self.frozen = stuck_position || stuck_report || (self.frozen && same_report);
         self.frozen
@@ -52,7 +53,7 @@ impl FreezeDetector {
     pub fn restart(&mut self, now_us: u64) {
         *self = Self {
             frozen: false,
-            position_changed_us: now_us,
+            position_plausible_us: now_us,
             plausible_us: now_us,
         };
     }
@@ -122,6 +123,18 @@ mod tests {
             frozen_ms(None, |ms| report((ms / 49) as u16, 2.0, 30.0)),
             None
         );
+    }
+
+    /// A joint that stood for long is struck. Its speed shows that before its angle does.
+    #[test]
+    fn a_joint_that_begins_to_turn_has_50_ms_as_well() {
+        for (turns_ms, expected) in [(49, None), (51, Some(549))] {
+            let found = frozen_ms(None, |ms| {
+                let turning = (500..500 + turns_ms).contains(&ms);
+                report((ms / 700) as u16, if turning { 5.0 } else { 0.0 }, 30.0)
+            });
+            assert_eq!(found, expected, "{turns_ms} ms");
+        }
     }
 
     #[test]
