@@ -222,3 +222,6 @@ pub(crate) fn name(bus: Bus) -> &'static str {
         Bus::Can2 => "CAN2",
     }
 }
+
+#[cfg(test)]
+mod tests;

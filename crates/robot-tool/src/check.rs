@@ -148,7 +148,7 @@ fn mechanics(figures: &Figures) -> Vec<Row> {
 mod tests {
     use super::*;
 
-    /// The carried 5.068 kg are 24.86 N on each leg; at 0.26 m each N takes 0.07339 N·m of each hip. 50.5 rad/s on a
+    /// The carried 4.962 kg are 24.34 N on each leg; at 0.26 m each N takes 0.0750 N·m of each hip. 50.5 rad/s on a
     /// radius of 0.06 m are 3.03 m/s.
     #[test]
     fn the_table_of_the_small_robot() {

@@ -92,41 +92,20 @@ fn shares_bus(robot: &Robot) -> bool {
 }
 
 fn clashes(robot: &Robot, findings: &mut Findings) {
-    for joint in 0..4 {
+    for (joint, name) in NAMES.iter().enumerate() {
         let ids = identifiers(robot, joint);
         findings.must(
             !ids[..3].contains(&ids[3]),
             "joints.replies",
             format!(
-                "{} replies with {:#X}, the identifier of its commands",
-                NAMES[joint], ids[3]
+                "{name} replies with {:#X}, the identifier of its commands",
+                ids[3]
             ),
             "another identifier",
             RENUMBER,
         );
-        for id in ids {
-            findings.must(
-                !TUNING_IDS.contains(&id) && id != REGISTER_ID,
-                "joints.replies",
-                format!(
-                    "{} uses {id:#X}, which the tuning channel or the registers use",
-                    NAMES[joint]
-                ),
-                "an identifier below 0x7A0",
-                RENUMBER,
-            );
-            findings.must(
-                !shares_bus(robot) || !DJI_IDS.contains(&id),
-                "joints.ids",
-                format!(
-                    "{} uses {id:#X}, as a wheel's speed controller does",
-                    NAMES[joint]
-                ),
-                "no identifier from 0x1FF to 0x208 on the wheels' bus",
-                "Put the joints on the other bus, or give them numbers from 9.",
-            );
-        }
-        for other in joint + 1..4 {
+        reserved(robot, name, ids, findings);
+        for (other, other_name) in NAMES.iter().enumerate().skip(joint + 1) {
             let shared = identifiers(robot, other)
                 .into_iter()
                 .find(|id| ids.contains(id));
@@ -138,9 +117,7 @@ fn clashes(robot: &Robot, findings: &mut Findings) {
                     "joints.replies"
                 },
                 format!(
-                    "{} and {} both use {:#X}",
-                    NAMES[joint],
-                    NAMES[other],
+                    "{name} and {other_name} both use {:#X}",
                     shared.unwrap_or_default()
                 ),
                 "each identifier once",
@@ -150,12 +127,32 @@ fn clashes(robot: &Robot, findings: &mut Findings) {
     }
 }
 
+/// Identifiers that others than motors use.
+fn reserved(robot: &Robot, name: &str, ids: [u16; 4], findings: &mut Findings) {
+    for id in ids {
+        findings.must(
+            !TUNING_IDS.contains(&id) && id != REGISTER_ID,
+            "joints.replies",
+            format!("{name} uses {id:#X}, which the tuning channel or the registers use"),
+            "an identifier below 0x7A0",
+            RENUMBER,
+        );
+        findings.must(
+            !shares_bus(robot) || !DJI_IDS.contains(&id),
+            "joints.ids",
+            format!("{name} uses {id:#X}, as a wheel's speed controller does"),
+            "no identifier from 0x1FF to 0x208 on the wheels' bus",
+            "Put the joints on the other bus, or give them numbers from 9.",
+        );
+    }
+}
+
 /// A DM4310 takes every frame for its own whose low byte is its number.
 fn low_bytes(robot: &Robot, findings: &mut Findings) {
     if robot.joints.motor != JointMotor::Dm4310 {
         return;
     }
-    for joint in 0..4 {
+    for (joint, name) in NAMES.iter().enumerate() {
         let number = robot.joints.ids[joint];
         let others = (0..4).filter(|other| *other != joint);
         let heard = others.map(|other| robot.joints.replies[other]);
@@ -164,8 +161,7 @@ fn low_bytes(robot: &Robot, findings: &mut Findings) {
                 id.to_be_bytes()[1] != number,
                 "joints.replies",
                 format!(
-                    "{} has number {number} and would take {id:#X} for a command to itself",
-                    NAMES[joint]
+                    "{name} has number {number} and would take {id:#X} for a command to itself"
                 ),
                 "no other frame on the bus whose low byte is a DM4310's number",
                 RENUMBER,
