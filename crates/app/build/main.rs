@@ -11,7 +11,7 @@ use std::{
     process::ExitCode,
 };
 
-use robot_description::Robot;
+use robot_description::{Examined, Robot};
 
 /// The robot of an image that no `ROBOT` names another one for.
 const DEFAULT: &str = "fivebar";
@@ -72,7 +72,11 @@ fn read(name: &str) -> Result<Robot, String> {
     let shown = path.strip_prefix(&root).unwrap_or(&path).display();
     let text = fs::read_to_string(&path)
         .map_err(|error| format!("{shown}: cannot be read: {error}. ROBOT={name} names it"))?;
-    Robot::parse(&text, &shown.to_string()).map_err(|error| error.to_string())
+    let examined = Examined::parse(&text, &shown.to_string()).map_err(|error| error.to_string())?;
+    for warning in &examined.warnings {
+        println!("cargo::warning={warning}");
+    }
+    Ok(examined.robot)
 }
 
 fn write(file: &str, text: &str) -> Result<(), String> {

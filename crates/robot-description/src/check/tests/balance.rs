@@ -4,76 +4,73 @@ use super::{Case, assert_refused, assert_warned};
 
 const REFUSED: &[Case] = &[
     Case {
-        changes: &[("mass_kg = 4.30", "mass_kg = 7.30")],
+        changes: &[("body.mass_kg", "7.30")],
         says: &[
             "joints.continuous_nm: standing at 0.21 m needs 3.18 N m of each hip, 106 % of it; allowed: 100 %. Make the robot lighter, its thighs shorter, or take stronger motors.",
         ],
     },
     Case {
         changes: &[
-            (
-                "box_centre_m = [0.0, 0.0, 0.03]",
-                "box_centre_m = [0.0, 0.0, -0.15]",
-            ),
-            ("com_m = [0.0, 0.0, 0.02]", "com_m = [0.0, 0.0, -0.12]"),
-            (
-                "place_m = [0.03, 0.0, 0.05]",
-                "place_m = [0.03, 0.0, -0.15]",
-            ),
-            ("box_m = [0.30, 0.24, 0.12]", "box_m = [0.30, 0.24, 0.22]"),
+            ("body.box_centre_m", "[0.0, 0.0, -0.15]"),
+            ("body.com_m", "[0.0, 0.0, -0.12]"),
+            ("imu.place_m", "[0.03, 0.0, -0.15]"),
+            ("body.box_m", "[0.30, 0.24, 0.22]"),
         ],
         says: &[
             "control.limits.height_m: the body is -0.070 m above the ground at the lowest height; allowed: more than 0 m. Raise the lowest height.",
         ],
     },
     Case {
-        changes: &[("com_m = [0.0, 0.0, 0.02]", "com_m = [0.06, 0.0, 0.02]")],
+        changes: &[("body.com_m", "[0.06, 0.0, 0.02]")],
         says: &[
             "body.com_m: 0.06 m forward; with folded legs the legs would have to lean by 0.49 rad; allowed: -0.22 to 0.22 rad, so that the wheels come under it. Move the battery, or check the sign: forward is positive.",
         ],
     },
     Case {
-        changes: &[("max_speed_mps = 2.5", "max_speed_mps = 3.5")],
+        changes: &[("control.limits.max_speed_mps", "3.5")],
         says: &[
             "control.limits.max_speed_mps: 3.5 m/s; allowed: more than 0, at most 2.73 m/s, 90 % of the unloaded wheel's 3.03. Ask for less, or take larger wheels: at its top speed a motor has no torque left to balance.",
         ],
     },
     Case {
-        changes: &[("max_yaw_rps = 8.0", "max_yaw_rps = 14.0")],
+        changes: &[("control.limits.max_yaw_rps", "14.0")],
         says: &[
             "control.limits.max_yaw_rps: 14 rad/s; allowed: more than 0, at most 13.0 rad/s, 90 % of what unloaded wheels turn it. Ask for less.",
         ],
     },
     Case {
-        changes: &[("max_roll_rad = 0.2", "max_roll_rad = 12.0")],
+        changes: &[("control.limits.max_roll_rad", "12.0")],
         says: &[
             "control.limits.max_roll_rad: 12 rad; allowed: 0 to 0.42 rad, one leg folded and one stretched. Ask for less.",
         ],
     },
     Case {
-        changes: &[("jump_m = 0.15", "jump_m = 0.5")],
+        changes: &[("control.limits.jump_m", "0.5")],
         says: &[
             "control.limits.jump_m: 0.5 m; allowed: 0 to 0.25 m, which the hips' torque, speed and stroke give (1.97 m/s at take-off). Ask for less, raise torque_limit_nm, or make the robot lighter.",
         ],
     },
     Case {
-        changes: &[("delay_s = 0.003", "delay_s = 3.0")],
+        changes: &[("control.delay_s", "3.0")],
         says: &["control.delay_s: 3 s; allowed: 0 to 0.02 s. Enter seconds; 0.003 is usual here."],
     },
     Case {
-        changes: &[("q = [100.0,", "q = [-100.0,")],
+        changes: &[(
+            "control.weights.q",
+            "[-1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]",
+        )],
         says: &[
-            "control.weights.q: [-100.0, 20.0, 50.0, 5.0, 50.0, 1.0, 50.0, 1.0, 1000.0, 10.0]; allowed: ten figures of at least 0. A larger weight keeps that state smaller.",
+            "control.weights.q: [-1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]; allowed: ten figures of at least 0. A larger weight keeps that state smaller.",
         ],
     },
     Case {
-        changes: &[("r = [2.0,", "r = [0.0,")],
+        changes: &[("control.weights.r", "[0.0, 1.0, 1.0, 1.0]")],
         says: &[
-            "control.weights.r: [0.0, 2.0, 1.0, 1.0]; allowed: four figures above 0. A larger weight spares that torque.",
+            "control.weights.r: [0.0, 1.0, 1.0, 1.0]; allowed: four figures above 0. A larger weight spares that torque.",
         ],
     },
     Case {
-        changes: &[("place_m = [0.03, 0.0, 0.05]", "place_m = [30.0, 0.0, 50.0]")],
+        changes: &[("imu.place_m", "[30.0, 0.0, 50.0]")],
         says: &[
             "imu.place_m: 30, 0, 50 m; allowed: a place in the body's box. Measure from the hip centre to the board's middle.",
         ],
@@ -87,23 +84,23 @@ fn files_are_refused() {
 
 const WARNED: &[Case] = &[
     Case {
-        changes: &[("mass_kg = 4.30", "mass_kg = 5.30")],
+        changes: &[("body.mass_kg", "5.30")],
         says: &[
             "joints.continuous_nm: standing at 0.21 m needs 2.38 N m of each hip, 79 % of it; allowed: 70 %, so that the motors stay cool on uneven ground. Make the robot lighter, its thighs shorter, or stand lower.",
         ],
     },
     Case {
         changes: &[
-            ("front = [-1.35, 0.75]", "front = [-1.11, 0.75]"),
-            ("rear = [-0.75, 1.35]", "rear = [-0.75, 1.11]"),
-            ("height_m = [0.13, 0.26]", "height_m = [0.25, 0.30]"),
+            ("joints.range_rad.front", "[-1.11, 0.75]"),
+            ("joints.range_rad.rear", "[-0.75, 1.11]"),
+            ("control.limits.height_m", "[0.25, 0.30]"),
         ],
         says: &[
             "joints.range_rad: at middle height the legs lean by -0.15 to 0.15 rad; allowed: 0.25 rad either way, for braking and pushes. Widen the ranges of the hips.",
         ],
     },
     Case {
-        changes: &[("com_m = [0.0, 0.0, 0.02]", "com_m = [0.0, 0.05, 0.02]")],
+        changes: &[("body.com_m", "[0.0, 0.05, 0.02]")],
         says: &["body.com_m: 0.05 m to the left; allowed: a tenth of the track. Move the battery."],
     },
 ];
