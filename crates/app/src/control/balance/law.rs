@@ -7,7 +7,7 @@ use super::{
     reference::{Reference, Wish},
     support::{GRAVITY_MPS2, Stance, Support},
     torques,
-    trim::Trim,
+    trim::{Motion, Trim},
     virtual_leg::LegForce,
 };
 use crate::{
@@ -15,12 +15,13 @@ use crate::{
     math::scalar,
 };
 
-/// Trim is learned while the speed differs by less than this from its reference, in m/s, and that changes by less than
-/// this, in m/s².
-const LEARN_MPS: f32 = 0.4;
+/// Trim is learned while the speed differs by less than this from its reference, in m/s, that changes by less than this,
+/// in m/s², and the legs turn by less than this, in rad/s: otherwise the robot catches itself.
+const LEARN_MPS: f32 = 0.6;
 const LEARN_MPS2: f32 = 0.3;
+const LEARN_RPS: f32 = 0.3;
 /// Largest speed error in m/s that counts: a larger one would lean the robot further than it can catch itself.
-const MAX_SPEED_ERROR_MPS: f32 = 0.7;
+const MAX_SPEED_ERROR_MPS: f32 = 1.5;
 /// Damping of a wheel in the air in N·m·s/rad.
 const AIR_DAMPING: f32 = 0.05;
 
@@ -80,7 +81,7 @@ impl Law {
         Self {
             gains: Gains::new(&profile.gains, measured.legs.map(|leg| leg.length_m)),
             reference: Reference::at(measured.speed_mps, measured.tilt.yaw_rps),
-            trim: Trim::default(),
+            trim: Trim::new(motion(measured)),
             support: Support::default(),
             contact: Contact::standing(&profile.mass, measured),
             wheels_nm: [0.0; 2],
@@ -142,7 +143,14 @@ impl Law {
         let yaw_rps = measured.tilt.yaw_rps;
         self.reference
             .step(goal.wish, measured.speed_mps, yaw_rps, dt_s);
-        let ahead = Ahead::new(profile, odometry, measured, self.reference.accel_mps2);
+        let per_mps2 = Ahead::new(profile, odometry, measured);
+        let ahead = per_mps2.times(self.reference.accel_mps2);
+        let observed_rad = self.trim.observe(
+            &motion(measured),
+            per_mps2.lean_rad,
+            measured.length_m(),
+            dt_s,
+        );
         let error = self.error(
             measured,
             self.trim.lean_rad + ahead.lean_rad,
@@ -151,11 +159,11 @@ impl Law {
         let feedback_nm = self.gains.torques_nm(&error);
         let [left_wheel, right_wheel, left_leg, right_leg] = feedback_nm;
         let [_, speed_error, ..] = error;
-        let steady = self.reference.accel_mps2.abs() < LEARN_MPS2;
+        let steady = self.reference.accel_mps2.abs() < LEARN_MPS2
+            && measured.mean_lean_rps().abs() < LEARN_RPS;
         let calm = goal.learn && steady && speed_error.abs() < LEARN_MPS;
         if calm {
-            let lean_rad = measured.mean_lean_rad() - ahead.lean_rad;
-            self.trim.learn(lean_rad, feedback_nm, dt_s);
+            self.trim.learn(observed_rad, feedback_nm, dt_s);
         }
         let stance = Stance {
             length_m: goal.length_m,
@@ -194,6 +202,7 @@ impl Law {
     ) -> ([f32; 2], [LegForce; 2]) {
         let speed_mps = self.reference.speed_mps;
         self.reference.let_go(speed_mps);
+        self.trim.restart(motion(measured));
         let wanted_rps = speed_mps / scalar::max(odometry.wheel_radius_m, 0.01);
         let mut error = self.error(measured, self.trim.lean_rad, goal.pitch_rad);
         let [distance, speed, yaw, yaw_rate, ..] = &mut error;
@@ -244,7 +253,16 @@ impl Law {
     }
 }
 
+fn motion(measured: &Measured) -> Motion {
+    Motion {
+        lean_rad: measured.mean_lean_rad(),
+        lean_rps: measured.mean_lean_rps(),
+        speed_mps: measured.speed_mps,
+    }
+}
+
 /// What an acceleration takes.
+#[derive(Clone, Copy, Debug)]
 struct Ahead {
     lean_rad: f32,
     wheel_nm: f32,
@@ -252,26 +270,27 @@ struct Ahead {
 }
 
 impl Ahead {
-    fn new(
-        profile: &BalanceProfile,
-        odometry: &WheelOdomConfig,
-        measured: &Measured,
-        accel_mps2: f32,
-    ) -> Self {
+    /// What 1 m/s² takes.
+    fn new(profile: &BalanceProfile, odometry: &WheelOdomConfig, measured: &Measured) -> Self {
         let mass = &profile.mass;
         let radius_m = scalar::max(odometry.wheel_radius_m, 0.01);
         let length_m = measured.length_m();
-        let moved_kg = mass.total_kg + 2.0 * mass.wheel_kgm2 / (radius_m * radius_m);
-        let wheels_nm = accel_mps2 * moved_kg * radius_m;
-        let body_nm = accel_mps2 * mass.carried_kg * mass.carried_up_m;
-        let legs_nm = accel_mps2 * mass.carried_kg * length_m;
+        let rolling_kg = 2.0 * mass.wheel_kgm2 / (radius_m * radius_m);
+        let body = mass.carried_kg * mass.carried_up_m;
         // The rotors' part of the torque does not reach the legs.
-        let reaction_nm = accel_mps2 * mass.total_kg * radius_m;
+        let legs = mass.carried_kg * length_m + mass.total_kg * radius_m + body;
         Self {
-            lean_rad: (legs_nm + body_nm + reaction_nm)
-                / (mass.carried_kg * GRAVITY_MPS2 * length_m),
-            wheel_nm: 0.5 * wheels_nm,
-            leg_nm: -0.5 * body_nm,
+            lean_rad: legs / (mass.carried_kg * GRAVITY_MPS2 * length_m),
+            wheel_nm: 0.5 * (mass.total_kg + rolling_kg) * radius_m,
+            leg_nm: -0.5 * body,
+        }
+    }
+
+    fn times(self, accel_mps2: f32) -> Self {
+        Self {
+            lean_rad: self.lean_rad * accel_mps2,
+            wheel_nm: self.wheel_nm * accel_mps2,
+            leg_nm: self.leg_nm * accel_mps2,
         }
     }
 }

@@ -11,7 +11,7 @@ const MAX_YAW_RPSS: f32 = 15.0;
 /// Largest sideways acceleration in m/s² in a turn.
 const MAX_SIDEWAYS_MPS2: f32 = 3.0;
 /// Largest distance in m from the place that the robot holds.
-const MAX_DISTANCE_M: f32 = 0.15;
+const MAX_DISTANCE_M: f32 = 0.05;
 /// A speed error in m/s beyond which the robot lets go of its place: it has been pushed.
 const PUSHED_MPS: f32 = 0.25;
 /// Time constant in s of letting go.
