@@ -48,7 +48,7 @@ pub use imu_status::{
 pub use logic_bus::LogicBus;
 pub use mounting::Orientation;
 pub use param_store::{FlashRequest, ParamError, ParamState, ParamStatus};
-pub use pc::{JointTarget, LinkHealth, PcCommand, WheelTarget};
+pub use pc::{JointTarget, LinkHealth, PcCommand, PcDrive, PcKind, WheelTarget};
 pub use remote::{
     DriveMode, OperatorState, RemoteDiagnostics, RemoteState, RemoteUpdate, StandSwitch,
 };

@@ -4,8 +4,8 @@
 use std::str::FromStr;
 
 use robot_app::{
-    domain::{CanFrame, JointTarget, StandardId, WheelTarget},
-    link::{Downlink, Keys, MotorState, Sticks, Tunnelled, Uplink},
+    domain::{CanFrame, JointTarget, PcDrive, StandardId, WheelTarget},
+    link::{Downlink, DriveFrame, Keys, MotorState, Sticks, Tunnelled, Uplink},
 };
 
 /// The columns of a line, from the left.
@@ -151,6 +151,36 @@ fn command_frames_equal_those_of_the_documents_tables() {
 }
 
 #[test]
+fn drive_frames_equal_those_of_the_table() {
+    let (mut accepted, mut refused) = (0, 0);
+    for mut columns in Columns::of(include_str!("vectors/link_drive.csv")) {
+        let [vx, wz, height, roll] = columns.floats();
+        let jump = columns.text();
+        let count = columns.number();
+        let frame = columns.bytes();
+        if jump == "-" {
+            assert_eq!(DriveFrame::decode(&frame), None, "{frame:02x?}");
+            refused += 1;
+            continue;
+        }
+        let command = DriveFrame(PcDrive {
+            vx,
+            wz,
+            height,
+            roll,
+            jump: jump == "1",
+            count,
+        });
+        assert_eq!(command.encode(), frame, "{command:?}");
+        let DriveFrame(read) = DriveFrame::decode(&frame).expect("header and CRC are correct");
+        assert_close(&[read.vx, read.wz, read.height, read.roll], &columns.rest());
+        assert_eq!((read.jump, read.count), (command.0.jump, count));
+        accepted += 1;
+    }
+    assert_eq!((accepted, refused), (61, 7));
+}
+
+#[test]
 fn tunnel_frames_equal_those_of_the_table() {
     let (mut accepted, mut refused) = (0, 0);
     for mut columns in Columns::of(include_str!("vectors/link_tunnel.csv")) {
@@ -178,6 +208,7 @@ fn tunnel_frames_equal_those_of_the_table() {
 fn no_flipped_bit_passes() {
     let up = Uplink::default().encode();
     let down = Downlink::default().encode();
+    let drive = DriveFrame::default().encode();
     let id = StandardId::new(0x7A1).unwrap();
     let tunnel = Tunnelled::new(CanFrame::new(id, [7; 8])).unwrap().encode();
     for bit in 0..8 {
@@ -191,6 +222,11 @@ fn no_flipped_bit_passes() {
             let mut frame = down;
             flipped(&mut frame, at);
             assert_eq!(Downlink::decode(&frame), None);
+        }
+        for at in 0..drive.len() {
+            let mut frame = drive;
+            flipped(&mut frame, at);
+            assert_eq!(DriveFrame::decode(&frame), None);
         }
         for at in 0..tunnel.len() {
             let mut frame = tunnel;

@@ -1,5 +1,6 @@
 //! Ten million bytes through each receiver, in chunks of any length.
 
+use robot_app::domain::{PcDrive, PcKind};
 use robot_app::link::{Heard, PcReceiver, Received, RobotReceiver};
 use robot_test_support::Random;
 
@@ -65,6 +66,23 @@ fn assert_received(received: &[Received], stream: &[u8], frames: &[Place]) {
                 let id = can_frame.id().raw();
                 assert_eq!((0xFD, id as u8 & 0x0F), (frame[0], frame[1] & 0x0F));
                 assert_eq!(can_frame.padded_payload(), frame[3..11]);
+            }
+            Received::Command(command) if command.kind == PcKind::Drive => {
+                let PcDrive {
+                    vx,
+                    wz,
+                    height,
+                    roll,
+                    jump,
+                    count,
+                } = command.drive;
+                assert_eq!(frame[0], 0xFC);
+                for (place, share) in [vx, wz, height, roll].into_iter().enumerate() {
+                    let at = 1 + 2 * place;
+                    let code = f64::from(u16::from_le_bytes([frame[at], frame[at + 1]]));
+                    assert!((f64::from(share) - (code / 32_767.5 - 1.0)).abs() < 1e-6);
+                }
+                assert_eq!([u8::from(jump), count], frame[9..11]);
             }
             Received::Command(command) => {
                 assert_eq!(frame.len(), 38);

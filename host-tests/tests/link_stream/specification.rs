@@ -19,6 +19,7 @@ impl Direction {
         match header {
             0xFE => Some(self.long_frame()),
             0xFD => Some(12),
+            0xFC if self == Self::ToRobot => Some(12),
             _ => None,
         }
     }
@@ -72,10 +73,15 @@ pub fn search(stream: &[u8], direction: Direction) -> Verdict {
     verdict
 }
 
-/// CRC and, in a tunnel frame, identifier, length and padding are right.
+/// CRC and, in a tunnel frame, identifier, length and padding are right. A drive frame has one bit with a meaning.
 fn is_frame(bytes: &[u8]) -> bool {
     let (crc, before) = bytes.split_last().unwrap();
-    crc8(before) == *crc && (bytes.len() != 12 || is_tuning_frame(bytes))
+    let is_sound = match bytes[0] {
+        0xFD => is_tuning_frame(bytes),
+        0xFC => bytes[9] <= 1,
+        _ => true,
+    };
+    crc8(before) == *crc && is_sound
 }
 
 fn is_tuning_frame(bytes: &[u8]) -> bool {

@@ -22,21 +22,29 @@ pub fn tunnel_frame(random: &mut Random) -> Vec<u8> {
     frame
 }
 
+pub fn drive_frame(random: &mut Random) -> Vec<u8> {
+    let mut frame = vec![0xFC];
+    frame.extend((0..8).map(|_| byte_or_header(random, 4)));
+    frame.extend([random.byte() & 1, random.byte()]);
+    frame.push(crc8(&frame));
+    frame
+}
+
 /// One byte in `headers_among` is a header.
 pub fn byte_or_header(random: &mut Random, headers_among: usize) -> u8 {
     match random.below(2 * headers_among) {
         0 => 0xFE,
-        1 => 0xFD,
+        1 => 0xFD - random.byte() % 2,
         _ => random.byte(),
     }
 }
 
 /// Appends a row of good frames, a damaged one, or garbage.
 pub fn append_anything(stream: &mut Vec<u8>, random: &mut Random, direction: Direction) {
-    let mut frame = if random.below(3) == 0 {
-        tunnel_frame(random)
-    } else {
-        long_frame(random, direction)
+    let mut frame = match random.below(4) {
+        0 => tunnel_frame(random),
+        1 if direction == Direction::ToRobot => drive_frame(random),
+        _ => long_frame(random, direction),
     };
     let at = random.below(frame.len());
     match random.below(6) {

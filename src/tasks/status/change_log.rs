@@ -2,8 +2,8 @@
 
 use robot_app::diagnostics::{ChangeThrottle, DiagnosticsSnapshot};
 use robot_app::domain::{
-    BusErrorState, BusId, CalibrationState, DebugProbe, HeaterState, RadioLineHealth,
-    TemperatureGateState,
+    BalanceState, BusErrorState, BusId, CalibrationState, DebugProbe, HeaterState, RadioLineHealth,
+    StandPermit, TemperatureGateState,
 };
 use robot_app::safety::{ArmingBlockers, ArmingState, SafetyFlags};
 
@@ -16,6 +16,7 @@ pub struct ChangeLog {
     blockers: ChangeThrottle<ArmingBlockers>,
     refused: ChangeThrottle<ArmingBlockers>,
     flags: ChangeThrottle<SafetyFlags>,
+    balance: ChangeThrottle<(BalanceState, StandPermit)>,
     /// Fault code of each joint.
     joint_faults: [ChangeThrottle<u32>; 4],
     buses: [ChangeThrottle<BusErrorState>; 2],
@@ -75,6 +76,10 @@ impl ChangeLog {
         }
         if let Some(flags) = self.flags.due(d.safety.flags, d.ts_us) {
             defmt::warn!("safety: {} -> {}", flags, d.safety.verdict);
+        }
+        let balance = (d.balance.state, d.safety.stand);
+        if let Some((state, stand)) = self.balance.due(balance, d.ts_us) {
+            defmt::info!("balance: {}, request to stand: {}", state, stand);
         }
     }
 

@@ -30,10 +30,43 @@ pub struct JointTarget {
     pub kd: f32,
 }
 
+/// What a PC's command is for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u8)]
+pub enum PcKind {
+    /// Every motor, bypassing the controller.
+    #[default]
+    Motors = 0,
+    /// The controller, in place of the sticks.
+    Drive = 1,
+}
+
+/// A PC in place of the sticks. Standing up is not among its commands, as only the pilot asks for that.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct PcDrive {
+    /// Forward, −1…1.
+    pub vx: f32,
+    /// Turn, −1…1, counter-clockwise from above positive.
+    pub wz: f32,
+    /// Leg length while standing, −1…1, long positive.
+    pub height: f32,
+    /// Roll while standing, −1…1, right side down positive.
+    pub roll: f32,
+    /// Jump; it counts when it is set after it was not.
+    pub jump: bool,
+    /// Changes from frame to frame, to show that the program is alive.
+    pub count: u8,
+}
+
 /// A command of the PC. A PC steers and never arms.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct PcCommand {
+    /// Which of the targets count.
+    pub kind: PcKind,
+    /// Target of the controller.
+    pub drive: PcDrive,
     /// Left, right.
     pub wheels: [WheelTarget; 2],
     /// Left front, left rear, right front, right rear, as in `ChassisCommand`.

@@ -87,6 +87,10 @@ pub(super) const fn pattern(indication: Indication) -> Pattern {
             Beeps::Repeated(&[(true, 100), (false, 100), (true, 100), (false, 1_700)]),
         ),
         Indication::BringUpArmed => (&[(Purple, 1_000)], Beeps::Once(&[(true, 300)])),
+        Indication::Standing => (
+            &[(Green, 700), (Cyan, 300)],
+            Beeps::Once(&[(true, 100), (false, 100), (true, 300)]),
+        ),
         Indication::Armed => (&[(Green, 1_000)], Beeps::Once(&[(true, 300)])),
         Indication::Waiting => (
             &[(Blue, 150), (Green, 150)],
@@ -118,7 +122,7 @@ pub(super) const fn pattern(indication: Indication) -> Pattern {
 mod tests {
     use super::*;
 
-    const ALL: [Indication; 19] = [
+    const ALL: [Indication; 20] = [
         Indication::EStop,
         Indication::BatteryEmpty,
         Indication::LatchedStop,
@@ -127,6 +131,7 @@ mod tests {
         Indication::ArmedInPart,
         Indication::ArmedBatteryLow,
         Indication::BringUpArmed,
+        Indication::Standing,
         Indication::Armed,
         Indication::Waiting,
         Indication::BringUp,

@@ -26,6 +26,8 @@ pub enum Indication {
     ArmedBatteryLow,
     /// The robot is armed in bring-up: one motor may move.
     BringUpArmed,
+    /// The robot is armed and may stand up or stands: it moves by itself.
+    Standing,
     /// The robot is armed.
     Armed,
     /// The pilot has asked to arm. The robot arms as soon as the settings are written.
@@ -125,6 +127,8 @@ fn armed(inputs: &IndicationInputs<'_>) -> Indication {
         Indication::ArmedBatteryLow
     } else if inputs.bring_up != BringUpStep::Off {
         Indication::BringUpArmed
+    } else if inputs.safety.stand.permits() {
+        Indication::Standing
     } else {
         Indication::Armed
     }

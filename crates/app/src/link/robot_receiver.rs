@@ -1,11 +1,11 @@
 //! The robot's end of the line: bytes → commands of the PC.
 
 use super::{
-    BAUD, DOWNLINK_LEN, Downlink, HEADER, TUNNEL_HEADER, Tunnelled,
+    BAUD, DOWNLINK_LEN, DRIVE_HEADER, Downlink, DriveFrame, HEADER, TUNNEL_HEADER, Tunnelled,
     scanner::{Found, Frame, Scanner, Shape},
     tunnel::TUNNEL_SHAPE,
 };
-use crate::domain::{CanFrame, LinkHealth, PcCommand};
+use crate::domain::{CanFrame, LinkHealth, PcCommand, PcKind};
 
 /// A frame of which nothing more comes for this long is given up.
 const SILENCE_US: u64 = 20_000;
@@ -17,7 +17,7 @@ static COMMAND_SHAPE: Shape = Shape::new(DOWNLINK_LEN);
 /// What a frame from the PC brings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Received {
-    /// Targets for the motors.
+    /// Targets for the motors or the controller.
     Command(PcCommand),
     /// A request on the tuning channel.
     Tunnel(CanFrame),
@@ -62,6 +62,7 @@ enum Trust {
 #[derive(Clone, Copy, Debug)]
 enum FromPc {
     Command(Downlink),
+    Drive(DriveFrame),
     Tunnel(Tunnelled),
 }
 
@@ -69,7 +70,7 @@ impl Frame for FromPc {
     fn shape(header: u8) -> Option<&'static Shape> {
         match header {
             HEADER => Some(&COMMAND_SHAPE),
-            TUNNEL_HEADER => Some(&TUNNEL_SHAPE),
+            TUNNEL_HEADER | DRIVE_HEADER => Some(&TUNNEL_SHAPE),
             _ => None,
         }
     }
@@ -78,7 +79,9 @@ impl Frame for FromPc {
         if let Ok(frame) = bytes.try_into() {
             return Downlink::decode(frame).map(Self::Command);
         }
-        Tunnelled::decode(bytes.try_into().ok()?).map(Self::Tunnel)
+        let frame = bytes.try_into().ok()?;
+        let tunnelled = Tunnelled::decode(frame).map(Self::Tunnel);
+        tunnelled.or_else(|| DriveFrame::decode(frame).map(Self::Drive))
     }
 }
 
@@ -131,10 +134,23 @@ impl RobotReceiver {
                 health.tunnelled = health.tunnelled.wrapping_add(1);
                 sink(Received::Tunnel(tunnelled.can_frame()));
             }
-            FromPc::Command(downlink) => {
-                *newest = renewed(newest, &downlink, ts_us);
+            FromPc::Command(Downlink { wheels, joints }) => {
+                let targets = PcCommand {
+                    wheels,
+                    joints,
+                    ..PcCommand::default()
+                };
                 health.count_command(ts_us);
-                sink(Received::Command(*newest));
+                sink(Received::Command(renew(newest, targets, ts_us)));
+            }
+            FromPc::Drive(DriveFrame(drive)) => {
+                let targets = PcCommand {
+                    kind: PcKind::Drive,
+                    drive,
+                    ..PcCommand::default()
+                };
+                health.count_command(ts_us);
+                sink(Received::Command(renew(newest, targets, ts_us)));
             }
         };
         let first_us = ts_us.saturating_sub(line_time_us(bytes.len().saturating_sub(1)));
@@ -167,14 +183,17 @@ fn line_time_us(bytes: usize) -> u64 {
     u64::from((bytes as u32).saturating_mul(BYTE_NS) / 1_000)
 }
 
-/// The command that follows `before`.
-fn renewed(before: &PcCommand, downlink: &Downlink, ts_us: u64) -> PcCommand {
-    let Downlink { wheels, joints } = *downlink;
-    let same = before.ts_us != 0 && before.wheels == wheels && before.joints == joints;
-    PcCommand {
-        wheels,
-        joints,
+/// Replaces the newest command by one with these targets, and returns it.
+fn renew(newest: &mut PcCommand, targets: PcCommand, ts_us: u64) -> PcCommand {
+    let same = newest.ts_us != 0
+        && newest.kind == targets.kind
+        && newest.drive == targets.drive
+        && newest.wheels == targets.wheels
+        && newest.joints == targets.joints;
+    *newest = PcCommand {
         ts_us,
-        changed_us: if same { before.changed_us } else { ts_us },
-    }
+        changed_us: if same { newest.changed_us } else { ts_us },
+        ..targets
+    };
+    *newest
 }

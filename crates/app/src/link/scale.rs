@@ -20,6 +20,8 @@ pub(super) const WHEEL_TARGET: Scale = Scale::new(-200.0, 200.0);
 pub(super) const JOINT_TARGET: Scale = Scale::new(-3.2, 3.2);
 /// Kp and Kd.
 pub(super) const GAIN: Scale = Scale::new(0.0, 1000.0);
+/// A share of the highest speed, of the travel and the like.
+pub(super) const SHARE: Scale = Scale::new(-1.0, 1.0);
 /// Battery voltage.
 pub(super) const VOLTAGE: Scale = Scale::new(20.0, 60.0);
 
@@ -68,7 +70,15 @@ pub(super) fn finite(value: f32) -> [u8; 4] {
 mod tests {
     use super::*;
 
-    const ALL: [Scale; 6] = [ANGLE, SPEED, WHEEL_TARGET, JOINT_TARGET, GAIN, VOLTAGE];
+    const ALL: [Scale; 7] = [
+        ANGLE,
+        SPEED,
+        WHEEL_TARGET,
+        JOINT_TARGET,
+        GAIN,
+        SHARE,
+        VOLTAGE,
+    ];
 
     #[test]
     fn every_code_survives_the_way_there_and_back() {

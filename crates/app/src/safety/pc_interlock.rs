@@ -3,14 +3,17 @@
 
 use super::{SafetyFlags, resume_interlock::WATCHED};
 use crate::domain::{
-    JointFeedback, JointState, JointTarget, MotorFeedback, PcCommand, SafetyConfig, WheelTarget,
-    age_us,
+    JointFeedback, JointState, JointTarget, MotorFeedback, PcCommand, PcDrive, PcKind,
+    SafetyConfig, WheelTarget, age_us,
 };
 
 /// A wheel whose target is at most this fast is at rest.
 const REST_RPS: f32 = 0.05;
 /// A joint whose target is at most this far from its measured angle is at rest.
 const REST_RAD: f32 = 0.1;
+
+/// A speed or turn of at most this share of the highest is rest.
+const REST_SHARE: f32 = 0.01;
 
 /// What decides about the PC in one tick.
 #[derive(Clone, Copy, Debug)]
@@ -21,12 +24,15 @@ pub struct PcInputs<'a> {
     pub mode: bool,
     /// The robot was armed in the last tick, and the logic bus selects the PC.
     pub steering: bool,
+    /// The robot stands, or may stand up. Then targets for motors do not count.
+    pub stands: bool,
 }
 
 /// Remembers whether the PC has sent a command from rest.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PcInterlock {
     released: bool,
+    kind: PcKind,
     /// The conditions of the last tick that stopped something.
     stopped: SafetyFlags,
     /// The joints that were enabled in the last tick.
@@ -75,8 +81,14 @@ impl PcInterlock {
             self.released = false;
             return SafetyFlags::PC_LOST;
         }
+        let kind = inputs.command.kind;
+        let other_kind = core::mem::replace(&mut self.kind, kind) != kind;
+        if inputs.stands && kind == PcKind::Motors {
+            self.released = false;
+            return SafetyFlags::PC_AWAITED;
+        }
         let obeyed = inputs.steering && !present.intersects(SafetyFlags::COMMAND_STALE);
-        let goes_on = self.released && obeyed && !resumed && !joint_jumps;
+        let goes_on = self.released && obeyed && !resumed && !joint_jumps && !other_kind;
         self.released = goes_on || is_from_rest(inputs.command, motor);
         if self.released {
             SafetyFlags::NONE
@@ -95,7 +107,7 @@ impl PcInterlock {
             jumps |= is_enabled && !*was_enabled && !joint_rests(target, joint);
             *was_enabled = is_enabled;
         }
-        jumps
+        jumps && command.kind == PcKind::Motors
     }
 }
 
@@ -103,17 +115,26 @@ impl PcInterlock {
 fn is_lost(command: &PcCommand, config: &SafetyConfig, now_us: u64) -> bool {
     let age = age_us(command.ts_us, now_us);
     let unchanged_us = age_us(command.changed_us, now_us);
-    let frozen = config.pc_frozen_us != 0
-        && unchanged_us >= config.pc_frozen_us
-        && !command.wheels.iter().all(wheel_rests);
+    let frozen =
+        config.pc_frozen_us != 0 && unchanged_us >= config.pc_frozen_us && !is_at_rest(command);
     age > config.pc_timeout_us || command.ts_us > now_us || frozen
 }
 
 /// NaN in a target or in a measured angle is no rest.
 fn is_from_rest(command: &PcCommand, motor: &MotorFeedback) -> bool {
     let mut joints = command.joints.iter().zip(&motor.joints);
-    command.wheels.iter().all(wheel_rests)
-        && joints.all(|(target, joint)| joint_rests(target, joint))
+    is_at_rest(command)
+        && (command.kind == PcKind::Drive
+            || joints.all(|(target, joint)| joint_rests(target, joint)))
+}
+
+/// Whether the command asks for no rolling.
+fn is_at_rest(command: &PcCommand) -> bool {
+    let PcDrive { vx, wz, .. } = command.drive;
+    match command.kind {
+        PcKind::Motors => command.wheels.iter().all(wheel_rests),
+        PcKind::Drive => vx.abs() <= REST_SHARE && wz.abs() <= REST_SHARE,
+    }
 }
 
 fn wheel_rests(target: &WheelTarget) -> bool {

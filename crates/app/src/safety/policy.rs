@@ -78,7 +78,7 @@ pub struct SafetyInputs<'a> {
 ///     motor: &MotorFeedback::default(),
 ///     motor_timeout_us: 50_000,
 ///     command_ts_us: 0,
-///     pc: PcInputs { command: &PcCommand::default(), mode: false, steering: false },
+///     pc: PcInputs { command: &PcCommand::default(), mode: false, steering: false, stands: false },
 ///     health: &SystemHealth::default(),
 /// };
 /// let status = SafetyPolicy::default().evaluate(&inputs, 1_000_000);

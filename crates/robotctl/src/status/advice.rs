@@ -59,7 +59,11 @@ pub(super) fn for_flag(name: &str) -> Option<&'static str> {
         }
         "command-stale" => "the firmware's logic task does not decide: a fault of the firmware",
         "task-late" => "a task is late and the watchdog resets: a fault of the firmware",
-        "tilt" => "the robot fell: stand it up, then clear",
+        "tilt" => "the robot fell: put it on its wheels and clear, or stand switch down and up",
+        "balance-lost" => {
+            "it stood and fell, or a motor or bus failed: look, then clear, or stand switch down and up"
+        }
+        "stand-up-failed" => "it still lies after its time for standing up: help it up, then clear",
         "wheel-hot" | "joint-hot" => "let the motor cool down",
         "battery-low" => "charge or connect the battery",
         "battery-empty" => "change the battery, then clear",
@@ -80,6 +84,17 @@ pub(super) fn for_flag(name: &str) -> Option<&'static str> {
         "sticks-awaited" => "centre the sticks: only then does what was stopped go on",
         _ => return None,
     })
+}
+
+/// What the pilot's request to stand waits for.
+pub(super) fn for_request(name: &str) -> &'static str {
+    match name {
+        "switch-must-go-down" => "to stand, the stand switch must first be seen down",
+        "ready" => "the stand switch is down",
+        "requested" => "the stand switch is up: it stands up as soon as it is armed",
+        "standing-up" => "it has seconds to stand up, with limits of its own",
+        _ => "the stand switch is up",
+    }
 }
 
 #[cfg(test)]

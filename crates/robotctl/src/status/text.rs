@@ -8,7 +8,7 @@ use super::{Status, advice};
 use crate::tuning::LiveReading;
 
 /// Pages that have their own words here. Any other page is listed with all its values.
-const PUT_INTO_WORDS: [&str; 24] = [
+const PUT_INTO_WORDS: [&str; 25] = [
     "version",
     "run",
     "boot",
@@ -33,6 +33,7 @@ const PUT_INTO_WORDS: [&str; 24] = [
     "link",
     "link-frames",
     "link-errors",
+    "balance",
 ];
 /// Pages that are left out here. `--json` has them.
 const LEFT_OUT: [&str; 16] = [
@@ -63,6 +64,7 @@ impl Display for Status {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         self.firmware(f)?;
         self.arming(f)?;
+        self.balance(f)?;
         self.flags(f)?;
         self.radio(f)?;
         self.motors(f)?;
@@ -132,6 +134,38 @@ impl Status {
             }
         }
         Ok(())
+    }
+
+    fn balance(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Some(balance) = self.page("balance") else {
+            return Ok(());
+        };
+        let (state, request) = (balance.choice("state"), balance.choice("request"));
+        write!(
+            f,
+            "balance     {state}, {request}: {}",
+            advice::for_request(&request)
+        )?;
+        if state != "sit" {
+            let legs = [
+                balance.number("left-leg-mm"),
+                balance.number("right-leg-mm"),
+            ];
+            let leans = [
+                balance.number("left-lean-rad"),
+                balance.number("right-lean-rad"),
+            ];
+            let [left_mm, right_mm] = legs.map(|leg| number(leg, 0));
+            let [left_rad, right_rad] = leans.map(|lean| number(lean, 3));
+            write!(
+                f,
+                "\nlegs        left {left_mm} mm, right {right_mm} mm; lean {left_rad}, {right_rad} rad"
+            )?;
+            for mark in balance.set("marks") {
+                write!(f, ", {}", mark.to_uppercase())?;
+            }
+        }
+        writeln!(f)
     }
 
     fn flags(&self, f: &mut Formatter<'_>) -> fmt::Result {

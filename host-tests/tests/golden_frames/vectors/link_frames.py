@@ -1,6 +1,6 @@
 """Frames of the PC link, computed from the tables of its document alone.
 
-Usage: python3 link_frames.py KIND > link_KIND.csv, where KIND is up, down or tunnel. It needs no packages, and gives the
+Usage: python3 link_frames.py KIND > link_KIND.csv, where KIND is up, down, drive or tunnel. It needs no packages, and gives the
 same lines every time.
 """
 
@@ -18,6 +18,7 @@ ANGLE, SPEED, VOLTAGE = (-math.pi, math.pi, 65535), (-33.0, 33.0, 65535), (20.0,
 WHEEL, JOINT, GAIN = (-200.0, 200.0, 65535), (-3.2, 3.2, 65535), (0.0, 1000.0, 65535)
 # Sections 3 and 4, without header and CRC. Time, voltage, temperature, accelerometer, gyroscope, quaternion, keys, sticks.
 UP = [None, VOLTAGE, "int8"] + [None] * 10 + ["keys"] + [None] * 5 + [ANGLE, SPEED] * 6
+SHARE = (-1.0, 1.0, 65535)
 DOWN = [WHEEL, GAIN, GAIN] * 2 + [JOINT, GAIN, GAIN] * 4
 
 
@@ -132,6 +133,24 @@ def lines(layout):
         line([anything(field) for field in layout], layout)
 
 
+def drive_lines():
+    """Four shares, jump, count, frame, and what a receiver reads of the shares. `-` for jump: a frame to be refused."""
+
+    def drive_line(shares, bits, count):
+        body = bytes([0xFC]) + b"".join(put(share, SHARE) for share in shares) + bytes([bits, count])
+        columns = [text(share, SHARE) for share in shares] + [str(bits) if bits < 2 else "-", str(count)]
+        columns += [(body + bytes([crc8(body)])).hex()] + [seen(share, SHARE) for share in shares]
+        print(",".join(columns))
+
+    for place in range(4):
+        for corner in corners(SHARE):
+            shares = [anything(SHARE) for _ in range(4)]
+            shares[place] = corner
+            drive_line(shares, RANDOM.randrange(2), RANDOM.randrange(256))
+    for bit in range(8):
+        drive_line([0.0] * 4, 1 << bit, 1 << bit)
+
+
 def tunnel_lines():
     """Identifier, payload, frame. Without a payload the frame must be refused."""
 
@@ -162,6 +181,8 @@ match sys.argv[1:]:
         lines(UP)
     case ["down"]:
         lines(DOWN)
+    case ["drive"]:
+        drive_lines()
     case ["tunnel"]:
         tunnel_lines()
     case _:

@@ -1,4 +1,5 @@
 use super::*;
+use crate::domain::StandPermit;
 
 /// Armed, or disarmed with the enable switch off, without any fault.
 struct Situation {
@@ -219,4 +220,21 @@ fn a_debugger_with_vector_catch_is_shown_before_the_pilot_tries_to_arm() {
     assert_eq!(unset, Indication::NotReady);
     let caught = disarmed(|s| s.arming.blockers = ArmingBlockers::DEBUGGER_CATCHES);
     assert_eq!(caught, Indication::NotReady);
+}
+
+#[test]
+fn a_robot_that_stands_by_itself_is_shown() {
+    for (stand, expected) in [
+        (StandPermit::Ready, Indication::Armed),
+        (StandPermit::Requested, Indication::Armed),
+        (StandPermit::StandingUp, Indication::Standing),
+        (StandPermit::Standing, Indication::Standing),
+    ] {
+        assert_eq!(armed(|s| s.safety.stand = stand), expected);
+    }
+    let part = armed(|s| {
+        s.safety.stand = StandPermit::Standing;
+        s.safety.wheels_stop = true;
+    });
+    assert_eq!(part, Indication::ArmedInPart);
 }

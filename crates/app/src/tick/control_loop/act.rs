@@ -4,8 +4,8 @@ use super::{ControlInputs, ControlLoop};
 use crate::{
     control::{ChassisController, ChassisControllerInput, ChassisControllerOutput, pc_law},
     domain::{
-        BalanceState, BalanceStatus, ChassisCommand, HighLevelCommand, PcCommand, StandSwitch,
-        age_us,
+        BalanceState, BalanceStatus, ChassisCommand, HighLevelCommand, PcCommand, PcDrive, PcKind,
+        StandSwitch, age_us,
     },
     safety::{SafetyFlags, TorquePermit},
 };
@@ -91,7 +91,10 @@ impl<C: ChassisController> ControlLoop<C> {
         } else if pc_stopped || logic.pc_selected && safety.pc_stop {
             self.without_pc()
         } else if logic.pc_selected {
-            CommandSource::Pc
+            match inputs.pc.kind {
+                PcKind::Motors => CommandSource::Pc,
+                PcKind::Drive => CommandSource::Control(self.with_pc(&inputs.pc.drive)),
+            }
         } else if logic.cmd_valid {
             CommandSource::Direct(&logic.cmd)
         } else if logic.hl_valid {
@@ -104,16 +107,25 @@ impl<C: ChassisController> ControlLoop<C> {
     /// A robot that stands keeps its balance on the spot.
     fn without_pc<'a>(&self) -> CommandSource<'a> {
         if self.stands() {
-            CommandSource::Control(HighLevelCommand {
-                stand: self.state.operator.stand == StandSwitch::Up,
-                ..HighLevelCommand::default()
-            })
+            CommandSource::Control(self.with_pc(&PcDrive::default()))
         } else {
             CommandSource::Stop
         }
     }
 
-    fn stands(&self) -> bool {
+    /// Only the pilot asks for standing.
+    fn with_pc(&self, drive: &PcDrive) -> HighLevelCommand {
+        HighLevelCommand {
+            vx: drive.vx,
+            wz: drive.wz,
+            height: drive.height,
+            roll: drive.roll,
+            jump: drive.jump,
+            stand: self.state.operator.stand == StandSwitch::Up,
+        }
+    }
+
+    pub(super) fn stands(&self) -> bool {
         self.state.safety.stand.permits() || self.state.balance.state != BalanceState::Sit
     }
 

@@ -59,6 +59,7 @@ impl<C: ChassisController> ControlLoop<C> {
         bring_up_commands: bool,
         now_us: u64,
     ) -> Option<TorquePermit> {
+        let stands = self.stands();
         let state = &mut self.state;
         state.safety = self.policy.evaluate(
             &SafetyInputs {
@@ -78,6 +79,7 @@ impl<C: ChassisController> ControlLoop<C> {
                     command: inputs.pc,
                     mode: inputs.remote.operator.mode == DriveMode::Pc && !bring_up_commands,
                     steering: inputs.logic.pc_selected && state.arming.state == ArmingState::Armed,
+                    stands,
                 },
                 health: inputs.health,
             },

@@ -9,6 +9,7 @@ use super::{
 };
 use crate::safety::{ArmingBlockers, SafetyFlags};
 
+mod balance;
 mod link;
 mod motors;
 mod radio;
@@ -25,7 +26,7 @@ const ROBOT: [&str; 1] = [""];
 const CHANNELS: [&str; 4] = ["0-3", "4-7", "8-11", "12-15"];
 
 /// All pages, by number.
-pub static LIVE_PAGES: [LivePage; 40] = [
+pub static LIVE_PAGES: [LivePage; 41] = [
     page(0x00, "version", &ROBOT, &system::VERSION),
     page(0x01, "run", &ROBOT, &system::RUN),
     page(0x02, "boot", &ROBOT, &system::BOOT),
@@ -66,6 +67,7 @@ pub static LIVE_PAGES: [LivePage; 40] = [
     page(0x39, "link-frames", &ROBOT, &link::FRAMES),
     page(0x3A, "link-errors", &ROBOT, &link::ERRORS),
     page(0x3B, "link-tunnel", &ROBOT, &link::TUNNEL),
+    page(0x3C, "balance", &ROBOT, &balance::BALANCE),
 ];
 
 const fn page(

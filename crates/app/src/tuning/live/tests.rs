@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::{
-    domain::{CrashCause, JointState, ResetCause},
+    domain::{BalanceState, BalanceStatus, CrashCause, JointState, ResetCause, StandPermit},
     motor::layout::{ROBOT_LAYOUT, RS00_LAYOUT},
     safety::{ArmingState, SafetyFlags},
 };
@@ -329,4 +329,22 @@ proptest::proptest! {
             proptest::prop_assert_eq!(page.unpack(bytes).count(), page.fields.len());
         }
     }
+}
+
+/// State 2, request 4 = 32, airborne = 64; 180 mm = 0xB4 from bit 8, 511 mm at most from bit 17; −0.25 rad = −125 = 0x783
+/// from bit 26 and 0.5 rad = 250 from bit 37.
+#[test]
+fn a_balancing_robot_is_shown_with_its_legs() {
+    let bytes = read_of(0x3C, |diagnostics| {
+        diagnostics.safety.stand = StandPermit::Standing;
+        diagnostics.balance = BalanceStatus {
+            state: BalanceState::Balance,
+            airborne: true,
+            leg_m: [0.1804, 0.9],
+            lean_rad: [-0.25, 0.5],
+            ..BalanceStatus::SIT
+        };
+    });
+    let number = 2 | 4 << 3 | 1 << 6 | 180 << 8 | 511 << 17 | 0x783 << 26 | 250_u64 << 37;
+    assert_eq!(bytes, number.to_le_bytes()[..6]);
 }

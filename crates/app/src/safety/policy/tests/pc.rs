@@ -1,7 +1,7 @@
 //! The PC steers from rest only, and only while it is fresh.
 
 use super::*;
-use crate::domain::{JointTarget, WheelTarget};
+use crate::domain::{JointTarget, PcDrive, PcKind, WheelTarget};
 
 /// Time between two frames of the PC.
 const PERIOD_MS: u32 = 10;
@@ -59,7 +59,11 @@ impl Bench {
 
     /// The PC sends this now.
     fn send(&mut self, command: PcCommand) {
-        let same = command.wheels == self.pc.wheels && command.joints == self.pc.joints;
+        let same = PcCommand {
+            ts_us: self.pc.ts_us,
+            changed_us: self.pc.changed_us,
+            ..command
+        } == self.pc;
         self.pc = PcCommand {
             ts_us: self.now_us,
             changed_us: if same {
@@ -360,4 +364,57 @@ fn a_disarmed_robot_shows_whether_the_pc_is_at_rest() {
     assert_eq!(bench.pc_after(0), Pc::Awaited);
     bench.pc_steering = true;
     assert_eq!(bench.stream(motion(), 10), Pc::Awaited);
+}
+
+/// A command in place of the sticks.
+fn drive(vx: f32, wz: f32) -> PcCommand {
+    PcCommand {
+        kind: PcKind::Drive,
+        drive: PcDrive {
+            vx,
+            wz,
+            height: 1.0,
+            ..PcDrive::default()
+        },
+        ..PcCommand::default()
+    }
+}
+
+#[test]
+fn a_pc_in_place_of_the_sticks_begins_at_rest() {
+    for (vx, wz) in [(0.02, 0.0), (0.0, -0.02), (f32::NAN, 0.0), (0.0, f32::NAN)] {
+        let mut bench = Bench::in_pc_mode();
+        assert_eq!(bench.stream(drive(vx, wz), 20), Pc::Awaited);
+        assert_eq!(bench.stream(drive(0.01, -0.01), 1), Pc::Steers);
+        assert_eq!(bench.stream(drive(1.0, -1.0), 400), Pc::Steers);
+        assert_eq!(bench.stream(drive(1.0, -1.0), 100), Pc::Lost, "frozen");
+    }
+    let mut bench = Bench::in_pc_mode();
+    assert_eq!(bench.stream(drive(0.0, 0.0), 2_000), Pc::Steers);
+}
+
+/// Of the motors' targets, those of a standing robot would be the wrong ones, and the other way round.
+#[test]
+fn a_pc_that_changes_the_kind_of_its_commands_begins_at_rest() {
+    let mut bench = Bench::in_pc_mode();
+    bench.stream(drive(0.0, 0.0), 1);
+    assert_eq!(bench.stream(drive(1.0, 0.0), 1), Pc::Steers);
+    assert_eq!(bench.stream(motion(), 3), Pc::Awaited);
+    assert_eq!(bench.stream(rest(), 1), Pc::Steers);
+    assert_eq!(bench.stream(drive(1.0, 0.0), 3), Pc::Awaited);
+    assert_eq!(bench.stream(drive(0.0, 0.0), 1), Pc::Steers);
+}
+
+#[test]
+fn a_standing_robot_follows_no_targets_for_motors() {
+    let mut bench = Bench::in_pc_mode();
+    bench.stream(rest(), 1);
+    bench.pc_stands = true;
+    assert_eq!(bench.stream(rest(), 3), Pc::Awaited);
+    assert_eq!(bench.stream(drive(0.0, 0.0), 1), Pc::Steers);
+    assert_eq!(bench.stream(drive(0.5, 0.0), 3), Pc::Steers);
+    assert_eq!(bench.stream(rest(), 1), Pc::Awaited);
+    bench.pc_stands = false;
+    assert_eq!(bench.stream(motion(), 1), Pc::Awaited);
+    assert_eq!(bench.stream(rest(), 1), Pc::Steers);
 }
