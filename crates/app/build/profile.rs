@@ -131,7 +131,7 @@ fn limits(robot: &Robot) -> String {
         max_length_m = f32(max_length_m),
         fold_length_m = f32(robot.legs.min_m),
         reach_length_m = f32(robot.legs.max_m),
-        wheel_nm = f32(robot.wheels.current_limit_a * robot.wheels.torque_nm_per_a),
+        wheel_nm = f32(robot.wheels.max_current_a * robot.wheels.torque_nm_per_a),
         hip_nm = f32(robot.joints.torque_limit_nm),
     )
 }
