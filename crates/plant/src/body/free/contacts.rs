@@ -5,7 +5,7 @@ use super::{
     dynamics::Coordinates,
     five_bar::HIPS,
     grip::{Stick, Tread},
-    ground::Ground,
+    ground::{Ground, Side},
     joint_forces::DryFriction,
     model::{Model, SIDES},
     motion::Motion,
@@ -17,9 +17,14 @@ use nalgebra::Matrix3;
 /// Assumed rolling resistance per newton of load, as a share of the radius.
 const ROLLING_RESISTANCE: f64 = 0.015;
 
+/// Depth from which the other side of the world is a wall.
+const WALL_M: f64 = 0.01;
+
 /// What remembers where the robot sticks, and the normal forces over the last step.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Contacts {
+    /// Side of the world on which each wheel is.
+    sides: [Side; SIDES],
     treads: [[Option<(usize, Tread)>; TOUCHES]; SIDES],
     rolling: [DryFriction; SIDES],
     corners: [Option<Stick>; 8],
@@ -82,7 +87,7 @@ impl Contacts {
             radius_m: model.disc.radius_m,
             tyre_m: model.disc.tyre_m,
         };
-        let touches = ring.touches(moment.ground.profile(ring.centre.y));
+        let touches = self.touches(side, &ring, moment.ground);
         let before = std::mem::take(&mut self.treads[side]);
         if touches[0].is_none() {
             self.rolling[side] = DryFriction::default();
@@ -128,6 +133,19 @@ impl Contacts {
         load_n
     }
 
+    /// Contacts of a wheel with the side of the world that it is on. It changes to the other one where that is not a wall: walls
+    /// along x are not felt, and a wheel goes on where it was.
+    fn touches(&mut self, wheel: usize, ring: &Ring, ground: &Ground) -> [Option<Touch>; TOUCHES] {
+        let over = Side::at(ring.centre.y);
+        let found = ring.touches(ground.profile(over));
+        let depth_m = found[0].map_or(0.0, |touch| touch.depth_m);
+        if over == self.sides[wheel] || depth_m < WALL_M {
+            self.sides[wheel] = over;
+            return found;
+        }
+        ring.touches(ground.profile(self.sides[wheel]))
+    }
+
     fn corners(&mut self, moment: &Moment, frame: &Frame, forces: &mut Coordinates) -> f64 {
         let mut sum_n = 0.0;
         for (corner, stick) in moment.model.corners.iter().zip(&mut self.corners) {
@@ -170,7 +188,7 @@ impl Contacts {
 
 /// Force in world axes on a point that hits the ground, and its normal part.
 fn point_force(moment: &Moment, point: &Point, stick: &mut Option<Stick>) -> Option<(Vec3, f64)> {
-    let profile = moment.ground.profile(point.place.y);
+    let profile = moment.ground.profile(Side::at(point.place.y));
     let Some((normal, depth_m)) = profile.depth_of(point.place) else {
         *stick = None;
         return None;

@@ -98,10 +98,25 @@ impl Profile {
     }
 }
 
+/// A side of the world.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Side {
+    /// Where y > 0.
+    #[default]
+    Left,
+    Right,
+}
+
+impl Side {
+    pub fn at(y_m: f64) -> Self {
+        if y_m > 0.0 { Self::Left } else { Self::Right }
+    }
+}
+
 /// Both sides of the world, and where it is slippery.
 #[derive(Clone, Debug)]
 pub(super) struct Ground {
-    /// Where y > 0, where not.
+    /// Left, right.
     sides: [Profile; 2],
     /// From, to, factor on friction.
     strip: Option<(f64, f64, f64)>,
@@ -210,9 +225,12 @@ impl Ground {
         self.highest_m
     }
 
-    pub fn profile(&self, y_m: f64) -> &Profile {
+    pub fn profile(&self, side: Side) -> &Profile {
         let [left, right] = &self.sides;
-        if y_m > 0.0 { left } else { right }
+        match side {
+            Side::Left => left,
+            Side::Right => right,
+        }
     }
 
     /// Factor on the friction at a place.
@@ -221,5 +239,93 @@ impl Ground {
             Some((from, to, grip)) if (from..to).contains(&x_m) => grip,
             _ => 1.0,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn depth(terrain: &Terrain, x: f64, y: f64, z: f64) -> Option<(Vec3, f64)> {
+        Ground::new(terrain)
+            .profile(Side::at(y))
+            .depth_of(Vec3::new(x, y, z))
+    }
+
+    #[test]
+    fn level_ground_is_at_zero() {
+        let (normal, depth_m) = depth(&Terrain::Flat, 3.0, 0.0, -0.01).unwrap_or_default();
+        assert_eq!((normal, depth_m), (Vec3::z(), 0.01));
+        assert_eq!(depth(&Terrain::Flat, 3.0, 0.0, 0.01), None);
+    }
+
+    #[test]
+    fn a_point_in_a_step_leaves_it_by_the_nearest_face() {
+        let step = Terrain::Step {
+            at_m: 1.0,
+            height_m: 0.1,
+        };
+        let (normal, depth_m) = depth(&step, 1.01, 0.0, 0.05).unwrap_or_default();
+        assert!((normal + Vec3::x()).norm() < 1e-12 && (depth_m - 0.01).abs() < 1e-12);
+        let (normal, depth_m) = depth(&step, 1.2, 0.0, 0.09).unwrap_or_default();
+        assert!((normal - Vec3::z()).norm() < 1e-12 && (depth_m - 0.01).abs() < 1e-12);
+        assert_eq!(depth(&step, 0.99, 0.0, 0.05), None);
+    }
+
+    #[test]
+    fn a_slope_rises_at_its_angle() {
+        let slope = Terrain::Slope {
+            start_m: 1.0,
+            angle_rad: 0.25,
+            length_m: 2.0,
+        };
+        let (normal, depth_m) = depth(&slope, 2.0, 0.0, 0.0).unwrap_or_default();
+        assert!((normal - Vec3::new(-0.25_f64.sin(), 0.0, 0.25_f64.cos())).norm() < 1e-12);
+        assert!((depth_m - 0.25_f64.sin()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn one_ramp_is_on_the_left_only() {
+        let ramp = Terrain::OneSidedRamp {
+            start_m: 0.0,
+            angle_rad: 0.1,
+            height_m: 0.05,
+            top_m: 1.0,
+        };
+        assert!(depth(&ramp, 1.0, 0.2, 0.04).is_some());
+        assert!(depth(&ramp, 1.0, -0.2, 0.04).is_none());
+        assert!(depth(&ramp, 3.0, 0.2, 0.04).is_none());
+    }
+
+    #[test]
+    fn plates_differ_left_and_right_and_stay_within_their_height() {
+        let plates = |seed| Terrain::Plates {
+            start_m: 0.0,
+            count: 10,
+            length_m: 0.3,
+            height_m: 0.02,
+            tilt_rad: 0.05,
+            seed,
+        };
+        let ground = Ground::new(&plates(1));
+        // 20 mm, and half a plate at 0.05 rad.
+        assert!((0.002..0.0276).contains(&ground.highest_m()));
+        let heights = |terrain: &Terrain, y: f64| -> Vec<_> {
+            let below = |plate: u8| depth(terrain, 0.15 + 0.3 * f64::from(plate), y, -0.1);
+            (0..10).map(|plate| below(plate).map(|it| it.1)).collect()
+        };
+        assert_ne!(heights(&plates(1), 0.2), heights(&plates(1), -0.2));
+        assert_ne!(heights(&plates(1), 0.2), heights(&plates(2), 0.2));
+        assert_eq!(heights(&plates(1), 0.2), heights(&plates(1), 0.2));
+    }
+
+    #[test]
+    fn a_strip_is_slippery() {
+        let ground = Ground::new(&Terrain::Slippery {
+            start_m: 1.0,
+            length_m: 0.5,
+            grip: 0.1,
+        });
+        assert_eq!([0.9, 1.2, 1.6].map(|x| ground.grip(x)), [1.0, 0.1, 1.0]);
     }
 }
