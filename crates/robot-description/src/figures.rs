@@ -63,7 +63,7 @@ impl Robot {
         let wheels = &self.wheels;
         let turning_kg =
             2.0 * (wheels.inertia_kgm2 + wheels.rotor_inertia_kgm2) / wheels.radius_m.powi(2);
-        let force_n = 2.0 * wheels.current_limit_a * wheels.torque_nm_per_a / wheels.radius_m;
+        let force_n = 2.0 * wheels.max_current_a * wheels.torque_nm_per_a / wheels.radius_m;
         Figures {
             stands: heights(self)
                 .map(|length_m| stand(self, length_m))

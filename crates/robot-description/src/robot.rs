@@ -131,9 +131,9 @@ pub struct Wheels {
     pub torque_nm_per_a: f64,
     /// Speed in rad/s of the unloaded wheel on this robot's battery.
     pub no_load_rps: f64,
-    /// Current limit in A of each motor as delivered.
+    /// Current limit in A of each motor while the wheel speed controller drives, as delivered.
     pub current_limit_a: f64,
-    /// Upper limit in A of each motor's current, whatever the settings say.
+    /// Upper limit in A of each motor's current, whatever the settings say. Balance takes it for a moment.
     pub max_current_a: f64,
     /// The bus of both speed controllers.
     pub bus: Bus,

@@ -18,9 +18,9 @@ use crate::{
     wire::{JointFrame, Make, Mit, Sent, understand},
 };
 
-/// C620 counts of the 8 A limit: 8000 · 16384 / 20000, rounded up. Tuning can raise it to 10 A.
+/// C620 counts of the 8 A limit: 8000 · 16384 / 20000, rounded up. Tuning can raise it to 15 A.
 pub const LIMIT_COUNTS: i32 = 6_554;
-const TUNED_LIMIT_COUNTS: i32 = 8_192;
+const TUNED_LIMIT_COUNTS: i32 = 12_288;
 /// Default speed limit of each joint.
 const JOINT_RPS: f32 = 15.0;
 /// Joint angle = this times motor angle.

@@ -45,12 +45,12 @@ fn bus_loads_by_hand() {
     assert_near(loads[1], 5.25 * 0.135, 1e-9);
 }
 
-/// 8 A are 2.4 N·m at each wheel: 80 N. 6.41 kg and 2·(6e-4 + 9.5e-3)/0.06² = 5.61 kg of turning parts.
+/// 15 A are 4.5 N·m at each wheel: 150 N. 6.41 kg and 2·(6e-4 + 9.5e-3)/0.06² = 5.61 kg of turning parts.
 #[test]
 fn acceleration_by_hand() {
     assert_near(
         robot(FIVEBAR).figures().acceleration_mps2,
-        80.0 / 12.02,
+        150.0 / 12.02,
         0.01,
     );
 }

@@ -92,7 +92,7 @@ const REFUSED: &[Case] = &[
         ],
     },
     Case {
-        changes: &[("wheels.current_limit_a", "12.0")],
+        changes: &[("wheels.current_limit_a", "16.0")],
         says: &[
             "wheels.current_limit_a: 16 A; allowed: more than 0, at most max_current_a, 15 A. Lower the limit.",
         ],
