@@ -22,11 +22,12 @@ const TYRE_DAMPING: f64 = 0.15;
 /// A height that stays as near to its last one has settled.
 const SETTLED_M: f64 = 1e-3;
 
-/// One moment: place x and z, pitch, hips, wheels against their shanks.
+/// One moment: place x and z, pitch, yaw, hips, wheels against their shanks.
 struct Moment {
     x_m: f64,
     z_m: f64,
     pitch_rad: f64,
+    yaw_rad: f64,
     joint_rad: [f64; 4],
     wheel_rps: [f64; 2],
 }
@@ -67,11 +68,12 @@ impl Run<'_> {
                 body.step(&inputs, STEP_S);
             }
             let state = body.state();
-            let [w, _, y, _] = state.attitude;
+            let [w, _, y, z] = state.attitude;
             Moment {
                 x_m: state.position_m[0],
                 z_m: state.position_m[2],
                 pitch_rad: 2.0 * y.atan2(w),
+                yaw_rad: 2.0 * z.atan2(w),
                 joint_rad: state.joint_rad,
                 wheel_rps: state.wheel_rps,
             }
@@ -105,12 +107,13 @@ impl Run<'_> {
 }
 
 fn moment(row: &Value) -> Moment {
-    let [x_m, z_m, pitch_rad, a, b, c, d, left, right] =
-        <[f64; 9]>::try_from(numbers(row)).expect("nine numbers");
+    let [x_m, z_m, pitch_rad, yaw_rad, a, b, c, d, left, right] =
+        <[f64; 10]>::try_from(numbers(row)).expect("ten numbers");
     Moment {
         x_m,
         z_m,
         pitch_rad,
+        yaw_rad,
         joint_rad: [a, b, c, d],
         wheel_rps: [left, right],
     }
@@ -256,4 +259,26 @@ fn a_large_torque_throws_the_body_over_as_in_mujoco() {
         most: [1.5e-3, 1.5e-2, 0.5],
     };
     rolling.assert_as_in_mujoco();
+}
+
+#[test]
+fn opposite_torques_turn_the_robot_as_in_mujoco() {
+    let robot = robot("fivebar");
+    let run = Run {
+        robot: &robot,
+        start: Start::Standing,
+        wheel_nm: [-0.4, 0.4],
+        seconds: 0.4,
+    };
+    let Some(expected) = run.in_mujoco("turning", false) else {
+        return;
+    };
+    let pairs: Vec<_> = run.in_plant().into_iter().zip(expected).collect();
+    let yaw_rad = apart(&pairs, |it| it.yaw_rad);
+    let (here, there) = pairs.last().expect("moments");
+    println!(
+        "turning: {:.4} rad here, {:.4} rad in MuJoCo; apart at most {yaw_rad:.4} rad",
+        here.yaw_rad, there.yaw_rad
+    );
+    assert!(here.yaw_rad > 0.3 && yaw_rad < 0.01);
 }

@@ -263,8 +263,9 @@ class OnGround(Oracle):
             mujoco.mj_step(model, data)
             if (n + 1) % question["every"] == 0:
                 x, _, z = data.qpos[:3]
-                w, _, y, _ = data.qpos[3:7]
-                seen.append([x, z, 2 * np.arctan2(y, w), *data.qpos[places], *data.qvel[wheels]])
+                w, _, y, yaw = data.qpos[3:7]
+                turns = 2 * np.arctan2([y, yaw], w)
+                seen.append([x, z, *turns, *data.qpos[places], *data.qvel[wheels]])
         return [list(row) for row in seen]
 
 
