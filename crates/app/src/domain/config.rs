@@ -196,14 +196,11 @@ pub struct StandUpConfig {
 }
 
 impl StandUpConfig {
-    /// The stricter limits of a joint.
-    #[must_use]
-    pub fn limit_joint(&self, joint: &JointConfig) -> JointConfig {
-        JointConfig {
-            max_torque_nm: scalar::min(joint.max_torque_nm, self.max_joint_nm),
-            max_speed_rps: scalar::min(joint.max_speed_rps, self.max_joint_rps),
-            ..*joint
-        }
+    /// Makes the limits of a joint stricter. It is out of line, as flash is scarce.
+    #[inline(never)]
+    pub fn limit_joint(&self, joint: &mut JointConfig) {
+        joint.max_torque_nm = scalar::min(joint.max_torque_nm, self.max_joint_nm);
+        joint.max_speed_rps = scalar::min(joint.max_speed_rps, self.max_joint_rps);
     }
 
     /// The stricter limits of the wheels.

@@ -152,7 +152,7 @@ impl Scanner {
     }
 
     /// Gives up the frame that is not complete and looks for shorter ones in it.
-    pub(super) fn flush<F: Frame>(&mut self, sink: &mut impl FnMut(Found<F>)) {
+    pub(super) fn flush<F: Frame>(&mut self, sink: &mut dyn FnMut(Found<F>)) {
         while self.held() > 0 {
             self.discard_one();
             self.decide(sink);
@@ -171,8 +171,9 @@ impl Scanner {
         self.crcs.set(self.next, crc);
     }
 
-    /// Goes on until a frame is not complete or no byte is left.
-    fn decide<F: Frame>(&mut self, sink: &mut impl FnMut(Found<F>)) {
+    /// Goes on until a frame is not complete or no byte is left. Like `accept` it exists once for each kind of frames,
+    /// as flash is scarce.
+    fn decide<F: Frame>(&mut self, sink: &mut dyn FnMut(Found<F>)) {
         self.wanted = 0;
         while self.held() > 0 {
             let Some(shape) = F::shape(self.bytes.get(self.first)) else {
@@ -196,7 +197,7 @@ impl Scanner {
     /// Goes on behind the frame of `len` bytes at the first byte, or behind its header alone if it is not contiguous.
     /// Returns whether its content makes sense. It is out of line, as it is rarely reached on a line full of headers.
     #[inline(never)]
-    fn accept<F: Frame>(&mut self, len: u8, sink: &mut impl FnMut(Found<F>)) -> bool {
+    fn accept<F: Frame>(&mut self, len: u8, sink: &mut dyn FnMut(Found<F>)) -> bool {
         let Some(frame) = self.read(len) else {
             return false;
         };

@@ -193,11 +193,11 @@ impl MotorManager {
 #[inline(never)]
 fn limits_standing_up(config: &RobotConfig) -> (WheelControllerConfig, [JointConfig; 4]) {
     let limits = &config.stand_up;
-    let joints = config.joints.each_ref();
-    (
-        limits.limit_wheels(&config.wheel_ctrl),
-        joints.map(|joint| limits.limit_joint(joint)),
-    )
+    let mut joints = config.joints;
+    for joint in &mut joints {
+        limits.limit_joint(joint);
+    }
+    (limits.limit_wheels(&config.wheel_ctrl), joints)
 }
 
 #[cfg(test)]
