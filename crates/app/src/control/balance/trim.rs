@@ -7,6 +7,10 @@ use crate::math::scalar;
 const LEAN_TIME_S: f32 = 0.3;
 const FOLLOW_TIME_S: f32 = 0.1;
 const TORQUE_TIME_S: f32 = 0.6;
+/// A robot that rolls as fast as this, in m/s, is not held by friction.
+const ROLLING_MPS: f32 = 0.03;
+/// A torque in N·m that friction may hold. To learn it too would make the robot creep to and fro.
+const STICTION_NM: f32 = 0.18;
 /// Limits of what is learned.
 const MAX_LEAN_RAD: f32 = 0.35;
 const MAX_WHEEL_NM: f32 = 2.0;
@@ -78,11 +82,15 @@ impl Trim {
         let share = dt_s / TORQUE_TIME_S;
         let [left_wheel, right_wheel, left_leg, right_leg] = beyond_nm;
         let learned = |trim_nm: f32, left_nm: f32, right_nm: f32, limit_nm: f32| {
-            let wanted_nm = trim_nm + 0.5 * (left_nm + right_nm) * share;
+            let beyond_nm = 0.5 * (left_nm + right_nm);
+            let within_nm = scalar::clamp(beyond_nm, -STICTION_NM, STICTION_NM);
+            let wanted_nm = trim_nm + (beyond_nm - within_nm) * share;
             scalar::clamp(wanted_nm, -limit_nm, limit_nm)
         };
         let wanted_rad = scalar::clamp(lean_rad, -MAX_LEAN_RAD, MAX_LEAN_RAD);
-        self.lean_rad += (wanted_rad - self.lean_rad) * (dt_s / FOLLOW_TIME_S);
+        // Friction holds a robot that does not roll, whatever its lean.
+        let rolls = scalar::min(self.filtered.speed_mps.abs() / ROLLING_MPS, 1.0);
+        self.lean_rad += (wanted_rad - self.lean_rad) * (rolls * dt_s / FOLLOW_TIME_S);
         self.wheel_nm = learned(self.wheel_nm, left_wheel, right_wheel, MAX_WHEEL_NM);
         self.leg_nm = learned(self.leg_nm, left_leg, right_leg, MAX_LEG_NM);
     }
