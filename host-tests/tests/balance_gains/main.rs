@@ -1,3 +1,4 @@
-//! Gains of the balance controller against SciPy and against the free plant.
+//! Gains of the balance controller against SciPy.
 
+mod image;
 mod scipy;
