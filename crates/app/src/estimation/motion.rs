@@ -115,7 +115,13 @@ impl MotionEstimator {
                 let rotation = vector::cross(pose.rate_rps, accel_mps2);
                 vector::sub(accel_mps2, vector::scale(rotation, middle_s))
             }
-            None => self.filter.force_at_constant_speed(&axes),
+            None => {
+                // A blow changed the speed by more than was measured. Wheels and legs show by how much.
+                if legs.is_some() {
+                    self.selection = WheelSelection::new();
+                }
+                self.filter.force_at_constant_speed(&axes)
+            }
         };
         let free_mps2 = self.filter.free_accel(force_mps2, &axes);
         let speeds = self.wheels.forward_speeds(motor, &axes, legs);

@@ -111,18 +111,28 @@ impl MotorManager {
     /// Adds the frames of this tick. A motor without a permit gets
     /// exactly zero: zero current for a wheel, a disable frame for a joint. These frames are sent as well, as a speed
     /// controller may hold its last command, and a joint motor reports only when addressed.
+    ///
+    /// While the robot balances, only the layout limits the wheels, as it would fall without their torque.
     pub fn compose(
         &mut self,
         command: &ChassisCommand,
         permit: Option<&TorquePermit>,
         config: &RobotConfig,
+        balancing: bool,
         now_us: u64,
         frames: &mut TickFrames,
     ) {
         let stricter;
+        let unlimited;
         let (wheels, joints) = if permit.is_some_and(TorquePermit::is_for_standing_up) {
             stricter = limits_standing_up(config);
             (&stricter.0, &stricter.1)
+        } else if balancing {
+            unlimited = WheelControllerConfig {
+                current_limit_ma: MotorCurrent::FULL_SCALE_MA,
+                ..config.wheel_ctrl
+            };
+            (&unlimited, &config.joints)
         } else {
             (&config.wheel_ctrl, &config.joints)
         };

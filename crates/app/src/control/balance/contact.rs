@@ -5,6 +5,9 @@ use crate::{domain::MassModel, math::scalar};
 
 /// Time constant in s of the contact force.
 const FORCE_TIME_S: f32 = 0.006;
+/// The same for the whole robot's force, and the share of its weight below which it falls freely.
+const TOTAL_TIME_S: f32 = 0.008;
+const FREE_FALL: f32 = 0.2;
 /// Shares of a wheel's standing load below which it is in the air, and above which it is on the ground.
 const LIFTED: f32 = 0.15;
 const LOADED: f32 = 0.4;
@@ -28,6 +31,10 @@ pub struct WheelContact {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Contact {
     pub wheels: [WheelContact; 2],
+    /// The whole robot's force on the ground in N, from accelerations alone.
+    total_n: f32,
+    /// A smaller total is that of a free fall.
+    free_fall_n: f32,
 }
 
 impl Contact {
@@ -39,6 +46,8 @@ impl Contact {
                 length_mps: leg.length_mps,
                 ..WheelContact::default()
             }),
+            total_n: mass.total_kg * GRAVITY_MPS2,
+            free_fall_n: FREE_FALL * mass.total_kg * GRAVITY_MPS2,
         }
     }
 
@@ -47,6 +56,7 @@ impl Contact {
         let standing_n = 0.5 * mass.total_kg * GRAVITY_MPS2;
         let legs = measured.legs.iter().zip(&measured.hip_nm);
         let motions = measured.lean_rad.iter().zip(wheel_nm);
+        let mut total_n = mass.carried_kg * measured.up_mps2;
         for ((wheel, (leg, hip_nm)), (lean_rad, wheel_nm)) in
             self.wheels.iter_mut().zip(legs).zip(motions)
         {
@@ -65,12 +75,14 @@ impl Contact {
             let force_n = push_n * cos + mass.axle_kg * axle_mps2;
             wheel.force_n += (force_n - wheel.force_n) * (dt_s / FORCE_TIME_S);
             wheel.decide(standing_n, dt_s);
+            total_n += mass.axle_kg * axle_mps2;
         }
+        self.total_n += (total_n - self.total_n) * (dt_s / TOTAL_TIME_S);
     }
 
-    /// No wheel touches the ground.
+    /// No wheel touches the ground: the legs push nothing, or the robot falls freely however they push.
     pub fn airborne(&self) -> bool {
-        self.wheels.iter().all(|wheel| wheel.lifted)
+        self.wheels.iter().all(|wheel| wheel.lifted) || self.total_n < self.free_fall_n
     }
 }
 

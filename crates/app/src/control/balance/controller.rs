@@ -30,7 +30,7 @@ const MAX_PITCH_RAD: f32 = 1.0;
 const MAX_ROLL_RAD: f32 = 0.7;
 const MAX_LEAN_RAD: f32 = 1.2;
 /// Time in s over which the present rate of lean counts towards a fall.
-const FALL_AHEAD_S: f32 = 0.1;
+const FALL_AHEAD_S: f32 = 0.05;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Phase {

@@ -22,11 +22,20 @@ const LEARN_MPS2: f32 = 0.3;
 const LEARN_RPS: f32 = 0.3;
 /// Largest speed error in m/s that counts: a larger one would lean the robot further than it can catch itself.
 const MAX_SPEED_ERROR_MPS: f32 = 1.5;
+/// Stiffness and damping with which the legs keep together on the ground, in N·m/rad and N·m·s/rad.
+const SPLIT_NM_PER_RAD: f32 = 6.0;
+const SPLIT_NMS_PER_RAD: f32 = 0.3;
+/// The same for their lengths while the body may lie on the ground, which says nothing of roll, in N/m and N·s/m.
+const LEVEL_N_PER_M: f32 = 600.0;
+const LEVEL_NS_PER_M: f32 = 30.0;
+/// Stiffness and damping of a leg's lean in the air in N·m/rad and N·m·s/rad.
+const AIR_NM_PER_RAD: f32 = 12.0;
+const AIR_NMS_PER_RAD: f32 = 0.6;
 /// Damping of a wheel in the air in N·m·s/rad.
 const AIR_DAMPING: f32 = 0.05;
 
 /// Push in N that keeps a wheel on the ground while the body would lift it.
-const LEAST_PUSH_N: f32 = 6.0;
+const LEAST_PUSH_N: f32 = 2.0;
 
 /// What the robot shall do in this tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -186,9 +195,17 @@ impl Law {
             push_n: scalar::max(push_n + more_n, LEAST_PUSH_N),
             lean_nm: nm + leg_nm,
         };
+        let split_nm = split_nm(measured);
+        let level_n = match goal.ground {
+            Ground::Touched => level_n(measured),
+            Ground::Felt | Ground::Left => 0.0,
+        };
         (
             [left_wheel + wheel_nm, right_wheel + wheel_nm],
-            [leg(left_n, left_leg), leg(right_n, right_leg)],
+            [
+                leg(left_n - level_n, left_leg - split_nm),
+                leg(right_n + level_n, right_leg + split_nm),
+            ],
         )
     }
 
@@ -204,10 +221,10 @@ impl Law {
         self.reference.let_go(speed_mps);
         self.trim.restart(motion(measured));
         let wanted_rps = speed_mps / scalar::max(odometry.wheel_radius_m, 0.01);
-        let mut error = self.error(measured, self.trim.lean_rad, goal.pitch_rad);
-        let [distance, speed, yaw, yaw_rate, ..] = &mut error;
-        (*distance, *speed, *yaw, *yaw_rate) = (0.0, 0.0, 0.0, 0.0);
-        let [_, _, left_nm, right_nm] = self.gains.torques_nm(&error);
+        let lean_rad = self.trim.lean_rad;
+        let lean_nm =
+            |rad: f32, rps: f32| AIR_NM_PER_RAD * (lean_rad - rad) - AIR_NMS_PER_RAD * rps;
+        let ([left_rad, right_rad], [left_rps, right_rps]) = (measured.lean_rad, measured.lean_rps);
         let push_n = Support::in_air(&profile.mass, goal.length_m, measured);
         let [left_n, right_n] = push_n;
         // Wheels are too light to turn the robot by their inertia. They keep the speed of the ground.
@@ -219,11 +236,11 @@ impl Law {
             [
                 LegForce {
                     push_n: left_n,
-                    lean_nm: left_nm,
+                    lean_nm: lean_nm(left_rad, left_rps),
                 },
                 LegForce {
                     push_n: right_n,
-                    lean_nm: right_nm,
+                    lean_nm: lean_nm(right_rad, right_rps),
                 },
             ],
         )
@@ -251,6 +268,19 @@ impl Law {
             tilt.pitch_rps,
         ]
     }
+}
+
+/// Torque that brings the left leg back to the right one.
+fn split_nm(measured: &Measured) -> f32 {
+    let ([left_rad, right_rad], [left_rps, right_rps]) = (measured.lean_rad, measured.lean_rps);
+    SPLIT_NM_PER_RAD * (left_rad - right_rad) + SPLIT_NMS_PER_RAD * (left_rps - right_rps)
+}
+
+/// Push that the right leg gives more and the left one less, so that they are equally long.
+fn level_n(measured: &Measured) -> f32 {
+    let [left, right] = &measured.legs;
+    LEVEL_N_PER_M * (left.length_m - right.length_m)
+        + LEVEL_NS_PER_M * (left.length_mps - right.length_mps)
 }
 
 fn motion(measured: &Measured) -> Motion {

@@ -71,7 +71,7 @@ fn without_a_permit_no_motor_has_torque() {
         for now_us in [1_000, 2_000] {
             let mut frames = TickFrames::new();
             let config = RobotConfig::default();
-            manager.compose(&command, None, &config, now_us, &mut frames);
+            manager.compose(&command, None, &config, false, now_us, &mut frames);
             let mut sent = command;
             manager.record_sent(&mut sent);
             assert_eq!(sent, ChassisCommand::default());

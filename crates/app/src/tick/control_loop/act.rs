@@ -78,8 +78,9 @@ impl<C: ChassisController> ControlLoop<C> {
             self.motors.clear_faults();
         }
         self.frames.clear();
+        let (config, balancing) = (&self.config, balance.state != BalanceState::Sit);
         self.motors
-            .compose(wanted, permit, &self.config, now_us, &mut self.frames);
+            .compose(wanted, permit, config, balancing, now_us, &mut self.frames);
     }
 
     fn demand<'a>(&self, inputs: &ControlInputs<'a>, now_us: u64) -> CommandSource<'a> {
