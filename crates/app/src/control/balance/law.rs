@@ -20,6 +20,8 @@ use crate::{
 const LEARN_MPS: f32 = 0.6;
 const LEARN_MPS2: f32 = 0.3;
 const LEARN_RPS: f32 = 0.3;
+/// The same for a turn in rad/s, whose centrifugal force would count as an error of the centre of mass.
+const LEARN_YAW_RPS: f32 = 1.0;
 /// Largest speed error in m/s that counts: a larger one would lean the robot further than it can catch itself.
 const MAX_SPEED_ERROR_MPS: f32 = 1.5;
 /// Stiffness and damping with which the legs keep together on the ground, in N·m/rad and N·m·s/rad.
@@ -169,7 +171,8 @@ impl Law {
         let [left_wheel, right_wheel, left_leg, right_leg] = feedback_nm;
         let [_, speed_error, ..] = error;
         let steady = self.reference.accel_mps2.abs() < LEARN_MPS2
-            && measured.mean_lean_rps().abs() < LEARN_RPS;
+            && measured.mean_lean_rps().abs() < LEARN_RPS
+            && yaw_rps.abs() < LEARN_YAW_RPS;
         let calm = goal.learn && steady && speed_error.abs() < LEARN_MPS;
         if calm {
             self.trim.learn(observed_rad, feedback_nm, dt_s);

@@ -7,7 +7,7 @@ const MAX_ACCEL_MPS2: f32 = 2.5;
 /// Natural frequency in rad/s, well damped, with which the reference follows the wish. The robot leans as fast.
 const FOLLOW_RPS: f32 = 6.0;
 /// Acceleration limit of the turn in rad/s².
-const MAX_YAW_RPSS: f32 = 15.0;
+const MAX_YAW_RPSS: f32 = 10.0;
 /// Largest sideways acceleration in m/s² in a turn.
 const MAX_SIDEWAYS_MPS2: f32 = 3.0;
 /// Largest distance in m from the place that the robot holds.
