@@ -27,6 +27,8 @@ const STEP_S: f64 = 0.0005;
 /// The loops are as stiff as the step allows (MuJoCo's documentation: a time constant of two steps).
 const LOOP_SOLREF: [f64; 2] = [2.0 * STEP_S, 1.0];
 const LOOP_SOLIMP: [f64; 5] = [0.9999, 0.9999, 0.001, 0.5, 2.0];
+/// Of sliding as in the plant, of twisting and rolling as MuJoCo has it unless told otherwise.
+const FRICTION: [f64; 3] = [0.8, 0.005, 0.0001];
 const STANDARD_GRAVITY_MPS2: f64 = 9.80665;
 const CLAMPED_HEIGHT_M: f64 = 1.0;
 
@@ -49,6 +51,7 @@ impl Robot {
             .text("model", self.name.as_str())
             .child(Element::new("compiler").text("angle", "radian"))
             .child(option())
+            .child(default_contact())
             .child(scene::visual())
             .child(scene::assets())
             .child(
@@ -68,6 +71,12 @@ impl Robot {
         let wheels = SIDES.map(|side| drive(&wheel_name(side), self.wheels.peak_nm()));
         Element::new("actuator").children(hips).children(wheels)
     }
+}
+
+fn default_contact() -> Element {
+    let [sliding, twisting, rolling] = FRICTION;
+    let geom = Element::new("geom").numbers("friction", &[sliding, twisting, rolling]);
+    Element::new("default").child(geom)
 }
 
 fn option() -> Element {
