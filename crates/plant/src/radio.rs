@@ -40,6 +40,8 @@ pub(crate) struct Receiver {
     pilot: Pilot,
     /// Sticks and switches in the last packet received.
     received: Pilot,
+    /// Frames since the stand switch moved.
+    since_stand: u32,
     next_frame: Ps,
     on_the_line: VecDeque<UartChar>,
     noise: LineNoise,
@@ -52,6 +54,7 @@ impl Receiver {
             kind,
             pilot: Pilot::default(),
             received: Pilot::default(),
+            since_stand: 0,
             next_frame: 0,
             on_the_line: VecDeque::new(),
             noise: LineNoise::new(Random::new(seed, Stream::RadioLine)),
@@ -132,11 +135,19 @@ impl Receiver {
     /// The bytes of the frame. A receiver without a new packet repeats the sticks of the last one.
     fn frame(&mut self, faults: RadioFaults) -> Option<Vec<u8>> {
         if !(faults.failsafe || faults.frame_lost) {
+            self.since_stand = if self.pilot.stand == self.received.stand {
+                self.since_stand.saturating_add(1)
+            } else {
+                0
+            };
             self.received = self.pilot;
         }
         match self.kind {
             RadioKind::Sbus => Some(sbus::frame(&self.received, faults).to_vec()),
-            RadioKind::Dbus => dbus::frame(&self.received, faults).map(|frame| frame.to_vec()),
+            RadioKind::Dbus => {
+                let wheel = dbus::wheel(&self.received, self.since_stand);
+                dbus::frame(&self.received, wheel, faults).map(|frame| frame.to_vec())
+            }
         }
     }
 

@@ -1,6 +1,7 @@
 //! The whole world as the board sees it: one object, advanced in time, with one method per wire.
 
 mod advance;
+mod askew;
 mod board_wires;
 mod can_buses;
 mod joint_wires;
@@ -30,6 +31,7 @@ use crate::{
     time::Ps,
     wire::CanFrame,
 };
+use askew::Askew;
 use can_buses::Node;
 use robot_description::{JointMotor, Robot};
 use std::{collections::VecDeque, sync::Arc};
@@ -177,6 +179,7 @@ pub struct World {
     imu: Bmi088,
     mag: Ist8310,
     mounting: Mounting,
+    askew: Askew,
     mag_mounting: Mounting,
     radio: Receiver,
     pc: Pc,

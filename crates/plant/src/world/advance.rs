@@ -116,15 +116,19 @@ impl World {
         self.body.step(&inputs, physics_step_s());
         let body_motion = self.motion(at);
         let board_motion = Motion {
-            accel_mps2: self.mounting.to_sensor(body_motion.accel_mps2),
-            gyro_rps: self.mounting.to_sensor(body_motion.gyro_rps),
+            accel_mps2: self.to_board(body_motion.accel_mps2),
+            gyro_rps: self.to_board(body_motion.gyro_rps),
         };
         self.imu.step(board_motion, at, physics_step_s());
         if self.mag.is_converting(at) {
-            let board_field_ut = self.mounting.to_sensor(self.field_ut(at));
+            let board_field_ut = self.to_board(self.field_ut(at));
             self.mag
                 .sample_field(self.mag_mounting.to_sensor(board_field_ut));
         }
+    }
+
+    fn to_board(&self, body: [f64; 3]) -> [f64; 3] {
+        self.mounting.to_sensor(self.askew.to_board(body))
     }
 
     fn outside_force(&mut self, at: Ps) -> Option<Push> {

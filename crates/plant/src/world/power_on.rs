@@ -3,7 +3,8 @@
 use std::collections::VecDeque;
 
 use super::{
-    Indicators, World, WorldConfig, WorldError, can_buses, signals, tuning_replies::TuningReplies,
+    Indicators, World, WorldConfig, WorldError, askew::Askew, can_buses, signals,
+    tuning_replies::TuningReplies,
 };
 use crate::{
     bmi088::Bmi088,
@@ -63,6 +64,7 @@ impl World {
             battery: Battery::default(),
             imu: Bmi088::new(seed, source, config.imu_temperature_c),
             mag: Ist8310::new(seed, source),
+            askew: Askew::new(config.variation.imu_rad),
             mounting: config.mounting.unwrap_or_else(|| Mounting::of(&robot.imu)),
             mag_mounting: config.mag_mounting,
             radio: Receiver::new(config.radio, seed),
