@@ -153,14 +153,14 @@ impl World {
     fn step_joints(&mut self, at: Ps, supply_v: f64) -> JointTorques {
         let vel_rps = self.body.joint_vel_rps();
         let mut torques = JointTorques::default();
-        for index in 0..JOINTS {
+        for (index, vel_rps) in vel_rps.into_iter().enumerate() {
             let shaft = self.joint_shaft(index);
             let joint = &mut self.joints[index];
             let was_enabled = joint.enabled();
             joint.step(shaft, supply_v, at);
             torques.torque_nm[index] = joint.torque_nm();
             torques.friction_nm = joint.friction_nm();
-            torques.power_w += joint.torque_nm() * vel_rps[index];
+            torques.power_w += joint.torque_nm() * vel_rps;
             if joint.enabled() != was_enabled {
                 self.report_joint(index, at);
             }

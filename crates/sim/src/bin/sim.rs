@@ -29,7 +29,8 @@ use robot_sim::{
 #[derive(Parser)]
 #[command(name = "sim", after_help = EXAMPLES)]
 struct Args {
-    /// Scenario to run; default: a 10 s drive, or a quiet stand with --imu.
+    /// Scenario to run; default: a robot stands up, balances, drives and is pushed. With a PC a drive on a stand, after which
+    /// the robot is disarmed; with --imu a quiet stand.
     scenario: Option<PathBuf>,
     /// Firmware image to boot.
     #[arg(long, required_unless_present = "list_faults")]
@@ -96,6 +97,13 @@ enum LinkConnection {
     Pty,
 }
 
+impl Args {
+    /// Whether programs on this computer take part.
+    fn has_pc(&self) -> bool {
+        self.can1.is_some() || self.can2.is_some() || self.link.is_some() || self.gateway.is_some()
+    }
+}
+
 const EXAMPLES: &str = "Examples:
   cargo xtask sim scenarios/remote-loss.toml
   cargo xtask sim --can1 pty --seconds 3600            # then: robotctl status --can /dev/pts/N
@@ -103,6 +111,9 @@ const EXAMPLES: &str = "Examples:
   cargo xtask sim scenarios/pc-pilot.toml --link pty --seconds 600
                                                        # then: robotctl drive --link /dev/pts/N";
 
+const BALANCE: &str = include_str!("../../../../scenarios/balance.toml");
+
+/// What a PC finds without a scenario: a robot that ends disarmed.
 const DRIVE: &str = include_str!("../../../../scenarios/drive.toml");
 
 /// What `--imu` runs without a scenario: nobody touches the radio, and the robot has saved that the magnetometer sits as
@@ -171,7 +182,8 @@ fn job(args: &Args) -> anyhow::Result<Job> {
     }
     let mut scenario = match (&args.scenario, &args.imu) {
         (Some(path), _) => Scenario::read(path)?,
-        (None, None) => Scenario::parse(DRIVE, "scenarios/drive.toml")?,
+        (None, None) if args.has_pc() => Scenario::parse(DRIVE, "scenarios/drive.toml")?,
+        (None, None) => Scenario::parse(BALANCE, "scenarios/balance.toml")?,
         (None, Some(trial)) => {
             let mut scenario = Scenario::parse(REPLAY, "replay")?;
             scenario.length = recording::run_length(trial)?;
