@@ -18,7 +18,7 @@ struct Args {
     /// Number of robots for each task.
     #[arg(long, value_name = "N", default_value_t = 20)]
     seeds: u64,
-    /// Only tasks whose name begins with this.
+    /// Only the task of this name, or all whose names begin with it.
     #[arg(
         long,
         value_name = "NAME",
@@ -58,10 +58,15 @@ fn main() -> ExitCode {
 }
 
 fn run(args: &Args) -> anyhow::Result<bool> {
-    let tasks: Vec<&Task> = TASKS
-        .iter()
-        .filter(|task| task.name.starts_with(&args.task))
-        .collect();
+    let exact = TASKS.iter().any(|task| task.name == args.task);
+    let wanted = |task: &&Task| {
+        if exact {
+            task.name == args.task
+        } else {
+            task.name.starts_with(&args.task)
+        }
+    };
+    let tasks: Vec<&Task> = TASKS.iter().filter(wanted).collect();
     ensure!(
         !tasks.is_empty(),
         "no task's name begins with `{}`; --list lists them",

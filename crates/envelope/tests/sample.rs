@@ -1,0 +1,40 @@
+//! A sample of the tasks: what every robot does that is as its file says.
+
+use robot_envelope::{Report, Robots, TASKS, Task, survey, table};
+use robot_plant::world::WorldConfig;
+
+/// Tasks of a few seconds each.
+const SAMPLE: &[&str] = &["stand-up-sitting", "drive", "ramp", "lost"];
+
+#[test]
+fn robots_as_in_their_file_succeed() {
+    let robots = Robots {
+        robot: WorldConfig::default().robot,
+        vary: false,
+    };
+    let tasks: Vec<&Task> = TASKS
+        .iter()
+        .filter(|task| SAMPLE.contains(&task.name))
+        .collect();
+    assert_eq!(tasks.len(), SAMPLE.len());
+    let surveys = survey(&tasks, &robots, 2, false, &|| ());
+    let report = Report::new("fivebar", 2, &tasks, &surveys);
+    assert!(report.holds(), "\n{}", table(&report));
+}
+
+#[test]
+fn specimens_differ_within_their_limits_and_repeat() {
+    let robots = Robots {
+        robot: WorldConfig::default().robot,
+        vary: true,
+    };
+    let mut heaviest = 0.0_f64;
+    for seed in 0..200 {
+        let one = robots.variation(seed);
+        assert_eq!(one, robots.variation(seed));
+        assert!((0.8..1.4).contains(&one.mass) && (0.4..1.2).contains(&one.grip));
+        assert!(one.com_m.iter().all(|m| m.abs() <= 0.03));
+        heaviest = heaviest.max(one.mass);
+    }
+    assert!(heaviest > 1.3, "{heaviest}");
+}
