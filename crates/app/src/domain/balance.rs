@@ -57,6 +57,11 @@ pub struct BalanceStatus {
 }
 
 impl BalanceStatus {
+    /// Whether the robot sits. Then the status says nothing else.
+    pub fn sits(&self) -> bool {
+        self.state == BalanceState::Sit
+    }
+
     /// No balance controller runs: the default as a constant.
     pub const SIT: Self = Self {
         state: BalanceState::Sit,

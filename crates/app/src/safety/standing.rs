@@ -56,6 +56,35 @@ impl Standing {
 
     /// Advances by one tick and returns the flags of falls.
     pub fn step(&mut self, inputs: &StandingInputs, now_us: u64) -> SafetyFlags {
+        let is_idle = inputs.balance == BalanceState::Sit
+            && inputs.switch != StandSwitch::Up
+            && matches!(
+                self.permit,
+                StandPermit::SwitchMustGoDown | StandPermit::Ready
+            );
+        if is_idle {
+            self.idle(inputs)
+        } else {
+            self.advance(inputs, now_us)
+        }
+    }
+
+    /// Nothing has been asked for. Most robots are here most of the time.
+    fn idle(&mut self, inputs: &StandingInputs) -> SafetyFlags {
+        if inputs.stopped {
+            self.permit = StandPermit::SwitchMustGoDown;
+        } else if inputs.switch == StandSwitch::Down {
+            self.permit = StandPermit::Ready;
+        }
+        self.balance = BalanceState::Sit;
+        let mut flags = SafetyFlags::NONE;
+        flags.add_if(SafetyFlags::TILT, inputs.fallen);
+        flags
+    }
+
+    /// Kept out of line, as it costs nothing while the robot sits.
+    #[inline(never)]
+    fn advance(&mut self, inputs: &StandingInputs, now_us: u64) -> SafetyFlags {
         let lost = inputs.armed && self.is_lost(inputs);
         let disarmed = self.permit.permits() && !inputs.armed;
         let mut failed = false;

@@ -73,7 +73,10 @@ impl<C: ChassisController> ControlLoop<C> {
                 &ChassisCommand::STOP
             }
         };
-        self.state.balance = *balance;
+        // A robot that sits pays for no copy.
+        if !(balance.sits() && self.state.balance.sits()) {
+            self.state.balance = *balance;
+        }
         if self.state.safety.clear_faults {
             self.motors.clear_faults();
         }

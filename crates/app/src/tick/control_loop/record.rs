@@ -70,7 +70,9 @@ impl TickState {
         diagnostics.motors = self.motors;
         diagnostics.safety = self.safety;
         diagnostics.arming = self.arming;
-        diagnostics.balance = self.balance;
+        if !(self.balance.sits() && diagnostics.balance.sits()) {
+            diagnostics.balance = self.balance;
+        }
         diagnostics.strangers = self.strangers;
     }
 }
