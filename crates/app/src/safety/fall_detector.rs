@@ -8,6 +8,9 @@ use crate::{
 
 /// A knock tilts the estimate for a moment.
 const HOLD_US: u32 = 50_000;
+/// The smallest limit that settings allow is 0.1 rad; this is sin² of half of that, rounded down. A robot within it, as
+/// nearly always, needs no closer look.
+const UPRIGHT: f32 = 0.002_49;
 
 #[derive(Clone, Debug, Default)]
 pub(super) struct FallDetector {
@@ -40,10 +43,14 @@ impl FallDetector {
 /// angle. False for NaN.
 fn within(estimate: &StateEstimate, max_tilt_rad: f32) -> bool {
     let [_, x, y, _] = estimate.q_wxyz;
+    let sin_half_squared = x * x + y * y;
+    if sin_half_squared <= UPRIGHT {
+        return true;
+    }
     // Half the limit is computed as twice a quarter, so the series stays in its range up to a limit of π.
     let (sin, cos) = sin_cos_small(max_tilt_rad / 4.0);
     let sin_half = 2.0 * sin * cos;
-    x * x + y * y <= sin_half * sin_half
+    sin_half_squared <= sin_half * sin_half
 }
 
 #[cfg(test)]

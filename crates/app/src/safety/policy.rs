@@ -185,7 +185,7 @@ impl SafetyPolicy {
         dt_us: u32,
         now_us: u64,
     ) -> SafetyFlags {
-        let (estimate, config) = (inputs.estimate, inputs.config);
+        let fallen = self.tilt.fallen(inputs.estimate, inputs.config, dt_us);
         let others = present
             .union(self.latches.latched())
             .difference(SafetyFlags::FALLEN);
@@ -194,14 +194,36 @@ impl SafetyPolicy {
         } else {
             StandSwitch::Unknown
         };
+        let sits = inputs.balance == BalanceState::Sit;
+        if sits && switch != StandSwitch::Up && self.standing.is_idle() {
+            let stopped = others.intersects(SafetyFlags::GLOBAL_STOP);
+            self.standing.idle(switch, stopped);
+            let mut flags = SafetyFlags::NONE;
+            flags.add_if(SafetyFlags::TILT, fallen);
+            return flags;
+        }
+        self.stand(others, switch, fallen, inputs, dt_us, now_us)
+    }
+
+    /// Kept out of line, so that it costs nothing while the robot sits.
+    #[inline(never)]
+    fn stand(
+        &mut self,
+        others: SafetyFlags,
+        switch: StandSwitch,
+        fallen: bool,
+        inputs: &SafetyInputs<'_>,
+        dt_us: u32,
+        now_us: u64,
+    ) -> SafetyFlags {
         let flags = self.standing.step(
             &StandingInputs {
                 switch,
                 armed: inputs.armed,
                 balance: inputs.balance,
-                fallen: self.tilt.fallen(estimate, config, dt_us),
+                fallen,
                 topples: inputs.balance != BalanceState::Sit
-                    && self.toppling.topples(estimate, config, dt_us),
+                    && self.toppling.topples(inputs.estimate, inputs.config, dt_us),
                 stopped: others.intersects(SafetyFlags::GLOBAL_STOP),
                 part_stopped: others.intersects(WATCHED),
                 time_us: inputs.stand_up.time_us,

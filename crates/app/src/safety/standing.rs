@@ -54,37 +54,26 @@ impl Standing {
         self.stand_up_ms
     }
 
-    /// Advances by one tick and returns the flags of falls.
-    pub fn step(&mut self, inputs: &StandingInputs, now_us: u64) -> SafetyFlags {
-        let is_idle = inputs.balance == BalanceState::Sit
-            && inputs.switch != StandSwitch::Up
-            && matches!(
-                self.permit,
-                StandPermit::SwitchMustGoDown | StandPermit::Ready
-            );
-        if is_idle {
-            self.idle(inputs)
-        } else {
-            self.advance(inputs, now_us)
-        }
+    /// Whether nothing has been asked for, as most of the time on most robots.
+    pub fn is_idle(&self) -> bool {
+        matches!(
+            self.permit,
+            StandPermit::SwitchMustGoDown | StandPermit::Ready
+        )
     }
 
-    /// Nothing has been asked for. Most robots are here most of the time.
-    fn idle(&mut self, inputs: &StandingInputs) -> SafetyFlags {
-        if inputs.stopped {
+    /// Advances an idle robot that sits by one tick, while the switch is not up.
+    pub fn idle(&mut self, switch: StandSwitch, stopped: bool) {
+        if stopped {
             self.permit = StandPermit::SwitchMustGoDown;
-        } else if inputs.switch == StandSwitch::Down {
+        } else if switch == StandSwitch::Down {
             self.permit = StandPermit::Ready;
         }
         self.balance = BalanceState::Sit;
-        let mut flags = SafetyFlags::NONE;
-        flags.add_if(SafetyFlags::TILT, inputs.fallen);
-        flags
     }
 
-    /// Kept out of line, as it costs nothing while the robot sits.
-    #[inline(never)]
-    fn advance(&mut self, inputs: &StandingInputs, now_us: u64) -> SafetyFlags {
+    /// Advances by one tick and returns the flags of falls.
+    pub fn step(&mut self, inputs: &StandingInputs, now_us: u64) -> SafetyFlags {
         let lost = inputs.armed && self.is_lost(inputs);
         let disarmed = self.permit.permits() && !inputs.armed;
         let mut failed = false;

@@ -242,6 +242,7 @@ impl<C: ChassisController> ControlLoop<C> {
     }
 
     fn sense(&mut self, inputs: &ControlInputs<'_>, now_us: u64) {
+        let stands = self.stands();
         let TickState {
             sensors,
             estimate,
@@ -260,7 +261,8 @@ impl<C: ChassisController> ControlLoop<C> {
         sensors.ts_us = now_us;
         let (imu, mag) = (&sensors.imu, &sensors.mag);
         let (motor, geometry) = (&sensors.motor, &self.legs);
-        let legs = || known_legs(geometry, motor);
+        // Legs that only hold their pose are not worth the time.
+        let legs = || stands.then(|| known_legs(geometry, motor)).flatten();
         self.estimator
             .step_on_legs(imu, mag, motor, legs, now_us, estimate);
     }

@@ -4,8 +4,8 @@ use super::{ControlInputs, ControlLoop};
 use crate::{
     control::{ChassisController, ChassisControllerInput, ChassisControllerOutput, pc_law},
     domain::{
-        BalanceState, BalanceStatus, ChassisCommand, HighLevelCommand, PcCommand, PcDrive, PcKind,
-        StandSwitch, age_us,
+        BalanceStatus, ChassisCommand, HighLevelCommand, PcCommand, PcDrive, PcKind, StandSwitch,
+        age_us,
     },
     safety::{SafetyFlags, TorquePermit},
 };
@@ -81,7 +81,7 @@ impl<C: ChassisController> ControlLoop<C> {
             self.motors.clear_faults();
         }
         self.frames.clear();
-        let (config, balancing) = (&self.config, balance.state != BalanceState::Sit);
+        let (config, balancing) = (&self.config, !balance.sits());
         self.motors
             .compose(wanted, permit, config, balancing, now_us, &mut self.frames);
     }
@@ -130,7 +130,7 @@ impl<C: ChassisController> ControlLoop<C> {
     }
 
     pub(super) fn stands(&self) -> bool {
-        self.state.safety.stand.permits() || self.state.balance.state != BalanceState::Sit
+        self.state.safety.stand.permits() || !self.state.balance.sits()
     }
 
     /// Kept out of line, as most robots are driven by hand.
