@@ -45,7 +45,7 @@ pub fn is_stable(model: &DiscreteModel, gains: &GainMatrix, delay_ticks: usize) 
         if largest < 1e-3 {
             return true;
         }
-        if !(largest < 1e12) {
+        if largest.is_nan() || largest > 1e12 {
             return false;
         }
     }

@@ -1,4 +1,5 @@
-//! Gains of the balance controller against SciPy.
+//! Gains of the balance controller against SciPy, the image and the simulated robot.
 
 mod image;
+mod plant;
 mod scipy;
