@@ -87,61 +87,77 @@ fn step(study: &Study) -> Result<String, ChartError> {
     Ok(speed + &angles)
 }
 
+/// A line over the leg length: its label, its colour and its value.
+type Measure = (&'static str, Colour, fn(&AtLength) -> f64);
+
 fn over_lengths(study: &Study) -> Result<String, ChartError> {
-    let lines =
-        |values: &[(&str, Colour, fn(&AtLength) -> f64)], title: &str, unit: &str, says: &str| {
-            let drawn = values.iter().map(|(_, colour, value)| Line {
-                colour: *colour,
-                points: study
-                    .lengths
-                    .iter()
-                    .map(|at| (at.length_m, value(at)))
-                    .collect(),
-            });
-            let legend = values.iter().map(|(label, colour, _)| Legend {
-                label: (*label).to_owned(),
-                colour: *colour,
-                faint: false,
-            });
-            let figure = Figure {
-                title: title.to_owned(),
-                caption: says.to_owned(),
-                legend: legend.collect(),
-                svg: over_length::draw(&drawn.collect::<Vec<_>>(), unit)?,
-            };
-            Ok(figure.html())
-        };
-    let phase = lines(
-        &[
-            ("wheel", BLUE, |at| at.wheel.phase_rad.to_degrees()),
-            ("leg", ORANGE, |at| at.leg.phase_rad.to_degrees()),
-        ],
+    let phase: [Measure; 2] = [
+        ("wheel", BLUE, |at| at.wheel.phase_rad.to_degrees()),
+        ("leg", ORANGE, |at| at.leg.phase_rad.to_degrees()),
+    ];
+    let modulus: [Measure; 2] = [
+        ("wheel", BLUE, |at| at.wheel.modulus),
+        ("leg", ORANGE, |at| at.leg.modulus),
+    ];
+    let delay: [Measure; 1] = [("all torques", BLUE, |at| at.extra_delay_ms as f64)];
+    let push: [Measure; 1] = [("push", BLUE, |at| at.largest_push_mps)];
+    Ok(over_length_figure(
+        study,
+        &phase,
         "Phase margin over leg length",
         "degrees",
         "The loop is broken at one input, with the file's delay.",
-    )?;
-    let modulus = lines(
-        &[
-            ("wheel", BLUE, |at| at.wheel.modulus),
-            ("leg", ORANGE, |at| at.leg.modulus),
-        ],
+    )? + &over_length_figure(
+        study,
+        &modulus,
         "Distance from −1 over leg length",
         "",
         "0.5 stands for a gain margin of at least 2 and a phase margin of at least 29 degrees.",
-    )?;
-    let delay = lines(
-        &[("all torques", BLUE, |at| at.extra_delay_ms as f64)],
+    )? + &over_length_figure(
+        study,
+        &delay,
         "More delay over leg length",
         "ms",
         "The loop holds with this much delay beyond the file's, up to 40 ms.",
-    )?;
-    let push = lines(
-        &[("push", BLUE, |at| at.largest_push_mps)],
+    )? + &over_length_figure(
+        study,
+        &push,
         "Largest push over leg length",
         "m/s",
         "The robot does not fall over, with friction 0.6 and the motors' limits.",
-    )?;
-    Ok(phase + &modulus + &delay + &push)
+    )?)
+}
+
+fn over_length_figure(
+    study: &Study,
+    measures: &[Measure],
+    title: &str,
+    unit: &str,
+    caption: &str,
+) -> Result<String, ChartError> {
+    let lines: Vec<_> = measures
+        .iter()
+        .map(|(_, colour, value)| Line {
+            colour: *colour,
+            points: study
+                .lengths
+                .iter()
+                .map(|at| (at.length_m, value(at)))
+                .collect(),
+        })
+        .collect();
+    let legend = measures.iter().map(|(label, colour, _)| Legend {
+        label: (*label).to_owned(),
+        colour: *colour,
+        faint: false,
+    });
+    let figure = Figure {
+        title: title.to_owned(),
+        caption: caption.to_owned(),
+        legend: legend.collect(),
+        svg: over_length::draw(&lines, unit)?,
+    };
+    Ok(figure.html())
 }
 
 fn curve(
