@@ -37,3 +37,6 @@ impl ChassisController for StandardController {
         self.followed = false;
     }
 }
+
+#[cfg(test)]
+mod tests;

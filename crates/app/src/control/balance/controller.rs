@@ -166,7 +166,7 @@ impl BalanceController {
     ) -> Torques {
         let profile = &input.profile.balance;
         let limits = &profile.limits;
-        let wished = |stick: f32| scalar::clamp(stick, -1.0, 1.0);
+        let wished = within_stick;
         let command = &input.hl_cmd;
         let airborne = self.law.airborne();
         let (push_n, ground) = if let Some(legs) = legs {
@@ -235,12 +235,20 @@ impl BalanceController {
     }
 }
 
+/// A stick's deflection, −1…1; NaN counts as centred.
+fn within_stick(stick: f32) -> f32 {
+    if stick.is_nan() {
+        return 0.0;
+    }
+    scalar::clamp(stick, -1.0, 1.0)
+}
+
 /// Leg length in m that the pilot wishes.
 fn standing_length_m(profile: &BalanceProfile, command: &HighLevelCommand) -> f32 {
     let limits = &profile.limits;
     let middle_m = 0.5 * (limits.min_length_m + limits.max_length_m);
     let half_m = 0.5 * (limits.max_length_m - limits.min_length_m);
-    middle_m + half_m * scalar::clamp(command.height, -1.0, 1.0)
+    middle_m + half_m * within_stick(command.height)
 }
 
 fn command(torques: &Torques, odometry: &WheelOdomConfig) -> ChassisCommand {

@@ -33,7 +33,7 @@ impl Gains {
         {
             *row = evaluate(polynomials, &terms);
         }
-        self.next = (self.next + 1) % INPUTS;
+        self.next = self.next.wrapping_add(1) % INPUTS;
     }
 
     /// Torques in N·m for this distance of the state from its reference.

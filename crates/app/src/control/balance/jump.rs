@@ -9,17 +9,16 @@ const CROUCH_S: f32 = 0.6;
 /// The legs are down or up when they are this close to their length, in m.
 const CLOSE_M: f32 = 0.012;
 /// Part of the hips' torque that pushes off. The rest keeps the balance.
-const PUSH_PART: f32 = 0.9;
+const PUSH_PART: f32 = 0.97;
 /// Pushing off ends so much before the legs' full length, in m.
-const STOP_SHORT_M: f32 = 0.03;
+const STOP_SHORT_M: f32 = 0.02;
 const PUSH_S: f32 = 0.3;
 /// Legs are this much longer than the shortest while they are drawn in, for this part of the time up to the top.
 const DRAWN_IN_M: f32 = 0.01;
 const DRAWN_IN_PART: f32 = 1.3;
 /// Rate in m/s at which legs change their length in the air.
-const FLIGHT_MPS: f32 = 1.5;
-/// Time in s for which a robot that has pushed off is in the air whatever it feels, and after which it has landed.
-const RISE_S: f32 = 0.08;
+const FLIGHT_MPS: f32 = 2.5;
+/// Time in s after which a robot that has pushed off has landed. Up to the top it is in the air whatever it feels.
 const FLIGHT_S: f32 = 1.0;
 
 /// Parts of a jump.
@@ -70,8 +69,9 @@ impl Jump {
         let mut ground = Ground::Touched;
         match &mut self.part {
             Part::Crouch => {
-                length.step(limits.min_length_m, CROUCH_MPS, dt_s);
-                let down = measured.length_m() < limits.min_length_m + CLOSE_M;
+                let shortest_m = limits.fold_length_m + DRAWN_IN_M;
+                length.step(shortest_m, CROUCH_MPS, dt_s);
+                let down = measured.length_m() < shortest_m + CLOSE_M;
                 if down || self.elapsed_s > CROUCH_S {
                     self.begin(Part::Push);
                 }
@@ -92,12 +92,12 @@ impl Jump {
                 let rise_s = *start_mps * mass.carried_kg / (mass.total_kg * GRAVITY_MPS2);
                 let drawn_in = self.elapsed_s < DRAWN_IN_PART * rise_s;
                 let target_m = if drawn_in {
-                    limits.min_length_m + DRAWN_IN_M
+                    limits.fold_length_m + DRAWN_IN_M
                 } else {
                     landing_length_m(profile)
                 };
                 length.step(target_m, FLIGHT_MPS, dt_s);
-                if self.elapsed_s < RISE_S {
+                if self.elapsed_s < rise_s {
                     ground = Ground::Left;
                 } else if !airborne || self.elapsed_s > FLIGHT_S {
                     return None;

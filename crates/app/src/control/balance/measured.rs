@@ -11,6 +11,9 @@ use crate::{
 /// Longest time in s over which a joint's angle is extrapolated from its report.
 const MAX_AHEAD_S: f32 = 0.01;
 
+/// Largest rate, speed, acceleration or torque in SI units.
+const MAX_PLAUSIBLE: f32 = 1_000.0;
+
 /// The state of the robot. Pairs are left, right.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
@@ -57,7 +60,7 @@ impl Measured {
         let limit_us = input.wheel_ctrl_cfg.feedback_timeout_us;
         let heard = |wheel: &WheelFeedback| wheel.age_us <= limit_us;
         let ready = |joint: &JointFeedback| joint.state == JointState::Enabled;
-        Self {
+        let mut measured = Self {
             lean_rad: legs.map(|leg| tilt.pitch_rad - leg.angle_rad),
             lean_rps: legs.map(|leg| tilt.pitch_rps - leg.angle_rps),
             wheel_rps,
@@ -72,7 +75,30 @@ impl Measured {
                 && sensors.motor.joints.iter().all(ready),
             tilt,
             legs,
-        }
+        };
+        measured.known &= measured.is_plausible();
+        measured
+    }
+
+    /// False for what no robot does, NaN among it: filters would never forget it.
+    fn is_plausible(&self) -> bool {
+        let tilt = &self.tilt;
+        let [left_rps, right_rps] = self.lean_rps;
+        let [[left_front, left_rear], [right_front, right_rear]] = self.hip_nm;
+        let motion = [
+            tilt.pitch_rps,
+            tilt.roll_rps,
+            tilt.yaw_rps,
+            left_rps,
+            right_rps,
+            self.speed_mps,
+            self.up_mps2,
+            left_front,
+            left_rear,
+            right_front,
+            right_rear,
+        ];
+        motion.iter().all(|value| value.abs() < MAX_PLAUSIBLE)
     }
 
     /// Mean length of the legs in m.

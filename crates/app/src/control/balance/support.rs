@@ -14,6 +14,8 @@ const ROLL_DAMPING: f32 = 0.8;
 const AIR_DAMPING: f32 = 0.4;
 /// Time constants in s in which the load is learned and the legs' lengths follow a wish.
 const LOAD_TIME_S: f32 = 1.0;
+/// Largest centrifugal acceleration in m/s² that lightens the legs.
+const MAX_SWING_MPS2: f32 = 1.0;
 /// Largest share of its load that a body may have too little or too much.
 const MAX_LOAD_ERROR: f32 = 0.6;
 /// Largest learned difference between the legs' pushes, as a share of the load.
@@ -53,8 +55,9 @@ impl Support {
         let lean_rps = measured.mean_lean_rps();
         let length_m = measured.length_m();
         let (_, cos) = scalar::sin_cos_small(scalar::clamp(measured.mean_lean_rad(), -1.0, 1.0));
-        // A pendulum of constant length needs this push.
-        let carried_n = mass.carried_kg * (GRAVITY_MPS2 * cos - length_m * lean_rps * lean_rps);
+        // A pendulum of constant length needs this push. One that is struck needs the ground more than its length.
+        let swing_mps2 = scalar::min(length_m * lean_rps * lean_rps, MAX_SWING_MPS2);
+        let carried_n = mass.carried_kg * (GRAVITY_MPS2 * cos - swing_mps2);
         let stiffness = mass.carried_kg * HEAVE_RPS * HEAVE_RPS;
         let damping = 2.0 * HEAVE_DAMPING * HEAVE_RPS * mass.carried_kg;
         let sag_m = stance.length_m - length_m;

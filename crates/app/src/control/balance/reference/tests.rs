@@ -52,11 +52,11 @@ fn a_pushed_robot_lets_its_place_go_and_a_drifting_one_does_not() {
     let mut pushed = Reference::default();
     let mut drifting = Reference::default();
     for _ in 0..1_000 {
-        pushed.step(Wish::default(), 1.0, 0.0, DT_S);
-        drifting.step(Wish::default(), 0.1, 0.0, DT_S);
+        pushed.step(Wish::default(), 0.3, 0.0, DT_S);
+        drifting.step(Wish::default(), 0.04, 0.0, DT_S);
     }
-    assert!(pushed.distance_m < 0.11, "{pushed:?}");
-    assert!((drifting.distance_m - 0.1).abs() < 1e-3, "{drifting:?}");
+    assert!(pushed.distance_m < 0.031, "{pushed:?}");
+    assert!((drifting.distance_m - 0.04).abs() < 1e-3, "{drifting:?}");
     for _ in 0..10_000 {
         drifting.step(Wish::default(), 0.2, 0.0, DT_S);
     }

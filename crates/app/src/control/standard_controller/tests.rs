@@ -1,0 +1,218 @@
+use proptest::prelude::*;
+
+use super::*;
+use crate::domain::{
+    BalanceState, HighLevelCommand, JointControllerConfig, JointState, OperatorState,
+    SensorsSnapshot, StandPermit, StateEstimate, WheelControllerConfig, WheelOdomConfig, robots,
+};
+
+/// A robot that stands on legs of some 0.18 m, upright.
+struct Robot {
+    sensors: SensorsSnapshot,
+    estimate: StateEstimate,
+    command: HighLevelCommand,
+    permit: StandPermit,
+}
+
+impl Robot {
+    fn standing() -> Self {
+        let mut sensors = SensorsSnapshot {
+            ts_us: 1_000_000,
+            ..SensorsSnapshot::default()
+        };
+        sensors.imu.accel_mps2 = [0.0, 0.0, 9.8];
+        for wheel in &mut sensors.motor.wheels {
+            wheel.age_us = 1_000;
+        }
+        let angles = [-0.3, 0.3, -0.3, 0.3];
+        for (joint, angle) in sensors.motor.joints.iter_mut().zip(angles) {
+            joint.state = JointState::Enabled;
+            joint.age_us = 0;
+            joint.pos_rad = angle;
+        }
+        Self {
+            sensors,
+            estimate: StateEstimate {
+                valid: true,
+                ..StateEstimate::default()
+            },
+            command: HighLevelCommand {
+                stand: true,
+                ..HighLevelCommand::default()
+            },
+            permit: StandPermit::Standing,
+        }
+    }
+
+    fn pitched(&mut self, pitch_rad: f32) {
+        self.estimate.q_wxyz = [(pitch_rad / 2.0).cos(), 0.0, (pitch_rad / 2.0).sin(), 0.0];
+    }
+
+    fn step(&mut self, controller: &mut impl ChassisController) -> ChassisControllerOutput {
+        self.sensors.ts_us += 1_000;
+        controller.step(&ChassisControllerInput {
+            sensors: &self.sensors,
+            estimate: &self.estimate,
+            wheel_odom_cfg: &WheelOdomConfig::default(),
+            wheel_ctrl_cfg: &WheelControllerConfig::default(),
+            joint_ctrl_cfg: &JointControllerConfig::default(),
+            profile: &robots::FIVEBAR,
+            operator_state: &OperatorState::default(),
+            hl_cmd: self.command,
+            stand: self.permit,
+            wheels_stopped: false,
+            joints_stopped: false,
+        })
+    }
+
+    /// Steps until the robot balances, as its sensors say that it stands already.
+    fn balancing(&mut self) -> StandardController {
+        let mut controller = StandardController::default();
+        for _ in 0..2_500 {
+            if self.step(&mut controller).balance.state == BalanceState::Balance {
+                return controller;
+            }
+        }
+        panic!("the robot does not balance");
+    }
+}
+
+/// While the stand switch is down, or standing is not permitted, everything is as with the wheel-speed controller.
+#[test]
+fn a_robot_that_is_not_asked_to_stand_sits() {
+    for (stand, permit) in [(false, StandPermit::Standing), (true, StandPermit::Ready)] {
+        let mut robot = Robot::standing();
+        robot.command = HighLevelCommand {
+            vx: 0.3,
+            wz: -0.2,
+            stand,
+            ..robot.command
+        };
+        robot.permit = permit;
+        let (mut here, mut there) = (StandardController::default(), DefaultController::default());
+        for _ in 0..50 {
+            assert_eq!(robot.step(&mut here), robot.step(&mut there));
+        }
+    }
+}
+
+#[test]
+fn a_robot_that_leans_forward_drives_forward() {
+    for (pitch_rad, sign) in [(0.05, 1.0), (-0.05, -1.0)] {
+        let mut robot = Robot::standing();
+        let mut controller = robot.balancing();
+        robot.pitched(pitch_rad);
+        let [left, right] = robot.step(&mut controller).cmd.wheels;
+        // The right motor sits mirrored.
+        assert!(left.current_ma * sign > 500.0, "{left:?}");
+        assert!(right.current_ma * sign < -500.0, "{right:?}");
+    }
+}
+
+#[test]
+fn a_robot_beyond_recovery_has_no_torque_until_it_is_asked_again() {
+    let mut robot = Robot::standing();
+    let mut controller = robot.balancing();
+    robot.pitched(1.2);
+    for _ in 0..100 {
+        let output = robot.step(&mut controller);
+        assert_eq!(output.balance.state, BalanceState::Fallen);
+        assert_eq!(output.cmd, crate::domain::ChassisCommand::STOP);
+        robot.pitched(0.0);
+    }
+    robot.command.stand = false;
+    assert_eq!(robot.step(&mut controller).balance.state, BalanceState::Sit);
+    robot.command.stand = true;
+    assert_eq!(
+        robot.step(&mut controller).balance.state,
+        BalanceState::StandUp
+    );
+}
+
+#[test]
+fn a_motor_that_is_lost_ends_balancing() {
+    for lose in [0, 1] {
+        let mut robot = Robot::standing();
+        let mut controller = robot.balancing();
+        if lose == 0 {
+            robot.sensors.motor.wheels[1].age_us = 60_000;
+        } else {
+            robot.sensors.motor.joints[2].state = JointState::Silent;
+        }
+        let output = robot.step(&mut controller);
+        assert_eq!(output.cmd, crate::domain::ChassisCommand::STOP);
+    }
+}
+
+#[test]
+fn a_reset_controller_begins_anew() {
+    let mut robot = Robot::standing();
+    let mut controller = robot.balancing();
+    controller.reset();
+    let first = robot.step(&mut controller);
+    assert_eq!(first, robot.step(&mut StandardController::default()));
+}
+
+#[test]
+fn a_robot_without_weight_on_its_legs_is_airborne_within_20_ms() {
+    let mut robot = Robot::standing();
+    // Hips that carry: 0.077 N·m for each newton of the leg.
+    let carried = |robot: &mut Robot, nm: f32| {
+        let torques = [-nm, nm, -nm, nm];
+        for (joint, nm) in robot.sensors.motor.joints.iter_mut().zip(torques) {
+            joint.torque_nm = nm;
+        }
+    };
+    carried(&mut robot, 1.9);
+    let mut controller = robot.balancing();
+    for _ in 0..200 {
+        assert!(!robot.step(&mut controller).balance.airborne);
+    }
+    carried(&mut robot, 0.0);
+    robot.sensors.imu.accel_mps2 = [0.0; 3];
+    let ticks = (0..50).position(|_| robot.step(&mut controller).balance.airborne);
+    assert!(ticks.expect("airborne") < 20, "{ticks:?}");
+    carried(&mut robot, 4.0);
+    robot.sensors.imu.accel_mps2 = [0.0, 0.0, 20.0];
+    let ticks = (0..50).position(|_| !robot.step(&mut controller).balance.airborne);
+    assert!(ticks.expect("landed") < 20, "{ticks:?}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// Whatever the sensors say, nothing but numbers is commanded.
+    #[test]
+    fn every_command_is_finite(
+        ticks in prop::collection::vec((any::<[f32; 12]>(), [-1.6_f32..1.6, -1.6_f32..1.6, -1.6_f32..1.6, -1.6_f32..1.6], any::<bool>()), 1..40),
+    ) {
+        let mut robot = Robot::standing();
+        let mut controller = robot.balancing();
+        for (odd, angles, is_odd) in ticks {
+            let [a, b, c, d, e, f, g, h, i, j, k, l] = odd;
+            for (joint, angle) in robot.sensors.motor.joints.iter_mut().zip(angles) {
+                joint.pos_rad = angle;
+            }
+            if is_odd {
+                robot.sensors.imu.gyro_dps = [a, b, c];
+                robot.sensors.imu.accel_mps2 = [d, e, f];
+                robot.estimate.q_wxyz = [g, h, i, j];
+                robot.sensors.motor.joints[1].vel_rps = k;
+                robot.sensors.motor.joints[2].torque_nm = l;
+                robot.command.vx = a;
+                robot.command.height = b;
+            } else {
+                let rest = Robot::standing();
+                robot.sensors.imu = rest.sensors.imu;
+                robot.estimate = rest.estimate;
+            }
+            let output = robot.step(&mut controller);
+            for wheel in output.cmd.wheels {
+                prop_assert!(!wheel.current_ma.is_nan());
+            }
+            for joint in output.cmd.joints {
+                prop_assert!(!joint.tau_nm.is_nan());
+            }
+        }
+    }
+}
