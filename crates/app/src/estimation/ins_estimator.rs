@@ -181,7 +181,8 @@ impl InsEstimator {
     }
 
     /// The same for a body on moving legs, left and right, or `None` while they are not known. `legs` is called when
-    /// there is a new IMU sample.
+    /// there is a new IMU sample. It is out of line, as the tick is faster so.
+    #[inline(never)]
     pub fn step_on_legs(
         &mut self,
         imu: &ImuState,
