@@ -39,15 +39,18 @@ impl Finished {
 
     /// The same with a robot that has stood up.
     pub fn standing(
-        started: Result<Trial, (Failure, Trial)>,
+        started: Result<Trial, Box<(Failure, Trial)>>,
         act: impl FnOnce(&mut Trial) -> Result<f64, Failure>,
     ) -> Self {
         match started {
             Ok(trial) => Self::by(trial, act),
-            Err((failure, trial)) => Self {
-                figure: Err(failure),
-                trial,
-            },
+            Err(fallen) => {
+                let (failure, trial) = *fallen;
+                Self {
+                    figure: Err(failure),
+                    trial,
+                }
+            }
         }
     }
 }

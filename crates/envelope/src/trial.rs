@@ -157,13 +157,17 @@ impl Trial {
     ///
     /// # Errors
     /// It does not stand.
-    pub fn standing(robots: &Robots, seed: u64, terrain: Terrain) -> Result<Self, (Failure, Self)> {
+    pub fn standing(
+        robots: &Robots,
+        seed: u64,
+        terrain: Terrain,
+    ) -> Result<Self, Box<(Failure, Self)>> {
         let mut trial = Self::new(robots, seed, terrain, Start::Sitting);
         trial.ask_to_stand();
         trial.run_until(READY_AT_S);
         match trial.require_upright() {
             Ok(()) => Ok(trial),
-            Err(failure) => Err((failure, trial)),
+            Err(failure) => Err(Box::new((failure, trial))),
         }
     }
 

@@ -268,7 +268,7 @@ fn range_rad(make: Make, joint: usize) -> [f32; 2] {
         Make::Dm4310 => [-1.35, 0.75],
         Make::Rs00 => [-1.3, 0.65],
     };
-    if joint % 2 == 0 {
+    if joint.is_multiple_of(2) {
         [down_rad, up_rad]
     } else {
         [-up_rad, -down_rad]

@@ -16,7 +16,7 @@ pub(in crate::estimation) struct BodyPose {
 const MIN_UPRIGHT: f32 = 0.5;
 
 /// The body's attitude and angular rate, and the level axes forward, left and up that share its heading.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Axes {
     /// Body → world, by rows.
     rotation: [Vector3; 3],
