@@ -6,6 +6,7 @@
 #![deny(missing_docs)]
 
 mod course;
+mod files;
 mod limit;
 mod plots;
 mod report;
@@ -14,8 +15,9 @@ mod survey;
 mod tasks;
 mod trial;
 
+pub use files::write;
 pub use limit::Limit;
-pub use report::{Report, TaskReport, table, write};
+pub use report::{Report, TaskReport, table};
 pub use robots::Robots;
 pub use survey::{Run, Survey, parts, survey};
 pub use tasks::{Bound, TASKS, Task};

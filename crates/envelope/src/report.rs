@@ -1,12 +1,10 @@
-//! The table in the terminal, `envelope.json` and the plots.
+//! What was found, as in `envelope.json`, and the table in the terminal.
 
-use std::{collections::BTreeMap, fs, path::Path};
+use std::collections::BTreeMap;
 
-use anyhow::Context;
 use serde::Serialize;
 
 use crate::{
-    plots,
     survey::{Run, Survey},
     tasks::{Bound, Task},
 };
@@ -158,23 +156,4 @@ pub fn table(report: &Report) -> String {
         }
     }
     text
-}
-
-/// Writes `envelope.json` and `envelope.html` to a folder.
-///
-/// # Errors
-/// The folder cannot be written, or a plot cannot be drawn.
-pub fn write(
-    folder: &Path,
-    report: &Report,
-    tasks: &[&Task],
-    surveys: &[Survey],
-) -> anyhow::Result<()> {
-    fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
-    let put = |name: &str, text: &str| {
-        let path = folder.join(name);
-        fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))
-    };
-    put("envelope.json", &serde_json::to_string_pretty(report)?)?;
-    put("envelope.html", &plots::page(report, tasks, surveys)?)
 }
