@@ -174,11 +174,27 @@ impl Trial {
     /// Arms and asks for standing up, at the times for that.
     pub fn ask_to_stand(&mut self) {
         self.run_until(ENABLE_AT_S);
+        self.enable();
+        self.run_until(STAND_AT_S);
+        self.stand();
+    }
+
+    /// Asks for standing up and then arms, as a robot that lies may be armed only for that.
+    pub fn ask_to_get_up(&mut self) {
+        self.run_until(ENABLE_AT_S);
+        self.stand();
+        self.run_until(STAND_AT_S);
+        self.enable();
+    }
+
+    fn enable(&mut self) {
         self.pilot(RemoteInput {
             enable: Some(true),
             ..RemoteInput::default()
         });
-        self.run_until(STAND_AT_S);
+    }
+
+    fn stand(&mut self) {
         self.pilot(RemoteInput {
             stand: Some(true),
             ..RemoteInput::default()

@@ -62,7 +62,7 @@ fn stand_up(robots: &Robots, seed: u64, start: Start) -> Finished {
     let trial = Trial::new(robots, seed, Terrain::Flat, start);
     let least_m = robots.robot.control.limits.height_m[0] - 0.01;
     Finished::by(trial, |trial| {
-        trial.ask_to_stand();
+        trial.ask_to_get_up();
         let mut since_s = None;
         trial.watch(WATCHED_S, |sample| {
             let stands = sample.tilt_rad() < UPRIGHT_RAD
