@@ -10,7 +10,7 @@ mod pose_hold;
 mod standard_controller;
 mod user_controller;
 
-pub use balance::{BalanceController, LegForce, force_of, hip_torques_nm, reaction_nm};
+pub use balance::{BalanceController, Gains, LegForce, force_of, hip_torques_nm, reaction_nm};
 pub use chassis_controller::{ChassisController, ChassisControllerInput, ChassisControllerOutput};
 pub use default_controller::DefaultController;
 pub use pc_law::pc_law;

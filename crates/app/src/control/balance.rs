@@ -17,4 +17,5 @@ mod trim;
 mod virtual_leg;
 
 pub use controller::BalanceController;
+pub use gains::Gains;
 pub use virtual_leg::{LegForce, force_of, hip_torques_nm, reaction_nm};
