@@ -30,9 +30,10 @@ impl<C: ChassisController> ControlLoop<C> {
         };
         self.state.record(diagnostics);
         self.motors.record_sent(&mut diagnostics.command);
-        diagnostics.bring_up = *self.bring_up.status();
         diagnostics.tuning = *self.tuning.status();
         if self.phase == 0 {
+            self.state.record_slow(diagnostics);
+            diagnostics.bring_up = *self.bring_up.status();
             diagnostics.drive_end = *self.arming.drive_end();
             record_slow(inputs, now_us, diagnostics);
         }
@@ -62,18 +63,24 @@ fn record_slow(inputs: &ControlInputs<'_>, now_us: u64, diagnostics: &mut Diagno
 }
 
 impl TickState {
+    /// Records what changes slowly or only matters to an observer.
+    fn record_slow(&self, diagnostics: &mut DiagnosticsSnapshot) {
+        diagnostics.remote_diag = self.link;
+        diagnostics.motors = self.motors;
+        diagnostics.strangers = self.strangers;
+        diagnostics.estimate.gyro_bias_rps = self.estimate.gyro_bias_rps;
+        diagnostics.estimate.accel_bias_mps2 = self.estimate.accel_bias_mps2;
+    }
+
     fn record(&self, diagnostics: &mut DiagnosticsSnapshot) {
         diagnostics.operator = self.operator;
-        diagnostics.remote_diag = self.link;
         record_sensors(&self.sensors, &mut diagnostics.sensors);
         record_estimate(&self.estimate, &mut diagnostics.estimate);
-        diagnostics.motors = self.motors;
         diagnostics.safety = self.safety;
         diagnostics.arming = self.arming;
         if !(self.balance.sits() && diagnostics.balance.sits()) {
             diagnostics.balance = self.balance;
         }
-        diagnostics.strangers = self.strangers;
     }
 }
 
@@ -98,8 +105,6 @@ fn record_estimate(found: &StateEstimate, estimate: &mut StateEstimate) {
     estimate.rpy_rad = found.rpy_rad;
     estimate.vel_mps = found.vel_mps;
     estimate.pos_m = found.pos_m;
-    estimate.gyro_bias_rps = found.gyro_bias_rps;
-    estimate.accel_bias_mps2 = found.accel_bias_mps2;
     estimate.ts_us = found.ts_us;
     estimate.valid = found.valid;
 }
