@@ -12,6 +12,7 @@ mod sit_down;
 mod stand_up;
 mod support;
 mod tilt;
+mod tip;
 mod torques;
 mod trim;
 mod virtual_leg;

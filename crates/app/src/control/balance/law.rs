@@ -100,6 +100,12 @@ impl Law {
         }
     }
 
+    /// Begins with a slower reference where the wheels turn faster than this in m/s.
+    pub fn begin_within(&mut self, most_mps: f32) {
+        let speed_mps = &mut self.reference.speed_mps;
+        *speed_mps = scalar::clamp(*speed_mps, -most_mps, most_mps);
+    }
+
     /// No wheel touches the ground.
     pub fn airborne(&self) -> bool {
         self.airborne

@@ -1,29 +1,34 @@
-//! Sitting down: shorten the legs, let the body sink onto its front edge, let go.
+//! Sitting down: fold the legs, let the body sink onto its front edge while the wheels brake it, let go.
 
 use super::{
     law::{Goal, Ground, Law, Torques},
     measured::Measured,
     ramp::Ramp,
     reference::Wish,
+    tip::tip,
 };
 use crate::domain::{BalanceProfile, WheelOdomConfig};
 
 /// Rates in m/s and rad/s.
-const LOWER_MPS: f32 = 0.15;
-const SINK_RPS: f32 = 0.8;
-/// The legs are short when they are this close to their shortest length, in m.
-const CLOSE_M: f32 = 0.015;
-/// The body sinks until it stays behind its reference by this, in rad: it lies on the ground.
-const RESTS_RAD: f32 = 0.15;
-/// Longest sinking in rad and longest time of it all in s.
-const MOST_RAD: f32 = 1.0;
+const LOWER_MPS: f32 = 0.2;
+const SINK_RPS: f32 = 2.0;
+/// The legs are folded when they are this close to their shortest length, in m.
+const CLOSE_M: f32 = 0.005;
+/// Push in N with which a leg is folded onto its stops.
+const SINK_N: f32 = -15.0;
+/// From this pitch in rad on the body falls by itself: a few degrees are left, and safety takes more for a fall.
+const LET_GO_RAD: f32 = 0.62;
+/// It lies on the ground if it stays behind this reference of its lean in rad.
+const MOST_RAD: f32 = 0.8;
+/// Longest time of it all in s.
 const GIVE_UP_S: f32 = 3.0;
 
 /// Where sitting down has arrived.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SitDown {
     length: Ramp,
-    pitch_rad: f32,
+    /// Lean in rad while the body sinks.
+    lean_rad: Option<f32>,
     elapsed_s: f32,
 }
 
@@ -31,7 +36,7 @@ impl SitDown {
     pub const fn new(length: Ramp) -> Self {
         Self {
             length,
-            pitch_rad: 0.0,
+            lean_rad: None,
             elapsed_s: 0.0,
         }
     }
@@ -46,22 +51,25 @@ impl SitDown {
         dt_s: f32,
     ) -> Option<Torques> {
         self.elapsed_s += dt_s;
-        let shortest_m = profile.limits.min_length_m;
-        self.length.step(shortest_m, LOWER_MPS, dt_s);
-        let is_short = self.length.value - shortest_m < CLOSE_M;
-        if is_short {
-            self.pitch_rad += SINK_RPS * dt_s;
-        }
-        let rests = self.pitch_rad - measured.tilt.pitch_rad > RESTS_RAD;
-        if (is_short && rests) || self.pitch_rad > MOST_RAD || self.elapsed_s > GIVE_UP_S {
+        if self.elapsed_s > GIVE_UP_S {
             return None;
+        }
+        let limits = &profile.limits;
+        if let Some(lean_rad) = &mut self.lean_rad {
+            *lean_rad += SINK_RPS * dt_s;
+            let sinks = *lean_rad < MOST_RAD && measured.tilt.pitch_rad < LET_GO_RAD;
+            return sinks.then(|| tip(limits, measured, *lean_rad, SINK_RPS, SINK_N));
+        }
+        self.length.step(limits.fold_length_m, LOWER_MPS, dt_s);
+        if self.length.value - limits.fold_length_m < CLOSE_M {
+            self.lean_rad = Some(measured.mean_lean_rad());
         }
         let goal = Goal {
             wish: Wish::default(),
             length_m: self.length.value,
             length_mps: self.length.rate,
             roll_rad: 0.0,
-            pitch_rad: self.pitch_rad,
+            pitch_rad: 0.0,
             push_n: None,
             learn: false,
             ground: Ground::Touched,

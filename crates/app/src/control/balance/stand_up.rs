@@ -1,32 +1,41 @@
-//! Standing up: fold the legs, drive the wheels under the body so that it turns upright, extend the legs.
+//! Standing up: rock, turn upright by the wheels' torque, extend the legs.
+//!
+//! A robot that lies on an edge has its centre of mass beside its axles, further than little friction lets the wheels
+//! drive. Long legs lift it, and when they are folded it falls back from the edge and turns on by itself.
 
 use super::{
     law::{Goal, Ground, Law, Torques},
     measured::Measured,
     ramp::Ramp,
     reference::Wish,
-    torques,
-    virtual_leg::LegForce,
+    tip::{held, tip},
 };
 use crate::{
-    domain::{BalanceLimits, BalanceProfile, StandUpPhase, WheelOdomConfig},
+    domain::{BalanceProfile, StandUpPhase, WheelOdomConfig},
     kinematics::Leg,
 };
 
-/// Longest time of folding, and of standing up in all, in s.
-const FOLD_S: f32 = 0.6;
+/// Longest time of standing up in s.
 const GIVE_UP_S: f32 = 2.6;
-/// Stiffness and damping of a folding leg along and across it, for a leg that carries little.
-const FOLD_N_PER_M: f32 = 400.0;
-const FOLD_NS_PER_M: f32 = 25.0;
-const FOLD_NM_PER_RAD: f32 = 12.0;
-const FOLD_NMS_PER_RAD: f32 = 0.6;
-/// A folded leg is this close to its pose, in m and rad.
-const FOLDED_M: f32 = 0.015;
-const FOLDED_RAD: f32 = 0.12;
+/// Time of lifting in s, the length in m that the legs are extended by, and the stiffness and damping for it.
+const LIFT_S: f32 = 0.4;
+const LIFT_M: f32 = 0.03;
+const LIFT_N_PER_M: f32 = 400.0;
+const LIFT_NS_PER_M: f32 = 25.0;
+/// Push in N with which a leg is folded at once.
+const FOLD_N: f32 = -60.0;
+/// The robot balances from this lean in rad on, or from a larger one that will be small so soon, in s.
+const BALANCED_RAD: f32 = 0.2;
+const SOON_S: f32 = 0.1;
+const SOON_BALANCED_RAD: f32 = 0.3;
+const CATCHABLE_RAD: f32 = 0.5;
+/// Largest speed in m/s with which it begins to balance. Wheels that have slipped turn faster.
+const BEGIN_MPS: f32 = 0.5;
 /// Rates in rad/s and m/s.
 const ERECT_RPS: f32 = 3.0;
 const EXTEND_MPS: f32 = 0.25;
+/// The legs have their length when they are this close to it, in m.
+const CLOSE_M: f32 = 0.015;
 /// Upright: pitch and lean in rad and their rates in rad/s.
 const UPRIGHT_RAD: f32 = 0.2;
 const UPRIGHT_RPS: f32 = 1.0;
@@ -37,6 +46,8 @@ pub struct StandUp {
     pub phase: StandUpPhase,
     length: Ramp,
     pitch: Ramp,
+    /// The legs are held and the wheels turn the robot.
+    tips: bool,
     elapsed_s: f32,
 }
 
@@ -54,6 +65,7 @@ impl StandUp {
             phase: StandUpPhase::Fold,
             length: Ramp::at(measured.length_m()),
             pitch: Ramp::at(measured.tilt.pitch_rad),
+            tips: true,
             elapsed_s: 0.0,
         }
     }
@@ -74,16 +86,29 @@ impl StandUp {
         let limits = &profile.limits;
         match self.phase {
             StandUpPhase::None | StandUpPhase::Fold => {
-                if is_folded(limits, measured) || self.elapsed_s > FOLD_S {
+                if self.elapsed_s > LIFT_S {
                     self.phase = StandUpPhase::Erect;
+                }
+                let push_n = |leg: &Leg| {
+                    LIFT_N_PER_M * (limits.fold_length_m + LIFT_M - leg.length_m)
+                        - LIFT_NS_PER_M * leg.length_mps
+                };
+                return Rising::Torques(held(limits, measured, push_n, 0.0));
+            }
+            StandUpPhase::Erect if self.tips => {
+                if can_balance(measured) {
+                    self.tips = false;
                     self.length = Ramp::at(measured.length_m());
                     self.pitch = Ramp::at(measured.tilt.pitch_rad);
                     *law = Law::new(profile, measured);
+                    law.begin_within(BEGIN_MPS);
                 }
-                return Rising::Torques(fold(limits, measured));
+                return Rising::Torques(tip(limits, measured, 0.0, 0.0, FOLD_N));
             }
             StandUpPhase::Erect => {
-                self.length.step(limits.min_length_m, EXTEND_MPS, dt_s);
+                if measured.mean_lean_rad().abs() < CATCHABLE_RAD {
+                    self.length.step(limits.min_length_m, EXTEND_MPS, dt_s);
+                }
                 self.pitch.step(0.0, ERECT_RPS, dt_s);
                 if is_upright(measured) {
                     self.phase = StandUpPhase::Extend;
@@ -92,7 +117,7 @@ impl StandUp {
             StandUpPhase::Extend => {
                 self.pitch.step(0.0, ERECT_RPS, dt_s);
                 self.length.step(length_m, EXTEND_MPS, dt_s);
-                if (self.length.value - length_m).abs() < FOLDED_M && is_upright(measured) {
+                if (self.length.value - length_m).abs() < CLOSE_M && is_upright(measured) {
                     return Rising::Stands(self.length.value);
                 }
             }
@@ -111,27 +136,11 @@ impl StandUp {
     }
 }
 
-/// Shortens the legs and turns them to the middle of their range. It takes little torque, so the body stays where it
-/// lies.
-fn fold(limits: &BalanceLimits, measured: &Measured) -> Torques {
-    let hips_nm = measured.legs.each_ref().map(|leg: &Leg| {
-        let force = LegForce {
-            push_n: FOLD_N_PER_M * (limits.min_length_m - leg.length_m)
-                - FOLD_NS_PER_M * leg.length_mps,
-            lean_nm: FOLD_NM_PER_RAD * leg.angle_rad + FOLD_NMS_PER_RAD * leg.angle_rps,
-        };
-        torques::within_hips(leg, force, 0.0, limits.hip_nm)
-    });
-    Torques {
-        wheels_nm: [0.0; 2],
-        hips_nm,
-    }
-}
-
-fn is_folded(limits: &BalanceLimits, measured: &Measured) -> bool {
-    measured.legs.iter().all(|leg| {
-        (leg.length_m - limits.min_length_m).abs() < FOLDED_M && leg.angle_rad.abs() < FOLDED_RAD
-    })
+fn can_balance(measured: &Measured) -> bool {
+    let lean_rad = measured.mean_lean_rad();
+    let soon_rad = lean_rad + SOON_S * measured.mean_lean_rps();
+    lean_rad.abs() < BALANCED_RAD
+        || (lean_rad.abs() < CATCHABLE_RAD && soon_rad.abs() < SOON_BALANCED_RAD)
 }
 
 fn is_upright(measured: &Measured) -> bool {

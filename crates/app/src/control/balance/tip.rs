@@ -1,0 +1,48 @@
+//! Tipping: a robot whose folded legs are held still is one body on wheels. Their torque turns it about the axles.
+
+use super::{law::Torques, measured::Measured, torques, virtual_leg::LegForce};
+use crate::{domain::BalanceLimits, kinematics::Leg, math::scalar};
+
+/// Torque of each wheel in N·m/rad and N·m·s/rad of the error of lean.
+const LEAN_NM_PER_RAD: f32 = 8.0;
+const LEAN_NMS_PER_RAD: f32 = 0.6;
+/// Largest torque of each wheel in N·m. With more the wheels spin.
+const MOST_NM: f32 = 2.4;
+/// Stiffness and damping across the legs in N·m/rad and N·m·s/rad.
+const HOLD_NM_PER_RAD: f32 = 12.0;
+const HOLD_NMS_PER_RAD: f32 = 0.6;
+
+/// Torques that turn the robot to this lean in rad, whose rate in rad/s is to be `lean_rps`, while each leg gives
+/// `push_n`, too little to lift the body from the legs' stops.
+pub fn tip(
+    limits: &BalanceLimits,
+    measured: &Measured,
+    lean_rad: f32,
+    lean_rps: f32,
+    push_n: f32,
+) -> Torques {
+    let wanted_nm = LEAN_NM_PER_RAD * (measured.mean_lean_rad() - lean_rad)
+        + LEAN_NMS_PER_RAD * (measured.mean_lean_rps() - lean_rps);
+    let wheel_nm = scalar::clamp(wanted_nm, -MOST_NM, MOST_NM);
+    held(limits, measured, |_| push_n, wheel_nm)
+}
+
+/// Torques that turn the legs to the middle of their range while each gives `push_n`.
+pub fn held(
+    limits: &BalanceLimits,
+    measured: &Measured,
+    push_n: impl Fn(&Leg) -> f32,
+    wheel_nm: f32,
+) -> Torques {
+    let hips_nm = measured.legs.each_ref().map(|leg: &Leg| {
+        let force = LegForce {
+            push_n: push_n(leg),
+            lean_nm: HOLD_NM_PER_RAD * leg.angle_rad + HOLD_NMS_PER_RAD * leg.angle_rps,
+        };
+        torques::within_hips(leg, force, wheel_nm, limits.hip_nm)
+    });
+    Torques {
+        wheels_nm: [wheel_nm; 2],
+        hips_nm,
+    }
+}
