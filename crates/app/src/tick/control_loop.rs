@@ -242,11 +242,12 @@ impl<C: ChassisController> ControlLoop<C> {
     }
 
     fn sense(&mut self, inputs: &ControlInputs<'_>, now_us: u64) {
-        let stands = self.stands();
         let TickState {
             sensors,
             estimate,
             operator,
+            safety,
+            balance,
             ..
         } = &mut self.state;
         *operator = inputs.remote.operator;
@@ -262,7 +263,10 @@ impl<C: ChassisController> ControlLoop<C> {
         let (imu, mag) = (&sensors.imu, &sensors.mag);
         let (motor, geometry) = (&sensors.motor, &self.legs);
         // Legs that only hold their pose are not worth the time.
-        let legs = || stands.then(|| known_legs(geometry, motor)).flatten();
+        let legs = || {
+            let stands = act::stands(safety, balance);
+            stands.then(|| known_legs(geometry, motor)).flatten()
+        };
         self.estimator
             .step_on_legs(imu, mag, motor, legs, now_us, estimate);
     }

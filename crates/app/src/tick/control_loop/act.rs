@@ -7,7 +7,7 @@ use crate::{
         BalanceStatus, ChassisCommand, HighLevelCommand, PcCommand, PcDrive, PcKind, StandSwitch,
         age_us,
     },
-    safety::{SafetyFlags, TorquePermit},
+    safety::{SafetyFlags, SafetyStatus, TorquePermit},
 };
 
 /// The source of this tick's commands.
@@ -130,7 +130,7 @@ impl<C: ChassisController> ControlLoop<C> {
     }
 
     pub(super) fn stands(&self) -> bool {
-        self.state.safety.stand.permits() || !self.state.balance.sits()
+        stands(&self.state.safety, &self.state.balance)
     }
 
     /// Kept out of line, as most robots are driven by hand.
@@ -160,4 +160,9 @@ impl<C: ChassisController> ControlLoop<C> {
             joints_stopped: stopped.joints,
         })
     }
+}
+
+/// Whether the robot stands, or may stand up.
+pub(super) fn stands(safety: &SafetyStatus, balance: &BalanceStatus) -> bool {
+    safety.stand.permits() || !balance.sits()
 }

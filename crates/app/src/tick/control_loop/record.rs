@@ -65,6 +65,7 @@ fn record_slow(inputs: &ControlInputs<'_>, now_us: u64, diagnostics: &mut Diagno
 impl TickState {
     /// Records what changes slowly or only matters to an observer.
     fn record_slow(&self, diagnostics: &mut DiagnosticsSnapshot) {
+        diagnostics.operator = self.operator;
         diagnostics.remote_diag = self.link;
         diagnostics.motors = self.motors;
         diagnostics.strangers = self.strangers;
@@ -73,7 +74,6 @@ impl TickState {
     }
 
     fn record(&self, diagnostics: &mut DiagnosticsSnapshot) {
-        diagnostics.operator = self.operator;
         record_sensors(&self.sensors, &mut diagnostics.sensors);
         record_estimate(&self.estimate, &mut diagnostics.estimate);
         diagnostics.safety = self.safety;
