@@ -11,9 +11,10 @@ use robot_bench::{
     report::{EXTRAPOLATION_MEAN, UPDATE_MAX, UPDATE_MEAN},
 };
 
-/// The estimator may grow no further. A tenth of its size handles impacts, and wheels that spin while the robot rests.
+/// The estimator may grow no further. A tenth of its size handles impacts, and wheels that spin while the robot rests;
+/// a twentieth leads the velocity of a body on moving legs to its axle.
 /// `cargo xtask bench` shows how far this is from the size wanted.
-const FLASH_BYTES: f64 = 22.5 * 1024.0;
+const FLASH_BYTES: f64 = 23.25 * 1024.0;
 
 fn costs(wheels: Wheels) -> Costs {
     let motion = Motion::computed(wheels);
