@@ -90,10 +90,12 @@ fn lasting(mut row: Row) -> Row {
     row
 }
 
-/// The setting of 5 N·m holds at the angle and speed of the joint's last report. The motor goes on by itself for up to 3 ms:
-/// with the leg's 0.02 kg·m² and 5 N·m that is 1.1 mrad, 0.56 N·m at its largest Kp of 500; gravity and friction of
-/// 1.15 N·m change its speed by 0.17 rad/s, 0.86 N·m at its largest Kd of 5. Its own limit is 7 N·m.
-const EXTREME_GAINS_NM: f64 = 5.0 + 0.56 + 0.86;
+/// The setting of 5 N·m holds at the angle and speed of the joint's last report. From there to the command the joint goes on
+/// for 1 ms with the torque of the command before, which may be the opposite extreme: 5 N·m, gravity and friction of
+/// 1.15 N·m on the leg's 0.02 kg·m² change its speed by 0.31 rad/s, 1.54 N·m at the largest Kd of 5. In the 2 ms to the next
+/// command gravity and friction change it by 0.115 rad/s more, 0.58 N·m. In all 3 ms it moves 1.1 mrad, 0.56 N·m at the
+/// largest Kp of 500. The motor itself gives 7 N·m at most.
+const EXTREME_GAINS_NM: f64 = 5.0 + 1.54 + 0.58 + 0.56;
 
 /// Every frame is a valid command, and some of them ask for rest.
 fn extremes(fault: &'static str) -> Row {
