@@ -10,8 +10,8 @@ pub type Setting = (u8, u8);
 /// Bits of the `f32` of every setting.
 pub type Settings = BTreeMap<Setting, u32>;
 
-/// Number of settings in all groups.
-pub const COUNT: usize = 126;
+/// Number of settings in all groups but that of standing up, which nobody has saved on this robot.
+pub const COUNT: usize = 134;
 
 /// Number of groups; each is a record.
 pub const GROUPS: usize = CALIBRATED.len();
@@ -45,7 +45,7 @@ const CALIBRATED: [(u8, &[f32]); 14] = [
     (6, &[12.0, -20.0, 7.0, 1.1, 0.9, 1.05, 0.05, -0.02, 0.03]),
     (7, &[42.0, 0.25, 0.02, 0.9]),
     (8, &[4.0, 9.0]),
-    (9, &[0.0, 1.0, 7.0, 8.0, 4.0, 5.0, 6.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0]),
+    (9, &[0.0, 1.0, 7.0, 8.0, 4.0, 5.0, 6.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 9.0, 10.0, 11.0, 12.0, 0.0, 1.0, 1.0, 1.0]),
     (10, &TRAVEL),
     (16, &JOINT),
     (17, &JOINT),
@@ -94,7 +94,7 @@ pub fn id(group: u8, make: Make) -> Id {
 /// Version of the group's record.
 fn version(group: u8) -> u8 {
     match group {
-        3 => 2,
+        3 | 9 => 2,
         4 => 3,
         _ => 1,
     }
