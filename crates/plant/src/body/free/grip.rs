@@ -1,6 +1,7 @@
 //! Forces at one place of contact: a spring and damper along the normal, a spring that slips across it.
 
 use super::{Vec2, Vec3};
+use nalgebra::SVector;
 
 /// Depth at which the damping is whole, so that no force jumps at the first touch.
 const DAMPED_FROM_M: f64 = 1e-3;
@@ -20,6 +21,24 @@ impl Stiffness {
         let damping = self.normal_n_per_mps * share(depth_m);
         (self.normal_n_per_m * depth_m - damping * rising_mps).max(0.0)
     }
+
+    /// Force along the ground against stretch and sliding speed. Where it would exceed `most_n` the contact slips, and the
+    /// stretch becomes that of the greatest force.
+    fn tangent_n<const N: usize>(
+        &self,
+        stretch: &mut SVector<f64, N>,
+        slide_mps: SVector<f64, N>,
+        most_n: f64,
+    ) -> SVector<f64, N> {
+        let wanted = -*stretch * self.tangent_n_per_m - slide_mps * self.tangent_n_per_mps;
+        let size_n = wanted.norm();
+        if size_n <= most_n {
+            return wanted;
+        }
+        let force = wanted * (most_n / size_n);
+        *stretch = -force / self.tangent_n_per_m;
+        force
+    }
 }
 
 fn share(depth_m: f64) -> f64 {
@@ -27,17 +46,9 @@ fn share(depth_m: f64) -> f64 {
 }
 
 /// Friction of a body on the ground: a spring from where it sticks. It slips where it would exceed the friction.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Stick {
     stretch: Vec3,
-}
-
-impl Default for Stick {
-    fn default() -> Self {
-        Self {
-            stretch: Vec3::zeros(),
-        }
-    }
 }
 
 impl Stick {
@@ -52,31 +63,15 @@ impl Stick {
     ) -> Vec3 {
         let stretch = self.stretch + slide_mps * dt_s;
         self.stretch = stretch - normal * normal.dot(&stretch);
-        let wanted =
-            -self.stretch * stiffness.tangent_n_per_m - slide_mps * stiffness.tangent_n_per_mps;
-        let size_n = wanted.norm();
-        if size_n <= most_n {
-            return wanted;
-        }
-        let force = wanted * (most_n / size_n);
-        self.stretch = -force / stiffness.tangent_n_per_m;
-        force
+        stiffness.tangent_n(&mut self.stretch, slide_mps, most_n)
     }
 }
 
 /// Friction of a rolling tyre: as [`Stick`], in the tyre's forward and left direction, and with a tread that rolls out of the contact
 /// within the relaxation length. At rest it does not creep; rolling, its force is proportional to the slip until it slides.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Tread {
     stretch: Vec2,
-}
-
-impl Default for Tread {
-    fn default() -> Self {
-        Self {
-            stretch: Vec2::zeros(),
-        }
-    }
 }
 
 /// Way in which the tread of a tyre takes up a slip. With the tyre's stiffness it gives 15 to 20 times the load per unit of slip, as
@@ -95,14 +90,6 @@ impl Tread {
     ) -> Vec2 {
         self.stretch =
             (self.stretch + slip_mps * dt_s) / (1.0 + rolling_mps.abs() * dt_s / RELAXATION_M);
-        let wanted =
-            -self.stretch * stiffness.tangent_n_per_m - slip_mps * stiffness.tangent_n_per_mps;
-        let size_n = wanted.norm();
-        if size_n <= most_n {
-            return wanted;
-        }
-        let force = wanted * (most_n / size_n);
-        self.stretch = -force / stiffness.tangent_n_per_m;
-        force
+        stiffness.tangent_n(&mut self.stretch, slip_mps, most_n)
     }
 }
