@@ -1,54 +1,20 @@
 //! The ground as lines along x, for drawing.
 
-use robot_plant::world::Terrain;
+use robot_plant::{free::Corners, world::Terrain};
 
-/// Points (x, z) of the ground under the left and the right wheel. The first and the last height go on for ever.
-pub(crate) type Profiles = [Vec<[f64; 2]>; 2];
+/// Points (x, z) of the ground under the left and the right wheel, at least one each. The first and the last height go on
+/// for ever.
+pub(crate) type Profiles = [Corners; 2];
 
-/// The ground of a course. Plates are drawn level: their heights are the plant's secret.
+/// The ground of a course.
 pub(crate) fn profiles(terrain: &Terrain) -> Profiles {
-    let flat = || vec![[0.0, 0.0]];
-    match *terrain {
-        Terrain::Flat | Terrain::Plates { .. } | Terrain::Slippery { .. } => [flat(), flat()],
-        Terrain::Slope {
-            start_m,
-            angle_rad,
-            length_m,
-        } => {
-            let top = [start_m + length_m, length_m * angle_rad.tan()];
-            both(vec![[start_m, 0.0], top])
+    terrain.corners().map(|corners| {
+        if corners.is_empty() {
+            vec![[0.0, 0.0]]
+        } else {
+            corners
         }
-        Terrain::OneSidedRamp {
-            start_m,
-            angle_rad,
-            height_m,
-            top_m,
-        } => {
-            let rise_m = height_m / angle_rad.tan();
-            let ramp = vec![
-                [start_m, 0.0],
-                [start_m + rise_m, height_m],
-                [start_m + rise_m + top_m, height_m],
-                [start_m + 2.0 * rise_m + top_m, 0.0],
-            ];
-            [ramp, flat()]
-        }
-        Terrain::Step { at_m, height_m } => both(vec![[at_m, 0.0], [at_m, height_m]]),
-        Terrain::Gap {
-            at_m,
-            width_m,
-            depth_m,
-        } => both(vec![
-            [at_m, 0.0],
-            [at_m, -depth_m],
-            [at_m + width_m, -depth_m],
-            [at_m + width_m, 0.0],
-        ]),
-    }
-}
-
-fn both(profile: Vec<[f64; 2]>) -> Profiles {
-    [profile.clone(), profile]
+    })
 }
 
 /// Height of a profile at `x`.

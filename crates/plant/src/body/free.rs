@@ -48,7 +48,7 @@ use robot_description::Robot;
 pub use rolling::FreeAccelerations;
 pub use setup::{FreeSetup, Hold, Start, Variation};
 pub use state::{FreeInputs, FreeState, Push};
-pub use terrain::Terrain;
+pub use terrain::{Corners, Terrain};
 
 type Vec2 = Vector2<f64>;
 type Vec3 = Vector3<f64>;

@@ -123,8 +123,8 @@ pub(super) fn parse(text: &str, file: &str) -> Result<Scenario, ScenarioError> {
         None => Variation::default(),
     };
     let free = raw.plant == Plant::Free;
-    let start = only_free(raw.start, "start", free, &source)?;
-    let terrain = only_free(raw.terrain, "terrain", free, &source)?;
+    let start = only_free(raw.start, "start", free, &source, is_sound_start)?;
+    let terrain = only_free(raw.terrain, "terrain", free, &source, Terrain::is_sound)?;
     let mut events = Vec::new();
     for at in &raw.at {
         read_at(at.get_ref(), seconds, free, &mut events)
@@ -168,17 +168,28 @@ pub(super) fn parse(text: &str, file: &str) -> Result<Scenario, ScenarioError> {
     })
 }
 
-/// The value of a key that only the free robot may have.
+/// The value of a key that only the free robot may have, if its numbers are sound.
 fn only_free<T: Default>(
     raw: Option<Spanned<T>>,
     key: &'static str,
     free: bool,
     source: &Source<'_>,
+    is_sound: fn(&T) -> bool,
 ) -> Result<T, ScenarioError> {
     match raw {
         Some(value) if !free => Err(source.wrong(value.span().start, Problem::NotFree(key))),
+        Some(value) if !is_sound(value.get_ref()) => {
+            Err(source.wrong(value.span().start, Problem::NoPlace(key)))
+        }
         Some(value) => Ok(value.into_inner()),
         None => Ok(T::default()),
+    }
+}
+
+fn is_sound_start(start: &Start) -> bool {
+    match start {
+        Start::Dropped { height_m } => (0.0..=10.0).contains(height_m),
+        _ => true,
     }
 }
 

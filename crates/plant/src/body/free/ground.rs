@@ -1,7 +1,6 @@
 //! The surface of a course: flat faces one after the other along x, each as wide as its side of the world.
 
 use super::{Terrain, Vec2, Vec3};
-use crate::random::{Random, Stream};
 
 /// Ends of the world along x.
 const FAR_M: f64 = 1e4;
@@ -125,91 +124,17 @@ pub(super) struct Ground {
 
 impl Ground {
     pub fn new(terrain: &Terrain) -> Self {
-        let both = |corners: &[Vec2]| {
-            let profile = Profile::through(corners);
-            [profile.clone(), profile]
-        };
-        let mut strip = None;
-        let sides = match *terrain {
-            Terrain::Flat => both(&[]),
-            Terrain::Slope {
-                start_m,
-                angle_rad,
-                length_m,
-            } => {
-                let length_m = length_m.clamp(0.01, FAR_M / 2.0);
-                let rise_m = length_m * angle_rad.clamp(-1.05, 1.05).tan();
-                both(&[
-                    Vec2::new(start_m, 0.0),
-                    Vec2::new(start_m + length_m, rise_m),
-                ])
-            }
-            Terrain::OneSidedRamp {
-                start_m,
-                angle_rad,
-                height_m,
-                top_m,
-            } => {
-                let run_m = height_m.abs() / angle_rad.clamp(0.01, 1.05).tan();
-                let at = |x: f64, z: f64| Vec2::new(start_m + x, z);
-                let ramp = [
-                    at(0.0, 0.0),
-                    at(run_m, height_m),
-                    at(run_m + top_m, height_m),
-                    at(2.0 * run_m + top_m, 0.0),
-                ];
-                [Profile::through(&ramp), Profile::through(&[])]
-            }
-            Terrain::Step { at_m, height_m } => {
-                both(&[Vec2::new(at_m, 0.0), Vec2::new(at_m, height_m)])
-            }
-            Terrain::Gap {
-                at_m,
-                width_m,
-                depth_m,
-            } => both(&[
-                Vec2::new(at_m, 0.0),
-                Vec2::new(at_m, -depth_m),
-                Vec2::new(at_m + width_m, -depth_m),
-                Vec2::new(at_m + width_m, 0.0),
-            ]),
-            Terrain::Plates {
-                start_m,
-                count,
-                length_m,
-                height_m,
-                tilt_rad,
-                seed,
-            } => {
-                let mut random = Random::new(seed, Stream::Plates);
-                let mut side = || {
-                    let mut corners = vec![Vec2::new(start_m, 0.0)];
-                    for plate in 0..count.min(64) {
-                        let middle_m = height_m * random.unit();
-                        let tilt_rad = random.symmetric(tilt_rad);
-                        let rise_m = length_m / 2.0 * tilt_rad.clamp(-1.0, 1.0).tan();
-                        let from_m = start_m + f64::from(plate) * length_m;
-                        // No plate digs into the ground.
-                        let edge = |z: f64| (middle_m + z).max(0.0);
-                        corners.push(Vec2::new(from_m, edge(-rise_m)));
-                        corners.push(Vec2::new(from_m + length_m, edge(rise_m)));
-                    }
-                    corners.push(Vec2::new(
-                        start_m + f64::from(count.min(64)) * length_m,
-                        0.0,
-                    ));
-                    Profile::through(&corners)
-                };
-                [side(), side()]
-            }
+        let sides = terrain.corners().map(|corners| {
+            let corners: Vec<Vec2> = corners.into_iter().map(Vec2::from).collect();
+            Profile::through(&corners)
+        });
+        let strip = match *terrain {
             Terrain::Slippery {
                 start_m,
                 length_m,
                 grip,
-            } => {
-                strip = Some((start_m, start_m + length_m, grip));
-                both(&[])
-            }
+            } => Some((start_m, start_m + length_m, grip)),
+            _ => None,
         };
         let ends = sides
             .iter()

@@ -1,6 +1,13 @@
 //! The ground, as a course along +x. The robot starts at x = 0, y = 0 on level ground at z = 0.
 
+use crate::random::{Random, Stream};
 use serde::Deserialize;
+
+/// Steepest angle of a slope or ramp.
+const STEEPEST_RAD: f64 = 1.05;
+/// No course reaches or rises farther.
+const FARTHEST_M: f64 = 1e3;
+const MOST_PLATES: u8 = 64;
 
 /// A course. Lengths along x unless said otherwise; everything is as wide as the world, unless said otherwise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
@@ -69,4 +76,93 @@ pub enum Terrain {
         /// Factor on the friction coefficient.
         grip: f64,
     },
+}
+
+/// Points (x, z) of the ground from one end to the other. It is level before the first and behind the last, and at z = 0
+/// where there is none.
+pub type Corners = Vec<[f64; 2]>;
+
+impl Terrain {
+    /// The ground under the left and the right wheel.
+    pub fn corners(&self) -> [Corners; 2] {
+        let both = |corners: Corners| [corners.clone(), corners];
+        match *self {
+            Self::Flat | Self::Slippery { .. } => both(Vec::new()),
+            Self::Slope {
+                start_m,
+                angle_rad,
+                length_m,
+            } => {
+                let length_m = length_m.clamp(0.01, FARTHEST_M);
+                let rise_m = length_m * angle_rad.clamp(-STEEPEST_RAD, STEEPEST_RAD).tan();
+                both(vec![[start_m, 0.0], [start_m + length_m, rise_m]])
+            }
+            Self::OneSidedRamp {
+                start_m,
+                angle_rad,
+                height_m,
+                top_m,
+            } => {
+                let run_m = height_m.abs() / angle_rad.clamp(0.01, STEEPEST_RAD).tan();
+                let ramp = vec![
+                    [start_m, 0.0],
+                    [start_m + run_m, height_m],
+                    [start_m + (run_m + top_m), height_m],
+                    [start_m + (2.0 * run_m + top_m), 0.0],
+                ];
+                [ramp, Vec::new()]
+            }
+            Self::Step { at_m, height_m } => both(vec![[at_m, 0.0], [at_m, height_m]]),
+            Self::Gap {
+                at_m,
+                width_m,
+                depth_m,
+            } => both(vec![
+                [at_m, 0.0],
+                [at_m, -depth_m],
+                [at_m + width_m, -depth_m],
+                [at_m + width_m, 0.0],
+            ]),
+            Self::Plates {
+                start_m,
+                count,
+                length_m,
+                height_m,
+                tilt_rad,
+                seed,
+            } => {
+                let mut random = Random::new(seed, Stream::Plates);
+                let count = count.min(MOST_PLATES);
+                let mut side = || {
+                    let mut corners = vec![[start_m, 0.0]];
+                    for plate in 0..count {
+                        let middle_m = height_m * random.unit();
+                        let tilt_rad = random.symmetric(tilt_rad);
+                        let rise_m = length_m / 2.0 * tilt_rad.clamp(-1.0, 1.0).tan();
+                        let from_m = start_m + f64::from(plate) * length_m;
+                        // No plate digs into the ground.
+                        let edge = |z: f64| (middle_m + z).max(0.0);
+                        corners.push([from_m, edge(-rise_m)]);
+                        corners.push([from_m + length_m, edge(rise_m)]);
+                    }
+                    corners.push([start_m + f64::from(count) * length_m, 0.0]);
+                    corners
+                };
+                [side(), side()]
+            }
+        }
+    }
+
+    /// Whether a robot can meet this ground: numbers of its size, and nothing that leads back along x.
+    pub fn is_sound(&self) -> bool {
+        let grip_is_sound = match self {
+            Self::Slippery { length_m, grip, .. } => *length_m >= 0.0 && (0.0..=2.0).contains(grip),
+            _ => true,
+        };
+        grip_is_sound
+            && self.corners().iter().all(|corners| {
+                corners.iter().flatten().all(|it| it.abs() <= FARTHEST_M)
+                    && corners.is_sorted_by(|a, b| a[0] <= b[0])
+            })
+    }
 }

@@ -64,6 +64,10 @@ pub enum Problem {
         "a push has an `impulse_ns` of three numbers up to 100 N·s, an `at_m` up to 1 m, and `ms` from 1 to 1000"
     )]
     Push,
+    #[error(
+        "`{0}` is out of range: a drop is up to 10 m; a course has lengths from 0 to 1000 m along x and a grip up to 2"
+    )]
+    NoPlace(&'static str),
     #[error("`{0}` belongs to `plant = \"free\"`: no other robot can fall or meet terrain")]
     NotFree(&'static str),
     #[error("`bus` is {0}; the board has 1 and 2")]

@@ -258,6 +258,26 @@ fn what_only_a_free_robot_has_is_refused_elsewhere_and_nonsense_everywhere() {
             "\nvariation = { mass = 9 }\n",
             "s.toml:5: `mass` of the variation is 9",
         ),
+        (
+            FREE,
+            "start = { dropped = { height_m = -1 } }\n",
+            "s.toml:4: `start` is out of range",
+        ),
+        (
+            FREE,
+            "terrain = { step = { at_m = 1, height_m = nan } }\n",
+            "s.toml:4: `terrain` is out of range",
+        ),
+        (
+            FREE,
+            "terrain = { gap = { at_m = 1, width_m = -1, depth_m = 1 } }\n",
+            "s.toml:4: `terrain` is out of range",
+        ),
+        (
+            FREE,
+            "terrain = { slippery = { start_m = 1, length_m = 1, grip = inf } }\n",
+            "s.toml:4: `terrain` is out of range",
+        ),
         (FREE, "robot = \"no-such\"\n", "no-such.toml"),
         (
             FREE,
