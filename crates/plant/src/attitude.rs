@@ -4,8 +4,10 @@ mod error;
 mod quaternion;
 
 pub use error::AttitudeError;
-pub use quaternion::{Quaternion, between, multiply, normalised, to_body};
-pub(crate) use quaternion::{from_yaw_pitch, to_earth};
+pub(crate) use quaternion::from_yaw_pitch;
+pub use quaternion::{
+    Quaternion, between, multiply, normalised, roll_pitch_yaw_rad, to_body, to_earth,
+};
 
 /// Total, heading and inclination error in degrees, none negative; `None` where one is not a number.
 pub(crate) fn error_deg(estimate: Quaternion, reference: Quaternion) -> Option<[f64; 3]> {

@@ -26,11 +26,11 @@ use crate::{
 };
 pub(crate) use floor::Floor;
 use loose::Loose;
-pub(crate) use pose::{Pose, roll_pitch_yaw_rad};
+pub(crate) use pose::Pose;
 pub(crate) use tilt::Stance;
 use upright::Upright;
 pub use variation::Variation;
-use wheels::{WHEEL_RADIUS_M, WheelTorques};
+use wheels::WheelTorques;
 
 /// How the robot stands around the board.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -66,11 +66,11 @@ pub(crate) enum Body {
 }
 
 impl Body {
-    /// `setup` is for the free robot.
+    /// A robot with the wheels of its file. The rest of the file, and `setup`, are for the free robot.
     pub(crate) fn new(kind: PlantKind, robot: &Robot, setup: &FreeSetup) -> Self {
         match kind {
             PlantKind::Stand => Self::Upright(Upright::stand()),
-            PlantKind::Rolling => Self::Upright(Upright::rolling()),
+            PlantKind::Rolling => Self::Upright(Upright::rolling(&robot.wheels)),
             PlantKind::Free => Self::Free(Box::new(Loose::new(robot, setup))),
         }
     }
@@ -95,13 +95,6 @@ impl Body {
         match self {
             Self::Upright(upright) => upright.wheel_rps(),
             Self::Free(loose) => loose.mechanics().wheel_rel_rps(),
-        }
-    }
-
-    pub(crate) fn wheel_radius_m(&self) -> f64 {
-        match self {
-            Self::Upright(_) => WHEEL_RADIUS_M,
-            Self::Free(loose) => loose.wheel_radius_m(),
         }
     }
 

@@ -1,6 +1,7 @@
 //! Where the parts of the free robot are, from its true signals.
 
 use robot_description::{Carrier, Robot};
+use robot_plant::attitude::{Quaternion, to_earth};
 
 use crate::signals::{SignalTable, Values};
 
@@ -27,7 +28,7 @@ pub struct Skeleton {
     /// Place of the hip centre in the ENU earth frame, m.
     pub place_m: Vector,
     /// Body → earth, scalar first.
-    pub q_wxyz: [f64; 4],
+    pub q_wxyz: Quaternion,
     /// Nose down positive.
     pub pitch_rad: f64,
     /// Left, right.
@@ -57,7 +58,7 @@ pub fn about_y_rad(from: Vector, to: Vector) -> f64 {
 impl Skeleton {
     /// A point of the body in the earth frame.
     pub fn in_world(&self, body: Vector) -> Vector {
-        let turned = rotated(self.q_wxyz, body);
+        let turned = to_earth(self.q_wxyz, body);
         std::array::from_fn(|axis| self.place_m[axis] + turned[axis])
     }
 
@@ -69,7 +70,7 @@ impl Skeleton {
 
     /// Heading from east, counter-clockwise.
     pub fn yaw_rad(&self) -> f64 {
-        let [x, y, _] = rotated(self.q_wxyz, [1.0, 0.0, 0.0]);
+        let [x, y, _] = to_earth(self.q_wxyz, [1.0, 0.0, 0.0]);
         y.atan2(x)
     }
 }
@@ -157,33 +158,5 @@ fn leg(robot: &Robot, side: f64, [front, rear]: [f64; 2], length_m: f64, angle_r
             [-half - thigh_m * rear.cos(), y, -thigh_m * rear.sin()],
         ],
         axle: [length_m * angle_rad.sin(), y, -length_m * angle_rad.cos()],
-    }
-}
-
-/// `vector` turned by a unit quaternion, scalar first.
-fn rotated([w, x, y, z]: [f64; 4], vector: Vector) -> Vector {
-    let axis = [x, y, z];
-    let once = cross(axis, vector);
-    let twice = cross(axis, once);
-    std::array::from_fn(|i| vector[i] + 2.0 * (w * once[i] + twice[i]))
-}
-
-fn cross([ax, ay, az]: Vector, [bx, by, bz]: Vector) -> Vector {
-    [ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_quarter_turn_to_the_left_and_a_nose_down_pitch_turn_vectors() {
-        let h = std::f64::consts::FRAC_1_SQRT_2;
-        let close = |a: Vector, b: Vector| {
-            let off = a.iter().zip(b).map(|(a, b)| (a - b).abs());
-            assert!(off.fold(0.0, f64::max) < 1e-12, "{a:?} {b:?}");
-        };
-        close(rotated([h, 0.0, 0.0, h], [1.0, 0.0, 0.0]), [0.0, 1.0, 0.0]);
-        close(rotated([h, 0.0, h, 0.0], [1.0, 0.0, 0.0]), [0.0, 0.0, -1.0]);
     }
 }

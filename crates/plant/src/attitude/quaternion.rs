@@ -47,8 +47,17 @@ pub fn to_body(q: Quaternion, earth: [f64; 3]) -> [f64; 3] {
 }
 
 /// A vector in body axes as one of the earth.
-pub(crate) fn to_earth(q: Quaternion, body: [f64; 3]) -> [f64; 3] {
+pub fn to_earth(q: Quaternion, body: [f64; 3]) -> [f64; 3] {
     to_body(conjugate(q), body)
+}
+
+/// Roll (right side down positive), pitch (nose down positive) and yaw (left positive) of the z-y-x order.
+pub fn roll_pitch_yaw_rad([w, x, y, z]: Quaternion) -> [f64; 3] {
+    [
+        (2.0 * (w * x + y * z)).atan2(1.0 - 2.0 * (x * x + y * y)),
+        (2.0 * (w * y - z * x)).clamp(-1.0, 1.0).asin(),
+        (2.0 * (w * z + x * y)).atan2(1.0 - 2.0 * (y * y + z * z)),
+    ]
 }
 
 /// Interpolates linearly between two attitudes, the short way round, and normalises. `None` if one is not a number.

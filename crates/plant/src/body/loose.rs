@@ -4,14 +4,9 @@ use std::f64::consts::{PI, TAU};
 
 use robot_description::Robot;
 
-use super::{
-    BodyInputs, Floor,
-    pose::{Pose, roll_pitch_yaw_rad},
-    shove::Shove,
-    vibration::Vibration,
-};
+use super::{BodyInputs, Floor, pose::Pose, shove::Shove, vibration::Vibration};
 use crate::{
-    attitude::{Quaternion, to_earth},
+    attitude::{Quaternion, roll_pitch_yaw_rad, to_earth},
     free::{FreeBody, FreeInputs, FreeSetup},
     motion::Motion,
 };
@@ -23,7 +18,6 @@ const SLIPPERY: f64 = 0.06;
 pub(crate) struct Loose {
     body: FreeBody,
     imu_m: [f64; 3],
-    wheel_radius_m: f64,
     vibration: Vibration,
     shove: Shove,
     pose: Pose,
@@ -36,7 +30,6 @@ impl Loose {
         let body = FreeBody::new(robot, setup);
         let mut loose = Self {
             shove: Shove::new(body.mass_kg()),
-            wheel_radius_m: robot.wheels.radius_m,
             imu_m: robot.imu.place_m,
             vibration: Vibration::new(robot.wheels.gear_ratio),
             pose: Pose::default(),
@@ -104,10 +97,6 @@ impl Loose {
     /// The mechanics.
     pub(crate) fn mechanics(&self) -> &FreeBody {
         &self.body
-    }
-
-    pub(super) fn wheel_radius_m(&self) -> f64 {
-        self.wheel_radius_m
     }
 
     pub(super) fn pose(&self) -> Pose {

@@ -1,7 +1,5 @@
 //! Position and motion of the body.
 
-use crate::attitude::Quaternion;
-
 /// Position in the ENU earth frame. Velocity along the heading, to its left, and up.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Pose {
@@ -23,13 +21,4 @@ pub(crate) struct Pose {
     pub vz_mps: f64,
     /// Yaw rate, left turn positive.
     pub wz_rps: f64,
-}
-
-/// Roll (right side down positive), pitch (nose down positive) and yaw (left positive) of the z-y-x order.
-pub(crate) fn roll_pitch_yaw_rad([w, x, y, z]: Quaternion) -> [f64; 3] {
-    [
-        (2.0 * (w * x + y * z)).atan2(1.0 - 2.0 * (x * x + y * y)),
-        (2.0 * (w * y - z * x)).clamp(-1.0, 1.0).asin(),
-        (2.0 * (w * z + x * y)).atan2(1.0 - 2.0 * (y * y + z * z)),
-    ]
 }

@@ -6,8 +6,10 @@ use super::{
     floor::Floor,
     pose::Pose,
     shaft::turn_shaft,
-    wheels::{TRACK_M, WHEEL_INERTIA_KGM2, WHEEL_RADIUS_M, WheelTorques},
+    wheels::{WHEEL_INERTIA_KGM2, WheelTorques},
 };
+use robot_description::Wheels;
+
 use crate::{m3508::Friction, motion::Motion, physics::STANDARD_GRAVITY_MPS2};
 
 /// Robot with legs and wheels, kg (docs/hardware.md#robot-body).
@@ -24,8 +26,10 @@ const LOAD_N: f64 = MASS_KG * STANDARD_GRAVITY_MPS2 / 2.0;
 /// Assumed place of the IMU relative to the middle of the axle, m: x forward, y left.
 const IMU_M: [f64; 2] = [0.05, 0.02];
 
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Rolling {
+    radius_m: f64,
+    track_m: f64,
     pose: Pose,
     wheel_rps: [f64; 2],
     /// Acceleration of the axle's middle in body axes over the last step.
@@ -34,6 +38,18 @@ pub(crate) struct Rolling {
 }
 
 impl Rolling {
+    /// At rest on these wheels.
+    pub(crate) fn new(wheels: &Wheels) -> Self {
+        Self {
+            radius_m: wheels.radius_m,
+            track_m: wheels.track_m,
+            pose: Pose::default(),
+            wheel_rps: [0.0; 2],
+            accel_mps2: [0.0; 2],
+            yaw_accel_rps2: 0.0,
+        }
+    }
+
     pub(crate) fn step(
         &mut self,
         torques_nm: WheelTorques,
@@ -42,14 +58,14 @@ impl Rolling {
         dt_s: f64,
     ) {
         let rolling_friction = Friction {
-            dry_nm: friction.dry_nm + ROLLING_RESISTANCE * LOAD_N * WHEEL_RADIUS_M,
+            dry_nm: friction.dry_nm + ROLLING_RESISTANCE * LOAD_N * self.radius_m,
             ..friction
         };
         let forces: [[f64; 2]; 2] = std::array::from_fn(|wheel| self.ground_force_n(wheel, floor));
         for wheel in 0..2 {
             self.wheel_rps[wheel] = turn_shaft(
                 self.wheel_rps[wheel],
-                torques_nm[wheel] - forces[wheel][0] * WHEEL_RADIUS_M,
+                torques_nm[wheel] - forces[wheel][0] * self.radius_m,
                 rolling_friction,
                 WHEEL_INERTIA_KGM2,
                 dt_s,
@@ -59,15 +75,15 @@ impl Rolling {
             (forces[0][0] + forces[1][0]) / MASS_KG,
             (forces[0][1] + forces[1][1]) / MASS_KG,
         ];
-        self.yaw_accel_rps2 = (forces[1][0] - forces[0][0]) * TRACK_M / 2.0 / YAW_INERTIA_KGM2;
+        self.yaw_accel_rps2 = (forces[1][0] - forces[0][0]) * self.track_m / 2.0 / YAW_INERTIA_KGM2;
         self.integrate(dt_s);
     }
 
     /// Force of the ground on one wheel, forward and left, from its slip.
     fn ground_force_n(&self, wheel: usize, floor: Floor) -> [f64; 2] {
         let side = if wheel == 0 { -1.0 } else { 1.0 };
-        let over_ground_mps = self.pose.vx_mps + side * self.pose.wz_rps * TRACK_M / 2.0;
-        let rim_mps = self.wheel_rps[wheel] * WHEEL_RADIUS_M;
+        let over_ground_mps = self.pose.vx_mps + side * self.pose.wz_rps * self.track_m / 2.0;
+        let rim_mps = self.wheel_rps[wheel] * self.radius_m;
         let reference_mps = rim_mps
             .abs()
             .max(over_ground_mps.abs())
@@ -124,12 +140,18 @@ impl Rolling {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::robots;
+    use robot_description::JointMotor;
 
     const DT_S: f64 = 250e-6;
     const FRICTIONLESS: Friction = Friction {
         dry_nm: 0.0,
         viscous_nm_per_rps: 0.0,
     };
+
+    fn rolling() -> Rolling {
+        Rolling::new(&robots::with_joints(JointMotor::Dm4310).wheels)
+    }
 
     fn drive(rolling: &mut Rolling, seconds: f64, torques: impl Fn(&Rolling) -> WheelTorques) {
         for _ in 0..(seconds / DT_S).round() as usize {
@@ -142,14 +164,14 @@ mod tests {
     fn hold(rim_mps: [f64; 2]) -> impl Fn(&Rolling) -> WheelTorques {
         move |rolling| {
             std::array::from_fn(|wheel| {
-                5.0 * (rim_mps[wheel] / WHEEL_RADIUS_M - rolling.wheel_rps[wheel])
+                5.0 * (rim_mps[wheel] / rolling.radius_m - rolling.wheel_rps[wheel])
             })
         }
     }
 
     #[test]
     fn equal_torques_accelerate_straight_by_newtons_law() {
-        let mut rolling = Rolling::default();
+        let mut rolling = rolling();
         drive(&mut rolling, 1.0, |_| [0.6, 0.6]);
         // (2·0.6/0.06 − 2·0.015·44.13) N on 9 kg and two reflected wheel inertias of 0.0105/0.06² = 2.917 kg.
         let expected = (20.0 - 1.324) / (9.0 + 5.833);
@@ -164,7 +186,7 @@ mod tests {
 
     #[test]
     fn wheel_speed_difference_over_track_is_the_yaw_rate() {
-        let mut rolling = Rolling::default();
+        let mut rolling = rolling();
         drive(&mut rolling, 3.0, hold([0.4, 0.6]));
         // 0.2 m/s over 0.42 m = 0.476 rad/s to the left at 0.5 m/s.
         assert!(
@@ -187,16 +209,16 @@ mod tests {
 
     #[test]
     fn full_torque_spins_the_wheels_and_grip_limits_the_body() {
-        let mut rolling = Rolling::default();
+        let mut rolling = rolling();
         drive(&mut rolling, 0.3, |_| [6.0, 6.0]);
         // µ·g = 7.85 m/s² is the most the ground gives.
         assert!((rolling.pose.vx_mps - 0.3 * 0.8 * 9.80665).abs() < 0.05);
-        assert!(rolling.wheel_rps[0] * WHEEL_RADIUS_M > 2.0 * rolling.pose.vx_mps);
+        assert!(rolling.wheel_rps[0] * rolling.radius_m > 2.0 * rolling.pose.vx_mps);
     }
 
     #[test]
     fn energy_never_grows_while_coasting_and_the_robot_comes_to_rest() {
-        let mut rolling = Rolling::default();
+        let mut rolling = rolling();
         drive(&mut rolling, 2.0, hold([0.9, 1.1]));
         let energy = |r: &Rolling| {
             0.5 * MASS_KG * (r.pose.vx_mps.powi(2) + r.pose.vy_mps.powi(2))

@@ -1,6 +1,8 @@
 //! The robots that cannot fall: clamped on a stand or rolling upright, with legs that nothing loads.
 
 use super::{BodyInputs, legs::Legs, pose::Pose, rolling::Rolling, stand::Stand, tilt::Tilt};
+use robot_description::Wheels;
+
 use crate::{attitude::Quaternion, joints::JOINTS, motion::Motion};
 
 enum Mechanics {
@@ -20,8 +22,8 @@ impl Upright {
         Self::new(Mechanics::Stand(Stand::default()))
     }
 
-    pub(super) fn rolling() -> Self {
-        Self::new(Mechanics::Rolling(Rolling::default()))
+    pub(super) fn rolling(wheels: &Wheels) -> Self {
+        Self::new(Mechanics::Rolling(Rolling::new(wheels)))
     }
 
     fn new(mechanics: Mechanics) -> Self {

@@ -3,7 +3,7 @@
 mod link;
 
 use super::{WireEvent, World};
-use crate::{body::roll_pitch_yaw_rad, free::FreeBody, recording::Playback};
+use crate::{attitude::roll_pitch_yaw_rad, free::FreeBody, recording::Playback};
 
 type Signal = (&'static str, fn(&World) -> f64);
 
@@ -331,7 +331,7 @@ fn free(world: &World, read: impl Fn(&FreeBody) -> f64) -> f64 {
 }
 
 fn rim_mps(world: &World, wheel: usize) -> f64 {
-    world.body.wheel_rps()[wheel] * world.body.wheel_radius_m()
+    world.body.wheel_rps()[wheel] * world.robot.wheels.radius_m
 }
 
 fn torque_nm(world: &World, wheel: usize) -> f64 {

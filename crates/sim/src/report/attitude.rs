@@ -1,5 +1,7 @@
 //! Conversion of quaternions to angles that are easier to read.
 
+use robot_plant::attitude::{Quaternion, roll_pitch_yaw_rad};
+
 use super::super::trace::Traces;
 
 /// Roll, pitch and yaw in degrees (z-y-x order) of the quaternion at four signals, w first.
@@ -22,13 +24,8 @@ pub fn angles_deg(traces: &Traces, names: [&str; 4]) -> Option<[Vec<Option<f64>>
     Some(angles)
 }
 
-fn roll_pitch_yaw_deg([w, x, y, z]: [f64; 4]) -> [f64; 3] {
-    [
-        (2.0 * (w * x + y * z)).atan2(1.0 - 2.0 * (x * x + y * y)),
-        (2.0 * (w * y - z * x)).clamp(-1.0, 1.0).asin(),
-        (2.0 * (w * z + x * y)).atan2(1.0 - 2.0 * (y * y + z * z)),
-    ]
-    .map(f64::to_degrees)
+fn roll_pitch_yaw_deg(q_wxyz: Quaternion) -> [f64; 3] {
+    roll_pitch_yaw_rad(q_wxyz).map(f64::to_degrees)
 }
 
 #[cfg(test)]
