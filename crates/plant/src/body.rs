@@ -61,7 +61,7 @@ pub(crate) struct BodyInputs {
 }
 
 pub(crate) enum Body {
-    Upright(Upright),
+    Upright(Box<Upright>),
     Free(Box<Loose>),
 }
 
@@ -69,8 +69,8 @@ impl Body {
     /// A robot with the wheels of its file. The rest of the file, and `setup`, are for the free robot.
     pub(crate) fn new(kind: PlantKind, robot: &Robot, setup: &FreeSetup) -> Self {
         match kind {
-            PlantKind::Stand => Self::Upright(Upright::stand()),
-            PlantKind::Rolling => Self::Upright(Upright::rolling(&robot.wheels)),
+            PlantKind::Stand => Self::Upright(Box::new(Upright::stand())),
+            PlantKind::Rolling => Self::Upright(Box::new(Upright::rolling(&robot.wheels))),
             PlantKind::Free => Self::Free(Box::new(Loose::new(robot, setup))),
         }
     }
