@@ -160,3 +160,47 @@ fn leg(robot: &Robot, side: f64, [front, rear]: [f64; 2], length_m: f64, angle_r
         axle: [length_m * angle_rad.sin(), y, -length_m * angle_rad.cos()],
     }
 }
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use robot_plant::world::{PlantKind, Start, World, WorldConfig};
+    use std::sync::Arc;
+
+    /// Signals of a robot that rests as it starts, and its file.
+    pub(crate) fn at_rest(start: Start) -> (SignalTable, Values, Arc<Robot>) {
+        let config = WorldConfig {
+            plant: PlantKind::Free,
+            start,
+            ..WorldConfig::default()
+        };
+        let robot = Arc::clone(&config.robot);
+        let world = World::new(config).expect("no recording to load");
+        let table = SignalTable::new(world.signal_names(), &[], &[]);
+        let mut values = Vec::new();
+        world.sample(&mut values);
+        (table, values.into_iter().map(Some).collect(), robot)
+    }
+
+    #[test]
+    fn both_shanks_meet_at_the_axle_and_wheels_rest_on_the_ground() {
+        for start in [Start::Sitting, Start::Standing] {
+            let (table, values, robot) = at_rest(start);
+            let signals = SkeletonSignals::find(&table).expect("it is free");
+            let skeleton = signals.read(&values, &robot).expect("all have values");
+            for side in 0..SIDES.len() {
+                let leg = &skeleton.legs[side];
+                for knee in leg.knees {
+                    let off: Vector = std::array::from_fn(|axis| leg.axle[axis] - knee[axis]);
+                    let length_m = off.iter().map(|part| part * part).sum::<f64>().sqrt();
+                    let shank_m = robot.legs.shank.length_m;
+                    assert!((length_m - shank_m).abs() < 1e-9, "{start:?}: {length_m} m");
+                }
+                let [.., z] = skeleton.in_world(skeleton.wheel(side, &robot));
+                // A tyre gives up to 0.8 mm.
+                let sunk_m = robot.wheels.radius_m - z;
+                assert!((-1e-6..1e-3).contains(&sunk_m), "{start:?}: {sunk_m} m");
+            }
+        }
+    }
+}

@@ -313,3 +313,46 @@ fn time_schema(title: &str) -> Value {
         "properties": { "sec": { "type": "integer" }, "nsec": { "type": "integer" } },
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::skeleton::tests::at_rest;
+    use robot_plant::world::Start;
+
+    /// Every object of a message has the fields of its schema and no other.
+    fn follows(message: &Value, schema: &Value) {
+        match message {
+            Value::Array(items) => items.iter().for_each(|it| follows(it, &schema["items"])),
+            Value::Object(fields) => {
+                let known = schema["properties"].as_object().expect("an object");
+                assert!(fields.keys().eq(known.keys()), "{fields:?} {known:?}");
+                for (name, value) in fields {
+                    follows(value, &known[name]);
+                }
+            }
+            _ => assert!(schema["type"].is_string(), "{message}"),
+        }
+    }
+
+    #[test]
+    fn messages_follow_their_schemas_and_every_shape_has_a_frame() {
+        let (table, values, robot) = at_rest(Start::Sitting);
+        let scene = Scene::new(&table, &robot, Terrain::Flat).expect("it is free");
+        let transforms = scene.transforms(SECOND, &values).expect("values");
+        let shapes = scene.shapes(SECOND);
+        follows(&transforms, &transforms_schema());
+        follows(&shapes, &shapes_schema());
+        let names = |message: &Value, field: &str| -> Vec<String> {
+            let items = message.as_array().into_iter().flatten();
+            let names = items.filter_map(|it| it[field].as_str());
+            names.map(str::to_owned).collect()
+        };
+        let mut frames = names(&transforms["transforms"], "child_frame_id");
+        frames.push("world".to_owned());
+        let drawn = names(&shapes["entities"], "frame_id");
+        // Body, eight links, two wheels, the world.
+        assert_eq!(drawn.len(), 12);
+        assert!(drawn.iter().all(|it| frames.contains(it)), "{drawn:?}");
+    }
+}
