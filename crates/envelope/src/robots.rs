@@ -6,6 +6,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use robot_description::Robot;
 use robot_plant::{
+    free,
     time::{Ps, US},
     world::Variation,
 };
@@ -41,13 +42,15 @@ impl Robots {
         let mut numbers = Pcg64Mcg::seed_from_u64(seed);
         let mut between = |low: f64, high: f64| numbers.random_range(low..high);
         Variation {
-            mass: between(MASS.0, MASS.1),
-            com_m: [
-                between(-COM_M, COM_M),
-                between(-COM_M, COM_M),
-                between(-COM_M, COM_M),
-            ],
-            grip: between(GRIP.0, GRIP.1),
+            body: free::Variation {
+                mass_factor: between(MASS.0, MASS.1),
+                com_offset_m: [
+                    between(-COM_M, COM_M),
+                    between(-COM_M, COM_M),
+                    between(-COM_M, COM_M),
+                ],
+                ground_friction: between(GRIP.0, GRIP.1),
+            },
             torque: between(1.0 - TORQUE, 1.0 + TORQUE),
             delay: between(0.0, MAX_DELAY as f64) as Ps,
             imu_rad: [
@@ -60,6 +63,6 @@ impl Robots {
 
     /// Mass of specimen `seed` in kg.
     pub fn mass_kg(&self, seed: u64) -> f64 {
-        self.robot.total_mass_kg() * self.variation(seed).mass
+        self.robot.total_mass_kg() * self.variation(seed).body.mass_factor
     }
 }

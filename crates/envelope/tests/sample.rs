@@ -32,9 +32,11 @@ fn specimens_differ_within_their_limits_and_repeat() {
     for seed in 0..200 {
         let one = robots.variation(seed);
         assert_eq!(one, robots.variation(seed));
-        assert!((0.8..1.4).contains(&one.mass) && (0.4..1.2).contains(&one.grip));
-        assert!(one.com_m.iter().all(|m| m.abs() <= 0.03));
-        heaviest = heaviest.max(one.mass);
+        let body = one.body;
+        assert!((0.8..1.4).contains(&body.mass_factor));
+        assert!((0.4..1.2).contains(&body.ground_friction));
+        assert!(body.com_offset_m.iter().all(|m| m.abs() <= 0.03));
+        heaviest = heaviest.max(body.mass_factor);
     }
     assert!(heaviest > 1.3, "{heaviest}");
 }

@@ -42,7 +42,7 @@ impl World {
         let seed = config.seed;
         let robot = config.robot;
         let setup = FreeSetup {
-            variation: config.variation.of_the_body(),
+            variation: config.variation.body,
             start: config.start,
             terrain: config.terrain,
             ..FreeSetup::default()

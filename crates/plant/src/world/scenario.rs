@@ -27,7 +27,7 @@ impl World {
 
     /// Pushes the free robot from now on; a push before it ends. No other robot minds.
     pub fn push(&mut self, push: Shove) {
-        let (com_m, shift_m) = (self.robot.body.com_m, self.variation.com_m);
+        let (com_m, shift_m) = (self.robot.body.com_m, self.variation.body.com_offset_m);
         let force = Push {
             force_n: push.force_n(self.body.pose().yaw_rad),
             at_m: push

@@ -4,8 +4,7 @@ use super::Terrain;
 use serde::Deserialize;
 
 /// How one robot differs from its file. The default is the robot of the file.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Variation {
     /// Factor on the whole robot's mass. The body takes the difference, and its inertia grows as its mass does.
     pub mass_factor: f64,

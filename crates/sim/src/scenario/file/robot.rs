@@ -4,6 +4,7 @@ use std::{path::Path, sync::Arc};
 
 use robot_description::Robot;
 use robot_plant::{
+    free,
     robots::{self, JointMotor},
     time,
     world::Variation,
@@ -59,7 +60,8 @@ fn open(robot: &str) -> Result<Arc<Robot>, Problem> {
 
 pub(super) fn read_variation(raw: &Vary) -> Result<Variation, Problem> {
     let plain = Variation::default();
-    let shift_m = raw.com_m.unwrap_or(plain.com_m);
+    let body = plain.body;
+    let shift_m = raw.com_m.unwrap_or(body.com_offset_m);
     for part in shift_m {
         within("com_m", part, [-0.2, 0.2])?;
     }
@@ -69,9 +71,15 @@ pub(super) fn read_variation(raw: &Vary) -> Result<Variation, Problem> {
     }
     let delay_ms = within("delay_ms", raw.delay_ms.unwrap_or(0.0), [0.0, 50.0])?;
     Ok(Variation {
-        mass: within("mass", raw.mass.unwrap_or(plain.mass), [0.7, 2.0])?,
-        com_m: shift_m,
-        grip: within("grip", raw.grip.unwrap_or(plain.grip), [0.01, 2.0])?,
+        body: free::Variation {
+            mass_factor: within("mass", raw.mass.unwrap_or(body.mass_factor), [0.7, 2.0])?,
+            com_offset_m: shift_m,
+            ground_friction: within(
+                "grip",
+                raw.grip.unwrap_or(body.ground_friction),
+                [0.01, 2.0],
+            )?,
+        },
         torque: within("torque", raw.torque.unwrap_or(plain.torque), [0.1, 2.0])?,
         delay: time::from_seconds(delay_ms * 1e-3),
         imu_rad: turn_deg.map(f64::to_radians),

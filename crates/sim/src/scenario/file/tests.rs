@@ -217,7 +217,10 @@ fn a_free_robot_has_a_start_a_ground_and_differences_from_its_file() {
     );
     assert_eq!(s.start, Start::Dropped { height_m: 0.28 });
     assert_eq!(s.variation.delay, 2 * MS);
-    assert_eq!((s.variation.mass, s.variation.torque), (1.2, 1.0));
+    assert_eq!(
+        (s.variation.body.mass_factor, s.variation.torque),
+        (1.2, 1.0)
+    );
     assert_eq!(
         s.events[0].event,
         Event::Push(Push::instant([3.0, 0.0, 0.0]))
