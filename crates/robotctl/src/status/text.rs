@@ -1,11 +1,14 @@
 //! Writes the status for people, the most urgent first.
 
+mod words;
+
 use std::fmt::{self, Display, Formatter};
 
-use robot_app::tuning::{JOINTS, LiveValue, WHEELS};
+use robot_app::tuning::{JOINTS, WHEELS};
 
 use super::{Status, advice};
 use crate::tuning::LiveReading;
+use words::{REPORTS_ENABLED, duration, list, marks, number, rest, whole};
 
 /// Pages that have their own words here. Any other page is listed with all its values.
 const PUT_INTO_WORDS: [&str; 25] = [
@@ -57,8 +60,6 @@ const LEFT_OUT: [&str; 16] = [
 
 /// Flags that leave wheels and joints without torque while the robot is armed.
 const PC_STOPS: [&str; 2] = ["pc-lost", "pc-awaited"];
-/// Mark of a joint's motor that reports it is enabled. It says nothing of the torque commanded.
-const REPORTS_ENABLED: &str = "gives-torque";
 
 impl Display for Status {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
@@ -432,56 +433,6 @@ pub fn strange_sectors(count: u32) -> String {
     )
 }
 
-fn list(
-    f: &mut Formatter<'_>,
-    names: &[String],
-    advice: fn(&str) -> Option<&'static str>,
-) -> fmt::Result {
-    for name in names {
-        let advice = advice(name).unwrap_or_default();
-        let line = format!("  {name:<22} {advice}");
-        writeln!(f, "{}", line.trim_end())?;
-    }
-    Ok(())
-}
-
-/// Lists all fields of the page without words of their own.
-fn rest(f: &mut Formatter<'_>, reading: &LiveReading) -> fmt::Result {
-    for (field, value) in reading.values() {
-        match value {
-            LiveValue::Count(count) => write!(f, ", {field} {count}")?,
-            LiveValue::Measure(Some(measured)) => write!(f, ", {field} {measured}")?,
-            LiveValue::Measure(None) => write!(f, ", {field} unknown")?,
-            LiveValue::Choice(_) => write!(f, ", {field} {}", reading.choice(field))?,
-            LiveValue::Set(0) => {}
-            LiveValue::Set(_) => write!(f, ", {}", reading.set(field).join(", "))?,
-        }
-    }
-    Ok(())
-}
-
-fn marks(f: &mut Formatter<'_>, reading: &LiveReading) -> fmt::Result {
-    let marks = reading.set("marks");
-    for mark in marks.iter().filter(|mark| *mark != REPORTS_ENABLED) {
-        write!(f, ", {}", mark.to_uppercase())?;
-    }
-    writeln!(f)
-}
-
-fn whole(reading: &LiveReading, field: &str) -> u32 {
-    reading.number(field).unwrap_or_default() as u32
-}
-
-fn number(value: Option<f64>, digits: usize) -> String {
-    value.map_or("?".to_owned(), |value| format!("{value:.digits$}"))
-}
-
-fn duration(seconds: Option<f64>) -> String {
-    let seconds = seconds.unwrap_or_default() as u64;
-    let (hours, minutes) = (seconds / 3_600, seconds / 60 % 60);
-    format!("{hours}:{minutes:02}:{:02} h", seconds % 60)
-}
-
 #[cfg(test)]
 mod tests {
     use robot_app::tuning::LIVE_PAGES;
@@ -493,10 +444,5 @@ mod tests {
         for name in PUT_INTO_WORDS.iter().chain(&LEFT_OUT) {
             assert!(LIVE_PAGES.iter().any(|page| page.name == *name), "{name}");
         }
-    }
-
-    #[test]
-    fn hours_are_shown_as_such() {
-        assert_eq!(duration(Some(3_661.0)), "1:01:01 h");
     }
 }
