@@ -28,9 +28,9 @@ pub enum StandUpPhase {
     /// The robot is not standing up.
     #[default]
     None = 0,
-    /// The legs fold, so that the wheels come below the body.
+    /// The legs come together below the body and lift it from the edge on which it lies.
     Fold = 1,
-    /// The body turns upright.
+    /// The legs fold, and the body turns upright.
     Erect = 2,
     /// The legs extend while the robot balances.
     Extend = 3,
@@ -46,7 +46,7 @@ pub struct BalanceStatus {
     pub phase: StandUpPhase,
     /// No wheel touches the ground.
     pub airborne: bool,
-    /// A wheel slips.
+    /// A wheel slips. Nothing detects that yet: it is always false.
     pub slipping: bool,
     /// Distance from the hip centre to the axle in m.
     pub leg_m: [f32; 2],

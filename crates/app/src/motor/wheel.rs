@@ -251,6 +251,18 @@ mod tests {
         assert_eq!(frozen_ms(0.0, |ms| [(ms / 51) as i16, 60, 0, 30]), Some(50));
     }
 
+    /// A wheel that stood for long is struck. Its speed shows that before its angle does.
+    #[test]
+    fn a_wheel_that_begins_to_turn_has_50_ms_as_well() {
+        for (turns_ms, expected) in [(49, None), (51, Some(549))] {
+            let found = frozen_ms(0.0, |ms| {
+                let turning = (500..500 + turns_ms).contains(&ms);
+                [7, if turning { 60 } else { 0 }, 0, 30]
+            });
+            assert_eq!(found, expected, "{turns_ms} ms");
+        }
+    }
+
     /// 2441 counts are 2980 mA.
     #[test]
     fn unchanging_reports_must_agree_with_the_current_sent() {

@@ -30,7 +30,7 @@ pub(super) struct StandingInputs {
 }
 
 /// Remembers the request.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Standing {
     permit: StandPermit,
     since_us: u64,

@@ -21,7 +21,7 @@ pub struct WheelContact {
     /// Force of the wheel on the ground in N.
     pub force_n: f32,
     /// The wheel is in the air.
-    pub lifted: bool,
+    lifted: bool,
     length_mps: f32,
     /// Time in s for which the force has contradicted `lifted`.
     contrary_s: f32,

@@ -19,7 +19,7 @@ use crate::{
     math::scalar,
 };
 
-/// Longest time step in s that counts, and the usual one.
+/// Longest time step in s that counts, and the one of a tick whose time is not later than the last.
 const MAX_DT_S: f32 = 0.005;
 const TICK_S: f32 = 0.001;
 /// Rate in m/s at which the pilot changes the legs' length, and in rad/s the roll.
@@ -39,6 +39,14 @@ enum Phase {
     Jump(Jump),
     SitDown(SitDown),
     Fallen,
+}
+
+/// What comes of a tick.
+enum Outcome {
+    Torques(Torques),
+    /// The robot has fallen or given up.
+    Fallen,
+    Sits,
 }
 
 /// A robot that stands up, balances, jumps and sits down.
@@ -72,20 +80,21 @@ impl BalanceController {
         let profile = &input.profile.balance;
         let measured = Measured::new(&profile.legs, input);
         let wishes_to_stand = input.hl_cmd.stand && input.stand.permits();
-        let torques = if measured.known && !self.has_fallen(&measured) {
-            self.torques(input, &measured, wishes_to_stand, dt_s)?
+        let outcome = if measured.known && !self.has_fallen(&measured) {
+            self.go_on(input, &measured, wishes_to_stand, dt_s)
         } else {
-            self.phase = Phase::Fallen;
-            None
+            Outcome::Fallen
         };
-        if self.phase == Phase::Fallen && !wishes_to_stand {
-            return None;
-        }
+        let cmd = match outcome {
+            Outcome::Torques(torques) => command(&torques, input.wheel_odom_cfg),
+            Outcome::Fallen if wishes_to_stand => {
+                self.phase = Phase::Fallen;
+                ChassisCommand::STOP
+            }
+            Outcome::Fallen | Outcome::Sits => return None,
+        };
         Some(ChassisControllerOutput {
-            cmd: match torques {
-                Some(torques) => command(&torques, input.wheel_odom_cfg),
-                None => ChassisCommand::STOP,
-            },
+            cmd,
             cmd_valid: true,
             balance: self.status(&measured),
         })
@@ -100,15 +109,14 @@ impl BalanceController {
         }
     }
 
-    /// Torques of this tick; without any the robot has fallen or given up. `None` once it sits.
-    #[allow(clippy::option_option)]
-    fn torques(
+    /// Goes on with the present phase, or begins the next one.
+    fn go_on(
         &mut self,
         input: &ChassisControllerInput<'_>,
         measured: &Measured,
         wishes_to_stand: bool,
         dt_s: f32,
-    ) -> Option<Option<Torques>> {
+    ) -> Outcome {
         let profile = &input.profile.balance;
         let odometry = input.wheel_odom_cfg;
         if !wishes_to_stand && matches!(self.phase, Phase::Balance | Phase::Jump(_)) {
@@ -117,7 +125,7 @@ impl BalanceController {
         let jump_edge = input.hl_cmd.jump && !self.jump_wished;
         self.jump_wished = input.hl_cmd.jump;
         let torques = match &mut self.phase {
-            Phase::StandUp(_) if !wishes_to_stand => return None,
+            Phase::StandUp(_) if !wishes_to_stand => return Outcome::Sits,
             Phase::StandUp(stand_up) => {
                 let length_m = standing_length_m(profile, &input.hl_cmd);
                 match stand_up.step(&mut self.law, profile, odometry, measured, length_m, dt_s) {
@@ -128,10 +136,7 @@ impl BalanceController {
                         self.phase = Phase::Balance;
                         self.balance(input, measured, None, dt_s)
                     }
-                    Rising::GaveUp => {
-                        self.phase = Phase::Fallen;
-                        return Some(None);
-                    }
+                    Rising::GaveUp => return Outcome::Fallen,
                 }
             }
             Phase::Balance => {
@@ -149,11 +154,14 @@ impl BalanceController {
                 self.balance(input, measured, legs, dt_s)
             }
             Phase::SitDown(sit_down) => {
-                sit_down.step(&mut self.law, profile, odometry, measured, dt_s)?
+                match sit_down.step(&mut self.law, profile, odometry, measured, dt_s) {
+                    Some(torques) => torques,
+                    None => return Outcome::Sits,
+                }
             }
-            Phase::Fallen => return Some(None),
+            Phase::Fallen => return Outcome::Fallen,
         };
-        Some(Some(torques))
+        Outcome::Torques(torques)
     }
 
     /// Balances and follows the pilot. In a jump the legs do what it needs.
@@ -166,13 +174,11 @@ impl BalanceController {
     ) -> Torques {
         let profile = &input.profile.balance;
         let limits = &profile.limits;
-        let wished = within_stick;
         let command = &input.hl_cmd;
-        let airborne = self.law.airborne();
         let (push_n, ground) = if let Some(legs) = legs {
             self.length = legs.length;
             (legs.push_n, legs.ground)
-        } else if airborne {
+        } else if self.law.airborne() {
             self.length = Ramp::at(jump::landing_length_m(profile));
             (None, Ground::Felt)
         } else {
@@ -180,15 +186,14 @@ impl BalanceController {
             self.length.step(wished_m, LENGTH_MPS, dt_s);
             (None, Ground::Felt)
         };
-        self.roll
-            .step(wished(command.roll) * limits.max_roll_rad, ROLL_RPS, dt_s);
+        let roll_rad = within_stick(command.roll) * limits.max_roll_rad;
+        self.roll.step(roll_rad, ROLL_RPS, dt_s);
         let goal = Goal {
             wish: Wish {
-                speed_mps: wished(command.vx) * limits.max_speed_mps,
-                yaw_rps: wished(command.wz) * limits.max_yaw_rps,
+                speed_mps: within_stick(command.vx) * limits.max_speed_mps,
+                yaw_rps: within_stick(command.wz) * limits.max_yaw_rps,
             },
-            length_m: self.length.value,
-            length_mps: self.length.rate,
+            length: self.length,
             roll_rad: self.roll.value,
             pitch_rad: 0.0,
             push_n,

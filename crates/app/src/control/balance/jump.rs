@@ -6,7 +6,7 @@ use crate::{domain::BalanceProfile, kinematics::Leg, math::scalar};
 /// Crouching: rate in m/s and longest time in s.
 const CROUCH_MPS: f32 = 0.5;
 const CROUCH_S: f32 = 0.6;
-/// The legs are down or up when they are this close to their length, in m.
+/// The legs are down when they are this close to their shortest length, in m.
 const CLOSE_M: f32 = 0.012;
 /// Part of the hips' torque that pushes off. The rest keeps the balance.
 const PUSH_PART: f32 = 0.97;

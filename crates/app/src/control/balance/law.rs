@@ -4,6 +4,7 @@ use super::{
     contact::Contact,
     gains::{Gains, STATES},
     measured::Measured,
+    ramp::Ramp,
     reference::{Reference, Wish},
     support::{GRAVITY_MPS2, Stance, Support},
     torques,
@@ -15,12 +16,12 @@ use crate::{
     math::scalar,
 };
 
-/// Trim is learned while the speed differs by less than this from its reference, in m/s, that changes by less than this,
-/// in m/s², and the legs turn by less than this, in rad/s: otherwise the robot catches itself.
+/// A robot that catches itself learns no trim. These are the largest error of speed in m/s, acceleration of the reference in
+/// m/s² and rate of lean in rad/s with which it learns.
 const LEARN_MPS: f32 = 0.6;
 const LEARN_MPS2: f32 = 0.3;
 const LEARN_RPS: f32 = 0.3;
-/// The same for a turn in rad/s, whose centrifugal force would count as an error of the centre of mass.
+/// Largest turn in rad/s with which it learns: a centrifugal force would count as an error of the centre of mass.
 const LEARN_YAW_RPS: f32 = 1.0;
 /// Largest speed error in m/s that counts: a larger one would lean the robot further than it can catch itself.
 const MAX_SPEED_ERROR_MPS: f32 = 1.5;
@@ -43,9 +44,8 @@ const LEAST_PUSH_N: f32 = 2.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Goal {
     pub wish: Wish,
-    /// Mean length of the legs in m and its rate in m/s.
-    pub length_m: f32,
-    pub length_mps: f32,
+    /// Mean length of the legs in m.
+    pub length: Ramp,
     pub roll_rad: f32,
     pub pitch_rad: f32,
     /// Push of each leg in N instead of that which keeps the length.
@@ -54,6 +54,21 @@ pub struct Goal {
     pub learn: bool,
     /// How it is known whether the wheels touch the ground.
     pub ground: Ground,
+}
+
+impl Goal {
+    /// Standing upright on legs of this length, on the ground, while nothing is learned.
+    pub fn upright(length: Ramp) -> Self {
+        Self {
+            wish: Wish::default(),
+            length,
+            roll_rad: 0.0,
+            pitch_rad: 0.0,
+            push_n: None,
+            learn: false,
+            ground: Ground::Touched,
+        }
+    }
 }
 
 /// How it is known whether the wheels touch the ground.
@@ -184,8 +199,7 @@ impl Law {
             self.trim.learn(observed_rad, feedback_nm, dt_s);
         }
         let stance = Stance {
-            length_m: goal.length_m,
-            length_mps: goal.length_mps,
+            length: goal.length,
             roll_rad: goal.roll_rad,
             sideways_mps2: measured.speed_mps * yaw_rps,
         };
@@ -226,16 +240,14 @@ impl Law {
         measured: &Measured,
         goal: &Goal,
     ) -> ([f32; 2], [LegForce; 2]) {
-        let speed_mps = self.reference.speed_mps;
-        self.reference.let_go(speed_mps);
+        self.reference.let_go();
         self.trim.restart(motion(measured));
-        let wanted_rps = speed_mps / scalar::max(odometry.wheel_radius_m, 0.01);
+        let wanted_rps = self.reference.speed_mps / scalar::max(odometry.wheel_radius_m, 0.01);
         let lean_rad = self.trim.lean_rad;
         let lean_nm =
             |rad: f32, rps: f32| AIR_NM_PER_RAD * (lean_rad - rad) - AIR_NMS_PER_RAD * rps;
         let ([left_rad, right_rad], [left_rps, right_rps]) = (measured.lean_rad, measured.lean_rps);
-        let push_n = Support::in_air(&profile.mass, goal.length_m, measured);
-        let [left_n, right_n] = push_n;
+        let [left_n, right_n] = Support::in_air(&profile.mass, goal.length.value, measured);
         // Wheels are too light to turn the robot by their inertia. They keep the speed of the ground.
         let wheels_nm = measured
             .wheel_rps

@@ -82,11 +82,10 @@ impl Reference {
         );
     }
 
-    /// Forgets the place to hold, for instance because the wheels slip.
-    pub fn let_go(&mut self, speed_mps: f32) {
+    /// Forgets the place to hold and keeps the speed.
+    pub fn let_go(&mut self) {
         self.distance_m = 0.0;
         self.accel_mps2 = 0.0;
-        self.speed_mps = speed_mps;
     }
 }
 

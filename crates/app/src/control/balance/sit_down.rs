@@ -1,10 +1,9 @@
 //! Sitting down: fold the legs, let the body sink onto its front edge while the wheels brake it, let go.
 
 use super::{
-    law::{Goal, Ground, Law, Torques},
+    law::{Goal, Law, Torques},
     measured::Measured,
     ramp::Ramp,
-    reference::Wish,
     tip::tip,
 };
 use crate::domain::{BalanceProfile, WheelOdomConfig};
@@ -64,16 +63,7 @@ impl SitDown {
         if self.length.value - limits.fold_length_m < CLOSE_M {
             self.lean_rad = Some(measured.mean_lean_rad());
         }
-        let goal = Goal {
-            wish: Wish::default(),
-            length_m: self.length.value,
-            length_mps: self.length.rate,
-            roll_rad: 0.0,
-            pitch_rad: 0.0,
-            push_n: None,
-            learn: false,
-            ground: Ground::Touched,
-        };
+        let goal = Goal::upright(self.length);
         Some(law.step(profile, odometry, measured, &goal, dt_s))
     }
 }

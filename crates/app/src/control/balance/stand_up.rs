@@ -4,10 +4,9 @@
 //! drive. Long legs lift it, and when they are folded it falls back from the edge and turns on by itself.
 
 use super::{
-    law::{Goal, Ground, Law, Torques},
+    law::{Goal, Law, Torques},
     measured::Measured,
     ramp::Ramp,
-    reference::Wish,
     tip::{held, tip},
 };
 use crate::{
@@ -123,14 +122,9 @@ impl StandUp {
             }
         }
         let goal = Goal {
-            wish: Wish::default(),
-            length_m: self.length.value,
-            length_mps: self.length.rate,
-            roll_rad: 0.0,
             pitch_rad: self.pitch.value,
-            push_n: None,
             learn: self.phase == StandUpPhase::Extend,
-            ground: Ground::Touched,
+            ..Goal::upright(self.length)
         };
         Rising::Torques(law.step(profile, odometry, measured, &goal, dt_s))
     }

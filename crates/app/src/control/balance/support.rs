@@ -1,6 +1,6 @@
 //! The legs carry the body: height, roll, and the load of a turn.
 
-use super::measured::Measured;
+use super::{measured::Measured, ramp::Ramp};
 use crate::{domain::MassModel, math::scalar};
 
 pub const GRAVITY_MPS2: f32 = 9.806_65;
@@ -12,21 +12,22 @@ const ROLL_RPS: f32 = 12.0;
 const ROLL_DAMPING: f32 = 0.8;
 /// Part of the damping that is left in the air, where a leg carries only its wheel.
 const AIR_DAMPING: f32 = 0.4;
-/// Time constants in s in which the load is learned and the legs' lengths follow a wish.
+/// Time constant in s of learning the load.
 const LOAD_TIME_S: f32 = 1.0;
 /// Largest centrifugal acceleration in m/s² that lightens the legs.
 const MAX_SWING_MPS2: f32 = 1.0;
 /// Largest share of its load that a body may have too little or too much.
 const MAX_LOAD_ERROR: f32 = 0.6;
+/// The difference between the legs' pushes is learned as by this natural frequency of roll in rad/s.
+const LEARN_ROLL_RPS: f32 = 6.0;
 /// Largest learned difference between the legs' pushes, as a share of the load.
 const MAX_ROLL_SHARE: f32 = 0.3;
 
 /// What the legs shall do.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stance {
-    /// Mean length of the legs in m and its rate in m/s.
-    pub length_m: f32,
-    pub length_mps: f32,
+    /// Mean length of the legs in m.
+    pub length: Ramp,
     /// Roll in rad.
     pub roll_rad: f32,
     /// Sideways acceleration to the left in m/s².
@@ -60,8 +61,8 @@ impl Support {
         let carried_n = mass.carried_kg * (GRAVITY_MPS2 * cos - swing_mps2);
         let stiffness = mass.carried_kg * HEAVE_RPS * HEAVE_RPS;
         let damping = 2.0 * HEAVE_DAMPING * HEAVE_RPS * mass.carried_kg;
-        let sag_m = stance.length_m - length_m;
-        let heave_n = stiffness * sag_m + damping * (stance.length_mps - measured.length_mps());
+        let sag_m = stance.length.value - length_m;
+        let heave_n = stiffness * sag_m + damping * (stance.length.rate - measured.length_mps());
 
         let height_m = length_m + mass.carried_up_m;
         let inertia = mass.roll_kgm2 + mass.carried_kg * height_m * height_m;
@@ -78,7 +79,7 @@ impl Support {
             let most_n = MAX_LOAD_ERROR * load_n;
             self.load_n = scalar::clamp(self.load_n + stiffness * sag_m * share, -most_n, most_n);
             let most_n = MAX_ROLL_SHARE * load_n;
-            let beyond_n = 36.0 * inertia * roll_error / track_m;
+            let beyond_n = LEARN_ROLL_RPS * LEARN_ROLL_RPS * inertia * roll_error / track_m;
             self.roll_n = scalar::clamp(self.roll_n + beyond_n * share, -most_n, most_n);
         }
         let both_n = 0.5 * (carried_n + self.load_n + heave_n);

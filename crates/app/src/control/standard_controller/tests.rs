@@ -153,6 +153,79 @@ fn a_reset_controller_begins_anew() {
     assert_eq!(first, robot.step(&mut StandardController::default()));
 }
 
+/// How much more torque each hip has after `change` than without it, in N·m: left front, left rear, right front, right rear.
+/// A front hip with less, or a rear hip with more, pushes its leg longer.
+fn hips_after(change: impl Fn(&mut Robot)) -> [f32; 4] {
+    let mut robot = Robot::standing();
+    let mut controller = robot.balancing();
+    let mut tau_nm = || {
+        let joints = robot.step(&mut controller.clone()).cmd.joints;
+        change(&mut robot);
+        joints.map(|joint| joint.tau_nm)
+    };
+    let (before, after) = (tau_nm(), tau_nm());
+    core::array::from_fn(|joint| after[joint] - before[joint])
+}
+
+/// The extra push of the left and the right leg, in N·m of their hips.
+fn pushes([left_front, left_rear, right_front, right_rear]: [f32; 4]) -> [f32; 2] {
+    [left_rear - left_front, right_rear - right_front]
+}
+
+#[test]
+fn a_robot_whose_right_side_is_down_pushes_with_its_right_leg() {
+    for sign in [1.0, -1.0] {
+        let [left, right] = pushes(hips_after(|robot| {
+            let (sin, cos) = (0.05_f32 * sign).sin_cos();
+            robot.estimate.q_wxyz = [cos, sin, 0.0, 0.0];
+        }));
+        assert!(right * sign > 0.2 && left * sign < -0.2, "{left} {right}");
+        let [left, right] = pushes(hips_after(|robot| {
+            robot.sensors.imu.gyro_dps[0] = 30.0 * sign;
+        }));
+        assert!(right * sign > 0.1 && left * sign < -0.1, "{left} {right}");
+    }
+}
+
+/// Thighs that hang lower make a longer leg.
+#[test]
+fn a_robot_that_sags_pushes_with_both_legs() {
+    for sign in [1.0, -1.0] {
+        let [left, right] = pushes(hips_after(|robot| {
+            for (joint, way) in robot
+                .sensors
+                .motor
+                .joints
+                .iter_mut()
+                .zip([1.0, -1.0, 1.0, -1.0])
+            {
+                joint.pos_rad += 0.05 * sign * way;
+            }
+        }));
+        assert!(left * sign > 0.2 && right * sign > 0.2, "{left} {right}");
+    }
+}
+
+/// Both hips of a leg that is ahead of the other get torque backward, those of the other forward.
+#[test]
+fn legs_that_are_apart_are_brought_together() {
+    for sign in [1.0, -1.0] {
+        let [left_front, left_rear, right_front, right_rear] = hips_after(|robot| {
+            for (joint, way) in robot
+                .sensors
+                .motor
+                .joints
+                .iter_mut()
+                .zip([1.0, 1.0, -1.0, -1.0])
+            {
+                joint.pos_rad += 0.05 * sign * way;
+            }
+        });
+        let (left, right) = (left_front + left_rear, right_front + right_rear);
+        assert!(left * sign < -0.1 && right * sign > 0.1, "{left} {right}");
+    }
+}
+
 #[test]
 fn a_robot_without_weight_on_its_legs_is_airborne_within_20_ms() {
     let mut robot = Robot::standing();
@@ -208,10 +281,10 @@ proptest! {
             }
             let output = robot.step(&mut controller);
             for wheel in output.cmd.wheels {
-                prop_assert!(!wheel.current_ma.is_nan());
+                prop_assert!(wheel.current_ma.is_finite());
             }
             for joint in output.cmd.joints {
-                prop_assert!(!joint.tau_nm.is_nan());
+                prop_assert!(joint.tau_nm.is_finite());
             }
         }
     }

@@ -160,6 +160,25 @@ fn a_joint_held_beyond_its_soft_limit_is_not_thrown_back() {
     }
 }
 
+/// The limit is 15 rad/s. Damping, which brakes, stays.
+#[test]
+fn a_joint_as_fast_as_its_limit_gets_no_faster() {
+    for (vel_rps, tau_nm, expected_nm) in [
+        (14.9, 1.0, 1.0),
+        (15.0, 1.0, 0.0),
+        (15.0, -1.0, -1.0),
+        (-15.0, -1.0, 0.0),
+        (-15.0, 1.0, 1.0),
+        (-14.9, -1.0, -1.0),
+    ] {
+        let motion = JointMotion { vel_rps, ..AT_REST };
+        let got = limit_command(&mit(0.0, 0.0, 0.0, 0.0, tau_nm), motion, &CONFIG, MOTOR);
+        assert_eq!(got.tau_nm, expected_nm, "{vel_rps} rad/s");
+        let braked = mit(0.0, 0.0, 0.0, 0.1, 0.0);
+        assert_eq!(limit_command(&braked, motion, &CONFIG, MOTOR), braked);
+    }
+}
+
 #[test]
 fn the_other_modes_are_limited_in_angle_and_speed() {
     let command = JointCommand {

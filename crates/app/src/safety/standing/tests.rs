@@ -43,6 +43,25 @@ fn phase() -> impl Strategy<Value = (StandingInputs, u32)> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 2_000, failure_persistence: None, ..ProptestConfig::default() })]
 
+    /// What an idle robot saves in a tick changes nothing.
+    #[test]
+    fn an_idle_robot_is_no_special_case(phases in prop::collection::vec(phase(), 1..40)) {
+        let mut standing = Standing::default();
+        for (number, (mut inputs, _)) in phases.into_iter().enumerate() {
+            let now_us = 1_000 * number as u64;
+            inputs.balance = BalanceState::Sit;
+            let mut idle = standing.clone();
+            let was_idle = standing.is_idle() && inputs.switch != StandSwitch::Up;
+            let flags = standing.step(&inputs, now_us);
+            if was_idle {
+                idle.idle(inputs.switch, inputs.stopped);
+                prop_assert_eq!(&idle, &standing);
+                prop_assert_eq!(flags.contains(SafetyFlags::TILT), inputs.fallen);
+                prop_assert_eq!(flags.difference(SafetyFlags::TILT), SafetyFlags::NONE);
+            }
+        }
+    }
+
     /// Necessary conditions, told without the state machine: a fall is without consequence only after the switch was
     /// seen down and then up, with no stop since, and while armed for no longer than the time of standing up.
     #[test]

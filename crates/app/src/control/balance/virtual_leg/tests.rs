@@ -51,8 +51,7 @@ fn the_force_is_found_again_from_the_torques() {
     }
 }
 
-/// Level thighs: 0.12 m long, shanks at ±50.6° from level. By hand, each hip carries F/2 · 0.12 m at cot 39.4° …: the knee
-/// is pushed outward and up, so that its torque is F/2 · 0.12 m.
+/// By hand: each shank pushes its knee up with F/2, at the end of a level thigh of 0.12 m, and outward, along that thigh.
 #[test]
 fn level_thighs_carry_the_weight_on_their_length() {
     let leg = Leg::new(&GEOMETRY, [0.0, 0.0], [0.0; 2]);
