@@ -2,7 +2,7 @@
 //! be told without knowing the estimator and the motors' set-up, so each is necessary, not sufficient.
 
 use robot_app::{
-    domain::{BusErrorState, DriveMode, WheelTarget},
+    domain::{BusErrorState, DriveMode, StandSwitch, WheelTarget},
     tick::ControlInputs,
 };
 
@@ -56,6 +56,8 @@ pub struct Rules {
     fault_latched: bool,
     /// The PC has asked the wheels to rest since mode PC was chosen, the robot was stopped or the PC was lost.
     pc_rested: bool,
+    /// The stand switch was down in a frame.
+    seen_down: bool,
 }
 
 impl Rules {
@@ -129,8 +131,8 @@ impl Rules {
         self.cycled && !stopped
     }
 
-    /// In mode PC: whether its command is fresh and it has rested since the last interruption. Of the joints only the
-    /// motors know where they are.
+    /// In mode PC: whether its command is fresh and it has rested since the last interruption, or the pilot asks for
+    /// standing, which needs no PC. Of the joints only the motors know where they are.
     fn pc_may_steer(&mut self, inputs: &ControlInputs<'_>, run: bool, now_us: u64) -> bool {
         let pc = inputs.pc;
         let in_mode = inputs.remote.operator.mode == DriveMode::Pc;
@@ -138,7 +140,10 @@ impl Rules {
         let rests = |wheel: &WheelTarget| wheel.speed_rps.abs() <= 0.05 || wheel.kd == 0.0;
         self.pc_rested &= in_mode && is_fresh && run;
         self.pc_rested |= in_mode && is_fresh && pc.wheels.iter().all(rests);
-        !in_mode || self.pc_rested
+        let stand = inputs.remote.operator.stand;
+        self.seen_down |= stand == StandSwitch::Down;
+        let asks_to_stand = self.seen_down && stand == StandSwitch::Up;
+        !in_mode || self.pc_rested || asks_to_stand
     }
 
     /// False from the end of a second below 19 V until a clearing gesture may have ended it.

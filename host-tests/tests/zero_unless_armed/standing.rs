@@ -1,9 +1,12 @@
 //! A robot that lies has torque only on the pilot's request, for no longer and with no more than standing up allows.
 
-use robot_app::domain::{BalanceState, BalanceStatus, StandSwitch};
+use robot_app::{
+    control::{ChassisControllerInput, ChassisControllerOutput},
+    domain::{BalanceState, BalanceStatus, DriveMode, StandSwitch},
+};
 
 use super::*;
-use crate::controllers::Rogue;
+use crate::{controllers::Rogue, phase::Pc};
 
 /// The time of standing up, and a tick in which the request takes effect.
 const TIME_TICKS: usize = 3_001;
@@ -53,6 +56,74 @@ fn a_lying_robot_stands_up_on_request_for_three_seconds() {
     assert!(counts[..200].iter().all(|counts| *counts == 0));
     assert!(counts.iter().all(|counts| counts.abs() <= STAND_UP_COUNTS));
     assert_eq!(counts.last(), Some(&0));
+}
+
+/// The layout allows 15 A, which are 12,288 counts, and the setting 8 A.
+#[test]
+fn only_a_robot_that_balances_gets_more_current_than_its_setting() {
+    for (state, stand, limit) in [
+        (BalanceState::Sit, StandSwitch::Down, LIMIT_COUNTS - 1),
+        (BalanceState::Balance, StandSwitch::Up, 12_288),
+    ] {
+        let mut bench = Bench::new(Make::Dm4310, rogue(state));
+        // It may have more than an untuned robot that sits.
+        bench.tuned = true;
+        let pilot = |ticks, enabled, stand| Phase {
+            stand,
+            ..good(ticks, enabled)
+        };
+        bench.run(&[
+            pilot(1_000, false, StandSwitch::Down),
+            pilot(100, false, stand),
+            pilot(500, true, stand),
+        ]);
+        assert_eq!(bench.ticks.last().map(|tick| tick.wheels[0]), Some(limit));
+    }
+}
+
+/// Stands while it is asked to and may, with 1 A and another at full stick.
+struct Obedient;
+
+impl ChassisController for Obedient {
+    fn step(&mut self, input: &ChassisControllerInput<'_>) -> ChassisControllerOutput {
+        let stands = input.hl_cmd.stand && input.stand.permits();
+        let (current_ma, state) = if stands {
+            (1_000.0 * (1.0 + input.hl_cmd.vx), BalanceState::Balance)
+        } else {
+            (0.0, BalanceState::Sit)
+        };
+        Rogue {
+            current_ma,
+            ..rogue(state)
+        }
+        .step(input)
+    }
+
+    fn reset(&mut self) {}
+}
+
+/// 1 A is 819 counts. The sticks do not take the place of the PC.
+#[test]
+fn a_robot_whose_pc_is_lost_stands_on_the_spot() {
+    let mut bench = Bench::new(Make::Dm4310, Obedient);
+    let without_pc = |ticks, enabled, stand, vx| Phase {
+        stand,
+        mode: DriveMode::Pc,
+        pc: Pc::Silent,
+        sticks: (vx, 0.0),
+        ..good(ticks, enabled)
+    };
+    bench.run(&[
+        without_pc(1_000, false, StandSwitch::Down, 0.0),
+        without_pc(100, false, StandSwitch::Up, 0.0),
+        without_pc(200, true, StandSwitch::Up, 0.0),
+    ]);
+    let counts = |bench: &Bench<Obedient>| bench.ticks.last().map(|tick| tick.wheels[0]);
+    assert_eq!(counts(&bench), Some(819));
+    bench.run(&[without_pc(200, true, StandSwitch::Up, 1.0)]);
+    assert_eq!(counts(&bench), Some(819));
+    bench.run(&[without_pc(200, true, StandSwitch::Down, 0.0)]);
+    assert_eq!(counts(&bench), Some(0));
 }
 
 /// What the pilot does in a phase.

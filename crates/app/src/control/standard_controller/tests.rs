@@ -153,11 +153,136 @@ fn a_reset_controller_begins_anew() {
     assert_eq!(first, robot.step(&mut StandardController::default()));
 }
 
+/// Angles of the front thighs, in rad, on which the legs are nearly at their shortest and at their longest.
+const SHORT_RAD: f32 = 0.2;
+const LONG_RAD: f32 = -1.25;
+
+impl Robot {
+    /// All joints at this angle of the front ones, mirrored at the rear, with this speed.
+    fn thighs(&mut self, angle_rad: f32, speed_rps: f32) {
+        let joints = &mut self.sensors.motor.joints;
+        for (joint, sign) in joints.iter_mut().zip([1.0, -1.0, 1.0, -1.0]) {
+            joint.pos_rad = sign * angle_rad;
+            joint.vel_rps = sign * speed_rps;
+        }
+    }
+
+    fn carries(&mut self, nm: f32) {
+        let joints = &mut self.sensors.motor.joints;
+        for (joint, sign) in joints.iter_mut().zip([-1.0, 1.0, -1.0, 1.0]) {
+            joint.torque_nm = sign * nm;
+        }
+    }
+}
+
+/// Crouching ends on short legs, the push on long ones. The legs then extend at 1 m/s, from which it flies for a tenth of a second at least.
+#[test]
+fn a_jump_crouches_pushes_flies_and_lands() {
+    let mut robot = Robot::standing();
+    robot.carries(1.9);
+    let mut controller = robot.balancing();
+    robot.command.jump = true;
+    let state = |output: &ChassisControllerOutput| (output.balance.state, output.balance.airborne);
+    for _ in 0..100 {
+        let crouching = robot.step(&mut controller);
+        assert_eq!(state(&crouching), (BalanceState::Jump, false));
+    }
+    robot.thighs(SHORT_RAD, 0.0);
+    robot.step(&mut controller);
+    let pushing = robot.step(&mut controller);
+    assert_eq!(state(&pushing), (BalanceState::Jump, false));
+    let [front, rear, ..] = pushing.cmd.joints.map(|joint| joint.tau_nm);
+    let most_nm = robots::FIVEBAR.balance.limits.hip_nm;
+    assert!(
+        front < -0.8 * most_nm && rear > 0.8 * most_nm,
+        "{front} {rear}"
+    );
+    robot.thighs(LONG_RAD, -12.0);
+    robot.step(&mut controller);
+    let flying = robot.step(&mut controller);
+    assert_eq!(state(&flying), (BalanceState::Jump, true));
+    let [front, rear, ..] = flying.cmd.joints.map(|joint| joint.tau_nm);
+    assert!(
+        front > 0.2 && rear < -0.2,
+        "the legs are drawn in: {front} {rear}"
+    );
+    // On the ground again, with the weight on the legs.
+    robot.thighs(-0.3, 0.0);
+    let landed =
+        (0..1_000).position(|_| robot.step(&mut controller).balance.state == BalanceState::Balance);
+    assert!((50..400).contains(&landed.expect("landed")), "{landed:?}");
+    for _ in 0..100 {
+        let held = robot.step(&mut controller);
+        assert_eq!(
+            held.balance.state,
+            BalanceState::Balance,
+            "a button held makes one jump"
+        );
+    }
+    robot.command.jump = false;
+    robot.step(&mut controller);
+    robot.command.jump = true;
+    assert_eq!(
+        robot.step(&mut controller).balance.state,
+        BalanceState::Jump
+    );
+}
+
+/// It lies on its nose, and nothing that it does helps.
+#[test]
+fn a_robot_that_does_not_get_up_gives_up_after_2600_ms() {
+    let mut robot = Robot::standing();
+    let mut controller = StandardController::default();
+    robot.pitched(1.5);
+    let ms = (0..4_000).position(|_| {
+        let output = robot.step(&mut controller);
+        output.balance.state == BalanceState::Fallen
+            && output.cmd == crate::domain::ChassisCommand::STOP
+    });
+    assert!((2_590..2_610).contains(&ms.expect("gave up")), "{ms:?}");
+}
+
+/// The legs fold at 0.2 m/s. The robot lets go once its body has sunk onto its front edge.
+#[test]
+fn a_robot_that_is_no_longer_asked_to_stand_sits_down() {
+    let mut robot = Robot::standing();
+    let mut controller = robot.balancing();
+    robot.command.stand = false;
+    for _ in 0..200 {
+        let output = robot.step(&mut controller);
+        assert_eq!(output.balance.state, BalanceState::SitDown);
+    }
+    robot.thighs(SHORT_RAD, 0.0);
+    for _ in 0..500 {
+        let output = robot.step(&mut controller);
+        assert_eq!(output.balance.state, BalanceState::SitDown);
+    }
+    robot.pitched(0.65);
+    let output = robot.step(&mut controller);
+    assert_eq!(output, robot.step(&mut DefaultController::default()));
+}
+
+/// The right motor sits mirrored.
+#[test]
+fn a_left_turn_drives_the_right_wheel_forward() {
+    for sign in [1.0, -1.0] {
+        let mut robot = Robot::standing();
+        let mut controller = robot.balancing();
+        robot.command.wz = sign;
+        for _ in 0..50 {
+            robot.step(&mut controller);
+        }
+        let [left, right] = robot.step(&mut controller).cmd.wheels;
+        let (left_ma, right_ma) = (left.current_ma * sign, -right.current_ma * sign);
+        assert!(left_ma < -500.0 && right_ma > 500.0, "{left_ma} {right_ma}");
+    }
+}
+
 /// How much more torque each hip has after `change` than without it, in N·m: left front, left rear, right front, right rear.
 /// A front hip with less, or a rear hip with more, pushes its leg longer.
 fn hips_after(change: impl Fn(&mut Robot)) -> [f32; 4] {
     let mut robot = Robot::standing();
-    let mut controller = robot.balancing();
+    let controller = robot.balancing();
     let mut tau_nm = || {
         let joints = robot.step(&mut controller.clone()).cmd.joints;
         change(&mut robot);
