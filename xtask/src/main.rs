@@ -1,16 +1,14 @@
-//! The developer commands: `cargo xtask sim`, `soak`, `robot`, `replay`, `data`, `bench`, `run` and `test`.
+//! The developer commands: `cargo xtask sim`, `soak`, `robot`, `replay`, `envelope`, `data`, `bench`, `run` and
+//! `test`.
 
 mod bench;
 mod board;
 mod emulator;
-mod envelope;
 mod firmware;
 mod forwarded_args;
 mod host_program;
 mod job;
 mod prerequisites;
-mod replay;
-mod robot;
 mod test;
 mod tool;
 mod toolchain;
@@ -55,10 +53,10 @@ fn main() -> ExitCode {
     let outcome = match Args::parse().command {
         Command::Sim(args) => emulator::run("sim", &args),
         Command::Soak(args) => emulator::run("soak", &args),
-        Command::Robot(args) => robot::run(&args),
-        Command::Replay(args) => replay::run("replay", &args),
-        Command::Envelope(args) => envelope::run(&args),
-        Command::Data(args) => replay::run("data", &args),
+        Command::Robot(args) => host_program::run("robot-tool", "robot", &args),
+        Command::Replay(args) => host_program::run("robot-replay", "replay", &args),
+        Command::Envelope(args) => host_program::run("robot-envelope", "envelope", &args),
+        Command::Data(args) => host_program::run("robot-replay", "data", &args),
         Command::Bench(args) => bench::run(&args),
         Command::Run(args) => board::run(&args),
         Command::Test => test::run(),
