@@ -20,10 +20,10 @@ mod stability;
 pub use discrete::DiscreteModel;
 pub use margins::{Margins, extra_delay_ticks, margins};
 pub use model::{Equilibrium, GainMatrix, INPUTS, InputMatrix, LinearModel, STATES, StateMatrix};
-pub use regulator::{Regulator, TICK_S, delay_ticks};
+pub use regulator::{Regulator, delay_ticks};
 pub use response::{Event, Sample, response};
-pub use schedule::{COEFFICIENTS, EXTRA_DELAY_TICKS, Schedule, lengths_m, mirrored};
-pub use stability::{closed_loop, is_stable, poles};
+pub use schedule::{COEFFICIENTS, Schedule, lengths_m};
+pub use stability::poles;
 
 /// Why there are no gains for a robot.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -110,3 +110,41 @@ fn open_loop(
     };
     (0..STATES).map(|j| states[j] * gains[(input, j)]).sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use robot_description::Robot;
+
+    use super::*;
+    use crate::regulator::{Regulator, delay_ticks};
+
+    /// Gains are bounded by whether the loop holds in time, phases by the frequency response. At a bound the response,
+    /// times the factor, passes through −1.
+    #[test]
+    fn the_response_passes_through_minus_one_where_the_loop_ceases_to_hold() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots/fivebar.toml");
+        let robot = Robot::read(Path::new(file)).expect("a robot of this repository");
+        let regulator = Regulator::new(&robot, [0.2; 2]).expect("gains");
+        let (model, gains) = (&regulator.discrete, &regulator.gains);
+        // So late that the bounds lie at frequencies where the delay matters.
+        let delay = delay_ticks(&robot) + 8;
+        let mut bounds = 0;
+        for (input, margins) in margins(model, gains, delay).iter().enumerate() {
+            for factor in [margins.least_gain, margins.most_gain] {
+                if factor == MOST_FACTOR || factor == 1.0 / MOST_FACTOR {
+                    continue;
+                }
+                let distances = frequencies_rps()
+                    .map(|rps| (open_loop(model, gains, delay, input, rps) * factor + 1.0).norm());
+                let nearest = distances.fold(f64::INFINITY, f64::min);
+                assert!(nearest < 0.06, "input {input}, {factor}: {nearest}");
+                bounds += 1;
+            }
+            let least_rad = 2.0 * (margins.modulus / 2.0).asin();
+            assert!(margins.phase_rad > least_rad - 0.02, "{margins:?}");
+        }
+        assert!(bounds >= 4, "{bounds}");
+    }
+}

@@ -11,7 +11,7 @@ use crate::{
 };
 
 /// Time in s from one control tick to the next.
-pub const TICK_S: f64 = 0.001;
+pub(crate) const TICK_S: f64 = 0.001;
 
 /// Returns the delay of the robot's file in whole ticks.
 pub fn delay_ticks(robot: &Robot) -> usize {

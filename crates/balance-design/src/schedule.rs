@@ -15,7 +15,7 @@ pub const COEFFICIENTS: usize = 6;
 /// Lengths a leg at which gains are designed and fitted.
 const FITTED: usize = 7;
 /// The loop must hold with torques that come so much later than the file says.
-pub const EXTRA_DELAY_TICKS: usize = 5;
+const EXTRA_DELAY_TICKS: usize = 5;
 
 /// Each of the gains is a quadratic function of l and r, by which the left and the right leg are longer than `centre_m`.
 #[derive(Clone, Debug)]
@@ -122,7 +122,7 @@ pub fn lengths_m(min_m: f64, max_m: f64, count: usize) -> Vec<f64> {
 }
 
 /// Returns the gains of the robot's mirror image: left and right change places, and yaw its sign.
-pub fn mirrored(gains: &GainMatrix) -> GainMatrix {
+fn mirrored(gains: &GainMatrix) -> GainMatrix {
     let input = [1, 0, 3, 2];
     let state = [0, 1, 2, 3, 6, 7, 4, 5, 8, 9];
     GainMatrix::from_fn(|i, j| {

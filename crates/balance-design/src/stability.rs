@@ -12,7 +12,7 @@ use crate::{
 const MOST_DOUBLINGS: usize = 17;
 
 /// Returns what a tick does to the states and the torques that are on their way: newest torque last.
-pub fn closed_loop(model: &DiscreteModel, gains: &GainMatrix, delay_ticks: usize) -> DMatrix<f64> {
+fn closed_loop(model: &DiscreteModel, gains: &GainMatrix, delay_ticks: usize) -> DMatrix<f64> {
     let size = STATES + INPUTS * delay_ticks;
     let mut matrix = DMatrix::zeros(size, size);
     matrix
@@ -37,7 +37,7 @@ pub fn closed_loop(model: &DiscreteModel, gains: &GainMatrix, delay_ticks: usize
 }
 
 /// True if every motion of the loop vanishes.
-pub fn is_stable(model: &DiscreteModel, gains: &GainMatrix, delay_ticks: usize) -> bool {
+pub(crate) fn is_stable(model: &DiscreteModel, gains: &GainMatrix, delay_ticks: usize) -> bool {
     let mut matrix = closed_loop(model, gains, delay_ticks);
     for _ in 0..MOST_DOUBLINGS {
         matrix = &matrix * &matrix;

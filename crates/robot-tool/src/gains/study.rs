@@ -176,7 +176,6 @@ fn pushed(push_mps: f64) -> Event {
         acceleration_mps2: 3.0,
         push_mps,
         friction: FRICTION,
-        extra_delay_ticks: 0,
         position_error_m: MOST_POSITION_ERROR_M,
         speed_error_mps: MOST_SPEED_ERROR_MPS,
     }
