@@ -12,7 +12,7 @@ use crate::Robot;
 
 /// How bad a finding is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Severity {
+pub(crate) enum Severity {
     /// Such a robot can be built, but will not do well.
     Warning,
     /// Such a file is refused.
@@ -21,17 +21,17 @@ pub enum Severity {
 
 /// Something about a field that is not as it should be.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Finding {
+pub(crate) struct Finding {
     /// How bad it is.
-    pub severity: Severity,
+    pub(crate) severity: Severity,
     /// The field, such as `legs.thigh.mass_kg`.
-    pub field: &'static str,
+    pub(crate) field: &'static str,
     /// Its value, or what follows from it.
-    pub value: String,
+    pub(crate) value: String,
     /// What is allowed.
-    pub allowed: String,
+    pub(crate) allowed: String,
     /// What to do.
-    pub cure: &'static str,
+    pub(crate) cure: &'static str,
 }
 
 impl fmt::Display for Finding {
@@ -51,39 +51,17 @@ impl fmt::Display for Finding {
 struct Findings(Vec<Finding>);
 
 impl Findings {
-    /// Notes an error unless `holds`. One for each field and rule is enough.
-    fn must(
-        &mut self,
-        holds: bool,
-        field: &'static str,
-        value: String,
-        allowed: impl Into<String>,
-        cure: &'static str,
-    ) {
-        self.note(Severity::Error, holds, field, value, allowed.into(), cure);
-    }
-
-    /// Notes a warning unless `holds`.
-    fn should(
-        &mut self,
-        holds: bool,
-        field: &'static str,
-        value: String,
-        allowed: impl Into<String>,
-        cure: &'static str,
-    ) {
-        self.note(Severity::Warning, holds, field, value, allowed.into(), cure);
-    }
-
+    /// Notes a finding unless `holds`. One for each field and rule is enough.
     fn note(
         &mut self,
         severity: Severity,
         holds: bool,
         field: &'static str,
         value: String,
-        allowed: String,
+        allowed: impl Into<String>,
         cure: &'static str,
     ) {
+        let allowed = allowed.into();
         let known = |it: &Finding| it.field == field && it.allowed == allowed;
         if !holds && !self.0.iter().any(known) {
             self.0.push(Finding {
@@ -96,6 +74,25 @@ impl Findings {
         }
     }
 
+    /// Notes an error unless a value is more than 0 and at most `most`, which `limit` tells with its unit and reason.
+    fn up_to(
+        &mut self,
+        most: f64,
+        limit: &str,
+        field: &'static str,
+        (value, unit): (f64, &str),
+        cure: &'static str,
+    ) {
+        self.note(
+            Severity::Error,
+            value > 0.0 && value <= most,
+            field,
+            format!("{value} {unit}"),
+            format!("more than 0, at most {limit}"),
+            cure,
+        );
+    }
+
     fn has_errors(&self) -> bool {
         self.0.iter().any(|it| it.severity == Severity::Error)
     }
@@ -104,8 +101,9 @@ impl Findings {
 impl Robot {
     /// Checks everything that can be known without building the robot. Figures that follow from others are checked only if
     /// those are sound.
-    pub fn check(&self) -> Vec<Finding> {
+    pub(crate) fn check(&self) -> Vec<Finding> {
         let mut findings = Findings::default();
+        name(self, &mut findings);
         bodies::check(self, &mut findings);
         motors::check(self, &mut findings);
         buses::check(self, &mut findings);
@@ -118,6 +116,22 @@ impl Robot {
         }
         findings.0
     }
+}
+
+/// Files, pages and constants are named after it.
+fn name(robot: &Robot, findings: &mut Findings) {
+    let name = &robot.name;
+    findings.note(
+        Severity::Error,
+        !name.is_empty()
+            && name
+                .chars()
+                .all(|it| it.is_alphanumeric() || it == '-' || it == '_'),
+        "name",
+        format!("{name:?}"),
+        "letters, digits, hyphens and underscores",
+        "Enter the file's name without .toml.",
+    );
 }
 
 #[cfg(test)]

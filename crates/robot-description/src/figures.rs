@@ -10,8 +10,8 @@ use crate::{
     five_bar::{FiveBar, Margins},
 };
 
-/// Acceleration of gravity in m/s².
-pub(crate) const GRAVITY_MPS2: f64 = 9.81;
+/// Standard gravity in m/s².
+pub(crate) const GRAVITY_MPS2: f64 = 9.80665;
 /// Bits of a standard frame with eight bytes, all possible stuff bits and the intermission.
 const FRAME_BITS: f64 = 135.0;
 const BITS_PER_SECOND: f64 = 1e6;
@@ -36,6 +36,8 @@ pub struct Stand {
 pub struct Figures {
     /// Standing at some heights, lowest first.
     pub stands: Vec<Stand>,
+    /// Force in N along each leg of a robot that stands still.
+    pub carried_n: f64,
     /// Force in N along a leg at its shortest with the hips at their torque limit.
     pub push_n: f64,
     /// The highest jump.
@@ -68,6 +70,7 @@ impl Robot {
             stands: heights(self)
                 .map(|length_m| stand(self, length_m))
                 .collect(),
+            carried_n: carried_n(self),
             push_n: self.joints.torque_limit_nm / leverage(self, self.legs.min_m),
             jump: jump(self),
             top_speed_mps: top_speed_mps(self),
@@ -99,9 +102,12 @@ fn leverage(robot: &Robot, length_m: f64) -> f64 {
 }
 
 /// The hips carry what is above them; the wheels and the lower ends of the shanks stand by themselves.
+fn carried_n(robot: &Robot) -> f64 {
+    robot.split_mass().carried_kg * GRAVITY_MPS2 / 2.0
+}
+
 fn stand(robot: &Robot, length_m: f64) -> Stand {
-    let force_n = robot.split_mass().carried_kg * GRAVITY_MPS2 / 2.0;
-    let hip_nm = force_n * leverage(robot, length_m);
+    let hip_nm = carried_n(robot) * leverage(robot, length_m);
     Stand {
         length_m,
         hip_nm,

@@ -1,8 +1,11 @@
-//! Statics and limits of a five-bar leg, for the checks.
+//! Geometry, statics and limits of a five-bar leg, for the checks and for models of other programs.
 //!
 //! Everything is in the leg's plane: x forward, z up, from the hip centre.
 
-use crate::{Carrier, Legs};
+use crate::{
+    Legs,
+    parts::{ENDS, out},
+};
 
 /// Lengths of a leg.
 #[derive(Clone, Copy, Debug)]
@@ -10,6 +13,12 @@ pub(crate) struct FiveBar {
     half_gap_m: f64,
     thigh_m: f64,
     shank_m: f64,
+}
+
+/// Both thighs from hip to knee and both shanks from knee to axle, front before rear.
+struct Links {
+    thighs: [[f64; 2]; 2],
+    shanks: [[f64; 2]; 2],
 }
 
 /// How far a pose is from those in which the leg locks or gives way.
@@ -21,6 +30,12 @@ pub(crate) struct Margins {
     /// Smaller angle in rad of the two between a thigh and its shank, counted to the nearer of folded and straight. It is
     /// negative beyond. At 0 a hip has no leverage on the axle.
     pub(crate) at_knee_rad: f64,
+}
+
+impl Links {
+    fn knees_rad(&self) -> [f64; 2] {
+        [0, 1].map(|end| angle(self.thighs[end], self.shanks[end]))
+    }
 }
 
 impl FiveBar {
@@ -36,22 +51,21 @@ impl FiveBar {
     /// straight down, forward positive. `None` if the links do not reach.
     pub(crate) fn hips_rad(&self, length_m: f64, lean_rad: f64) -> Option<[f64; 2]> {
         let (x, z) = (length_m * lean_rad.sin(), -length_m * lean_rad.cos());
-        let direction = |end: Carrier| {
-            let out = sign(end);
+        let direction = |out: f64| {
             let (dx, dz) = (x - out * self.half_gap_m, z);
             let distance = dx.hypot(dz);
             let [l1, l2] = [self.thigh_m, self.shank_m];
             let cosine = (distance * distance + l1 * l1 - l2 * l2) / (2.0 * distance * l1);
             (cosine.abs() < 1.0).then(|| dz.atan2(dx) + out * cosine.acos())
         };
-        let front_rad = direction(Carrier::Front)?;
+        let [front, rear] = ENDS.map(|end| direction(out(end)));
         // The rear thigh at angle 0 points backward.
-        let rear_rad = direction(Carrier::Rear)? + std::f64::consts::PI;
+        let [front_rad, rear_rad] = [front?, rear? + std::f64::consts::PI];
         Some([front_rad, rear_rad].map(wrapped))
     }
 
-    /// Margins of the pose with these hip angles. `None` if the shanks do not meet.
-    pub(crate) fn margins(&self, [front_rad, rear_rad]: [f64; 2]) -> Option<Margins> {
+    /// The links with these hip angles, the knees outward. `None` if the shanks do not meet.
+    fn links(&self, [front_rad, rear_rad]: [f64; 2]) -> Option<Links> {
         let hips = [[self.half_gap_m, 0.0], [-self.half_gap_m, 0.0]];
         let thighs = [
             [front_rad.cos(), front_rad.sin()],
@@ -69,14 +83,23 @@ impl FiveBar {
         // The lower one of the two places in which the shanks meet.
         let axle = add(middle, [height * dz / apart, -height * dx / apart]);
         let shanks = [subtract(axle, front), subtract(axle, rear)];
-        let between = angle(shanks[0], shanks[1]);
-        let at_knees = [
-            nearest(-angle(thighs[0], shanks[0])),
-            nearest(angle(thighs[1], shanks[1])),
-        ];
+        Some(Links { thighs, shanks })
+    }
+
+    /// Angles in rad of the front and the rear shank relative to their thighs, about −y: 0 where a shank continues its thigh.
+    /// `None` if the shanks do not meet.
+    pub(crate) fn knees_rad(&self, hips_rad: [f64; 2]) -> Option<[f64; 2]> {
+        Some(self.links(hips_rad)?.knees_rad())
+    }
+
+    /// Margins of the pose with these hip angles. `None` if the shanks do not meet.
+    pub(crate) fn margins(&self, hips_rad: [f64; 2]) -> Option<Margins> {
+        let links = self.links(hips_rad)?;
+        let [front, rear] = links.shanks;
+        let [front_knee_rad, rear_knee_rad] = links.knees_rad();
         Some(Margins {
-            between_shanks_rad: nearest(between),
-            at_knee_rad: at_knees[0].min(at_knees[1]),
+            between_shanks_rad: nearest(angle(front, rear)),
+            at_knee_rad: nearest(-front_knee_rad).min(nearest(rear_knee_rad)),
         })
     }
 
@@ -88,13 +111,6 @@ impl FiveBar {
         let shank_down_m = length_m - self.thigh_m * down_rad.sin();
         let thigh_m = self.thigh_m;
         Some((thigh_m * down_rad.cos() + out_m * thigh_m * down_rad.sin() / shank_down_m) / 2.0)
-    }
-}
-
-fn sign(end: Carrier) -> f64 {
-    match end {
-        Carrier::Front => 1.0,
-        Carrier::Rear => -1.0,
     }
 }
 

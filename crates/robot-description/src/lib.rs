@@ -23,7 +23,6 @@ mod stance;
 mod urdf;
 mod xml;
 
-pub use check::{Finding, Severity};
 pub use error::{Located, RobotError};
 pub use figures::{Figures, Jump, Stand};
 pub use mass::MassSplit;

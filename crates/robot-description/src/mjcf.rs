@@ -8,6 +8,7 @@ mod tree;
 
 use crate::{
     Carrier, Robot,
+    figures::GRAVITY_MPS2,
     parts::{SIDES, Side, limbs, part, wheel_name},
     stance::Stance,
     xml::Element,
@@ -29,7 +30,6 @@ const LOOP_SOLREF: [f64; 2] = [2.0 * STEP_S, 1.0];
 const LOOP_SOLIMP: [f64; 5] = [0.9999, 0.9999, 0.001, 0.5, 2.0];
 /// Of sliding as in the plant, of twisting and rolling as MuJoCo has it unless told otherwise.
 const FRICTION: [f64; 3] = [0.8, 0.005, 0.0001];
-const STANDARD_GRAVITY_MPS2: f64 = 9.80665;
 const CLAMPED_HEIGHT_M: f64 = 1.0;
 
 /// Bits of what touches what: the floor touches the robot, and the robot not itself.
@@ -82,7 +82,7 @@ fn default_contact() -> Element {
 fn option() -> Element {
     Element::new("option")
         .numbers("timestep", &[STEP_S])
-        .numbers("gravity", &[0.0, 0.0, -STANDARD_GRAVITY_MPS2])
+        .numbers("gravity", &[0.0, 0.0, -GRAVITY_MPS2])
         .text("integrator", "implicitfast")
         .text("cone", "elliptic")
         .numbers("impratio", &[10.0])

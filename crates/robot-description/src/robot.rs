@@ -27,13 +27,9 @@ pub struct Robot {
 impl Robot {
     /// Mass of everything in kg.
     pub fn total_mass_kg(&self) -> f64 {
-        self.body.mass_kg + 2.0 * self.leg_mass_kg() + 2.0 * self.wheels.mass_kg
-    }
-
-    /// Mass in kg of one leg: its four links and the wheel's motor on one of them, without what turns with the wheel.
-    pub fn leg_mass_kg(&self) -> f64 {
         let links_kg = self.legs.thigh.mass_kg + self.legs.shank.mass_kg;
-        2.0 * links_kg + self.wheels.motor_mass_kg
+        let leg_kg = 2.0 * links_kg + self.wheels.motor_mass_kg;
+        self.body.mass_kg + 2.0 * leg_kg + 2.0 * self.wheels.mass_kg
     }
 }
 
@@ -245,6 +241,7 @@ pub struct Limits {
     pub max_roll_rad: f64,
     /// Lowest and highest leg length in m while balancing.
     pub height_m: [f64; 2],
-    /// Height in m by which a jump is to clear the ground under the wheels.
+    /// Height in m by which a jump is to clear the ground under the wheels. The check compares it with what the hips give; a
+    /// jump is always as high as they can.
     pub jump_m: f64,
 }

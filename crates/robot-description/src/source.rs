@@ -4,7 +4,10 @@ use std::{fs, ops::Range, path::Path};
 
 use toml::de::DeTable;
 
-use crate::{Finding, Located, Robot, RobotError, Severity};
+use crate::{
+    Located, Robot, RobotError,
+    check::{Finding, Severity},
+};
 
 /// A robot's file that can be used, with what is not as good as it could be.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,20 +1,16 @@
 //! The five-bar closed at a place of the axle.
 
-use crate::{Carrier, Legs};
+use crate::{Carrier, Legs, five_bar::FiveBar};
 
-/// Angles of one leg in rad.
-///
-/// Each is that of a link, or of a shank relative to its thigh, about −y. A knee is at 0 where the shank continues the
-/// thigh.
+/// Angles of one leg.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stance {
-    /// Of the front hip and knee.
-    pub(crate) front: Bend,
-    /// Of the rear hip and knee.
-    pub(crate) rear: Bend,
+    front: Bend,
+    rear: Bend,
 }
 
-/// Angles of a thigh and the shank below it in rad.
+/// Angles in rad of a thigh, and of the shank below it relative to it, about −y. A knee is at 0 where the shank continues
+/// the thigh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Bend {
     pub(crate) hip_rad: f64,
@@ -22,22 +18,17 @@ pub(crate) struct Bend {
 }
 
 impl Stance {
-    /// The leg with its axle `length_m` straight below the hip centre, its knees outward.
+    /// The leg with its axle `length_m` straight below the hip centre, its knees outward. Angles are not numbers where the
+    /// links do not reach.
     pub(crate) fn of_length(legs: &Legs, length_m: f64) -> Self {
-        let [l1, l2] = [legs.thigh.length_m, legs.shank.length_m];
-        // From the front hip.
-        let [x, z] = [-legs.hip_gap_m / 2.0, -length_m];
-        let to_axle = x.hypot(z);
-        let at_hip = ((l1 * l1 + to_axle * to_axle - l2 * l2) / (2.0 * l1 * to_axle)).acos();
-        let at_knee = ((l1 * l1 + l2 * l2 - to_axle * to_axle) / (2.0 * l1 * l2)).acos();
-        let front = Bend {
-            hip_rad: z.atan2(x) + at_hip,
-            knee_rad: at_knee - std::f64::consts::PI,
-        };
-        let rear = Bend {
-            hip_rad: -front.hip_rad,
-            knee_rad: -front.knee_rad,
-        };
+        let leg = FiveBar::new(legs);
+        let nowhere = [f64::NAN; 2];
+        let hips_rad = leg.hips_rad(length_m, 0.0).unwrap_or(nowhere);
+        let knees_rad = leg.knees_rad(hips_rad).unwrap_or(nowhere);
+        let [front, rear] = [0, 1].map(|end| Bend {
+            hip_rad: hips_rad[end],
+            knee_rad: knees_rad[end],
+        });
         Self { front, rear }
     }
 

@@ -1,6 +1,9 @@
 //! What the robot can do: stand, balance, drive, jump.
 
-use super::Findings;
+use super::{
+    Findings,
+    Severity::{Error, Warning},
+};
 use crate::{Robot, figures};
 
 /// Share of the continuous torque above which a hip gets hot in a long stand on uneven ground.
@@ -26,14 +29,16 @@ fn standing(robot: &Robot, findings: &mut Findings) {
         worst.hip_nm,
         100.0 * worst.share
     );
-    findings.must(
+    findings.note(
+        Error,
         worst.share <= 1.0,
         "joints.continuous_nm",
         value.clone(),
         "100 %",
         "Make the robot lighter, its thighs shorter, or take stronger motors.",
     );
-    findings.should(
+    findings.note(
+        Warning,
         worst.share > 1.0 || worst.share <= WARM,
         "joints.continuous_nm",
         value,
@@ -41,7 +46,8 @@ fn standing(robot: &Robot, findings: &mut Findings) {
         "Make the robot lighter, its thighs shorter, or stand lower.",
     );
     let clearance_m = figures::clearance_m(robot);
-    findings.must(
+    findings.note(
+        Error,
         clearance_m > 0.0,
         "control.limits.height_m",
         format!("the body is {clearance_m:.3} m above the ground at the lowest height"),
@@ -52,7 +58,8 @@ fn standing(robot: &Robot, findings: &mut Findings) {
 
 fn centre(robot: &Robot, findings: &mut Findings) {
     let lean_rad = figures::leans_rad(robot, figures::middle_m(robot));
-    findings.should(
+    findings.note(
+        Warning,
         lean_rad[1].min(-lean_rad[0]) >= MIN_LEAN_RAD,
         "joints.range_rad",
         format!(
@@ -65,7 +72,8 @@ fn centre(robot: &Robot, findings: &mut Findings) {
     // With the legs folded the axles must come under the centre of mass.
     let needed_rad = figures::folded_lean_rad(robot);
     let [back_rad, fore_rad] = figures::leans_rad(robot, robot.legs.min_m);
-    findings.must(
+    findings.note(
+        Error,
         (back_rad..=fore_rad).contains(&needed_rad),
         "body.com_m",
         format!(
@@ -76,7 +84,8 @@ fn centre(robot: &Robot, findings: &mut Findings) {
         "Move the battery, or check the sign: forward is positive.",
     );
     let sideways_m = robot.body.com_m[1];
-    findings.should(
+    findings.note(
+        Warning,
         sideways_m.abs() <= 0.1 * robot.wheels.track_m,
         "body.com_m",
         format!("{sideways_m} m to the left"),
@@ -88,29 +97,28 @@ fn centre(robot: &Robot, findings: &mut Findings) {
 fn speeds(robot: &Robot, findings: &mut Findings) {
     let top_mps = figures::top_speed_mps(robot);
     let speed_mps = robot.control.limits.max_speed_mps;
-    findings.must(
-        speed_mps > 0.0 && speed_mps <= TOP * top_mps,
+    let most_mps = TOP * top_mps;
+    findings.up_to(
+        most_mps,
+        &format!("{most_mps:.2} m/s, 90 % of the unloaded wheel's {top_mps:.2}"),
         "control.limits.max_speed_mps",
-        format!("{speed_mps} m/s"),
-        format!("more than 0, at most {:.2} m/s, 90 % of the unloaded wheel's {top_mps:.2}", TOP * top_mps),
+        (speed_mps, "m/s"),
         "Ask for less, or take larger wheels: at its top speed a motor has no torque left to balance.",
     );
     let yaw_rps = robot.control.limits.max_yaw_rps;
-    let top_rps = top_mps / (robot.wheels.track_m / 2.0);
-    findings.must(
-        yaw_rps > 0.0 && yaw_rps <= TOP * top_rps,
+    let most_rps = most_mps / (robot.wheels.track_m / 2.0);
+    findings.up_to(
+        most_rps,
+        &format!("{most_rps:.1} rad/s, 90 % of what unloaded wheels turn it"),
         "control.limits.max_yaw_rps",
-        format!("{yaw_rps} rad/s"),
-        format!(
-            "more than 0, at most {:.1} rad/s, 90 % of what unloaded wheels turn it",
-            TOP * top_rps
-        ),
+        (yaw_rps, "rad/s"),
         "Ask for less.",
     );
     let travel_m = robot.legs.max_m - robot.legs.min_m;
     let most_rad = (travel_m / robot.wheels.track_m).atan();
     let roll_rad = robot.control.limits.max_roll_rad;
-    findings.must(
+    findings.note(
+        Error,
         (0.0..=most_rad).contains(&roll_rad),
         "control.limits.max_roll_rad",
         format!("{roll_rad} rad"),
@@ -121,7 +129,8 @@ fn speeds(robot: &Robot, findings: &mut Findings) {
 
 fn jump(robot: &Robot, findings: &mut Findings) {
     let jump = figures::jump(robot);
-    findings.must(
+    findings.note(
+        Error,
         robot.control.limits.jump_m >= 0.0 && robot.control.limits.jump_m <= jump.clearance_m,
         "control.limits.jump_m",
         format!("{} m", robot.control.limits.jump_m),
@@ -135,7 +144,8 @@ fn jump(robot: &Robot, findings: &mut Findings) {
 
 fn wishes(robot: &Robot, findings: &mut Findings) {
     let control = &robot.control;
-    findings.must(
+    findings.note(
+        Error,
         (0.0..=0.02).contains(&control.delay_s),
         "control.delay_s",
         format!("{} s", control.delay_s),
@@ -143,14 +153,16 @@ fn wishes(robot: &Robot, findings: &mut Findings) {
         "Enter seconds; 0.003 is usual here.",
     );
     let fine = |weight: &f64| *weight >= 0.0 && weight.is_finite();
-    findings.must(
+    findings.note(
+        Error,
         control.weights.q.iter().all(fine),
         "control.weights.q",
         format!("{:?}", control.weights.q),
         "ten figures of at least 0",
         "A larger weight keeps that state smaller.",
     );
-    findings.must(
+    findings.note(
+        Error,
         control
             .weights
             .r
@@ -166,7 +178,8 @@ fn wishes(robot: &Robot, findings: &mut Findings) {
         from_centre_m.abs() <= robot.body.box_m[axis] / 2.0
     });
     let [x, y, z] = robot.imu.place_m;
-    findings.must(
+    findings.note(
+        Error,
         inside,
         "imu.place_m",
         format!("{x}, {y}, {z} m"),

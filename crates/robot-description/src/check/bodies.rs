@@ -1,6 +1,6 @@
 //! Masses and moments of inertia.
 
-use super::Findings;
+use super::{Findings, Severity::Error};
 use crate::{Link, Robot};
 
 pub(super) fn check(robot: &Robot, findings: &mut Findings) {
@@ -34,7 +34,8 @@ fn masses(robot: &Robot, findings: &mut Findings) {
         ("wheels.mass_kg", wheels.mass_kg),
         ("wheels.motor_mass_kg", wheels.motor_mass_kg),
     ] {
-        findings.must(
+        findings.note(
+            Error,
             mass_kg > 0.0 && mass_kg.is_finite(),
             field,
             format!("{mass_kg} kg"),
@@ -48,7 +49,8 @@ fn body(robot: &Robot, findings: &mut Findings) {
     let body = &robot.body;
     let [x, y, z] = body.inertia_kgm2;
     let largest = x.max(y).max(z);
-    findings.must(
+    findings.note(
+        Error,
         x.min(y).min(z) > 0.0 && 2.0 * largest <= x + y + z,
         "body.inertia_kgm2",
         format!("{x}, {y}, {z} kg m2"),
@@ -56,7 +58,8 @@ fn body(robot: &Robot, findings: &mut Findings) {
         "Swing the body about each axis again; no body has such moments.",
     );
     let [length, width, height] = body.box_m;
-    findings.must(
+    findings.note(
+        Error,
         length.min(width).min(height) > 0.0,
         "body.box_m",
         format!("{length} x {width} x {height} m"),
@@ -66,7 +69,8 @@ fn body(robot: &Robot, findings: &mut Findings) {
     // All of the mass at the farthest corner, or at the hip motors, which sit beside the body.
     let corner_m = (length.hypot(width).hypot(height) / 2.0).max(robot.legs.plane_y_m);
     let most_kgm2 = body.mass_kg * corner_m.powi(2);
-    findings.must(
+    findings.note(
+        Error,
         largest <= most_kgm2,
         "body.inertia_kgm2",
         format!("{largest} kg m2"),
@@ -76,7 +80,8 @@ fn body(robot: &Robot, findings: &mut Findings) {
     let inside = (0..3)
         .all(|axis| (body.com_m[axis] - body.box_centre_m[axis]).abs() <= body.box_m[axis] / 2.0);
     let [x, y, z] = body.com_m;
-    findings.must(
+    findings.note(
+        Error,
         inside,
         "body.com_m",
         format!("{x}, {y}, {z} m"),
@@ -98,7 +103,8 @@ fn link(link: &Link, fields: &LinkFields, findings: &mut Findings) {
         inertia_kgm2,
     } = link;
     let inside = (0.0..=*length_m).contains(com_m);
-    findings.must(
+    findings.note(
+        Error,
         inside,
         fields.com_m,
         format!("{com_m} m"),
@@ -110,7 +116,8 @@ fn link(link: &Link, fields: &LinkFields, findings: &mut Findings) {
     }
     // All of the mass at the two axes.
     let most_kgm2 = mass_kg * com_m * (length_m - com_m);
-    findings.must(
+    findings.note(
+        Error,
         *inertia_kgm2 > 0.0 && *inertia_kgm2 <= most_kgm2,
         fields.inertia_kgm2,
         format!("{inertia_kgm2:.1e} kg m2"),
@@ -126,7 +133,8 @@ fn wheel_lengths(robot: &Robot, findings: &mut Findings) {
         ("wheels.track_m", wheels.track_m),
         ("wheels.width_m", wheels.width_m),
     ] {
-        findings.must(
+        findings.note(
+            Error,
             length_m > 0.0 && length_m.is_finite(),
             field,
             format!("{length_m} m"),
@@ -139,7 +147,8 @@ fn wheel_lengths(robot: &Robot, findings: &mut Findings) {
 fn wheel(robot: &Robot, findings: &mut Findings) {
     let wheels = &robot.wheels;
     let most_kgm2 = wheels.mass_kg * wheels.radius_m.powi(2);
-    findings.must(
+    findings.note(
+        Error,
         wheels.inertia_kgm2 > 0.0 && wheels.inertia_kgm2 <= most_kgm2,
         "wheels.inertia_kgm2",
         format!("{:.1e} kg m2", wheels.inertia_kgm2),
@@ -150,7 +159,8 @@ fn wheel(robot: &Robot, findings: &mut Findings) {
         ("wheels.rotor_inertia_kgm2", wheels.rotor_inertia_kgm2),
         ("joints.armature_kgm2", robot.joints.armature_kgm2),
     ] {
-        findings.must(
+        findings.note(
+            Error,
             (0.0..=0.1).contains(&inertia_kgm2),
             field,
             format!("{inertia_kgm2} kg m2"),

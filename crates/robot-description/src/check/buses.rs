@@ -1,6 +1,6 @@
 //! Identifiers and load of the CAN buses: the rules that the compiler checks again (`MotorLayout` of robot-app).
 
-use super::Findings;
+use super::{Findings, Severity::Error};
 use crate::{Bus, JointMotor, Robot, figures};
 
 /// Identifiers of the tuning channel and of a DM4310's registers.
@@ -25,14 +25,16 @@ pub(super) fn check(robot: &Robot, findings: &mut Findings) {
 
 fn schedule(robot: &Robot, findings: &mut Findings) {
     let joints = &robot.joints;
-    findings.must(
+    findings.note(
+        Error,
         matches!(joints.period_ticks, 1 | 2 | 4 | 8),
         "joints.period_ticks",
         joints.period_ticks.to_string(),
         "1, 2, 4 or 8",
         "Enter 2: each motor gets a command every 2 ms.",
     );
-    findings.must(
+    findings.note(
+        Error,
         joints
             .phases
             .iter()
@@ -49,7 +51,7 @@ fn schedule(robot: &Robot, findings: &mut Findings) {
 
 fn numbers(robot: &Robot, findings: &mut Findings) {
     let [left, right] = robot.wheels.escs;
-    findings.must(
+    findings.note(Error,
         (1..=4).contains(&left) && (1..=4).contains(&right) && left != right,
         "wheels.escs",
         format!("{left}, {right}"),
@@ -57,7 +59,8 @@ fn numbers(robot: &Robot, findings: &mut Findings) {
         "Press SET on a C620: the number of blinks is its number. Its command frame is that of 1 to 4.",
     );
     let motor = robot.joints.motor.data();
-    findings.must(
+    findings.note(
+        Error,
         robot
             .joints
             .ids
@@ -68,7 +71,8 @@ fn numbers(robot: &Robot, findings: &mut Findings) {
         format!("1 to {} for {}", motor.last_id, motor.name),
         RENUMBER,
     );
-    findings.must(
+    findings.note(
+        Error,
         robot
             .joints
             .replies
@@ -94,7 +98,8 @@ fn shares_bus(robot: &Robot) -> bool {
 fn clashes(robot: &Robot, findings: &mut Findings) {
     for (joint, name) in NAMES.iter().enumerate() {
         let ids = identifiers(robot, joint);
-        findings.must(
+        findings.note(
+            Error,
             !ids[..3].contains(&ids[3]),
             "joints.replies",
             format!(
@@ -109,7 +114,8 @@ fn clashes(robot: &Robot, findings: &mut Findings) {
             let shared = identifiers(robot, other)
                 .into_iter()
                 .find(|id| ids.contains(id));
-            findings.must(
+            findings.note(
+                Error,
                 shared.is_none(),
                 if robot.joints.ids[joint] == robot.joints.ids[other] {
                     "joints.ids"
@@ -130,14 +136,16 @@ fn clashes(robot: &Robot, findings: &mut Findings) {
 /// Identifiers that others than motors use.
 fn reserved(robot: &Robot, name: &str, ids: [u16; 4], findings: &mut Findings) {
     for id in ids {
-        findings.must(
+        findings.note(
+            Error,
             !TUNING_IDS.contains(&id) && id != REGISTER_ID,
             "joints.replies",
             format!("{name} uses {id:#X}, which the tuning channel or the registers use"),
             "an identifier below 0x7A0",
             RENUMBER,
         );
-        findings.must(
+        findings.note(
+            Error,
             !shares_bus(robot) || !DJI_IDS.contains(&id),
             "joints.ids",
             format!("{name} uses {id:#X}, as a wheel's speed controller does"),
@@ -157,7 +165,8 @@ fn low_bytes(robot: &Robot, findings: &mut Findings) {
         let others = (0..4).filter(|other| *other != joint);
         let heard = others.map(|other| robot.joints.replies[other]);
         for id in heard.chain(DJI_IDS.filter(|_| shares_bus(robot))) {
-            findings.must(
+            findings.note(
+                Error,
                 id.to_be_bytes()[1] != number,
                 "joints.replies",
                 format!(
@@ -173,7 +182,8 @@ fn low_bytes(robot: &Robot, findings: &mut Findings) {
 fn load(robot: &Robot, findings: &mut Findings) {
     for bus in [Bus::Can1, Bus::Can2] {
         let share = figures::bus_load(robot, bus);
-        findings.must(
+        findings.note(
+            Error,
             share <= 0.8,
             "joints.period_ticks",
             format!(
@@ -185,7 +195,8 @@ fn load(robot: &Robot, findings: &mut Findings) {
             "Command the joints less often, or put them on the other bus than the wheels.",
         );
         let most = figures::frames_in_a_tick(robot, bus);
-        findings.must(
+        findings.note(
+            Error,
             most <= 2,
             "joints.phases",
             format!(

@@ -1,6 +1,6 @@
 //! Lengths and poses of the legs.
 
-use super::Findings;
+use super::{Findings, Severity::Error};
 use crate::{Robot, figures, five_bar::FiveBar};
 
 /// 10°. Nearer than that, forces in the shanks grow beyond six times the leg's force.
@@ -17,7 +17,8 @@ pub(super) fn check_lengths(robot: &Robot, findings: &mut Findings) {
         ("legs.shank.length_m", legs.shank.length_m),
         ("legs.min_m", legs.min_m),
     ] {
-        findings.must(
+        findings.note(
+            Error,
             length_m > 0.0 && length_m < 2.0,
             field,
             format!("{length_m} m"),
@@ -25,7 +26,8 @@ pub(super) fn check_lengths(robot: &Robot, findings: &mut Findings) {
             "Measure from axis to axis, in m.",
         );
     }
-    findings.must(
+    findings.note(
+        Error,
         legs.min_m < legs.max_m,
         "legs.max_m",
         format!("{} m", legs.max_m),
@@ -33,7 +35,8 @@ pub(super) fn check_lengths(robot: &Robot, findings: &mut Findings) {
         "Enter the longest usable leg.",
     );
     let [low_m, high_m] = robot.control.limits.height_m;
-    findings.must(
+    findings.note(
+        Error,
         legs.min_m <= low_m && low_m < high_m && high_m <= legs.max_m,
         "control.limits.height_m",
         format!("{low_m} to {high_m} m"),
@@ -45,7 +48,8 @@ pub(super) fn check_lengths(robot: &Robot, findings: &mut Findings) {
     );
     let inner_m = robot.wheels.track_m / 2.0 - robot.wheels.width_m / 2.0;
     let half_m = robot.body.box_m[1] / 2.0;
-    findings.must(
+    findings.note(
+        Error,
         inner_m > half_m,
         "wheels.track_m",
         format!("{} m", robot.wheels.track_m),
@@ -59,7 +63,8 @@ pub(super) fn check_lengths(robot: &Robot, findings: &mut Findings) {
 
 pub(super) fn check_poses(robot: &Robot, findings: &mut Findings) {
     let margins = figures::worst_margins(robot);
-    findings.must(
+    findings.note(
+        Error,
         margins.is_some(),
         "joints.range_rad",
         "the shanks do not meet at some hip angles".to_owned(),
@@ -67,7 +72,8 @@ pub(super) fn check_poses(robot: &Robot, findings: &mut Findings) {
         "Narrow the ranges, or make the shanks longer.",
     );
     let Some(margins) = margins else { return };
-    findings.must(
+    findings.note(
+        Error,
         margins.between_shanks_rad >= MIN_BETWEEN_SHANKS_RAD,
         "joints.range_rad",
         format!(
@@ -77,7 +83,7 @@ pub(super) fn check_poses(robot: &Robot, findings: &mut Findings) {
         "10 degrees",
         "Narrow the ranges.",
     );
-    findings.must(
+    findings.note(Error,
         margins.at_knee_rad >= MIN_AT_KNEE_RAD,
         "joints.range_rad",
         format!(
@@ -99,7 +105,8 @@ pub(super) fn check_poses(robot: &Robot, findings: &mut Findings) {
             }
             None => format!("{length_m} m is beyond what the links reach"),
         };
-        findings.must(
+        findings.note(
+            Error,
             hips.is_some_and(|hips| figures::in_range(robot, hips)),
             field,
             value,

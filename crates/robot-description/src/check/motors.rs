@@ -1,6 +1,6 @@
 //! Motors: within their data, and in the sense and order that is meant.
 
-use super::Findings;
+use super::{Findings, Severity::Error};
 use crate::{
     Robot,
     motor::{C620_MAX_A, M3508_ROTOR_NM_PER_A, M3508_ROTOR_RPS},
@@ -16,44 +16,38 @@ pub(super) fn check(robot: &Robot, findings: &mut Findings) {
 fn torques(robot: &Robot, findings: &mut Findings) {
     let joints = &robot.joints;
     let motor = joints.motor.data();
+    let name = motor.name;
     for (field, torque_nm, most_nm, which) in [
         (
             "joints.continuous_nm",
             joints.continuous_nm,
             motor.continuous_nm,
-            "continuous torque",
+            "continuous",
         ),
-        (
-            "joints.peak_nm",
-            joints.peak_nm,
-            motor.peak_nm,
-            "peak torque",
-        ),
+        ("joints.peak_nm", joints.peak_nm, motor.peak_nm, "peak"),
     ] {
-        findings.must(
-            torque_nm > 0.0 && torque_nm <= most_nm,
+        findings.up_to(
+            most_nm,
+            &format!("{most_nm} N m, the {which} torque of {name}"),
             field,
-            format!("{torque_nm} N m"),
-            format!(
-                "more than 0, at most {most_nm} N m, the {which} of {}",
-                motor.name
-            ),
+            (torque_nm, "N m"),
             "Take the figure of your version's datasheet.",
         );
     }
     let peak_nm = joints.peak_nm;
-    findings.must(
+    findings.note(
+        Error,
         joints.continuous_nm <= peak_nm,
         "joints.continuous_nm",
         format!("{} N m", joints.continuous_nm),
         format!("at most peak_nm, {peak_nm} N m"),
         "Take both figures from the same datasheet.",
     );
-    findings.must(
-        joints.torque_limit_nm > 0.0 && joints.torque_limit_nm <= peak_nm,
+    findings.up_to(
+        peak_nm,
+        &format!("peak_nm, {peak_nm} N m"),
         "joints.torque_limit_nm",
-        format!("{} N m", joints.torque_limit_nm),
-        format!("more than 0, at most peak_nm, {peak_nm} N m"),
+        (joints.torque_limit_nm, "N m"),
         "Lower the limit.",
     );
 }
@@ -61,31 +55,29 @@ fn torques(robot: &Robot, findings: &mut Findings) {
 fn speeds_and_gains(robot: &Robot, findings: &mut Findings) {
     let joints = &robot.joints;
     let motor = joints.motor.data();
-    findings.must(
-        joints.no_load_rps > 0.0 && joints.no_load_rps <= motor.no_load_rps,
-        "joints.no_load_rps",
-        format!("{} rad/s", joints.no_load_rps),
-        format!(
-            "more than 0, at most {} rad/s, which {} reaches at its highest voltage",
+    findings.up_to(
+        motor.no_load_rps,
+        &format!(
+            "{} rad/s, which {} reaches at its highest voltage",
             motor.no_load_rps, motor.name
         ),
+        "joints.no_load_rps",
+        (joints.no_load_rps, "rad/s"),
         "Scale the datasheet's speed by your battery's voltage, and enter rad/s: rpm times 0.1047.",
     );
-    findings.must(
-        joints.speed_limit_rps > 0.0 && joints.speed_limit_rps <= motor.code_rps,
+    findings.up_to(
+        motor.code_rps,
+        &format!("{} rad/s, full scale of its frames", motor.code_rps),
         "joints.speed_limit_rps",
-        format!("{} rad/s", joints.speed_limit_rps),
-        format!(
-            "more than 0, at most {} rad/s, full scale of its frames",
-            motor.code_rps
-        ),
+        (joints.speed_limit_rps, "rad/s"),
         "Lower the limit.",
     );
     for (field, gain, most) in [
         ("joints.max_kp", joints.max_kp, 500.0),
         ("joints.max_kd", joints.max_kd, 5.0),
     ] {
-        findings.must(
+        findings.note(
+            Error,
             (0.0..=most).contains(&gain),
             field,
             format!("{gain}"),
@@ -101,7 +93,8 @@ fn angles(robot: &Robot, findings: &mut Findings) {
         ("joints.range_rad.front", joints.range_rad.front),
         ("joints.range_rad.rear", joints.range_rad.rear),
     ] {
-        findings.must(
+        findings.note(
+            Error,
             min_rad < max_rad && min_rad > -std::f64::consts::PI && max_rad < std::f64::consts::PI,
             field,
             format!("{min_rad} to {max_rad} rad"),
@@ -110,7 +103,8 @@ fn angles(robot: &Robot, findings: &mut Findings) {
         );
     }
     let code_rad = joints.motor.data().code_rad;
-    findings.must(
+    findings.note(
+        Error,
         joints
             .zeros_rad
             .iter()
@@ -120,7 +114,8 @@ fn angles(robot: &Robot, findings: &mut Findings) {
         format!("within {code_rad} rad, full scale of the motor's frames"),
         "Set the motor's zero with the thigh level, then enter what is left.",
     );
-    findings.must(
+    findings.note(
+        Error,
         joints.directions.iter().all(|sign| sign.abs() == 1),
         "joints.directions",
         format!("{:?}", joints.directions),
@@ -131,63 +126,60 @@ fn angles(robot: &Robot, findings: &mut Findings) {
 
 fn wheels(robot: &Robot, findings: &mut Findings) {
     let wheels = &robot.wheels;
-    findings.must(
+    findings.note(
+        Error,
         wheels.signs.iter().all(|sign| sign.abs() == 1),
         "wheels.signs",
         format!("{:?}", wheels.signs),
         "1 or -1 for each motor",
         "Roll each wheel forward: 1 if the rotor's speed is positive.",
     );
-    findings.must(
-        (1.0..=100.0).contains(&wheels.gear_ratio),
+    findings.up_to(
+        C620_MAX_A,
+        &format!("{C620_MAX_A} A, what a C620 gives"),
+        "wheels.max_current_a",
+        (wheels.max_current_a, "A"),
+        "Lower the limit.",
+    );
+    findings.up_to(
+        wheels.max_current_a,
+        &format!("max_current_a, {} A", wheels.max_current_a),
+        "wheels.current_limit_a",
+        (wheels.current_limit_a, "A"),
+        "Lower the limit.",
+    );
+    let is_gear = (1.0..=100.0).contains(&wheels.gear_ratio);
+    findings.note(
+        Error,
+        is_gear,
         "wheels.gear_ratio",
         format!("{}", wheels.gear_ratio),
         "1 to 100 rotor turns for one of the wheel",
         "Enter 19.2 for an M3508 with its gear.",
     );
-    findings.must(
-        wheels.max_current_a > 0.0 && wheels.max_current_a <= C620_MAX_A,
-        "wheels.max_current_a",
-        format!("{} A", wheels.max_current_a),
-        format!("more than 0, at most {C620_MAX_A} A, what a C620 gives"),
-        "Lower the limit.",
-    );
-    findings.must(
-        wheels.current_limit_a > 0.0 && wheels.current_limit_a <= wheels.max_current_a,
-        "wheels.current_limit_a",
-        format!("{} A", wheels.current_limit_a),
-        format!(
-            "more than 0, at most max_current_a, {} A",
-            wheels.max_current_a
-        ),
-        "Lower the limit.",
-    );
-    gear(robot, findings);
+    if is_gear {
+        gear(robot, findings);
+    }
 }
 
 /// What follows from the gear.
 fn gear(robot: &Robot, findings: &mut Findings) {
     let wheels = &robot.wheels;
-    if !(1.0..=100.0).contains(&wheels.gear_ratio) {
-        return;
-    }
     let usual = M3508_ROTOR_NM_PER_A * wheels.gear_ratio;
-    findings.must(
+    findings.note(
+        Error,
         (0.8 * usual..=1.2 * usual).contains(&wheels.torque_nm_per_a),
         "wheels.torque_nm_per_a",
         format!("{} N m/A", wheels.torque_nm_per_a),
         format!("{usual:.3} N m/A within 20 %, an M3508 behind this gear"),
         "Multiply 0.01562 by the gear ratio.",
     );
-    let usual = M3508_ROTOR_RPS / wheels.gear_ratio;
-    findings.must(
-        wheels.no_load_rps > 0.0 && wheels.no_load_rps <= 1.1 * usual,
+    let most_rps = 1.1 * M3508_ROTOR_RPS / wheels.gear_ratio;
+    findings.up_to(
+        most_rps,
+        &format!("{most_rps:.1} rad/s, an M3508 behind this gear at 26 V"),
         "wheels.no_load_rps",
-        format!("{} rad/s", wheels.no_load_rps),
-        format!(
-            "more than 0, at most {:.1} rad/s, an M3508 behind this gear at 26 V",
-            1.1 * usual
-        ),
+        (wheels.no_load_rps, "rad/s"),
         "Scale 970 rad/s of the rotor by your voltage / 24 V and divide it by the gear ratio.",
     );
 }

@@ -21,7 +21,7 @@ impl Case {
     fn text(&self) -> String {
         let mut lines: Vec<_> = FIVEBAR.lines().map(str::to_owned).collect();
         for (field, value) in self.changes {
-            let (_, key) = field.rsplit_once('.').expect("a table");
+            let key = field.rsplit_once('.').map_or(*field, |(_, key)| key);
             lines[line_of(FIVEBAR, field) - 1] = format!("{key} = {value}");
         }
         lines.join("\n")
@@ -48,7 +48,7 @@ fn line_of(text: &str, field: &str) -> usize {
             }
         }
         let key = line.split(' ').next().unwrap_or_default();
-        if format!("{table}.{key}") == field {
+        if format!("{table}.{key}").trim_start_matches('.') == field {
             return number;
         }
     }
@@ -75,6 +75,25 @@ fn assert_warned(cases: &[Case]) {
         let examined = Examined::parse(&case.text(), "r.toml").expect("read");
         assert_eq!(printed(&examined.warnings), case.expected());
     }
+}
+
+/// The name stands in names of files and in generated code.
+#[test]
+fn a_name_that_would_leave_its_folder_or_line_is_refused() {
+    assert_refused(&[
+        Case {
+            changes: &[("name", "\"../ours\"")],
+            says: &[
+                "name: \"../ours\"; allowed: letters, digits, hyphens and underscores. Enter the file's name without .toml.",
+            ],
+        },
+        Case {
+            changes: &[("name", "\"\"")],
+            says: &[
+                "name: \"\"; allowed: letters, digits, hyphens and underscores. Enter the file's name without .toml.",
+            ],
+        },
+    ]);
 }
 
 #[test]
