@@ -21,4 +21,4 @@ pub use report::{Report, TaskReport, table};
 pub use robots::Robots;
 pub use survey::{Run, Survey, parts, survey};
 pub use tasks::{Bound, TASKS, Task};
-pub use trial::{Failure, Sample, Trial};
+pub use trial::{Failure, Sample};

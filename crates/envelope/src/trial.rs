@@ -37,18 +37,12 @@ pub struct Sample {
     pub rpy_rad: [f64; 3],
     /// Forward speed of the body, m/s.
     pub forward_mps: f64,
-    /// Upward speed of the body, m/s.
-    pub up_mps: f64,
     /// Turn rate, rad/s.
     pub yaw_rps: f64,
     /// Leg lengths, m.
     pub leg_m: [f64; 2],
-    /// Forces of the ground on the wheels, N.
-    pub wheel_n: [f64; 2],
     /// Force of the ground on body and links, N.
     pub body_n: f64,
-    /// Turn of each wheel since power-on, rad.
-    pub turned_rad: [f64; 2],
     /// Torques of the wheels, N·m.
     pub wheel_nm: [f64; 2],
 }
@@ -66,12 +60,9 @@ struct Probes {
     place: [Probe; 3],
     rpy: [Probe; 3],
     forward: Probe,
-    up: Probe,
     yaw: Probe,
     leg: [Probe; 2],
-    wheel: [Probe; 2],
     body: Probe,
-    turned: [Probe; 2],
     torque: [Probe; 2],
 }
 
@@ -82,12 +73,9 @@ impl Probes {
             place: ["truth.body.x", "truth.body.y", "truth.body.z"].map(find),
             rpy: ["truth.body.roll", "truth.body.pitch", "truth.body.yaw"].map(find),
             forward: find("truth.body.vx"),
-            up: find("truth.body.vz"),
             yaw: find("truth.body.wz"),
             leg: ["truth.leg.0.length_m", "truth.leg.1.length_m"].map(find),
-            wheel: ["truth.wheel.0.contact_n", "truth.wheel.1.contact_n"].map(find),
             body: find("truth.body.contact_n"),
-            turned: ["truth.wheel.0.turned_rad", "truth.wheel.1.turned_rad"].map(find),
             torque: ["truth.wheel.0.torque_nm", "truth.wheel.1.torque_nm"].map(find),
         }
     }
@@ -99,19 +87,16 @@ impl Probes {
             place_m: self.place.map(|probe| probe.read(world)),
             rpy_rad: self.rpy.map(|probe| probe.read(world)),
             forward_mps: self.forward.read(world),
-            up_mps: self.up.read(world),
             yaw_rps: self.yaw.read(world),
             leg_m: self.leg.map(|probe| probe.read(world)),
-            wheel_n: self.wheel.map(|probe| probe.read(world)),
             body_n: self.body.read(world),
-            turned_rad: self.turned.map(|probe| probe.read(world)),
             wheel_nm: self.torque.map(|probe| probe.read(world)),
         }
     }
 }
 
 /// A run under way.
-pub struct Trial {
+pub(crate) struct Trial {
     robot: Robot,
     probes: Probes,
     mass_kg: f64,
@@ -265,11 +250,6 @@ impl Trial {
     /// The robot with its firmware.
     pub fn robot(&self) -> &Robot {
         &self.robot
-    }
-
-    /// Mass of this specimen in kg.
-    pub fn mass_kg(&self) -> f64 {
-        self.mass_kg
     }
 
     /// The samples kept, each 5 ms.

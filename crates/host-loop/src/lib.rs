@@ -12,7 +12,10 @@
 //! | magnetometer | every 20 ms, its result as soon as it is complete | the same |
 //! | radio | bytes up to the tick | in pieces, at pauses of the line |
 //! | logic stage | every 10 ms, before the tick | between two ticks |
-//! | battery | every 240 ms | filtered, every 10 ms |
+//! | battery | every 240 ms | the median of 100 ms |
+//!
+//! The periods are written down once more, in `robot.rs`: those of the image stand in `src/tasks`, which compiles for the
+//! chip only. The image's own are measured by `scenarios/rates.toml`; nothing compares the two.
 //!
 //! Memory for parameters, link, indication and the recorder of the last seconds are not here. The same calls with the
 //! same seed give the same run, bit for bit.
