@@ -5,7 +5,7 @@ use std::{path::PathBuf, process::ExitCode, sync::Arc, time::Instant};
 use anyhow::ensure;
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
-use robot_description::Robot;
+use robot_description::{Robot, path_of};
 use robot_envelope::{Report, Robots, TASKS, Task, parts, survey, table, write};
 
 /// Let many robots, each different from its file, stand, drive, fall and get up, and tell how many succeed.
@@ -29,9 +29,9 @@ struct Args {
     /// Folder for envelope.json and envelope.html.
     #[arg(long, value_name = "DIR", default_value = "target/envelope")]
     out: PathBuf,
-    /// The robot's file.
-    #[arg(long, value_name = "FILE", default_value = "robots/fivebar.toml")]
-    robot: PathBuf,
+    /// Name of a file in robots/, or a path.
+    #[arg(long, value_name = "FILE|NAME", default_value = "fivebar")]
+    robot: String,
     /// Robots as in their file, which differ only in the noise of their sensors.
     #[arg(long)]
     same: bool,
@@ -78,7 +78,7 @@ fn run(args: &Args) -> anyhow::Result<bool> {
         }
         return Ok(true);
     }
-    let robot = Robot::read(&args.robot)?;
+    let robot = Robot::read(&path_of(&args.robot))?;
     let name = robot.name.clone();
     let robots = Robots {
         robot: Arc::new(robot),
