@@ -28,8 +28,12 @@ const STEP_S: f64 = 0.0005;
 /// The loops are as stiff as the step allows (MuJoCo's documentation: a time constant of two steps).
 const LOOP_SOLREF: [f64; 2] = [2.0 * STEP_S, 1.0];
 const LOOP_SOLIMP: [f64; 5] = [0.9999, 0.9999, 0.001, 0.5, 2.0];
-/// Of sliding as in the plant, of twisting and rolling as MuJoCo has it unless told otherwise.
-const FRICTION: [f64; 3] = [0.8, 0.005, 0.0001];
+/// Coefficient of sliding: rubber on a clean floor, an assumption.
+const SLIDING: f64 = 0.8;
+/// Rolling resistance per newton of load, as a share of the radius. An assumption.
+const ROLLING: f64 = 0.015;
+/// Of two geoms the larger friction counts: what is no tyre has the least of MuJoCo's.
+const LEAST_FRICTION: f64 = 1e-5;
 const CLAMPED_HEIGHT_M: f64 = 1.0;
 
 /// Bits of what touches what: the floor touches the robot, and the robot not itself.
@@ -74,8 +78,8 @@ impl Robot {
 }
 
 fn default_contact() -> Element {
-    let [sliding, twisting, rolling] = FRICTION;
-    let geom = Element::new("geom").numbers("friction", &[sliding, twisting, rolling]);
+    let friction = [SLIDING, LEAST_FRICTION, LEAST_FRICTION];
+    let geom = Element::new("geom").numbers("friction", &friction);
     Element::new("default").child(geom)
 }
 

@@ -11,6 +11,9 @@ pub(crate) const LINK_RADIUS_M: f64 = 0.008;
 pub(crate) const HIP_MOTOR_RADIUS_M: f64 = 0.028;
 pub(crate) const WHEEL_MOTOR_RADIUS_M: f64 = 0.021;
 
+/// How far a tyre gives under half of the robot's weight: hard rubber, an assumption.
+const TYRE_GIVES_M: f64 = 0.8e-3;
+
 pub(crate) const BODY_COLOUR: [f64; 4] = [0.25, 0.32, 0.42, 1.0];
 const FRONT_COLOUR: [f64; 4] = [0.85, 0.45, 0.15, 1.0];
 const REAR_COLOUR: [f64; 4] = [0.2, 0.55, 0.6, 1.0];
@@ -110,6 +113,25 @@ impl Wheels {
     pub(crate) fn turning_kgm2(&self) -> [f64; 3] {
         let across = self.inertia_kgm2 / 2.0 + self.mass_kg * self.width_m.powi(2) / 12.0;
         [across, self.inertia_kgm2, across]
+    }
+
+    /// Torque against turning on the spot, in N·m for each newton of friction that the load allows: the lever of a patch that slides
+    /// all over while it turns.
+    ///
+    /// Hertz's pressure makes it 3π/16 of the patch's radius (Johnson, Contact Mechanics, 1985, section 7.2). The patch of a
+    /// tyre that gives by δ is an ellipse of half axes √(R δ) along and √(r δ) across the wheel, with the radius R of the wheel and
+    /// r of the tyre's cross-section; a circle of its area stands for it. That δ is that of the robot's weight is assumed. A tyre
+    /// that rolls resists less: its patch is a new one all the time.
+    pub fn twist_lever_m(&self) -> f64 {
+        let half_axes_m = [self.radius_m, self.cross_section_m()]
+            .map(|radius_m| (radius_m * TYRE_GIVES_M).sqrt());
+        let patch_m = half_axes_m.into_iter().product::<f64>().sqrt();
+        3.0 * std::f64::consts::PI / 16.0 * patch_m
+    }
+
+    /// Radius in m of a tyre's round cross-section.
+    pub(crate) fn cross_section_m(&self) -> f64 {
+        (self.width_m / 2.0).min(self.radius_m / 2.0)
     }
 
     /// Largest torque in N·m of a motor at its wheel.

@@ -19,6 +19,8 @@ const FRICTION: f64 = 0.8;
 const ROLLING: f64 = 0.015;
 const TYRE_GIVES_M: f64 = 0.8e-3;
 const TYRE_DAMPING: f64 = 0.15;
+/// The least friction of a contact in MuJoCo.
+const LEAST_FRICTION_M: f64 = 1e-5;
 /// A height that stays as near to its last one has settled.
 const SETTLED_M: f64 = 1e-3;
 
@@ -32,9 +34,22 @@ struct Moment {
     wheel_rps: [f64; 2],
 }
 
+/// Tyres of MuJoCo's robot.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Tyres {
+    /// Hard; they resist rolling and not twisting.
+    Rolling,
+    /// The same, as soft as the plant's.
+    Soft,
+    /// Hard; they resist twisting, and the wheels' bearings turning as much as tyres would rolling.
+    Twisting,
+}
+
 struct Run<'a> {
     robot: &'a Robot,
     start: Start,
+    /// Rate at which the robot turns left on the spot at first.
+    turning_rps: f64,
     wheel_nm: [f64; 2],
     seconds: f64,
 }
@@ -45,7 +60,14 @@ impl Run<'_> {
             start: self.start,
             ..FreeSetup::default()
         };
-        FreeBody::new(self.robot, &setup)
+        let mut body = FreeBody::new(self.robot, &setup);
+        let mut state = body.state();
+        let wheel_rps =
+            self.turning_rps * self.robot.wheels.track_m / 2.0 / self.robot.wheels.radius_m;
+        state.rate_rps[2] = self.turning_rps;
+        state.wheel_rps = [-wheel_rps, wheel_rps];
+        body.set_state(&state);
+        body
     }
 
     fn moments(&self) -> usize {
@@ -81,7 +103,7 @@ impl Run<'_> {
         moments.collect()
     }
 
-    fn in_mujoco(&self, test: &str, tyre: bool) -> Option<Vec<Moment>> {
+    fn in_mujoco(&self, test: &str, tyres: Tyres) -> Option<Vec<Moment>> {
         let oracle = Oracle::new(self.robot, test)?;
         let mut question = json!({
             "state": state_json(&self.body().state()),
@@ -92,9 +114,17 @@ impl Run<'_> {
             "kp": KP_NM_PER_RAD,
             "kd": KD_NM_PER_RPS,
             "friction": FRICTION,
+            "twisting_m": LEAST_FRICTION_M,
             "rolling_m": ROLLING * self.robot.wheels.radius_m,
+            "rolling_nm": 0.0,
         });
-        if tyre {
+        if tyres == Tyres::Twisting {
+            let load_n = self.robot.total_mass_kg() / 2.0 * GRAVITY_MPS2;
+            question["twisting_m"] = json!(FRICTION * twist_lever_m(self.robot));
+            question["rolling_m"] = json!(LEAST_FRICTION_M);
+            question["rolling_nm"] = json!(ROLLING * self.robot.wheels.radius_m * load_n);
+        }
+        if tyres == Tyres::Soft {
             let n_per_m = self.robot.total_mass_kg() / 2.0 * GRAVITY_MPS2 / TYRE_GIVES_M;
             let unsprung_kg = self.robot.wheels.mass_kg + self.robot.wheels.motor_mass_kg;
             question["tyre_n_per_m"] = json!(n_per_m);
@@ -117,6 +147,14 @@ fn moment(row: &Value) -> Moment {
         joint_rad: [a, b, c, d],
         wheel_rps: [left, right],
     }
+}
+
+/// Hertz's pressure on the patch of the tyre that gives, as a circle of the area of the ellipse that touches.
+fn twist_lever_m(robot: &Robot) -> f64 {
+    let wheels = &robot.wheels;
+    let area_m2 =
+        std::f64::consts::PI * TYRE_GIVES_M * (wheels.radius_m * wheels.width_m / 2.0).sqrt();
+    3.0 / 16.0 * std::f64::consts::PI * (area_m2 / std::f64::consts::PI).sqrt()
 }
 
 /// A robot that does not fall over within a test, since its body hardly turns.
@@ -150,10 +188,11 @@ fn a_dropped_robot_settles_as_in_mujoco() {
     let run = Run {
         robot: &robot,
         start: Start::Dropped { height_m: 0.1 },
+        turning_rps: 0.0,
         wheel_nm: [0.0; 2],
         seconds: 0.6,
     };
-    let Some(expected) = run.in_mujoco("drop", true) else {
+    let Some(expected) = run.in_mujoco("drop", Tyres::Soft) else {
         return;
     };
     let found = run.in_plant();
@@ -186,10 +225,11 @@ impl Rolling<'_> {
         let run = Run {
             robot: self.robot,
             start: Start::Standing,
+            turning_rps: 0.0,
             wheel_nm: [self.nm; 2],
             seconds: self.seconds,
         };
-        let Some(expected) = run.in_mujoco(self.test, false) else {
+        let Some(expected) = run.in_mujoco(self.test, Tyres::Rolling) else {
             return;
         };
         let pairs: Vec<_> = run.in_plant().into_iter().zip(expected).collect();
@@ -267,10 +307,11 @@ fn opposite_torques_turn_the_robot_as_in_mujoco() {
     let run = Run {
         robot: &robot,
         start: Start::Standing,
+        turning_rps: 0.0,
         wheel_nm: [-0.4, 0.4],
         seconds: 0.4,
     };
-    let Some(expected) = run.in_mujoco("turning", false) else {
+    let Some(expected) = run.in_mujoco("turning", Tyres::Twisting) else {
         return;
     };
     let pairs: Vec<_> = run.in_plant().into_iter().zip(expected).collect();
@@ -281,4 +322,30 @@ fn opposite_torques_turn_the_robot_as_in_mujoco() {
         here.yaw_rad, there.yaw_rad
     );
     assert!(here.yaw_rad > 0.3 && yaw_rad < 0.01);
+}
+
+/// A robot that turns around its middle coasts. Without tyres that resist twisting, it would get 0.41 rad farther.
+#[test]
+fn tyres_resist_turning_on_the_spot_as_in_mujoco() {
+    let mut robot = robot("fivebar");
+    let yaw_kgm2 = robot.body.inertia_kgm2[2];
+    robot.body.inertia_kgm2 = [50.0, 50.0, yaw_kgm2];
+    let run = Run {
+        robot: &robot,
+        start: Start::Standing,
+        turning_rps: 1.5,
+        wheel_nm: [0.0; 2],
+        seconds: 1.5,
+    };
+    let Some(expected) = run.in_mujoco("twisting", Tyres::Twisting) else {
+        return;
+    };
+    let pairs: Vec<_> = run.in_plant().into_iter().zip(expected).collect();
+    let yaw_rad = apart(&pairs, |it| it.yaw_rad);
+    let (here, there) = pairs.last().expect("moments");
+    println!(
+        "twisting: {:.4} rad here, {:.4} rad in MuJoCo; apart at most {yaw_rad:.4} rad",
+        here.yaw_rad, there.yaw_rad
+    );
+    assert!(yaw_rad < 0.01);
 }

@@ -231,9 +231,11 @@ class OnGround(Oracle):
         floor = model.geom("floor")
         for side in SIDES:
             wheel = model.geom(f"{side}_wheel")
-            # Friction against rolling is a length in MuJoCo: torque per newton of load.
+            # Friction against twisting and rolling is a length in MuJoCo: torque per newton of load. Its cone of friction makes
+            # one of both weaker while the other slips, so that they are compared one at a time.
             for geom in (wheel, floor):
-                geom.friction = [question["friction"], 1e-6, question["rolling_m"]]
+                geom.friction = [question[kind] for kind in ("friction", "twisting_m", "rolling_m")]
+            model.joint(f"{side}_wheel").frictionloss = question["rolling_nm"]
             wheel.condim = 6
             if "tyre_n_per_m" in question:
                 self.soften(wheel, question)

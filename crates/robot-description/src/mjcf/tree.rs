@@ -1,6 +1,6 @@
 //! The bodies of the robot.
 
-use super::{Hold, NOTHING, ROBOT, named, touching};
+use super::{Hold, NOTHING, ROBOT, ROLLING, SLIDING, named, touching};
 use crate::{
     Body, Carrier, Imu, Legs, Link, Robot, Wheels,
     parts::{
@@ -95,11 +95,17 @@ impl Robot {
             .numbers("size", &[radius_m])
             .numbers("rgba", &TYRE_COLOUR);
         // An ellipsoid rolls as a tyre with a round cross-section does, as long as it leans little. Viewers hide group 3.
-        let cross_section_m = half_m.min(radius_m / 2.0);
-        let across_m = (radius_m * cross_section_m).sqrt();
+        let across_m = (radius_m * self.wheels.cross_section_m()).sqrt();
+        let friction = [
+            SLIDING,
+            SLIDING * self.wheels.twist_lever_m(),
+            ROLLING * radius_m,
+        ];
         let tyre = touching(named("geom", &wheel_name(side)), ROBOT)
             .text("type", "ellipsoid")
             .numbers("size", &[radius_m, across_m, radius_m])
+            .text("condim", "6")
+            .numbers("friction", &friction)
             .text("group", "3");
         let mark = touching(Element::new("geom"), NOTHING)
             .text("type", "box")

@@ -27,6 +27,8 @@ pub(super) struct Contacts {
     sides: [Side; SIDES],
     treads: [[Option<(usize, Tread)>; TOUCHES]; SIDES],
     rolling: [DryFriction; SIDES],
+    /// Against turning on the spot.
+    twisting: [DryFriction; SIDES],
     corners: [Option<Stick>; 8],
     knees: [[Option<Stick>; HIPS]; SIDES],
     pub wheel_n: [f64; SIDES],
@@ -91,10 +93,11 @@ impl Contacts {
         let before = std::mem::take(&mut self.treads[side]);
         if touches[0].is_none() {
             self.rolling[side] = DryFriction::default();
+            self.twisting[side] = DryFriction::default();
             return 0.0;
         }
-        let spin_rps = frame.rate.y + wheel.turn_rps(leg_rps);
-        let mut load_n = 0.0;
+        let turn = frame.rate + Vec3::new(0.0, wheel.turn_rps(leg_rps), 0.0);
+        let (mut load_n, mut friction_n) = (0.0, Vec3::zeros());
         for (slot, touch) in touches.iter().enumerate() {
             let Some(touch) = touch else { continue };
             let at = frame.to_body(touch.point - moment.motion.position);
@@ -114,7 +117,7 @@ impl Contacts {
             let along = tread.force_n(
                 &model.tyre,
                 slip_mps,
-                spin_rps * ring.radius_m,
+                turn.y * ring.radius_m,
                 friction * normal_n,
                 moment.dt_s,
             );
@@ -122,14 +125,22 @@ impl Contacts {
             let force = touch.normal * normal_n + forward * along.x + left * along.y;
             forces.push_part(side, wheel, frame.to_body(force), at);
             load_n += normal_n;
+            friction_n += touch.normal * (friction * normal_n);
         }
-        let resistance_nm = self.rolling[side].torque_nm(
-            spin_rps,
+        let rolling_nm = self.rolling[side].torque_nm(
+            turn.y,
             ROLLING_RESISTANCE * load_n * ring.radius_m,
             model.disc.spin_kgm2,
             moment.dt_s,
         );
-        forces.twist_part(side, wheel, Vec3::new(0.0, resistance_nm, 0.0));
+        let up = frame.to_body(friction_n.try_normalize(0.0).unwrap_or_else(Vec3::z));
+        let twisting_nm = self.twisting[side].torque_nm(
+            turn.dot(&up),
+            model.disc.twist_m * friction_n.norm(),
+            model.disc.tilt_kgm2,
+            moment.dt_s,
+        );
+        forces.twist_part(side, wheel, Vec3::y() * rolling_nm + up * twisting_nm);
         load_n
     }
 

@@ -41,6 +41,8 @@ pub(super) struct Disc {
     pub radius_m: f64,
     /// Radius of the tyre's round cross-section.
     pub tyre_m: f64,
+    /// Torque against turning on the spot, for each newton of friction.
+    pub twist_m: f64,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -133,6 +135,7 @@ impl Model {
                 rotor_kgm2: wheels.rotor_inertia_kgm2,
                 radius_m: wheels.radius_m,
                 tyre_m: (wheels.width_m / 2.0).min(wheels.radius_m / 2.0),
+                twist_m: wheels.twist_lever_m(),
             },
             carrier: match wheels.carrier {
                 Carrier::Front => 0,
