@@ -15,7 +15,7 @@
 //! | battery | every 240 ms | the median of 100 ms |
 //!
 //! The periods are written down once more, in `robot.rs`: those of the image stand in `src/tasks`, which compiles for the
-//! chip only. The image's own are measured by `scenarios/rates.toml`; nothing compares the two.
+//! chip only. The image's own are measured by `scenarios/rates.toml`. `crates/sim/tests/host_loop` compares whole runs.
 //!
 //! Memory for parameters, link, indication and the recorder of the last seconds are not here. The same calls with the
 //! same seed give the same run, bit for bit.

@@ -28,6 +28,7 @@ mod power;
 mod probe;
 mod rtt;
 mod stack;
+mod static_record;
 mod tick_stats;
 
 use diagnostics::{Diagnostics, LayoutError, meaning::Meaning};
@@ -37,6 +38,7 @@ use stack::StackWatch;
 use tick_stats::TickStats;
 
 pub use robot_emulator::soc::bus::RegisterPatch;
+pub use static_record::StaticRecord;
 pub use tick_stats::Distribution;
 
 /// Symbols that the machine looks up in the image.

@@ -7,6 +7,7 @@ pub mod meaning;
 
 pub use layout::LayoutError;
 use layout::Leaf;
+pub(super) use layout::{Record, of_static as record_of_static};
 use meaning::Meaning;
 
 /// The static that holds the record, and the record's type.

@@ -88,7 +88,8 @@ impl Leaf {
     }
 }
 
-/// Finds the record of type `record` inside the static `name`, through any cells that wrap it.
+/// Finds the first record of type `record` inside the static `name`, through any cells and arrays that wrap it. Of statics with the
+/// same name it is the first that holds one.
 pub fn of_static(elf: &[u8], name: &str, record: &str) -> Result<Record, LayoutError> {
     let file = object::File::parse(elf)?;
     let section = |id: gimli::SectionId| -> Result<Cow<'_, [u8]>, gimli::Error> {
@@ -100,16 +101,18 @@ pub fn of_static(elf: &[u8], name: &str, record: &str) -> Result<Record, LayoutE
     let sections = gimli::DwarfSections::load(section)?;
     let dwarf = sections.borrow(|bytes| EndianSlice::new(bytes, LittleEndian));
     let types = Types::load(&file, &dwarf)?;
-    let variable = types
-        .variable(name)?
-        .ok_or_else(|| LayoutError::NoDebugInformation(name.to_owned()))?;
-    let (place, offset) =
-        types
-            .find(variable, record, 0)?
-            .ok_or_else(|| LayoutError::NoRecord {
-                name: name.to_owned(),
-                record: record.to_owned(),
-            })?;
+    let variables = types.variables(name)?;
+    if variables.is_empty() {
+        return Err(LayoutError::NoDebugInformation(name.to_owned()));
+    }
+    let mut found = None;
+    for variable in variables {
+        found = found.or(types.find(variable, record, 0)?);
+    }
+    let (place, offset) = found.ok_or_else(|| LayoutError::NoRecord {
+        name: name.to_owned(),
+        record: record.to_owned(),
+    })?;
     let mut leaves = Vec::new();
     types.flatten(place, 0, "", &mut leaves)?;
     Ok(Record {
@@ -148,8 +151,9 @@ impl<'d> Types<'d> {
         Ok(Self { file, dwarf, units })
     }
 
-    /// Type of the static `name`.
-    fn variable(&self, name: &str) -> gimli::Result<Option<Place>> {
+    /// Types of the statics `name`.
+    fn variables(&self, name: &str) -> gimli::Result<Vec<Place>> {
+        let mut found = Vec::new();
         for (index, unit) in self.units.iter().enumerate() {
             let mut entries = unit.entries();
             while let Some(entry) = entries.next_dfs()? {
@@ -157,12 +161,12 @@ impl<'d> Types<'d> {
                     && [constants::DW_AT_linkage_name, constants::DW_AT_name]
                         .iter()
                         .any(|&at| self.text(index, entry, at).is_some_and(|text| text == name));
-                if is_it && let Some(place) = self.type_of(index, entry) {
-                    return Ok(Some(place));
+                if is_it {
+                    found.extend(self.type_of(index, entry));
                 }
             }
         }
-        Ok(None)
+        Ok(found)
     }
 
     fn text(&self, unit: usize, entry: &Die<'d>, at: constants::DwAt) -> Option<String> {
@@ -226,11 +230,13 @@ impl<'d> Types<'d> {
         offset: u32,
     ) -> Result<Option<(Place, u32)>, LayoutError> {
         let entry = self.entry(place)?;
-        if !matches!(
-            entry.tag(),
-            constants::DW_TAG_structure_type | constants::DW_TAG_union_type
-        ) {
-            return Ok(None);
+        match entry.tag() {
+            constants::DW_TAG_structure_type | constants::DW_TAG_union_type => {}
+            constants::DW_TAG_array_type => {
+                let element = self.type_of(place.unit, &entry);
+                return element.map_or(Ok(None), |it| self.find(it, record, offset));
+            }
+            _ => return Ok(None),
         }
         if self
             .text(place.unit, &entry, constants::DW_AT_name)
