@@ -272,6 +272,9 @@ impl Law {
         let [left_rad, right_rad] = measured.lean_rad;
         let [left_rps, right_rps] = measured.lean_rps;
         let tilt = &measured.tilt;
+        // On a robot that turns, the centrifugal force adds to gravity: it falls faster.
+        let swing = tilt.yaw_rps * tilt.yaw_rps * measured.length_m() / GRAVITY_MPS2;
+        let (lean, lean_rate) = (1.0 + swing, 1.0 + 0.5 * swing);
         [
             reference.distance_m,
             scalar::clamp(
@@ -281,10 +284,10 @@ impl Law {
             ),
             reference.yaw_error_rad,
             tilt.yaw_rps - reference.yaw_rps,
-            left_rad - lean_rad,
-            left_rps,
-            right_rad - lean_rad,
-            right_rps,
+            lean * (left_rad - lean_rad),
+            lean_rate * left_rps,
+            lean * (right_rad - lean_rad),
+            lean_rate * right_rps,
             tilt.pitch_rad - pitch_rad,
             tilt.pitch_rps,
         ]
