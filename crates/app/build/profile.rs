@@ -95,6 +95,8 @@ fn mass(robot: &Robot) -> String {
              carried_kg: {carried_kg}, \
              axle_kg: {axle_kg}, \
              carried_up_m: {carried_up_m}, \
+             imu_ahead_m: {imu_ahead_m}, \
+             imu_over_m: {imu_over_m}, \
              roll_kgm2: {roll_kgm2}, \
              wheel_kgm2: {wheel_kgm2}, \
              hip_kgm2: {hip_kgm2} \
@@ -103,6 +105,8 @@ fn mass(robot: &Robot) -> String {
         carried_kg = f32(split.carried_kg),
         axle_kg = f32(split.axle_kg),
         carried_up_m = f32(split.carried_up_m),
+        imu_ahead_m = f32(robot.imu.place_m[0]),
+        imu_over_m = f32(robot.imu.place_m[2] - split.carried_up_m),
         roll_kgm2 = f32(split.roll_kgm2),
         wheel_kgm2 = f32(robot.wheels.inertia_kgm2 + robot.wheels.rotor_inertia_kgm2),
         hip_kgm2 = f32(robot.joints.armature_kgm2),

@@ -43,6 +43,10 @@ pub struct MassModel {
     pub axle_kg: f32,
     /// Centre of what the legs carry, above the hip centre, in m.
     pub carried_up_m: f32,
+    /// The IMU ahead of this centre, in m.
+    pub imu_ahead_m: f32,
+    /// The IMU above this centre, in m.
+    pub imu_over_m: f32,
     /// Moment of inertia of what the legs carry, about the forward axis through its centre, in kg·m².
     pub roll_kgm2: f32,
     /// Moment of inertia of a wheel and its rotor about the axle in kg·m².

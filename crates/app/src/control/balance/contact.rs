@@ -8,6 +8,8 @@ const FORCE_TIME_S: f32 = 0.006;
 /// The same for the whole robot's force, and the share of its weight below which it falls freely.
 const TOTAL_TIME_S: f32 = 0.008;
 const FREE_FALL: f32 = 0.2;
+/// Time constant in s of the pitch's acceleration.
+const PITCH_TIME_S: f32 = 0.005;
 /// Shares of a wheel's standing load below which it is in the air, and above which it is on the ground.
 const LIFTED: f32 = 0.15;
 const LOADED: f32 = 0.4;
@@ -35,6 +37,8 @@ pub struct Contact {
     total_n: f32,
     /// A smaller total is that of a free fall.
     free_fall_n: f32,
+    /// Pitch rate in rad/s behind a low-pass filter.
+    pitch_rps: f32,
 }
 
 impl Contact {
@@ -48,6 +52,7 @@ impl Contact {
             }),
             total_n: mass.total_kg * GRAVITY_MPS2,
             free_fall_n: FREE_FALL * mass.total_kg * GRAVITY_MPS2,
+            pitch_rps: measured.tilt.pitch_rps,
         }
     }
 
@@ -56,7 +61,8 @@ impl Contact {
         let standing_n = 0.5 * mass.total_kg * GRAVITY_MPS2;
         let legs = measured.legs.iter().zip(&measured.hip_nm);
         let motions = measured.lean_rad.iter().zip(wheel_nm);
-        let mut total_n = mass.carried_kg * measured.up_mps2;
+        let up_mps2 = self.carried_up_mps2(mass, measured, dt_s);
+        let mut total_n = mass.carried_kg * up_mps2;
         for ((wheel, (leg, hip_nm)), (lean_rad, wheel_nm)) in
             self.wheels.iter_mut().zip(legs).zip(motions)
         {
@@ -71,13 +77,22 @@ impl Contact {
             let [front, rear] = leg.length_per_rad;
             let rotor_kg = mass.hip_kgm2 / scalar::max(front * front + rear * rear, 1e-3);
             let push_n = push_n - rotor_kg * accel_mps2;
-            let axle_mps2 = measured.up_mps2 - accel_mps2 * cos;
+            let axle_mps2 = up_mps2 - accel_mps2 * cos;
             let force_n = push_n * cos + mass.axle_kg * axle_mps2;
             wheel.force_n += (force_n - wheel.force_n) * (dt_s / FORCE_TIME_S);
             wheel.decide(standing_n, dt_s);
             total_n += mass.axle_kg * axle_mps2;
         }
         self.total_n += (total_n - self.total_n) * (dt_s / TOTAL_TIME_S);
+    }
+
+    /// Specific force in m/s² along the vertical where the centre of what the legs carry is. A body that is struck pitches so hard
+    /// that the IMU beside the centre feels a free fall.
+    fn carried_up_mps2(&mut self, mass: &MassModel, measured: &Measured, dt_s: f32) -> f32 {
+        let pitch_rps = measured.tilt.pitch_rps;
+        let pitch_rpss = (pitch_rps - self.pitch_rps) / PITCH_TIME_S;
+        self.pitch_rps += pitch_rpss * dt_s;
+        measured.up_mps2 + mass.imu_ahead_m * pitch_rpss + mass.imu_over_m * pitch_rps * pitch_rps
     }
 
     /// No wheel touches the ground: the legs push nothing, or the robot falls freely however they push.
@@ -104,3 +119,6 @@ impl WheelContact {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
