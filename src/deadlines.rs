@@ -32,23 +32,25 @@ impl Watched {
     ];
 
     fn last_check_in(self) -> &'static AtomicU32 {
-        static IMU: AtomicU32 = AtomicU32::new(0);
-        static MAG: AtomicU32 = AtomicU32::new(0);
-        static SBUS: AtomicU32 = AtomicU32::new(0);
-        static LOGIC: AtomicU32 = AtomicU32::new(0);
-        static STATUS: AtomicU32 = AtomicU32::new(0);
-        static PARAMS: AtomicU32 = AtomicU32::new(0);
-        static LINK_RECEIVE: AtomicU32 = AtomicU32::new(0);
-        static LINK_SEND: AtomicU32 = AtomicU32::new(0);
+        let [
+            imu,
+            mag,
+            sbus,
+            logic,
+            status,
+            params,
+            link_receive,
+            link_send,
+        ] = &LAST_CHECK_INS;
         match self {
-            Self::Imu => &IMU,
-            Self::Mag => &MAG,
-            Self::Sbus => &SBUS,
-            Self::Logic => &LOGIC,
-            Self::Status => &STATUS,
-            Self::Params => &PARAMS,
-            Self::LinkReceive => &LINK_RECEIVE,
-            Self::LinkSend => &LINK_SEND,
+            Self::Imu => imu,
+            Self::Mag => mag,
+            Self::Sbus => sbus,
+            Self::Logic => logic,
+            Self::Status => status,
+            Self::Params => params,
+            Self::LinkReceive => link_receive,
+            Self::LinkSend => link_send,
         }
     }
 
@@ -58,10 +60,17 @@ impl Watched {
     }
 
     fn is_late(self, now_us: u32) -> bool {
-        let age_us = now_us.wrapping_sub(self.last_check_in().load(Ordering::Relaxed));
-        // A check-in may come after `now_us` was read, so that its time lies just ahead.
-        (DEADLINE_US..u32::MAX / 2).contains(&age_us)
+        is_past(self.last_check_in(), now_us)
     }
+}
+
+/// Times of the last check-ins, one after the other, because each control tick reads them all.
+static LAST_CHECK_INS: [AtomicU32; 8] = [const { AtomicU32::new(0) }; 8];
+
+fn is_past(last_check_in: &AtomicU32, now_us: u32) -> bool {
+    let age_us = now_us.wrapping_sub(last_check_in.load(Ordering::Relaxed));
+    // A check-in may come after `now_us` was read, so that its time lies just ahead.
+    (DEADLINE_US..u32::MAX / 2).contains(&age_us)
 }
 
 /// Longest time between two check-ins. Every watched task runs at least once in 10 ms. With the short period of
@@ -79,7 +88,7 @@ pub fn start() {
 /// Whether any task missed its deadline.
 pub fn any_late(now_us: u64) -> bool {
     let now_us = now_us as u32;
-    Watched::ALL.iter().any(|task| task.is_late(now_us))
+    LAST_CHECK_INS.iter().any(|last| is_past(last, now_us))
 }
 
 /// The tasks that missed their deadline.

@@ -76,8 +76,8 @@ mod target {
     }
 }
 
-/// Copies eight words at a time, as long as so many are left, and returns how many it has copied. The copies are part of
-/// the control tick, and word by word they take three instructions each.
+/// Copies words in blocks of eight, four and two, and returns how many it has copied: all but the last of an odd number.
+/// The copies are part of the control tick, and word by word they take three instructions each.
 ///
 /// # Safety
 /// `from` and `to` must be aligned and valid for `count` words. Nobody may access them meanwhile but word by word.
@@ -89,10 +89,11 @@ unsafe fn copy_blocks(
     count: usize,
 ) -> usize {
     const BLOCK: usize = 8;
+    // Each access is of one aligned word, so it is atomic like those of `AtomicMaybeUninit`, which are written in assembly
+    // too (ARMv7-M ARM A3.5.3: LDM, STM, LDRD and STRD are sequences of atomic word accesses). An interrupt may restart an
+    // instruction, which then copies words again.
     for _ in 0..count / BLOCK {
-        // SAFETY: one block lies ahead of both pointers (contract). Each access is of one aligned word, so it is atomic
-        // like those of `AtomicMaybeUninit`, which are written in assembly too (ARMv7-M ARM A3.5.3: LDM and STM are
-        // sequences of atomic word accesses). An interrupt may restart an instruction, which then copies words again.
+        // SAFETY: one block lies ahead of both pointers (contract).
         unsafe {
             core::arch::asm!(
                 "ldm {from}!, {{r2, r3, r4, r5, r8, r10, r12, lr}}",
@@ -111,7 +112,37 @@ unsafe fn copy_blocks(
             );
         }
     }
-    count / BLOCK * BLOCK
+    if count % BLOCK >= 4 {
+        // SAFETY: four words lie ahead of both pointers.
+        unsafe {
+            core::arch::asm!(
+                "ldm {from}!, {{r2, r3, r4, r5}}",
+                "stm {to}!, {{r2, r3, r4, r5}}",
+                from = inout(reg) from,
+                to = inout(reg) to,
+                out("r2") _,
+                out("r3") _,
+                out("r4") _,
+                out("r5") _,
+                options(nostack, preserves_flags),
+            );
+        }
+    }
+    if count % 4 >= 2 {
+        // SAFETY: two words lie ahead of both pointers.
+        unsafe {
+            core::arch::asm!(
+                "ldrd {first}, {second}, [{from}]",
+                "strd {first}, {second}, [{to}]",
+                from = in(reg) from,
+                to = in(reg) to,
+                first = out(reg) _,
+                second = out(reg) _,
+                options(nostack, preserves_flags),
+            );
+        }
+    }
+    count / 2 * 2
 }
 
 /// Elsewhere words are copied one by one.

@@ -40,7 +40,9 @@ impl CanPort {
         self.link.is_on_bus()
     }
 
-    /// Aborts frames of the last tick that still wait, advances the link and reads the error state. Never waits.
+    /// Aborts frames of the last tick that still wait, advances the link and reads the error state. Never waits. Part of
+    /// the control tick.
+    #[inline(always)]
     pub fn begin_tick(&mut self, now_us: u64) {
         let outcomes = transmit::retire_old_frames(self.can);
         if outcomes.sent > 0 {
@@ -73,7 +75,9 @@ impl CanPort {
             while let Some(received) = source.queue.peek() {
                 sink(&received.frame, received.ts_us);
                 self.health.rx_frames = self.health.rx_frames.wrapping_add(1);
-                source.queue.dequeue();
+                // SAFETY: `peek` has found a frame, and nobody else takes frames out. Asking once more would cost the tick
+                // five instructions a frame.
+                unsafe { source.queue.dequeue_unchecked() };
             }
         }
     }

@@ -110,11 +110,14 @@ impl Head {
 }
 
 /// Whether a word is neither blank nor cleared, with one or two stuck bits tolerated.
+#[inline(never)]
 fn has_data(bytes: &[u8]) -> bool {
     const STUCK: u32 = 2;
-    let ones = |word: &[u8]| word.iter().map(|byte| byte.count_ones()).sum();
-    let mut words = bytes.chunks_exact(4).map(ones);
-    words.any(|ones: u32| ones > STUCK && ones < 32 - STUCK)
+    let (words, _) = bytes.as_chunks();
+    let mut ones = words
+        .iter()
+        .map(|word| u32::from_le_bytes(*word).count_ones());
+    ones.any(|ones| ones > STUCK && ones < 32 - STUCK)
 }
 
 fn matches_mark(found: [u8; 4], mark: [u8; 4]) -> bool {
