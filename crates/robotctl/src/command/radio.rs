@@ -113,7 +113,8 @@ fn bring_up(client: &mut TuningClient, step: BringUpStep, enable: f32) -> Result
 fn find(watch: &mut Watch<'_>) -> Result<Vec<MappedControl>> {
     let rest = loop {
         ask(
-            "Enable off, e-stop thrown, mode at manual, sticks let go; one without a spring in its middle.",
+            "Enable off, e-stop thrown, mode at manual, stand switch at sit, knobs for height and roll in their middle, \
+             sticks let go; one without a spring in its middle.",
         )?;
         if let Some(rest) = heard(watch.still())? {
             break rest;
@@ -132,7 +133,7 @@ fn find(watch: &mut Watch<'_>) -> Result<Vec<MappedControl>> {
         let ends = ends.iter().find(|stick| stick.control == found.control);
         *found = *ends.unwrap_or(found);
     }
-    for control in Control::SWITCHES {
+    for control in Control::BALANCE.into_iter().chain(Control::SWITCHES) {
         let moved = find_moved(watch, control, &rest, &found)?;
         found.push(moved.map_or(missing(control), |moved| MappedControl::switch(&moved)));
     }

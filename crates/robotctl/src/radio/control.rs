@@ -10,10 +10,16 @@ pub enum Control {
     Enable,
     Mode,
     EStop,
+    Stand,
+    Jump,
+    Height,
+    Roll,
 }
 
 impl Control {
     pub const STICKS: [Self; 4] = [Self::Drive, Self::Steering, Self::Select, Self::DeadMan];
+    /// What only a standing robot needs, in the order of the requests. The robot knows no travel of their channels.
+    pub const BALANCE: [Self; 4] = [Self::Stand, Self::Jump, Self::Height, Self::Roll];
     /// The switches in the order of the requests. The e-stop is last and stays thrown while the others are moved.
     pub const SWITCHES: [Self; 3] = [Self::Mode, Self::Enable, Self::EStop];
 
@@ -27,6 +33,10 @@ impl Control {
             Self::Enable => "enable",
             Self::Mode => "mode",
             Self::EStop => "e-stop",
+            Self::Stand => "stand",
+            Self::Jump => "jump",
+            Self::Height => "height",
+            Self::Roll => "roll",
         }
     }
 
@@ -43,7 +53,17 @@ impl Control {
             Self::DeadMan => {
                 "That one back to its middle, then push it, the dead man of bring-up, fully to the right and hold it there."
             }
-            Self::Mode => "Sticks at rest. Put the mode switch to its far end, custom.",
+            Self::Stand => "All as at the start. Put the stand switch to stand.",
+            Self::Jump => {
+                "All as at the start. Hold the jump button down, or put its switch to jump."
+            }
+            Self::Height => {
+                "All as at the start. Turn the knob for the height to its end for long legs."
+            }
+            Self::Roll => {
+                "All as at the start. Turn the knob for the roll to its end for the right side down."
+            }
+            Self::Mode => "All as at the start. Put the mode switch to its far end, custom.",
             Self::Enable => {
                 "Mode back to manual. With the e-stop thrown, put the enable switch to on."
             }
@@ -61,12 +81,21 @@ impl Control {
             Self::Enable => "on",
             Self::Mode => "custom",
             Self::EStop => "stop",
+            Self::Stand => "stand",
+            Self::Jump => "jump",
+            Self::Height => "long legs",
+            Self::Roll => "right side down",
         }
     }
 
     /// True if the robot can be armed without it.
     pub fn may_be_missing(self) -> bool {
-        matches!(self, Self::Select | Self::DeadMan | Self::Mode)
+        matches!(self, Self::Select | Self::DeadMan | Self::Mode) || !self.has_travel()
+    }
+
+    /// True if the robot has settings for its ends and its centre.
+    pub(super) fn has_travel(self) -> bool {
+        !Self::BALANCE.contains(&self)
     }
 
     /// True if the requested movement goes towards the high end. It does not for the e-stop, which was thrown before.
@@ -75,12 +104,26 @@ impl Control {
     }
 
     /// Returns the fewest counts of an intended movement. A switch goes from end to end, and the robot needs 200 counts
-    /// on each side of its middle.
+    /// on each side of its middle. A knob goes from its middle to an end, as a stick does.
     pub(super) fn least_move(self) -> u16 {
-        if Self::STICKS.contains(&self) {
+        if Self::STICKS.contains(&self) || matches!(self, Self::Height | Self::Roll) {
             300
         } else {
             400
+        }
+    }
+
+    /// True if the robot takes a movement between these counts for what it is. That of a switch without settings for
+    /// its ends must cross the robot's own limits, which lie half way between FrSky's centre and ends.
+    pub(super) fn is_reached(self, from: u16, to: u16) -> bool {
+        const LOW: u16 = 581;
+        const HIGH: u16 = 1_402;
+        let (low, high) = (from.min(to), from.max(to));
+        match self {
+            Self::Stand => low <= LOW && high >= HIGH,
+            Self::Jump if to > from => from < HIGH && to >= HIGH,
+            Self::Jump => from > LOW && to <= LOW,
+            _ => true,
         }
     }
 }

@@ -23,12 +23,14 @@ impl MappedControl {
         let index = self.channel.map_or(NO_CHANNEL, |channel| channel.index);
         let mut settings = vec![(format!("radio.{name}-channel"), index)];
         if let Some(channel) = self.channel {
-            settings.extend([
-                (format!("radio.{name}-reversed"), channel.reversed),
-                (format!("radio-travel.{name}-low"), channel.low),
-                (format!("radio-travel.{name}-centre"), channel.centre),
-                (format!("radio-travel.{name}-high"), channel.high),
-            ]);
+            settings.push((format!("radio.{name}-reversed"), channel.reversed));
+            if self.control.has_travel() {
+                settings.extend([
+                    (format!("radio-travel.{name}-low"), channel.low),
+                    (format!("radio-travel.{name}-centre"), channel.centre),
+                    (format!("radio-travel.{name}-high"), channel.high),
+                ]);
+            }
         }
         // Whole numbers up to 2047 are exact.
         let exact = settings.into_iter();
@@ -52,6 +54,11 @@ impl MappedControl {
             self.control.high_end(),
             ["high", "low"][usize::from(reversed == 1)],
         );
-        format!("{name}: channel {index}, {low} … {centre} … {high}; {end} is the {count} count")
+        let travel = if self.control.has_travel() {
+            format!("{low} … {centre} … {high}")
+        } else {
+            format!("{low} … {high}")
+        };
+        format!("{name}: channel {index}, {travel}; {end} is the {count} count")
     }
 }

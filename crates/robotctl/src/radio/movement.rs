@@ -97,7 +97,18 @@ pub enum MoveError {
         counts: u16,
     },
     #[error(
-        "channel {index} is not back: enable off, e-stop at stop, mode at manual, sticks let go"
+        "{name}: channel {index} went from {from} to {to}, which does not reach what the robot wants (docs/driving.md): \
+         widen its limits in the transmitter"
+    )]
+    Short {
+        name: &'static str,
+        index: usize,
+        from: u16,
+        to: u16,
+    },
+    #[error(
+        "channel {index} is not back: enable off, e-stop at stop, mode at manual, stand switch at sit, knobs in their \
+         middle, sticks let go"
     )]
     NotBack { index: usize },
     #[error(
@@ -152,11 +163,20 @@ impl Movement {
                 counts,
             });
         }
+        let (from, to) = (rest.median[index], held.median[index]);
+        if !control.is_reached(from, to) {
+            return Err(MoveError::Short {
+                name,
+                index,
+                from,
+                to,
+            });
+        }
         Ok(Self {
             control,
             index,
-            from: rest.median[index],
-            to: held.median[index],
+            from,
+            to,
         })
     }
 

@@ -85,6 +85,53 @@ fn each_control_at_its_high_end_is_at_plus_one_for_the_robot() {
     assert_eq!(e_stop.position(&REST), Some(1.0));
 }
 
+/// In docs/driving.md stand, jump, long legs and the right side down are +1. The stand switch rests at its end, the others
+/// at their middle.
+#[test]
+fn a_standing_robot_s_controls_have_a_channel_and_a_direction() {
+    for (control, index) in Control::BALANCE.into_iter().zip([9, 10, 11, 12]) {
+        for (end, sense) in [(1811, 0), (172, 1)] {
+            let from = match control {
+                Control::Stand => 1983 - end,
+                _ => 992,
+            };
+            let rest = still(with(&[(index, from)]));
+            let held = still(with(&[(index, end)]));
+            let moved = Movement::find(control, &rest, &held, &[]).unwrap();
+            let settings = MappedControl::switch(&moved).settings();
+            let name = control.name();
+            let wanted = [("channel", index as f32), ("reversed", sense as f32)];
+            let wanted = wanted.map(|(what, value)| (format!("radio.{name}-{what}"), value));
+            assert_eq!(settings, wanted);
+        }
+        assert!(control.may_be_missing());
+    }
+}
+
+#[test]
+fn a_switch_that_the_robot_would_not_see_thrown_is_named() {
+    let found = |control, from: u16, to: u16| {
+        let held = |count| still(with(&[(9, count)]));
+        Movement::find(control, &held(from), &held(to), &[])
+    };
+    for (from, to) in [(581, 1402), (1402, 581)] {
+        assert!(found(Control::Stand, from, to).is_ok());
+    }
+    assert!(found(Control::Jump, 1001, 1402).is_ok());
+    assert!(found(Control::Jump, 982, 581).is_ok());
+    for (control, from, to) in [
+        (Control::Stand, 582, 1402),
+        (Control::Stand, 581, 1401),
+        (Control::Jump, 1001, 1401),
+        (Control::Jump, 992, 582),
+        (Control::Jump, 1402, 1811),
+    ] {
+        let short = found(control, from, to).unwrap_err().to_string();
+        let why = format!("{}: channel 9 went from {from} to {to}", control.name());
+        assert!(short.starts_with(&why), "{short}");
+    }
+}
+
 #[test]
 fn a_switch_with_the_opposite_direction_is_reversed() {
     let found = |control, from: u16, to: u16| {
@@ -201,6 +248,10 @@ fn found() -> Vec<MappedControl> {
         with(Control::Steering, Some(channel(1, 300, 1000, 1700, 0))),
         with(Control::Select, None),
         with(Control::DeadMan, Some(channel(2, 172, 992, 1811, 0))),
+        with(Control::Stand, Some(channel(9, 172, 991, 1811, 1))),
+        with(Control::Jump, Some(channel(7, 172, 991, 1811, 0))),
+        with(Control::Height, Some(channel(8, 992, 1401, 1811, 0))),
+        with(Control::Roll, None),
         with(Control::Mode, Some(channel(6, 172, 991, 1811, 0))),
         with(Control::Enable, Some(channel(5, 172, 991, 1811, 1))),
         with(Control::EStop, Some(channel(4, 172, 991, 1811, 0))),
@@ -216,9 +267,13 @@ fn the_mapping_is_shown_and_written() {
         "drive: channel 0, 352 … 1024 … 1696; forward is the low count"
     );
     assert_eq!(words[2], "select: none");
+    assert_eq!(
+        words[4],
+        "stand: channel 9, 172 … 1811; stand is the low count"
+    );
     let differs = differing(&mut client, &found(), 4.0).unwrap();
-    // drive 5, steering 4, select 1, dead-man 1, mode 2, enable 3, e-stop 2.
-    assert_eq!(differs.len(), 18);
+    // drive 5, steering 4, select 1, dead-man 1, stand 2, jump, height and roll 1 each, mode 2, enable 3, e-stop 2.
+    assert_eq!(differs.len(), 23);
     write(&mut client, &found()).unwrap();
     assert!(differing(&mut client, &found(), 5.0).unwrap().is_empty());
     let radio = bus.0.borrow().config.radio;
@@ -227,6 +282,10 @@ fn the_mapping_is_shown_and_written() {
     assert_eq!(radio.select, channel(NO_CHANNEL, 172, 992, 1811, 0));
     assert_eq!(radio.enable, channel(5, 172, 991, 1811, 1));
     assert_eq!(radio.e_stop, channel(4, 172, 991, 1811, 0));
+    assert_eq!((radio.stand.index, radio.stand.reversed), (9, 1));
+    assert_eq!((radio.jump.index, radio.jump.reversed), (7, 0));
+    assert_eq!(radio.height.index, 8);
+    assert_eq!(radio.roll.index, NO_CHANNEL);
 }
 
 /// A robot that receives a transmitter at rest, and takes settings only while it reads its enable switch as off.
