@@ -98,6 +98,7 @@ fn mass(robot: &Robot) -> String {
              imu_ahead_m: {imu_ahead_m}, \
              imu_over_m: {imu_over_m}, \
              roll_kgm2: {roll_kgm2}, \
+             pitch_kgm2: {pitch_kgm2}, \
              wheel_kgm2: {wheel_kgm2}, \
              hip_kgm2: {hip_kgm2} \
          }}",
@@ -108,6 +109,7 @@ fn mass(robot: &Robot) -> String {
         imu_ahead_m = f32(robot.imu.place_m[0]),
         imu_over_m = f32(robot.imu.place_m[2] - split.carried_up_m),
         roll_kgm2 = f32(split.roll_kgm2),
+        pitch_kgm2 = f32(split.pitch_kgm2),
         wheel_kgm2 = f32(robot.wheels.inertia_kgm2 + robot.wheels.rotor_inertia_kgm2),
         hip_kgm2 = f32(robot.joints.armature_kgm2),
     )

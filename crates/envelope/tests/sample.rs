@@ -23,6 +23,18 @@ fn robots_as_in_their_file_succeed() {
 }
 
 #[test]
+fn robots_that_differ_jump_and_land() {
+    let robots = Robots {
+        robot: WorldConfig::default().robot,
+        vary: true,
+    };
+    let tasks: Vec<&Task> = TASKS.iter().filter(|task| task.name == "jump").collect();
+    let surveys = survey(&tasks, &robots, 6, false, &|| ());
+    let report = Report::new("fivebar", 6, &tasks, &surveys);
+    assert!(report.holds(), "\n{}", table(&report));
+}
+
+#[test]
 fn specimens_differ_within_their_limits_and_repeat() {
     let robots = Robots {
         robot: WorldConfig::default().robot,

@@ -15,6 +15,8 @@ pub struct MassSplit {
     pub carried_up_m: f64,
     /// Moment of inertia in kg·m² of the carried mass about the forward axis through its centre.
     pub roll_kgm2: f64,
+    /// The same about the axis to the left.
+    pub pitch_kgm2: f64,
 }
 
 impl Robot {
@@ -28,6 +30,7 @@ impl Robot {
         let carried_kg = body.mass_kg + links_kg;
         let carried_up_m = body.mass_kg * body.com_m[2] / carried_kg;
         let body_up_m = body.com_m[2] - carried_up_m;
+        let thigh_ahead_m = legs.hip_gap_m / 2.0 + legs.thigh.com_m;
         MassSplit {
             carried_kg,
             axle_kg: wheels.mass_kg + wheels.motor_mass_kg + 2.0 * lower_kg,
@@ -35,6 +38,9 @@ impl Robot {
             roll_kgm2: body.inertia_kgm2[0]
                 + body.mass_kg * body_up_m.powi(2)
                 + links_kg * (legs.plane_y_m.powi(2) + carried_up_m.powi(2)),
+            pitch_kgm2: body.inertia_kgm2[1]
+                + body.mass_kg * body_up_m.powi(2)
+                + links_kg * (thigh_ahead_m.powi(2) + carried_up_m.powi(2)),
         }
     }
 }

@@ -49,6 +49,8 @@ pub struct MassModel {
     pub imu_over_m: f32,
     /// Moment of inertia of what the legs carry, about the forward axis through its centre, in kg·m².
     pub roll_kgm2: f32,
+    /// The same about the axis to the left.
+    pub pitch_kgm2: f32,
     /// Moment of inertia of a wheel and its rotor about the axle in kg·m².
     pub wheel_kgm2: f32,
     /// Moment of inertia of a hip's rotor, seen at the joint, in kg·m².

@@ -22,6 +22,8 @@ const LOADED_S: f32 = 0.003;
 pub struct WheelContact {
     /// Force of the wheel on the ground in N.
     pub force_n: f32,
+    /// Push of the leg in N.
+    push_n: f32,
     /// The wheel is in the air.
     lifted: bool,
     length_mps: f32,
@@ -47,6 +49,7 @@ impl Contact {
         Self {
             wheels: measured.legs.map(|leg| WheelContact {
                 force_n: 0.5 * mass.total_kg * GRAVITY_MPS2,
+                push_n: 0.5 * mass.carried_kg * GRAVITY_MPS2,
                 length_mps: leg.length_mps,
                 ..WheelContact::default()
             }),
@@ -79,6 +82,7 @@ impl Contact {
             let push_n = push_n - rotor_kg * accel_mps2;
             let axle_mps2 = up_mps2 - accel_mps2 * cos;
             let force_n = push_n * cos + mass.axle_kg * axle_mps2;
+            wheel.push_n += (push_n - wheel.push_n) * (dt_s / FORCE_TIME_S);
             wheel.force_n += (force_n - wheel.force_n) * (dt_s / FORCE_TIME_S);
             wheel.decide(standing_n, dt_s);
             total_n += mass.axle_kg * axle_mps2;
@@ -93,6 +97,11 @@ impl Contact {
         let pitch_rpss = (pitch_rps - self.pitch_rps) / PITCH_TIME_S;
         self.pitch_rps += pitch_rpss * dt_s;
         measured.up_mps2 + mass.imu_ahead_m * pitch_rpss + mass.imu_over_m * pitch_rps * pitch_rps
+    }
+
+    /// Push of both legs in N.
+    pub fn push_n(&self) -> f32 {
+        self.wheels.iter().map(|wheel| wheel.push_n).sum()
     }
 
     /// No wheel touches the ground: the legs push nothing, or the robot falls freely however they push.

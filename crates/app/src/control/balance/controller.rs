@@ -1,7 +1,7 @@
 //! The balance controller: what the robot does from sitting to jumping, and what it tells.
 
 use super::{
-    jump::{self, Jump, Legs},
+    jump::{FLIGHT_MPS, Jump, Legs},
     law::{Goal, Ground, Law, Torques},
     measured::Measured,
     ramp::Ramp,
@@ -179,7 +179,7 @@ impl BalanceController {
             self.length = legs.length;
             (legs.push_n, legs.ground)
         } else if self.law.airborne() {
-            self.length = Ramp::at(jump::landing_length_m(profile));
+            self.length.step(limits.max_length_m, FLIGHT_MPS, dt_s);
             (None, Ground::Felt)
         } else {
             let wished_m = standing_length_m(profile, command);

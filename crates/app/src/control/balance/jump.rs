@@ -7,18 +7,20 @@ use crate::{domain::BalanceProfile, kinematics::Leg, math::scalar};
 const CROUCH_MPS: f32 = 0.5;
 const CROUCH_S: f32 = 0.6;
 /// The legs are down when they are this close to their shortest length, in m.
-const CLOSE_M: f32 = 0.012;
+const CLOSE_M: f32 = 0.018;
 /// Part of the hips' torque that pushes off. The rest keeps the balance.
 const PUSH_PART: f32 = 0.97;
 /// Pushing off ends so much before the legs' full length, in m.
-const STOP_SHORT_M: f32 = 0.02;
+const STOP_SHORT_M: f32 = 0.03;
 const PUSH_S: f32 = 0.3;
 /// Legs are this much longer than the shortest while they are drawn in, for this part of the time up to the top.
 const DRAWN_IN_M: f32 = 0.01;
 const DRAWN_IN_PART: f32 = 1.3;
-/// Rate in m/s at which legs change their length in the air.
-const FLIGHT_MPS: f32 = 2.5;
-/// Time in s after which a robot that has pushed off has landed. Up to the top it is in the air whatever it feels.
+/// Rate in m/s at which legs are stretched to land, and the time in s for most of it. Before, the robot is in the air
+/// whatever it feels.
+pub const FLIGHT_MPS: f32 = 2.5;
+const STRETCH_S: f32 = 0.05;
+/// Time in s after which a robot that has pushed off has landed.
 const FLIGHT_S: f32 = 1.0;
 
 /// Parts of a jump.
@@ -69,9 +71,8 @@ impl Jump {
         let mut ground = Ground::Touched;
         match &mut self.part {
             Part::Crouch => {
-                let shortest_m = limits.fold_length_m + DRAWN_IN_M;
-                length.step(shortest_m, CROUCH_MPS, dt_s);
-                let down = measured.length_m() < shortest_m + CLOSE_M;
+                length.step(limits.fold_length_m, CROUCH_MPS, dt_s);
+                let down = measured.length_m() < limits.fold_length_m + CLOSE_M;
                 if down || self.elapsed_s > CROUCH_S {
                     self.begin(Part::Push);
                 }
@@ -90,14 +91,14 @@ impl Jump {
                 // The axles are pulled along from the ground.
                 let mass = &profile.mass;
                 let rise_s = *start_mps * mass.carried_kg / (mass.total_kg * GRAVITY_MPS2);
-                let drawn_in = self.elapsed_s < DRAWN_IN_PART * rise_s;
-                let target_m = if drawn_in {
-                    limits.fold_length_m + DRAWN_IN_M
+                let drawn_in_s = DRAWN_IN_PART * rise_s;
+                if self.elapsed_s < drawn_in_s {
+                    length = Ramp::at(limits.fold_length_m + DRAWN_IN_M);
                 } else {
-                    landing_length_m(profile)
-                };
-                length.step(target_m, FLIGHT_MPS, dt_s);
-                if self.elapsed_s < rise_s {
+                    length.step(limits.max_length_m, FLIGHT_MPS, dt_s);
+                }
+                // Legs that stretch feel like legs that push.
+                if self.elapsed_s < drawn_in_s + STRETCH_S {
                     ground = Ground::Left;
                 } else if !airborne || self.elapsed_s > FLIGHT_S {
                     return None;
@@ -117,12 +118,6 @@ impl Jump {
             elapsed_s: 0.0,
         };
     }
-}
-
-/// Leg length in m on which a robot lands: most of its way is left to slow down.
-pub fn landing_length_m(profile: &BalanceProfile) -> f32 {
-    let limits = &profile.limits;
-    limits.min_length_m + 0.8 * (limits.max_length_m - limits.min_length_m)
 }
 
 /// The push of each leg in N that its hips can give.

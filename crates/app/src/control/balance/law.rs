@@ -12,7 +12,7 @@ use super::{
     virtual_leg::LegForce,
 };
 use crate::{
-    domain::{BalanceProfile, WheelOdomConfig},
+    domain::{BalanceProfile, MassModel, WheelOdomConfig},
     math::scalar,
 };
 
@@ -36,6 +36,9 @@ const AIR_NM_PER_RAD: f32 = 12.0;
 const AIR_NMS_PER_RAD: f32 = 0.6;
 /// Damping of a wheel in the air in N·m·s/rad.
 const AIR_DAMPING: f32 = 0.05;
+/// Torque of each wheel in N·m for each N·m·s with which a robot that pushes off turns forward. It would go on turning in
+/// the air.
+const TURN_NM_PER_NMS: f32 = 20.0;
 
 /// Push in N that keeps a wheel on the ground while the body would lift it.
 const LEAST_PUSH_N: f32 = 2.0;
@@ -183,11 +186,15 @@ impl Law {
             measured.length_m(),
             dt_s,
         );
-        let error = self.error(
-            measured,
-            self.trim.lean_rad + ahead.lean_rad,
-            goal.pitch_rad,
-        );
+        let length_m = measured.length_m();
+        let trim_rad = self.trim.offset_m / scalar::max(length_m, 0.05);
+        // The hips go up and down straight.
+        let trim_rps = -trim_rad * measured.length_mps() / scalar::max(length_m, 0.05);
+        let lean = Ramp {
+            value: trim_rad + ahead.lean_rad,
+            rate: trim_rps,
+        };
+        let error = self.error(measured, &lean, goal.pitch_rad);
         let feedback_nm = self.gains.torques_nm(&error);
         let [left_wheel, right_wheel, left_leg, right_leg] = feedback_nm;
         let [_, speed_error, ..] = error;
@@ -196,24 +203,31 @@ impl Law {
             && yaw_rps.abs() < LEARN_YAW_RPS;
         let calm = goal.learn && steady && speed_error.abs() < LEARN_MPS;
         if calm {
-            self.trim.learn(observed_rad, feedback_nm, dt_s);
+            self.trim.learn(observed_rad * length_m, feedback_nm, dt_s);
         }
+        // A body that is pushed harder needs as much more torque against its centre of mass beside the hips.
+        let share = self.support.share(&profile.mass, self.contact.push_n());
         let stance = Stance {
             length: goal.length,
             roll_rad: goal.roll_rad,
             sideways_mps2: measured.speed_mps * yaw_rps,
+            share,
         };
         let track_m = odometry.wheel_track_m;
         let [left_n, right_n] =
             self.support
                 .step(&profile.mass, track_m, &stance, measured, calm, dt_s);
-        // A jump replaces the mean push and keeps what levels the body.
+        // A jump replaces the push of the stronger leg and keeps what levels the body.
         let more_n = match goal.push_n {
-            Some(push_n) => push_n - 0.5 * (left_n + right_n),
+            Some(push_n) => push_n - scalar::max(left_n, right_n),
             None => 0.0,
         };
-        let wheel_nm = self.trim.wheel_nm + ahead.wheel_nm;
-        let leg_nm = self.trim.leg_nm + ahead.leg_nm;
+        let turn_nm = match goal.push_n {
+            Some(_) => TURN_NM_PER_NMS * turn_nms(&profile.mass, measured, lean.rate),
+            None => 0.0,
+        };
+        let wheel_nm = self.trim.wheel_nm * share + ahead.wheel_nm + turn_nm;
+        let leg_nm = self.trim.leg_nm * share + ahead.leg_nm;
         let leg = |push_n: f32, nm: f32| LegForce {
             push_n: scalar::max(push_n + more_n, LEAST_PUSH_N),
             lean_nm: nm + leg_nm,
@@ -243,11 +257,19 @@ impl Law {
         self.reference.let_go();
         self.trim.restart(motion(measured));
         let wanted_rps = self.reference.speed_mps / scalar::max(odometry.wheel_radius_m, 0.01);
-        let lean_rad = self.trim.lean_rad;
-        let lean_nm =
-            |rad: f32, rps: f32| AIR_NM_PER_RAD * (lean_rad - rad) - AIR_NMS_PER_RAD * rps;
+        let lean_rad = self.trim.offset_m / scalar::max(profile.limits.max_length_m, 0.05);
+        let push_n = self.contact.push_n();
+        let trim_nm = self.trim.leg_nm * self.support.share(&profile.mass, push_n);
+        let lean_nm = |rad: f32, rps: f32| {
+            trim_nm + AIR_NM_PER_RAD * (lean_rad - rad) - AIR_NMS_PER_RAD * rps
+        };
         let ([left_rad, right_rad], [left_rps, right_rps]) = (measured.lean_rad, measured.lean_rps);
-        let [left_n, right_n] = Support::in_air(&profile.mass, goal.length.value, measured);
+        let [left_n, right_n] = Support::in_air(
+            &profile.mass,
+            odometry.wheel_track_m,
+            &goal.length,
+            measured,
+        );
         // Wheels are too light to turn the robot by their inertia. They keep the speed of the ground.
         let wheels_nm = measured
             .wheel_rps
@@ -267,14 +289,14 @@ impl Law {
         )
     }
 
-    fn error(&self, measured: &Measured, lean_rad: f32, pitch_rad: f32) -> [f32; STATES] {
+    fn error(&self, measured: &Measured, lean: &Ramp, pitch_rad: f32) -> [f32; STATES] {
         let reference = &self.reference;
         let [left_rad, right_rad] = measured.lean_rad;
         let [left_rps, right_rps] = measured.lean_rps;
         let tilt = &measured.tilt;
         // On a robot that turns, the centrifugal force adds to gravity: it falls faster.
         let swing = tilt.yaw_rps * tilt.yaw_rps * measured.length_m() / GRAVITY_MPS2;
-        let (lean, lean_rate) = (1.0 + swing, 1.0 + 0.5 * swing);
+        let (growth, lean_rate) = (1.0 + swing, 1.0 + 0.5 * swing);
         [
             reference.distance_m,
             scalar::clamp(
@@ -284,10 +306,10 @@ impl Law {
             ),
             reference.yaw_error_rad,
             tilt.yaw_rps - reference.yaw_rps,
-            lean * (left_rad - lean_rad),
-            lean_rate * left_rps,
-            lean * (right_rad - lean_rad),
-            lean_rate * right_rps,
+            growth * (left_rad - lean.value),
+            lean_rate * (left_rps - lean.rate),
+            growth * (right_rad - lean.value),
+            lean_rate * (right_rps - lean.rate),
             tilt.pitch_rad - pitch_rad,
             tilt.pitch_rps,
         ]
@@ -305,6 +327,13 @@ fn level_n(measured: &Measured) -> f32 {
     let [left, right] = &measured.legs;
     LEVEL_N_PER_M * (left.length_m - right.length_m)
         + LEVEL_NS_PER_M * (left.length_mps - right.length_mps)
+}
+
+/// Angular momentum in N·m·s of a robot whose legs should lean at this rate in rad/s, forward positive.
+fn turn_nms(mass: &MassModel, measured: &Measured, lean_rps: f32) -> f32 {
+    let length_m = measured.length_m();
+    let legs_kgm2 = 2.0 * mass.axle_kg * length_m * length_m;
+    mass.pitch_kgm2 * measured.tilt.pitch_rps + legs_kgm2 * (measured.mean_lean_rps() - lean_rps)
 }
 
 fn motion(measured: &Measured) -> Motion {

@@ -1,7 +1,7 @@
 //! The legs carry the body: height, roll, and the load of a turn.
 
 use super::{measured::Measured, ramp::Ramp};
-use crate::{domain::MassModel, math::scalar};
+use crate::{domain::MassModel, kinematics::Leg, math::scalar};
 
 pub const GRAVITY_MPS2: f32 = 9.806_65;
 /// Natural frequency in rad/s and damping of the body on its legs.
@@ -10,8 +10,13 @@ const HEAVE_DAMPING: f32 = 0.8;
 /// The same for roll.
 const ROLL_RPS: f32 = 12.0;
 const ROLL_DAMPING: f32 = 0.8;
-/// Part of the damping that is left in the air, where a leg carries only its wheel.
-const AIR_DAMPING: f32 = 0.4;
+/// The same for a leg in the air, which carries only its wheel.
+const AIR_RPS: f32 = 45.0;
+const AIR_DAMPING: f32 = 0.8;
+/// Largest length in m by which one leg is longer and the other shorter in the air.
+const MAX_LEVEL_M: f32 = 0.05;
+/// Largest push of the legs that counts, as a share of that of standing.
+const MAX_SHARE: f32 = 5.0;
 /// Time constant in s of learning the load.
 const LOAD_TIME_S: f32 = 1.0;
 /// Largest centrifugal acceleration in m/s² that lightens the legs.
@@ -32,6 +37,8 @@ pub struct Stance {
     pub roll_rad: f32,
     /// Sideways acceleration to the left in m/s².
     pub sideways_mps2: f32,
+    /// The legs' present push as a share of that of standing.
+    pub share: f32,
 }
 
 /// Pushes of the legs.
@@ -43,6 +50,12 @@ pub struct Support {
 }
 
 impl Support {
+    /// Push of both legs as a share of that of standing.
+    pub fn share(&self, mass: &MassModel, push_n: f32) -> f32 {
+        let standing_n = mass.carried_kg * GRAVITY_MPS2 + self.load_n;
+        scalar::clamp(push_n / scalar::max(standing_n, 1.0), -MAX_SHARE, MAX_SHARE)
+    }
+
     /// Pushes of the left and the right leg in N.
     pub fn step(
         &mut self,
@@ -75,24 +88,31 @@ impl Support {
         let roll_n = roll_nm / track_m;
         if learning {
             let load_n = mass.carried_kg * GRAVITY_MPS2;
-            let share = dt_s / LOAD_TIME_S;
+            let part = dt_s / LOAD_TIME_S;
             let most_n = MAX_LOAD_ERROR * load_n;
-            self.load_n = scalar::clamp(self.load_n + stiffness * sag_m * share, -most_n, most_n);
+            self.load_n = scalar::clamp(self.load_n + stiffness * sag_m * part, -most_n, most_n);
             let most_n = MAX_ROLL_SHARE * load_n;
             let beyond_n = LEARN_ROLL_RPS * LEARN_ROLL_RPS * inertia * roll_error / track_m;
-            self.roll_n = scalar::clamp(self.roll_n + beyond_n * share, -most_n, most_n);
+            self.roll_n = scalar::clamp(self.roll_n + beyond_n * part, -most_n, most_n);
         }
         let both_n = 0.5 * (carried_n + self.load_n + heave_n);
-        let right_n = roll_n + self.roll_n;
+        let right_n = roll_n + self.roll_n * stance.share;
         [both_n - right_n, both_n + right_n]
     }
 
-    /// Pushes in N in the air: each leg keeps its length.
-    pub fn in_air(mass: &MassModel, goal_m: f32, measured: &Measured) -> [f32; 2] {
-        let stiffness = 0.5 * mass.carried_kg * HEAVE_RPS * HEAVE_RPS;
-        let damping = HEAVE_DAMPING * HEAVE_RPS * mass.carried_kg * AIR_DAMPING;
-        measured
-            .legs
-            .map(|leg| stiffness * (goal_m - leg.length_m) - damping * leg.length_mps)
+    /// Pushes in N in the air: the legs follow this length, and both wheels are level.
+    pub fn in_air(mass: &MassModel, track_m: f32, length: &Ramp, measured: &Measured) -> [f32; 2] {
+        let stiffness = mass.axle_kg * AIR_RPS * AIR_RPS;
+        let damping = 2.0 * AIR_DAMPING * AIR_RPS * mass.axle_kg;
+        let right_m = 0.5 * track_m * measured.tilt.roll_rad;
+        let right_m = scalar::clamp(right_m, -MAX_LEVEL_M, MAX_LEVEL_M);
+        let push_n = |leg: &Leg, length_m: f32| {
+            stiffness * (length_m - leg.length_m) + damping * (length.rate - leg.length_mps)
+        };
+        let [left, right] = &measured.legs;
+        [
+            push_n(left, length.value - right_m),
+            push_n(right, length.value + right_m),
+        ]
     }
 }

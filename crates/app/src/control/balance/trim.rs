@@ -12,7 +12,7 @@ const ROLLING_MPS: f32 = 0.03;
 /// A torque in N·m that friction may hold. To learn it too would make the robot creep to and fro.
 const STICTION_NM: f32 = 0.18;
 /// Limits of what is learned.
-const MAX_LEAN_RAD: f32 = 0.35;
+const MAX_OFFSET_M: f32 = 0.07;
 const MAX_WHEEL_NM: f32 = 2.0;
 const MAX_LEG_NM: f32 = 4.0;
 
@@ -22,8 +22,8 @@ const MAX_LEG_NM: f32 = 4.0;
 /// average, so that no error is left.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Trim {
-    /// Lean of both legs in rad.
-    pub lean_rad: f32,
+    /// Lean of both legs times their length, in m: how far the hips are ahead of the axles.
+    pub offset_m: f32,
     /// Torque of each wheel in N·m.
     pub wheel_nm: f32,
     /// Torque of the body on each leg in N·m.
@@ -78,7 +78,7 @@ impl Trim {
     }
 
     /// Takes the observed lean, and learns from the torques of the state feedback beyond the present trim.
-    pub fn learn(&mut self, lean_rad: f32, beyond_nm: [f32; INPUTS], dt_s: f32) {
+    pub fn learn(&mut self, offset_m: f32, beyond_nm: [f32; INPUTS], dt_s: f32) {
         let share = dt_s / TORQUE_TIME_S;
         let [left_wheel, right_wheel, left_leg, right_leg] = beyond_nm;
         let learned = |trim_nm: f32, left_nm: f32, right_nm: f32, limit_nm: f32| {
@@ -87,10 +87,10 @@ impl Trim {
             let wanted_nm = trim_nm + (beyond_nm - within_nm) * share;
             scalar::clamp(wanted_nm, -limit_nm, limit_nm)
         };
-        let wanted_rad = scalar::clamp(lean_rad, -MAX_LEAN_RAD, MAX_LEAN_RAD);
+        let wanted_m = scalar::clamp(offset_m, -MAX_OFFSET_M, MAX_OFFSET_M);
         // Friction holds a robot that does not roll, whatever its lean.
         let rolls = scalar::min(self.filtered.speed_mps.abs() / ROLLING_MPS, 1.0);
-        self.lean_rad += (wanted_rad - self.lean_rad) * (rolls * dt_s / FOLLOW_TIME_S);
+        self.offset_m += (wanted_m - self.offset_m) * (rolls * dt_s / FOLLOW_TIME_S);
         self.wheel_nm = learned(self.wheel_nm, left_wheel, right_wheel, MAX_WHEEL_NM);
         self.leg_nm = learned(self.leg_nm, left_leg, right_leg, MAX_LEG_NM);
     }
