@@ -29,6 +29,7 @@ pub use mass::MassSplit;
 pub use mjcf::Hold;
 pub use motor::JointMotor;
 pub use mounting::Mounting;
+pub use parts::LINK_RADIUS_M;
 pub use place::path_of;
 pub use robot::{
     Body, Bus, Carrier, Control, HipRange, Imu, JointRanges, Joints, Legs, Limits, Link, Robot,

@@ -5,8 +5,8 @@ use crate::{Carrier, HipRange, Joints, Legs, Link, Wheels};
 /// Moment of inertia in kg·m² of what has none in the robot's file: a rod about its length, the still part of a motor.
 /// Simulators refuse 0.
 pub(crate) const NONE_KGM2: f64 = 1e-12;
-/// Radius in m of a link, to look at and to touch the floor.
-pub(crate) const LINK_RADIUS_M: f64 = 0.008;
+/// Radius in m of a link, to look at and to touch the floor. An assumption.
+pub const LINK_RADIUS_M: f64 = 0.008;
 /// Radii in m of the motors, to look at: those of a DM4310 and an M3508.
 pub(crate) const HIP_MOTOR_RADIUS_M: f64 = 0.028;
 pub(crate) const WHEEL_MOTOR_RADIUS_M: f64 = 0.021;

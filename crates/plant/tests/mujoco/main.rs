@@ -4,6 +4,7 @@
 //! formulas with the plant's.
 
 mod accelerations;
+mod falls;
 mod flight;
 mod ground;
 mod oracle;

@@ -238,15 +238,15 @@ class OnGround(Oracle):
             model.joint(f"{side}_wheel").frictionloss = question["rolling_nm"]
             wheel.condim = 6
             if "tyre_n_per_m" in question:
-                self.soften(wheel, question)
+                self.soften(wheel, "tyre", question)
 
-    def soften(self, wheel, question):
+    def soften(self, geom, kind, question):
         """Makes a contact a spring and damper. MuJoCo asks for both per inverse weight; with a small impedance nothing of its
         own comes in between."""
-        weight = self.model.body_invweight0[wheel.bodyid[0], 0]
-        wheel.solref = [-question["tyre_n_per_m"] * weight, -question["tyre_n_per_mps"] * weight]
-        wheel.solimp = [1e-3, 1e-3, 0.001, 0.5, 2.0]
-        wheel.priority = 1
+        weight = self.model.body_invweight0[geom.bodyid[0], 0]
+        geom.solref = [-question[f"{kind}_n_per_{unit}"] * weight for unit in ("m", "mps")]
+        geom.solimp = [1e-3, 1e-3, 0.001, 0.5, 2.0]
+        geom.priority = 1
 
     def run(self, question):
         """Hips held by springs and dampers at their first angles, wheels under a constant torque."""
@@ -271,9 +271,65 @@ class OnGround(Oracle):
         return [list(row) for row in seen]
 
 
+class Falling(OnGround):
+    """The same, with a body and links that give where they hit the floor."""
+
+    def __init__(self, file, question):
+        super().__init__(file, question)
+        model = self.model
+        model.opt.enableflags |= mujoco.mjtEnableBit.mjENBL_ENERGY
+        # Across a contact MuJoCo has a damper only, as much stronger than that along it. Its default would hold like a rigid body;
+        # this is as strong as the plant's spring and damper are over the few milliseconds of a hit.
+        model.opt.impratio = 3.0
+        for joint in self.hips:
+            weight = model.dof_invweight0[joint.dofadr[0]]
+            joint.range = [joint.range[0] - question["stop_rad"], joint.range[1] + question["stop_rad"]]
+            model.jnt_solref[joint.id] = [-question["stop_nm_per_rad"] * weight, -question["stop_nm_per_rps"] * weight]
+            model.jnt_solimp[joint.id] = [1e-3, 1e-3, 0.001, 0.5, 2.0]
+        self.tyres = {model.geom(f"{side}_wheel").id for side in SIDES}
+        for n in range(model.ngeom):
+            geom = model.geom(n)
+            # Both links of a leg end in its knee, which is one place and hits the floor once. A shank's other end is inside of the
+            # wheel.
+            if model.body(geom.bodyid[0]).name.endswith("_shank"):
+                geom.contype, geom.conaffinity = 0, 0
+            touches = geom.contype[0] or geom.conaffinity[0]
+            if touches and geom.bodyid[0] != 0 and n not in self.tyres:
+                self.soften(geom, "shell", question)
+
+    def hits_n(self):
+        """Normal force of the floor on everything but the tyres."""
+        total, force = 0.0, np.zeros(6)
+        for n, contact in enumerate(self.data.contact):
+            if not self.tyres & set(contact.geom):
+                mujoco.mj_contactForce(self.model, self.data, n, force)
+                total += force[0]
+        return total
+
+    def run(self, question):
+        model, data = self.model, self.data
+        self.pose(question["state"])
+        hips = [joint.dofadr[0] for joint in self.hips]
+        places = [joint.qposadr[0] for joint in self.hips]
+        wanted = data.qpos[places].copy()
+        seen, sum_ns = [], 0.0
+        for n in range(question["steps"]):
+            data.qfrc_applied[hips] = (
+                question["kp"] * (wanted - data.qpos[places]) - question["kd"] * data.qvel[hips]
+            )
+            mujoco.mj_step(model, data)
+            sum_ns += self.hits_n() * question["step_s"]
+            if (n + 1) % question["every"] == 0:
+                seen.append([*data.qpos[:7], sum(data.energy), sum_ns])
+        return [list(row) for row in seen]
+
+
 def answer(files, question):
-    if question["task"] == "ground":
-        return OnGround(files["Free"], question).run(question)
+    match question["task"]:
+        case "ground":
+            return OnGround(files["Free"], question).run(question)
+        case "fall":
+            return Falling(files["Free"], question).run(question)
     oracle = Oracle(files[question["hold"]], question["hold"])
     states = question.get("states", [])
     match question["task"]:

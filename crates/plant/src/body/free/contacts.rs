@@ -7,12 +7,13 @@ use super::{
     grip::{Stick, Tread},
     ground::{Ground, Side},
     joint_forces::DryFriction,
-    model::{Model, SIDES},
+    model::{BUMPERS, Model, SIDES},
     motion::Motion,
     parts::{Leg, lift},
     tyre::{Ring, TOUCHES, Touch},
 };
 use nalgebra::Matrix3;
+use robot_description::LINK_RADIUS_M;
 
 /// Assumed rolling resistance per newton of load, as a share of the radius.
 const ROLLING_RESISTANCE: f64 = 0.015;
@@ -29,7 +30,7 @@ pub(super) struct Contacts {
     rolling: [DryFriction; SIDES],
     /// Against turning on the spot.
     twisting: [DryFriction; SIDES],
-    corners: [Option<Stick>; 8],
+    bumpers: [Option<Stick>; BUMPERS],
     knees: [[Option<Stick>; HIPS]; SIDES],
     pub wheel_n: [f64; SIDES],
     pub body_n: f64,
@@ -47,7 +48,7 @@ pub(super) struct Moment<'a> {
 }
 
 impl Moment<'_> {
-    /// Whether body and knees are above everything that they could hit.
+    /// Whether body, hips and knees are above everything that they could hit.
     fn is_clear(&self) -> bool {
         self.motion.position.z - self.model.reach_m > self.ground.highest_m()
     }
@@ -66,11 +67,11 @@ impl Contacts {
             self.wheel_n[side] = self.wheel(side, moment, &frame, forces);
         }
         self.body_n = if moment.is_clear() {
-            self.corners = Default::default();
+            self.bumpers = Default::default();
             self.knees = Default::default();
             0.0
         } else {
-            self.corners(moment, &frame, forces) + self.knees(moment, &frame, forces)
+            self.bumpers(moment, &frame, forces) + self.knees(moment, &frame, forces)
         };
     }
 
@@ -157,37 +158,43 @@ impl Contacts {
         ring.touches(ground.profile(self.sides[wheel]))
     }
 
-    fn corners(&mut self, moment: &Moment, frame: &Frame, forces: &mut Coordinates) -> f64 {
+    fn bumpers(&mut self, moment: &Moment, frame: &Frame, forces: &mut Coordinates) -> f64 {
+        let down = frame.to_body(-Vec3::z());
         let mut sum_n = 0.0;
-        for (corner, stick) in moment.model.corners.iter().zip(&mut self.corners) {
+        for (bumper, stick) in moment.model.bumpers.iter().zip(&mut self.bumpers) {
+            let lowest = bumper.place + down * bumper.radius_m;
             let point = Point {
-                place: frame.place(*corner),
-                velocity: frame.to_world(frame.velocity + frame.rate.cross(corner)),
+                place: frame.place(lowest),
+                velocity: frame.to_world(frame.velocity + frame.rate.cross(&lowest)),
             };
             if let Some((force, normal_n)) = point_force(moment, &point, stick) {
-                forces.push_body(frame.to_body(force), *corner);
+                forces.push_body(frame.to_body(force), lowest);
                 sum_n += normal_n;
             }
         }
         sum_n
     }
 
+    /// Knees are the ends of their thighs.
     fn knees(&mut self, moment: &Moment, frame: &Frame, forces: &mut Coordinates) -> f64 {
+        let below = frame.to_body(-Vec3::z()) * LINK_RADIUS_M;
         let mut sum_n = 0.0;
         for side in 0..SIDES {
             let linkage = &moment.legs[side].linkage;
             for (hip, stick) in self.knees[side].iter_mut().enumerate() {
                 let knee =
                     Vec3::new(0.0, moment.model.plane_y[side], 0.0) + lift(linkage.knee[hip]);
-                let slope = lift(linkage.knee_slope[hip]);
+                let lowest = knee + below;
+                // A hip turns its thigh about −y.
+                let slope = lift(linkage.knee_slope[hip]) - Vec3::y().cross(&below);
                 let swing = slope * moment.motion.hip_rps[side][hip];
                 let point = Point {
-                    place: frame.place(knee),
-                    velocity: frame.to_world(frame.velocity + frame.rate.cross(&knee) + swing),
+                    place: frame.place(lowest),
+                    velocity: frame.to_world(frame.velocity + frame.rate.cross(&lowest) + swing),
                 };
                 if let Some((force, normal_n)) = point_force(moment, &point, stick) {
                     let force = frame.to_body(force);
-                    forces.push_body(force, knee);
+                    forces.push_body(force, lowest);
                     forces.legs[side][hip] += slope.dot(&force);
                     sum_n += normal_n;
                 }

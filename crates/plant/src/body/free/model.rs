@@ -1,9 +1,13 @@
 //! Masses, lengths and limits of one robot, as its equations of motion need them.
 
-use super::{Variation, Vec3, five_bar::FiveBar, grip::Stiffness};
+use super::{
+    Variation, Vec3,
+    five_bar::{FiveBar, HIPS},
+    grip::Stiffness,
+};
 use crate::physics::STANDARD_GRAVITY_MPS2;
 use nalgebra::Matrix3;
-use robot_description::{Carrier, Link, Robot};
+use robot_description::{Carrier, LINK_RADIUS_M, Link, Robot};
 
 /// Left, right.
 pub(super) const SIDES: usize = 2;
@@ -45,6 +49,16 @@ pub(super) struct Disc {
     pub twist_m: f64,
 }
 
+/// A ball on the body.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bumper {
+    pub place: Vec3,
+    pub radius_m: f64,
+}
+
+/// Corners of a box, and hips.
+pub(super) const BUMPERS: usize = 8 + SIDES * HIPS;
+
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Model {
     pub body_kg: f64,
@@ -52,9 +66,9 @@ pub(super) struct Model {
     pub body_com: Vec3,
     /// About that centre.
     pub body_inertia: Matrix3<f64>,
-    /// Corners of the box that hits the ground.
-    pub corners: [Vec3; 8],
-    /// Distance from the body's origin within which all corners and knees are.
+    /// What of the body hits the ground: the corners of its box, and the hips.
+    pub bumpers: [Bumper; BUMPERS],
+    /// Distance from the body's origin within which all of these and the knees are.
     pub reach_m: f64,
     pub bar: FiveBar,
     pub thigh: Rod,
@@ -76,7 +90,7 @@ pub(super) struct Model {
     pub ground_friction: f64,
     /// Of the tyres.
     pub tyre: Stiffness,
-    /// Of body and knees.
+    /// Of body and links.
     pub shell: Stiffness,
 }
 
@@ -108,16 +122,18 @@ impl Model {
         let load_n = robot.total_mass_kg() * STANDARD_GRAVITY_MPS2 / 2.0;
         let n_per_m = load_n / TYRE_GIVES_M;
         let growth = body_kg / robot.body.mass_kg;
-        let corners = corners(robot.body.box_centre_m, robot.body.box_m);
+        let bumpers = bumpers(robot);
         let knee_m = legs.hip_gap_m / 2.0 + legs.thigh.length_m;
         Self {
             body_kg,
             body_com: Vec3::from(robot.body.com_m) + Vec3::from(variation.com_offset_m),
             body_inertia: Matrix3::from_diagonal(&(Vec3::from(robot.body.inertia_kgm2) * growth)),
-            corners,
-            reach_m: corners
-                .iter()
-                .fold(knee_m.hypot(legs.plane_y_m), |most, it| most.max(it.norm())),
+            bumpers,
+            reach_m: LINK_RADIUS_M
+                + bumpers
+                    .iter()
+                    .map(|it| it.place.norm())
+                    .fold(knee_m.hypot(legs.plane_y_m), f64::max),
             bar: FiveBar {
                 half_gap_m: legs.hip_gap_m / 2.0,
                 thigh_m: legs.thigh.length_m,
@@ -153,11 +169,22 @@ impl Model {
     }
 }
 
-fn corners(centre_m: [f64; 3], size_m: [f64; 3]) -> [Vec3; 8] {
-    std::array::from_fn(|corner| {
-        Vec3::from_fn(|axis, _| {
-            let side = if corner >> axis & 1 == 0 { -0.5 } else { 0.5 };
-            centre_m[axis] + side * size_m[axis]
-        })
+fn bumpers(robot: &Robot) -> [Bumper; BUMPERS] {
+    let (body, legs) = (&robot.body, &robot.legs);
+    let half_gap_m = legs.hip_gap_m / 2.0;
+    std::array::from_fn(|number| {
+        let side = |axis: usize| if number >> axis & 1 == 0 { -1.0 } else { 1.0 };
+        if number < 8 {
+            let place = |axis| body.box_centre_m[axis] + side(axis) * body.box_m[axis] / 2.0;
+            Bumper {
+                place: Vec3::from_fn(|axis, _| place(axis)),
+                radius_m: 0.0,
+            }
+        } else {
+            Bumper {
+                place: Vec3::new(side(0) * half_gap_m, side(1) * legs.plane_y_m, 0.0),
+                radius_m: LINK_RADIUS_M,
+            }
+        }
     })
 }

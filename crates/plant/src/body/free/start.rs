@@ -8,6 +8,7 @@ use super::{
 };
 use crate::physics::physics_step_s;
 use nalgebra::UnitQuaternion;
+use robot_description::LINK_RADIUS_M;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Pitch from which the robot sinks onto its front edge.
@@ -128,13 +129,16 @@ fn lowest_m(body: &FreeBody) -> f64 {
     let mut take = |place: Vec3, radius_m: f64| {
         lowest_m = lowest_m.min(place.dot(&up) - radius_m);
     };
-    for corner in model.corners {
-        take(corner, 0.0);
+    for bumper in model.bumpers {
+        take(bumper.place, bumper.radius_m);
     }
     for leg in body.legs() {
         take(leg.wheel().place, model.disc.radius_m);
         for knee in leg.linkage.knee {
-            take(Vec3::new(0.0, leg.parts[0].place.y, 0.0) + lift(knee), 0.0);
+            take(
+                Vec3::new(0.0, leg.parts[0].place.y, 0.0) + lift(knee),
+                LINK_RADIUS_M,
+            );
         }
     }
     lowest_m
