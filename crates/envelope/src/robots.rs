@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
+use robot_app::domain::RobotConfig;
 use robot_description::Robot;
+use robot_host_loop::layout_of;
 use robot_plant::{
     free,
     time::{Ps, US},
@@ -59,6 +61,17 @@ impl Robots {
                 between(-MOUNTING_RAD, MOUNTING_RAD),
             ],
         }
+    }
+
+    /// The settings of the robot: the defaults, and an RS00's own time-out set, without which it does not arm.
+    ///
+    /// # Panics
+    /// This program was not built with the robot's file.
+    pub fn settings(&self) -> RobotConfig {
+        let layout = layout_of(&self.robot).expect("its file is built in");
+        let mut settings = layout.default_config();
+        settings.joint_ctrl.rs00_timeout_set = 1;
+        settings
     }
 
     /// Mass of specimen `seed` in kg.

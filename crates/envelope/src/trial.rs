@@ -1,6 +1,6 @@
 //! One run of the robot: the pilot's moves, and what is seen of it.
 
-use robot_app::{domain::RobotConfig, safety::SafetyFlags};
+use robot_app::safety::SafetyFlags;
 use robot_host_loop::Robot;
 use robot_plant::world::{PlantKind, Probe, Push, RemoteInput, Start, Terrain, World, WorldConfig};
 
@@ -112,7 +112,7 @@ impl Trial {
     /// Switches on specimen `seed`, which lies or stands as `start` says.
     ///
     /// # Panics
-    /// A sensor does not answer.
+    /// A sensor does not answer, or this program was not built with the robot's file.
     pub fn new(robots: &Robots, seed: u64, terrain: Terrain, start: Start) -> Self {
         let world = WorldConfig {
             plant: PlantKind::Free,
@@ -123,7 +123,7 @@ impl Trial {
             variation: robots.variation(seed),
             ..WorldConfig::default()
         };
-        let robot = Robot::in_world(world, RobotConfig::default()).expect("no recording to load");
+        let robot = Robot::in_world(world, robots.settings()).expect("no recording to load");
         let probes = Probes::new(robot.world());
         let now = probes.read(&robot);
         Self {

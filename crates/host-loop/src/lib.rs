@@ -23,8 +23,10 @@
 #![deny(missing_docs)]
 
 mod buses;
+mod layout;
 mod robot;
 mod sensors;
 
+pub use layout::layout_of;
 pub use robot::Robot;
 pub use sensors::Sensors;

@@ -9,17 +9,15 @@ use robot_app::{
     },
     input::{RemoteFormat, RemoteReceiver},
     logic::{LogicInputs, LogicStage, UserLogic},
-    motor::layout::{MotorLayout, ROBOT_LAYOUT, RS00_LAYOUT},
     safety::{ArmingState, WatchdogPeriod},
     tick::{ControlInputs, ControlLoop},
 };
 use robot_plant::{
-    robots::JointMotor,
     time::{MS, Ps, US, to_seconds},
     world::{PlantKind, RadioKind, RemoteInput, WireEvent, World, WorldConfig, WorldError},
 };
 
-use crate::{buses::Buses, sensors::Sensors};
+use crate::{buses::Buses, layout_of, sensors::Sensors};
 
 const TICK: Ps = MS;
 const IMU_PERIOD: Ps = 5 * MS;
@@ -82,16 +80,13 @@ impl Robot {
     /// The recorded trial of the world cannot be read.
     ///
     /// # Panics
-    /// A sensor does not answer.
+    /// A sensor does not answer, or [`layout_of`] the robot is `None`.
     pub fn in_world(world: WorldConfig, config: RobotConfig) -> Result<Self, WorldError> {
         let format = match world.radio {
             RadioKind::Sbus => RemoteFormat::Sbus,
             RadioKind::Dbus => RemoteFormat::Dbus,
         };
-        let layout: &'static MotorLayout = match world.robot.joints.motor {
-            JointMotor::Dm4310 => &ROBOT_LAYOUT,
-            JointMotor::Rs00 => &RS00_LAYOUT,
-        };
+        let layout = layout_of(&world.robot).expect("this program was built with the robot's file");
         let mut world = World::new(world)?;
         let mut sensors = Sensors::new();
         sensors.set_mounting(&config.mounting);

@@ -7,6 +7,7 @@ use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
 use robot_description::{Robot, path_of};
 use robot_envelope::{Report, Robots, TASKS, Task, parts, survey, table, write};
+use robot_host_loop::layout_of;
 
 /// Let many robots, each different from its file, stand, drive, fall and get up, and tell how many succeed.
 ///
@@ -29,7 +30,7 @@ struct Args {
     /// Folder for envelope.json and envelope.html.
     #[arg(long, value_name = "DIR", default_value = "target/envelope")]
     out: PathBuf,
-    /// Name of a file in robots/, or a path.
+    /// Name of a file in robots/, or a path. One other than the robots here needs ROBOT set to the same.
     #[arg(long, value_name = "FILE|NAME", default_value = "fivebar")]
     robot: String,
     /// Robots as in their file, which differ only in the noise of their sensors.
@@ -80,6 +81,12 @@ fn run(args: &Args) -> anyhow::Result<bool> {
     }
     let robot = Robot::read(&path_of(&args.robot))?;
     let name = robot.name.clone();
+    ensure!(
+        layout_of(&robot).is_some(),
+        "this program has no controller for the robot `{name}` as its file says: its gains are made when it is built. \
+         `ROBOT={robot} cargo xtask envelope --robot {robot}` builds it with them",
+        robot = args.robot
+    );
     let robots = Robots {
         robot: Arc::new(robot),
         vary: !args.same,
