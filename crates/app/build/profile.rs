@@ -118,6 +118,7 @@ fn mass(robot: &Robot) -> String {
 fn limits(robot: &Robot) -> String {
     let limits = &robot.control.limits;
     let [min_length_m, max_length_m] = limits.height_m;
+    let reach = robot.reach();
     format!(
         "BalanceLimits {{ \
              max_speed_mps: {speed_mps}, \
@@ -127,6 +128,8 @@ fn limits(robot: &Robot) -> String {
              max_length_m: {max_length_m}, \
              fold_length_m: {fold_length_m}, \
              reach_length_m: {reach_length_m}, \
+             hips_reach_m: {hips_reach_m}, \
+             hips_reach_m_per_rad: {hips_reach_m_per_rad}, \
              wheel_nm: {wheel_nm}, \
              hip_nm: {hip_nm} \
          }}",
@@ -137,6 +140,8 @@ fn limits(robot: &Robot) -> String {
         max_length_m = f32(max_length_m),
         fold_length_m = f32(robot.legs.min_m),
         reach_length_m = f32(robot.legs.max_m),
+        hips_reach_m = f32(reach.down_m),
+        hips_reach_m_per_rad = f32(reach.less_m_per_rad),
         wheel_nm = f32(robot.wheels.max_current_a * robot.wheels.torque_nm_per_a),
         hip_nm = f32(robot.joints.torque_limit_nm),
     )

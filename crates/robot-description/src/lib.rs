@@ -17,6 +17,7 @@ mod motor;
 mod mounting;
 mod parts;
 mod place;
+mod reach;
 mod robot;
 mod source;
 mod stance;
@@ -31,6 +32,7 @@ pub use motor::JointMotor;
 pub use mounting::Mounting;
 pub use parts::LINK_RADIUS_M;
 pub use place::path_of;
+pub use reach::Reach;
 pub use robot::{
     Body, Bus, Carrier, Control, HipRange, Imu, JointRanges, Joints, Legs, Limits, Link, Robot,
     Weights, Wheels,

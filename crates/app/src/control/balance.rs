@@ -1,5 +1,6 @@
 //! Balancing on two wheels.
 
+mod braking;
 mod contact;
 mod controller;
 mod gains;
@@ -9,12 +10,14 @@ mod measured;
 mod ramp;
 mod reference;
 mod sit_down;
+mod slip;
 mod stand_up;
 mod support;
 mod tilt;
 mod tip;
 mod torques;
 mod trim;
+mod upright;
 mod virtual_leg;
 
 pub use controller::BalanceController;

@@ -46,7 +46,7 @@ pub struct BalanceStatus {
     pub phase: StandUpPhase,
     /// No wheel touches the ground.
     pub airborne: bool,
-    /// A wheel slips. Nothing detects that yet: it is always false.
+    /// A wheel slips: by its speed and the estimate's, for some time.
     pub slipping: bool,
     /// Distance from the hip centre to the axle in m.
     pub leg_m: [f32; 2],

@@ -93,6 +93,10 @@ pub struct BalanceLimits {
     pub fold_length_m: f32,
     /// Longest leg that the mechanics allow, in m.
     pub reach_length_m: f32,
+    /// Longest leg in m that the ranges of the hips allow, straight down, and how much shorter it is by angle, in m/rad.
+    pub hips_reach_m: f32,
+    /// See [`Self::hips_reach_m`].
+    pub hips_reach_m_per_rad: f32,
     /// Largest torque of a wheel in N·m.
     pub wheel_nm: f32,
     /// Largest torque of a hip joint in N·m, for the moments in which balance needs it.

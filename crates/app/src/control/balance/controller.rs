@@ -232,7 +232,7 @@ impl BalanceController {
             state,
             phase,
             airborne: self.law.airborne(),
-            slipping: false,
+            slipping: self.law.slip.is_slipping(),
             leg_m: measured.legs.map(|leg| leg.length_m),
             lean_rad: measured.lean_rad,
             contact_n: self.law.contact.wheels.map(|wheel| wheel.force_n),

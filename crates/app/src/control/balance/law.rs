@@ -1,11 +1,13 @@
 //! The balance law: state feedback about a moving reference, support by the legs, and what is done in the air.
 
 use super::{
+    braking::counted_mps,
     contact::Contact,
     gains::{Gains, STATES},
     measured::Measured,
     ramp::Ramp,
     reference::{Reference, Wish},
+    slip::{self, Slip},
     support::{GRAVITY_MPS2, Stance, Support},
     torques,
     trim::{Motion, Trim},
@@ -23,8 +25,6 @@ const LEARN_MPS2: f32 = 0.3;
 const LEARN_RPS: f32 = 0.3;
 /// Largest turn in rad/s with which it learns: a centrifugal force would count as an error of the centre of mass.
 const LEARN_YAW_RPS: f32 = 1.0;
-/// Largest speed error in m/s that counts: a larger one would lean the robot further than it can catch itself.
-const MAX_SPEED_ERROR_MPS: f32 = 1.5;
 /// Stiffness and damping with which the legs keep together on the ground, in N·m/rad and N·m·s/rad.
 const SPLIT_NM_PER_RAD: f32 = 6.0;
 const SPLIT_NMS_PER_RAD: f32 = 0.3;
@@ -100,6 +100,7 @@ pub struct Law {
     trim: Trim,
     support: Support,
     pub contact: Contact,
+    pub slip: Slip,
     wheels_nm: [f32; 2],
     airborne: bool,
 }
@@ -113,6 +114,7 @@ impl Law {
             trim: Trim::new(motion(measured)),
             support: Support::default(),
             contact: Contact::standing(&profile.mass, measured),
+            slip: Slip::default(),
             wheels_nm: [0.0; 2],
             airborne: false,
         }
@@ -153,7 +155,11 @@ impl Law {
             self.on_ground(profile, odometry, measured, goal, dt_s)
         };
         let limits = &profile.limits;
-        let wheels_nm = torques::within_wheels(wheels_nm, limits.wheel_nm);
+        let mut wheels_nm = torques::within_wheels(wheels_nm, limits.wheel_nm);
+        self.slip.step(odometry, measured, dt_s);
+        if !self.airborne {
+            wheels_nm = self.slip.within_grip(wheels_nm);
+        }
         self.wheels_nm = wheels_nm;
         let [left, right] = &measured.legs;
         let [left_force, right_force] = legs;
@@ -176,6 +182,10 @@ impl Law {
         dt_s: f32,
     ) -> ([f32; 2], [LegForce; 2]) {
         let yaw_rps = measured.tilt.yaw_rps;
+        let measured = &Measured {
+            speed_mps: slip::rolling_mps(measured),
+            ..*measured
+        };
         self.reference
             .step(goal.wish, measured.speed_mps, yaw_rps, dt_s);
         let per_mps2 = Ahead::new(profile, odometry, measured);
@@ -207,11 +217,18 @@ impl Law {
         }
         // A body that is pushed harder needs as much more torque against its centre of mass beside the hips.
         let share = self.support.share(&profile.mass, self.contact.push_n());
+        let limits = &profile.limits;
+        let angle_rad = measured.tilt.pitch_rad - measured.mean_lean_rad();
         let stance = Stance {
             length: goal.length,
             roll_rad: goal.roll_rad,
             sideways_mps2: measured.speed_mps * yaw_rps,
             share,
+            off_mps: measured.speed_mps - self.reference.speed_mps,
+            lean_rad: lean.value,
+            across_nm: left_leg + right_leg + 2.0 * (self.trim.leg_nm + ahead.leg_nm)
+                - self.wheels_nm.iter().sum::<f32>(),
+            longest_m: limits.hips_reach_m - limits.hips_reach_m_per_rad * angle_rad.abs(),
         };
         let track_m = odometry.wheel_track_m;
         let [left_n, right_n] =
@@ -299,10 +316,10 @@ impl Law {
         let (growth, lean_rate) = (1.0 + swing, 1.0 + 0.5 * swing);
         [
             reference.distance_m,
-            scalar::clamp(
+            counted_mps(
                 measured.speed_mps - reference.speed_mps,
-                -MAX_SPEED_ERROR_MPS,
-                MAX_SPEED_ERROR_MPS,
+                measured.mean_lean_rad() - lean.value,
+                measured.mean_lean_rps(),
             ),
             reference.yaw_error_rad,
             tilt.yaw_rps - reference.yaw_rps,

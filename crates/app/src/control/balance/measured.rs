@@ -3,7 +3,7 @@
 use super::tilt::Tilt;
 use crate::{
     control::ChassisControllerInput,
-    domain::{JointFeedback, JointState, LegGeometry, WheelFeedback},
+    domain::{JointFeedback, JointState, LegGeometry, StateEstimate, WheelFeedback},
     kinematics::Leg,
     math::{Quaternion, scalar, vector},
 };
@@ -26,6 +26,8 @@ pub struct Measured {
     pub wheel_rps: [f32; 2],
     /// Ground speed of the axles' middle by the wheels in m/s.
     pub speed_mps: f32,
+    /// The same by the estimate, in m/s.
+    pub ground_mps: f32,
     /// Specific force along the vertical in m/s²; 9.8 at rest.
     pub up_mps2: f32,
     /// Torques of the hip joints as they report them, in N·m.
@@ -61,6 +63,7 @@ impl Measured {
         let heard = |wheel: &WheelFeedback| wheel.age_us <= limit_us;
         let ready = |joint: &JointFeedback| joint.state == JointState::Enabled;
         let mut measured = Self {
+            ground_mps: ground_mps(input.estimate),
             lean_rad: legs.map(|leg| tilt.pitch_rad - leg.angle_rad),
             lean_rps: legs.map(|leg| tilt.pitch_rps - leg.angle_rps),
             wheel_rps,
@@ -124,6 +127,14 @@ impl Measured {
         let [left, right] = self.lean_rps;
         0.5 * (left + right)
     }
+}
+
+/// Speed along the heading in m/s by the estimate.
+fn ground_mps(estimate: &StateEstimate) -> f32 {
+    let [w, x, y, z] = estimate.q_wxyz;
+    let [east_mps, north_mps, _] = estimate.vel_mps;
+    let (east, north) = (1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z));
+    (east_mps * east + north_mps * north) * scalar::inverse_sqrt(east * east + north * north)
 }
 
 /// A leg at the present time: its joints have moved on since they reported.

@@ -1,6 +1,6 @@
 //! The legs carry the body: height, roll, and the load of a turn.
 
-use super::{measured::Measured, ramp::Ramp};
+use super::{measured::Measured, ramp::Ramp, upright::Upright};
 use crate::{domain::MassModel, kinematics::Leg, math::scalar};
 
 pub const GRAVITY_MPS2: f32 = 9.806_65;
@@ -19,8 +19,18 @@ const MAX_LEVEL_M: f32 = 0.05;
 const MAX_SHARE: f32 = 5.0;
 /// Time constant in s of learning the load.
 const LOAD_TIME_S: f32 = 1.0;
-/// Largest centrifugal acceleration in m/s² that lightens the legs.
-const MAX_SWING_MPS2: f32 = 1.0;
+/// A shorter leg in m counts as this one.
+const LEAST_LENGTH_M: f32 = 0.05;
+/// Beyond what the hips' ranges allow, the legs are held back by this in N/m, as of their length in some time in s.
+const STOP_N_PER_M: f32 = 4_000.0;
+const STOP_AHEAD_S: f32 = 0.03;
+/// Share of the weight for 1 m/s and 1 rad, while the robot cannot brake yet and while it brakes, and its limit.
+const EASE: f32 = 0.8;
+const BRAKE: f32 = 0.4;
+const MOST_EASING: f32 = 0.6;
+/// Speed in m/s of wheels that cannot turn much faster, and the span in which they get there.
+const FAST_MPS: f32 = 2.0;
+const FAST_SPAN_MPS: f32 = 0.6;
 /// Largest share of its load that a body may have too little or too much.
 const MAX_LOAD_ERROR: f32 = 0.6;
 /// The difference between the legs' pushes is learned as by this natural frequency of roll in rad/s.
@@ -31,7 +41,7 @@ const MAX_ROLL_SHARE: f32 = 0.3;
 /// What the legs shall do.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stance {
-    /// Mean length of the legs in m.
+    /// Height of the hips above the axles in m, which is the legs' length as long as they do not lean.
     pub length: Ramp,
     /// Roll in rad.
     pub roll_rad: f32,
@@ -39,6 +49,29 @@ pub struct Stance {
     pub sideways_mps2: f32,
     /// The legs' present push as a share of that of standing.
     pub share: f32,
+    /// How much too fast the axles move, in m/s.
+    pub off_mps: f32,
+    /// Lean in rad with which the robot would not accelerate.
+    pub lean_rad: f32,
+    /// Torque of both legs less that of both wheels in N·m, which leans the legs forward.
+    pub across_nm: f32,
+    /// Longest leg in m that the hips' ranges allow at the legs' angle.
+    pub longest_m: f32,
+}
+
+impl Stance {
+    /// Share of its weight by which the body is pushed less or more, because it moves on too fast. Wheels that cannot turn faster
+    /// overtake a body that falls; legs that lean back brake it as hard as they push.
+    fn easing(&self, measured: &Measured, upright: &Upright) -> f32 {
+        let body_mps = self.off_mps + measured.length_m() * upright.cos * measured.mean_lean_rps();
+        let brakes = -body_mps * (measured.mean_lean_rad() - self.lean_rad);
+        if brakes > 0.0 {
+            return scalar::clamp(BRAKE * brakes, 0.0, MOST_EASING);
+        }
+        let fast = (measured.speed_mps.abs() - FAST_MPS) / FAST_SPAN_MPS;
+        let fast = scalar::clamp(fast, 0.0, 1.0);
+        scalar::clamp(EASE * brakes * fast, -MOST_EASING, 0.0)
+    }
 }
 
 /// Pushes of the legs.
@@ -66,17 +99,10 @@ impl Support {
         learning: bool,
         dt_s: f32,
     ) -> [f32; 2] {
-        let lean_rps = measured.mean_lean_rps();
         let length_m = measured.length_m();
-        let (_, cos) = scalar::sin_cos_small(scalar::clamp(measured.mean_lean_rad(), -1.0, 1.0));
-        // A pendulum of constant length needs this push. One that is struck needs the ground more than its length.
-        let swing_mps2 = scalar::min(length_m * lean_rps * lean_rps, MAX_SWING_MPS2);
-        let carried_n = mass.carried_kg * (GRAVITY_MPS2 * cos - swing_mps2);
         let stiffness = mass.carried_kg * HEAVE_RPS * HEAVE_RPS;
-        let damping = 2.0 * HEAVE_DAMPING * HEAVE_RPS * mass.carried_kg;
-        let sag_m = stance.length.value - length_m;
-        let heave_n = stiffness * sag_m + damping * (stance.length.rate - measured.length_mps());
-
+        let upright = Upright::new(stance.length.value, stance.longest_m, measured);
+        let both_n = self.both_n(mass, stance, measured, &upright);
         let height_m = length_m + mass.carried_up_m;
         let inertia = mass.roll_kgm2 + mass.carried_kg * height_m * height_m;
         let weight_nm = mass.carried_kg * GRAVITY_MPS2 * height_m;
@@ -90,14 +116,38 @@ impl Support {
             let load_n = mass.carried_kg * GRAVITY_MPS2;
             let part = dt_s / LOAD_TIME_S;
             let most_n = MAX_LOAD_ERROR * load_n;
-            self.load_n = scalar::clamp(self.load_n + stiffness * sag_m * part, -most_n, most_n);
+            self.load_n = scalar::clamp(
+                self.load_n + stiffness * upright.sag_m * part,
+                -most_n,
+                most_n,
+            );
             let most_n = MAX_ROLL_SHARE * load_n;
             let beyond_n = LEARN_ROLL_RPS * LEARN_ROLL_RPS * inertia * roll_error / track_m;
             self.roll_n = scalar::clamp(self.roll_n + beyond_n * part, -most_n, most_n);
         }
-        let both_n = 0.5 * (carried_n + self.load_n + heave_n);
         let right_n = roll_n + self.roll_n * stance.share;
-        [both_n - right_n, both_n + right_n]
+        [0.5 * both_n - right_n, 0.5 * both_n + right_n]
+    }
+
+    /// Push of both legs in N that keeps the hips at their height, however the legs lean.
+    fn both_n(
+        &self,
+        mass: &MassModel,
+        stance: &Stance,
+        measured: &Measured,
+        upright: &Upright,
+    ) -> f32 {
+        let stiffness = mass.carried_kg * HEAVE_RPS * HEAVE_RPS;
+        let damping = 2.0 * HEAVE_DAMPING * HEAVE_RPS * mass.carried_kg;
+        let Upright { sin, cos, .. } = *upright;
+        let length_m = measured.length_m();
+        let weight_n = mass.carried_kg * GRAVITY_MPS2 + self.load_n;
+        let carried_n = weight_n * (1.0 + stance.easing(measured, upright));
+        let heave_n = stiffness * upright.sag_m + damping * (stance.length.rate - upright.rise_mps);
+        let across_n = stance.across_nm / scalar::max(length_m, LEAST_LENGTH_M);
+        let up_n = carried_n + heave_n + across_n * sin;
+        let beyond_m = length_m + STOP_AHEAD_S * measured.length_mps() - stance.longest_m;
+        up_n / cos - STOP_N_PER_M * scalar::max(beyond_m, 0.0)
     }
 
     /// Pushes in N in the air: the legs follow this length, and both wheels are level.

@@ -24,6 +24,7 @@ fn measured(up_mps2: f32, pitch_rps: f32) -> Measured {
         lean_rps: [0.0; 2],
         wheel_rps: [0.0; 2],
         speed_mps: 0.0,
+        ground_mps: 0.0,
         up_mps2,
         hip_nm: [virtual_leg::hip_torques_nm(&leg, force); 2],
         known: true,

@@ -1,0 +1,76 @@
+//! Wheels that slip, seen by the difference of their speed and the estimate's.
+
+use super::measured::Measured;
+use crate::{domain::WheelOdomConfig, math::scalar};
+
+/// Largest difference in m/s between the wheels and the estimate with which the wheels tell the robot's speed. In motion the estimate
+/// follows them late.
+const ROLLING_MPS: f32 = 0.32;
+/// A wheel that slips by more, in m/s, and for so long, in s, slips.
+const SLIPPING_MPS: f32 = 0.3;
+const SLIPPING_S: f32 = 0.02;
+/// The torque that makes a wheel slip is reduced from the first of these, in m/s, and zero at the second one.
+const REDUCED_MPS: f32 = 0.6;
+const NONE_MPS: f32 = 1.3;
+
+/// Slip of both wheels, left and right.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Slip {
+    /// Speed of each tyre over the ground in m/s, forward positive where the wheel turns too fast.
+    pub mps: [f32; 2],
+    /// Time in s for which a wheel has slipped.
+    lasts_s: f32,
+}
+
+/// Speed of the axles in m/s: that by the wheels, within some distance of the estimate's, which knows of slip.
+pub fn rolling_mps(measured: &Measured) -> f32 {
+    let Measured {
+        speed_mps,
+        ground_mps,
+        ..
+    } = *measured;
+    ground_mps + scalar::clamp(speed_mps - ground_mps, -ROLLING_MPS, ROLLING_MPS)
+}
+
+impl Slip {
+    /// Goes on by `dt_s`.
+    pub fn step(&mut self, odometry: &WheelOdomConfig, measured: &Measured, dt_s: f32) {
+        let turn_mps = 0.5 * odometry.wheel_track_m * measured.tilt.yaw_rps;
+        let [left_rps, right_rps] = measured.wheel_rps;
+        let radius_m = odometry.wheel_radius_m;
+        self.mps = [
+            radius_m * left_rps - (measured.ground_mps - turn_mps),
+            radius_m * right_rps - (measured.ground_mps + turn_mps),
+        ];
+        let slips = self.mps.iter().any(|mps| mps.abs() > SLIPPING_MPS);
+        self.lasts_s = if slips { self.lasts_s + dt_s } else { 0.0 };
+    }
+
+    /// A wheel slips.
+    pub fn is_slipping(&self) -> bool {
+        self.lasts_s > SLIPPING_S
+    }
+
+    /// The torques less what would only make their wheels slip faster.
+    pub fn within_grip(&self, wheels_nm: [f32; 2]) -> [f32; 2] {
+        let ([left_nm, right_nm], [left_mps, right_mps]) = (wheels_nm, self.mps);
+        [
+            within_grip(left_nm, left_mps),
+            within_grip(right_nm, right_mps),
+        ]
+    }
+}
+
+fn within_grip(nm: f32, slip_mps: f32) -> f32 {
+    if nm * slip_mps <= 0.0 {
+        return nm;
+    }
+    nm * scalar::clamp(
+        (NONE_MPS - slip_mps.abs()) / (NONE_MPS - REDUCED_MPS),
+        0.0,
+        1.0,
+    )
+}
+
+#[cfg(test)]
+mod tests;

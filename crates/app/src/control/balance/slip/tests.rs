@@ -1,0 +1,68 @@
+use super::*;
+use crate::{control::balance::tilt::Tilt, domain::robots::FIVEBAR, kinematics::Leg};
+
+const TICK_S: f32 = 0.001;
+
+/// A robot whose wheels turn at these speeds in m/s, while it rolls at `ground_mps` and turns at `yaw_rps`.
+fn measured(wheels_mps: [f32; 2], ground_mps: f32, yaw_rps: f32) -> Measured {
+    let leg = Leg::new(&FIVEBAR.balance.legs, [-0.4, 0.4], [0.0; 2]);
+    let [left_mps, right_mps] = wheels_mps;
+    Measured {
+        tilt: Tilt {
+            yaw_rps,
+            ..Tilt::default()
+        },
+        legs: [leg; 2],
+        lean_rad: [0.0; 2],
+        lean_rps: [0.0; 2],
+        wheel_rps: wheels_mps.map(|mps| mps / FIVEBAR.wheel_odom.wheel_radius_m),
+        speed_mps: 0.5 * (left_mps + right_mps),
+        ground_mps,
+        up_mps2: 9.8,
+        hip_nm: [[0.0; 2]; 2],
+        known: true,
+    }
+}
+
+fn slip_of(measured: &Measured, ticks: usize) -> Slip {
+    let mut slip = Slip::default();
+    for _ in 0..ticks {
+        slip.step(&FIVEBAR.wheel_odom, measured, TICK_S);
+    }
+    slip
+}
+
+#[test]
+fn wheels_that_roll_or_turn_the_robot_do_not_slip() {
+    let turn_mps = 0.5 * FIVEBAR.wheel_odom.wheel_track_m * 4.0;
+    let turning = measured([1.0 - turn_mps, 1.0 + turn_mps], 1.0, 4.0);
+    let slip = slip_of(&turning, 50);
+    assert!(!slip.is_slipping());
+    assert_eq!(slip.within_grip([3.0, -3.0]), [3.0, -3.0]);
+    assert_eq!(rolling_mps(&measured([1.1, 1.1], 1.0, 0.0)), 1.1);
+}
+
+#[test]
+fn a_wheel_that_spins_is_slipping_after_a_moment() {
+    let spinning = measured([1.0, 2.0], 1.0, 0.0);
+    assert!(!slip_of(&spinning, 10).is_slipping());
+    assert!(slip_of(&spinning, 30).is_slipping());
+}
+
+#[test]
+fn torque_that_only_makes_a_wheel_spin_is_taken_away() {
+    for sign in [1.0, -1.0] {
+        let slip = slip_of(&measured([sign * 2.5, sign * 2.0], sign, 0.0), 1);
+        let [left_nm, right_nm] = slip.within_grip([sign * 4.0, sign * 4.0]);
+        assert_eq!(left_nm, 0.0);
+        assert!(sign * right_nm > 0.5 && sign * right_nm < 3.5);
+        let braking_nm = [sign * -4.0; 2];
+        assert_eq!(slip.within_grip(braking_nm), braking_nm);
+    }
+}
+
+#[test]
+fn the_estimate_limits_what_spinning_wheels_tell_of_the_speed() {
+    let told = rolling_mps(&measured([2.9, 2.9], 1.0, 0.0));
+    assert!((told - 1.0 - ROLLING_MPS).abs() < 1e-6);
+}

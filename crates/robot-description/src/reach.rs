@@ -1,0 +1,73 @@
+//! How far a leg reaches to the side that the ranges of its hips allow.
+
+use crate::{Robot, five_bar::FiveBar};
+
+/// Angles in rad between which the reach is taken as a line.
+const ANGLES_RAD: [f64; 2] = [0.3, 0.8];
+const STEPS: u32 = 400;
+
+/// Longest leg: `down_m` less `less_m_per_rad` for each radian from straight down.
+///
+/// A leg that swings turns one hip towards its stop, the more the longer it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reach {
+    /// Length in m straight down, of the line; the leg itself may be shorter.
+    pub down_m: f64,
+    /// How much less by angle, in m/rad.
+    pub less_m_per_rad: f64,
+}
+
+impl Robot {
+    /// Returns the reach.
+    pub fn reach(&self) -> Reach {
+        let [near_rad, far_rad] = ANGLES_RAD;
+        let [near_m, far_m] = ANGLES_RAD.map(|angle_rad| self.longest_m(angle_rad));
+        let less_m_per_rad = ((near_m - far_m) / (far_rad - near_rad)).max(0.0);
+        Reach {
+            down_m: near_m + less_m_per_rad * near_rad,
+            less_m_per_rad,
+        }
+    }
+
+    /// Longest usable leg at this angle to either side, or the shortest one where none fits.
+    fn longest_m(&self, angle_rad: f64) -> f64 {
+        let leg = FiveBar::new(&self.legs);
+        let ranges = [self.joints.range_rad.front, self.joints.range_rad.rear];
+        let fits = |length_m: f64, angle_rad: f64| {
+            leg.hips_rad(length_m, angle_rad).is_some_and(|hips_rad| {
+                let mut hips = hips_rad.into_iter().zip(ranges);
+                hips.all(|(rad, [low, high])| (low..=high).contains(&rad))
+            })
+        };
+        let (min_m, max_m) = (self.legs.min_m, self.legs.max_m);
+        let step_m = (max_m - min_m) / f64::from(STEPS);
+        (0..=STEPS)
+            .map(|step| max_m - step_m * f64::from(step))
+            .find(|length_m| fits(*length_m, angle_rad) && fits(*length_m, -angle_rad))
+            .unwrap_or(min_m)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    #[test]
+    fn the_line_is_within_millimetres_of_the_hips_stops() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots/fivebar.toml");
+        let robot = Robot::read(Path::new(file)).expect("a robot of this repository");
+        let reach = robot.reach();
+        for angle_rad in [0.4, 0.5, 0.6, 0.7] {
+            let line_m = reach.down_m - reach.less_m_per_rad * angle_rad;
+            let longest_m = robot.longest_m(angle_rad);
+            assert!(
+                (line_m - longest_m).abs() < 0.005,
+                "{angle_rad}: {line_m} {longest_m}"
+            );
+        }
+        // Hand calculation by the cosine law: rear hip at its stop of 1.35 rad.
+        assert!((robot.longest_m(0.55) - 0.24).abs() < 0.003);
+    }
+}
