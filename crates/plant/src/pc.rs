@@ -23,7 +23,7 @@ use line::Line;
 use line_noise::LineNoise;
 pub(crate) use meter::Meter;
 use program::Program;
-pub use program::{PcInput, PcJoints};
+pub use program::{PcDrive, PcInput, PcJoints};
 use scanner::Scanner;
 
 /// A flood is made in pieces of this length.

@@ -44,7 +44,7 @@ pub use crate::{
     body::{PlantKind, Variation},
     faults::FaultInfo,
     free::{Start, Terrain},
-    pc::{PcInput, PcJoints},
+    pc::{PcDrive, PcInput, PcJoints},
     radio::{RadioKind, RemoteInput},
     wire::{CanBusId, SpiSelect},
 };

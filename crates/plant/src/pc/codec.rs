@@ -8,6 +8,9 @@ pub(super) const HEADER: u8 = 0xFE;
 pub(super) const UP_LEN: usize = 94;
 /// Length of a frame from the PC.
 pub(super) const DOWN_LEN: usize = 38;
+/// First byte and length of a frame that takes the place of the sticks.
+pub(super) const DRIVE_HEADER: u8 = 0xFC;
+pub(super) const DRIVE_LEN: usize = 12;
 
 const BATTERY_V: [f64; 2] = [20.0, 60.0];
 const MOTOR_POS_RAD: [f64; 2] = [-PI, PI];
@@ -15,6 +18,7 @@ const MOTOR_VEL_RPS: [f64; 2] = [-33.0, 33.0];
 const WHEEL_RPS: [f64; 2] = [-200.0, 200.0];
 const JOINT_RAD: [f64; 2] = [-3.2, 3.2];
 const GAIN: [f64; 2] = [0.0, 1_000.0];
+const SHARE: [f64; 2] = [-1.0, 1.0];
 
 /// Position and speed of one motor, in rad and rad/s.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -114,6 +118,19 @@ pub(super) fn down_frame(codes: [[u16; 3]; 6]) -> [u8; DOWN_LEN] {
     frame
 }
 
+/// The frame that asks for these shares of the highest speed, turn, height and roll.
+pub(super) fn drive_frame(shares: [f64; 4], jump: bool, count: u8) -> [u8; DRIVE_LEN] {
+    let mut frame = [0; DRIVE_LEN];
+    frame[0] = DRIVE_HEADER;
+    for (bytes, share) in frame[1..9].chunks_exact_mut(2).zip(shares) {
+        bytes.copy_from_slice(&code(share, SHARE).to_le_bytes());
+    }
+    frame[9] = u8::from(jump);
+    frame[10] = count;
+    frame[11] = crc8(&frame[..11]);
+    frame
+}
+
 fn target_range(motor: usize) -> [f64; 2] {
     if motor < 2 { WHEEL_RPS } else { JOINT_RAD }
 }
@@ -187,6 +204,16 @@ mod tests {
         assert_eq!(read.motors[1].target, 200.0);
         assert_eq!(read.motors[5].target, 3.2);
         assert_eq!((read.motors[0].kp, read.motors[5].kd), (1_000.0, 1_000.0));
+    }
+
+    // Places, ends and middle of the ranges by the page's table; the middle of 0 … 65,535 is rounded up.
+    #[test]
+    fn the_fields_of_a_drive_stand_where_the_page_says() {
+        let frame = drive_frame([1.0, -1.0, 0.0, 2.0], true, 7);
+        assert_eq!(frame[..3], [0xFC, 0xFF, 0xFF]);
+        assert_eq!(frame[3..9], [0, 0, 0x00, 0x80, 0xFF, 0xFF]);
+        assert_eq!((frame[9], frame[10]), (1, 7));
+        assert_eq!(frame[11], crc8(&frame[..11]));
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The program on the PC: it sends one command at a fixed rate, until it is told another.
 
 use super::{
-    codec::{self, DOWN_LEN, Downlink, MotorCommand, Uplink},
+    codec::{self, Downlink, MotorCommand, Uplink},
     faults::LinkFaults,
 };
 use crate::{
@@ -28,11 +28,19 @@ pub struct PcInput {
     pub joint_kd: Option<f64>,
     /// Whether the Kp of the wheels, which has no effect, counts the frames. A program without it looks frozen.
     pub counts: Option<bool>,
+    /// What it asks of the robot's own controller. From then on it sends frames that take the place of the sticks, until it is
+    /// told something about wheels or joints.
+    pub drive: Option<PcDrive>,
 }
 
 impl PcInput {
     /// What the line carries, 38 characters of ten bits a frame.
     pub const MAX_RATE_HZ: f64 = 1_200.0;
+
+    /// Whether it says what wheels or joints should do.
+    pub fn is_for_motors(&self) -> bool {
+        self.wheels_rps.is_some() || self.joints.is_some()
+    }
 
     /// A robot at rest: wheels at 0, joints held where they are.
     pub fn rest() -> Self {
@@ -57,6 +65,21 @@ pub enum PcJoints {
     At([f64; 4]),
 }
 
+/// What takes the place of the sticks: shares of the highest, −1 … 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PcDrive {
+    /// Speed, forward positive.
+    pub vx: f64,
+    /// Turn, left positive.
+    pub wz: f64,
+    /// Height of a standing robot.
+    pub height: f64,
+    /// Roll of a standing robot, right side down positive.
+    pub roll: f64,
+    /// Jumps each time it becomes true.
+    pub jump: bool,
+}
+
 #[derive(Clone, Debug)]
 pub(super) struct Program {
     on: bool,
@@ -69,8 +92,9 @@ pub(super) struct Program {
     joint_kp: f64,
     joint_kd: f64,
     counts: bool,
+    drive: Option<PcDrive>,
     sent: u64,
-    last: [u8; DOWN_LEN],
+    last: Vec<u8>,
     random: Random,
 }
 
@@ -87,8 +111,9 @@ impl Program {
             joint_kp: 20.0,
             joint_kd: 1.0,
             counts: true,
+            drive: None,
             sent: 0,
-            last: Downlink::default().encode(),
+            last: Downlink::default().encode().to_vec(),
             random,
         }
     }
@@ -110,6 +135,9 @@ impl Program {
         self.joint_kp = input.joint_kp.unwrap_or(self.joint_kp);
         self.joint_kd = input.joint_kd.unwrap_or(self.joint_kd);
         self.counts = input.counts.unwrap_or(self.counts);
+        self.drive = input
+            .drive
+            .or(self.drive.filter(|_| !input.is_for_motors()));
         self.hold(told);
     }
 
@@ -135,20 +163,31 @@ impl Program {
     }
 
     /// The frame that is due at `next_frame`.
-    pub(super) fn frame(&mut self, faults: LinkFaults, told: Option<&Uplink>) -> [u8; DOWN_LEN] {
+    pub(super) fn frame(&mut self, faults: LinkFaults, told: Option<&Uplink>) -> Vec<u8> {
         self.next_frame += self.period;
         self.hold(told);
         self.sent += 1;
         if faults.extremes {
             self.last = self.extremes();
         } else if !faults.frozen {
-            self.last = self.command().encode();
+            self.last = self.command();
         }
-        self.last
+        self.last.clone()
     }
 
-    fn command(&self) -> Downlink {
+    fn command(&self) -> Vec<u8> {
         let count = if self.counts { self.sent % 65_536 } else { 0 };
+        match &self.drive {
+            Some(drive) => {
+                let shares = [drive.vx, drive.wz, drive.height, drive.roll];
+                codec::drive_frame(shares, drive.jump, (count % 256) as u8).to_vec()
+            }
+            None => self.targets(count).encode().to_vec(),
+        }
+    }
+
+    /// The frame's content for motors.
+    fn targets(&self, count: u64) -> Downlink {
         let wheel = |n: usize| MotorCommand {
             target: self.wheels_rps[n],
             kp: count as f64 * 1_000.0 / 65_535.0,
@@ -168,8 +207,15 @@ impl Program {
     }
 
     /// Every field at one end of its range, drawn anew for each frame.
-    fn extremes(&mut self) -> [u8; DOWN_LEN] {
-        let mut end = || if self.random.unit() < 0.5 { 0 } else { 0xFFFF };
-        codec::down_frame([0; 6].map(|_| [end(), end(), end()]))
+    fn extremes(&mut self) -> Vec<u8> {
+        let mut high = || self.random.unit() >= 0.5;
+        if self.drive.is_some() {
+            let shares = [0; 4].map(|_| if high() { 1.0 } else { -1.0 });
+            let jump = high();
+            let count = if high() { 0xFF } else { 0 };
+            return codec::drive_frame(shares, jump, count).to_vec();
+        }
+        let mut end = || if high() { 0xFFFF } else { 0 };
+        codec::down_frame([0; 6].map(|_| [end(), end(), end()])).to_vec()
     }
 }

@@ -1,8 +1,8 @@
 //! Finds frames in a stream of bytes that may be damaged.
 
-use super::codec::{self, HEADER};
+use super::codec::{self, DRIVE_HEADER, DRIVE_LEN, HEADER};
 
-/// Header and length of a frame of the tuning channel, which is passed over.
+/// Header and length of a frame of the tuning channel. It is passed over, and so is one that drives.
 const TUNNEL_HEADER: u8 = 0xFD;
 const TUNNEL_LEN: usize = 12;
 
@@ -24,6 +24,7 @@ impl<const LEN: usize> Scanner<LEN> {
             let length = match *header {
                 HEADER => LEN,
                 TUNNEL_HEADER => TUNNEL_LEN,
+                DRIVE_HEADER => DRIVE_LEN,
                 _ => {
                     self.discard();
                     continue;

@@ -108,6 +108,33 @@ fn joints_are_held_where_the_robot_says_they_are() {
 }
 
 #[test]
+fn a_pc_that_drives_sends_shares_until_it_is_told_about_motors() {
+    let mut pc = Pc::new(1);
+    let drive = PcDrive {
+        vx: -1.0,
+        jump: true,
+        ..PcDrive::default()
+    };
+    let input = PcInput {
+        on: Some(true),
+        drive: Some(drive),
+        ..PcInput::default()
+    };
+    pc.set(input, 0);
+    let bytes = |characters: Vec<UartChar>| -> Vec<u8> {
+        characters.iter().map(|character| character.byte).collect()
+    };
+    let sent = bytes(run(&mut pc, 15 * MS, LinkFaults::default()));
+    let [first, second] =
+        [1, 2].map(|count| codec::drive_frame([-1.0, 0.0, 0.0, 0.0], true, count));
+    assert_eq!(sent, [first, second].concat(), "no two frames are equal");
+    assert_eq!(pc.down_frames, 0, "none of them is for motors");
+    pc.set(forward(), 15 * MS);
+    let sent = run(&mut pc, 25 * MS, LinkFaults::default());
+    assert_eq!((sent.len(), pc.down_frames), (DOWN_LEN, 1));
+}
+
+#[test]
 fn a_cut_ends_a_frame_in_the_middle() {
     let mut pc = Pc::new(1);
     pc.set(forward(), 0);

@@ -4,7 +4,7 @@ use std::{collections::BTreeSet, fmt::Write};
 
 use robot_plant::{
     time::{Ps, SECOND, to_seconds},
-    world::{CanBusId, PcInput, PcJoints, RemoteInput},
+    world::{CanBusId, PcDrive, PcInput, PcJoints, RemoteInput},
 };
 
 use super::invariants::Violation;
@@ -72,6 +72,7 @@ fn state(earlier: &[&TimedEvent]) -> Vec<Event> {
                     joint_kp: input.joint_kp.or(pc.joint_kp),
                     joint_kd: input.joint_kd.or(pc.joint_kd),
                     counts: input.counts.or(pc.counts),
+                    drive: input.drive.or(pc.drive.filter(|_| !input.is_for_motors())),
                 };
             }
             Event::StartFault(name) => {
@@ -156,7 +157,19 @@ fn pc_text(input: &PcInput) -> String {
     field("joint_kp", number(input.joint_kp));
     field("joint_kd", number(input.joint_kd));
     field("counts", input.counts.map(|v| v.to_string()));
+    field("drive", input.drive.map(|drive| drive_text(&drive)));
     fields.join(", ")
+}
+
+fn drive_text(drive: &PcDrive) -> String {
+    let PcDrive {
+        vx,
+        wz,
+        height,
+        roll,
+        jump,
+    } = drive;
+    format!("{{ vx = {vx:?}, wz = {wz:?}, height = {height:?}, roll = {roll:?}, jump = {jump} }}")
 }
 
 #[cfg(test)]

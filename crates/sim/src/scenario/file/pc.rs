@@ -1,6 +1,6 @@
 //! The key `pc`: what the program on the PC sends over the serial link.
 
-use robot_plant::world::{PcInput, PcJoints};
+use robot_plant::world::{PcDrive, PcInput, PcJoints};
 use serde::Deserialize;
 
 use super::Problem;
@@ -17,6 +17,18 @@ pub(super) struct Pc {
     joint_kp: Option<f64>,
     joint_kd: Option<f64>,
     counts: Option<bool>,
+    drive: Option<Drive>,
+}
+
+/// Shares of the highest, in place of the sticks. What is not named is 0.
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct Drive {
+    vx: f64,
+    wz: f64,
+    height: f64,
+    roll: f64,
+    jump: bool,
 }
 
 #[derive(Deserialize)]
@@ -52,6 +64,27 @@ pub(super) fn read_pc(pc: &Pc) -> Result<PcInput, Problem> {
         joint_kp: pc.joint_kp,
         joint_kd: pc.joint_kd,
         counts: pc.counts,
+        drive: pc.drive.as_ref().map(read_drive).transpose()?,
+    })
+}
+
+fn read_drive(drive: &Drive) -> Result<PcDrive, Problem> {
+    let Drive {
+        vx,
+        wz,
+        height,
+        roll,
+        jump,
+    } = *drive;
+    for (name, share) in [("vx", vx), ("wz", wz), ("height", height), ("roll", roll)] {
+        within(name, share, [-1.0, 1.0])?;
+    }
+    Ok(PcDrive {
+        vx,
+        wz,
+        height,
+        roll,
+        jump,
     })
 }
 

@@ -2,7 +2,7 @@ use robot_plant::{
     robots::JointMotor,
     time::{MS, SECOND},
     wire::CanFrame,
-    world::{CanBusId, PcInput, PcJoints, Push, RemoteInput},
+    world::{CanBusId, PcDrive, PcInput, PcJoints, Push, RemoteInput},
 };
 
 use super::*;
@@ -188,7 +188,21 @@ fn a_pc_steers_over_the_serial_link() {
         ..PcInput::default()
     };
     assert_eq!(s.events[0].event, Event::Pc(input));
+    let drive = "[[at]]\nt = 1\npc = { drive = { vx = 0.5, jump = true } }\n";
+    let s = Scenario::parse(&format!("{HEAD}{drive}"), "s.toml").unwrap();
+    let input = PcInput {
+        on: Some(true),
+        drive: Some(PcDrive {
+            vx: 0.5,
+            jump: true,
+            ..PcDrive::default()
+        }),
+        ..PcInput::default()
+    };
+    assert_eq!(s.events[0].event, Event::Pc(input));
     for (pc, part) in [
+        ("{ drive = { vx = 1.5 } }", "`vx` is 1.5"),
+        ("{ drive = { stand = true } }", "unknown field"),
         ("{ wheels = [201, 0] }", "-200 to 200"),
         ("{ kd = -1 }", "`kd` is -1"),
         ("{ joint_kp = nan }", "`joint_kp` is NaN"),
