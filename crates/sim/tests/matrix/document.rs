@@ -6,6 +6,7 @@ use robot_plant::time::MS;
 
 use crate::{
     Cells,
+    balancing_expected::{Balancing, Outcome},
     driver::Driver,
     judge,
     observed::{Observed, Phase, Wire},
@@ -70,12 +71,13 @@ fn without_measured(line: &str) -> String {
 
 fn table<'a>(rows: &[Row], seen: impl Fn(usize, Phase) -> Option<&'a Observed>) -> String {
     let mut text =
-        "| fault | armed, driving | armed, idle | disarmed |\n|---|---|---|---|\n".to_owned();
+        "| fault | armed, driving | armed, idle | disarmed | balancing |\n|---|---|---|---|---|\n"
+            .to_owned();
     for (index, row) in rows.iter().enumerate() {
         let cell = |phase| cell(row, phase, seen(index, phase));
-        let [driving, idle, disarmed] = Phase::ALL.map(cell);
+        let [driving, idle, disarmed, balancing] = Phase::ALL.map(cell);
         let fault = name(row);
-        text += &format!("| {fault} | {driving} | {idle} | {disarmed} |\n");
+        text += &format!("| {fault} | {driving} | {idle} | {disarmed} | {balancing} |\n");
     }
     text
 }
@@ -106,6 +108,7 @@ fn cell(row: &Row, phase: Phase, seen: Option<&Observed>) -> String {
         Phase::Driving => armed(&row.driving, seen),
         Phase::Idle => armed(&row.idle, seen),
         Phase::Disarmed => disarmed(&row.disarmed),
+        Phase::Balancing => balancing(&row.balancing, seen),
     }
 }
 
@@ -121,22 +124,28 @@ fn armed(wanted: &Armed, seen: Option<&Observed>) -> String {
         After::WheelsWait => "then wheels wait until the stick is centred",
         After::JointsWait => "then joints wait until the stick is centred",
     };
-    let wheels = seen.map(|seen| measured(&seen.wheels, seen));
-    let joints = seen.map(|seen| measured(&seen.joints, seen));
     match (wanted.wheels, wanted.joints) {
         (Group::Runs, Group::Runs) if wanted.after == After::Drives => format!("{flags}runs on"),
         (Group::Runs, Group::Runs) => format!("{flags}runs on; {after}"),
         (Group::Either, Group::Either) => format!("{flags}may stop; {after}"),
+        (wheels, joints) => format!("{flags}{}; {after}", stop(wheels, joints, seen)),
+    }
+}
+
+/// How soon motors are without torque.
+fn stop(wheels: Group, joints: Group, seen: Option<&Observed>) -> String {
+    let wheels_seen = seen.map(|seen| measured(&seen.wheels, seen));
+    let joints_seen = seen.map(|seen| measured(&seen.joints, seen));
+    match (wheels, joints) {
         (Group::Zero(wheels_ms), Group::Zero(joints_ms)) if wheels_ms == joints_ms => {
-            let both = wheels.zip(joints);
+            let both = wheels_seen.zip(joints_seen);
             let both = both.map(|(wheels, joints)| format!(" [wheels {wheels}, joints {joints}]"));
-            let both = both.unwrap_or_default();
-            format!("{flags}all 0 within {wheels_ms} ms{both}; {after}")
+            format!("all 0 within {wheels_ms} ms{}", both.unwrap_or_default())
         }
         _ => {
-            let wheels = group(wanted.wheels, wheels);
-            let joints = group(wanted.joints, joints);
-            format!("{flags}wheels {wheels}, joints {joints}; {after}")
+            let wheels = group(wheels, wheels_seen);
+            let joints = group(joints, joints_seen);
+            format!("wheels {wheels}, joints {joints}")
         }
     }
 }
@@ -172,6 +181,24 @@ fn disarmed(wanted: &Disarmed) -> String {
         Moves::Never => ", then all waits until the PC starts from rest",
     };
     format!("{flags}{during}, {after}{still}")
+}
+
+fn balancing(wanted: &Balancing, seen: Option<&Observed>) -> String {
+    let flags = flags(&wanted.flags);
+    let says = match wanted.outcome {
+        Outcome::Drives => "balances and drives on".to_owned(),
+        Outcome::Balances => "balances on".to_owned(),
+        Outcome::OnTheSpot => "balances on the spot until the PC starts from rest".to_owned(),
+        Outcome::Either => "may fall, then all 0".to_owned(),
+        Outcome::LetsGo { wheels, joints } => {
+            let latched = match wanted.arms_after {
+                Arms::No => "stays off until it is cleared or asked to stand",
+                Arms::Yes | Arms::Either => "stays off",
+            };
+            format!("{}; {latched}", stop(wheels, joints, seen))
+        }
+    };
+    format!("{flags}{says}")
 }
 
 fn flags(flags: &Flags) -> String {

@@ -12,8 +12,9 @@ use robot_sim::{
 };
 
 use crate::{
+    balancing_course,
     driver::{Driver, PC_WHEEL_RPS},
-    observed::{ARMED_SLACK, Observed, Phase, Wire},
+    observed::{ARMED_SLACK, Observed, Phase, Pose, Wire},
     pc_law,
     row::{After, Row},
     support,
@@ -22,9 +23,9 @@ use crate::{
 const QUIET: &str = "name = \"matrix\"\nseconds = 10.0\nplant = \"stand\"\n";
 
 /// A PC is plugged in and sends.
-const PC_STARTS: Ps = 500 * MS;
+pub const PC_STARTS: Ps = 500 * MS;
 /// By this time calibration and set-up of the motors are over.
-const READY: Ps = 2_500 * MS;
+pub const READY: Ps = 2_500 * MS;
 const DRIVES: Ps = 2_700 * MS;
 /// Start of the fault. It is not a whole millisecond, because faults are not synchronous to the control tick.
 const FAULT: Ps = 3_300 * MS + 370_000_000;
@@ -38,12 +39,15 @@ pub const E_STOP: &str = "e-stop";
 
 /// The run of one cell.
 pub fn run(row: &Row, phase: Phase) -> Observed {
+    if phase == Phase::Balancing {
+        return balancing_course::run(row);
+    }
     let fault = row.fault;
     let over = FAULT + row.lasts;
     let back = over + (row.back_within_ms * MS as f64) as Ps;
     let mut drive = Drive::new(row, phase);
     drive.until(PC_STARTS);
-    for event in row.driver.prepare() {
+    for event in row.driver.prepare(phase) {
         drive.act(&event);
     }
     drive.until(READY);
@@ -52,11 +56,11 @@ pub fn run(row: &Row, phase: Phase) -> Observed {
     }
     drive.until(DRIVES);
     match phase {
-        Phase::Driving => drive.act(&row.driver.push()),
+        Phase::Driving => drive.act(&row.driver.push(phase)),
         // Nothing moves, whatever a PC asks for.
-        Phase::Disarmed if row.driver == Driver::Pc => drive.act(&row.driver.push()),
+        Phase::Disarmed if row.driver == Driver::Pc => drive.act(&row.driver.push(phase)),
         Phase::Idle => row.driver.idle().iter().for_each(|event| drive.act(event)),
-        Phase::Disarmed => {}
+        Phase::Disarmed | Phase::Balancing => {}
     }
     drive.until(FAULT);
     assert_eq!(drive.armed(), phase != Phase::Disarmed, "{fault}, {phase}");
@@ -67,10 +71,10 @@ pub fn run(row: &Row, phase: Phase) -> Observed {
             drive.until(over);
             drive.end(fault);
             drive.until(back - PUSHED);
-            drive.act(&row.driver.push());
+            drive.act(&row.driver.push(phase));
             drive.until(back);
         }
-        Phase::Driving => {
+        Phase::Driving | Phase::Balancing => {
             drive.until(over);
             drive.end(fault);
             drive.until(back);
@@ -79,9 +83,9 @@ pub fn run(row: &Row, phase: Phase) -> Observed {
                 After::WheelsWait | After::JointsWait | After::PcWaits
             );
             if waits {
-                drive.centre(&row.driver.rest());
+                drive.centre(&row.driver.rest(phase));
                 drive.until(back + CENTRED);
-                drive.act(&row.driver.push());
+                drive.act(&row.driver.push(phase));
                 drive.until(back + CENTRED + PUSHED);
             }
         }
@@ -89,7 +93,7 @@ pub fn run(row: &Row, phase: Phase) -> Observed {
     drive.conclude()
 }
 
-fn enable(on: bool) -> RemoteInput {
+pub fn enable(on: bool) -> RemoteInput {
     RemoteInput {
         enable: Some(on),
         vx: Some(0.0),
@@ -104,11 +108,13 @@ struct Places {
     wheel_rps: [usize; 2],
     joint_pos_rad: [usize; 4],
     joint_vel_rps: [usize; 4],
+    /// Pitch, roll, height, speed.
+    pose: [usize; 4],
     arming: usize,
     flags: usize,
 }
 
-struct Drive {
+pub struct Drive {
     machine: Machine,
     places: Places,
     flag_names: Meaning,
@@ -131,8 +137,14 @@ struct Drive {
 }
 
 impl Drive {
-    fn new(row: &Row, phase: Phase) -> Self {
-        let job = support::job(Scenario::parse(QUIET, "matrix").expect("it parses"));
+    pub fn new(row: &Row, phase: Phase) -> Self {
+        let balances = phase == Phase::Balancing;
+        let world = if balances {
+            balancing_course::WORLD
+        } else {
+            QUIET
+        };
+        let job = support::job(Scenario::parse(world, "matrix").expect("it parses"));
         let mut machine = job.machine().expect("the machine starts");
         let names = machine.world_names();
         let world = |name: &str| names.iter().position(|n| n == name).expect(name);
@@ -140,8 +152,8 @@ impl Drive {
         let diag = |name: &str| diag_names.iter().position(|n| n == name).expect(name);
         // A PC that is lost leaves the joints enabled, without torque.
         let joint_part = match row.driver {
-            Driver::Pc => "torque_nm",
-            Driver::Pilot | Driver::PilotBesidePc => "enabled",
+            Driver::Pc if !balances => "torque_nm",
+            Driver::Pc | Driver::Pilot | Driver::PilotBesidePc => "enabled",
         };
         let places = Places {
             currents: [0, 1].map(|n| world(&format!("can.m3508.{n}.current_ma"))),
@@ -149,6 +161,7 @@ impl Drive {
             wheel_rps: [0, 1].map(|n| world(&format!("truth.wheel.{n}.speed_rps"))),
             joint_pos_rad: [0, 1, 2, 3].map(|n| world(&format!("truth.joint.{n}.pos_rad"))),
             joint_vel_rps: [0, 1, 2, 3].map(|n| world(&format!("truth.joint.{n}.vel_rps"))),
+            pose: ["pitch", "roll", "z", "vx"].map(|name| world(&format!("truth.body.{name}"))),
             arming: diag("diag.arming.state"),
             flags: diag("diag.safety.flags"),
         };
@@ -169,34 +182,34 @@ impl Drive {
             fault_since: None,
             fault_until: None,
             centred_at: None,
-            asked_rps: row.keeps_law.then_some(match phase {
+            asked_rps: (row.keeps_law && !balances).then_some(match phase {
                 Phase::Driving => PC_WHEEL_RPS,
-                Phase::Idle | Phase::Disarmed => 0.0,
+                Phase::Idle | Phase::Disarmed | Phase::Balancing => 0.0,
             }),
             observed: Observed::default(),
         }
     }
 
-    fn act(&mut self, event: &Event) {
+    pub fn act(&mut self, event: &Event) {
         Simulation::apply(&mut self.machine, event).expect("pilot and PC can always act");
     }
 
-    fn pilot(&mut self, input: RemoteInput) {
+    pub fn pilot(&mut self, input: RemoteInput) {
         self.act(&Event::Remote(input));
     }
 
-    fn centre(&mut self, rest: &Event) {
+    pub fn centre(&mut self, rest: &Event) {
         self.centred_at = Some(self.now);
         self.act(rest);
     }
 
-    fn begin(&mut self, fault: &str) {
+    pub fn begin(&mut self, fault: &str) {
         self.fault_since = Some(self.now);
         self.flags_before = self.flags_now;
         self.switch(fault, true);
     }
 
-    fn end(&mut self, fault: &str) {
+    pub fn end(&mut self, fault: &str) {
         self.observed.armed_at_fault_end = self.armed();
         self.fault_until = Some(self.now);
         self.switch(fault, false);
@@ -228,18 +241,59 @@ impl Drive {
         self.observed.armed_after_fault = self.armed();
     }
 
-    fn armed(&self) -> bool {
+    pub fn armed(&self) -> bool {
         self.last_armed == Some(self.now)
     }
 
-    fn until(&mut self, end: Ps) {
+    pub fn until(&mut self, end: Ps) {
         while self.now < end {
             let next = ((self.now / SAMPLE + 1) * SAMPLE).min(end);
             self.machine.run_until(next).expect("the run goes on");
             self.now = next;
             self.hear();
             self.ask();
+            self.look();
         }
+    }
+
+    pub fn now(&self) -> Ps {
+        self.now
+    }
+
+    /// Height of the middle of the hips.
+    pub fn height_m(&self) -> f64 {
+        let [_, _, height, _] = self.places.pose;
+        self.world[height]
+    }
+
+    /// What a motor was told last no longer counts.
+    pub fn goes_deaf(&mut self, motor: usize) {
+        self.says(motor, self.now, 0.0);
+    }
+
+    /// Everything works again.
+    pub fn note_back(&mut self) {
+        let since = self.fault_since.expect("the fault began");
+        self.observed.back = self.now - since;
+    }
+
+    /// After the fault, the enable switch went off and on.
+    pub fn note_arming(&mut self) {
+        self.observed.armed_after_fault = self.armed();
+    }
+
+    fn look(&mut self) {
+        let Some(since) = self.fault_since else {
+            return;
+        };
+        let [pitch_rad, roll_rad, height_m, speed_mps] =
+            self.places.pose.map(|place| self.world[place]);
+        self.observed.poses.push(Pose {
+            at: self.now - since,
+            tilt_rad: pitch_rad.abs().max(roll_rad.abs()),
+            height_m,
+            speed_mps,
+        });
     }
 
     /// Takes the events on the wires.
@@ -331,7 +385,7 @@ impl Drive {
         }
     }
 
-    fn conclude(self) -> Observed {
+    pub fn conclude(self) -> Observed {
         let since = self.fault_since.expect("the fault began");
         let struck = self.machine.fault_struck_at();
         let mut observed = self.observed;

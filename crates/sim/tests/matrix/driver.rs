@@ -1,7 +1,9 @@
 //! Who drives, and how: the pilot's sticks, or a PC on the serial link.
 
-use robot_plant::world::{PcInput, PcJoints, RemoteInput};
+use robot_plant::world::{PcDrive, PcInput, PcJoints, RemoteInput};
 use robot_sim::scenario::Event;
+
+use crate::observed::Phase;
 
 /// Who drives while the fault comes and goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,7 +26,7 @@ pub const PC_JOINT_KD: f64 = 1.0;
 
 impl Driver {
     /// Before arming. A PC that drives starts from rest.
-    pub fn prepare(self) -> Vec<Event> {
+    pub fn prepare(self, phase: Phase) -> Vec<Event> {
         match self {
             Self::Pilot => Vec::new(),
             Self::PilotBesidePc => vec![Event::Pc(PcInput {
@@ -38,6 +40,9 @@ impl Driver {
                     mode: Some(1),
                     ..RemoteInput::default()
                 });
+                if phase == Phase::Balancing {
+                    return vec![mode, drive(0.0)];
+                }
                 let gains = PcInput {
                     wheel_kd: Some(PC_WHEEL_KD),
                     joint_kp: Some(PC_JOINT_KP),
@@ -54,18 +59,20 @@ impl Driver {
         (self == Self::Pc).then_some(Event::Pc(pc([0.0; 2])))
     }
 
-    /// The wheels turn, the legs are held.
-    pub fn push(self) -> Event {
+    /// The wheels turn, the legs are held. A robot that balances drives at 0.4 of its speed.
+    pub fn push(self, phase: Phase) -> Event {
         match self {
             Self::Pilot | Self::PilotBesidePc => stick(0.4),
+            Self::Pc if phase == Phase::Balancing => drive(0.4),
             Self::Pc => Event::Pc(pc([PC_WHEEL_RPS; 2])),
         }
     }
 
     /// Nothing is asked to move.
-    pub fn rest(self) -> Event {
+    pub fn rest(self, phase: Phase) -> Event {
         match self {
             Self::Pilot | Self::PilotBesidePc => stick(0.0),
+            Self::Pc if phase == Phase::Balancing => drive(0.0),
             Self::Pc => Event::Pc(PcInput::rest()),
         }
     }
@@ -77,6 +84,18 @@ fn pc(wheels_rps: [f64; 2]) -> PcInput {
         joints: Some(PcJoints::At([PC_JOINT_RAD; 4])),
         ..PcInput::default()
     }
+}
+
+/// A PC steers a robot that stands in place of the sticks.
+fn drive(vx: f64) -> Event {
+    Event::Pc(PcInput {
+        on: Some(true),
+        drive: Some(PcDrive {
+            vx,
+            ..PcDrive::default()
+        }),
+        ..PcInput::default()
+    })
 }
 
 fn stick(vx: f64) -> Event {

@@ -3,6 +3,7 @@
 use robot_plant::time::{MS, Ps};
 
 use crate::{
+    balancing_judge,
     driver::Driver,
     observed::{Observed, Phase, Wire},
     row::{After, Armed, Arms, Disarmed, Flags, Group, Moves, Row},
@@ -11,10 +12,12 @@ use crate::{
 /// The span before an instant that shows the state at that instant.
 const STATE_WINDOW: Ps = 200 * MS;
 const MOST_CURRENT_MA: f64 = 8_000.0;
+const MOST_BALANCING_MA: f64 = 15_000.0;
 
 /// Differences from the expectation, as text.
 pub fn violations(row: &Row, phase: Phase, seen: &Observed) -> Vec<String> {
     let mut all = match phase {
+        Phase::Balancing => balancing_judge::violations(row, seen),
         Phase::Driving => armed(&row.driving, seen, true),
         Phase::Idle => armed(&row.idle, seen, false),
         Phase::Disarmed => disarmed(&row.disarmed, seen),
@@ -26,7 +29,7 @@ pub fn violations(row: &Row, phase: Phase, seen: &Observed) -> Vec<String> {
         ));
     }
     all.extend(seen.wrong_torques.first().cloned());
-    all.extend(beyond_limits(row, seen));
+    all.extend(beyond_limits(row, phase, seen));
     let resets = usize::from(row.resets);
     if seen.resets != resets {
         all.push(format!("{} resets instead of {resets}", seen.resets));
@@ -37,17 +40,24 @@ pub fn violations(row: &Row, phase: Phase, seen: &Observed) -> Vec<String> {
     all
 }
 
-/// A command beyond the settings' limits: 8 A for a wheel; for a joint what its row says.
-fn beyond_limits(row: &Row, seen: &Observed) -> Option<String> {
+/// A command beyond the limits: for a wheel 8 A by the settings, and 15 A by the robot's file while it balances; for a joint
+/// what its row says.
+fn beyond_limits(row: &Row, phase: Phase, seen: &Observed) -> Option<String> {
     let most = |wires: &[Wire]| {
         let values = wires.iter().flat_map(|wire| &wire.changes);
         values.map(|(_, value)| value.abs()).fold(0.0, f64::max)
     };
     let (current_ma, torque_nm) = (most(&seen.wheels), most(&seen.joints));
-    if current_ma > MOST_CURRENT_MA {
+    let balances = phase == Phase::Balancing;
+    let most_ma = if balances {
+        MOST_BALANCING_MA
+    } else {
+        MOST_CURRENT_MA
+    };
+    if current_ma > most_ma {
         return Some(format!("a wheel was told {current_ma} mA"));
     }
-    let shows_torque = row.driver == Driver::Pc;
+    let shows_torque = row.driver == Driver::Pc && !balances;
     (shows_torque && torque_nm > row.most_torque_nm)
         .then(|| format!("a joint was told {torque_nm:.2} N·m"))
 }
@@ -148,7 +158,7 @@ pub fn zero_from(wires: &[Wire], seen: &Observed) -> Option<Ps> {
         .map(|at| at.saturating_sub(seen.struck))
 }
 
-fn group(
+pub fn group(
     name: &str,
     wanted: Group,
     wires: &[Wire],
@@ -207,7 +217,7 @@ fn disarmed(wanted: &Disarmed, seen: &Observed) -> Vec<String> {
     all
 }
 
-fn flags(wanted: &Flags, seen: &Observed) -> Vec<String> {
+pub fn flags(wanted: &Flags, seen: &Observed) -> Vec<String> {
     let rose = |flag: &&&str| seen.flags.contains(**flag);
     let missing = wanted.must.iter().filter(|flag| !rose(flag));
     let missing = missing.map(|flag| format!("flag {flag} did not rise"));

@@ -4,6 +4,7 @@
 use robot_plant::time::MS;
 
 use crate::{
+    balancing_expected::Outcome,
     driver::Driver,
     expected::{NEXT_FRAME_MS, REMOTE_LOST_MS},
     row::{After, Arms, Flags, Group, Moves, Row, flags, global, harmless, row},
@@ -48,6 +49,7 @@ fn steered(row: Row) -> Row {
         &mut row.driving.flags,
         &mut row.idle.flags,
         &mut row.disarmed.flags,
+        &mut row.balancing.flags,
     ] {
         flags.may.push("pc-awaited");
     }
@@ -59,7 +61,12 @@ fn steered(row: Row) -> Row {
 fn lost(fault: &'static str, within_ms: f64) -> Row {
     let zero = Group::Zero(within_ms);
     let lost = flags(&["pc-lost"], &[]);
-    steered(row(fault, zero, zero, lost, After::PcWaits)).arms_during(Arms::Yes)
+    let mut row = steered(row(fault, zero, zero, lost.clone(), After::PcWaits));
+    // The pilot's command to stand remains.
+    row.balancing.outcome = Outcome::OnTheSpot;
+    row.balancing.flags = lost;
+    row.balancing.flags.may.push("pc-awaited");
+    row.arms_during(Arms::Yes)
 }
 
 /// Damaged frames may add up to a loss; a damaged frame is never obeyed.
@@ -72,6 +79,7 @@ fn noisy(fault: &'static str) -> Row {
         After::WhatRan,
     ));
     row.keeps_law = true;
+    row.balancing.outcome = Outcome::Balances;
     row.arms_during(Arms::Yes)
 }
 
@@ -102,6 +110,7 @@ fn extremes(fault: &'static str) -> Row {
     let mut row = steered(harmless(fault, Flags::default()));
     row.disarmed.moves = Moves::AsArmed;
     row.most_torque_nm = EXTREME_GAINS_NM;
+    row.balancing.outcome = Outcome::Balances;
     row
 }
 

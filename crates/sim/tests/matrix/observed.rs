@@ -12,10 +12,12 @@ pub enum Phase {
     /// Armed, sticks centred.
     Idle,
     Disarmed,
+    /// Armed, standing on two wheels and driving.
+    Balancing,
 }
 
 impl Phase {
-    pub const ALL: [Self; 3] = [Self::Driving, Self::Idle, Self::Disarmed];
+    pub const ALL: [Self; 4] = [Self::Driving, Self::Idle, Self::Disarmed, Self::Balancing];
 }
 
 impl std::fmt::Display for Phase {
@@ -24,6 +26,7 @@ impl std::fmt::Display for Phase {
             Self::Driving => "armed, driving",
             Self::Idle => "armed, idle",
             Self::Disarmed => "disarmed",
+            Self::Balancing => "balancing",
         })
     }
 }
@@ -83,6 +86,17 @@ impl Wire {
     }
 }
 
+/// What a robot that balances looks like, once a millisecond from the start of the fault on.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Pose {
+    pub at: Ps,
+    /// The larger one of pitch and roll.
+    pub tilt_rad: f64,
+    /// Of the middle of the hips.
+    pub height_m: f64,
+    pub speed_mps: f64,
+}
+
 /// The observations of one run.
 #[derive(Clone, Debug, Default)]
 pub struct Observed {
@@ -110,6 +124,20 @@ pub struct Observed {
     /// Torques during the fault that are neither zero nor what the PC asks for.
     pub wrong_torques: Vec<String>,
     pub board_errors: Vec<String>,
+    /// Of a robot that balances, and the time at which everything works again.
+    pub poses: Vec<Pose>,
+    pub back: Ps,
+}
+
+/// Standing, the middle of the hips is at 0.25 m; lying or sitting, at 0.16 m at most.
+pub const UPRIGHT_M: f64 = 0.2;
+
+impl Observed {
+    /// Whether a robot that balanced stands at the end of the run.
+    pub fn stands_at_end(&self) -> bool {
+        let last = self.poses.last();
+        last.is_some_and(|pose| pose.height_m > UPRIGHT_M)
+    }
 }
 
 /// The firmware's diagnostics are up to two samples old, and a command takes up to a millisecond to the motor.

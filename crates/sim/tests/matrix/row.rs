@@ -3,7 +3,10 @@
 
 use robot_plant::time::{MS, Ps};
 
-use crate::driver::Driver;
+use crate::{
+    balancing_expected::{Balancing, PART_LOST_MS},
+    driver::Driver,
+};
 
 /// Reaction of the actuators of one kind during the fault.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -93,6 +96,7 @@ pub struct Row {
     pub driving: Armed,
     pub idle: Armed,
     pub disarmed: Disarmed,
+    pub balancing: Balancing,
     /// Longest time from the end of the fault until everything works again.
     pub back_within_ms: f64,
     /// The chip is reset.
@@ -113,6 +117,7 @@ pub fn flags(must: &[&'static str], may: &[&'static str]) -> Flags {
 
 /// A fault with the same outcome in both armed phases, during which a disarmed robot cannot be armed.
 pub fn row(fault: &'static str, wheels: Group, joints: Group, flags: Flags, after: After) -> Row {
+    let balancing = Balancing::of(wheels, joints, &flags, after);
     let armed = Armed {
         wheels,
         joints,
@@ -133,6 +138,7 @@ pub fn row(fault: &'static str, wheels: Group, joints: Group, flags: Flags, afte
             arms_after: Arms::Yes,
             moves: Moves::AsArmed,
         },
+        balancing,
         back_within_ms: 1_000.0,
         resets: false,
         board_errors: &[],
@@ -159,6 +165,7 @@ impl Row {
     /// A human must look first: the enable switch alone does not arm again.
     pub fn latched(mut self) -> Self {
         self.disarmed.arms_after = Arms::No;
+        self.balancing.arms_after = Arms::No;
         self
     }
 
@@ -166,6 +173,29 @@ impl Row {
     pub fn waiting(mut self, after: After) -> Self {
         self.driving.after = after;
         self.driving.flags.may.push("sticks-awaited");
+        self
+    }
+
+    /// A robot that balances needs both wheels, of which this one no longer reports, or hears nothing either.
+    pub fn losing_wheel(mut self, wheel: usize, deaf: bool) -> Self {
+        let zero = Group::Zero(PART_LOST_MS);
+        self.balancing.loses_part(zero, zero);
+        self.balancing.deaf_wheel = deaf.then_some(wheel);
+        self
+    }
+
+    /// A robot that balances may fall, which may raise `flags`.
+    pub fn may_fall(mut self, flags: &[&'static str]) -> Self {
+        self.balancing.may_fall();
+        self.balancing.may_raise(flags);
+        self
+    }
+
+    /// A robot that balances is thrown over, and knows it this soon.
+    pub fn thrown_over(mut self, within_ms: f64) -> Self {
+        let zero = Group::Zero(within_ms);
+        self.balancing.flags = Flags::default();
+        self.balancing.lets_go(zero, zero);
         self
     }
 
