@@ -26,6 +26,7 @@ mod exchange;
 mod executors;
 mod fault;
 mod isr_cell;
+mod robot_identity;
 mod stall;
 mod tasks;
 

@@ -1,15 +1,18 @@
 //! `cargo xtask sim` and `cargo xtask soak`: the release image in the emulated board.
 
-use std::process::{Command, ExitCode};
+use std::{
+    path,
+    process::{Command, ExitCode},
+};
 
-use anyhow::ensure;
+use anyhow::{Context, ensure};
 
 use crate::{
     firmware::{self, Parts},
     forwarded_args::ForwardedArgs,
     host_program, job,
     prerequisites::{self, EMULATOR},
-    tool,
+    tool, workspace,
 };
 
 /// The emulator's CPU core is written in C and has not been built for Windows.
@@ -19,6 +22,22 @@ pub const NOT_BUILT_HERE: &str = "the emulated board is not built on Windows: ru
 
 /// With any of these options no image is built: the user names one, or none is run.
 const WITHOUT_IMAGE: [&str; 4] = ["--elf", "--help", "-h", "--list-faults"];
+
+const ROBOT: &str = "--robot";
+
+/// Whether a robot is given by its file, not by its name in `robots/`.
+fn is_path(robot: &str) -> bool {
+    robot.contains(['/', '\\', '.'])
+}
+
+/// A name, or the whole path of a file that was named from the present folder. The build runs in another one.
+fn from_here(robot: &str) -> anyhow::Result<String> {
+    if !is_path(robot) {
+        return Ok(robot.to_owned());
+    }
+    let path = path::absolute(robot).with_context(|| format!("--robot {robot}"))?;
+    Ok(path.to_string_lossy().into_owned())
+}
 
 /// Installs what the emulator's CPU core needs. It fails where that cannot be built.
 pub fn ensure_buildable() -> anyhow::Result<()> {
@@ -34,9 +53,18 @@ pub fn run(program: &str, args: &ForwardedArgs) -> anyhow::Result<ExitCode> {
     let mut command = Command::new(path);
     command.args(&args.words);
     if !args.has(&WITHOUT_IMAGE) {
-        let (build_image, elf) = firmware::build(&Parts::chosen()?)?;
+        let wanted = args.value_of(ROBOT).map(|robot| from_here(&robot));
+        let wanted = wanted.transpose()?;
+        let parts = Parts::for_robot(wanted)?;
+        let (build_image, elf) = firmware::build(&parts)?;
         jobs.push(build_image);
         command.arg("--elf").arg(elf);
+        // Without the option the program takes the robot that the image is for. It finds no file outside of `robots/`.
+        if !args.has(&[ROBOT]) && is_path(parts.robot()) {
+            command
+                .arg(ROBOT)
+                .arg(workspace::root().join(parts.robot()));
+        }
     }
     job::run_all(jobs)?;
     tool::exit_code_of(command)

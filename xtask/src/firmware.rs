@@ -50,6 +50,11 @@ impl Parts {
 
     /// Returns the parts that `ROBOT_REMOTE` and `ROBOT` name.
     pub fn chosen() -> anyhow::Result<Self> {
+        Self::for_robot(None)
+    }
+
+    /// Returns the same, for another robot than that of `ROBOT` if one is given.
+    pub fn for_robot(robot: Option<String>) -> anyhow::Result<Self> {
         let default = Self::default();
         let remote = match variable("ROBOT_REMOTE")? {
             None => default.remote,
@@ -61,8 +66,16 @@ impl Parts {
                     format!("ROBOT_REMOTE must be {words}, or unset: it is {said:?}")
                 })?,
         };
-        let robot = variable("ROBOT")?.unwrap_or(default.robot);
+        let robot = match robot {
+            Some(robot) => robot,
+            None => variable("ROBOT")?.unwrap_or(default.robot),
+        };
         Ok(Self { remote, robot })
+    }
+
+    /// Returns the name of the robot in `robots/`, or the path of its file.
+    pub fn robot(&self) -> &str {
+        &self.robot
     }
 
     fn of(remote: &'static str, robot: &str) -> Self {

@@ -1,6 +1,6 @@
 //! Options that are passed on to the program behind a command, which parses them.
 
-use std::ffi::OsString;
+use std::{borrow::Cow, ffi::OsString};
 
 use clap::Parser;
 
@@ -21,6 +21,19 @@ impl ForwardedArgs {
             let name = word.split_once('=').map_or(&*word, |(name, _)| name);
             options.contains(&name)
         })
+    }
+
+    /// What follows `option`, in the same word behind `=` or in the next one.
+    pub fn value_of(&self, option: &str) -> Option<String> {
+        let mut words = self.words.iter().map(|word| word.to_string_lossy());
+        while let Some(word) = words.next() {
+            match word.split_once('=') {
+                Some((name, value)) if name == option => return Some(value.to_owned()),
+                None if word == option => return words.next().map(Cow::into_owned),
+                _ => {}
+            }
+        }
+        None
     }
 }
 
@@ -52,5 +65,17 @@ mod tests {
         assert!(has_elf(&["sim", "--help"]));
         assert!(!has_elf(&["sim", "--elfin"]));
         assert!(!has_elf(&["sim", "--seed", "1"]));
+    }
+
+    #[test]
+    fn the_value_of_an_option_is_found() {
+        let robot = |words: &[&str]| parsed(words).value_of("--robot");
+        assert_eq!(robot(&["sim", "--robot", "ours"]).as_deref(), Some("ours"));
+        assert_eq!(
+            robot(&["sim", "a.toml", "--robot=ours.toml"]).as_deref(),
+            Some("ours.toml")
+        );
+        assert_eq!(robot(&["sim", "--robot"]), None);
+        assert_eq!(robot(&["sim", "--robots", "ours"]), None);
     }
 }

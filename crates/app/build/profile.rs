@@ -14,12 +14,14 @@ pub fn constant(Constants { profile, .. }: &Constants, robot: &Robot) -> Result<
         "/// The robot `{name}`.\n\
          pub const {profile}: RobotProfile = RobotProfile {{ \
              name: {name:?}, \
+             fingerprint: {fingerprint:#018x}, \
              wheel_odom: {odom}, \
              wheel_current_ma: {current_ma}, \
              mounting: {mounting}, \
              imu_up_m: {imu_up_m}, \
              balance: BalanceProfile {{ legs: {legs}, mass: {mass}, gains: {gains}, limits: {limits} }} \
          }};\n",
+        fingerprint = robot.fingerprint(),
         odom = wheel_odom(robot),
         current_ma = f32(wheels.current_limit_a * 1e3),
         mounting = mounting(robot),

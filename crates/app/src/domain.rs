@@ -16,6 +16,7 @@ mod param_store;
 mod pc;
 mod remote;
 mod remote_mapping;
+mod robot_identity;
 mod robot_profile;
 pub mod robots;
 mod sensors;
@@ -53,6 +54,7 @@ pub use remote::{
     DriveMode, OperatorState, RemoteDiagnostics, RemoteState, RemoteUpdate, StandSwitch,
 };
 pub use remote_mapping::{BalanceChannel, NO_CHANNEL, RemoteChannel, RemoteMapping};
+pub use robot_identity::RobotIdentity;
 pub use robot_profile::RobotProfile;
 pub use sensors::{
     ImuState, JointFeedback, JointState, MagState, MotorFeedback, SensorsSnapshot, WheelFeedback,

@@ -10,6 +10,7 @@
 mod check;
 mod error;
 mod figures;
+mod fingerprint;
 mod five_bar;
 mod mass;
 mod mjcf;

@@ -36,6 +36,7 @@ pub struct Scenario {
     pub radio: RadioKind,
     /// Its motors, the board's place, and the masses of the free robot.
     pub robot: Arc<Robot>,
+    pub robot_choice: RobotChoice,
     /// How the free robot differs from its file.
     pub variation: Variation,
     /// CAN time-out that is set in the RS00 drives; 0 = off.
@@ -53,6 +54,18 @@ pub struct Scenario {
     pub expectations: Vec<Expectation>,
     /// Board errors whose message contains one of these do not fail the run.
     pub allow_board_errors: Vec<String>,
+}
+
+/// How a scenario says which robot it is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum RobotChoice {
+    /// Not at all: it is the one that the image is for.
+    #[default]
+    OfTheImage,
+    /// By its file.
+    Named,
+    /// By the make of its joints, which may be others than those that the image is for.
+    OtherJoints,
 }
 
 /// The parameter sectors at power-on.

@@ -13,8 +13,9 @@ mod settings_check;
 mod stop_deadlines;
 mod tuning_frames;
 
-use std::path::PathBuf;
+use std::{path::PathBuf, sync::Arc};
 
+use robot_description::Robot;
 use robot_plant::{
     time::{self, MS, Ps, SECOND},
     world::{World, WorldConfig, WorldError},
@@ -42,6 +43,8 @@ const REPRODUCED: Ps = 30 * SECOND;
 pub struct Soak {
     /// The firmware image, with symbols and debug information.
     pub elf: PathBuf,
+    /// The robot that the image is for.
+    pub robot: Arc<Robot>,
     pub length: Ps,
     pub seed: u64,
 }
@@ -78,6 +81,7 @@ impl Soak {
     pub fn run(&self, mut progress: impl FnMut(Ps)) -> Result<Outcome, SoakError> {
         let world = World::new(WorldConfig {
             seed: self.seed,
+            robot: Arc::clone(&self.robot),
             ..WorldConfig::default()
         })?;
         let mut machine = Machine::new(&self.elf, world)?;

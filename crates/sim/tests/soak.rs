@@ -4,12 +4,15 @@
 mod support;
 
 use robot_plant::time::SECOND;
-use robot_sim::soak::Soak;
+use robot_sim::{image_robot, soak::Soak};
 
 #[test]
 fn every_invariant_holds_for_two_minutes() {
+    let elf = support::image();
+    let robot = image_robot::of_image(&elf, None);
     let soak = Soak {
-        elf: support::image(),
+        elf,
+        robot: robot.expect("its file is in robots/"),
         length: 120 * SECOND,
         seed: 1,
     };

@@ -15,6 +15,7 @@ use robot_plant::{recording, time, world::CanBusId};
 use robot_sim::{
     faults,
     gateway::GatewayAddress,
+    image_robot,
     job::Job,
     machine::RegisterPatch,
     pc::PcAccess,
@@ -23,6 +24,7 @@ use robot_sim::{
     signals::SignalTable,
     simulation::Simulation,
     terminal::{LogLevel, Terminal},
+    viewer,
 };
 
 /// Boot the firmware in an emulated RoboMaster C board wired to a simulated robot.
@@ -35,12 +37,19 @@ struct Args {
     /// Firmware image to boot.
     #[arg(long, required_unless_present = "list_faults")]
     elf: Option<PathBuf>,
+    /// Robot to simulate: a name in robots/, or a file. `cargo xtask sim` builds the image for it too. Default: the one that the
+    /// image is for.
+    #[arg(long, value_name = "NAME|FILE")]
+    robot: Option<String>,
     /// Run for so long, instead of the scenario's own length. Ctrl-C ends it earlier, with a report.
     #[arg(long, value_name = "N")]
     seconds: Option<f64>,
     /// Folder for report.html, summary.json and run.mcap.
     #[arg(long, default_value = "target/sim")]
     out: PathBuf,
+    /// Afterwards show the robot in the browser: its viewer is in report.html. Without a desktop, say where that is.
+    #[arg(long)]
+    view: bool,
     /// Play a recorded trial (.json beside its .f32.gz) through the sensor models.
     #[arg(long, value_name = "TRIAL.json")]
     imu: Option<PathBuf>,
@@ -105,7 +114,9 @@ impl Args {
 }
 
 const EXAMPLES: &str = "Examples:
+  cargo xtask sim --view                               # shows the robot in the browser afterwards
   cargo xtask sim scenarios/remote-loss.toml
+  cargo xtask sim --robot teams/ours.toml              # your robot, with an image for it
   cargo xtask sim --can1 pty --seconds 3600            # then: robotctl status --can /dev/pts/N
   cargo xtask sim --gateway tcp:20001 --seconds 3600   # then: robotctl status --can tcp:127.0.0.1:20001
   cargo xtask sim scenarios/pc-pilot.toml --link pty --seconds 600
@@ -140,6 +151,9 @@ fn main() -> anyhow::Result<ExitCode> {
     let mut terminal = Terminal::new(job.scenario.length, args.log, realtime, interrupted);
     let outcome = job.run_into(&args.out, &mut terminal)?;
     terminal.conclude(&outcome);
+    if let (true, Some(report)) = (args.view, outcome.files.first()) {
+        viewer::show(report);
+    }
     Ok(if outcome.summary.ok {
         ExitCode::SUCCESS
     } else {
@@ -202,6 +216,7 @@ fn job(args: &Args) -> anyhow::Result<Job> {
         }
     }
     scenario.seed = args.seed.unwrap_or(scenario.seed);
+    image_robot::agree(&mut scenario, &elf, args.robot.as_deref())?;
     Ok(Job {
         elf,
         scenario,

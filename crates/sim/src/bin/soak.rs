@@ -6,7 +6,10 @@ use anyhow::{Context, bail};
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
 use robot_plant::time;
-use robot_sim::soak::{Outcome, Soak};
+use robot_sim::{
+    image_robot,
+    soak::{Outcome, Soak},
+};
 
 /// Boot the firmware in the emulated board, drive it for hours with random pilot input, faults and frames from a seed,
 /// and check invariants at every instant.
@@ -16,6 +19,9 @@ struct Args {
     /// Firmware image to boot.
     #[arg(long)]
     elf: PathBuf,
+    /// Robot to simulate, as in `cargo xtask sim`. Default: the one that the image is for.
+    #[arg(long, value_name = "NAME|FILE")]
+    robot: Option<String>,
     /// Simulated hours.
     #[arg(long, value_name = "N", default_value_t = 2.0)]
     hours: f64,
@@ -37,6 +43,7 @@ fn main() -> anyhow::Result<ExitCode> {
     }
     let soak = Soak {
         elf: args.elf.clone(),
+        robot: image_robot::of_image(&args.elf, args.robot.as_deref())?,
         length: time::from_seconds(args.hours * 3_600.0),
         seed: args.seed,
     };

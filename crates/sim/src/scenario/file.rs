@@ -17,7 +17,7 @@ use robot_plant::{
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::{FlashSetup, Scenario, ScenarioError};
+use super::{FlashSetup, RobotChoice, Scenario, ScenarioError};
 use events::{At, read_at};
 use expectations::{Expect, read_expect};
 use flash::{Flash, read_flash};
@@ -117,6 +117,11 @@ pub(super) fn parse(text: &str, file: &str) -> Result<Scenario, ScenarioError> {
     let joints = raw.joints.as_ref().map(|joints| *joints.get_ref());
     let robot = read_robot(raw.robot.as_ref().map(|r| r.get_ref().as_str()), joints)
         .map_err(|problem| source.wrong(offset, problem))?;
+    let robot_choice = match (&raw.robot, &raw.joints) {
+        (Some(_), _) => RobotChoice::Named,
+        (None, Some(_)) => RobotChoice::OtherJoints,
+        (None, None) => RobotChoice::OfTheImage,
+    };
     let variation = match &raw.variation {
         Some(vary) => read_variation(vary.get_ref())
             .map_err(|problem| source.wrong(vary.span().start, problem))?,
@@ -155,6 +160,7 @@ pub(super) fn parse(text: &str, file: &str) -> Result<Scenario, ScenarioError> {
             Radio::Dbus => RadioKind::Dbus,
         },
         robot,
+        robot_choice,
         variation,
         rs00_timeout: u64::from(raw.rs00_timeout_ms) * time::MS,
         imu_temperature_c: raw.imu_temperature_c,
