@@ -102,8 +102,7 @@ fn chosen(
 fn for_image(image: &Identity, wanted: Option<&str>) -> Result<Arc<Robot>, ImageRobotError> {
     match wanted {
         Some(wanted) => checked(Arc::new(read(wanted)?), image),
-        None => found(&image.name)
-            .filter(|robot| robot.fingerprint() == image.fingerprint)
+        None => found(image.fingerprint)
             .map(Arc::new)
             .ok_or_else(|| ImageRobotError::NoFile(image.name.clone())),
     }
@@ -131,14 +130,14 @@ fn read(wanted: &str) -> Result<Robot, RobotError> {
     }
 }
 
-/// The robot in `robots/` that has this name, whatever its file is called.
-fn found(name: &str) -> Option<Robot> {
+/// The robot in `robots/` that has this fingerprint, whatever its file is called.
+fn found(fingerprint: u64) -> Option<Robot> {
     let entries = fs::read_dir(FOLDER).ok()?;
     let paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
     paths
         .filter(|path| path.extension().is_some_and(|ending| ending == "toml"))
         .filter_map(|path| Robot::read(&path).ok())
-        .find(|robot| robot.name == name)
+        .find(|robot| robot.fingerprint() == fingerprint)
 }
 
 fn read_identity(elf: &Path) -> Result<Identity, ImageRobotError> {

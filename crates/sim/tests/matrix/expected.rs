@@ -29,7 +29,7 @@ pub const NEXT_FRAME_MS: f64 = 7.0 + 3.0 + 3.0;
 pub const REMOTE_LOST_MS: f64 = 100.0 + 3.0 + 3.0;
 
 /// The faults that a robot that balances meets in every run of the tests: each way in which it ends, on each bus.
-pub const BALANCING_SAMPLE: [&str; 14] = [
+pub const BALANCING_SAMPLE: [&str; 13] = [
     "e-stop",
     "sbus-silent",
     "link-cut",
@@ -43,7 +43,6 @@ pub const BALANCING_SAMPLE: [&str; 14] = [
     "motor-5-frozen",
     "tilted",
     "hard-fault",
-    "task-asleep-imu",
 ];
 
 fn radio() -> Vec<Row> {
