@@ -189,7 +189,7 @@ fn balancing(wanted: &Balancing, seen: Option<&Observed>) -> String {
         Outcome::Drives => "balances and drives on".to_owned(),
         Outcome::Balances => "balances on".to_owned(),
         Outcome::OnTheSpot => "balances on the spot until the PC starts from rest".to_owned(),
-        Outcome::Either => "may fall, then all 0".to_owned(),
+        Outcome::Either => "may fall".to_owned(),
         Outcome::LetsGo { wheels, joints } => {
             let latched = match wanted.arms_after {
                 Arms::No => "stays off until it is cleared or asked to stand",
