@@ -22,6 +22,19 @@ fn robots_as_in_their_file_succeed() {
     assert!(report.holds(), "\n{}", table(&report));
 }
 
+/// Friction of the gears, errors of the horizon and of the centre of mass do not make it creep to and fro.
+#[test]
+fn robots_that_differ_stand_still() {
+    let robots = Robots {
+        robot: WorldConfig::default().robot,
+        vary: true,
+    };
+    let tasks: Vec<&Task> = TASKS.iter().filter(|task| task.name == "stand").collect();
+    let surveys = survey(&tasks, &robots, 2, false, &|| ());
+    let report = Report::new("fivebar", 2, &tasks, &surveys);
+    assert!(report.holds(), "\n{}", table(&report));
+}
+
 #[test]
 fn robots_that_differ_jump_and_land() {
     let robots = Robots {

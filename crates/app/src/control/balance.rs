@@ -3,6 +3,7 @@
 mod braking;
 mod contact;
 mod controller;
+mod friction;
 mod gains;
 mod jump;
 mod law;

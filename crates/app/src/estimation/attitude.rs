@@ -27,7 +27,7 @@ const REST_BIAS_NOISE: f32 = (0.03 * DEG) * (0.03 * DEG);
 /// slow rotation, whatever the accelerometer shows.
 const REST_GATE_RPS: f32 = 0.4 * DEG;
 const REST_GATE_SIGMA2: f32 = 16.0;
-/// Noise of the zero-velocity update at rest, (m/s)².
+/// Noise of the zero-velocity update at rest, and on legs whose wheels stand, (m/s)².
 const REST_SPEED_NOISE: f32 = 0.05 * 0.05;
 /// Noise of the pseudo-measurement that the velocity is zero in the mean, (m/s)²·s.
 const SPEED_NOISE: f32 = 0.2 * 0.2;
@@ -64,6 +64,17 @@ pub(super) struct Saturation {
     pub gyro_ms: [u8; 3],
 }
 
+/// What carries the body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Footing {
+    /// Anything: it may rest.
+    Any,
+    /// Legs that balance it. It never rests, and turns so slowly at times that this would pass for a gyro bias.
+    Legs,
+    /// The same, and its wheels stand.
+    StandingLegs,
+}
+
 /// The attitude filter: strapdown integration, corrected by an error-state Kalman filter after each window.
 #[derive(Clone, Debug)]
 pub(super) struct AttitudeFilter {
@@ -77,6 +88,7 @@ pub(super) struct AttitudeFilter {
     lost_rotation_rad: Option<[Vector3; 3]>,
     /// The tilt is unknown until a rest or some motion shows it.
     tilt_unknown: bool,
+    footing: Footing,
 }
 
 impl AttitudeFilter {
@@ -90,7 +102,13 @@ impl AttitudeFilter {
             aligned: false,
             lost_rotation_rad: None,
             tilt_unknown: false,
+            footing: Footing::Any,
         }
+    }
+
+    /// Sets what carries the body from the next sample on.
+    pub const fn set_footing(&mut self, footing: Footing) {
+        self.footing = footing;
     }
 
     /// Takes one IMU sample: the means over the last `dt_s` in body axes. The caller has subtracted the acceleration that
@@ -112,7 +130,10 @@ impl AttitudeFilter {
         let accel_enu = mid_sample.rotation.map(|row| vector::dot(row, accel_mps2));
         self.strapdown.integrate_force(accel_enu, dt_s);
         self.window.add_accel(accel_enu);
-        self.rest.feed(gyro_rps, accel_mps2);
+        match self.footing {
+            Footing::Any => self.rest.feed(gyro_rps, accel_mps2),
+            Footing::Legs | Footing::StandingLegs => self.rest.reset(),
+        }
         if saturation.gyro_ms != [0; 3] {
             self.add_lost_rotation(&mid_sample.rotation, saturation.gyro_ms);
         }
@@ -208,7 +229,8 @@ impl AttitudeFilter {
         if let Some(error_rad) = field.initial_heading_rad {
             self.align_heading(error_rad);
         }
-        let [east, north] = self.velocity_measurements(rest_rate.is_some());
+        let stands = rest_rate.is_some() || self.footing == Footing::StandingLegs;
+        let [east, north] = self.velocity_measurements(stands);
         let bias = rest_rate.map(|rate| self.bias_measurements(rate).map(Some));
         let [x, y, z] = bias.unwrap_or_default();
         let measurements: Measurements = [Some(east), Some(north), field.heading, x, y, z];
@@ -298,12 +320,12 @@ impl AttitudeFilter {
             })
     }
 
-    /// Zero-velocity update: exact at rest, else the pseudo-measurement that the velocity is zero in the mean.
-    fn velocity_measurements(&self, resting: bool) -> [Measurement; 2] {
+    /// Zero-velocity update: exact while the robot stands, else the pseudo-measurement that the velocity is zero in the mean.
+    fn velocity_measurements(&self, stands: bool) -> [Measurement; 2] {
         let t = self.window.duration_s;
         let [ax, ay, az] = self.window.accel_mps2();
         let free_mps2 = [ax, ay, az - GRAVITY_MPS2];
-        let variance = if resting {
+        let variance = if stands {
             REST_SPEED_NOISE
         } else {
             let [vx, vy] = self.strapdown.speed_mps;

@@ -251,6 +251,7 @@ impl InsEstimator {
         };
         // Without the acceleration of the known motion the force points up.
         let gravity_mps2 = vector::sub(imu.accel_mps2, self.motion.kinematic_mps2());
+        self.attitude.set_footing(self.motion.footing());
         let converged = self
             .attitude
             .feed_imu(gyro_rps, gravity_mps2, saturation, dt_s);

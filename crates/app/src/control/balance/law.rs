@@ -3,6 +3,7 @@
 use super::{
     braking::counted_mps,
     contact::Contact,
+    friction,
     gains::{Gains, STATES},
     measured::Measured,
     ramp::Ramp,
@@ -165,7 +166,11 @@ impl Law {
         let [left_force, right_force] = legs;
         let [left_nm, right_nm] = wheels_nm;
         Torques {
-            wheels_nm,
+            wheels_nm: if self.airborne {
+                wheels_nm
+            } else {
+                friction::overcome(wheels_nm, measured.gear_rps, limits.wheel_nm)
+            },
             hips_nm: [
                 torques::within_hips(left, left_force, left_nm, limits.hip_nm),
                 torques::within_hips(right, right_force, right_nm, limits.hip_nm),

@@ -24,6 +24,8 @@ pub struct Measured {
     pub lean_rps: [f32; 2],
     /// Turn of each wheel in the world in rad/s, forward positive.
     pub wheel_rps: [f32; 2],
+    /// Turn of each wheel's gear, against its shank, in rad/s, forward positive.
+    pub gear_rps: [f32; 2],
     /// Ground speed of the axles' middle by the wheels in m/s.
     pub speed_mps: f32,
     /// The same by the estimate, in m/s.
@@ -53,10 +55,15 @@ impl Measured {
         let [left, right] = &sensors.motor.wheels;
         let [left_leg, right_leg] = &legs;
         let rps = odometry.rps_per_rpm();
+        let gear_rps = [
+            f32::from(left.rpm) * left_sign * rps,
+            f32::from(right.rpm) * right_sign * rps,
+        ];
+        let [left_gear_rps, right_gear_rps] = gear_rps;
         // The motor counts from its shank, which turns too.
         let wheel_rps = [
-            f32::from(left.rpm) * left_sign * rps + left_leg.carrier_rps + rate_rps[1],
-            f32::from(right.rpm) * right_sign * rps + right_leg.carrier_rps + rate_rps[1],
+            left_gear_rps + left_leg.carrier_rps + rate_rps[1],
+            right_gear_rps + right_leg.carrier_rps + rate_rps[1],
         ];
         let [left_rps, right_rps] = wheel_rps;
         let limit_us = input.wheel_ctrl_cfg.feedback_timeout_us;
@@ -67,6 +74,7 @@ impl Measured {
             lean_rad: legs.map(|leg| tilt.pitch_rad - leg.angle_rad),
             lean_rps: legs.map(|leg| tilt.pitch_rps - leg.angle_rps),
             wheel_rps,
+            gear_rps,
             speed_mps: 0.5 * odometry.wheel_radius_m * (left_rps + right_rps),
             up_mps2: vector::dot(sensors.imu.accel_mps2, tilt.up),
             hip_nm: [

@@ -1,5 +1,7 @@
 //! The complete attitude filter over hours of rest and motion.
 
+mod legs;
+
 use super::{covariance::Covariance, error_state::STATES, *};
 use crate::math::testing::{rotation_of, to_f32};
 use robot_test_support::{Random, Rotation};

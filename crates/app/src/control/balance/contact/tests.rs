@@ -23,6 +23,7 @@ fn measured(up_mps2: f32, pitch_rps: f32) -> Measured {
         lean_rad: [0.0; 2],
         lean_rps: [0.0; 2],
         wheel_rps: [0.0; 2],
+        gear_rps: [0.0; 2],
         speed_mps: 0.0,
         ground_mps: 0.0,
         up_mps2,

@@ -16,6 +16,7 @@ fn measured(wheels_mps: [f32; 2], ground_mps: f32, yaw_rps: f32) -> Measured {
         lean_rad: [0.0; 2],
         lean_rps: [0.0; 2],
         wheel_rps: wheels_mps.map(|mps| mps / FIVEBAR.wheel_odom.wheel_radius_m),
+        gear_rps: [0.0; 2],
         speed_mps: 0.5 * (left_mps + right_mps),
         ground_mps,
         up_mps2: 9.8,
