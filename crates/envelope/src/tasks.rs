@@ -4,6 +4,7 @@ mod drive;
 mod fall;
 mod jump;
 mod push;
+mod sit_down;
 mod stand;
 mod stand_up;
 mod terrain;
@@ -96,5 +97,6 @@ pub const TASKS: &[Task] = &[
     stand_up::LEFT,
     stand_up::RIGHT,
     stand_up::UPSIDE_DOWN,
+    sit_down::SIT_DOWN,
     fall::LOST,
 ];

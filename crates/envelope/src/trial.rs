@@ -186,6 +186,14 @@ impl Trial {
         });
     }
 
+    /// Puts the stand switch down.
+    pub fn ask_to_sit(&mut self) {
+        self.pilot(RemoteInput {
+            stand: Some(false),
+            ..RemoteInput::default()
+        });
+    }
+
     /// Moves sticks and switches.
     pub fn pilot(&mut self, input: RemoteInput) {
         self.robot.remote(input);
@@ -264,8 +272,7 @@ impl Trial {
     pub fn require_upright(&self) -> Result<(), Failure> {
         let now = &self.now;
         if !self.robot.armed() {
-            let stopped_by: Vec<_> = self.stopped_by.names().collect();
-            return Err(self.failed(format!("stopped by {}", stopped_by.join(", "))));
+            return Err(self.failed(self.stopped_by()));
         }
         if now.tilt_rad() > FALLEN_RAD {
             return Err(self.failed(format!("tilted by {:.0}°", now.tilt_rad().to_degrees())));
@@ -274,6 +281,12 @@ impl Trial {
             return Err(self.failed("the body is on the ground".to_owned()));
         }
         Ok(())
+    }
+
+    /// What stopped the robot when it was last disarmed, in words.
+    pub fn stopped_by(&self) -> String {
+        let names: Vec<_> = self.stopped_by.names().collect();
+        format!("stopped by {}", names.join(", "))
     }
 
     /// A failure as of now.

@@ -1,4 +1,6 @@
-//! Sitting down: fold the legs, let the body sink onto its front edge while the wheels brake it, let go.
+//! Sitting down: fold the legs, let the body sink onto an edge while the wheels brake it, let go.
+//!
+//! The body sinks away from its centre of mass: over the other edge it would roll on.
 
 use super::{
     law::{Goal, Law, Torques},
@@ -26,16 +28,24 @@ const GIVE_UP_S: f32 = 3.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SitDown {
     length: Ramp,
-    /// Lean in rad while the body sinks.
-    lean_rad: Option<f32>,
+    sinking: Option<Sinking>,
     elapsed_s: f32,
+}
+
+/// The body sinks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Sinking {
+    /// Reference of the lean in rad.
+    lean_rad: f32,
+    /// Its rate in rad/s, positive onto the front edge.
+    rps: f32,
 }
 
 impl SitDown {
     pub const fn new(length: Ramp) -> Self {
         Self {
             length,
-            lean_rad: None,
+            sinking: None,
             elapsed_s: 0.0,
         }
     }
@@ -54,14 +64,17 @@ impl SitDown {
             return None;
         }
         let limits = &profile.limits;
-        if let Some(lean_rad) = &mut self.lean_rad {
-            *lean_rad += SINK_RPS * dt_s;
-            let sinks = *lean_rad < MOST_RAD && measured.tilt.pitch_rad < LET_GO_RAD;
-            return sinks.then(|| tip(limits, measured, *lean_rad, SINK_RPS, SINK_N));
+        if let Some(Sinking { lean_rad, rps }) = &mut self.sinking {
+            *lean_rad += *rps * dt_s;
+            let sinks = lean_rad.abs() < MOST_RAD && measured.tilt.pitch_rad.abs() < LET_GO_RAD;
+            return sinks.then(|| tip(limits, measured, *lean_rad, *rps, SINK_N));
         }
         self.length.step(limits.fold_length_m, LOWER_MPS, dt_s);
         if self.length.value - limits.fold_length_m < CLOSE_M {
-            self.lean_rad = Some(measured.mean_lean_rad());
+            let lean_rad = measured.mean_lean_rad();
+            // A robot that leans back to balance has its centre of mass ahead.
+            let rps = if lean_rad < 0.0 { -SINK_RPS } else { SINK_RPS };
+            self.sinking = Some(Sinking { lean_rad, rps });
         }
         let goal = Goal::upright(self.length);
         Some(law.step(profile, odometry, measured, &goal, dt_s))
