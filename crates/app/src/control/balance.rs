@@ -6,6 +6,7 @@ mod controller;
 mod friction;
 mod gains;
 mod jump;
+mod knees;
 mod law;
 mod measured;
 mod ramp;

@@ -1,6 +1,6 @@
 //! The state of the robot in this tick, from sensors, motors and the estimate.
 
-use super::tilt::Tilt;
+use super::{knees::Thigh, tilt::Tilt};
 use crate::{
     control::ChassisControllerInput,
     domain::{JointFeedback, JointState, LegGeometry, StateEstimate, WheelFeedback},
@@ -34,6 +34,8 @@ pub struct Measured {
     pub up_mps2: f32,
     /// Torques of the hip joints as they report them, in N·m.
     pub hip_nm: [[f32; 2]; 2],
+    /// Front and rear thigh of each leg.
+    pub thighs: [[Thigh; 2]; 2],
     /// Everything above is known.
     pub known: bool,
 }
@@ -80,6 +82,10 @@ impl Measured {
             hip_nm: [
                 [left_front.torque_nm, left_rear.torque_nm],
                 [right_front.torque_nm, right_rear.torque_nm],
+            ],
+            thighs: [
+                thighs(left_front, left_rear),
+                thighs(right_front, right_rear),
             ],
             known: input.estimate.valid
                 && sensors.motor.wheels.iter().all(heard)
@@ -152,6 +158,19 @@ fn leg(geometry: &LegGeometry, front: &JointFeedback, rear: &JointFeedback) -> L
         [angle_now_rad(front), angle_now_rad(rear)],
         [front.vel_rps, rear.vel_rps],
     )
+}
+
+fn thighs(front: &JointFeedback, rear: &JointFeedback) -> [Thigh; 2] {
+    [
+        Thigh {
+            rad: front.pos_rad,
+            rps: front.vel_rps,
+        },
+        Thigh {
+            rad: -rear.pos_rad,
+            rps: -rear.vel_rps,
+        },
+    ]
 }
 
 fn angle_now_rad(joint: &JointFeedback) -> f32 {

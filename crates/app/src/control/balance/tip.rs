@@ -8,6 +8,9 @@ const LEAN_NM_PER_RAD: f32 = 8.0;
 const LEAN_NMS_PER_RAD: f32 = 0.6;
 /// Largest torque of each wheel in N·m. With more the wheels spin.
 const MOST_NM: f32 = 2.4;
+/// Wheels that spin faster than this in m/s give less, by this many N·m per m/s, until they spin no faster.
+const MOST_MPS: f32 = 2.5;
+const SPIN_NMS_PER_M: f32 = 5.0;
 /// Stiffness and damping across the legs in N·m/rad and N·m·s/rad.
 const HOLD_NM_PER_RAD: f32 = 12.0;
 const HOLD_NMS_PER_RAD: f32 = 0.6;
@@ -23,7 +26,10 @@ pub fn tip(
 ) -> Torques {
     let wanted_nm = LEAN_NM_PER_RAD * (measured.mean_lean_rad() - lean_rad)
         + LEAN_NMS_PER_RAD * (measured.mean_lean_rps() - lean_rps);
-    let wheel_nm = scalar::clamp(wanted_nm, -MOST_NM, MOST_NM);
+    let most = |room_mps: f32| scalar::clamp(SPIN_NMS_PER_M * room_mps, 0.0, MOST_NM);
+    let forward_nm = most(MOST_MPS - measured.speed_mps);
+    let backward_nm = most(MOST_MPS + measured.speed_mps);
+    let wheel_nm = scalar::clamp(wanted_nm, -backward_nm, forward_nm);
     held(limits, measured, |_| push_n, wheel_nm)
 }
 
