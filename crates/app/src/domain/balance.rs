@@ -18,6 +18,9 @@ pub enum BalanceState {
     SitDown = 4,
     /// Beyond recovery. The controller gives zero torque, and `SafetyPolicy` stops everything.
     Fallen = 5,
+    /// The robot lies on a side or its top, from where it cannot stand up. The controller gives zero torque, and
+    /// `SafetyPolicy` stops everything.
+    CannotRise = 6,
 }
 
 /// Part of standing up.

@@ -76,8 +76,8 @@ impl Standing {
     pub fn step(&mut self, inputs: &StandingInputs, now_us: u64) -> SafetyFlags {
         let lost = inputs.armed && self.is_lost(inputs);
         let disarmed = self.permit.permits() && !inputs.armed;
-        let mut failed = false;
-        self.permit = if inputs.stopped || lost || disarmed {
+        let mut failed = inputs.armed && inputs.balance == BalanceState::CannotRise;
+        self.permit = if inputs.stopped || lost || disarmed || failed {
             StandPermit::SwitchMustGoDown
         } else {
             match (self.permit, inputs.switch) {

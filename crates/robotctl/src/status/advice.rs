@@ -63,7 +63,9 @@ pub(super) fn for_flag(name: &str) -> Option<&'static str> {
         "balance-lost" => {
             "it stood and fell, or a motor or bus failed: look, then clear, or stand switch down and up"
         }
-        "stand-up-failed" => "it still lies after its time for standing up: help it up, then clear",
+        "stand-up-failed" => {
+            "it lies on a side or its top, or still lies after its time: put it on its wheels, then clear"
+        }
         "wheel-hot" | "joint-hot" => "let the motor cool down",
         "battery-low" => "charge or connect the battery",
         "battery-empty" => "change the battery, then clear",

@@ -39,6 +39,8 @@ enum Phase {
     Jump(Jump),
     SitDown(SitDown),
     Fallen,
+    /// It lies so that it cannot stand up.
+    CannotRise,
 }
 
 /// What comes of a tick.
@@ -64,8 +66,13 @@ impl BalanceController {
     /// Begins to stand up. Returns `None` while anything that it takes is unknown or not ready.
     pub fn stand_up(input: &ChassisControllerInput<'_>) -> Option<Self> {
         let measured = Measured::new(&input.profile.balance.legs, input);
+        let phase = if StandUp::is_possible(&measured) {
+            Phase::StandUp(StandUp::new(&measured))
+        } else {
+            Phase::CannotRise
+        };
         measured.known.then(|| Self {
-            phase: Phase::StandUp(StandUp::new(&measured)),
+            phase,
             law: Law::new(&input.profile.balance, &measured),
             length: Ramp::at(measured.length_m()),
             roll: Ramp::default(),
@@ -88,7 +95,9 @@ impl BalanceController {
         let cmd = match outcome {
             Outcome::Torques(torques) => command(&torques, input.wheel_odom_cfg),
             Outcome::Fallen if wishes_to_stand => {
-                self.phase = Phase::Fallen;
+                if self.phase != Phase::CannotRise {
+                    self.phase = Phase::Fallen;
+                }
                 ChassisCommand::STOP
             }
             Outcome::Fallen | Outcome::Sits => return None,
@@ -159,7 +168,7 @@ impl BalanceController {
                     None => return Outcome::Sits,
                 }
             }
-            Phase::Fallen => return Outcome::Fallen,
+            Phase::Fallen | Phase::CannotRise => return Outcome::Fallen,
         };
         Outcome::Torques(torques)
     }
@@ -227,6 +236,7 @@ impl BalanceController {
             Phase::Jump(_) => BalanceState::Jump,
             Phase::SitDown(_) => BalanceState::SitDown,
             Phase::Fallen => BalanceState::Fallen,
+            Phase::CannotRise => BalanceState::CannotRise,
         };
         BalanceStatus {
             state,

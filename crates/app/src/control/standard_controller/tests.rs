@@ -109,6 +109,45 @@ fn a_robot_that_leans_forward_drives_forward() {
     }
 }
 
+/// Neither wheels nor knees reach the ground where they could push the robot upright.
+#[test]
+fn a_robot_on_a_side_or_its_top_has_no_torque() {
+    for (roll_rad, can_rise) in [(0.0, true), (1.8, false), (-1.8, false), (3.1, false)] {
+        let mut robot = Robot::standing();
+        let (sin, cos) = f32::sin_cos(roll_rad / 2.0);
+        robot.estimate.q_wxyz = [cos, sin, 0.0, 0.0];
+        let output = robot.step(&mut StandardController::default());
+        let stopped = output.cmd == crate::domain::ChassisCommand::STOP;
+        assert_eq!(
+            (output.balance.state == BalanceState::CannotRise, stopped),
+            (!can_rise, !can_rise),
+            "{roll_rad}"
+        );
+    }
+}
+
+/// Thighs of the lower side go down, and those of the other side stay up.
+#[test]
+fn a_robot_on_its_face_pushes_with_its_knees() {
+    for pitch_rad in [1.6, -1.6] {
+        let mut robot = Robot::standing();
+        robot.permit = StandPermit::StandingUp;
+        robot.pitched(pitch_rad);
+        let angles = [0.7, -0.7, 0.7, -0.7];
+        for (joint, angle) in robot.sensors.motor.joints.iter_mut().zip(angles) {
+            joint.pos_rad = angle;
+        }
+        let output = robot.step(&mut StandardController::default());
+        let [front, rear, ..] = output.cmd.joints.map(|joint| joint.tau_nm);
+        let (lower_up, other_up) = if pitch_rad > 0.0 {
+            (front, -rear)
+        } else {
+            (-rear, front)
+        };
+        assert!(lower_up < -4.0 && lower_up <= other_up, "{front} {rear}");
+    }
+}
+
 #[test]
 fn a_robot_beyond_recovery_has_no_torque_until_it_is_asked_again() {
     let mut robot = Robot::standing();

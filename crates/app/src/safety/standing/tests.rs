@@ -12,6 +12,7 @@ fn state() -> impl Strategy<Value = BalanceState> {
         1 => Just(BalanceState::Jump),
         1 => Just(BalanceState::SitDown),
         1 => Just(BalanceState::Fallen),
+        1 => Just(BalanceState::CannotRise),
     ]
 }
 

@@ -1,6 +1,6 @@
 use super::*;
 use crate::{
-    control::balance::{tilt::Tilt, virtual_leg::LegForce},
+    control::balance::{knees::Thigh, tilt::Tilt, virtual_leg::LegForce},
     domain::robots::FIVEBAR,
     kinematics::Leg,
     math::Quaternion,
@@ -28,6 +28,10 @@ fn measured(up_mps2: f32, pitch_rps: f32) -> Measured {
         ground_mps: 0.0,
         up_mps2,
         hip_nm: [virtual_leg::hip_torques_nm(&leg, force); 2],
+        thighs: [[Thigh {
+            rad: -0.4,
+            rps: 0.0,
+        }; 2]; 2],
         known: true,
     }
 }

@@ -1,4 +1,5 @@
 use super::*;
+use crate::control::balance::knees::Thigh;
 use crate::{control::balance::tilt::Tilt, domain::robots::FIVEBAR, kinematics::Leg};
 
 const TICK_S: f32 = 0.001;
@@ -21,6 +22,7 @@ fn measured(wheels_mps: [f32; 2], ground_mps: f32, yaw_rps: f32) -> Measured {
         ground_mps,
         up_mps2: 9.8,
         hip_nm: [[0.0; 2]; 2],
+        thighs: [[Thigh { rad: 0.0, rps: 0.0 }; 2]; 2],
         known: true,
     }
 }

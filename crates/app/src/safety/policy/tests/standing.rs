@@ -98,6 +98,17 @@ fn a_robot_that_still_lies_after_its_time_has_failed() {
     assert_eq!(bench.request().flags, SafetyFlags::NONE);
 }
 
+#[test]
+fn a_robot_that_cannot_stand_up_from_how_it_lies_has_failed_at_once() {
+    let mut bench = Bench::standing_up();
+    bench.balance = BalanceState::CannotRise;
+    let failed = SafetyFlags::TILT.union(SafetyFlags::STAND_UP_FAILED);
+    let status = bench.tick();
+    assert_eq!((status.flags, status.latched), (failed, failed));
+    assert_eq!(status.verdict, SafetyVerdict::GlobalStop);
+    assert_eq!(status.stand, StandPermit::SwitchMustGoDown);
+}
+
 /// The legs may be jammed, but the robot is upright and only sits down.
 #[test]
 fn a_robot_that_is_upright_after_its_time_sits_down() {

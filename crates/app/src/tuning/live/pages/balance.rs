@@ -7,7 +7,15 @@ pub const BALANCE: [LiveField; 7] = [
     choice!(
         "state",
         3,
-        &["sit", "stand-up", "balance", "jump", "sit-down", "fallen"],
+        &[
+            "sit",
+            "stand-up",
+            "balance",
+            "jump",
+            "sit-down",
+            "fallen",
+            "cannot-rise"
+        ],
         |live, _| live.diagnostics.balance.state as u32
     ),
     choice!(
