@@ -30,6 +30,8 @@ const ENABLE_PERIOD_US: u64 = 250_000;
 const DISABLED_REPLIES: u8 = 2;
 /// Slots between two reads of the fault word of a motor whose replies do not show every fault.
 const FAULT_POLL_SLOTS: u8 = 64;
+/// Slots in which that word may come, the one of its request included: a motor may answer later than its next command.
+const FAULT_WORD_SLOTS: u8 = 4;
 
 /// Six steps of the DM4310's speed codes of 0.015 rad/s each.
 const STATIONARY_RPS: f32 = 0.1;
@@ -57,7 +59,6 @@ enum Phase {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum LastRequest {
     Enable,
-    ReadFaults,
     Other,
 }
 
@@ -101,7 +102,7 @@ impl Joint {
             last_request: LastRequest::Other,
             enable_began_us: None,
             clear_requested: false,
-            slots_to_fault_poll: FAULT_POLL_SLOTS,
+            slots_to_fault_poll: FAULT_POLL_SLOTS - FAULT_WORD_SLOTS,
             sent: JointCommand::default(),
             active_targets: None,
         }
@@ -166,7 +167,9 @@ impl Joint {
     fn expected(&self) -> Expected {
         match &self.phase {
             Phase::SettingUp(set_up) => set_up.expected(),
-            _ if self.last_request == LastRequest::ReadFaults => Expected::FaultWord,
+            _ if self.slots_to_fault_poll > FAULT_POLL_SLOTS - FAULT_WORD_SLOTS => {
+                Expected::FaultWord
+            }
             _ => Expected::Report,
         }
     }
@@ -270,9 +273,7 @@ impl Joint {
             return None;
         }
         self.slots_to_fault_poll = FAULT_POLL_SLOTS;
-        let frame = motor.read_faults()?;
-        self.last_request = LastRequest::ReadFaults;
-        Some(frame)
+        motor.read_faults()
     }
 
     fn follow(&mut self, command: &JointCommand, config: &JointConfig, now_us: u64) -> CanFrame {

@@ -148,7 +148,8 @@ impl Rs00 {
         self.service_frame(0xFF, 0xFB)
     }
 
-    /// Requests the fault word. The next reply of this motor carries it (see [`decode_faults`](Self::decode_faults)).
+    /// Requests the fault word. One of the next replies of this motor carries it (see
+    /// [`decode_faults`](Self::decode_faults)).
     pub const fn read_faults(&self) -> CanFrame {
         self.service_frame(0x00, 0xFB)
     }
@@ -201,7 +202,7 @@ impl Rs00 {
         })
     }
 
-    /// Decodes the fault word. If its frame is lost, the next ordinary reply takes its place, so a word with unknown
+    /// Decodes the fault word. Ordinary replies come around it and in its place if it is lost, so a word with unknown
     /// bits is rejected. Only a motor at full speed backwards could pass for one. The byte order is assumed to be
     /// little-endian, as in the motor's other protocol.
     pub fn decode_faults(&self, frame: &CanFrame) -> Option<Faults> {
