@@ -9,6 +9,7 @@ use robot_app::{
     },
     input::{RemoteFormat, RemoteReceiver},
     logic::{LogicInputs, LogicStage, UserLogic},
+    motor::layout::MotorLayout,
     safety::{ArmingState, WatchdogPeriod},
     tick::{ControlInputs, ControlLoop},
 };
@@ -82,11 +83,26 @@ impl Robot {
     /// # Panics
     /// A sensor does not answer, or [`layout_of`] the robot is `None`.
     pub fn in_world(world: WorldConfig, config: RobotConfig) -> Result<Self, WorldError> {
+        let layout = layout_of(&world.robot).expect("this program was built with the robot's file");
+        Self::controlled_by(layout, world, config)
+    }
+
+    /// The same with the controller of another robot: that of the world differs from what its controller was made for.
+    ///
+    /// # Errors
+    /// The recorded trial of the world cannot be read.
+    ///
+    /// # Panics
+    /// A sensor does not answer.
+    pub fn controlled_by(
+        layout: &'static MotorLayout,
+        world: WorldConfig,
+        config: RobotConfig,
+    ) -> Result<Self, WorldError> {
         let format = match world.radio {
             RadioKind::Sbus => RemoteFormat::Sbus,
             RadioKind::Dbus => RemoteFormat::Dbus,
         };
-        let layout = layout_of(&world.robot).expect("this program was built with the robot's file");
         let mut world = World::new(world)?;
         let mut sensors = Sensors::new();
         sensors.set_mounting(&config.mounting);
