@@ -80,6 +80,7 @@ fn noisy(fault: &'static str) -> Row {
     ));
     row.keeps_law = true;
     row.balancing.outcome = Outcome::Balances;
+    row.balancing.flags = flags(&[], &["pc-lost", "pc-awaited"]);
     row.arms_during(Arms::Yes)
 }
 
@@ -110,7 +111,8 @@ fn extremes(fault: &'static str) -> Row {
     let mut row = steered(harmless(fault, Flags::default()));
     row.disarmed.moves = Moves::AsArmed;
     row.most_torque_nm = EXTREME_GAINS_NM;
-    row.balancing.outcome = Outcome::Balances;
+    // A pilot, too, could make it jump while it turns and rolls at its limits.
+    row.balancing.may_fall();
     row
 }
 
