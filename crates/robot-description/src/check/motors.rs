@@ -114,24 +114,31 @@ fn angles(robot: &Robot, findings: &mut Findings) {
         format!("within {code_rad} rad, full scale of the motor's frames"),
         "Set the motor's zero with the thigh level, then enter what is left.",
     );
+    senses(
+        findings,
+        "joints.directions",
+        &joints.directions,
+        "Lift each front thigh, lower each rear thigh: 1 if the motor's angle grows.",
+    );
+}
+
+fn senses(findings: &mut Findings, field: &'static str, signs: &[i8], cure: &'static str) {
     findings.note(
         Error,
-        joints.directions.iter().all(|sign| sign.abs() == 1),
-        "joints.directions",
-        format!("{:?}", joints.directions),
+        signs.iter().all(|sign| sign.abs() == 1),
+        field,
+        format!("{signs:?}"),
         "1 or -1 for each motor",
-        "Lift each front thigh, lower each rear thigh: 1 if the motor's angle grows.",
+        cure,
     );
 }
 
 fn wheels(robot: &Robot, findings: &mut Findings) {
     let wheels = &robot.wheels;
-    findings.note(
-        Error,
-        wheels.signs.iter().all(|sign| sign.abs() == 1),
+    senses(
+        findings,
         "wheels.signs",
-        format!("{:?}", wheels.signs),
-        "1 or -1 for each motor",
+        &wheels.signs,
         "Roll each wheel forward: 1 if the rotor's speed is positive.",
     );
     findings.up_to(
