@@ -27,7 +27,7 @@ fn is_desktop(variable: impl Fn(&str) -> Option<OsString>) -> bool {
     } else {
         ["DISPLAY", "WAYLAND_DISPLAY", "WSL_DISTRO_NAME"]
             .iter()
-            .any(|name| has(name))
+            .any(has)
     }
 }
 
