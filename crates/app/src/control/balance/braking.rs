@@ -5,18 +5,26 @@ use crate::math::scalar;
 /// Largest speed error in m/s that counts.
 const MOST_MPS: f32 = 2.0;
 /// A robot that brakes with this lean in rad counts the least share of it, and all of it up to the span less. Legs that lean
-/// further do not keep the hips up, and little friction is not enough for them.
-const BRAKING_RAD: f32 = 0.55;
+/// further do not keep the hips up.
+const BRAKING_RAD: f32 = 0.67;
 const SPAN_RAD: f32 = 0.15;
 const LEAST: f32 = 0.2;
 /// Time in s over which the present rate of lean counts.
-const AHEAD_S: f32 = 0.05;
+const AHEAD_S: f32 = 0.07;
+/// Where wheels have slipped by more than this, up to so much more, in m/s, there is less grip: the lean is smaller by this in rad
+/// for each m/s.
+const GRIPS_MPS: f32 = 0.22;
+const MOST_SLIP_MPS: f32 = 0.5;
+const LESS_RAD_PER_MPS: f32 = 0.8;
 
-/// The part that counts of the error of speed in m/s of a robot that leans by so much beyond its reference.
-pub fn counted_mps(off_mps: f32, lean_rad: f32, lean_rps: f32) -> f32 {
+/// The part that counts of the error of speed in m/s of a robot that leans by so much beyond its reference, and whose wheels have
+/// slipped by so much of late.
+pub fn counted_mps(off_mps: f32, lean_rad: f32, lean_rps: f32, slipped_mps: f32) -> f32 {
     let soon_rad = lean_rad + AHEAD_S * lean_rps;
     let braking_rad = if off_mps > 0.0 { -soon_rad } else { soon_rad };
-    let share = scalar::clamp((BRAKING_RAD - braking_rad) / SPAN_RAD, LEAST, 1.0);
+    let slipped_mps = scalar::clamp(slipped_mps - GRIPS_MPS, 0.0, MOST_SLIP_MPS);
+    let most_rad = BRAKING_RAD - LESS_RAD_PER_MPS * slipped_mps;
+    let share = scalar::clamp((most_rad - braking_rad) / SPAN_RAD, LEAST, 1.0);
     scalar::clamp(off_mps, -MOST_MPS * share, MOST_MPS * share)
 }
 
@@ -28,12 +36,19 @@ mod tests {
     fn a_robot_that_leans_back_brakes_no_harder() {
         for forward in [1.0, -1.0] {
             let counted =
-                |lean_rad: f32| forward * counted_mps(forward * 3.0, forward * lean_rad, 0.0);
+                |lean_rad: f32| forward * counted_mps(forward * 3.0, forward * lean_rad, 0.0, 0.0);
             assert_eq!(counted(0.3), MOST_MPS);
-            assert_eq!(counted(-0.3), MOST_MPS);
-            assert!(counted(-0.5) < MOST_MPS);
-            assert_eq!(counted(-0.6), LEAST * MOST_MPS);
+            assert_eq!(counted(-0.4), MOST_MPS);
+            assert!(counted(-0.6) < MOST_MPS);
+            assert_eq!(counted(-0.7), LEAST * MOST_MPS);
         }
-        assert_eq!(counted_mps(0.2, -0.5, 0.0), 0.2);
+        assert_eq!(counted_mps(0.2, -0.5, 0.0, 0.0), 0.2);
+    }
+
+    #[test]
+    fn on_little_grip_it_brakes_with_less_lean() {
+        let counted = |slipped_mps| counted_mps(3.0, -0.45, 0.0, slipped_mps);
+        assert_eq!(counted(0.1), MOST_MPS);
+        assert_eq!(counted(0.6), LEAST * MOST_MPS);
     }
 }

@@ -26,6 +26,8 @@ const LEARN_MPS2: f32 = 0.3;
 const LEARN_RPS: f32 = 0.3;
 /// Largest turn in rad/s with which it learns: a centrifugal force would count as an error of the centre of mass.
 const LEARN_YAW_RPS: f32 = 1.0;
+/// How far legs reach counts at their angle in some time in s.
+const REACH_AHEAD_S: f32 = 0.05;
 /// Stiffness and damping with which the legs keep together on the ground, in N·m/rad and N·m·s/rad.
 const SPLIT_NM_PER_RAD: f32 = 6.0;
 const SPLIT_NMS_PER_RAD: f32 = 0.3;
@@ -224,6 +226,8 @@ impl Law {
         let share = self.support.share(&profile.mass, self.contact.push_n());
         let limits = &profile.limits;
         let angle_rad = measured.tilt.pitch_rad - measured.mean_lean_rad();
+        let angle_rps = measured.tilt.pitch_rps - measured.mean_lean_rps();
+        let angle_rad = angle_rad + REACH_AHEAD_S * angle_rps;
         let stance = Stance {
             length: goal.length,
             roll_rad: goal.roll_rad,
@@ -325,6 +329,7 @@ impl Law {
                 measured.speed_mps - reference.speed_mps,
                 measured.mean_lean_rad() - lean.value,
                 measured.mean_lean_rps(),
+                self.slip.lately_mps,
             ),
             reference.yaw_error_rad,
             tilt.yaw_rps - reference.yaw_rps,

@@ -9,6 +9,8 @@ const ROLLING_MPS: f32 = 0.32;
 /// A wheel that slips by more, in m/s, and for so long, in s, slips.
 const SLIPPING_MPS: f32 = 0.3;
 const SLIPPING_S: f32 = 0.02;
+/// Time constant in s with which a slip is forgotten.
+const LATELY_S: f32 = 2.0;
 /// The torque that makes a wheel slip is reduced from the first of these, in m/s, and zero at the second one.
 const REDUCED_MPS: f32 = 0.6;
 const NONE_MPS: f32 = 1.3;
@@ -20,6 +22,8 @@ pub struct Slip {
     pub mps: [f32; 2],
     /// Time in s for which a wheel has slipped.
     lasts_s: f32,
+    /// Largest slip of late in m/s.
+    pub lately_mps: f32,
 }
 
 /// Speed of the axles in m/s: that by the wheels, within some distance of the estimate's, which knows of slip.
@@ -42,8 +46,15 @@ impl Slip {
             radius_m * left_rps - (measured.ground_mps - turn_mps),
             radius_m * right_rps - (measured.ground_mps + turn_mps),
         ];
-        let slips = self.mps.iter().any(|mps| mps.abs() > SLIPPING_MPS);
-        self.lasts_s = if slips { self.lasts_s + dt_s } else { 0.0 };
+        let [left_mps, right_mps] = self.mps;
+        let most_mps = scalar::max(left_mps.abs(), right_mps.abs());
+        let faded_mps = self.lately_mps - self.lately_mps * (dt_s / LATELY_S);
+        self.lately_mps = scalar::max(faded_mps, most_mps);
+        self.lasts_s = if most_mps > SLIPPING_MPS {
+            self.lasts_s + dt_s
+        } else {
+            0.0
+        };
     }
 
     /// A wheel slips.

@@ -6,7 +6,7 @@ use crate::math::scalar;
 /// Larger lean in rad counts as this one.
 const MAX_LEAN_RAD: f32 = 0.9;
 /// The legs are asked to end so much before their hips' stops, in m.
-const STOP_SHORT_M: f32 = 0.01;
+const STOP_SHORT_M: f32 = 0.025;
 
 /// Height of the hips on legs that lean.
 #[derive(Clone, Copy, Debug)]
