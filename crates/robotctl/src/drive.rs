@@ -1,9 +1,11 @@
-//! Steers the robot over the PC link: what the user's hands do becomes commands for wheels and joints.
+//! Steers the robot over the PC link: what the user's hands do becomes commands for wheels and joints, or takes the place of
+//! the sticks.
 
 mod driver;
 mod joystick;
 mod keyboard;
 mod obstacle;
+mod sticks;
 mod view;
 
 pub use driver::{Driver, Gains, Limits, Wheels};
@@ -12,6 +14,7 @@ pub use joystick::{
 };
 pub use keyboard::{Direction, Keyboard};
 pub use obstacle::Obstacle;
+pub use sticks::SticksDriver;
 pub use view::RobotView;
 
 /// What the user wants at one moment.
@@ -23,4 +26,22 @@ pub struct Wish {
     pub forward: f64,
     /// Share of the highest rate of turn, −1…1, left positive.
     pub turn: f64,
+    /// Lengthens the legs of a standing robot, −1…1.
+    pub raise: f64,
+    /// Tilts a standing robot, −1…1, right side down positive.
+    pub tilt: f64,
+    /// A standing robot jumps once when this becomes true.
+    pub jump: bool,
+}
+
+impl Wish {
+    /// The user's hands are off.
+    pub const NONE: Self = Self {
+        is_held: false,
+        forward: 0.0,
+        turn: 0.0,
+        raise: 0.0,
+        tilt: 0.0,
+        jump: false,
+    };
 }

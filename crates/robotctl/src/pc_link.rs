@@ -13,7 +13,7 @@ use std::{
 
 use robot_app::{
     domain::CanFrame,
-    link::{BAUD, Downlink, Heard, ScanCounters, Tunnelled},
+    link::{BAUD, Downlink, DriveFrame, Heard, ScanCounters, Tunnelled},
 };
 use serialport::{ClearBuffer, SerialPort};
 
@@ -85,6 +85,11 @@ impl PcLink {
     /// Sends a command to the motors.
     pub fn command(&mut self, command: &Downlink) -> Result<(), CanLinkError> {
         self.write(&command.encode())
+    }
+
+    /// Sends a command in place of the sticks.
+    pub fn drive(&mut self, frame: &DriveFrame) -> Result<(), CanLinkError> {
+        self.write(&frame.encode())
     }
 
     pub fn traffic(&self) -> Traffic {

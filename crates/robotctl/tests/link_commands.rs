@@ -13,7 +13,10 @@ use std::{
 };
 
 use link_robot::Robot;
-use robot_app::{domain::PcCommand, link::Keys};
+use robot_app::{
+    domain::{PcCommand, PcKind},
+    link::Keys,
+};
 
 const PC_MODE: Keys = Keys::B;
 const ARMED: Keys = Keys::B.union(Keys::F1).union(Keys::START);
@@ -72,10 +75,11 @@ struct Drive {
 }
 
 impl Drive {
-    fn start(robot: &Robot, pipe: &Path) -> Self {
+    fn start(robot: &Robot, pipe: &Path, options: &[&str]) -> Self {
         let pipe = pipe.to_str().expect("a plain path");
         let mut command = robotctl(&["drive", "--link", &robot.port, "--joystick", pipe]);
         let spawned = command
+            .args(options)
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn();
@@ -137,7 +141,7 @@ fn a_drive_says_why_nothing_moves_and_stops_with_its_joystick() {
     let robot = Robot::new(Keys::A);
     let pipe = Pad::pipe("drive.fifo");
     let mut pad = Pad::plug_in(&pipe);
-    let mut drive = Drive::start(&robot, &pipe);
+    let mut drive = Drive::start(&robot, &pipe, &[]);
     drive.until("the radio's mode is manual, not PC");
     robot.press(PC_MODE);
     drive.until("not armed");
@@ -173,12 +177,56 @@ fn a_drive_says_why_nothing_moves_and_stops_with_its_joystick() {
     assert!(rests.count() >= 5, "{last:?}");
 }
 
+/// Height goes up with the cross held up, and stays.
+#[test]
+fn in_place_of_the_sticks_a_joystick_drives_raises_and_jumps() {
+    let robot = Robot::new(ARMED);
+    let pipe = Pad::pipe("sticks.fifo");
+    let mut pad = Pad::plug_in(&pipe);
+    let mut drive = Drive::start(&robot, &pipe, &["--sticks", "--share", "0.3"]);
+    drive.until("ready");
+    pad.forward();
+    pad.dead_man(true);
+    drive.until("driving");
+    let near = |value: f32, wanted: f32| (value - wanted).abs() < 1e-3;
+    let drives = |command: &PcCommand| near(command.drive.vx, 0.3);
+    until_command(&robot, drives);
+    pad.event(-32_767, 2, 7);
+    until_command(&robot, |command| near(command.drive.height, 1.0));
+    pad.event(0, 2, 7);
+    pad.event(1, 1, 0);
+    until_command(&robot, |command| command.drive.jump && drives(command));
+    pad.event(0, 1, 0);
+    pad.dead_man(false);
+    until_command(&robot, |command| {
+        near(command.drive.vx, 0.0) && near(command.drive.height, 1.0) && !command.drive.jump
+    });
+
+    drop(pad);
+    let (succeeded, error) = drive.end();
+    assert!(!succeeded);
+    assert!(error.contains("the joystick is gone"), "{error}");
+    let last: Vec<_> = robot.commands.try_iter().collect();
+    assert!(last.iter().all(|command| command.kind == PcKind::Drive));
+    let rests =
+        |command: &&PcCommand| near(command.drive.vx, 0.0) && near(command.drive.height, 0.0);
+    assert!(last.iter().rev().take_while(rests).count() >= 5, "{last:?}");
+}
+
+#[test]
+fn speeds_of_the_wheels_are_no_sticks() {
+    let said = error_of(&["drive", "--link", "/dev/null", "--sticks", "--speed", "0.5"]);
+    assert!(said.contains("cannot be used with"), "{said}");
+    let said = error_of(&["drive", "--link", "/dev/null", "--sticks", "--share", "1.1"]);
+    assert!(said.contains("--share must be above 0"), "{said}");
+}
+
 #[test]
 fn a_drive_ends_when_the_robots_state_stops() {
     let robot = Robot::new(ARMED);
     let pipe = Pad::pipe("drive-silent.fifo");
     let _pad = Pad::plug_in(&pipe);
-    let mut drive = Drive::start(&robot, &pipe);
+    let mut drive = Drive::start(&robot, &pipe, &[]);
     drive.until("ready");
     robot.world.lock().expect("nobody panics").is_connected = false;
     let (succeeded, error) = drive.end();

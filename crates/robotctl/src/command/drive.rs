@@ -2,6 +2,7 @@
 
 mod controls;
 mod keys;
+mod pilot;
 mod screen;
 mod session;
 
@@ -9,7 +10,7 @@ use std::{cell::RefCell, path::PathBuf, rc::Rc};
 
 use anyhow::{Context, Result, ensure};
 use robotctl::{
-    drive::{Driver, Gains, JoystickMap, Limits, Wheels},
+    drive::{Driver, Gains, JoystickMap, Limits, SticksDriver, Wheels},
     pc_link::{PcLink, SharedLink},
     settings,
     tuning::{Timeouts, TuningClient},
@@ -17,6 +18,7 @@ use robotctl::{
 
 use super::connection::serial_port;
 use controls::Controls;
+use pilot::Pilot;
 use session::Session;
 
 #[derive(clap::Args)]
@@ -29,13 +31,20 @@ Ctrl-C ends. Terminals that report when a key is let go (kitty, foot, WezTerm, G
 robot at once and let keys combine. In all others a key counts as let go when it repeats no more: up to 0.2 s later, 0.7 s \
 after a short tap.
 
+A robot that stands takes no commands for its motors: --sticks sends what the sticks would say, to the robot's own \
+controller, standing or sitting. It still stands up and sits down by the radio's stand switch alone. Keys: R and F lengthen \
+and shorten the legs, Z and C tilt to the left and to the right, J jumps.
+
 Examples:
   robotctl drive --link /dev/ttyUSB0
       from the keyboard (Windows: COM4)
   robotctl drive --link /dev/ttyUSB0 --joystick /dev/input/js0
       with a gamepad: left stick drives, right stick turns, left shoulder button (button 4) is the dead-man
   robotctl drive --link /dev/ttyUSB0 --joystick /dev/input/js0 --map forward=1-,turn=0-,dead-man=0
-      with another joystick; the screen shows the numbers of what you move")]
+      with another joystick; the screen shows the numbers of what you move
+  robotctl drive --link /dev/ttyUSB0 --sticks --share 0.3
+      a standing robot, at up to 30 % of its highest speed and turn; with a gamepad (--joystick) the cross sets height and \
+roll, and the lowest button (button 0) jumps")]
 pub struct Drive {
     /// PC link: the serial port (/dev/ttyUSB0, COM4, the emulated board's /dev/pts/N) at UART2 of the C board
     #[arg(long, value_name = "PORT", value_parser = serial_port)]
@@ -46,9 +55,15 @@ pub struct Drive {
     /// Joystick of Linux, such as /dev/input/js0
     #[arg(long, value_name = "DEVICE")]
     joystick: Option<PathBuf>,
-    /// Axes and dead-man button of the joystick by number; `-` reverses an axis [default: forward=1-,turn=3-,dead-man=4]
+    /// Axes and dead-man button of the joystick by number; `-` reverses an axis [default: forward=1-,turn=3-,dead-man=4,height=7-,roll=6,jump=0]
     #[arg(long, requires = "joystick")]
     map: Option<JoystickMap>,
+    /// Send what the sticks would say, in place of speeds for the wheels: steers a robot that stands, and one that sits
+    #[arg(long, conflicts_with_all = ["speed", "turn", "ramp", "wheel_kd"])]
+    sticks: bool,
+    /// With --sticks: most of the robot's highest speed and turn, up to 1
+    #[arg(long, value_name = "SHARE", requires = "sticks", default_value_t = 0.2)]
+    share: f64,
     /// Highest speed in m/s
     #[arg(long, value_name = "M/S", default_value_t = 0.3)]
     speed: f64,
@@ -83,13 +98,23 @@ impl Drive {
             (0.0..=1000.0).contains(&self.wheel_kd),
             "--wheel-kd must be 0 to 1000"
         );
-        let (link, driver) = self.prepare(PcLink::open(&port)?)?;
-        let controls = Controls::open(self.joystick.as_deref(), self.map.unwrap_or_default())?;
-        Session::new(port, link, driver, controls)?.run()
+        ensure!(
+            self.share > 0.0 && self.share <= 1.0,
+            "--share must be above 0, and at most 1"
+        );
+        let link = PcLink::open(&port)?;
+        let (link, pilot) = if self.sticks {
+            (link, Pilot::Sticks(SticksDriver::new(self.share)))
+        } else {
+            self.prepare(link)?
+        };
+        let map = self.map.unwrap_or_default();
+        let controls = Controls::open(self.joystick.as_deref(), map, self.sticks)?;
+        Session::new(port, link, pilot, controls)?.run()
     }
 
     /// Reads geometry and gains from the robot.
-    fn prepare(&self, link: PcLink) -> Result<(PcLink, Driver)> {
+    fn prepare(&self, link: PcLink) -> Result<(PcLink, Pilot)> {
         let link = Rc::new(RefCell::new(link));
         let mut client = TuningClient::new(Box::new(SharedLink(link.clone())), Timeouts::default());
         let mut read = |name: &str| -> Result<f32> { Ok(client.read(settings::find(name)?)?) };
@@ -110,6 +135,7 @@ impl Drive {
             turn_accel_rps2: self.ramp * self.turn / self.speed,
         };
         let link = Rc::into_inner(link).context("nobody else has the link")?;
-        Ok((link.into_inner(), Driver::new(wheels, limits, gains)))
+        let driver = Driver::new(wheels, limits, gains);
+        Ok((link.into_inner(), Pilot::Motors(driver)))
     }
 }

@@ -149,7 +149,7 @@ fn measured_rad(robot: &RobotView) -> [f32; 4] {
     joints.map(|joint| joint.pos_rad)
 }
 
-fn ramped(from: f64, to: f64, most: f64) -> f64 {
+pub(super) fn ramped(from: f64, to: f64, most: f64) -> f64 {
     from + (to - from).clamp(-most, most)
 }
 

@@ -57,6 +57,9 @@ pub struct JoystickState {
     map: JoystickMap,
     forward: f64,
     turn: f64,
+    raise: f64,
+    tilt: f64,
+    jump: bool,
     is_held: bool,
 }
 
@@ -66,6 +69,9 @@ impl JoystickState {
             map,
             forward: 0.0,
             turn: 0.0,
+            raise: 0.0,
+            tilt: 0.0,
+            jump: false,
             is_held: false,
         }
     }
@@ -76,12 +82,21 @@ impl JoystickState {
             JoystickEvent::Button { number, is_down } if number == map.dead_man => {
                 self.is_held = is_down;
             }
+            JoystickEvent::Button { number, is_down } if number == map.jump => {
+                self.jump = is_down;
+            }
             JoystickEvent::Axis { number, value } => {
                 if number == map.forward.number {
                     self.forward = map.forward.share(value);
                 }
                 if number == map.turn.number {
                     self.turn = map.turn.share(value);
+                }
+                if number == map.height.number {
+                    self.raise = map.height.share(value);
+                }
+                if number == map.roll.number {
+                    self.tilt = map.roll.share(value);
                 }
             }
             JoystickEvent::Button { .. } => {}
@@ -93,6 +108,9 @@ impl JoystickState {
             is_held: self.is_held,
             forward: outside_dead_zone(self.forward),
             turn: outside_dead_zone(self.turn),
+            raise: outside_dead_zone(self.raise),
+            tilt: outside_dead_zone(self.tilt),
+            jump: self.jump,
         }
     }
 }
@@ -142,6 +160,18 @@ mod tests {
         assert!((-0.47..-0.44).contains(&wish.turn), "{wish:?}");
         state.take(event(0, 0x01, 4));
         assert!(!state.wish().is_held);
+    }
+
+    #[test]
+    fn the_cross_raises_and_tilts_and_a_button_jumps() {
+        let mut state = JoystickState::new(JoystickMap::default());
+        state.take(event(-32_767, 0x02, 7));
+        state.take(event(32_767, 0x02, 6));
+        state.take(event(1, 0x01, 0));
+        let wish = state.wish();
+        assert_eq!((wish.raise, wish.tilt, wish.jump), (1.0, 1.0, true));
+        state.take(event(0, 0x01, 0));
+        assert!(!state.wish().jump);
     }
 
     #[test]

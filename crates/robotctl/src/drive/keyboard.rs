@@ -25,18 +25,37 @@ pub enum Direction {
     Right,
     ForwardLeft,
     ForwardRight,
+    /// Longer legs.
+    Higher,
+    /// Shorter legs.
+    Lower,
+    /// The left side goes down.
+    LeftDown,
+    /// The right side goes down.
+    RightDown,
+    Jump,
 }
 
 impl Direction {
-    /// Returns forward and turn.
-    fn shares(self) -> (f64, f64) {
+    fn add_to(self, wish: &mut Wish) {
         match self {
-            Self::Forward => (1.0, 0.0),
-            Self::Backward => (-1.0, 0.0),
-            Self::Left => (0.0, 1.0),
-            Self::Right => (0.0, -1.0),
-            Self::ForwardLeft => (1.0, 1.0),
-            Self::ForwardRight => (1.0, -1.0),
+            Self::Forward => wish.forward += 1.0,
+            Self::Backward => wish.forward -= 1.0,
+            Self::Left => wish.turn += 1.0,
+            Self::Right => wish.turn -= 1.0,
+            Self::ForwardLeft => {
+                wish.forward += 1.0;
+                wish.turn += 1.0;
+            }
+            Self::ForwardRight => {
+                wish.forward += 1.0;
+                wish.turn -= 1.0;
+            }
+            Self::Higher => wish.raise += 1.0,
+            Self::Lower => wish.raise -= 1.0,
+            Self::LeftDown => wish.tilt -= 1.0,
+            Self::RightDown => wish.tilt += 1.0,
+            Self::Jump => wish.jump = true,
         }
     }
 }
@@ -89,17 +108,18 @@ impl Keyboard {
     }
 
     pub fn wish(&self, now: Duration) -> Wish {
+        let mut wish = Wish::NONE;
         if self.held.is_empty() || !self.is_alive(now) {
-            return Wish::default();
+            return wish;
         }
-        let shares = self.held.iter().map(|direction| direction.shares());
-        let (forward, turn) =
-            shares.fold((0.0, 0.0), |sum, share| (sum.0 + share.0, sum.1 + share.1));
-        Wish {
-            is_held: true,
-            forward: forward.clamp(-1.0, 1.0),
-            turn: turn.clamp(-1.0, 1.0),
+        wish.is_held = true;
+        for direction in &self.held {
+            direction.add_to(&mut wish);
         }
+        for share in [&mut wish.forward, &mut wish.turn] {
+            *share = share.clamp(-1.0, 1.0);
+        }
+        wish
     }
 
     /// True if the keys that were held at the last event are held still.
@@ -166,6 +186,27 @@ mod tests {
         assert_eq!(keyboard.wish(ms(201)).forward, 0.0);
         keyboard.release(Direction::Left, ms(210));
         assert!(!keyboard.wish(ms(211)).is_held);
+    }
+
+    #[test]
+    fn keys_of_a_standing_robot_raise_tilt_and_jump() {
+        for (key, expected) in [
+            (Direction::Higher, (1.0, 0.0, false)),
+            (Direction::Lower, (-1.0, 0.0, false)),
+            (Direction::LeftDown, (0.0, -1.0, false)),
+            (Direction::RightDown, (0.0, 1.0, false)),
+            (Direction::Jump, (0.0, 0.0, true)),
+        ] {
+            let mut keyboard = Keyboard::new(true);
+            keyboard.press(Direction::Forward, ms(0));
+            keyboard.press(key, ms(10));
+            let wish = keyboard.wish(ms(20));
+            assert_eq!((wish.raise, wish.tilt, wish.jump), expected);
+            assert_eq!((wish.is_held, wish.forward), (true, 1.0));
+            keyboard.release(key, ms(30));
+            let wish = keyboard.wish(ms(40));
+            assert_eq!((wish.raise, wish.tilt, wish.jump), (0.0, 0.0, false));
+        }
     }
 
     /// The window lost the focus, and with it the event of the release.

@@ -12,10 +12,11 @@ pub struct RobotView {
     blockers: Vec<String>,
     flags: Vec<String>,
     is_stopped: bool,
+    stands: bool,
 }
 
 impl RobotView {
-    /// Takes a reading of the live pages `arming` or `safety`; others say nothing here.
+    /// Takes a reading of the live pages `arming`, `safety` or `balance`; others say nothing here.
     pub fn take(&mut self, reading: &LiveReading) {
         match reading.page.name {
             "arming" => self.blockers = reading.set("blockers"),
@@ -23,12 +24,18 @@ impl RobotView {
                 self.flags = reading.set("flags");
                 self.is_stopped = reading.choice("verdict") != "run";
             }
+            "balance" => self.stands = reading.choice("state") != "sit",
             _ => {}
         }
     }
 
     pub fn is_armed(&self) -> bool {
         self.state.keys.contains(Keys::F1)
+    }
+
+    /// True if the robot stands, or does something else than sit.
+    pub fn stands(&self) -> bool {
+        self.stands
     }
 
     pub fn mode(&self) -> Option<Mode> {

@@ -16,7 +16,7 @@ use robot_sim::{
     scenario::Scenario,
 };
 use robotctl::{
-    drive::{Driver, Gains, Joystick, JoystickMap, Limits, RobotView, Wheels},
+    drive::{Driver, Gains, Joystick, JoystickMap, Limits, RobotView, SticksDriver, Wheels, Wish},
     link_recorder::{LinkRecorder, LinkSummary},
     pc_link::PcLink,
     settings,
@@ -111,7 +111,7 @@ struct Driven {
     fastest_rps: f32,
     /// Wheel speed some time after the dead-man was let go.
     after_rps: f32,
-    write: Result<(), TuningError>,
+    link: PcLink,
 }
 
 /// Sends a command for every four states, which is some 10 ms of the robot's time.
@@ -123,12 +123,40 @@ const STOPPING: u32 = 400;
 /// Three minutes of the robot's time: something is wrong.
 const MOST_STATES: u32 = 75_000;
 
-fn drive(port: &str) -> anyhow::Result<Driven> {
-    let mut pad = Pad::plug_in("drive-image.fifo")?;
+/// One of the two ways to steer.
+trait Pilot {
+    fn send(&mut self, link: &mut PcLink, wish: Wish, robot: &RobotView) -> anyhow::Result<()>;
+    /// Whether the dead-man counts, as soon as it is held.
+    fn is_ready(&self, robot: &RobotView) -> bool;
+}
+
+impl Pilot for Driver {
+    fn send(&mut self, link: &mut PcLink, wish: Wish, robot: &RobotView) -> anyhow::Result<()> {
+        Ok(link.command(&self.step(0.01, wish, robot))?)
+    }
+
+    fn is_ready(&self, robot: &RobotView) -> bool {
+        robot.obstacle().is_none() && !self.must_let_go()
+    }
+}
+
+/// It drives only while the robot stands.
+impl Pilot for SticksDriver {
+    fn send(&mut self, link: &mut PcLink, wish: Wish, robot: &RobotView) -> anyhow::Result<()> {
+        Ok(link.drive(&self.step(0.01, wish, robot))?)
+    }
+
+    fn is_ready(&self, robot: &RobotView) -> bool {
+        robot.obstacle().is_none() && robot.stands() && !self.must_let_go()
+    }
+}
+
+/// Pushes the stick until the wheels turn, and lets go.
+fn drive(port: &str, pad: &str, mut pilot: impl Pilot) -> anyhow::Result<Driven> {
+    let mut pad = Pad::plug_in(pad)?;
     let mut joystick = Joystick::open(pad.path(), JoystickMap::default())?;
     let mut link = PcLink::open(port)?;
-    let mut driver = driver();
-    let questions = ["safety", "arming"].map(LiveQuestion::new);
+    let questions = ["safety", "arming", "balance"].map(LiveQuestion::new);
     let mut robot = RobotView::default();
     let mut fastest_rps = 0.0_f32;
     let mut let_go_at = None;
@@ -136,29 +164,29 @@ fn drive(port: &str) -> anyhow::Result<Driven> {
         robot.state = next_state(&mut link, &questions, &mut robot)?;
         if let_go_at.is_some_and(|at| n > at + STOPPING) {
             let after_rps = robot.state.motors[0].vel_rps;
-            link.command(&driver.rest(&robot))?;
-            let mut client = TuningClient::new(Box::new(link), TIMEOUT);
-            let write = client.write(settings::find(TRACK)?, 0.37);
+            pilot.send(&mut link, Wish::NONE, &robot)?;
             return Ok(Driven {
                 fastest_rps,
                 after_rps,
-                write,
+                link,
             });
         }
         if !n.is_multiple_of(STATES_A_COMMAND) {
             continue;
         }
-        fastest_rps = fastest_rps.max(robot.state.motors[0].vel_rps);
+        if pilot.is_ready(&robot) {
+            fastest_rps = fastest_rps.max(robot.state.motors[0].vel_rps);
+        }
         if fastest_rps > TURNING_RPS {
             let_go_at.get_or_insert(n);
         }
         pad.forward()?;
-        pad.dead_man(let_go_at.is_none() && robot.obstacle().is_none() && !driver.must_let_go())?;
+        pad.dead_man(let_go_at.is_none() && pilot.is_ready(&robot))?;
         let wish = joystick.wish(|_| {})?;
-        link.command(&driver.step(0.01, wish, &robot))?;
+        pilot.send(&mut link, wish, &robot)?;
         if n.is_multiple_of(10 * STATES_A_COMMAND) {
-            let asked = &questions[(n / (10 * STATES_A_COMMAND)) as usize % 2];
-            robotctl::can_link::CanLink::send(&mut link, &asked.frame())?;
+            let number = (n / (10 * STATES_A_COMMAND)) as usize % questions.len();
+            robotctl::can_link::CanLink::send(&mut link, &questions[number].frame())?;
         }
     }
     bail!("the wheels never turned: {:?}", robot.obstacle())
@@ -206,16 +234,44 @@ fn a_joystick_drives_the_image_through_the_link() {
     let text = "name = \"drive\"\nseconds = 12\nplant = \"stand\"\n\
                 [[at]]\nt = 0.1\nremote = { mode = 1 }\n\
                 [[at]]\nt = 2.5\nremote = { enable = true }\n";
-    let (driven, outcome) = run(job("drive", text), Tool::at_link(drive).ending_the_run());
-    assert!(driven.fastest_rps > TURNING_RPS, "{}", driven.fastest_rps);
-    assert!(driven.after_rps.abs() < 0.5, "{}", driven.after_rps);
+    let tool = Tool::at_link(|port| {
+        let driven = drive(port, "drive-image.fifo", driver())?;
+        let mut client = TuningClient::new(Box::new(driven.link), TIMEOUT);
+        let write = client.write(settings::find(TRACK)?, 0.37);
+        Ok((driven.fastest_rps, driven.after_rps, write))
+    });
+    let ((fastest_rps, after_rps, write), outcome) = run(job("drive", text), tool);
+    assert!(fastest_rps > TURNING_RPS, "{fastest_rps}");
+    assert!(after_rps.abs() < 0.5, "{after_rps}");
     let refused = matches!(
-        driven.write,
+        write,
         Err(TuningError::Refused {
             reason: Ok(Refusal::Armed),
             ..
         })
     );
-    assert!(refused, "{:?}", driven.write);
+    assert!(refused, "{write:?}");
+    assert_eq!(outcome.result.value("diag.link.crc_errors"), Some(0.0));
+}
+
+/// Only the pilot's switch makes it stand up.
+#[test]
+fn in_place_of_the_sticks_a_joystick_drives_the_standing_image() {
+    let text = "name = \"sticks\"\nseconds = 12\nplant = \"free\"\n\
+                [[at]]\nt = 0.1\nremote = { mode = 1 }\n\
+                [[at]]\nt = 2.5\nremote = { enable = true }\n\
+                [[at]]\nt = 3.0\nremote = { stand = true }\n";
+    let tool = Tool::at_link(|port| {
+        let driven = drive(port, "sticks-image.fifo", SticksDriver::new(0.4))?;
+        Ok((driven.fastest_rps, driven.after_rps))
+    });
+    let ((fastest_rps, after_rps), outcome) = run(job("sticks", text), tool);
+    assert!(fastest_rps > TURNING_RPS, "{fastest_rps}");
+    assert!(after_rps < fastest_rps, "{after_rps} of {fastest_rps}");
+    let height_m = outcome.result.value("truth.body.z").expect("a body");
+    assert!(
+        height_m > 0.18,
+        "it stands: sitting it is at 0.12 m, now {height_m}"
+    );
     assert_eq!(outcome.result.value("diag.link.crc_errors"), Some(0.0));
 }

@@ -16,6 +16,7 @@ pub struct Controls {
     keys: Option<Keys>,
     joystick: Option<Joystick>,
     last_event: Option<JoystickEvent>,
+    has_sticks: bool,
 }
 
 /// What the controls say at one moment.
@@ -26,7 +27,8 @@ pub enum Said {
 }
 
 impl Controls {
-    pub fn open(joystick: Option<&Path>, map: JoystickMap) -> Result<Self> {
+    /// `has_sticks` says whether height, roll and jump are wanted too.
+    pub fn open(joystick: Option<&Path>, map: JoystickMap, has_sticks: bool) -> Result<Self> {
         if joystick.is_some() && !cfg!(target_os = "linux") {
             bail!("joysticks work on Linux only: leave out --joystick and use the keyboard");
         }
@@ -36,11 +38,12 @@ impl Controls {
             joystick.is_some() || has_terminal,
             "there is no terminal to read keys from: run this in one, or name a --joystick"
         );
-        let keys = has_terminal.then(Keys::take).transpose()?;
+        let keys = has_terminal.then(|| Keys::take(has_sticks)).transpose()?;
         Ok(Self {
             keys,
             joystick,
             last_event: None,
+            has_sticks,
         })
     }
 
@@ -75,7 +78,14 @@ impl Controls {
                 "          stops up to 0.2 s after you let go, 0.7 s after a tap",
             ],
         };
-        let lines = lines.iter().map(|line| (*line).to_owned());
+        let sticks = match (self.has_sticks, &self.joystick) {
+            (false, _) => None,
+            (true, Some(_)) => Some("          the cross sets height and roll, button 0 jumps"),
+            (true, None) => Some(
+                "          R F lengthen and shorten the legs, Z C tilt left and right, J jumps",
+            ),
+        };
+        let lines = lines.iter().copied().chain(sticks).map(str::to_owned);
         lines.chain(self.last_event.map(said)).collect()
     }
 }

@@ -17,15 +17,18 @@ use robotctl::drive::{Direction, Keyboard};
 pub struct Keys {
     keyboard: Keyboard,
     is_enhanced: bool,
+    has_sticks: bool,
 }
 
 impl Keys {
-    pub fn take() -> Result<Self> {
+    /// `has_sticks` says whether keys for height, roll and jump count too.
+    pub fn take(has_sticks: bool) -> Result<Self> {
         terminal::enable_raw_mode().context("the terminal gives no single keys")?;
         // Made at once, so that an error below restores the terminal.
         let mut keys = Self {
             keyboard: Keyboard::new(cfg!(windows)),
             is_enhanced: false,
+            has_sticks,
         };
         if terminal::supports_keyboard_enhancement().unwrap_or(false) {
             let flags = KeyboardEnhancementFlags::DISAMBIGUATE_ESCAPE_CODES
@@ -56,7 +59,8 @@ impl Keys {
 
     fn key(&mut self, key: KeyEvent, now: Duration) -> bool {
         let is_down = key.kind != KeyEventKind::Release;
-        if let Some(direction) = direction(key.code) {
+        let standing = |code| self.has_sticks.then(|| standing(code)).flatten();
+        if let Some(direction) = direction(key.code).or_else(|| standing(key.code)) {
             match is_down {
                 true => self.keyboard.press(direction, now),
                 false => self.keyboard.release(direction, now),
@@ -93,6 +97,18 @@ fn direction(code: KeyCode) -> Option<Direction> {
         KeyCode::Right | KeyCode::Char('d' | 'D') => Some(Direction::Right),
         KeyCode::Char('q' | 'Q') => Some(Direction::ForwardLeft),
         KeyCode::Char('e' | 'E') => Some(Direction::ForwardRight),
+        _ => None,
+    }
+}
+
+/// The keys for a robot that stands.
+fn standing(code: KeyCode) -> Option<Direction> {
+    match code {
+        KeyCode::Char('r' | 'R') => Some(Direction::Higher),
+        KeyCode::Char('f' | 'F') => Some(Direction::Lower),
+        KeyCode::Char('z' | 'Z') => Some(Direction::LeftDown),
+        KeyCode::Char('c' | 'C') => Some(Direction::RightDown),
+        KeyCode::Char('j' | 'J') => Some(Direction::Jump),
         _ => None,
     }
 }

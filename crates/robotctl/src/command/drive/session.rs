@@ -5,13 +5,14 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, Result, bail};
 use robot_app::link::Heard;
 use robotctl::{
-    drive::{Driver, Obstacle, RobotView, Wish},
+    drive::{Obstacle, RobotView, Wish},
     pc_link::{self, PcLink},
     tuning::LiveQuestion,
 };
 
 use super::{
     controls::{Controls, Said},
+    pilot::Pilot,
     screen::Screen,
 };
 use crate::command::{interrupt::Interrupt, output::say};
@@ -30,7 +31,7 @@ const LAST_COMMANDS: u32 = 10;
 pub struct Session {
     port: String,
     link: PcLink,
-    driver: Driver,
+    pilot: Pilot,
     controls: Controls,
     screen: Screen,
     interrupt: Interrupt,
@@ -40,17 +41,17 @@ pub struct Session {
     states_before: u64,
     commands: u64,
     rate_hz: f64,
-    questions: [LiveQuestion; 2],
+    questions: [LiveQuestion; 3],
     wish: Wish,
 }
 
 impl Session {
-    pub fn new(port: String, link: PcLink, driver: Driver, controls: Controls) -> Result<Self> {
+    pub fn new(port: String, link: PcLink, pilot: Pilot, controls: Controls) -> Result<Self> {
         let states_before = link.traffic().states;
         Ok(Self {
             port,
             link,
-            driver,
+            pilot,
             screen: Screen::open(controls.has_terminal())?,
             controls,
             interrupt: Interrupt::catch()?,
@@ -60,7 +61,7 @@ impl Session {
             states_before,
             commands: 0,
             rate_hz: 0.0,
-            questions: ["safety", "arming"].map(LiveQuestion::new),
+            questions: ["safety", "arming", "balance"].map(LiveQuestion::new),
             wish: Wish::default(),
         })
     }
@@ -139,10 +140,9 @@ impl Session {
     }
 
     fn send(&mut self) -> Result<()> {
-        let command = self
-            .driver
-            .step(PERIOD.as_secs_f64(), self.wish, &self.robot);
-        self.link.command(&command)?;
+        let dt_s = PERIOD.as_secs_f64();
+        self.pilot
+            .step(&mut self.link, dt_s, self.wish, &self.robot)?;
         self.commands += 1;
         if self.commands.is_multiple_of(QUESTION_EVERY) {
             let number = (self.commands / QUESTION_EVERY) as usize % self.questions.len();
@@ -160,7 +160,7 @@ impl Session {
             return Ok(());
         }
         for _ in 0..LAST_COMMANDS {
-            self.link.command(&self.driver.rest(&self.robot))?;
+            self.pilot.rest(&mut self.link, &self.robot)?;
             self.listen(Instant::now() + PERIOD)?;
         }
         Ok(())
@@ -183,9 +183,14 @@ impl Session {
     fn headline(&self) -> String {
         match self.robot.obstacle() {
             _ if self.heard.is_none() => "waiting for the robot's state".to_owned(),
+            Some(Obstacle::PcAwaited)
+                if self.robot.stands() && self.pilot.needs_a_sitting_robot() =>
+            {
+                "cannot move: the robot stands, and takes --sticks only".to_owned()
+            }
             Some(Obstacle::PcAwaited) => "ready in a moment".to_owned(),
             Some(obstacle) => format!("cannot move: {obstacle}"),
-            None if self.wish.is_held && self.driver.must_let_go() => {
+            None if self.wish.is_held && self.pilot.must_let_go() => {
                 "let go of the dead-man once: it was held through a stop".to_owned()
             }
             None if self.wish.is_held => "driving".to_owned(),
@@ -195,9 +200,7 @@ impl Session {
 
     fn lines(&self) -> Vec<String> {
         let state = &self.robot.state;
-        let (forward_mps, turn_rps) = self.driver.targets();
-        let [left, right] = self.driver.wheel_targets_rps();
-        let [left_is, right_is, joints @ ..] = state.motors;
+        let [_, _, joints @ ..] = state.motors;
         let joints = joints.map(|joint| signed(joint.pos_rad.into()));
         let traffic = self.link.traffic();
         let mode = self.robot.mode();
@@ -207,21 +210,17 @@ impl Session {
         } else {
             "disarmed"
         };
+        let stands = if self.robot.stands() {
+            "stands"
+        } else {
+            "sits"
+        };
         let mut lines = vec![
             String::new(),
-            format!("robot     mode {mode}, {armed}"),
-            format!(
-                "target    forward {} m/s, turn {} rad/s (left positive)",
-                signed(forward_mps),
-                signed(turn_rps)
-            ),
-            format!(
-                "wheels    left {} (target {}), right {} (target {}) rad/s",
-                signed(left_is.vel_rps.into()),
-                signed(left),
-                signed(right_is.vel_rps.into()),
-                signed(right)
-            ),
+            format!("robot     mode {mode}, {armed}, {stands}"),
+        ];
+        lines.extend(self.pilot.lines(&self.robot));
+        lines.extend([
             format!("joints    {} rad", joints.join("  ")),
             format!(
                 "battery   {:.1} V   microcontroller {} °C",
@@ -232,14 +231,14 @@ impl Session {
                 self.rate_hz, self.commands, traffic.counters.crc_errors
             ),
             String::new(),
-        ];
+        ]);
         lines.extend(self.controls.help());
         lines
     }
 }
 
 /// Two decimals with a sign. What rounds to zero is +0.00.
-fn signed(value: f64) -> String {
+pub fn signed(value: f64) -> String {
     format!("{:+.2}", (value * 100.0).round() / 100.0 + 0.0)
 }
 

@@ -23,12 +23,12 @@ const GAINS: Gains = Gains {
 const FORWARD: Wish = Wish {
     is_held: true,
     forward: 1.0,
-    turn: 0.0,
+    ..Wish::NONE
 };
 const LET_GO: Wish = Wish {
     is_held: false,
     forward: 1.0,
-    turn: 0.0,
+    ..Wish::NONE
 };
 
 fn driver() -> Driver {
@@ -81,8 +81,8 @@ fn a_turn_to_the_left_turns_the_right_wheel_forward() {
     let (mut driver, robot) = (driver(), ready());
     let turn = Wish {
         is_held: true,
-        forward: 0.0,
         turn: 1.0,
+        ..Wish::NONE
     };
     driver.step(DT_S, LET_GO, &robot);
     let last = (0..100)

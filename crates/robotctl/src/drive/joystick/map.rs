@@ -16,7 +16,8 @@ impl AxisMap {
 }
 
 /// The default fits gamepads of the kinds of Xbox and PlayStation: left stick drives, right stick turns, and the left
-/// shoulder button is the dead-man. Kernel drivers count up and left as negative.
+/// shoulder button is the dead-man. The cross sets height and roll, and the lowest button jumps. Kernel drivers count up and
+/// left as negative.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct JoystickMap {
     pub forward: AxisMap,
@@ -24,6 +25,12 @@ pub struct JoystickMap {
     pub turn: AxisMap,
     /// Number of the button.
     pub dead_man: u8,
+    /// Raises; long legs are positive.
+    pub height: AxisMap,
+    /// Tilts; the right side down is positive.
+    pub roll: AxisMap,
+    /// Number of the button.
+    pub jump: u8,
 }
 
 impl Default for JoystickMap {
@@ -36,6 +43,12 @@ impl Default for JoystickMap {
             forward: reversed(1),
             turn: reversed(3),
             dead_man: 4,
+            height: reversed(7),
+            roll: AxisMap {
+                number: 6,
+                is_reversed: false,
+            },
+            jump: 0,
         }
     }
 }
@@ -43,7 +56,7 @@ impl Default for JoystickMap {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "`{part}` is not understood: name axes and button by number, `-` reverses an axis, as in \
-     forward=1-,turn=3-,dead-man=4"
+     forward=1-,turn=3-,dead-man=4,height=7-,roll=6,jump=0"
 )]
 pub struct JoystickMapError {
     part: String,
@@ -63,12 +76,19 @@ impl FromStr for JoystickMap {
             match name.trim() {
                 "forward" => map.forward = axis(value).ok_or_else(wrong)?,
                 "turn" => map.turn = axis(value).ok_or_else(wrong)?,
-                "dead-man" => map.dead_man = value.trim().parse().map_err(|_| wrong())?,
+                "dead-man" => map.dead_man = button(value).ok_or_else(wrong)?,
+                "height" => map.height = axis(value).ok_or_else(wrong)?,
+                "roll" => map.roll = axis(value).ok_or_else(wrong)?,
+                "jump" => map.jump = button(value).ok_or_else(wrong)?,
                 _ => return Err(wrong()),
             }
         }
         Ok(map)
     }
+}
+
+fn button(text: &str) -> Option<u8> {
+    text.trim().parse().ok()
 }
 
 fn axis(text: &str) -> Option<AxisMap> {
@@ -96,6 +116,13 @@ mod tests {
             is_reversed: false,
         };
         assert_eq!((map.turn, map.dead_man), (turn, 7));
+        let map: JoystickMap = "height=2,roll=5-,jump=3".parse().unwrap();
+        let numbers = (map.height.number, map.roll.number, map.jump);
+        assert_eq!(numbers, (2, 5, 3));
+        assert_eq!(
+            (map.height.is_reversed, map.roll.is_reversed),
+            (false, true)
+        );
         assert_eq!(map.forward, JoystickMap::default().forward);
         assert_eq!(
             "forward=1-".parse::<JoystickMap>().unwrap(),
