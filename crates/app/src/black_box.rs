@@ -4,6 +4,7 @@
 //! two rings of records: a fine one with the newest, and a coarse one with every fifth of those that the fine ring
 //! overwrites.
 
+mod balance_sample;
 mod bank;
 mod header;
 mod memory;
@@ -11,8 +12,9 @@ mod recorder;
 mod sample;
 mod trigger;
 
+pub use balance_sample::BalanceSample;
 pub use bank::{Bank, SAMPLES_A_BANK};
 pub use header::Event;
-pub use memory::{BANK_BYTES, BANK_COUNT, BlackBoxMemory, LAYOUT_VERSION};
+pub use memory::{BANK_BYTES, BANK_COUNT, BlackBoxMemory, LAYOUT_VERSION, LAYOUTS};
 pub use recorder::BlackBox;
 pub use sample::{BlackBoxSample, CommandSource};

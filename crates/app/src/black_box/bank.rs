@@ -2,20 +2,24 @@
 
 use super::{
     header::{Event, HEADER_WORDS, Header},
-    memory::{BANK_WORDS, BlackBoxMemory},
-    sample::{BlackBoxSample, RECORD_WORDS, Record},
+    memory::{BANK_WORDS, BlackBoxMemory, LAYOUT_VERSION},
+    sample::{BlackBoxSample, FIRST_RECORD_WORDS, RECORD_WORDS, Record},
 };
 
 /// Records of the ring with all samples.
 const FINE: usize = 155;
 /// Records of the ring with every fifth of the older samples.
-const COARSE: usize = 68;
+const COARSE: usize = 43;
 /// One of so many samples that leave the fine ring is kept.
 const THINNING: u32 = 5;
 /// Largest number of samples in a bank.
 pub const SAMPLES_A_BANK: usize = FINE + COARSE;
 
-const _: () = assert!(HEADER_WORDS + SAMPLES_A_BANK * RECORD_WORDS == BANK_WORDS);
+/// Samples in a bank of layout 1.
+const FIRST_SAMPLES: usize = 223;
+
+const _: () = assert!(HEADER_WORDS + SAMPLES_A_BANK * RECORD_WORDS <= BANK_WORDS);
+const _: () = assert!(HEADER_WORDS + FIRST_SAMPLES * FIRST_RECORD_WORDS == BANK_WORDS);
 // So that the thinned samples are evenly spaced.
 const _: () = assert!((FINE as u32).is_multiple_of(THINNING));
 
@@ -24,12 +28,22 @@ const _: () = assert!((FINE as u32).is_multiple_of(THINNING));
 pub struct Bank<'a> {
     memory: &'a BlackBoxMemory,
     index: usize,
+    layout: u8,
 }
 
 impl<'a> Bank<'a> {
     /// Bank 0 or 1.
     pub const fn new(memory: &'a BlackBoxMemory, index: usize) -> Self {
-        Self { memory, index }
+        Self::of_layout(memory, index, LAYOUT_VERSION)
+    }
+
+    /// A bank with one of the [`LAYOUTS`](super::LAYOUTS).
+    pub const fn of_layout(memory: &'a BlackBoxMemory, index: usize, layout: u8) -> Self {
+        Self {
+            memory,
+            index,
+            layout,
+        }
     }
 
     /// The event it holds, if any.
@@ -39,11 +53,22 @@ impl<'a> Bank<'a> {
 
     /// Its samples, in no order.
     pub fn samples(&self) -> impl Iterator<Item = BlackBoxSample> + 'a {
-        let (memory, index) = (self.memory, self.index);
+        let Self { memory, index, .. } = *self;
         let number = self.header().number();
         (0..SAMPLES_A_BANK).filter_map(move |slot| {
             let record = read(memory, index, slot);
             BlackBoxSample::from_record(&record, number?)
+        })
+    }
+
+    /// The samples of a bank of layout 1, in no order.
+    pub fn first_samples(&self) -> impl Iterator<Item = BlackBoxSample> + 'a {
+        let Self { memory, index, .. } = *self;
+        let number = self.header().number();
+        (0..FIRST_SAMPLES).filter_map(move |slot| {
+            let mut record = [0; FIRST_RECORD_WORDS];
+            memory.read(index, HEADER_WORDS + slot * FIRST_RECORD_WORDS, &mut record);
+            BlackBoxSample::from_first_record(&record, number?)
         })
     }
 
@@ -57,6 +82,7 @@ impl<'a> Bank<'a> {
         Header {
             memory: self.memory,
             bank: self.index,
+            layout: self.layout,
         }
     }
 }

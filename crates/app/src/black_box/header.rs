@@ -10,10 +10,7 @@
 //!
 //! The checksums of all parts take in the recording's number. Times are in 0.1 ms.
 
-use super::{
-    memory::{BlackBoxMemory, LAYOUT_VERSION},
-    sample::UNITS_A_SECOND,
-};
+use super::{memory::BlackBoxMemory, sample::UNITS_A_SECOND};
 use crate::{
     domain::{CrashCause, EventKind, ResetCause},
     math::checksum::checksum_of_words,
@@ -23,7 +20,6 @@ use crate::{
 /// Words of a header.
 pub(super) const HEADER_WORDS: usize = 16;
 
-const MARK: u32 = u32::from_le_bytes([b'J', b'B', b'X', LAYOUT_VERSION]);
 const BEGUN_AT: usize = 0;
 const EVENT_AT: usize = 4;
 const RESET_AT: usize = 9;
@@ -58,12 +54,13 @@ impl Event {
 pub(super) struct Header<'a> {
     pub memory: &'a BlackBoxMemory,
     pub bank: usize,
+    pub layout: u8,
 }
 
 impl Header<'_> {
     /// Begins a recording. The parts of the last one end to count.
     pub fn begin(&self, number: u16, time: u32) {
-        self.write(BEGUN_AT, [MARK, number.into(), time], number);
+        self.write(BEGUN_AT, [self.mark(), number.into(), time], number);
     }
 
     pub fn clear(&self) {
@@ -94,7 +91,7 @@ impl Header<'_> {
     pub fn number(&self) -> Option<u16> {
         let number = self.word(BEGUN_AT.saturating_add(1)) as u16;
         let [mark, whole, _] = self.read(BEGUN_AT, number)?;
-        (mark == MARK && whole == u32::from(number) && number != 0).then_some(number)
+        (mark == self.mark() && whole == u32::from(number) && number != 0).then_some(number)
     }
 
     /// The event; `None` if none happened, or its part is damaged.
@@ -122,6 +119,10 @@ impl Header<'_> {
             .number()
             .and_then(|number| self.read::<0>(COMPLETE_AT, number));
         complete.is_some()
+    }
+
+    const fn mark(&self) -> u32 {
+        u32::from_le_bytes([b'J', b'B', b'X', self.layout])
     }
 
     fn word(&self, at: usize) -> u32 {

@@ -2,8 +2,11 @@
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
-/// Version of the layout of a bank. Any change of the layout changes it.
-pub const LAYOUT_VERSION: u8 = 1;
+/// Version of the layout of a bank. Any change of the layout changes it. Layout 1 has records of 16 words, without what
+/// the balance controller did.
+pub const LAYOUT_VERSION: u8 = 2;
+/// The layouts that [`Bank`](super::Bank) reads. All have banks of the same size.
+pub const LAYOUTS: [u8; 2] = [1, LAYOUT_VERSION];
 /// Number of banks.
 pub const BANK_COUNT: usize = 2;
 /// Words of a bank.

@@ -1,4 +1,4 @@
-//! A record: the robot at one instant in 16 words.
+//! A record: the robot at one instant in 18 words.
 //!
 //! | word | holds, lowest bits first |
 //! |---|---|
@@ -13,11 +13,15 @@
 //! | 12 | safety flags |
 //! | 13 | battery in 1/8 V; state; age of the command in ms; age of the radio in ms |
 //! | 14 | late tasks; CAN; commanded speed and turn in 1/127 |
-//! | 15 | CRC-32 of the words before and the recording's number |
+//! | 15, 16 | [balance](super::balance_sample) |
+//! | 17 | CRC-32 of the words before and the recording's number |
+//!
+//! A record of layout 1 has no words 15 and 16.
 //!
 //! State: bit 0 armed, 1 enable switch, 2 estimate valid, 3 and 4 mode, 5 to 7 source of the command. CAN: bits 0 and 1
 //! state of CAN1, 2 and 3 of CAN2, 4 to 7 the ticks missed since boot, modulo 16.
 
+use super::balance_sample::BalanceSample;
 use crate::{
     bring_up::BringUpStep,
     diagnostics::DiagnosticsSnapshot,
@@ -27,8 +31,11 @@ use crate::{
 };
 
 /// Words of a record.
-pub(super) const RECORD_WORDS: usize = 16;
-const CONTENT_WORDS: usize = RECORD_WORDS - 1;
+pub(super) const RECORD_WORDS: usize = 18;
+/// Words of a record of layout 1.
+pub(super) const FIRST_RECORD_WORDS: usize = 16;
+/// Words that the records of all layouts begin with.
+const COMMON_WORDS: usize = 15;
 
 pub(super) type Record = [u32; RECORD_WORDS];
 
@@ -112,6 +119,8 @@ pub struct BlackBoxSample {
     pub drive: f32,
     /// Commanded turn as a share of the highest, counter-clockwise positive. It is 0 while the PC commands.
     pub turn: f32,
+    /// What the balance controller did; `None` in a record of layout 1.
+    pub balance: Option<BalanceSample>,
 }
 
 impl BlackBoxSample {
@@ -153,6 +162,7 @@ impl BlackBoxSample {
             missed_ticks: (report.tick.missed % 16) as u8,
             drive: report.logic.hl_cmd.vx,
             turn: report.logic.hl_cmd.wz,
+            balance: Some(BalanceSample::of(report)),
         }
     }
 
@@ -171,43 +181,62 @@ impl BlackBoxSample {
         let torques = self.joint_nm.map(|torque| fixed_byte(torque, NM_STEPS));
         // The conversion saturates.
         let battery = (self.battery_v * VOLT_STEPS + 0.5) as u8;
-        let content = [
-            self.time,
-            pair([w, x]),
-            pair([y, z]),
-            pair([gx, gy]),
-            pair([gz, ax]),
-            pair([ay, az]),
-            pair(self.wheel_rps.map(|speed| fixed(speed, WHEEL_STEPS))),
-            pair(self.sent_ma.map(|current| fixed(current, MA_STEPS))),
-            pair(self.measured_ma.map(|current| fixed(current, MA_STEPS))),
-            pair([left_front, left_rear]),
-            pair([right_front, right_rear]),
-            u32::from_le_bytes(torques),
-            self.flags.bits(),
-            u32::from_le_bytes([
-                battery,
-                self.state(),
-                self.command_age_ms,
-                self.radio_age_ms,
-            ]),
-            u32::from_le_bytes([
-                late_bits(self.late_tasks),
-                self.bus_bits(),
-                fixed_byte(self.drive, COMMAND_STEPS),
-                fixed_byte(self.turn, COMMAND_STEPS),
-            ]),
-        ];
-        sealed(content, number)
+        let [stance, forces] = self.balance.unwrap_or_default().words();
+        sealed(
+            [
+                self.time,
+                pair([w, x]),
+                pair([y, z]),
+                pair([gx, gy]),
+                pair([gz, ax]),
+                pair([ay, az]),
+                pair(self.wheel_rps.map(|speed| fixed(speed, WHEEL_STEPS))),
+                pair(self.sent_ma.map(|current| fixed(current, MA_STEPS))),
+                pair(self.measured_ma.map(|current| fixed(current, MA_STEPS))),
+                pair([left_front, left_rear]),
+                pair([right_front, right_rear]),
+                u32::from_le_bytes(torques),
+                self.flags.bits(),
+                u32::from_le_bytes([
+                    battery,
+                    self.state(),
+                    self.command_age_ms,
+                    self.radio_age_ms,
+                ]),
+                u32::from_le_bytes([
+                    late_bits(self.late_tasks),
+                    self.bus_bits(),
+                    fixed_byte(self.drive, COMMAND_STEPS),
+                    fixed_byte(self.turn, COMMAND_STEPS),
+                ]),
+                stance,
+                forces,
+                0,
+            ],
+            number,
+        )
     }
 
     /// Decodes a record. Returns `None` if it does not belong to the recording with this number, or is damaged.
     #[inline(never)]
     pub(super) fn from_record(record: &Record, number: u16) -> Option<Self> {
-        let [content @ .., _] = record;
-        if *record != sealed(*content, number) {
-            return None;
-        }
+        let [common @ .., stance, forces, _] = record;
+        (*record == sealed(*record, number)).then(|| Self {
+            balance: Some(BalanceSample::of_words([*stance, *forces])),
+            ..Self::of_words(common)
+        })
+    }
+
+    /// Does the same with a record of layout 1.
+    pub(super) fn from_first_record(
+        record: &[u32; FIRST_RECORD_WORDS],
+        number: u16,
+    ) -> Option<Self> {
+        let [common @ .., _] = record;
+        (*record == sealed(*record, number)).then(|| Self::of_words(common))
+    }
+
+    fn of_words(common: &[u32; COMMON_WORDS]) -> Self {
         let [
             time,
             q0,
@@ -224,13 +253,13 @@ impl BlackBoxSample {
             flags,
             state,
             rest,
-        ] = *content;
+        ] = *common;
         let [w, x, y, z] = quad([q0, q1], UNIT_STEPS);
         let [gx, gy, gz, _] = quad([imu0, imu1], DPS_STEPS);
         let [_, ax, ay, az] = quad([imu1, imu2], MPS2_STEPS);
         let [battery, state, command_age_ms, radio_age_ms] = state.to_le_bytes();
         let [late, buses, drive, turn] = rest.to_le_bytes();
-        Some(Self {
+        Self {
             time,
             q_wxyz: [w, x, y, z],
             gyro_dps: [gx, gy, gz],
@@ -256,7 +285,8 @@ impl BlackBoxSample {
             missed_ticks: buses >> 4,
             drive: f32::from(drive.cast_signed()) / COMMAND_STEPS,
             turn: f32::from(turn.cast_signed()) / COMMAND_STEPS,
-        })
+            balance: None,
+        }
     }
 
     fn state(&self) -> u8 {
@@ -303,12 +333,11 @@ impl CommandSource {
     }
 }
 
-/// Adds the checksum to a record's content. It takes in the recording's number, so that a record of an older recording
-/// in the same bank does not count.
-fn sealed(content: [u32; CONTENT_WORDS], number: u16) -> Record {
-    let mut record = [number.into(); RECORD_WORDS];
-    for (word, value) in record.iter_mut().zip(content) {
-        *word = value;
+/// Returns the record with its last word replaced by the checksum. It takes in the recording's number, so that a record of
+/// an older recording in the same bank does not count.
+fn sealed<const WORDS: usize>(mut record: [u32; WORDS], number: u16) -> [u32; WORDS] {
+    if let Some(last) = record.last_mut() {
+        *last = number.into();
     }
     let crc = checksum_of_words(&record);
     if let Some(last) = record.last_mut() {
@@ -324,7 +353,7 @@ fn fixed(value: f32, steps: f32) -> i16 {
 }
 
 #[inline(never)]
-fn fixed_byte(value: f32, steps: f32) -> u8 {
+pub(super) fn fixed_byte(value: f32, steps: f32) -> u8 {
     (rounded(value * steps) as i8).cast_unsigned()
 }
 

@@ -1,7 +1,7 @@
 //! Downloads events over the tuning channel.
 
 use robot_app::{
-    black_box::{BANK_BYTES, BANK_COUNT, LAYOUT_VERSION},
+    black_box::{BANK_BYTES, BANK_COUNT, LAYOUT_VERSION, LAYOUTS},
     domain::{BankState, EventKind},
     tuning::{BlockFrame, Refusal},
 };
@@ -22,7 +22,7 @@ pub enum DownloadError {
     #[error("this firmware has no black box: it is older than this robotctl")]
     TooOld,
     #[error(
-        "the black box of this firmware has layout {0}, this robotctl reads layout {LAYOUT_VERSION}: use the robotctl of \
+        "the black box of this firmware has layout {0}, this robotctl reads layouts up to {LAYOUT_VERSION}: use the robotctl of \
          the firmware's version"
     )]
     OtherLayout(u8),
@@ -48,6 +48,8 @@ pub struct Bank {
     pub kind: EventKind,
     /// Number of the event.
     pub number: u16,
+    /// Layout of the bank, one of [`LAYOUTS`].
+    pub layout: u8,
     /// The end of the event is still being recorded.
     pub is_closing: bool,
 }
@@ -67,7 +69,7 @@ pub fn contents(client: &mut TuningClient) -> Result<(Vec<Bank>, u8), DownloadEr
             layout,
             ..
         } = report;
-        if layout != LAYOUT_VERSION || bytes != BANK_BYTES {
+        if !LAYOUTS.contains(&layout) || bytes != BANK_BYTES {
             return Err(DownloadError::OtherLayout(layout));
         }
         overwritten = report.overwritten;
@@ -76,6 +78,7 @@ pub fn contents(client: &mut TuningClient) -> Result<(Vec<Bank>, u8), DownloadEr
                 index,
                 kind,
                 number,
+                layout,
                 is_closing: state == BankState::Closing,
             });
         }
@@ -98,7 +101,7 @@ pub fn download(
         progress(bytes.len().min(BANK_BYTES));
     }
     bytes.truncate(BANK_BYTES);
-    RecordedEvent::decode(&bytes)
+    RecordedEvent::decode(&bytes, bank.layout)
         .filter(|event| event.event.number == bank.number)
         .ok_or(DownloadError::Damaged)
 }

@@ -1,7 +1,7 @@
 //! An event as downloaded.
 
 use robot_app::{
-    black_box::{Bank, BlackBoxMemory, BlackBoxSample, Event},
+    black_box::{Bank, BlackBoxMemory, BlackBoxSample, Event, LAYOUT_VERSION},
     domain::EventKind,
     safety::SafetyFlags,
 };
@@ -14,12 +14,15 @@ pub struct RecordedEvent {
 }
 
 impl RecordedEvent {
-    /// Decodes the bytes of a bank. Returns `None` if it holds no event, or none of its records is whole.
-    pub(super) fn decode(bytes: &[u8]) -> Option<Self> {
+    /// Decodes the bytes of a bank with one of the known layouts. Returns `None` if it holds no event, or none of its records is whole.
+    pub(super) fn decode(bytes: &[u8], layout: u8) -> Option<Self> {
         let memory = Box::<BlackBoxMemory>::default();
         memory.fill(0, bytes);
-        let bank = Bank::new(&memory, 0);
-        let mut samples: Vec<_> = bank.samples().collect();
+        let bank = Bank::of_layout(&memory, 0, layout);
+        let mut samples: Vec<_> = match layout {
+            LAYOUT_VERSION => bank.samples().collect(),
+            _ => bank.first_samples().collect(),
+        };
         samples.sort_by_key(|sample| sample.time);
         // A record may be in both rings when a reset came between the two writes.
         samples.dedup_by_key(|sample| sample.time);

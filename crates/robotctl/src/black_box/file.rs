@@ -2,7 +2,10 @@
 
 use std::path::Path;
 
-use robot_app::{black_box::BlackBoxSample, domain::BusErrorState};
+use robot_app::{
+    black_box::{BalanceSample, BlackBoxSample},
+    domain::{BalanceState, BusErrorState, StandPermit},
+};
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -71,6 +74,43 @@ struct Message {
     can1: &'static str,
     can2: &'static str,
     missed_ticks_mod_16: u8,
+    /// `None` if the firmware was older than this.
+    balance: Option<Balance>,
+}
+
+#[derive(Serialize)]
+struct Balance {
+    state: &'static str,
+    request: &'static str,
+    airborne: bool,
+    slipping: bool,
+    left: Leg,
+    right: Leg,
+}
+
+#[derive(Serialize)]
+struct Leg {
+    length_m: f32,
+    lean_rad: f32,
+    contact_n: f32,
+}
+
+impl Balance {
+    fn of(sample: &BalanceSample) -> Self {
+        let [left, right] = [0, 1].map(|leg: usize| Leg {
+            length_m: sample.leg_m[leg],
+            lean_rad: sample.lean_rad[leg],
+            contact_n: sample.contact_n[leg],
+        });
+        Self {
+            state: state_name(sample.state),
+            request: request_name(sample.stand),
+            airborne: sample.airborne,
+            slipping: sample.slipping,
+            left,
+            right,
+        }
+    }
 }
 
 #[derive(Serialize)]
@@ -126,6 +166,7 @@ impl Message {
             can1: bus_name(sample.can[0]),
             can2: bus_name(sample.can[1]),
             missed_ticks_mod_16: sample.missed_ticks,
+            balance: sample.balance.as_ref().map(Balance::of),
         }
     }
 }
@@ -150,6 +191,29 @@ fn source_name(sample: &BlackBoxSample) -> &'static str {
     }
 }
 
+/// Returns the name that live pages use.
+pub(super) fn state_name(state: BalanceState) -> &'static str {
+    match state {
+        BalanceState::Sit => "sit",
+        BalanceState::StandUp => "stand-up",
+        BalanceState::Balance => "balance",
+        BalanceState::Jump => "jump",
+        BalanceState::SitDown => "sit-down",
+        BalanceState::Fallen => "fallen",
+        BalanceState::CannotRise => "cannot-rise",
+    }
+}
+
+fn request_name(stand: StandPermit) -> &'static str {
+    match stand {
+        StandPermit::SwitchMustGoDown => "switch-must-go-down",
+        StandPermit::Ready => "ready",
+        StandPermit::Requested => "requested",
+        StandPermit::StandingUp => "standing-up",
+        StandPermit::Standing => "standing",
+    }
+}
+
 fn bus_name(state: BusErrorState) -> &'static str {
     match state {
         BusErrorState::Active => "active",
@@ -169,6 +233,7 @@ fn sample_schema() -> Value {
     };
     let wheel = of(&["speed_rps", "sent_a", "measured_a"], number());
     let joint = of(&["angle_rad", "torque_nm"], number());
+    let leg = || of(&["length_m", "lean_rad", "contact_n"], number());
     json!({
         "type": "object",
         "properties": {
@@ -202,6 +267,17 @@ fn sample_schema() -> Value {
             "can1": { "type": "string" },
             "can2": { "type": "string" },
             "missed_ticks_mod_16": number(),
+            "balance": {
+                "type": "object",
+                "properties": {
+                    "state": { "type": "string" },
+                    "request": { "type": "string" },
+                    "airborne": { "type": "boolean" },
+                    "slipping": { "type": "boolean" },
+                    "left": leg(),
+                    "right": leg(),
+                },
+            },
         },
     })
 }

@@ -1,12 +1,12 @@
 //! Tells an event in plain language.
 
 use robot_app::{
-    black_box::{BlackBoxSample, CommandSource},
-    domain::{CrashCause, DriveMode, EventKind, LateTasks, ResetCause},
+    black_box::{BalanceSample, BlackBoxSample, CommandSource},
+    domain::{BalanceState, CrashCause, DriveMode, EventKind, LateTasks, ResetCause},
     safety::{ArmingBlockers, SafetyFlags},
 };
 
-use super::event::RecordedEvent;
+use super::{event::RecordedEvent, file::state_name};
 use crate::link_recorder::Attitude;
 
 /// Returns the paragraphs of a report: what stopped the robot and when, the values just before, and what came after.
@@ -191,10 +191,35 @@ fn values(sample: &BlackBoxSample, event: &RecordedEvent) -> String {
     format!(
         "Just before ({before_ms:.0} ms), it was {armed} in mode {mode}, and {command}. Roll {roll:+.1}°, pitch \
          {pitch:+.1}°; wheels {left:+.1} and {right:+.1} rad/s, currents sent {sent_left:+.2} and {sent_right:+.2} A, \
-         measured {measured_left:+.2} and {measured_right:+.2} A; {battery}; {radio}.",
+         measured {measured_left:+.2} and {measured_right:+.2} A; {battery}; {radio}.{balance}",
         armed = if sample.armed { "armed" } else { "disarmed" },
         roll = attitude.roll_deg,
         pitch = attitude.pitch_deg,
+        balance = sample
+            .balance
+            .as_ref()
+            .map_or_else(String::new, balance_words),
+    )
+}
+
+/// Says nothing of a robot that sits.
+fn balance_words(balance: &BalanceSample) -> String {
+    if balance.state == BalanceState::Sit {
+        return String::new();
+    }
+    let [left_m, right_m] = balance.leg_m;
+    let [left, right] = balance.lean_rad.map(f32::to_degrees);
+    let [left_n, right_n] = balance.contact_n;
+    let marks = [
+        (balance.airborne, ", airborne"),
+        (balance.slipping, ", slipping"),
+    ];
+    let marks = marks.map(|(is_so, words)| if is_so { words } else { "" });
+    format!(
+        " Balance: {}{}; legs {left_m:.2} and {right_m:.2} m, leaning {left:+.0}° and {right:+.0}°, wheels on the ground with \
+         {left_n:.0} and {right_n:.0} N.",
+        state_name(balance.state),
+        marks.concat(),
     )
 }
 

@@ -1,8 +1,11 @@
 use std::time::Duration;
 
 use robot_app::{
-    black_box::{BlackBox, BlackBoxMemory},
-    domain::{CrashCause, EventKind, ResetCause, WheelOdomConfig},
+    black_box::{BANK_BYTES, BlackBox, BlackBoxMemory, LAYOUT_VERSION},
+    domain::{
+        BalanceState, BalanceStatus, CrashCause, EventKind, ResetCause, StandPermit,
+        WheelOdomConfig,
+    },
     safety::{ArmingBlockers, ArmingState, DriveEnd, SafetyFlags},
     tuning::Refusal,
 };
@@ -41,6 +44,15 @@ fn fallen() -> (Bus, TuningClient) {
         };
         report.arming.state = ArmingState::Armed;
         report.remote_diag.age_us = 7_000;
+        report.safety.stand = StandPermit::Standing;
+        report.balance = BalanceStatus {
+            state: BalanceState::Balance,
+            airborne: true,
+            leg_m: [0.18, 0.2],
+            lean_rad: [0.35, 0.35],
+            contact_n: [4.0, 0.0],
+            ..BalanceStatus::SIT
+        };
         run(report, 600);
         report.arming.state = ArmingState::Disarmed;
         report.safety.flags = SafetyFlags::TILT;
@@ -66,7 +78,7 @@ fn an_event_is_downloaded_told_and_released() {
     let event = download(&mut client, bank, |bytes| received.push(bytes)).expect("it is whole");
     assert!(received.is_sorted(), "{received:?}");
     assert_eq!(received.last(), Some(&14_336));
-    assert_eq!(event.samples.len(), 223);
+    assert_eq!(event.samples.len(), 198);
     assert!((event.seconds() - 6.01).abs() < 1e-6);
     assert!(event.samples.is_sorted_by_key(|sample| sample.time));
     assert!(event.just_before().armed);
@@ -80,6 +92,12 @@ fn an_event_is_downloaded_told_and_released() {
         "{story:?}"
     );
     assert!(story[1].contains("battery 24.0 V; last radio frame 7 ms old"));
+    assert!(
+        story[1].ends_with(
+            "Balance: balance, airborne; legs 0.18 and 0.20 m, leaning +20° and +20°, wheels on the ground with 4 and 0 N."
+        ),
+        "{story:?}"
+    );
     // The robot empties the bank some time after its reply.
     bus.0.borrow_mut().looks_to_release = Some(5);
     release(&mut client, bank, AT_ONCE).expect("it is released");
@@ -107,7 +125,7 @@ fn lost_frames_are_asked_for_again() {
     bus.0.borrow_mut().block_frames_to_lose = 3;
     let (banks, _) = contents(&mut client).expect("it answers");
     let event = download(&mut client, banks[0], |_| {}).expect("it is whole");
-    assert_eq!(event.samples.len(), 223);
+    assert_eq!(event.samples.len(), 198);
     bus.0.borrow_mut().block_frames_to_lose = usize::MAX;
     let lost = download(&mut client, banks[0], |_| {});
     assert!(matches!(lost, Err(DownloadError::Lost)), "{lost:?}");
@@ -207,7 +225,7 @@ fn an_event_becomes_a_recording_and_a_page() {
             _ => {}
         }
     }
-    assert_eq!(count, [223, 1]);
+    assert_eq!(count, [198, 1]);
     let page = plot::event_page(&event).expect("a page");
     for text in [
         "it fell over (tilt)",
@@ -219,16 +237,56 @@ fn an_event_becomes_a_recording_and_a_page() {
     }
 }
 
+/// Returns the bank as a firmware with layout 1 would hold it: records end after word 15.
+fn in_layout_1(bank: &[u8]) -> Vec<u8> {
+    let crc = |bytes: &[u8]| {
+        let mut crc = flate2::Crc::new();
+        crc.update(bytes);
+        crc.sum().to_le_bytes()
+    };
+    let number = &bank[4..8];
+    let mut first = bank[..64].to_vec();
+    first[3] = 1;
+    let begun = [number, &first[..12], &[0; 48]].concat();
+    first[12..16].copy_from_slice(&crc(&begun));
+    for record in bank[64..].chunks_exact(72) {
+        first.extend(&record[..60]);
+        first.extend(crc(&[&record[..60], number].concat()));
+    }
+    first.resize(BANK_BYTES, 0);
+    first
+}
+
+#[test]
+fn an_event_of_an_older_firmware_is_read() {
+    let (bus, _) = fallen();
+    let memory = bus.0.borrow().black_box.expect("a black box");
+    let bank: Vec<u8> = (0..BANK_BYTES).map(|at| memory.byte(0, at)).collect();
+    let first = in_layout_1(&bank);
+    assert!(RecordedEvent::decode(&first, LAYOUT_VERSION).is_none());
+    let old = RecordedEvent::decode(&first, 1).expect("an event");
+    let new = RecordedEvent::decode(&bank, LAYOUT_VERSION).expect("an event");
+    assert_eq!((old.event, old.samples.len()), (new.event, 198));
+    for (old, new) in old.samples.iter().zip(&new.samples) {
+        assert_eq!(old.balance, None);
+        assert!(new.balance.is_some());
+        assert_eq!((old.time, old.flags), (new.time, new.flags));
+        assert_eq!(old.wheel_rps, new.wheel_rps);
+    }
+    assert!(paragraphs(&old)[1].ends_with("last radio frame 7 ms old."));
+    assert_eq!(paragraphs(&old)[0], paragraphs(&new)[0]);
+}
+
 /// No panic and no event from noise, half an event, or nothing.
 #[test]
 fn bytes_that_are_no_event_give_none() {
     let mut noise = 1_u32;
     let mut bytes = vec![0; 14_336];
-    assert!(RecordedEvent::decode(&bytes).is_none());
+    assert!(RecordedEvent::decode(&bytes, LAYOUT_VERSION).is_none());
     for byte in &mut bytes {
         noise = noise.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         *byte = (noise >> 24) as u8;
     }
-    assert!(RecordedEvent::decode(&bytes).is_none());
-    assert!(RecordedEvent::decode(&bytes[..100]).is_none());
+    assert!(RecordedEvent::decode(&bytes, LAYOUT_VERSION).is_none());
+    assert!(RecordedEvent::decode(&bytes[..100], LAYOUT_VERSION).is_none());
 }

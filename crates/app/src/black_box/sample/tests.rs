@@ -31,6 +31,11 @@ fn sample() -> BlackBoxSample {
         missed_ticks: 13,
         drive: -1.0,
         turn: 1.0,
+        balance: Some(BalanceSample {
+            leg_m: [0.2, 0.25],
+            airborne: true,
+            ..BalanceSample::default()
+        }),
     }
 }
 
@@ -50,6 +55,24 @@ fn a_sample_survives_its_record() {
     };
     assert_eq!(exact, expected);
     assert_eq!(BlackBoxSample::from_record(&sample().record(7), 8), None);
+}
+
+/// Layout 1 ended with the checksum where layout 2 goes on.
+#[test]
+fn a_record_of_layout_1_is_read() {
+    let mut first = [0; FIRST_RECORD_WORDS];
+    first.copy_from_slice(&sample().record(7)[..FIRST_RECORD_WORDS]);
+    assert_eq!(BlackBoxSample::from_first_record(&first, 7), None);
+    first[15] = 7;
+    first[15] = checksum_of_words(&first);
+    let found = BlackBoxSample::from_first_record(&first, 7).expect("whole");
+    let with = BlackBoxSample::from_record(&sample().record(7), 7).expect("whole");
+    let without = BlackBoxSample {
+        balance: None,
+        ..with
+    };
+    assert_eq!(found, without);
+    assert_eq!(BlackBoxSample::from_first_record(&first, 8), None);
 }
 
 #[test]

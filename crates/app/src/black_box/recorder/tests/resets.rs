@@ -121,7 +121,7 @@ fn a_damaged_record_is_left_out() {
     bench.fall();
     bench.run(SECOND);
     let whole = bench.times(0).len();
-    for word in 16..32 {
+    for word in 16..34 {
         let value = bench.memory.word(0, word);
         bench.memory.write(0, word, &[value ^ 0x8000]);
         assert_eq!(bench.times(0).len(), whole - 1);

@@ -25,14 +25,14 @@ fn bench() -> Bench {
     bench
 }
 
-/// 56 · 256 bytes = 14,336; layout 1.
+/// 56 · 256 bytes = 14,336; layout 2.
 #[test]
 fn a_bank_says_what_it_holds_at_any_time() {
     let mut bench = bench();
     for state in [ArmingState::Disarmed, ArmingState::Armed] {
         bench.diagnostics.arming.state = state;
-        assert_eq!(bench.read(&[0x44, 0]), [0x44, 0, 1, 4, 2, 56, 1, 255]);
-        assert_eq!(bench.read(&[0x44, 1]), [0x44, 1, 0x23, 3, 2, 56, 1, 255]);
+        assert_eq!(bench.read(&[0x44, 0]), [0x44, 0, 1, 4, 2, 56, 2, 255]);
+        assert_eq!(bench.read(&[0x44, 1]), [0x44, 1, 0x23, 3, 2, 56, 2, 255]);
     }
     assert_eq!(bench.read(&[0x44, 2]), [0xEE, 0x44, 3, 0, 0, 0, 0, 0]);
     assert_eq!(bench.read(&[0x44]), [0xEE, 0x44, 1, 0, 0, 0, 0, 0]);
