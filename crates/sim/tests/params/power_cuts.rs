@@ -132,7 +132,7 @@ fn position(group: u8) -> u8 {
     if group < 16 {
         group - 1
     } else {
-        group - 16 + 10
+        group - 16 + 11
     }
 }
 

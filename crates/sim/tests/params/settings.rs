@@ -10,8 +10,8 @@ pub type Setting = (u8, u8);
 /// Bits of the `f32` of every setting.
 pub type Settings = BTreeMap<Setting, u32>;
 
-/// Number of settings in all groups but that of standing up, which nobody has saved on this robot.
-pub const COUNT: usize = 136;
+/// Number of settings in all groups.
+pub const COUNT: usize = 140;
 
 /// Number of groups; each is a record.
 pub const GROUPS: usize = CALIBRATED.len();
@@ -36,7 +36,7 @@ const TRAVEL: [f32; 21] = [
 /// Allowed values with which the robot drives. They differ from the defaults, except for directions and settings that
 /// the pilot needs.
 #[rustfmt::skip] // One line a group.
-const CALIBRATED: [(u8, &[f32]); 14] = [
+const CALIBRATED: [(u8, &[f32]); 15] = [
     (1, &[0.07, 0.45, 17.5, 1.0, -1.0]),
     (2, &[1.25, 3.5, 50_000.0, 7_000.0, 900.0, 40_000.0]),
     (3, &[18.0, 0.75, 1.0]),
@@ -47,6 +47,7 @@ const CALIBRATED: [(u8, &[f32]); 14] = [
     (8, &[4.0, 9.0]),
     (9, &[0.0, 1.0, 7.0, 8.0, 4.0, 5.0, 6.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 9.0, 10.0, 11.0, 12.0, 0.0, 1.0, 1.0, 1.0]),
     (10, &TRAVEL),
+    (11, &[2_500_000.0, 6.0, 12.0, 9_000.0]),
     (16, &JOINT),
     (17, &JOINT),
     (18, &JOINT),
