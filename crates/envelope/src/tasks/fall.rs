@@ -14,7 +14,7 @@ const ESTIMATE_RAD: f64 = 0.1;
 
 pub(super) const LOST: Task = Task {
     name: "lost",
-    what: "is pushed by 8 m/s, falls, and has no torque any more",
+    what: "is pushed by 8 m/s, falls, and has no torque before its body hits the ground",
     figure: "torque after the tilt limit",
     unit: "ms",
     // 50 ms to be sure of a tilt (docs/safety.md), one period of the joints, and the motors' own delays.
@@ -32,15 +32,22 @@ fn lost(robots: &Robots, seed: u64) -> Finished {
         let mut fallen_at_s = None;
         let mut torque_until_s = trial.now().t_s;
         let from_s = trial.now().t_s;
+        let mut hits_at_s = f64::INFINITY;
         for tick in 1..=3_000 {
             trial.run_until(from_s + f64::from(tick) * 1e-3);
             let now = trial.now();
             if now.tilt_rad() > MAX_TILT_RAD + ESTIMATE_RAD {
                 fallen_at_s = fallen_at_s.or(Some(now.t_s));
             }
+            if now.body_n > 0.0 {
+                hits_at_s = hits_at_s.min(now.t_s);
+            }
             if has_torque(trial) {
                 torque_until_s = now.t_s;
             }
+        }
+        if torque_until_s >= hits_at_s {
+            return Err(trial.failed("has torque when its body hits the ground".to_owned()));
         }
         match fallen_at_s {
             None => Err(trial.failed("did not fall".to_owned())),

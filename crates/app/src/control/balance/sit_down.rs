@@ -6,17 +6,26 @@ use super::{
     law::{Goal, Law, Torques},
     measured::Measured,
     ramp::Ramp,
-    tip::tip,
+    tip::held,
 };
-use crate::domain::{BalanceProfile, WheelOdomConfig};
+use crate::{
+    domain::{BalanceProfile, WheelOdomConfig},
+    kinematics::Leg,
+    math::scalar,
+};
 
 /// Rates in m/s and rad/s.
 const LOWER_MPS: f32 = 0.2;
 const SINK_RPS: f32 = 2.0;
 /// The legs are folded when they are this close to their shortest length, in m.
 const CLOSE_M: f32 = 0.005;
-/// Push in N with which a leg is folded onto its stops.
-const SINK_N: f32 = -15.0;
+/// Push in N of a leg that the body's weight folds onto its stops, and its damping in N·s/m.
+const SINK_N: f32 = 5.0;
+const SINK_NS_PER_M: f32 = 100.0;
+/// Torque of each wheel in N·m/rad and N·m·s/rad of the error of lean, and its limit in N·m.
+const LEAN_NM_PER_RAD: f32 = 8.0;
+const LEAN_NMS_PER_RAD: f32 = 2.0;
+const MOST_NM: f32 = 2.4;
 /// From this pitch in rad on the body falls by itself: a few degrees are left, and safety takes more for a fall.
 const LET_GO_RAD: f32 = 0.62;
 /// It lies on the ground if it stays behind this reference of its lean in rad.
@@ -67,7 +76,11 @@ impl SitDown {
         if let Some(Sinking { lean_rad, rps }) = &mut self.sinking {
             *lean_rad += *rps * dt_s;
             let sinks = lean_rad.abs() < MOST_RAD && measured.tilt.pitch_rad.abs() < LET_GO_RAD;
-            return sinks.then(|| tip(limits, measured, *lean_rad, *rps, SINK_N));
+            let wanted_nm = LEAN_NM_PER_RAD * (measured.mean_lean_rad() - *lean_rad)
+                + LEAN_NMS_PER_RAD * (measured.mean_lean_rps() - *rps);
+            let wheel_nm = scalar::clamp(wanted_nm, -MOST_NM, MOST_NM);
+            let push_n = |leg: &Leg| SINK_N - SINK_NS_PER_M * leg.length_mps;
+            return sinks.then(|| held(limits, measured, push_n, wheel_nm));
         }
         self.length.step(limits.fold_length_m, LOWER_MPS, dt_s);
         if self.length.value - limits.fold_length_m < CLOSE_M {
