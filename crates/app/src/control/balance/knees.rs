@@ -1,6 +1,10 @@
 //! Knees push the robot off the edge or the face on which it lies: the thighs of that side swing down beside the body.
 
-use super::{law::Torques, measured::Measured, virtual_leg::reaction_nm};
+use super::{
+    law::Torques,
+    measured::{Measured, Thigh},
+    virtual_leg::reaction_nm,
+};
 use crate::{domain::BalanceLimits, math::scalar};
 
 /// From this pitch in rad the robot lies on its face rather than an edge.
@@ -31,8 +35,8 @@ pub fn push(limits: &BalanceLimits, measured: &Measured, wheel_nm: f32) -> Torqu
         let [front, rear] = thighs;
         // A rear thigh goes up as its joint's angle falls.
         [
-            limited(front.torque_nm(front_rad) + front_nm),
-            limited(rear_nm - rear.torque_nm(rear_rad)),
+            limited(torque_nm(front, front_rad) + front_nm),
+            limited(rear_nm - torque_nm(rear, rear_rad)),
         ]
     });
     Torques {
@@ -63,16 +67,7 @@ fn lies_on_front(measured: &Measured) -> bool {
     measured.tilt.pitch_rad > 0.0
 }
 
-/// Angle of a thigh above the level and its rate.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Thigh {
-    pub rad: f32,
-    pub rps: f32,
-}
-
-impl Thigh {
-    /// Torque in N·m, upwards, that turns the thigh to an angle above the level.
-    fn torque_nm(&self, wanted_rad: f32) -> f32 {
-        NM_PER_RAD * (wanted_rad - self.rad) - NMS_PER_RAD * self.rps
-    }
+/// Torque in N·m, upwards, that turns a thigh to an angle above the level.
+fn torque_nm(thigh: &Thigh, wanted_rad: f32) -> f32 {
+    NM_PER_RAD * (wanted_rad - thigh.rad) - NMS_PER_RAD * thigh.rps
 }

@@ -1,6 +1,6 @@
 //! The state of the robot in this tick, from sensors, motors and the estimate.
 
-use super::{knees::Thigh, tilt::Tilt};
+use super::tilt::Tilt;
 use crate::{
     control::ChassisControllerInput,
     domain::{JointFeedback, JointState, LegGeometry, StateEstimate, WheelFeedback},
@@ -13,6 +13,13 @@ const MAX_AHEAD_S: f32 = 0.01;
 
 /// Largest rate, speed, acceleration or torque in SI units.
 const MAX_PLAUSIBLE: f32 = 1_000.0;
+
+/// Angle of a thigh above the level in rad and its rate in rad/s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Thigh {
+    pub rad: f32,
+    pub rps: f32,
+}
 
 /// The state of the robot. Pairs are left, right.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 use super::*;
 use crate::{
-    control::balance::{knees::Thigh, tilt::Tilt, virtual_leg::LegForce},
+    control::balance::{measured::Thigh, tilt::Tilt, virtual_leg::LegForce},
     domain::robots::FIVEBAR,
     kinematics::Leg,
     math::Quaternion,

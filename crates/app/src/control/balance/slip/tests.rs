@@ -1,5 +1,5 @@
 use super::*;
-use crate::control::balance::knees::Thigh;
+use crate::control::balance::measured::Thigh;
 use crate::{control::balance::tilt::Tilt, domain::robots::FIVEBAR, kinematics::Leg};
 
 const TICK_S: f32 = 0.001;
