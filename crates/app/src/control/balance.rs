@@ -3,12 +3,14 @@
 mod braking;
 mod contact;
 mod controller;
+mod edge;
 mod friction;
 mod gains;
 mod jump;
 mod knees;
 mod law;
 mod measured;
+mod one_wheel;
 mod ramp;
 mod reference;
 mod sit_down;

@@ -104,6 +104,11 @@ impl Contact {
         self.wheels.iter().map(|wheel| wheel.push_n).sum()
     }
 
+    /// Whether each wheel is in the air by the push of its leg.
+    pub fn lifted(&self) -> [bool; 2] {
+        self.wheels.each_ref().map(|wheel| wheel.lifted)
+    }
+
     /// No wheel touches the ground: the legs push nothing, or the robot falls freely however they push.
     pub fn airborne(&self) -> bool {
         self.wheels.iter().all(|wheel| wheel.lifted) || self.total_n < self.free_fall_n

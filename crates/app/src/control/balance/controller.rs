@@ -1,6 +1,7 @@
 //! The balance controller: what the robot does from sitting to jumping, and what it tells.
 
 use super::{
+    edge::Edge,
     jump::{FLIGHT_MPS, Jump, Legs},
     law::{Goal, Ground, Law, Torques},
     measured::Measured,
@@ -31,6 +32,8 @@ const MAX_ROLL_RAD: f32 = 0.7;
 const MAX_LEAN_RAD: f32 = 1.2;
 /// Time in s over which the present rate of lean counts towards a fall.
 const FALL_AHEAD_S: f32 = 0.05;
+/// Time in s after a flight in which only the present angles count.
+const LANDING_S: f32 = 0.1;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Phase {
@@ -59,6 +62,9 @@ pub struct BalanceController {
     length: Ramp,
     roll: Ramp,
     jump_wished: bool,
+    edge: Edge,
+    /// Time in s since the last flight.
+    grounded_s: f32,
     ts_us: u64,
 }
 
@@ -77,6 +83,8 @@ impl BalanceController {
             length: Ramp::at(measured.length_m()),
             roll: Ramp::default(),
             jump_wished: input.hl_cmd.jump,
+            edge: Edge::default(),
+            grounded_s: 0.0,
             ts_us: input.sensors.ts_us,
         })
     }
@@ -86,6 +94,11 @@ impl BalanceController {
         let dt_s = self.time_step_s(input.sensors.ts_us);
         let profile = &input.profile.balance;
         let measured = Measured::new(&profile.legs, input);
+        self.grounded_s = if self.law.airborne() {
+            0.0
+        } else {
+            self.grounded_s + dt_s
+        };
         let wishes_to_stand = input.hl_cmd.stand && input.stand.permits();
         let outcome = if measured.known && !self.has_fallen(&measured) {
             self.go_on(input, &measured, wishes_to_stand, dt_s)
@@ -149,7 +162,12 @@ impl BalanceController {
                 }
             }
             Phase::Balance => {
-                if jump_edge && !self.law.airborne() {
+                let struck = self
+                    .edge
+                    .step(measured, input.wheel_odom_cfg.wheel_radius_m, dt_s);
+                if struck && !self.law.airborne() {
+                    self.phase = Phase::Jump(Jump::OVER_EDGE);
+                } else if jump_edge && !self.law.airborne() {
                     self.phase = Phase::Jump(Jump::START);
                 }
                 self.balance(input, measured, None, dt_s)
@@ -219,7 +237,13 @@ impl BalanceController {
             return matches!(self.phase, Phase::Fallen);
         }
         let tilt = &measured.tilt;
-        let soon = |angle_rad: f32, rate_rps: f32| (angle_rad + rate_rps * FALL_AHEAD_S).abs();
+        // Legs catch a robot that has just landed, however it turns.
+        let ahead_s = if self.grounded_s > LANDING_S {
+            FALL_AHEAD_S
+        } else {
+            0.0
+        };
+        let soon = |angle_rad: f32, rate_rps: f32| (angle_rad + rate_rps * ahead_s).abs();
         soon(tilt.pitch_rad, tilt.pitch_rps) > MAX_PITCH_RAD
             || soon(tilt.roll_rad, tilt.roll_rps) > MAX_ROLL_RAD
             || soon(measured.mean_lean_rad(), measured.mean_lean_rps()) > MAX_LEAN_RAD

@@ -22,6 +22,11 @@ pub const FLIGHT_MPS: f32 = 2.5;
 const STRETCH_S: f32 = 0.05;
 /// Time in s after which a robot that has pushed off has landed.
 const FLIGHT_S: f32 = 1.0;
+/// Legs are drawn in over an edge for this time in s, and then stretched to so much more than the shortest, in m, at this rate
+/// in m/s.
+const HOP_S: f32 = 0.07;
+const HOP_LANDS_M: f32 = 0.05;
+const HOP_MPS: f32 = 1.0;
 
 /// Parts of a jump.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,6 +37,8 @@ enum Part {
         /// Speed upwards at take-off in m/s.
         start_mps: f32,
     },
+    /// Over an edge that the wheels have struck.
+    Hop,
 }
 
 /// A jump under way.
@@ -52,6 +59,12 @@ pub struct Legs {
 impl Jump {
     pub const START: Self = Self {
         part: Part::Crouch,
+        elapsed_s: 0.0,
+    };
+
+    /// The wheels have struck an edge: they are lifted onto it.
+    pub const OVER_EDGE: Self = Self {
+        part: Part::Hop,
         elapsed_s: 0.0,
     };
 
@@ -102,6 +115,18 @@ impl Jump {
                     ground = Ground::Left;
                 } else if !airborne || self.elapsed_s > FLIGHT_S {
                     return None;
+                }
+            }
+            Part::Hop => {
+                if self.elapsed_s < HOP_S {
+                    length = Ramp::at(limits.fold_length_m + DRAWN_IN_M);
+                    ground = Ground::Left;
+                } else {
+                    ground = Ground::Felt;
+                    length.step(limits.fold_length_m + HOP_LANDS_M, HOP_MPS, dt_s);
+                    if !airborne || self.elapsed_s > FLIGHT_S {
+                        return None;
+                    }
                 }
             }
         }

@@ -6,6 +6,7 @@ use super::{
     friction,
     gains::{Gains, STATES},
     measured::Measured,
+    one_wheel,
     ramp::Ramp,
     reference::{Reference, Wish},
     slip::{self, Slip},
@@ -263,13 +264,19 @@ impl Law {
             Ground::Touched => level_n(measured),
             Ground::Felt | Ground::Left => 0.0,
         };
-        (
+        let both = (
             [left_wheel + wheel_nm, right_wheel + wheel_nm],
             [
                 leg(left_n - level_n, left_leg - split_nm),
                 leg(right_n + level_n, right_leg + split_nm),
             ],
-        )
+        );
+        match self.contact.lifted() {
+            [left, right] if left != right && goal.ground == Ground::Felt => {
+                one_wheel::carry(both, left, profile, track_m, measured)
+            }
+            _ => both,
+        }
     }
 
     /// In the air the legs keep their length, and the robot its attitude.

@@ -155,17 +155,34 @@ impl Support {
 
     /// Pushes in N in the air: the legs follow this length, and both wheels are level.
     pub fn in_air(mass: &MassModel, track_m: f32, length: &Ramp, measured: &Measured) -> [f32; 2] {
-        let stiffness = mass.axle_kg * AIR_RPS * AIR_RPS;
-        let damping = 2.0 * AIR_DAMPING * AIR_RPS * mass.axle_kg;
-        let right_m = 0.5 * track_m * measured.tilt.roll_rad;
-        let right_m = scalar::clamp(right_m, -MAX_LEVEL_M, MAX_LEVEL_M);
-        let push_n = |leg: &Leg, length_m: f32| {
-            stiffness * (length_m - leg.length_m) + damping * (length.rate - leg.length_mps)
-        };
+        let right_m = 0.5 * level_m(track_m, measured);
         let [left, right] = &measured.legs;
         [
-            push_n(left, length.value - right_m),
-            push_n(right, length.value + right_m),
+            in_air_n(mass, left, length.value - right_m, length.rate),
+            in_air_n(mass, right, length.value + right_m, length.rate),
         ]
     }
+
+    /// Push in N of the left leg and of the right one if it alone is in the air: its wheel is level with the other one.
+    pub fn one_in_air(mass: &MassModel, track_m: f32, measured: &Measured) -> [f32; 2] {
+        let right_m = level_m(track_m, measured);
+        let [left, right] = &measured.legs;
+        [
+            in_air_n(mass, left, right.length_m - right_m, right.length_mps),
+            in_air_n(mass, right, left.length_m + right_m, left.length_mps),
+        ]
+    }
+}
+
+/// Length in m by which the right leg is longer while both wheels are level.
+fn level_m(track_m: f32, measured: &Measured) -> f32 {
+    let right_m = track_m * measured.tilt.roll_rad;
+    scalar::clamp(right_m, -2.0 * MAX_LEVEL_M, 2.0 * MAX_LEVEL_M)
+}
+
+/// Push in N of a leg in the air that follows a length and its rate.
+fn in_air_n(mass: &MassModel, leg: &Leg, length_m: f32, length_mps: f32) -> f32 {
+    let stiffness = mass.axle_kg * AIR_RPS * AIR_RPS;
+    let damping = 2.0 * AIR_DAMPING * AIR_RPS * mass.axle_kg;
+    stiffness * (length_m - leg.length_m) + damping * (length_mps - leg.length_mps)
 }

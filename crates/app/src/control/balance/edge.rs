@@ -1,0 +1,62 @@
+//! An edge that a wheel strikes: its axle stops at once, and the body goes on.
+
+use super::measured::Measured;
+
+/// Time constant in s of what counts as the motion before.
+const BEFORE_S: f32 = 0.012;
+/// Least speed in m/s at which an edge is expected.
+const LEAST_MPS: f32 = 0.3;
+/// A side that has struck one leans by this rate in rad/s at least. Besides, its wheel loses this speed in m/s or, where
+/// little friction brakes it, its leg gets shorter at this rate in m/s.
+const LEANS_RPS: f32 = 2.0;
+const LOST_MPS: f32 = 0.1;
+const FOLDS_MPS: f32 = 0.4;
+/// Time in s for which no other one counts: a landing looks alike.
+const QUIET_S: f32 = 0.6;
+
+/// The motion of one side before, to compare with.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Side {
+    speed_mps: f32,
+    lean_rps: f32,
+}
+
+/// Watches both sides, left and right.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Edge {
+    sides: [Side; 2],
+    quiet_s: f32,
+}
+
+impl Edge {
+    /// Whether a wheel has just struck an edge.
+    pub fn step(&mut self, measured: &Measured, radius_m: f32, dt_s: f32) -> bool {
+        let motions = measured.wheel_rps.iter().zip(measured.lean_rps);
+        let mut struck = false;
+        for ((side, (wheel_rps, lean_rps)), leg) in
+            self.sides.iter_mut().zip(motions).zip(&measured.legs)
+        {
+            struck |= side.step(wheel_rps * radius_m, lean_rps, leg.length_mps, dt_s);
+        }
+        self.quiet_s -= dt_s;
+        if !struck || self.quiet_s > 0.0 {
+            return false;
+        }
+        self.quiet_s = QUIET_S;
+        true
+    }
+}
+
+impl Side {
+    fn step(&mut self, speed_mps: f32, lean_rps: f32, length_mps: f32, dt_s: f32) -> bool {
+        let more_mps = speed_mps - self.speed_mps;
+        let more_rps = lean_rps - self.lean_rps;
+        let forward = if self.speed_mps < 0.0 { -1.0 } else { 1.0 };
+        let struck = self.speed_mps.abs() > LEAST_MPS
+            && (more_mps * forward < -LOST_MPS || length_mps < -FOLDS_MPS)
+            && more_rps * forward > LEANS_RPS;
+        self.speed_mps += more_mps * (dt_s / BEFORE_S);
+        self.lean_rps += more_rps * (dt_s / BEFORE_S);
+        struck
+    }
+}
