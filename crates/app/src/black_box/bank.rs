@@ -67,7 +67,8 @@ impl<'a> Bank<'a> {
         let number = self.header().number();
         (0..FIRST_SAMPLES).filter_map(move |slot| {
             let mut record = [0; FIRST_RECORD_WORDS];
-            memory.read(index, HEADER_WORDS + slot * FIRST_RECORD_WORDS, &mut record);
+            let first = slot.saturating_mul(FIRST_RECORD_WORDS);
+            memory.read(index, first.saturating_add(HEADER_WORDS), &mut record);
             BlackBoxSample::from_first_record(&record, number?)
         })
     }
