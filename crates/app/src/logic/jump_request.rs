@@ -2,9 +2,6 @@
 
 /// A request is set for this long, so that no tick of the control loop misses it.
 const HELD_US: u64 = 100_000;
-/// Shortest time from one request to the next.
-const LOCK_US: u64 = 1_500_000;
-
 /// Turns a press of the jump button into one request. A button that was pressed before the first round makes none.
 #[derive(Clone, Debug, Default)]
 pub(super) struct JumpRequest {
@@ -16,16 +13,12 @@ pub(super) struct JumpRequest {
 impl JumpRequest {
     /// Returns whether a jump is requested.
     pub fn step(&mut self, pressed: bool, now_us: u64) -> bool {
-        let since_us = |request_us: u64| now_us.saturating_sub(request_us);
-        let locked = self
-            .requested_us
-            .is_some_and(|request_us| since_us(request_us) < LOCK_US);
-        if pressed && self.seen_released && !locked {
+        if pressed && self.seen_released {
             self.requested_us = Some(now_us);
         }
         self.seen_released = !pressed;
         self.requested_us
-            .is_some_and(|request_us| since_us(request_us) < HELD_US)
+            .is_some_and(|request_us| now_us.saturating_sub(request_us) < HELD_US)
     }
 }
 
@@ -51,14 +44,5 @@ mod tests {
         assert_eq!(requests(|ms| ms >= 500), tenth_from(500));
         assert_eq!(requests(|ms| ms == 500), tenth_from(500));
         assert_eq!(requests(|_| true), Vec::<u64>::new());
-    }
-
-    #[test]
-    fn a_press_soon_after_a_request_is_ignored() {
-        let twice = |ms| ms == 500 || ms == 1_990 || ms == 2_500;
-        assert_eq!(
-            requests(twice),
-            [tenth_from(500), tenth_from(2_500)].concat()
-        );
     }
 }

@@ -26,6 +26,8 @@ const TICK_S: f32 = 0.001;
 /// Rate in m/s at which the pilot changes the legs' length, and in rad/s the roll.
 const LENGTH_MPS: f32 = 0.25;
 const ROLL_RPS: f32 = 0.5;
+/// Shortest time in s from one jump to the next: in between the robot catches itself.
+const JUMP_REST_S: f32 = 1.5;
 /// Beyond this pitch, roll or lean in rad the robot cannot catch itself.
 const MAX_PITCH_RAD: f32 = 1.0;
 const MAX_ROLL_RAD: f32 = 0.7;
@@ -62,6 +64,8 @@ pub struct BalanceController {
     length: Ramp,
     roll: Ramp,
     jump_wished: bool,
+    /// Time in s since the last jump began.
+    since_jump_s: f32,
     edge: Edge,
     /// Time in s since the last flight.
     grounded_s: f32,
@@ -83,6 +87,7 @@ impl BalanceController {
             length: Ramp::at(measured.length_m()),
             roll: Ramp::default(),
             jump_wished: input.hl_cmd.jump,
+            since_jump_s: JUMP_REST_S,
             edge: Edge::default(),
             grounded_s: 0.0,
             ts_us: input.sensors.ts_us,
@@ -146,6 +151,7 @@ impl BalanceController {
         }
         let jump_edge = input.hl_cmd.jump && !self.jump_wished;
         self.jump_wished = input.hl_cmd.jump;
+        self.since_jump_s += dt_s;
         let torques = match &mut self.phase {
             Phase::StandUp(_) if !wishes_to_stand => return Outcome::Sits,
             Phase::StandUp(stand_up) => {
@@ -167,7 +173,8 @@ impl BalanceController {
                     .step(measured, input.wheel_odom_cfg.wheel_radius_m, dt_s);
                 if struck && !self.law.airborne() {
                     self.phase = Phase::Jump(Jump::OVER_EDGE);
-                } else if jump_edge && !self.law.airborne() {
+                } else if jump_edge && !self.law.airborne() && self.since_jump_s >= JUMP_REST_S {
+                    self.since_jump_s = 0.0;
                     self.phase = Phase::Jump(Jump::START);
                 }
                 self.balance(input, measured, None, dt_s)
