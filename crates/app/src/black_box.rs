@@ -6,6 +6,7 @@
 
 mod balance_sample;
 mod bank;
+mod fixed_point;
 mod header;
 mod memory;
 mod recorder;

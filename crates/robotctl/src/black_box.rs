@@ -4,6 +4,7 @@ mod download;
 mod event;
 mod file;
 mod json;
+mod names;
 mod release;
 mod story;
 

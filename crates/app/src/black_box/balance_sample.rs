@@ -8,7 +8,7 @@
 //! | 4, 5 | lean of the left and the right leg in 1/80 rad |
 //! | 6, 7 | force of the left and the right wheel on the ground in 2 N |
 
-use super::sample::fixed_byte;
+use super::fixed_point::fixed_byte;
 use crate::{
     diagnostics::DiagnosticsSnapshot,
     domain::{BalanceState, BalanceStatus, StandPermit, StandUpPhase},

@@ -21,7 +21,10 @@
 //! State: bit 0 armed, 1 enable switch, 2 estimate valid, 3 and 4 mode, 5 to 7 source of the command. CAN: bits 0 and 1
 //! state of CAN1, 2 and 3 of CAN2, 4 to 7 the ticks missed since boot, modulo 16.
 
-use super::balance_sample::BalanceSample;
+use super::{
+    balance_sample::BalanceSample,
+    fixed_point::{fixed, fixed_byte},
+};
 use crate::{
     bring_up::BringUpStep,
     diagnostics::DiagnosticsSnapshot,
@@ -344,21 +347,6 @@ fn sealed<const WORDS: usize>(mut record: [u32; WORDS], number: u16) -> [u32; WO
         *last = crc;
     }
     record
-}
-
-/// Rounds to the nearest step. The conversion saturates, and NaN becomes 0.
-#[inline(never)]
-fn fixed(value: f32, steps: f32) -> i16 {
-    rounded(value * steps) as i16
-}
-
-#[inline(never)]
-pub(super) fn fixed_byte(value: f32, steps: f32) -> u8 {
-    (rounded(value * steps) as i8).cast_unsigned()
-}
-
-fn rounded(steps: f32) -> f32 {
-    steps + if steps < 0.0 { -0.5 } else { 0.5 }
 }
 
 fn pair([low, high]: [i16; 2]) -> u32 {

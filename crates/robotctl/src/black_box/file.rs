@@ -2,14 +2,15 @@
 
 use std::path::Path;
 
-use robot_app::{
-    black_box::{BalanceSample, BlackBoxSample},
-    domain::{BalanceState, BusErrorState, StandPermit},
-};
+use robot_app::black_box::{BalanceSample, BlackBoxSample};
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::{event::RecordedEvent, json::summary};
+use super::{
+    event::RecordedEvent,
+    json::summary,
+    names::{bus_name, mode_name, request_name, source_name, state_name},
+};
 use crate::{
     link_recorder::{Attitude, Joints, Wheels, transform},
     mcap_file::{McapFile, McapFileError},
@@ -168,57 +169,6 @@ impl Message {
             missed_ticks_mod_16: sample.missed_ticks,
             balance: sample.balance.as_ref().map(Balance::of),
         }
-    }
-}
-
-fn mode_name(sample: &BlackBoxSample) -> &'static str {
-    use robot_app::domain::DriveMode::{Custom, Manual, Pc};
-    match sample.mode {
-        Manual => "manual",
-        Pc => "pc",
-        Custom => "custom",
-    }
-}
-
-fn source_name(sample: &BlackBoxSample) -> &'static str {
-    use robot_app::black_box::CommandSource::{BringUp, Direct, Drive, Nobody, Pc};
-    match sample.source {
-        Nobody => "nobody",
-        Drive => "drive",
-        Direct => "direct",
-        Pc => "pc",
-        BringUp => "bring-up",
-    }
-}
-
-/// Returns the name that live pages use.
-pub(super) fn state_name(state: BalanceState) -> &'static str {
-    match state {
-        BalanceState::Sit => "sit",
-        BalanceState::StandUp => "stand-up",
-        BalanceState::Balance => "balance",
-        BalanceState::Jump => "jump",
-        BalanceState::SitDown => "sit-down",
-        BalanceState::Fallen => "fallen",
-        BalanceState::CannotRise => "cannot-rise",
-    }
-}
-
-fn request_name(stand: StandPermit) -> &'static str {
-    match stand {
-        StandPermit::SwitchMustGoDown => "switch-must-go-down",
-        StandPermit::Ready => "ready",
-        StandPermit::Requested => "requested",
-        StandPermit::StandingUp => "standing-up",
-        StandPermit::Standing => "standing",
-    }
-}
-
-fn bus_name(state: BusErrorState) -> &'static str {
-    match state {
-        BusErrorState::Active => "active",
-        BusErrorState::Passive => "passive",
-        BusErrorState::BusOff => "bus-off",
     }
 }
 

@@ -6,7 +6,7 @@ use robot_app::{
     safety::{ArmingBlockers, SafetyFlags},
 };
 
-use super::{event::RecordedEvent, file::state_name};
+use super::{event::RecordedEvent, names::state_name};
 use crate::link_recorder::Attitude;
 
 /// Returns the paragraphs of a report: what stopped the robot and when, the values just before, and what came after.

@@ -5,6 +5,7 @@ mod keys;
 mod pilot;
 mod screen;
 mod session;
+mod signed;
 
 use std::{cell::RefCell, path::PathBuf, rc::Rc};
 

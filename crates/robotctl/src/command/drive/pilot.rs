@@ -6,7 +6,7 @@ use robotctl::{
     pc_link::PcLink,
 };
 
-use super::session::signed;
+use super::signed::signed;
 
 pub enum Pilot {
     /// Speeds of the wheels, and joints that hold their angle.
