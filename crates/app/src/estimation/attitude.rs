@@ -130,10 +130,7 @@ impl AttitudeFilter {
         let accel_enu = mid_sample.rotation.map(|row| vector::dot(row, accel_mps2));
         self.strapdown.integrate_force(accel_enu, dt_s);
         self.window.add_accel(accel_enu);
-        match self.footing {
-            Footing::Any => self.rest.feed(gyro_rps, accel_mps2),
-            Footing::Legs | Footing::StandingLegs => self.rest.reset(),
-        }
+        self.rest.feed(gyro_rps, accel_mps2);
         if saturation.gyro_ms != [0; 3] {
             self.add_lost_rotation(&mid_sample.rotation, saturation.gyro_ms);
         }
@@ -209,6 +206,9 @@ impl AttitudeFilter {
         self.filter
             .covariance
             .add_variances(HEADING, &[field.added_variance_rad2]);
+        if self.footing != Footing::Any {
+            self.rest.reset();
+        }
         let rest = self.rest.close_window(field.body_ut);
         let rest_rate = rest
             .filter(|rest| rest.confirmed || self.passes_bias_gate(rest.rate_rps))

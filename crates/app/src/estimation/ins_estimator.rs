@@ -1,7 +1,7 @@
 //! The estimator of the control tick.
 
 use super::{
-    attitude::{AttitudeFilter, Saturation},
+    attitude::{AttitudeFilter, Footing, Saturation},
     motion::{AccelSample, AxlePath, BodyPose, MotionEstimator},
 };
 use crate::{
@@ -251,7 +251,6 @@ impl InsEstimator {
         };
         // Without the acceleration of the known motion the force points up.
         let gravity_mps2 = vector::sub(imu.accel_mps2, self.motion.kinematic_mps2());
-        self.attitude.set_footing(self.motion.footing());
         let converged = self
             .attitude
             .feed_imu(gyro_rps, gravity_mps2, saturation, dt_s);
@@ -300,6 +299,11 @@ impl InsEstimator {
             };
             self.motion
                 .feed(&sample, ahead_s, &pose, motor, paths.as_ref());
+            self.attitude.set_footing(match paths {
+                None => Footing::Any,
+                Some(_) if self.motion.stands => Footing::StandingLegs,
+                Some(_) => Footing::Legs,
+            });
         }
         if imu_age_us > MAX_IMU_AGE_US {
             self.motion.decay(seconds(elapsed_us));

@@ -27,7 +27,6 @@ use self::{
     zero_velocity::{WheelEvidence, ZeroVelocityDetector},
 };
 pub(super) use self::{axes::BodyPose, axle::AxlePath};
-use super::attitude::Footing;
 use crate::{
     domain::{MotorFeedback, WheelOdomConfig},
     math::{Vector3, vector},
@@ -62,9 +61,7 @@ pub(super) struct MotionEstimator {
     /// Time since a wheel last turned.
     wheels_stood_s: f32,
     /// The last sample showed a standstill, in which point and axle have the same velocity.
-    stands: bool,
-    /// The last sample was that of a body on legs that balance it.
-    on_legs: bool,
+    pub stands: bool,
     /// Velocity of the point relative to the middle of the axle at the last sample, in ENU.
     over_axle_mps: Vector3,
 }
@@ -81,7 +78,6 @@ impl MotionEstimator {
             kinematic_mps2: [0.0; 3],
             wheels_stood_s: 0.0,
             stands: false,
-            on_legs: false,
             over_axle_mps: [0.0; 3],
         }
     }
@@ -98,15 +94,6 @@ impl MotionEstimator {
         self.standstill = Standstill::new();
     }
 
-    /// What carried the body at the last sample.
-    pub const fn footing(&self) -> Footing {
-        match (self.on_legs, self.stands) {
-            (false, _) => Footing::Any,
-            (true, false) => Footing::Legs,
-            (true, true) => Footing::StandingLegs,
-        }
-    }
-
     /// Takes a sample that ended `age_s` ago. `pose`, `motor` and `legs` are those of the present.
     pub fn feed(
         &mut self,
@@ -117,7 +104,6 @@ impl MotionEstimator {
         legs: Option<&[AxlePath; 2]>,
     ) {
         let axes = Axes::new(pose);
-        self.on_legs = legs.is_some();
         let over_axle_mps = match legs {
             Some(legs) => axes.over_axle(&AxlePath::mean(legs)),
             None => [0.0; 3],
