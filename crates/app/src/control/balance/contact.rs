@@ -5,9 +5,10 @@ use crate::{domain::MassModel, math::scalar};
 
 /// Time constant in s of the contact force.
 const FORCE_TIME_S: f32 = 0.006;
-/// The same for the whole robot's force, and the share of its weight below which it falls freely.
+/// The same for the whole robot's force, and the shares of its weight below which it falls freely, and above which no more.
 const TOTAL_TIME_S: f32 = 0.008;
 const FREE_FALL: f32 = 0.2;
+const CAUGHT: f32 = 0.4;
 /// Time constant in s of the pitch's acceleration.
 const PITCH_TIME_S: f32 = 0.005;
 /// Shares of a wheel's standing load below which it is in the air, and above which it is on the ground.
@@ -37,8 +38,8 @@ pub struct Contact {
     pub wheels: [WheelContact; 2],
     /// The whole robot's force on the ground in N, from accelerations alone.
     total_n: f32,
-    /// A smaller total is that of a free fall.
-    free_fall_n: f32,
+    /// The whole falls freely.
+    falls: bool,
     /// Pitch rate in rad/s behind a low-pass filter.
     pitch_rps: f32,
 }
@@ -54,7 +55,7 @@ impl Contact {
                 ..WheelContact::default()
             }),
             total_n: mass.total_kg * GRAVITY_MPS2,
-            free_fall_n: FREE_FALL * mass.total_kg * GRAVITY_MPS2,
+            falls: false,
             pitch_rps: measured.tilt.pitch_rps,
         }
     }
@@ -88,6 +89,8 @@ impl Contact {
             total_n += mass.axle_kg * axle_mps2;
         }
         self.total_n += (total_n - self.total_n) * (dt_s / TOTAL_TIME_S);
+        let most = if self.falls { CAUGHT } else { FREE_FALL };
+        self.falls = self.total_n < most * mass.total_kg * GRAVITY_MPS2;
     }
 
     /// Specific force in m/s² along the vertical where the centre of what the legs carry is. A body that is struck pitches so hard
@@ -111,7 +114,7 @@ impl Contact {
 
     /// No wheel touches the ground: the legs push nothing, or the robot falls freely however they push.
     pub fn airborne(&self) -> bool {
-        self.wheels.iter().all(|wheel| wheel.lifted) || self.total_n < self.free_fall_n
+        self.wheels.iter().all(|wheel| wheel.lifted) || self.falls
     }
 }
 
