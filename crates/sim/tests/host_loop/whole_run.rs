@@ -32,14 +32,14 @@ fn on_the_host() -> Vec<Moment> {
 
 /// Largest differences, in m, m/s and rad: until the robot stands, and after that. They are some three times those found, which
 /// are the work of instants: the image ticks 0.3 ms earlier, and takes samples of its sensors of another phase, whose noise is
-/// another one.
+/// another one. Dry friction in hips and gears makes the more of it once the robot stands.
 const MOST: [(&str, [f64; 2]); 6] = [
-    ("truth.body.x", [0.06, 0.06]),
-    ("truth.body.vx", [0.25, 0.04]),
+    ("truth.body.x", [0.06, 0.12]),
+    ("truth.body.vx", [0.25, 0.18]),
     ("truth.body.z", [0.012, 0.003]),
     ("truth.body.roll", [0.015, 0.015]),
-    ("truth.body.pitch", [0.07, 0.025]),
-    ("truth.body.yaw", [0.015, 0.015]),
+    ("truth.body.pitch", [0.07, 0.11]),
+    ("truth.body.yaw", [0.036, 0.03]),
 ];
 
 #[test]
