@@ -1,5 +1,7 @@
 //! Flight and landing are recognised at once, and nothing else is taken for them.
 
+mod pilot;
+
 use robot_app::domain::{BalanceState, RobotConfig};
 use robot_host_loop::Robot;
 use robot_plant::world::{PlantKind, Push, RemoteInput, Terrain, WorldConfig};
@@ -19,17 +21,7 @@ fn sitting(terrain: Terrain, seed: u64) -> Robot {
 
 fn standing(terrain: Terrain, seed: u64) -> Robot {
     let mut robot = sitting(terrain, seed);
-    robot.run_until(3.0, |_| ());
-    robot.remote(RemoteInput {
-        enable: Some(true),
-        ..RemoteInput::default()
-    });
-    robot.run_until(3.3, |_| ());
-    robot.remote(RemoteInput {
-        stand: Some(true),
-        ..RemoteInput::default()
-    });
-    robot.run_until(7.0, |_| ());
+    pilot::stand_up(&mut robot, 7.0);
     assert_eq!(robot.diagnostics().balance.state, BalanceState::Balance);
     robot
 }

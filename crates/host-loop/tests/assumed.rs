@@ -1,6 +1,8 @@
 //! What plant and firmware both take from the robot's file and no simulation proves. Here the simulated robot is built otherwise than
 //! its file says, and the firmware does not know: it must stand up and stand all the same (docs/hardware.md#of-a-balancing-robot).
 
+mod pilot;
+
 use std::sync::Arc;
 
 use robot_app::motor::layout::ROBOT_LAYOUT;
@@ -8,7 +10,7 @@ use robot_description::{Carrier, Robot as Description};
 use robot_host_loop::Robot;
 use robot_plant::{
     robots::{JointMotor, with_joints},
-    world::{PlantKind, RemoteInput, WorldConfig},
+    world::{PlantKind, WorldConfig},
 };
 
 const STANDS_BY_S: f64 = 6.5;
@@ -30,17 +32,7 @@ fn stands(change: impl Fn(&mut Description)) -> [f64; 2] {
     let settings = ROBOT_LAYOUT.default_config();
     let mut robot =
         Robot::controlled_by(&ROBOT_LAYOUT, world, settings).expect("no recording to load");
-    robot.run_until(3.0, |_| ());
-    robot.remote(RemoteInput {
-        enable: Some(true),
-        ..RemoteInput::default()
-    });
-    robot.run_until(3.3, |_| ());
-    robot.remote(RemoteInput {
-        stand: Some(true),
-        ..RemoteInput::default()
-    });
-    robot.run_until(STANDS_BY_S, |_| ());
+    pilot::stand_up(&mut robot, STANDS_BY_S);
     let began_m = robot.signal("truth.body.x");
     let mut worst = [0.0_f64; 2];
     robot.run_until(ENDS_S, |robot| {

@@ -1,8 +1,10 @@
 //! The same calls with the same seed give the same run, bit for bit.
 
+mod pilot;
+
 use robot_app::domain::RobotConfig;
 use robot_host_loop::Robot;
-use robot_plant::world::{PlantKind, RemoteInput, WorldConfig};
+use robot_plant::world::{PlantKind, WorldConfig};
 
 /// Every byte sent on CAN while a free robot sits, is armed and asked to stand, and where its body is after that.
 fn run(seed: u64) -> (u64, [u64; 3]) {
@@ -12,17 +14,7 @@ fn run(seed: u64) -> (u64, [u64; 3]) {
         ..WorldConfig::default()
     };
     let mut robot = Robot::in_world(world, RobotConfig::default()).expect("no recording to load");
-    robot.run_until(3.0, |_| ());
-    robot.remote(RemoteInput {
-        enable: Some(true),
-        ..RemoteInput::default()
-    });
-    robot.run_until(3.3, |_| ());
-    robot.remote(RemoteInput {
-        stand: Some(true),
-        ..RemoteInput::default()
-    });
-    robot.run_until(4.5, |_| ());
+    pilot::stand_up(&mut robot, 4.5);
     assert!(robot.sent_digest() != 0);
     let place = ["truth.body.x", "truth.body.z", "truth.body.pitch"];
     (
