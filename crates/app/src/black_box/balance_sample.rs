@@ -20,61 +20,35 @@ const FORCE_STEPS: f32 = 0.5;
 const AIRBORNE: u8 = 1 << 6;
 const SLIPPING: u8 = 1 << 7;
 
-/// The balance controller at one instant. Pairs are left, right; while the robot sits they are 0.
+/// The balance controller at one instant. Legs are recorded up to 0.51 m, leans up to ±1.6 rad and forces up to 510 N.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BalanceSample {
-    /// What the controller does.
-    pub state: BalanceState,
+    /// State of the controller.
+    pub status: BalanceStatus,
     /// How far the pilot's request to stand has come.
     pub stand: StandPermit,
-    /// The part of standing up.
-    pub phase: StandUpPhase,
-    /// No wheel touches the ground.
-    pub airborne: bool,
-    /// A wheel slips.
-    pub slipping: bool,
-    /// Distance from the hip centre to the axle in m, at most 0.51.
-    pub leg_m: [f32; 2],
-    /// Angle of the leg in the world in rad, positive when the hip is ahead of the axle, ±1.6.
-    pub lean_rad: [f32; 2],
-    /// Force of the wheel on the ground in N, at most 510.
-    pub contact_n: [f32; 2],
 }
 
 impl BalanceSample {
-    pub(super) fn of(report: &DiagnosticsSnapshot) -> Self {
-        let BalanceStatus {
-            state,
-            phase,
-            airborne,
-            slipping,
-            leg_m,
-            lean_rad,
-            contact_n,
-        } = report.balance;
+    pub(super) const fn of(report: &DiagnosticsSnapshot) -> Self {
         Self {
-            state,
+            status: report.balance,
             stand: report.safety.stand,
-            phase,
-            airborne,
-            slipping,
-            leg_m,
-            lean_rad,
-            contact_n,
         }
     }
 
     pub(super) fn words(&self) -> [u32; 2] {
+        let status = &self.status;
         let marks =
-            if self.airborne { AIRBORNE } else { 0 } | if self.slipping { SLIPPING } else { 0 };
-        let [left_m, right_m] = self.leg_m.map(|length| positive_byte(length, LEG_STEPS));
-        let [left, right] = self.lean_rad.map(|lean| fixed_byte(lean, LEAN_STEPS));
-        let [left_n, right_n] = self
+            if status.airborne { AIRBORNE } else { 0 } | if status.slipping { SLIPPING } else { 0 };
+        let [left_m, right_m] = status.leg_m.map(|length| positive_byte(length, LEG_STEPS));
+        let [left, right] = status.lean_rad.map(|lean| fixed_byte(lean, LEAN_STEPS));
+        let [left_n, right_n] = status
             .contact_n
             .map(|force| positive_byte(force, FORCE_STEPS));
-        let code = self.state as u8 | (self.stand as u8) << 3 | marks;
+        let code = status.state as u8 | (self.stand as u8) << 3 | marks;
         [
-            u32::from_le_bytes([code, self.phase as u8, left_m, right_m]),
+            u32::from_le_bytes([code, status.phase as u8, left_m, right_m]),
             u32::from_le_bytes([left, right, left_n, right_n]),
         ]
     }
@@ -83,14 +57,16 @@ impl BalanceSample {
         let [code, phase, left_m, right_m] = first.to_le_bytes();
         let [left, right, left_n, right_n] = second.to_le_bytes();
         Self {
-            state: state_of(code & 7),
+            status: BalanceStatus {
+                state: state_of(code & 7),
+                phase: phase_of(phase),
+                airborne: code & AIRBORNE != 0,
+                slipping: code & SLIPPING != 0,
+                leg_m: [left_m, right_m].map(|steps| f32::from(steps) / LEG_STEPS),
+                lean_rad: [left, right].map(|steps| f32::from(steps.cast_signed()) / LEAN_STEPS),
+                contact_n: [left_n, right_n].map(|steps| f32::from(steps) / FORCE_STEPS),
+            },
             stand: stand_of(code >> 3 & 7),
-            phase: phase_of(phase),
-            airborne: code & AIRBORNE != 0,
-            slipping: code & SLIPPING != 0,
-            leg_m: [left_m, right_m].map(|steps| f32::from(steps) / LEG_STEPS),
-            lean_rad: [left, right].map(|steps| f32::from(steps.cast_signed()) / LEAN_STEPS),
-            contact_n: [left_n, right_n].map(|steps| f32::from(steps) / FORCE_STEPS),
         }
     }
 }
@@ -147,9 +123,8 @@ mod tests {
         for state in [Sit, StandUp, Balance, Jump, SitDown, Fallen, CannotRise] {
             for stand in [SwitchMustGoDown, Ready, Requested, StandingUp, Standing] {
                 for (phase, marks) in [(None, 0), (Fold, 1), (Erect, 2), (Extend, 3)] {
-                    let sample = BalanceSample {
+                    let status = BalanceStatus {
                         state,
-                        stand,
                         phase,
                         airborne: marks & 1 != 0,
                         slipping: marks & 2 != 0,
@@ -157,6 +132,7 @@ mod tests {
                         lean_rad: [-1.5, 0.05],
                         contact_n: [0.0, 62.0],
                     };
+                    let sample = BalanceSample { status, stand };
                     assert_eq!(kept(sample), sample);
                 }
             }
@@ -165,13 +141,17 @@ mod tests {
 
     #[test]
     fn values_beyond_the_range_become_its_ends() {
-        let wild = BalanceSample {
+        let wild = BalanceStatus {
             leg_m: [9.0, -1.0],
             lean_rad: [3.0, f32::NAN],
             contact_n: [1e9, f32::NAN],
+            ..BalanceStatus::default()
+        };
+        let sample = BalanceSample {
+            status: wild,
             ..BalanceSample::default()
         };
-        let found = kept(wild);
+        let found = kept(sample).status;
         assert_eq!(found.leg_m, [0.51, 0.0]);
         assert_eq!(found.lean_rad, [127.0 / 80.0, 0.0]);
         assert_eq!(found.contact_n, [510.0, 0.0]);

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use super::{
     event::RecordedEvent,
     json::summary,
-    names::{bus_name, mode_name, request_name, source_name, state_name},
+    names::{bus_name, mode_name, phase_name, request_name, source_name, state_name},
 };
 use crate::{
     link_recorder::{Attitude, Joints, Wheels, transform},
@@ -83,6 +83,7 @@ struct Message {
 struct Balance {
     state: &'static str,
     request: &'static str,
+    phase: &'static str,
     airborne: bool,
     slipping: bool,
     left: Leg,
@@ -98,16 +99,18 @@ struct Leg {
 
 impl Balance {
     fn of(sample: &BalanceSample) -> Self {
+        let status = &sample.status;
         let [left, right] = [0, 1].map(|leg: usize| Leg {
-            length_m: sample.leg_m[leg],
-            lean_rad: sample.lean_rad[leg],
-            contact_n: sample.contact_n[leg],
+            length_m: status.leg_m[leg],
+            lean_rad: status.lean_rad[leg],
+            contact_n: status.contact_n[leg],
         });
         Self {
-            state: state_name(sample.state),
+            state: state_name(status.state),
             request: request_name(sample.stand),
-            airborne: sample.airborne,
-            slipping: sample.slipping,
+            phase: phase_name(status.phase),
+            airborne: status.airborne,
+            slipping: status.slipping,
             left,
             right,
         }
@@ -222,6 +225,7 @@ fn sample_schema() -> Value {
                 "properties": {
                     "state": { "type": "string" },
                     "request": { "type": "string" },
+                    "phase": { "type": "string" },
                     "airborne": { "type": "boolean" },
                     "slipping": { "type": "boolean" },
                     "left": leg(),

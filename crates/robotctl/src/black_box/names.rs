@@ -2,7 +2,7 @@
 
 use robot_app::{
     black_box::BlackBoxSample,
-    domain::{BalanceState, BusErrorState, StandPermit},
+    domain::{BalanceState, BusErrorState, StandPermit, StandUpPhase},
 };
 
 pub(super) fn mode_name(sample: &BlackBoxSample) -> &'static str {
@@ -45,6 +45,15 @@ pub(super) fn request_name(stand: StandPermit) -> &'static str {
         StandPermit::Requested => "requested",
         StandPermit::StandingUp => "standing-up",
         StandPermit::Standing => "standing",
+    }
+}
+
+pub(super) fn phase_name(phase: StandUpPhase) -> &'static str {
+    match phase {
+        StandUpPhase::None => "none",
+        StandUpPhase::Fold => "fold",
+        StandUpPhase::Erect => "erect",
+        StandUpPhase::Extend => "extend",
     }
 }
 

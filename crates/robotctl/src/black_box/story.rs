@@ -1,8 +1,8 @@
 //! Tells an event in plain language.
 
 use robot_app::{
-    black_box::{BalanceSample, BlackBoxSample, CommandSource},
-    domain::{BalanceState, CrashCause, DriveMode, EventKind, LateTasks, ResetCause},
+    black_box::{BlackBoxSample, CommandSource},
+    domain::{BalanceStatus, CrashCause, DriveMode, EventKind, LateTasks, ResetCause},
     safety::{ArmingBlockers, SafetyFlags},
 };
 
@@ -198,13 +198,13 @@ fn values(sample: &BlackBoxSample, event: &RecordedEvent) -> String {
         balance = sample
             .balance
             .as_ref()
-            .map_or_else(String::new, balance_words),
+            .map_or_else(String::new, |it| balance_words(&it.status)),
     )
 }
 
 /// Says nothing of a robot that sits.
-fn balance_words(balance: &BalanceSample) -> String {
-    if balance.state == BalanceState::Sit {
+fn balance_words(balance: &BalanceStatus) -> String {
+    if balance.sits() {
         return String::new();
     }
     let [left_m, right_m] = balance.leg_m;

@@ -1,4 +1,5 @@
 use super::*;
+use crate::domain::BalanceStatus;
 
 const NAN: f32 = f32::NAN;
 
@@ -32,8 +33,11 @@ fn sample() -> BlackBoxSample {
         drive: -1.0,
         turn: 1.0,
         balance: Some(BalanceSample {
-            leg_m: [0.2, 0.25],
-            airborne: true,
+            status: BalanceStatus {
+                leg_m: [0.2, 0.25],
+                airborne: true,
+                ..BalanceStatus::default()
+            },
             ..BalanceSample::default()
         }),
     }
