@@ -10,27 +10,7 @@ static CHOSEN: MotorLayout = CHOSEN_LAYOUT;
 pub fn layout_of(robot: &Robot) -> Option<&'static MotorLayout> {
     [&CHOSEN, &ROBOT_LAYOUT, &RS00_LAYOUT]
         .into_iter()
-        .find(|layout| is_of(layout, robot))
-}
-
-fn is_of(layout: &MotorLayout, robot: &Robot) -> bool {
-    let profile = layout.profile();
-    let (legs, mass, odom) = (
-        &profile.balance.legs,
-        &profile.balance.mass,
-        &profile.wheel_odom,
-    );
-    let figures = [
-        (legs.hip_gap_m, robot.legs.hip_gap_m),
-        (legs.thigh_m, robot.legs.thigh.length_m),
-        (legs.shank_m, robot.legs.shank.length_m),
-        (odom.wheel_radius_m, robot.wheels.radius_m),
-        (odom.wheel_track_m, robot.wheels.track_m),
-        (mass.total_kg, robot.total_mass_kg()),
-    ];
-    // The build writes single precision.
-    let same = |(built, filed): &(f32, f64)| (f64::from(*built) / filed - 1.0).abs() < 1e-6;
-    profile.name == robot.name && figures.iter().all(same)
+        .find(|layout| layout.profile().fingerprint == robot.fingerprint())
 }
 
 #[cfg(test)]
@@ -49,11 +29,13 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_with_another_name_length_or_mass_has_none() {
-        let changes: [fn(&mut Robot); 3] = [
+    fn a_robot_with_another_name_or_figure_has_none() {
+        let changes: [fn(&mut Robot); 5] = [
             |robot| robot.name = "ours".to_owned(),
             |robot| robot.legs.thigh.length_m += 1e-3,
             |robot| robot.body.mass_kg += 0.01,
+            |robot| robot.body.com_m[0] += 1e-3,
+            |robot| robot.control.weights.q[0] *= 2.0,
         ];
         for change in changes {
             let mut robot = Robot::clone(&with_joints(JointMotor::Dm4310));
