@@ -46,6 +46,18 @@ mod tests {
     }
 
     #[test]
+    fn a_robot_that_is_about_to_lean_back_brakes_no_harder() {
+        for forward in [1.0, -1.0] {
+            let counted = |lean_rps: f32| {
+                forward * counted_mps(forward * 3.0, forward * -0.45, forward * lean_rps, 0.0)
+            };
+            assert_eq!(counted(0.0), MOST_MPS);
+            assert_eq!(counted(3.0), MOST_MPS);
+            assert!(counted(-2.0) < MOST_MPS);
+        }
+    }
+
+    #[test]
     fn on_little_grip_it_brakes_with_less_lean() {
         let counted = |slipped_mps| counted_mps(3.0, -0.45, 0.0, slipped_mps);
         assert_eq!(counted(0.1), MOST_MPS);

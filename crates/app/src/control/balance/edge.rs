@@ -60,3 +60,53 @@ impl Side {
         struck
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const RADIUS_M: f32 = 0.06;
+    const TICK_S: f32 = 0.001;
+
+    /// Both wheels at this speed in m/s while the right leg leans at this rate in rad/s.
+    fn rolling(speed_mps: f32, lean_rps: f32) -> Measured {
+        Measured {
+            wheel_rps: [speed_mps / RADIUS_M; 2],
+            lean_rps: [0.0, lean_rps],
+            ..Measured::at_rest()
+        }
+    }
+
+    /// How often an edge is struck by a robot that rolls for each of these times in s, and then for a moment moves so.
+    fn strikes(rolls_s: &[f32], forward: f32, [speed_mps, lean_rps]: [f32; 2]) -> Vec<bool> {
+        let mut edge = Edge::default();
+        let mut step = |[speed_mps, lean_rps]: [f32; 2]| {
+            let measured = rolling(forward * speed_mps, forward * lean_rps);
+            edge.step(&measured, RADIUS_M, TICK_S)
+        };
+        let struck = rolls_s.iter().map(|roll_s| {
+            for _ in 0..(roll_s / TICK_S) as usize {
+                assert!(!step([1.0, 0.0]));
+            }
+            step([speed_mps, lean_rps])
+        });
+        struck.collect()
+    }
+
+    #[test]
+    fn a_wheel_that_loses_speed_while_its_leg_leans_has_struck_an_edge_once() {
+        for forward in [1.0, -1.0] {
+            let found = strikes(&[0.1, 0.3, 0.4], forward, [0.8, 3.0]);
+            assert_eq!(found, [true, false, true]);
+        }
+    }
+
+    #[test]
+    fn neither_braking_nor_leaning_alone_is_an_edge() {
+        for forward in [1.0, -1.0] {
+            for motion in [[0.8, 0.0], [0.8, -3.0], [1.0, 3.0], [1.2, 3.0]] {
+                assert_eq!(strikes(&[0.1], forward, motion), [false], "{motion:?}");
+            }
+        }
+    }
+}

@@ -155,3 +155,46 @@ fn push(hip_nm: f32, legs: &[Leg; 2]) -> f32 {
     }
     least_n
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::domain::robots::FIVEBAR;
+
+    /// Ticks of 1 ms over an edge: leg length in m and what is known of the ground in each.
+    fn over_edge(airborne: bool) -> Vec<(f32, Ground)> {
+        let measured = Measured::at_rest();
+        let mut jump = Jump::OVER_EDGE;
+        let mut length = Ramp::at(0.2);
+        let mut ticks = Vec::new();
+        while let Some(legs) = jump.step(&FIVEBAR.balance, &measured, airborne, &length, 0.001) {
+            length = legs.length;
+            assert_eq!(legs.push_n, None);
+            ticks.push((legs.length.value, legs.ground));
+            assert!(ticks.len() < 2_000, "it does not end");
+        }
+        ticks
+    }
+
+    #[test]
+    fn wheels_that_strike_an_edge_are_drawn_in_for_a_moment() {
+        let fold_m = FIVEBAR.balance.limits.fold_length_m;
+        let ticks = over_edge(false);
+        assert!((68..=71).contains(&ticks.len()), "{}", ticks.len());
+        assert!(
+            ticks
+                .iter()
+                .all(|(length_m, ground)| *length_m < fold_m + 0.02 && *ground == Ground::Left)
+        );
+    }
+
+    #[test]
+    fn in_the_air_the_legs_stretch_again_until_a_flight_is_over() {
+        let fold_m = FIVEBAR.balance.limits.fold_length_m;
+        let ticks = over_edge(true);
+        assert!((998..=1_001).contains(&ticks.len()), "{}", ticks.len());
+        let (length_m, ground) = ticks[500];
+        assert!((length_m - fold_m - 0.05).abs() < 0.005, "{length_m}");
+        assert_eq!(ground, Ground::Felt);
+    }
+}

@@ -150,6 +150,36 @@ impl Measured {
     }
 }
 
+#[cfg(test)]
+impl Measured {
+    /// A robot at rest, upright on both wheels. Its hips report no torque.
+    pub fn at_rest() -> Self {
+        let leg = Leg::new(
+            &crate::domain::robots::FIVEBAR.balance.legs,
+            [-0.4, 0.4],
+            [0.0; 2],
+        );
+        let thigh = Thigh {
+            rad: -0.4,
+            rps: 0.0,
+        };
+        Self {
+            tilt: Tilt::new(Quaternion::IDENTITY, [0.0; 3]),
+            legs: [leg; 2],
+            lean_rad: [0.0; 2],
+            lean_rps: [0.0; 2],
+            wheel_rps: [0.0; 2],
+            gear_rps: [0.0; 2],
+            speed_mps: 0.0,
+            ground_mps: 0.0,
+            up_mps2: 9.8,
+            hip_nm: [[0.0; 2]; 2],
+            thighs: [[thigh; 2]; 2],
+            known: true,
+        }
+    }
+}
+
 /// Speed along the heading in m/s by the estimate.
 fn ground_mps(estimate: &StateEstimate) -> f32 {
     let [w, x, y, z] = estimate.q_wxyz;

@@ -93,3 +93,34 @@ impl SitDown {
         Some(law.step(profile, odometry, measured, &goal, dt_s))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::domain::robots::FIVEBAR;
+
+    /// The wheels of a robot drive away from the edge onto which it sinks, as its lean stays behind: 8 N·m/rad for the 0.04 rad of 20 ms
+    /// at 2 rad/s.
+    #[test]
+    fn the_wheels_let_the_body_sink_to_the_side_to_which_it_leans() {
+        let profile = &FIVEBAR.balance;
+        let fold_m = profile.limits.fold_length_m;
+        for sign in [1.0, -1.0] {
+            let measured = Measured {
+                lean_rad: [sign * 0.1; 2],
+                lean_rps: [sign * SINK_RPS; 2],
+                ..Measured::at_rest()
+            };
+            let mut law = Law::new(profile, &measured);
+            let mut sit_down = SitDown::new(Ramp::at(fold_m));
+            let mut step =
+                || sit_down.step(&mut law, profile, &FIVEBAR.wheel_odom, &measured, 0.001);
+            for _ in 0..20 {
+                assert!(step().is_some());
+            }
+            let [left_nm, right_nm] = step().expect("it sinks").wheels_nm;
+            assert_eq!(left_nm, right_nm);
+            assert!((sign * left_nm + 0.32).abs() < 0.001, "{left_nm}");
+        }
+    }
+}

@@ -1,29 +1,21 @@
 use super::*;
-use crate::control::balance::measured::Thigh;
-use crate::{control::balance::tilt::Tilt, domain::robots::FIVEBAR, kinematics::Leg};
+use crate::{control::balance::tilt::Tilt, domain::robots::FIVEBAR};
 
 const TICK_S: f32 = 0.001;
 
 /// A robot whose wheels turn at these speeds in m/s, while it rolls at `ground_mps` and turns at `yaw_rps`.
 fn measured(wheels_mps: [f32; 2], ground_mps: f32, yaw_rps: f32) -> Measured {
-    let leg = Leg::new(&FIVEBAR.balance.legs, [-0.4, 0.4], [0.0; 2]);
+    let rest = Measured::at_rest();
     let [left_mps, right_mps] = wheels_mps;
     Measured {
         tilt: Tilt {
             yaw_rps,
-            ..Tilt::default()
+            ..rest.tilt
         },
-        legs: [leg; 2],
-        lean_rad: [0.0; 2],
-        lean_rps: [0.0; 2],
         wheel_rps: wheels_mps.map(|mps| mps / FIVEBAR.wheel_odom.wheel_radius_m),
-        gear_rps: [0.0; 2],
         speed_mps: 0.5 * (left_mps + right_mps),
         ground_mps,
-        up_mps2: 9.8,
-        hip_nm: [[0.0; 2]; 2],
-        thighs: [[Thigh { rad: 0.0, rps: 0.0 }; 2]; 2],
-        known: true,
+        ..rest
     }
 }
 
@@ -68,4 +60,20 @@ fn torque_that_only_makes_a_wheel_spin_is_taken_away() {
 fn the_estimate_limits_what_spinning_wheels_tell_of_the_speed() {
     let told = rolling_mps(&measured([2.9, 2.9], 1.0, 0.0));
     assert!((told - 1.0 - ROLLING_MPS).abs() < 1e-6);
+}
+
+#[test]
+fn a_spin_is_remembered_for_two_seconds() {
+    let mut slip = slip_of(&measured([1.0, 2.0], 1.0, 0.0), 1);
+    assert!((slip.lately_mps - 1.0).abs() < 1e-6, "{slip:?}");
+    let rolling = measured([1.0, 1.0], 1.0, 0.0);
+    let mut roll = |seconds: f32| {
+        for _ in 0..(seconds / TICK_S) as usize {
+            slip.step(&FIVEBAR.wheel_odom, &rolling, TICK_S);
+        }
+        slip.lately_mps
+    };
+    let (soon_mps, later_mps) = (roll(0.5), roll(1.5));
+    assert!(soon_mps > 0.7, "{soon_mps}");
+    assert!((0.3..0.5).contains(&later_mps), "{later_mps}");
 }
