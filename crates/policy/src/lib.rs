@@ -1,0 +1,46 @@
+//! A trained network drives the robot: what it sees, what its outputs mean, and the files that say so.
+//!
+//! A policy is a network with a fixed input and output, run at some 50 Hz. [`PolicyDescription`] says what its values are;
+//! it is read from files ([`config`]). [`observation::Observer`] computes the input, and [`action::Decoder`] turns the
+//! output into targets of the motors. Neither does any input or output, and neither allocates after it was made.
+//!
+//! ```
+//! use robot_policy::{
+//!     action::Decoder,
+//!     attitude::QuatWxyz,
+//!     config,
+//!     observation::{Commands, Observer, Reading},
+//! };
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! # let policies = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/vectors/policies");
+//! let policy = config::read(&policies, "fivebar", "flat")?;
+//! let mut observer = Observer::new(&policy);
+//! let mut decoder = Decoder::new(&policy);
+//!
+//! observer.reset();
+//! let mut reading = Reading::at_default_pose(&policy);
+//! reading.attitude = QuatWxyz::new([1.0, 0.0, 0.0, 0.0])?;
+//! let commands = Commands { forward_mps: 0.5, ..Commands::default() };
+//! let input = observer.observe(&reading, &commands, decoder.last_actions())?;
+//! assert_eq!(input.len(), observer.layout().len());
+//! let output = vec![0.0; policy.joints.len()]; // of the network
+//! let targets = decoder.decode(&output)?;
+//! assert_eq!(targets.len(), policy.joints.len());
+//! # Ok(())
+//! # }
+//! ```
+
+#![deny(missing_docs)]
+
+pub mod action;
+pub mod attitude;
+pub mod config;
+mod description;
+mod mapping;
+pub mod observation;
+
+pub use description::{
+    ActionPlan, Drive, Group, HistoryOrder, Joint, PolicyDescription, Source, TermPlan,
+};
+pub use mapping::{JointMapping, NotAMapping};
