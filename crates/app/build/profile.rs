@@ -108,7 +108,7 @@ fn mass(robot: &Robot) -> String {
         carried_kg = f32(split.carried_kg),
         axle_kg = f32(split.axle_kg),
         carried_up_m = f32(split.carried_up_m),
-        imu_ahead_m = f32(robot.imu.place_m[0]),
+        imu_ahead_m = f32(robot.imu.place_m[0] - split.carried_ahead_m),
         imu_over_m = f32(robot.imu.place_m[2] - split.carried_up_m),
         roll_kgm2 = f32(split.roll_kgm2),
         pitch_kgm2 = f32(split.pitch_kgm2),
