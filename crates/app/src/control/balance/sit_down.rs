@@ -6,12 +6,11 @@ use super::{
     law::{Goal, Law, Torques},
     measured::Measured,
     ramp::Ramp,
-    tip::held,
+    tip::{held, lean_nm},
 };
 use crate::{
     domain::{BalanceProfile, WheelOdomConfig},
     kinematics::Leg,
-    math::scalar,
 };
 
 /// Rates in m/s and rad/s.
@@ -22,10 +21,8 @@ const CLOSE_M: f32 = 0.005;
 /// Push in N of a leg that the body's weight folds onto its stops, and its damping in N·s/m.
 const SINK_N: f32 = 5.0;
 const SINK_NS_PER_M: f32 = 100.0;
-/// Torque of each wheel in N·m/rad and N·m·s/rad of the error of lean, and its limit in N·m.
-const LEAN_NM_PER_RAD: f32 = 8.0;
+/// Damping of the lean in N·m·s/rad for each wheel, more than for tipping.
 const LEAN_NMS_PER_RAD: f32 = 2.0;
-const MOST_NM: f32 = 2.4;
 /// From this pitch in rad on the body falls by itself: a few degrees are left, and safety takes more for a fall.
 const LET_GO_RAD: f32 = 0.62;
 /// It lies on the ground if it stays behind this reference of its lean in rad.
@@ -76,9 +73,11 @@ impl SitDown {
         if let Some(Sinking { lean_rad, rps }) = &mut self.sinking {
             *lean_rad += *rps * dt_s;
             let sinks = lean_rad.abs() < MOST_RAD && measured.tilt.pitch_rad.abs() < LET_GO_RAD;
-            let wanted_nm = LEAN_NM_PER_RAD * (measured.mean_lean_rad() - *lean_rad)
-                + LEAN_NMS_PER_RAD * (measured.mean_lean_rps() - *rps);
-            let wheel_nm = scalar::clamp(wanted_nm, -MOST_NM, MOST_NM);
+            let wheel_nm = lean_nm(
+                measured.mean_lean_rad() - *lean_rad,
+                measured.mean_lean_rps() - *rps,
+                LEAN_NMS_PER_RAD,
+            );
             let push_n = |leg: &Leg| SINK_N - SINK_NS_PER_M * leg.length_mps;
             return sinks.then(|| held(limits, measured, push_n, wheel_nm));
         }

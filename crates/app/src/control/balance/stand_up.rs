@@ -8,7 +8,7 @@ use super::{
     law::{Goal, Ground, Law, Torques},
     measured::Measured,
     ramp::Ramp,
-    tip::{held, tip},
+    tip::{held, tip, wheel_nm},
 };
 use crate::{
     domain::{BalanceProfile, StandUpPhase, WheelOdomConfig},
@@ -128,11 +128,11 @@ impl StandUp {
                 } else if self.attempt_s > ATTEMPT_S {
                     self.retry(!self.pushes || lies_on_face(measured));
                 }
-                return Rising::Torques(tip(limits, measured, 0.0, 0.0, FOLD_N));
+                return Rising::Torques(tip(limits, measured, FOLD_N));
             }
             StandUpPhase::Erect if measured.mean_lean_rad().abs() > MISSED_RAD => {
                 self.retry(lies_on_face(measured));
-                return Rising::Torques(tip(limits, measured, 0.0, 0.0, FOLD_N));
+                return Rising::Torques(tip(limits, measured, FOLD_N));
             }
             StandUpPhase::Erect => {
                 if measured.mean_lean_rad().abs() < CATCHABLE_RAD {
@@ -178,9 +178,7 @@ impl StandUp {
             {
                 self.phase = StandUpPhase::Erect;
             }
-            let upright = tip(limits, measured, 0.0, 0.0, 0.0);
-            let [wheel_nm, _] = upright.wheels_nm;
-            return knees::push(limits, measured, PUSH_SHARE * wheel_nm);
+            return knees::push(limits, measured, PUSH_SHARE * wheel_nm(measured));
         }
         if self.attempt_s > LIFT_S {
             self.phase = StandUpPhase::Erect;

@@ -3,7 +3,7 @@
 use super::{law::Torques, measured::Measured, torques, virtual_leg::LegForce};
 use crate::{domain::BalanceLimits, kinematics::Leg, math::scalar};
 
-/// Torque of each wheel in N·m/rad and N·m·s/rad of the error of lean.
+/// Torque of each wheel in N·m/rad of the error of lean, and damping in N·m·s/rad while the robot tips.
 const LEAN_NM_PER_RAD: f32 = 8.0;
 const LEAN_NMS_PER_RAD: f32 = 0.6;
 /// Largest torque of each wheel in N·m. With more the wheels spin.
@@ -15,22 +15,30 @@ const SPIN_NMS_PER_M: f32 = 5.0;
 const HOLD_NM_PER_RAD: f32 = 12.0;
 const HOLD_NMS_PER_RAD: f32 = 0.6;
 
-/// Torques that turn the robot to this lean in rad, whose rate in rad/s is to be `lean_rps`, while each leg gives
-/// `push_n`, too little to lift the body from the legs' stops.
-pub fn tip(
-    limits: &BalanceLimits,
-    measured: &Measured,
-    lean_rad: f32,
-    lean_rps: f32,
-    push_n: f32,
-) -> Torques {
-    let wanted_nm = LEAN_NM_PER_RAD * (measured.mean_lean_rad() - lean_rad)
-        + LEAN_NMS_PER_RAD * (measured.mean_lean_rps() - lean_rps);
+/// Torques that turn the robot until its legs do not lean, while each leg gives `push_n`, too little to lift the body from
+/// the legs' stops.
+pub fn tip(limits: &BalanceLimits, measured: &Measured, push_n: f32) -> Torques {
+    held(limits, measured, |_| push_n, wheel_nm(measured))
+}
+
+/// Torque of each wheel in N·m for that.
+pub fn wheel_nm(measured: &Measured) -> f32 {
+    let wanted_nm = lean_nm(
+        measured.mean_lean_rad(),
+        measured.mean_lean_rps(),
+        LEAN_NMS_PER_RAD,
+    );
     let most = |room_mps: f32| scalar::clamp(SPIN_NMS_PER_M * room_mps, 0.0, MOST_NM);
     let forward_nm = most(MOST_MPS - measured.speed_mps);
     let backward_nm = most(MOST_MPS + measured.speed_mps);
-    let wheel_nm = scalar::clamp(wanted_nm, -backward_nm, forward_nm);
-    held(limits, measured, |_| push_n, wheel_nm)
+    scalar::clamp(wanted_nm, -backward_nm, forward_nm)
+}
+
+/// Torque of each wheel in N·m that corrects a lean which is off by `off_rad` in rad, and its rate by `off_rps` in rad/s, with this
+/// damping in N·m·s/rad.
+pub fn lean_nm(off_rad: f32, off_rps: f32, nms_per_rad: f32) -> f32 {
+    let wanted_nm = LEAN_NM_PER_RAD * off_rad + nms_per_rad * off_rps;
+    scalar::clamp(wanted_nm, -MOST_NM, MOST_NM)
 }
 
 /// Torques that turn the legs to the middle of their range while each gives `push_n`.
