@@ -8,7 +8,7 @@
 //! | 4, 5 | lean of the left and the right leg in 1/80 rad |
 //! | 6, 7 | force of the left and the right wheel on the ground in 2 N |
 
-use super::fixed_point::fixed_byte;
+use super::fixed_point::{fixed_byte, positive_byte};
 use crate::{
     diagnostics::DiagnosticsSnapshot,
     domain::{BalanceState, BalanceStatus, StandPermit, StandUpPhase},
@@ -17,8 +17,15 @@ use crate::{
 const LEG_STEPS: f32 = 500.0;
 const LEAN_STEPS: f32 = 80.0;
 const FORCE_STEPS: f32 = 0.5;
+/// Largest state and request to stand that fit in their bits.
+const MOST_CODE: u8 = 7;
 const AIRBORNE: u8 = 1 << 6;
 const SLIPPING: u8 = 1 << 7;
+
+/// The last of each fits.
+const _: () = assert!(
+    BalanceState::CannotRise as u8 <= MOST_CODE && StandPermit::Standing as u8 <= MOST_CODE
+);
 
 /// The balance controller at one instant. Legs are recorded up to 0.51 m, leans up to ±1.6 rad and forces up to 510 N.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -58,7 +65,7 @@ impl BalanceSample {
         let [left, right, left_n, right_n] = second.to_le_bytes();
         Self {
             status: BalanceStatus {
-                state: state_of(code & 7),
+                state: state_of(code & MOST_CODE),
                 phase: phase_of(phase),
                 airborne: code & AIRBORNE != 0,
                 slipping: code & SLIPPING != 0,
@@ -66,14 +73,9 @@ impl BalanceSample {
                 lean_rad: [left, right].map(|steps| f32::from(steps.cast_signed()) / LEAN_STEPS),
                 contact_n: [left_n, right_n].map(|steps| f32::from(steps) / FORCE_STEPS),
             },
-            stand: stand_of(code >> 3 & 7),
+            stand: stand_of(code >> 3 & MOST_CODE),
         }
     }
-}
-
-/// The conversion saturates, and NaN becomes 0.
-fn positive_byte(value: f32, steps: f32) -> u8 {
-    (value * steps + 0.5) as u8
 }
 
 fn state_of(code: u8) -> BalanceState {

@@ -1,4 +1,4 @@
-//! Values with a sign as whole numbers of steps.
+//! Values as whole numbers of steps.
 
 /// Rounds to the nearest step. The conversion saturates, and NaN becomes 0.
 #[inline(never)]
@@ -10,6 +10,11 @@ pub(super) fn fixed(value: f32, steps: f32) -> i16 {
 #[inline(never)]
 pub(super) fn fixed_byte(value: f32, steps: f32) -> u8 {
     (rounded(value * steps) as i8).cast_unsigned()
+}
+
+/// Does the same with a value without a sign. What is below zero becomes 0.
+pub(super) fn positive_byte(value: f32, steps: f32) -> u8 {
+    (value * steps + 0.5) as u8
 }
 
 fn rounded(steps: f32) -> f32 {

@@ -23,7 +23,7 @@
 
 use super::{
     balance_sample::BalanceSample,
-    fixed_point::{fixed, fixed_byte},
+    fixed_point::{fixed, fixed_byte, positive_byte},
 };
 use crate::{
     bring_up::BringUpStep,
@@ -182,8 +182,7 @@ impl BlackBoxSample {
         let [left_front, left_rear, right_front, right_rear] =
             self.joint_rad.map(|angle| fixed(angle, RAD_STEPS));
         let torques = self.joint_nm.map(|torque| fixed_byte(torque, NM_STEPS));
-        // The conversion saturates.
-        let battery = (self.battery_v * VOLT_STEPS + 0.5) as u8;
+        let battery = positive_byte(self.battery_v, VOLT_STEPS);
         let [stance, forces] = self.balance.unwrap_or_default().words();
         sealed(
             [
