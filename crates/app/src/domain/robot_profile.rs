@@ -7,7 +7,7 @@ use super::{BalanceProfile, MountingConfig, WheelOdomConfig};
 pub struct RobotProfile {
     /// Name, as in `ROBOT=name`.
     pub name: &'static str,
-    /// Differs from that of any other file; see `Robot::fingerprint` of robot-description.
+    /// Tells the file from others; see `Robot::fingerprint` of robot-description.
     pub fingerprint: u64,
     /// Geometry of the wheels as delivered.
     pub wheel_odom: WheelOdomConfig,

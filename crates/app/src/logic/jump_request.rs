@@ -2,6 +2,7 @@
 
 /// A request is set for this long, so that no tick of the control loop misses it.
 const HELD_US: u64 = 100_000;
+
 /// Turns a press of the jump button into one request. A button that was pressed before the first round makes none.
 #[derive(Clone, Debug, Default)]
 pub(super) struct JumpRequest {

@@ -4,8 +4,8 @@ use crate::math::scalar;
 
 /// Largest speed error in m/s that counts.
 const MOST_MPS: f32 = 2.0;
-/// A robot that brakes with this lean in rad counts the least share of it, and all of it up to the span less. Legs that lean
-/// further do not keep the hips up.
+/// All of it counts up to a braking lean of this less the span, in rad, and from this lean on only the least share. Legs that
+/// lean further do not hold the hips up.
 const BRAKING_RAD: f32 = 0.67;
 const SPAN_RAD: f32 = 0.15;
 const LEAST: f32 = 0.2;

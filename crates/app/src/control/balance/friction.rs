@@ -2,8 +2,8 @@
 
 use crate::math::scalar;
 
-/// Dry friction in N·m that is made up for. An M3508 without load takes 0.23 N·m (docs/hardware.md), of which a part
-/// grows with speed. More than the dry part would drive a wheel by itself.
+/// Dry friction in N·m that is made up for. An M3508 without load takes 0.23 N·m, of which a part grows with speed; how it is
+/// split is assumed (docs/hardware.md). More than the dry part would drive a wheel by itself.
 const DRY_NM: f32 = 0.12;
 /// Speed of a gear in rad/s from which on all of it counts. One step of the reported speed is 0.005.
 const FULL_RPS: f32 = 0.1;

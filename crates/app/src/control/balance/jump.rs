@@ -11,7 +11,7 @@ const CLOSE_M: f32 = 0.018;
 /// Part of the hips' torque that pushes off. The rest keeps the balance.
 const PUSH_PART: f32 = 0.97;
 /// Pushing off ends so much before the legs' full length, in m.
-const STOP_SHORT_M: f32 = 0.03;
+const PUSH_ENDS_BEFORE_M: f32 = 0.03;
 const PUSH_S: f32 = 0.3;
 /// Legs are this much longer than the shortest while they are drawn in, for this part of the time up to the top.
 const DRAWN_IN_M: f32 = 0.01;
@@ -93,7 +93,7 @@ impl Jump {
             Part::Push => {
                 length = Ramp::at(measured.length_m());
                 push_n = Some(push(limits.hip_nm, &measured.legs));
-                let stretched = measured.length_m() > limits.reach_length_m - STOP_SHORT_M;
+                let stretched = measured.length_m() > limits.reach_length_m - PUSH_ENDS_BEFORE_M;
                 if stretched || self.elapsed_s > PUSH_S {
                     self.begin(Part::Flight {
                         start_mps: measured.length_mps(),

@@ -7,8 +7,9 @@ use super::{
 };
 use crate::{domain::BalanceLimits, math::scalar};
 
-/// From this pitch in rad the robot lies on its face rather than an edge.
-const FACE_RAD: f32 = 1.0;
+/// Up to this pitch in rad the thighs push as on an edge, beyond it as on a face. It is less than that of a robot that lies on its
+/// face, which keeps its goals until its knees have lifted it so far.
+const EDGE_UP_TO_RAD: f32 = 1.0;
 /// Angles above the level in rad to which the thighs of the lower and of the other side are turned, on an edge and on a
 /// face. On an edge the other thighs keep the legs short, so that the wheels do not lift the wrong end.
 const ON_EDGE_RAD: [f32; 2] = [-0.4, 0.75];
@@ -56,7 +57,7 @@ pub fn are_down(measured: &Measured) -> bool {
 }
 
 fn goal_rad(measured: &Measured) -> [f32; 2] {
-    if measured.tilt.pitch_rad.abs() < FACE_RAD {
+    if measured.tilt.pitch_rad.abs() < EDGE_UP_TO_RAD {
         ON_EDGE_RAD
     } else {
         ON_FACE_RAD

@@ -27,7 +27,7 @@ const LEARN_MPS2: f32 = 0.3;
 const LEARN_RPS: f32 = 0.3;
 /// Largest turn in rad/s with which it learns: a centrifugal force would count as an error of the centre of mass.
 const LEARN_YAW_RPS: f32 = 1.0;
-/// How far legs reach counts at their angle in some time in s.
+/// The legs reach as far as their angle will allow after this time in s.
 const REACH_AHEAD_S: f32 = 0.05;
 /// Stiffness and damping with which the legs keep together on the ground, in N·m/rad and N·m·s/rad.
 const SPLIT_NM_PER_RAD: f32 = 6.0;
@@ -43,7 +43,6 @@ const AIR_DAMPING: f32 = 0.05;
 /// Torque of each wheel in N·m for each N·m·s with which a robot that pushes off turns forward. It would go on turning in
 /// the air.
 const TURN_NM_PER_NMS: f32 = 20.0;
-
 /// Push in N that keeps a wheel on the ground while the body would lift it.
 const LEAST_PUSH_N: f32 = 2.0;
 

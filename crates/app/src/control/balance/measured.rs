@@ -104,7 +104,8 @@ impl Measured {
         measured
     }
 
-    /// False for what no robot does, NaN among it: filters would never forget it.
+    /// False for what no robot does, NaN among it: filters would never forget it. `ground_mps` is not looked at: whether it
+    /// can be used is the estimate's to say.
     fn is_plausible(&self) -> bool {
         let tilt = &self.tilt;
         let [left_rps, right_rps] = self.lean_rps;

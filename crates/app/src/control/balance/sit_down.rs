@@ -25,7 +25,7 @@ const SINK_NS_PER_M: f32 = 100.0;
 const LEAN_NMS_PER_RAD: f32 = 2.0;
 /// From this pitch in rad on the body falls by itself: a few degrees are left, and safety takes more for a fall.
 const LET_GO_RAD: f32 = 0.62;
-/// It lies on the ground if it stays behind this reference of its lean in rad.
+/// A body that has not fallen when the reference of its lean has come this far, in rad, lies on the ground.
 const MOST_RAD: f32 = 0.8;
 /// Longest time of it all in s.
 const GIVE_UP_S: f32 = 3.0;

@@ -19,7 +19,7 @@ const NONE_MPS: f32 = 1.3;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Slip {
     /// Speed of each tyre over the ground in m/s, forward positive where the wheel turns too fast.
-    pub mps: [f32; 2],
+    mps: [f32; 2],
     /// Time in s for which a wheel has slipped.
     lasts_s: f32,
     /// Largest slip of late in m/s.

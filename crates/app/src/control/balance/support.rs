@@ -23,7 +23,7 @@ const LOAD_TIME_S: f32 = 1.0;
 const LEAST_LENGTH_M: f32 = 0.05;
 /// From so much before the hips' stops, in m, the legs are held back by this in N/m, as of their length in some time in s. A leg that
 /// hits its stops throws the wheel up.
-const STOP_BEFORE_M: f32 = 0.015;
+const HELD_BEFORE_STOPS_M: f32 = 0.015;
 const STOP_N_PER_M: f32 = 4_000.0;
 const STOP_AHEAD_S: f32 = 0.05;
 /// Share of the weight for 1 m/s and 1 rad, while the robot cannot brake yet and while it brakes, and its limit.
@@ -149,7 +149,7 @@ impl Support {
         let across_n = stance.across_nm / scalar::max(length_m, LEAST_LENGTH_M);
         let up_n = carried_n + heave_n + across_n * sin;
         let soon_m = length_m + STOP_AHEAD_S * measured.length_mps();
-        let beyond_m = soon_m + STOP_BEFORE_M - stance.longest_m;
+        let beyond_m = soon_m + HELD_BEFORE_STOPS_M - stance.longest_m;
         up_n / cos - STOP_N_PER_M * scalar::max(beyond_m, 0.0)
     }
 

@@ -6,7 +6,7 @@ use crate::math::scalar;
 /// Larger lean in rad counts as this one.
 const MAX_LEAN_RAD: f32 = 0.9;
 /// The legs are asked to end so much before their hips' stops, in m.
-const STOP_SHORT_M: f32 = 0.025;
+const ASKED_BEFORE_STOPS_M: f32 = 0.025;
 
 /// Height of the hips on legs that lean.
 #[derive(Clone, Copy, Debug)]
@@ -26,7 +26,7 @@ impl Upright {
         let lean_rad = scalar::clamp(measured.mean_lean_rad(), -MAX_LEAN_RAD, MAX_LEAN_RAD);
         let (sin, cos) = scalar::sin_cos_small(lean_rad);
         let length_m = measured.length_m();
-        let most_m = (longest_m - STOP_SHORT_M) * cos;
+        let most_m = (longest_m - ASKED_BEFORE_STOPS_M) * cos;
         Self {
             sin,
             cos,

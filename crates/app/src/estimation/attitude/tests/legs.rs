@@ -56,7 +56,6 @@ fn standing_wheels_show_most_of_the_horizon_in_two_seconds() {
         pitch_rad
     };
     let [legs, standing] = [Footing::Legs, Footing::StandingLegs].map(pitch_rad);
-    println!("{standing} {legs}");
     assert!((0.012..0.021).contains(&standing), "{standing}");
     assert!(legs < 0.4 * standing, "{legs}");
 }
