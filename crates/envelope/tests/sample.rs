@@ -47,6 +47,22 @@ fn robots_that_differ_jump_and_land() {
     assert!(report.holds(), "\n{}", table(&report));
 }
 
+/// Among them robots whose centre of mass is high, which tip over the edge onto which they sink too fast.
+#[test]
+fn robots_that_differ_sit_down_gently() {
+    let robots = Robots {
+        robot: WorldConfig::default().robot,
+        vary: true,
+    };
+    let tasks: Vec<&Task> = TASKS
+        .iter()
+        .filter(|task| task.name == "sit-down")
+        .collect();
+    let surveys = survey(&tasks, &robots, 10, false, &|| ());
+    let report = Report::new("fivebar", 10, &tasks, &surveys);
+    assert!(report.holds(), "\n{}", table(&report));
+}
+
 #[test]
 fn specimens_differ_within_their_limits_and_repeat() {
     let robots = Robots {

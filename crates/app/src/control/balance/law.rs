@@ -100,7 +100,7 @@ pub struct Torques {
 pub struct Law {
     gains: Gains,
     reference: Reference,
-    trim: Trim,
+    pub trim: Trim,
     support: Support,
     pub contact: Contact,
     pub slip: Slip,

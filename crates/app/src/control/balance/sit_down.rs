@@ -1,11 +1,13 @@
 //! Sitting down: fold the legs, let the body sink onto an edge while the wheels brake it, let go.
 //!
-//! The body sinks away from its centre of mass: over the other edge it would roll on.
+//! The body sinks away from its centre of mass: over the other edge it would roll on. The wheels brake it by driving below it,
+//! so they first roll the other way: a body that still moves on as it touches the ground tips over its edge.
 
 use super::{
     law::{Goal, Law, Torques},
     measured::Measured,
     ramp::Ramp,
+    reference::Wish,
     tip::{held, lean_nm},
 };
 use crate::{
@@ -16,6 +18,8 @@ use crate::{
 /// Rates in m/s and rad/s.
 const LOWER_MPS: f32 = 0.2;
 const SINK_RPS: f32 = 2.0;
+/// Speed in m/s at which the robot rolls away from the edge onto which it will sink.
+const ROLL_MPS: f32 = 0.6;
 /// The legs are folded when they are this close to their shortest length, in m.
 const CLOSE_M: f32 = 0.005;
 /// Push in N of a leg that the body's weight folds onto its stops, and its damping in N·s/m.
@@ -81,14 +85,22 @@ impl SitDown {
             let push_n = |leg: &Leg| SINK_N - SINK_NS_PER_M * leg.length_mps;
             return sinks.then(|| held(limits, measured, push_n, wheel_nm));
         }
+        // A robot that leans back to balance has its centre of mass ahead.
+        let sign = if law.trim.offset_m < 0.0 { -1.0 } else { 1.0 };
         self.length.step(limits.fold_length_m, LOWER_MPS, dt_s);
         if self.length.value - limits.fold_length_m < CLOSE_M {
-            let lean_rad = measured.mean_lean_rad();
-            // A robot that leans back to balance has its centre of mass ahead.
-            let rps = if lean_rad < 0.0 { -SINK_RPS } else { SINK_RPS };
-            self.sinking = Some(Sinking { lean_rad, rps });
+            self.sinking = Some(Sinking {
+                lean_rad: measured.mean_lean_rad(),
+                rps: sign * SINK_RPS,
+            });
         }
-        let goal = Goal::upright(self.length);
+        let goal = Goal {
+            wish: Wish {
+                speed_mps: -sign * ROLL_MPS,
+                yaw_rps: 0.0,
+            },
+            ..Goal::upright(self.length)
+        };
         Some(law.step(profile, odometry, measured, &goal, dt_s))
     }
 }
@@ -101,7 +113,7 @@ mod tests {
     /// The wheels of a robot drive away from the edge onto which it sinks, as its lean stays behind: 8 N·m/rad for the 0.04 rad of 20 ms
     /// at 2 rad/s.
     #[test]
-    fn the_wheels_let_the_body_sink_to_the_side_to_which_it_leans() {
+    fn the_wheels_let_the_body_sink_to_the_side_to_which_it_stands_leaning() {
         let profile = &FIVEBAR.balance;
         let fold_m = profile.limits.fold_length_m;
         for sign in [1.0, -1.0] {
@@ -111,6 +123,7 @@ mod tests {
                 ..Measured::at_rest()
             };
             let mut law = Law::new(profile, &measured);
+            law.trim.offset_m = sign * 0.01;
             let mut sit_down = SitDown::new(Ramp::at(fold_m));
             let mut step =
                 || sit_down.step(&mut law, profile, &FIVEBAR.wheel_odom, &measured, 0.001);
