@@ -12,7 +12,7 @@ pub enum BalanceState {
     StandUp = 1,
     /// Balancing, with or without ground contact.
     Balance = 2,
-    /// From the push-off of a jump to its landing.
+    /// From the crouch of a jump to its landing. Also the legs being drawn in over an edge that a wheel strikes.
     Jump = 3,
     /// Sitting down.
     SitDown = 4,
