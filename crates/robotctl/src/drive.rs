@@ -18,7 +18,7 @@ pub use sticks::SticksDriver;
 pub use view::RobotView;
 
 /// What the user wants at one moment.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wish {
     /// Dead-man: without it, the wheels' targets are 0.
     pub is_held: bool,

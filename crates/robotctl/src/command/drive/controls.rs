@@ -58,7 +58,7 @@ impl Controls {
         let wish = match (&mut self.joystick, &self.keys) {
             (Some(joystick), _) => joystick.wish(|event| *last_event = Some(event))?,
             (None, Some(keys)) => keys.keyboard().wish(now),
-            (None, None) => Wish::default(),
+            (None, None) => Wish::NONE,
         };
         Ok(Said::Wish(wish))
     }

@@ -63,7 +63,7 @@ impl Session {
             commands: 0,
             rate_hz: 0.0,
             questions: ["safety", "arming", "balance"].map(LiveQuestion::new),
-            wish: Wish::default(),
+            wish: Wish::NONE,
         })
     }
 
