@@ -41,7 +41,7 @@ Examples:
       from the keyboard (Windows: COM4)
   robotctl drive --link /dev/ttyUSB0 --joystick /dev/input/js0
       with a gamepad: left stick drives, right stick turns, left shoulder button (button 4) is the dead-man
-  robotctl drive --link /dev/ttyUSB0 --joystick /dev/input/js0 --map forward=1-,turn=0-,dead-man=0
+  robotctl drive --link /dev/ttyUSB0 --joystick /dev/input/js0 --map forward=1-,turn=0-,dead-man=5
       with another joystick; the screen shows the numbers of what you move
   robotctl drive --link /dev/ttyUSB0 --sticks --share 0.3
       a standing robot, at up to 30 % of its highest speed and turn; with a gamepad (--joystick) the cross sets height and \
@@ -56,7 +56,7 @@ pub struct Drive {
     /// Joystick of Linux, such as /dev/input/js0
     #[arg(long, value_name = "DEVICE")]
     joystick: Option<PathBuf>,
-    /// Axes and dead-man button of the joystick by number; `-` reverses an axis [default: forward=1-,turn=3-,dead-man=4,height=7-,roll=6,jump=0]
+    /// Axes and buttons of the joystick by number; `-` reverses an axis [default: forward=1-,turn=3-,dead-man=4,height=7-,roll=6,jump=0]
     #[arg(long, requires = "joystick")]
     map: Option<JoystickMap>,
     /// Send what the sticks would say, in place of speeds for the wheels: steers a robot that stands, and one that sits

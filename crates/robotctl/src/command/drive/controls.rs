@@ -15,6 +15,7 @@ pub struct Controls {
     /// `None` without a terminal.
     keys: Option<Keys>,
     joystick: Option<Joystick>,
+    map: JoystickMap,
     last_event: Option<JoystickEvent>,
     has_sticks: bool,
 }
@@ -42,6 +43,7 @@ impl Controls {
         Ok(Self {
             keys,
             joystick,
+            map,
             last_event: None,
             has_sticks,
         })
@@ -70,24 +72,37 @@ impl Controls {
     /// Returns lines on what the user can do.
     pub fn help(&self) -> Vec<String> {
         let keys = "keys      hold W S A D or arrows to drive and turn, Q E for both; Space stops, Esc ends";
-        let lines: &[&str] = match (&self.joystick, &self.keys) {
-            (Some(_), _) => &["joystick  hold the dead-man button and push a stick; Esc ends"],
-            (None, Some(taken)) if taken.keyboard().reports_release() => &[keys],
-            (None, _) => &[
-                keys,
-                "          stops up to 0.2 s after you let go, 0.7 s after a tap",
+        let mut lines = match (&self.joystick, &self.keys) {
+            (Some(_), _) => joystick_help(&self.map, self.has_sticks),
+            (None, Some(taken)) if taken.keyboard().reports_release() => vec![keys.to_owned()],
+            (None, _) => vec![
+                keys.to_owned(),
+                "          stops up to 0.2 s after you let go, 0.7 s after a tap".to_owned(),
             ],
         };
-        let sticks = match (self.has_sticks, &self.joystick) {
-            (false, _) => None,
-            (true, Some(_)) => Some("          the cross sets height and roll, button 0 jumps"),
-            (true, None) => Some(
-                "          R F lengthen and shorten the legs, Z C tilt left and right, J jumps",
-            ),
-        };
-        let lines = lines.iter().copied().chain(sticks).map(str::to_owned);
-        lines.chain(self.last_event.map(said)).collect()
+        if self.has_sticks && self.joystick.is_none() {
+            lines.push(
+                "          R F lengthen and shorten the legs, Z C tilt left and right, J jumps"
+                    .to_owned(),
+            );
+        }
+        lines.extend(self.last_event.map(said));
+        lines
     }
+}
+
+fn joystick_help(map: &JoystickMap, has_sticks: bool) -> Vec<String> {
+    let mut lines = vec![format!(
+        "joystick  hold button {}, the dead-man: axis {} drives, axis {} turns; Esc ends",
+        map.dead_man, map.forward.number, map.turn.number
+    )];
+    if has_sticks {
+        lines.push(format!(
+            "          axis {} sets the height, axis {} the roll, button {} jumps",
+            map.height.number, map.roll.number, map.jump
+        ));
+    }
+    lines
 }
 
 fn said(event: JoystickEvent) -> String {
@@ -97,5 +112,28 @@ fn said(event: JoystickEvent) -> String {
             format!("          button {number} {word}")
         }
         JoystickEvent::Axis { number, value } => format!("          axis {number} at {value:+.2}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_help_names_the_axes_and_buttons_of_the_map() {
+        let map = "forward=11,turn=12-,dead-man=13,height=14,roll=15,jump=16";
+        let map: JoystickMap = map.parse().expect("a map");
+        let [drives, stands] = &joystick_help(&map, true)[..] else {
+            panic!("two lines");
+        };
+        assert_eq!(
+            drives,
+            "joystick  hold button 13, the dead-man: axis 11 drives, axis 12 turns; Esc ends"
+        );
+        assert_eq!(
+            stands,
+            "          axis 14 sets the height, axis 15 the roll, button 16 jumps"
+        );
+        assert_eq!(joystick_help(&map, false), std::slice::from_ref(drives));
     }
 }

@@ -54,12 +54,17 @@ impl Default for JoystickMap {
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "`{part}` is not understood: name axes and button by number, `-` reverses an axis, as in \
-     forward=1-,turn=3-,dead-man=4,height=7-,roll=6,jump=0"
-)]
-pub struct JoystickMapError {
-    part: String,
+pub enum JoystickMapError {
+    #[error(
+        "`{part}` is not understood: name axes and button by number, `-` reverses an axis, as in \
+         forward=1-,turn=3-,dead-man=4,height=7-,roll=6,jump=0"
+    )]
+    Part { part: String },
+    #[error(
+        "button {button} is both the dead-man (4 if not named) and the jump (0 if not named): give each its own, as in \
+         dead-man=0,jump=1"
+    )]
+    SameButton { button: u8 },
 }
 
 impl FromStr for JoystickMap {
@@ -69,7 +74,7 @@ impl FromStr for JoystickMap {
     fn from_str(text: &str) -> Result<Self, JoystickMapError> {
         let mut map = Self::default();
         for part in text.split(',') {
-            let wrong = || JoystickMapError {
+            let wrong = || JoystickMapError::Part {
                 part: part.to_owned(),
             };
             let (name, value) = part.split_once('=').ok_or_else(wrong)?;
@@ -82,6 +87,9 @@ impl FromStr for JoystickMap {
                 "jump" => map.jump = button(value).ok_or_else(wrong)?,
                 _ => return Err(wrong()),
             }
+        }
+        if map.jump == map.dead_man {
+            return Err(JoystickMapError::SameButton { button: map.jump });
         }
         Ok(map)
     }
@@ -128,6 +136,17 @@ mod tests {
             "forward=1-".parse::<JoystickMap>().unwrap(),
             JoystickMap::default()
         );
+    }
+
+    /// The button would never jump.
+    #[test]
+    fn one_button_for_dead_man_and_jump_is_refused() {
+        for (text, button) in [("dead-man=0", 0), ("jump=4", 4), ("jump=2,dead-man=2", 2)] {
+            let refused = text.parse::<JoystickMap>();
+            assert_eq!(refused, Err(JoystickMapError::SameButton { button }));
+        }
+        let map: JoystickMap = "dead-man=0,jump=1".parse().unwrap();
+        assert_eq!((map.dead_man, map.jump), (0, 1));
     }
 
     #[test]
