@@ -12,7 +12,7 @@ pub struct RobotView {
     blockers: Vec<String>,
     flags: Vec<String>,
     is_stopped: bool,
-    stands: bool,
+    balance: Option<String>,
 }
 
 impl RobotView {
@@ -24,7 +24,7 @@ impl RobotView {
                 self.flags = reading.set("flags");
                 self.is_stopped = reading.choice("verdict") != "run";
             }
-            "balance" => self.stands = reading.choice("state") != "sit",
+            "balance" => self.balance = Some(reading.choice("state")),
             _ => {}
         }
     }
@@ -33,9 +33,22 @@ impl RobotView {
         self.state.keys.contains(Keys::F1)
     }
 
-    /// True if the robot stands, or does something else than sit.
+    /// What the balance controller does, in the firmware's words. `None` before the first reading.
+    pub fn balance(&self) -> Option<&str> {
+        self.balance.as_deref()
+    }
+
+    /// True if the robot stands, or is on its way up or down.
     pub fn stands(&self) -> bool {
-        self.stands
+        matches!(
+            self.balance(),
+            Some("stand-up" | "balance" | "jump" | "sit-down")
+        )
+    }
+
+    /// True if the robot has fallen or lies so that it cannot stand up.
+    pub fn lies(&self) -> bool {
+        matches!(self.balance(), Some("fallen" | "cannot-rise"))
     }
 
     pub fn mode(&self) -> Option<Mode> {
@@ -64,5 +77,41 @@ impl RobotView {
         }
         self.is_stopped
             .then(|| Obstacle::Stopped(self.flags.clone()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use robot_app::domain::BalanceState;
+
+    use super::*;
+    use crate::tuning::{live_page, testing};
+
+    #[test]
+    fn a_robot_that_lies_does_not_stand() {
+        use BalanceState::{Balance, CannotRise, Fallen, Jump, Sit, SitDown, StandUp};
+        let (bus, mut client) = testing::robot();
+        let mut view = RobotView::default();
+        assert_eq!(
+            (view.balance(), view.stands(), view.lies()),
+            (None, false, false)
+        );
+        for (state, word, stands, lies) in [
+            (Sit, "sit", false, false),
+            (StandUp, "stand-up", true, false),
+            (Balance, "balance", true, false),
+            (Jump, "jump", true, false),
+            (SitDown, "sit-down", true, false),
+            (Fallen, "fallen", false, true),
+            (CannotRise, "cannot-rise", false, true),
+        ] {
+            bus.0.borrow_mut().diagnostics.balance.state = state;
+            let reading = client.live(live_page("balance"), 0).expect("an answer");
+            view.take(&reading.expect("the page"));
+            assert_eq!(
+                (view.balance(), view.stands(), view.lies()),
+                (Some(word), stands, lies)
+            );
+        }
     }
 }

@@ -189,6 +189,9 @@ impl Session {
             {
                 "cannot move: the robot stands, and takes --sticks only".to_owned()
             }
+            Some(Obstacle::PcAwaited) if self.robot.lies() => {
+                "cannot move: the robot lies; put the stand switch down first".to_owned()
+            }
             Some(Obstacle::PcAwaited) => "ready in a moment".to_owned(),
             Some(obstacle) => format!("cannot move: {obstacle}"),
             None if self.wish.is_held && self.pilot.must_let_go() => {
@@ -211,14 +214,10 @@ impl Session {
         } else {
             "disarmed"
         };
-        let stands = if self.robot.stands() {
-            "stands"
-        } else {
-            "sits"
-        };
+        let balance = self.robot.balance().unwrap_or("unknown");
         let mut lines = vec![
             String::new(),
-            format!("robot     mode {mode}, {armed}, {stands}"),
+            format!("robot     mode {mode}, {armed}, balance {balance}"),
         ];
         lines.extend(self.pilot.lines(&self.robot));
         lines.extend([
