@@ -12,5 +12,6 @@ mod sbus;
 pub use crate::domain::RemoteMapping;
 pub use dbus::{DbusFrame, DbusParser, DbusSwitch};
 pub use line_diagnosis::{LineCounters, LineDiagnosis};
+pub use mapping::{SBUS_SWITCH_HIGH, SBUS_SWITCH_LOW};
 pub use receiver::{RemoteFormat, RemoteReceiver};
 pub use sbus::{SbusFrame, SbusParser};

@@ -7,6 +7,11 @@ use crate::domain::{
 
 /// A switch counts as thrown beyond half way.
 const SWITCH_THRESHOLD: f32 = 0.5;
+/// Counts of an SBUS channel without settings for its ends at which its switch still counts as thrown: beyond half way from
+/// FrSky's centre to its ends.
+pub const SBUS_SWITCH_LOW: u16 = 581;
+/// As [`SBUS_SWITCH_LOW`], towards the high end.
+pub const SBUS_SWITCH_HIGH: u16 = 1_402;
 /// The dead-man stick counts as held beyond this position.
 const DEAD_MAN_THRESHOLD: f32 = 0.7;
 /// An e-stop channel further below its low end than this is absent: receivers send 0 for a channel that the

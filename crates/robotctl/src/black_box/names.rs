@@ -25,7 +25,7 @@ pub(super) fn source_name(sample: &BlackBoxSample) -> &'static str {
     }
 }
 
-/// Returns the name that live pages use.
+/// Returns the name that the live page uses.
 pub(super) fn state_name(state: BalanceState) -> &'static str {
     match state {
         BalanceState::Sit => "sit",
@@ -62,5 +62,37 @@ pub(super) fn bus_name(state: BusErrorState) -> &'static str {
         BusErrorState::Active => "active",
         BusErrorState::Passive => "passive",
         BusErrorState::BusOff => "bus-off",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use robot_app::tuning::LiveKind;
+
+    use super::*;
+    use crate::tuning::live_page;
+
+    fn choices(field: &str) -> &'static [&'static str] {
+        let mut fields = live_page("balance").fields.iter();
+        match fields.find(|known| known.name == field).map(|f| &f.kind) {
+            Some(LiveKind::Choice { names, .. }) => names,
+            other => panic!("`{field}` is no choice: {other:?}"),
+        }
+    }
+
+    #[test]
+    fn states_and_requests_have_the_names_of_the_live_page() {
+        use BalanceState::{Balance, CannotRise, Fallen, Jump, Sit, SitDown, StandUp};
+        use StandPermit::{Ready, Requested, Standing, StandingUp, SwitchMustGoDown};
+        let states = [Sit, StandUp, Balance, Jump, SitDown, Fallen, CannotRise];
+        assert_eq!(choices("state").len(), states.len());
+        for state in states {
+            assert_eq!(state_name(state), choices("state")[state as usize]);
+        }
+        let requests = [SwitchMustGoDown, Ready, Requested, StandingUp, Standing];
+        assert_eq!(choices("request").len(), requests.len());
+        for stand in requests {
+            assert_eq!(request_name(stand), choices("request")[stand as usize]);
+        }
     }
 }

@@ -1,5 +1,7 @@
 //! The controls of a transmitter, and the words that ask the pilot to move them.
 
+use robot_app::input::{SBUS_SWITCH_HIGH, SBUS_SWITCH_LOW};
+
 /// A stick's axis or a switch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Control {
@@ -114,10 +116,10 @@ impl Control {
     }
 
     /// True if the robot takes a movement between these counts for what it is. That of a switch without settings for
-    /// its ends must cross the robot's own limits, which lie half way between FrSky's centre and ends.
+    /// its ends must cross the robot's own limits.
     pub(super) fn is_reached(self, from: u16, to: u16) -> bool {
-        const LOW: u16 = 581;
-        const HIGH: u16 = 1_402;
+        const LOW: u16 = SBUS_SWITCH_LOW;
+        const HIGH: u16 = SBUS_SWITCH_HIGH;
         let (low, high) = (from.min(to), from.max(to));
         match self {
             Self::Stand => low <= LOW && high >= HIGH,

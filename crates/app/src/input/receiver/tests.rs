@@ -1,5 +1,8 @@
 use super::*;
-use crate::domain::DriveMode;
+use crate::{
+    domain::{DriveMode, StandSwitch},
+    input::{SBUS_SWITCH_HIGH, SBUS_SWITCH_LOW},
+};
 
 /// All channels are 992 and no flag is set (docs/hardware.md#test-vectors).
 const SBUS_CENTRED: [u8; 25] = [
@@ -120,6 +123,19 @@ fn decoded_sbus(channel: usize, raw: u16) -> RemoteUpdate {
         frame[1 + bit / 8] |= (is_set as u8) << (bit % 8);
     }
     decoded(RemoteFormat::Sbus, &frame)
+}
+
+#[test]
+fn the_stand_switch_acts_at_the_counts_that_the_pc_tool_takes() {
+    use StandSwitch::{Down, Unknown, Up};
+    for (raw, stand) in [
+        (SBUS_SWITCH_LOW, Down),
+        (SBUS_SWITCH_LOW + 1, Unknown),
+        (SBUS_SWITCH_HIGH - 1, Unknown),
+        (SBUS_SWITCH_HIGH, Up),
+    ] {
+        assert_eq!(decoded_sbus(7, raw).operator.stand, stand, "{raw}");
+    }
 }
 
 #[test]
