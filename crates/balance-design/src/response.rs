@@ -80,7 +80,7 @@ pub fn response(
     let equilibrium = SVector::from([0.0, 0.0, left_nm, right_nm]);
     let at_rest = Torques {
         state: equilibrium,
-        push_n: [limits.carried_n; 2],
+        push_n: [limits.above_axle_n; 2],
     };
     let mut on_their_way = VecDeque::from(vec![at_rest; delay_ticks(robot)]);
     let mut applied = at_rest;
@@ -137,8 +137,8 @@ struct Limits {
     /// Angle of a hip joint over the leg's angle, and over its length in m.
     joint_per_angle: f64,
     joint_per_length: f64,
-    /// Weight on each leg.
-    carried_n: f64,
+    /// Weight above each axle: all but the wheels and their motors.
+    above_axle_n: f64,
     /// Height of the hips above the axles.
     height_m: f64,
     length_m: [f64; 2],
@@ -158,7 +158,7 @@ impl Limits {
             joint_nm: robot.joints.peak_nm,
             joint_per_angle,
             joint_per_length,
-            carried_n: (robot.total_mass_kg() - axles_kg) * GRAVITY_MPS2 / 2.0,
+            above_axle_n: (robot.total_mass_kg() - axles_kg) * GRAVITY_MPS2 / 2.0,
             height_m: length_m,
             length_m: [robot.legs.min_m, robot.legs.max_m],
         })
@@ -251,7 +251,7 @@ impl<'a> Motion<'a> {
             let wanted_m = (limits.height_m / cos).clamp(shortest_m, longest_m);
             let spring_n = STIFFNESS_N_PER_M * (wanted_m - length_m);
             let rate = self.rates[LENGTH[leg]];
-            limits.carried_n / cos + spring_n - DAMPING_N_S_PER_M * rate
+            limits.above_axle_n / cos + spring_n - DAMPING_N_S_PER_M * rate
         })
     }
 
