@@ -8,6 +8,9 @@ const STEEPEST_RAD: f64 = 1.05;
 /// No course reaches or rises farther.
 const FARTHEST_M: f64 = 1e3;
 const MOST_PLATES: u8 = 64;
+/// A ramp that rises less would be longer than any course.
+const FLATTEST_RAMP_RAD: f64 = 0.01;
+const MOST_TILT_RAD: f64 = 1.0;
 
 /// A course. Lengths along x unless said otherwise; everything is as wide as the world, unless said otherwise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
@@ -29,7 +32,7 @@ pub enum Terrain {
     OneSidedRamp {
         /// Where the ramp begins.
         start_m: f64,
-        /// Angle of its two slopes.
+        /// Angle of its two slopes, from 0.01 rad to 60°.
         angle_rad: f64,
         /// Height of its top.
         height_m: f64,
@@ -62,7 +65,7 @@ pub enum Terrain {
         length_m: f64,
         /// Greatest height of a plate's middle above the ground.
         height_m: f64,
-        /// Greatest tilt about y, either way.
+        /// Greatest tilt about y, either way, at most 1 rad.
         tilt_rad: f64,
         /// Seed of heights and tilts.
         seed: u64,
@@ -93,7 +96,7 @@ impl Terrain {
                 angle_rad,
                 length_m,
             } => {
-                let length_m = length_m.clamp(0.01, FARTHEST_M);
+                let length_m = length_m.clamp(0.0, FARTHEST_M);
                 let rise_m = length_m * angle_rad.clamp(-STEEPEST_RAD, STEEPEST_RAD).tan();
                 both(vec![[start_m, 0.0], [start_m + length_m, rise_m]])
             }
@@ -103,7 +106,7 @@ impl Terrain {
                 height_m,
                 top_m,
             } => {
-                let run_m = height_m.abs() / angle_rad.clamp(0.01, STEEPEST_RAD).tan();
+                let run_m = height_m.abs() / angle_rad.clamp(FLATTEST_RAMP_RAD, STEEPEST_RAD).tan();
                 let ramp = vec![
                     [start_m, 0.0],
                     [start_m + run_m, height_m],
@@ -138,7 +141,8 @@ impl Terrain {
                     for plate in 0..count {
                         let middle_m = height_m * random.unit();
                         let tilt_rad = random.symmetric(tilt_rad);
-                        let rise_m = length_m / 2.0 * tilt_rad.clamp(-1.0, 1.0).tan();
+                        let rise_m =
+                            length_m / 2.0 * tilt_rad.clamp(-MOST_TILT_RAD, MOST_TILT_RAD).tan();
                         let from_m = start_m + f64::from(plate) * length_m;
                         // No plate digs into the ground.
                         let edge = |z: f64| (middle_m + z).max(0.0);
@@ -153,16 +157,62 @@ impl Terrain {
         }
     }
 
-    /// Whether a robot can meet this ground: numbers of its size, and nothing that leads back along x.
+    /// Whether a robot can meet this ground: every number within the range of its meaning, and nothing that leads back along x.
     pub fn is_sound(&self) -> bool {
-        let grip_is_sound = match self {
-            Self::Slippery { length_m, grip, .. } => *length_m >= 0.0 && (0.0..=2.0).contains(grip),
-            _ => true,
-        };
-        grip_is_sound
+        // Corners come of numbers that are already within their limits.
+        self.is_as_said()
             && self.corners().iter().all(|corners| {
                 corners.iter().flatten().all(|it| it.abs() <= FARTHEST_M)
                     && corners.is_sorted_by(|a, b| a[0] <= b[0])
             })
+    }
+
+    /// Whether the ground will be as these numbers say. None of them is NaN then.
+    fn is_as_said(&self) -> bool {
+        let any = |it: f64| it.abs() <= FARTHEST_M;
+        let length = |it: f64| (0.0..=FARTHEST_M).contains(&it);
+        match *self {
+            Self::Flat => true,
+            Self::Slope {
+                start_m,
+                angle_rad,
+                length_m,
+            } => any(start_m) && angle_rad.abs() <= STEEPEST_RAD && length(length_m),
+            Self::OneSidedRamp {
+                start_m,
+                angle_rad,
+                height_m,
+                top_m,
+            } => {
+                let angles = FLATTEST_RAMP_RAD..=STEEPEST_RAD;
+                any(start_m) && angles.contains(&angle_rad) && any(height_m) && length(top_m)
+            }
+            Self::Step { at_m, height_m } => any(at_m) && any(height_m),
+            Self::Gap {
+                at_m,
+                width_m,
+                depth_m,
+            } => any(at_m) && length(width_m) && any(depth_m),
+            Self::Plates {
+                start_m,
+                count,
+                length_m,
+                height_m,
+                tilt_rad,
+                seed: _,
+            } => {
+                let tilts = 0.0..=MOST_TILT_RAD;
+                any(start_m)
+                    && count <= MOST_PLATES
+                    && length(length_m)
+                    && length(height_m)
+                    && tilts.contains(&tilt_rad)
+            }
+            Self::Slippery {
+                start_m,
+                length_m,
+                grip,
+            } => any(start_m) && length(length_m) && (0.0..=2.0).contains(&grip),
+        }
     }
 }

@@ -65,7 +65,8 @@ pub enum Problem {
     )]
     Push,
     #[error(
-        "`{0}` is out of range: a drop is up to 10 m; a course has lengths from 0 to 1000 m along x and a grip up to 2"
+        "`{0}` is out of range: a drop is up to 10 m; a course has lengths from 0 to 1000 m along x, slopes up to 1.05 rad, up to \
+         64 plates tilted by 0 to 1 rad, and a grip up to 2"
     )]
     NoPlace(&'static str),
     #[error("`{0}` belongs to `plant = \"free\"`: no other robot can fall or meet terrain")]

@@ -295,6 +295,11 @@ fn what_only_a_free_robot_has_is_refused_elsewhere_and_nonsense_everywhere() {
             "terrain = { slippery = { start_m = 1, length_m = 1, grip = inf } }\n",
             "s.toml:4: `terrain` is out of range",
         ),
+        (
+            FREE,
+            "terrain = { slope = { start_m = 1, angle_rad = 1.2, length_m = 1 } }\n",
+            "slopes up to 1.05 rad",
+        ),
         (FREE, "robot = \"no-such\"\n", "no-such.toml"),
         (
             FREE,

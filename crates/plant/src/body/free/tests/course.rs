@@ -192,3 +192,52 @@ fn no_torque_and_no_fall_makes_it_infinite() {
         }
     }
 }
+
+#[test]
+fn ground_that_would_not_be_as_said_is_unsound() {
+    let slope = |angle_rad, length_m| Terrain::Slope {
+        start_m: 1.0,
+        angle_rad,
+        length_m,
+    };
+    let ramp = |angle_rad, top_m| Terrain::OneSidedRamp {
+        start_m: 1.0,
+        angle_rad,
+        height_m: 0.1,
+        top_m,
+    };
+    let plates = |count, tilt_rad| Terrain::Plates {
+        start_m: 1.0,
+        count,
+        length_m: 0.125,
+        height_m: 0.05,
+        tilt_rad,
+        seed: 3,
+    };
+    let sound = [
+        slope(-1.05, 0.0),
+        slope(0.26, 4.0),
+        ramp(0.01, 0.0),
+        plates(64, 1.0),
+    ];
+    for terrain in sound {
+        assert!(terrain.is_sound(), "{terrain:?}");
+    }
+    let unsound = [
+        slope(1.1, 4.0),
+        slope(-1.1, 4.0),
+        slope(f64::NAN, 4.0),
+        slope(0.0, -0.1),
+        slope(0.0, 1001.0),
+        ramp(0.009, 0.0),
+        ramp(-0.1, 0.0),
+        ramp(1.1, 0.0),
+        ramp(0.1, -0.1),
+        plates(65, 0.1),
+        plates(8, 1.1),
+        plates(8, -0.1),
+    ];
+    for terrain in unsound {
+        assert!(!terrain.is_sound(), "{terrain:?}");
+    }
+}
