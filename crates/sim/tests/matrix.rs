@@ -151,6 +151,14 @@ fn every_fault_has_a_row() {
 }
 
 #[test]
+fn the_sample_while_balancing_consists_of_rows() {
+    let rows = expected::rows();
+    let mut unknown = expected::BALANCING_SAMPLE.iter();
+    let unknown = unknown.find(|name| !rows.iter().any(|row| row.fault == **name));
+    assert_eq!(unknown, None);
+}
+
+#[test]
 fn the_document_shows_the_matrix() {
     document::check(&expected::rows());
 }

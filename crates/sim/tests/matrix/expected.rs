@@ -28,7 +28,7 @@ pub const NEXT_FRAME_MS: f64 = 7.0 + 3.0 + 3.0;
 /// The last good frame may be 100 ms old, and ended up to 7 ms before the fault or up to 3 ms after its start.
 pub const REMOTE_LOST_MS: f64 = 100.0 + 3.0 + 3.0;
 
-/// The faults that a robot that balances meets in every run of the tests: each way in which it ends, on each bus.
+/// The faults that a robot that balances meets in every run of the tests.
 pub const BALANCING_SAMPLE: [&str; 13] = [
     "e-stop",
     "sbus-silent",
