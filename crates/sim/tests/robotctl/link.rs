@@ -108,6 +108,7 @@ fn the_state_of_the_image_is_recorded_and_shown() {
 
 /// What the drive found.
 struct Driven {
+    /// Wheel speed at which the dead-man was let go.
     fastest_rps: f32,
     /// Wheel speed some time after the dead-man was let go.
     after_rps: f32,
@@ -118,6 +119,8 @@ struct Driven {
 const STATES_A_COMMAND: u32 = 4;
 /// Speed that the wheels must reach; asked is 0.3 m/s of wheels of 0.06 m, so 5 rad/s.
 const TURNING_RPS: f32 = 2.0;
+/// Wheel speed of a robot that balances on the spot, some 1 rad/s right after a stop; one that drives on has 10 rad/s.
+const BALANCING_RPS: f32 = 2.0;
 /// States from letting go to the end.
 const STOPPING: u32 = 400;
 /// Three minutes of the robot's time: something is wrong.
@@ -174,7 +177,7 @@ fn drive(port: &str, pad: &str, mut pilot: impl Pilot) -> anyhow::Result<Driven>
         if !n.is_multiple_of(STATES_A_COMMAND) {
             continue;
         }
-        if pilot.is_ready(&robot) {
+        if let_go_at.is_none() && pilot.is_ready(&robot) {
             fastest_rps = fastest_rps.max(robot.state.motors[0].vel_rps);
         }
         if fastest_rps > TURNING_RPS {
@@ -267,7 +270,7 @@ fn in_place_of_the_sticks_a_joystick_drives_the_standing_image() {
     });
     let ((fastest_rps, after_rps), outcome) = run(job("sticks", text), tool);
     assert!(fastest_rps > TURNING_RPS, "{fastest_rps}");
-    assert!(after_rps < fastest_rps, "{after_rps} of {fastest_rps}");
+    assert!(after_rps.abs() < BALANCING_RPS, "{after_rps}");
     let height_m = outcome.result.value("truth.body.z").expect("a body");
     assert!(
         height_m > 0.18,
