@@ -1,20 +1,17 @@
 //! Falls: body, hips and knees hit the floor.
 
+use std::cell::Cell;
+
 use robot_description::Robot;
-use robot_plant::free::{FreeBody, FreeInputs, FreeSetup, FreeState, Hold, Start};
+use robot_plant::free::{FreeBody, FreeSetup, FreeState, Start};
 use serde_json::{Value, json};
 
-use crate::oracle::{Oracle, numbers, robot, state_json};
+use crate::{
+    floor::{EVERY_S, Run, STEP_S, STIFF},
+    oracle::{numbers, robot},
+};
 
-const STEP_S: f64 = 250e-6;
-const EVERY: usize = 4;
-const EVERY_S: f64 = STEP_S * EVERY as f64;
-const GRAVITY_MPS2: f64 = 9.80665;
-/// Assumptions of the plant about the floor, tyres and the body's shell.
-const FRICTION: f64 = 0.8;
-const ROLLING: f64 = 0.015;
-const GIVES_M: f64 = 0.8e-3;
-const TYRE_DAMPING: f64 = 0.15;
+/// Assumptions of the plant about the body's shell and the stops of the hips.
 const SHELL_DAMPING: f64 = 0.3;
 const STOP_RAD: f64 = 0.02;
 const STOP_NM_PER_RAD: f64 = 400.0;
@@ -40,64 +37,47 @@ struct Fall {
 }
 
 impl Fall {
+    fn run<'a>(&self, robot: &'a Robot) -> Run<'a> {
+        Run {
+            robot,
+            state: self.state,
+            hips: self.hips,
+            wheel_nm: [0.0; 2],
+            seconds: self.seconds,
+        }
+    }
+
     fn in_plant(&self, robot: &Robot) -> Vec<Moment> {
-        let mut body = FreeBody::new(robot, &FreeSetup::default());
-        body.set_state(&self.state);
-        let wanted_rad = body.joint_pos_rad();
-        let [kp, kd] = self.hips;
-        let mut impulse_ns = 0.0;
-        let moments = (0..self.moments()).map(|_| {
-            for _ in 0..EVERY {
-                let (rad, rps) = (body.joint_pos_rad(), body.joint_vel_rps());
-                let inputs = FreeInputs {
-                    joint_nm: std::array::from_fn(|n| kp * (wanted_rad[n] - rad[n]) - kd * rps[n]),
-                    ..FreeInputs::default()
-                };
-                body.step(&inputs, STEP_S);
-                impulse_ns += body.body_contact_n() * STEP_S;
-            }
+        let impulse_ns = Cell::new(0.0);
+        let hit =
+            |body: &FreeBody| impulse_ns.set(impulse_ns.get() + body.body_contact_n() * STEP_S);
+        self.run(robot).in_plant(hit, |body| {
             let state = body.state();
             Moment {
                 place_m: state.position_m,
                 attitude: state.attitude,
                 energy_j: body.energy_j(),
-                impulse_ns,
+                impulse_ns: impulse_ns.get(),
             }
-        });
-        moments.collect()
-    }
-
-    fn moments(&self) -> usize {
-        (self.seconds / EVERY_S).round() as usize
+        })
     }
 
     fn in_mujoco(&self, robot: &Robot) -> Option<Vec<Moment>> {
-        let oracle = Oracle::new(robot, self.name)?;
-        let n_per_m = robot.total_mass_kg() / 2.0 * GRAVITY_MPS2 / GIVES_M;
-        let damping = |share: f64, kg: f64| 2.0 * share * (n_per_m * kg).sqrt();
-        let unsprung_kg = robot.wheels.mass_kg + robot.wheels.motor_mass_kg;
-        let question = json!({
-            "state": state_json(&self.state),
-            "step_s": STEP_S,
-            "steps": self.moments() * EVERY,
-            "every": EVERY,
-            "kp": self.hips[0],
-            "kd": self.hips[1],
-            "friction": FRICTION,
-            "twisting_m": 1e-5,
-            "rolling_m": ROLLING * robot.wheels.radius_m,
-            "rolling_nm": 0.0,
-            "tyre_n_per_m": n_per_m,
-            "tyre_n_per_mps": damping(TYRE_DAMPING, unsprung_kg),
-            "stop_rad": STOP_RAD,
-            "stop_nm_per_rad": STOP_NM_PER_RAD,
-            "stop_nm_per_rps": STOP_NM_PER_RPS,
-            "shell_n_per_m": n_per_m,
-            "shell_n_per_mps": damping(SHELL_DAMPING, robot.total_mass_kg() / 4.0),
-        });
-        let answer = oracle.ask(Hold::Free, "fall", question);
-        let rows = answer.as_array().expect("a list").iter();
-        Some(rows.map(moment).collect())
+        let run = self.run(robot);
+        let mut question = run.question();
+        run.soften_tyres(&mut question);
+        let shell_n_per_mps = run.damping_n_per_mps(SHELL_DAMPING, robot.total_mass_kg() / 4.0);
+        for (key, value) in [
+            ("stop_rad", STOP_RAD),
+            ("stop_nm_per_rad", STOP_NM_PER_RAD),
+            ("stop_nm_per_rps", STOP_NM_PER_RPS),
+            ("shell_n_per_m", run.n_per_m()),
+            ("shell_n_per_mps", shell_n_per_mps),
+        ] {
+            question[key] = json!(value);
+        }
+        let rows = run.ask(self.name, "fall", question)?;
+        Some(rows.iter().map(moment).collect())
     }
 }
 
@@ -157,6 +137,13 @@ struct Limits {
     way_m: f64,
 }
 
+/// Limits of most falls.
+const MOST: Limits = Limits {
+    first_hit_s: 5e-3,
+    rests_after_s: 0.2,
+    hit: 0.07,
+    way_m: 0.02,
+};
 /// Share of the energy lost.
 const LOST: f64 = 1e-3;
 /// Height and tilt at rest.
@@ -220,8 +207,6 @@ fn dropped(robot: &Robot, height_m: f64, [roll_rad, pitch_rad]: [f64; 2]) -> Fre
     }
 }
 
-const STIFF: [f64; 2] = [150.0, 4.0];
-
 /// Both fall forward over their wheels, and rest on those and the front edge.
 #[test]
 fn a_robot_falls_on_its_front_as_in_mujoco() {
@@ -237,13 +222,7 @@ fn a_robot_falls_on_its_front_as_in_mujoco() {
         hips: STIFF,
         seconds: 1.5,
     };
-    let most = Limits {
-        first_hit_s: 5e-3,
-        rests_after_s: 0.2,
-        hit: 0.07,
-        way_m: 0.02,
-    };
-    fall.assert_as_in_mujoco(&robot, &most);
+    fall.assert_as_in_mujoco(&robot, &MOST);
 }
 
 /// The legs give way, and knees and edge of the body hit the floor. What knees and edge get of the first hit depends on a millimetre.
@@ -261,12 +240,7 @@ fn a_robot_with_limp_legs_collapses_as_in_mujoco() {
         hips: [0.0, 0.3],
         seconds: 1.5,
     };
-    let most = Limits {
-        first_hit_s: 5e-3,
-        rests_after_s: 0.2,
-        hit: 0.3,
-        way_m: 0.02,
-    };
+    let most = Limits { hit: 0.3, ..MOST };
     fall.assert_as_in_mujoco(&robot, &most);
 }
 
@@ -283,8 +257,8 @@ fn a_robot_falls_on_its_side_as_in_mujoco() {
     let most = Limits {
         first_hit_s: 0.02,
         rests_after_s: 0.3,
-        hit: 0.07,
         way_m: 0.05,
+        ..MOST
     };
     fall.assert_as_in_mujoco(&robot, &most);
 }
@@ -298,13 +272,7 @@ fn a_robot_falls_on_its_top_as_in_mujoco() {
         hips: STIFF,
         seconds: 1.5,
     };
-    let most = Limits {
-        first_hit_s: 5e-3,
-        rests_after_s: 0.2,
-        hit: 0.07,
-        way_m: 0.02,
-    };
-    fall.assert_as_in_mujoco(&robot, &most);
+    fall.assert_as_in_mujoco(&robot, &MOST);
 }
 
 /// One corner hits first, and the robot turns about it.
@@ -318,10 +286,8 @@ fn a_robot_falls_on_a_corner_as_in_mujoco() {
         seconds: 1.5,
     };
     let most = Limits {
-        first_hit_s: 5e-3,
-        rests_after_s: 0.2,
-        hit: 0.07,
         way_m: 0.03,
+        ..MOST
     };
     fall.assert_as_in_mujoco(&robot, &most);
 }

@@ -1,26 +1,14 @@
-//! On the floor, with MuJoCo's own contacts and steps.
+//! On its wheels, which carry, roll, slip and turn it.
 
 use robot_description::Robot;
-use robot_plant::free::{FreeBody, FreeInputs, FreeSetup, Hold, Start};
+use robot_plant::free::{FreeBody, FreeSetup, FreeState, Start};
 use serde_json::{Value, json};
 
-use crate::oracle::{Oracle, numbers, robot, state_json};
+use crate::{
+    floor::{self, EVERY_S, FRICTION, GIVES_M, GRAVITY_MPS2, LEAST_FRICTION_M, ROLLING, STIFF},
+    oracle::{numbers, robot},
+};
 
-const STEP_S: f64 = 250e-6;
-const EVERY: u32 = 4;
-const EVERY_S: f64 = STEP_S * EVERY as f64;
-/// Springs and dampers that hold the hips.
-const KP_NM_PER_RAD: f64 = 150.0;
-const KD_NM_PER_RPS: f64 = 4.0;
-const GRAVITY_MPS2: f64 = 9.80665;
-/// Of the plant: friction, rolling resistance by load and radius, and a tyre that gives 0.8 mm under half of the robot, damped
-/// by 0.15 under wheel and motor.
-const FRICTION: f64 = 0.8;
-const ROLLING: f64 = 0.015;
-const TYRE_GIVES_M: f64 = 0.8e-3;
-const TYRE_DAMPING: f64 = 0.15;
-/// The least friction of a contact in MuJoCo.
-const LEAST_FRICTION_M: f64 = 1e-5;
 /// A height that stays as near to its last one has settled.
 const SETTLED_M: f64 = 1e-3;
 
@@ -35,7 +23,6 @@ struct Moment {
 }
 
 /// Tyres of MuJoCo's robot.
-#[derive(Clone, Copy, PartialEq, Eq)]
 enum Tyres {
     /// Hard; they resist rolling and not twisting.
     Rolling,
@@ -55,84 +42,62 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    fn body(&self) -> FreeBody {
+    fn state(&self) -> FreeState {
         let setup = FreeSetup {
             start: self.start,
             ..FreeSetup::default()
         };
-        let mut body = FreeBody::new(self.robot, &setup);
-        let mut state = body.state();
+        let mut state = FreeBody::new(self.robot, &setup).state();
         let wheel_rps =
             self.turning_rps * self.robot.wheels.track_m / 2.0 / self.robot.wheels.radius_m;
         state.rate_rps[2] = self.turning_rps;
         state.wheel_rps = [-wheel_rps, wheel_rps];
-        body.set_state(&state);
-        body
+        state
     }
 
-    fn moments(&self) -> usize {
-        (self.seconds / EVERY_S).round() as usize
+    fn on_floor(&self) -> floor::Run<'_> {
+        floor::Run {
+            robot: self.robot,
+            state: self.state(),
+            hips: STIFF,
+            wheel_nm: self.wheel_nm,
+            seconds: self.seconds,
+        }
     }
 
     fn in_plant(&self) -> Vec<Moment> {
-        let mut body = self.body();
-        let wanted_rad = body.joint_pos_rad();
-        let moments = (0..self.moments()).map(|_| {
-            for _ in 0..EVERY {
-                let (rad, rps) = (body.joint_pos_rad(), body.joint_vel_rps());
-                let held =
-                    |n: usize| KP_NM_PER_RAD * (wanted_rad[n] - rad[n]) - KD_NM_PER_RPS * rps[n];
-                let inputs = FreeInputs {
-                    wheel_nm: self.wheel_nm,
-                    joint_nm: std::array::from_fn(held),
-                    ..FreeInputs::default()
-                };
-                body.step(&inputs, STEP_S);
-            }
-            let state = body.state();
-            let [w, _, y, z] = state.attitude;
-            Moment {
-                x_m: state.position_m[0],
-                z_m: state.position_m[2],
-                pitch_rad: 2.0 * y.atan2(w),
-                yaw_rad: 2.0 * z.atan2(w),
-                joint_rad: state.joint_rad,
-                wheel_rps: state.wheel_rps,
-            }
-        });
-        moments.collect()
+        self.on_floor().in_plant(
+            |_| (),
+            |body| {
+                let state = body.state();
+                let [w, _, y, z] = state.attitude;
+                Moment {
+                    x_m: state.position_m[0],
+                    z_m: state.position_m[2],
+                    pitch_rad: 2.0 * y.atan2(w),
+                    yaw_rad: 2.0 * z.atan2(w),
+                    joint_rad: state.joint_rad,
+                    wheel_rps: state.wheel_rps,
+                }
+            },
+        )
     }
 
     fn in_mujoco(&self, test: &str, tyres: Tyres) -> Option<Vec<Moment>> {
-        let oracle = Oracle::new(self.robot, test)?;
-        let mut question = json!({
-            "state": state_json(&self.body().state()),
-            "wheel_nm": self.wheel_nm,
-            "step_s": STEP_S,
-            "steps": self.moments() * EVERY as usize,
-            "every": EVERY,
-            "kp": KP_NM_PER_RAD,
-            "kd": KD_NM_PER_RPS,
-            "friction": FRICTION,
-            "twisting_m": LEAST_FRICTION_M,
-            "rolling_m": ROLLING * self.robot.wheels.radius_m,
-            "rolling_nm": 0.0,
-        });
-        if tyres == Tyres::Twisting {
-            let load_n = self.robot.total_mass_kg() / 2.0 * GRAVITY_MPS2;
-            question["twisting_m"] = json!(FRICTION * twist_lever_m(self.robot));
-            question["rolling_m"] = json!(LEAST_FRICTION_M);
-            question["rolling_nm"] = json!(ROLLING * self.robot.wheels.radius_m * load_n);
+        let run = self.on_floor();
+        let mut question = run.question();
+        match tyres {
+            Tyres::Rolling => (),
+            Tyres::Soft => run.soften_tyres(&mut question),
+            Tyres::Twisting => {
+                let load_n = self.robot.total_mass_kg() / 2.0 * GRAVITY_MPS2;
+                question["twisting_m"] = json!(FRICTION * twist_lever_m(self.robot));
+                question["rolling_m"] = json!(LEAST_FRICTION_M);
+                question["rolling_nm"] = json!(ROLLING * self.robot.wheels.radius_m * load_n);
+            }
         }
-        if tyres == Tyres::Soft {
-            let n_per_m = self.robot.total_mass_kg() / 2.0 * GRAVITY_MPS2 / TYRE_GIVES_M;
-            let unsprung_kg = self.robot.wheels.mass_kg + self.robot.wheels.motor_mass_kg;
-            question["tyre_n_per_m"] = json!(n_per_m);
-            question["tyre_n_per_mps"] = json!(2.0 * TYRE_DAMPING * (n_per_m * unsprung_kg).sqrt());
-        }
-        let answer = oracle.ask(Hold::Free, "ground", question);
-        let rows = answer.as_array().expect("a list").iter();
-        Some(rows.map(moment).collect())
+        let rows = run.ask(test, "ground", question)?;
+        Some(rows.iter().map(moment).collect())
     }
 }
 
@@ -152,8 +117,7 @@ fn moment(row: &Value) -> Moment {
 /// Hertz's pressure on the patch of the tyre that gives, as a circle of the area of the ellipse that touches.
 fn twist_lever_m(robot: &Robot) -> f64 {
     let wheels = &robot.wheels;
-    let area_m2 =
-        std::f64::consts::PI * TYRE_GIVES_M * (wheels.radius_m * wheels.width_m / 2.0).sqrt();
+    let area_m2 = std::f64::consts::PI * GIVES_M * (wheels.radius_m * wheels.width_m / 2.0).sqrt();
     3.0 / 16.0 * std::f64::consts::PI * (area_m2 / std::f64::consts::PI).sqrt()
 }
 

@@ -6,5 +6,6 @@
 mod accelerations;
 mod falls;
 mod flight;
+mod floor;
 mod ground;
 mod oracle;

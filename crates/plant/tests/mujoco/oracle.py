@@ -263,12 +263,23 @@ class OnGround(Oracle):
             )
             data.qfrc_applied[wheels] = question["wheel_nm"]
             mujoco.mj_step(model, data)
+            self.stepped(question["step_s"])
             if (n + 1) % question["every"] == 0:
-                x, _, z = data.qpos[:3]
-                w, _, y, yaw = data.qpos[3:7]
-                turns = 2 * np.arctan2([y, yaw], w)
-                seen.append([x, z, *turns, *data.qpos[places], *data.qvel[wheels]])
-        return [list(row) for row in seen]
+                seen.append(list(self.moment()))
+        return seen
+
+    def stepped(self, step_s):
+        """Sees every step."""
+
+    def moment(self):
+        """Place x and z, pitch, yaw, hips, wheels."""
+        data = self.data
+        x, _, z = data.qpos[:3]
+        w, _, y, yaw = data.qpos[3:7]
+        turns = 2 * np.arctan2([y, yaw], w)
+        places = [joint.qposadr[0] for joint in self.hips]
+        wheels = [joint.dofadr[0] for joint in self.wheels]
+        return [x, z, *turns, *data.qpos[places], *data.qvel[wheels]]
 
 
 class Falling(OnGround):
@@ -278,6 +289,7 @@ class Falling(OnGround):
         super().__init__(file, question)
         model = self.model
         model.opt.enableflags |= mujoco.mjtEnableBit.mjENBL_ENERGY
+        self.sum_ns = 0.0
         # Across a contact MuJoCo has a damper only, as much stronger than that along it. Its default would hold like a rigid body;
         # this is as strong as the plant's spring and damper are over the few milliseconds of a hit.
         model.opt.impratio = 3.0
@@ -306,22 +318,12 @@ class Falling(OnGround):
                 total += force[0]
         return total
 
-    def run(self, question):
-        model, data = self.model, self.data
-        self.pose(question["state"])
-        hips = [joint.dofadr[0] for joint in self.hips]
-        places = [joint.qposadr[0] for joint in self.hips]
-        wanted = data.qpos[places].copy()
-        seen, sum_ns = [], 0.0
-        for n in range(question["steps"]):
-            data.qfrc_applied[hips] = (
-                question["kp"] * (wanted - data.qpos[places]) - question["kd"] * data.qvel[hips]
-            )
-            mujoco.mj_step(model, data)
-            sum_ns += self.hits_n() * question["step_s"]
-            if (n + 1) % question["every"] == 0:
-                seen.append([*data.qpos[:7], sum(data.energy), sum_ns])
-        return [list(row) for row in seen]
+    def stepped(self, step_s):
+        self.sum_ns += self.hits_n() * step_s
+
+    def moment(self):
+        """Place, attitude, energy, what the floor has given to everything but the tyres."""
+        return [*self.data.qpos[:7], sum(self.data.energy), self.sum_ns]
 
 
 def answer(files, question):
