@@ -2,7 +2,8 @@
 
 use crate::{Robot, figures, five_bar::FiveBar};
 
-/// Angles in rad between which the reach is taken as a line.
+/// Angles in rad between which the reach is taken as a line. Where no leg fits at the far one, the last angle at which one does
+/// takes its place, and the near one moves in as much.
 const ANGLES_RAD: [f64; 2] = [0.3, 0.8];
 const STEPS: u32 = 400;
 
@@ -20,8 +21,9 @@ pub struct Reach {
 impl Robot {
     /// Returns the reach.
     pub fn reach(&self) -> Reach {
-        let [near_rad, far_rad] = ANGLES_RAD;
-        let [near_m, far_m] = ANGLES_RAD.map(|angle_rad| self.longest_m(angle_rad));
+        let [near_rad, far_rad] = self.angles_rad();
+        let [near_m, far_m] = [near_rad, far_rad]
+            .map(|angle_rad| self.longest_m(angle_rad).unwrap_or(self.legs.min_m));
         let less_m_per_rad = ((near_m - far_m) / (far_rad - near_rad)).max(0.0);
         Reach {
             down_m: near_m + less_m_per_rad * near_rad,
@@ -29,8 +31,17 @@ impl Robot {
         }
     }
 
-    /// Longest usable leg at this angle to either side, or the shortest one where none fits.
-    fn longest_m(&self, angle_rad: f64) -> f64 {
+    fn angles_rad(&self) -> [f64; 2] {
+        let [near_rad, far_rad] = ANGLES_RAD;
+        (1..=STEPS)
+            .rev()
+            .map(|step| f64::from(step) / f64::from(STEPS))
+            .find(|share| self.longest_m(share * far_rad).is_some())
+            .map_or(ANGLES_RAD, |share| [share * near_rad, share * far_rad])
+    }
+
+    /// Longest usable leg at this angle to either side, if one fits.
+    fn longest_m(&self, angle_rad: f64) -> Option<f64> {
         let leg = FiveBar::new(&self.legs);
         let fits = |length_m: f64, angle_rad: f64| {
             let hips_rad = leg.hips_rad(length_m, angle_rad);
@@ -41,7 +52,6 @@ impl Robot {
         (0..=STEPS)
             .map(|step| max_m - step_m * f64::from(step))
             .find(|length_m| fits(*length_m, angle_rad) && fits(*length_m, -angle_rad))
-            .unwrap_or(min_m)
     }
 }
 
@@ -51,28 +61,31 @@ mod tests {
 
     use super::*;
 
-    fn fivebar() -> Robot {
-        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots/fivebar.toml");
-        Robot::read(Path::new(file)).expect("a robot of this repository")
+    fn robot(name: &str) -> Robot {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../robots");
+        Robot::read(&folder.join(name)).expect("a robot of this repository")
     }
 
     #[test]
     fn the_line_is_within_millimetres_of_the_hips_stops() {
-        let robot = fivebar();
-        let reach = robot.reach();
-        for angle_rad in [0.4, 0.5, 0.6, 0.7] {
-            let line_m = reach.down_m - reach.less_m_per_rad * angle_rad;
-            let longest_m = robot.longest_m(angle_rad);
-            assert!(
-                (line_m - longest_m).abs() < 0.005,
-                "{angle_rad}: {line_m} {longest_m}"
-            );
+        for name in ["fivebar.toml", "fivebar-rs00.toml"] {
+            let robot = robot(name);
+            let reach = robot.reach();
+            for angle_rad in [0.4, 0.5, 0.6, 0.7] {
+                let line_m = reach.down_m - reach.less_m_per_rad * angle_rad;
+                let longest_m = robot.longest_m(angle_rad).expect("a leg fits");
+                assert!(
+                    (line_m - longest_m).abs() < 0.005,
+                    "{name}, {angle_rad}: {line_m} {longest_m}"
+                );
+            }
         }
     }
 
     /// By the cosine law: rear hip at its stop of 1.35 rad.
     #[test]
     fn the_longest_leg_is_that_of_a_hand_calculation() {
-        assert!((fivebar().longest_m(0.55) - 0.24).abs() < 0.003);
+        let longest_m = robot("fivebar.toml").longest_m(0.55).expect("a leg fits");
+        assert!((longest_m - 0.24).abs() < 0.003);
     }
 }
