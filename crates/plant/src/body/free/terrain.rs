@@ -136,6 +136,8 @@ impl Terrain {
             } => {
                 let mut random = Random::new(seed, Stream::Plates);
                 let count = count.min(MOST_PLATES);
+                // A plate ends in exactly the number with which the next one starts.
+                let edge_m = |plate: u8| start_m + f64::from(plate) * length_m;
                 let mut side = || {
                     let mut corners = vec![[start_m, 0.0]];
                     for plate in 0..count {
@@ -143,13 +145,12 @@ impl Terrain {
                         let tilt_rad = random.symmetric(tilt_rad);
                         let rise_m =
                             length_m / 2.0 * tilt_rad.clamp(-MOST_TILT_RAD, MOST_TILT_RAD).tan();
-                        let from_m = start_m + f64::from(plate) * length_m;
                         // No plate digs into the ground.
-                        let edge = |z: f64| (middle_m + z).max(0.0);
-                        corners.push([from_m, edge(-rise_m)]);
-                        corners.push([from_m + length_m, edge(rise_m)]);
+                        let above_m = |z: f64| (middle_m + z).max(0.0);
+                        corners.push([edge_m(plate), above_m(-rise_m)]);
+                        corners.push([edge_m(plate + 1), above_m(rise_m)]);
                     }
-                    corners.push([start_m + f64::from(count) * length_m, 0.0]);
+                    corners.push([edge_m(count), 0.0]);
                     corners
                 };
                 [side(), side()]

@@ -209,7 +209,7 @@ fn ground_that_would_not_be_as_said_is_unsound() {
     let plates = |count, tilt_rad| Terrain::Plates {
         start_m: 1.0,
         count,
-        length_m: 0.125,
+        length_m: 0.1,
         height_m: 0.05,
         tilt_rad,
         seed: 3,
