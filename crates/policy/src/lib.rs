@@ -35,11 +35,13 @@
 
 pub mod action;
 pub mod attitude;
+mod base_yaml;
 pub mod config;
 mod description;
 mod mapping;
 pub mod observation;
 
+pub use base_yaml::{OutOfReach, base_yaml};
 pub use description::{
     ActionPlan, Drive, Group, HistoryOrder, Joint, PolicyDescription, Source, TermPlan,
 };

@@ -6,7 +6,7 @@ use crate::{ActionPlan, Drive, Joint, JointMapping, NotAMapping};
 const UNLIMITED: [f32; 2] = [f32::MIN, f32::MAX];
 
 /// Reads the names of the joints. Their number is that of `num_of_dofs`.
-fn names(keys: &Keys) -> Result<Vec<String>, ConfigError> {
+pub(super) fn names(keys: &Keys) -> Result<Vec<String>, ConfigError> {
     let count: usize = keys.get("num_of_dofs", "the number of joints, wheels included")?;
     if count == 0 {
         return Err(keys.complaint("num_of_dofs", "a policy without joints drives nothing"));
@@ -19,7 +19,7 @@ fn names(keys: &Keys) -> Result<Vec<String>, ConfigError> {
 }
 
 /// Reads which joints are wheels.
-fn drives(keys: &Keys, count: usize) -> Result<Vec<Drive>, ConfigError> {
+pub(super) fn drives(keys: &Keys, count: usize) -> Result<Vec<Drive>, ConfigError> {
     let what = "the indices of the wheels in joint_names, [] without wheels";
     let wheels: Vec<usize> = keys.get("wheel_indices", what)?;
     let mut drives = vec![Drive::Position; count];
@@ -83,56 +83,88 @@ fn numbers(
     }
 }
 
+/// Reads the period of the control loop, and how many of them are one of the network.
+pub(super) fn periods(keys: &Keys) -> Result<(f32, u32), ConfigError> {
+    let dt_s: f32 = keys.get("dt", "the period in s of the control loop")?;
+    if !(dt_s > 0.0 && dt_s <= 1.0) {
+        return Err(keys.complaint("dt", format!("{dt_s} s is no period of a control loop")));
+    }
+    let what = "periods of the control loop from one run of the network to the next";
+    let decimation: u32 = keys.get("decimation", what)?;
+    if decimation == 0 {
+        return Err(keys.complaint("decimation", "0 runs the network never: it is at least 1"));
+    }
+    Ok((dt_s, decimation))
+}
+
+/// Reads stiffness in N·m/rad and damping in N·m·s/rad of each joint while the robot gets up.
+pub(super) fn fixed_gains(
+    keys: &Keys,
+    names: &[String],
+    drives: &[Drive],
+) -> Result<Vec<[f32; 2]>, ConfigError> {
+    gains(keys, ["fixed_kp", "fixed_kd"], names, drives)
+}
+
+/// Reads the largest torque in N·m of each joint.
+pub(super) fn torque_limits(keys: &Keys, count: usize) -> Result<Vec<f32>, ConfigError> {
+    let what = "largest torque in N·m of each joint";
+    numbers(keys, "torque_limits", what, 0.0, count)
+}
+
+fn gains(
+    keys: &Keys,
+    [kp, kd]: [&str; 2],
+    names: &[String],
+    drives: &[Drive],
+) -> Result<Vec<[f32; 2]>, ConfigError> {
+    let count = names.len();
+    let what = "stiffness in N·m/rad of each joint, 0 of wheels";
+    let stiffness = numbers(keys, kp, what, 0.0, count)?;
+    let what = "damping in N·m·s/rad of each joint";
+    let damping = numbers(keys, kd, what, 0.0, count)?;
+    let mut joints = names.iter().zip(drives).zip(&stiffness);
+    if let Some(((name, _), stiffness)) =
+        joints.find(|((_, drive), stiffness)| **drive == Drive::Speed && **stiffness != 0.0)
+    {
+        let message = format!(
+            "{name} is a wheel with a stiffness of {stiffness}: a wheel has no angle to hold, so it is 0"
+        );
+        return Err(keys.complaint(kp, message));
+    }
+    Ok(stiffness
+        .into_iter()
+        .zip(damping)
+        .map(|(kp, kd)| [kp, kd])
+        .collect())
+}
+
 /// Reads the joints with all that belongs to one of them.
 pub(super) fn joints(keys: &Keys) -> Result<Vec<Joint>, ConfigError> {
     let names = names(keys)?;
     let count = names.len();
     let drives = drives(keys, count)?;
     let clips = clips(keys, count)?;
-    let list = |key: &str, what: &str, least: f32| numbers(keys, key, what, least, count);
-    let default_rad = list(
-        "default_dof_pos",
-        "default angle in rad of each joint",
+    let what = "default angle in rad of each joint";
+    let default_rad = numbers(keys, "default_dof_pos", what, f32::MIN, count)?;
+    let own = gains(keys, ["rl_kp", "rl_kd"], &names, &drives)?;
+    let fixed = fixed_gains(keys, &names, &drives)?;
+    let torque_limit_nm = torque_limits(keys, count)?;
+    let scale = numbers(
+        keys,
+        "action_scale",
+        "factor of each action",
         f32::MIN,
+        count,
     )?;
-    let kp = list(
-        "rl_kp",
-        "stiffness in N·m/rad of each joint, 0 of wheels",
-        0.0,
-    )?;
-    let kd = list("rl_kd", "damping in N·m·s/rad of each joint", 0.0)?;
-    let fixed_kp = list(
-        "fixed_kp",
-        "stiffness in N·m/rad of each joint while getting up, 0 of wheels",
-        0.0,
-    )?;
-    let fixed_kd = list(
-        "fixed_kd",
-        "damping in N·m·s/rad of each joint while getting up",
-        0.0,
-    )?;
-    let torque_limit_nm = list("torque_limits", "largest torque in N·m of each joint", 0.0)?;
-    let scale = list("action_scale", "factor of each action", f32::MIN)?;
-    for (key, stiffness) in [("rl_kp", &kp), ("fixed_kp", &fixed_kp)] {
-        let mut pairs = drives.iter().zip(stiffness).enumerate();
-        if let Some((index, (_, kp))) =
-            pairs.find(|(_, (drive, kp))| **drive == Drive::Speed && **kp != 0.0)
-        {
-            let message = format!(
-                "{} is a wheel with a stiffness of {kp}: a wheel has no angle to hold, so it is 0",
-                names[index]
-            );
-            return Err(keys.complaint(key, message));
-        }
-    }
     let joints = names.into_iter().enumerate().map(|(n, name)| Joint {
         name,
         drive: drives[n],
         default_rad: default_rad[n],
-        kp: kp[n],
-        kd: kd[n],
-        fixed_kp: fixed_kp[n],
-        fixed_kd: fixed_kd[n],
+        kp: own[n][0],
+        kd: own[n][1],
+        fixed_kp: fixed[n][0],
+        fixed_kd: fixed[n][1],
         torque_limit_nm: torque_limit_nm[n],
         action: ActionPlan {
             clip: clips[n],

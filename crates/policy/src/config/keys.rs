@@ -8,6 +8,41 @@ use serde_saphyr::Spanned;
 
 use super::ConfigError;
 
+/// Keys of rl_sar's files, and four of our own behind them.
+pub(super) const KNOWN: [&str; 31] = [
+    "dt",
+    "decimation",
+    "num_of_dofs",
+    "joint_names",
+    "joint_controller_names",
+    "joint_mapping",
+    "wheel_indices",
+    "default_dof_pos",
+    "torque_limits",
+    "fixed_kp",
+    "fixed_kd",
+    "rl_kp",
+    "rl_kd",
+    "model_name",
+    "num_observations",
+    "observations",
+    "observations_history",
+    "observations_history_priority",
+    "clip_obs",
+    "clip_actions_lower",
+    "clip_actions_upper",
+    "action_scale",
+    "lin_vel_scale",
+    "ang_vel_scale",
+    "dof_pos_scale",
+    "dof_vel_scale",
+    "commands_scale",
+    "observations_nonstack",
+    "joint_directions",
+    "commands_lower",
+    "commands_upper",
+];
+
 /// A value and the place where it stands.
 #[derive(Clone, Debug)]
 struct Entry {
@@ -134,7 +169,7 @@ impl Keys {
     }
 }
 
-fn parse<T: DeserializeOwned>(file: &Path) -> Result<T, ConfigError> {
+pub(super) fn parse<T: DeserializeOwned>(file: &Path) -> Result<T, ConfigError> {
     let name = file.display().to_string();
     let text = fs::read_to_string(file).map_err(|error| ConfigError::Unreadable {
         file: name.clone(),

@@ -2,43 +2,13 @@
 
 use std::path::Path;
 
-use super::{ConfigError, folder, joints, keys::Keys, terms::Terms};
+use super::{
+    ConfigError, folder, joints,
+    keys::{KNOWN, Keys},
+    terms::Terms,
+};
 use crate::{Group, HistoryOrder, PolicyDescription, TermPlan};
 
-/// All keys. The last five are our own.
-const KNOWN: [&str; 31] = [
-    "dt",
-    "decimation",
-    "num_of_dofs",
-    "joint_names",
-    "joint_controller_names",
-    "joint_mapping",
-    "wheel_indices",
-    "default_dof_pos",
-    "torque_limits",
-    "fixed_kp",
-    "fixed_kd",
-    "rl_kp",
-    "rl_kd",
-    "model_name",
-    "num_observations",
-    "observations",
-    "observations_history",
-    "observations_history_priority",
-    "clip_obs",
-    "clip_actions_lower",
-    "clip_actions_upper",
-    "action_scale",
-    "lin_vel_scale",
-    "ang_vel_scale",
-    "dof_pos_scale",
-    "dof_vel_scale",
-    "commands_scale",
-    "observations_nonstack",
-    "joint_directions",
-    "commands_lower",
-    "commands_upper",
-];
 /// More frames than any network takes; a number above is a slip.
 const MOST_FRAMES: usize = 1_000;
 
@@ -54,7 +24,7 @@ pub(super) fn read(
         .read_below(&folder(policies, robot, config).join("config.yaml"), &name)?;
     keys.know_only(&KNOWN)?;
     let joints = joints::joints(&keys)?;
-    let (control_period_s, decimation) = periods(&keys)?;
+    let (control_period_s, decimation) = joints::periods(&keys)?;
     let policy = PolicyDescription {
         name,
         model_file: keys.get("model_name", "the network's file, beside config.yaml")?,
@@ -67,19 +37,6 @@ pub(super) fn read(
     };
     check_num_observations(&keys, &policy)?;
     Ok(policy)
-}
-
-fn periods(keys: &Keys) -> Result<(f32, u32), ConfigError> {
-    let dt_s: f32 = keys.get("dt", "the period in s of the control loop")?;
-    if !(dt_s > 0.0 && dt_s <= 1.0) {
-        return Err(keys.complaint("dt", format!("{dt_s} s is no period of a control loop")));
-    }
-    let what = "periods of the control loop from one run of the network to the next";
-    let decimation: u32 = keys.get("decimation", what)?;
-    if decimation == 0 {
-        return Err(keys.complaint("decimation", "0 runs the network never: it is at least 1"));
-    }
-    Ok((dt_s, decimation))
 }
 
 fn observation(keys: &Keys, joints: &[crate::Joint]) -> Result<Vec<Group>, ConfigError> {

@@ -45,22 +45,24 @@ impl<'a> Terms<'a> {
                 format!("{clip} leaves nothing of an observation"),
             ));
         }
-        let all = || joints.iter().enumerate();
-        let driven = |drive| all().filter(move |(_, joint)| joint.drive == drive);
+        // In the order in which they are listed, which a trainer may have chosen.
+        let wheels: Vec<usize> = keys.get("wheel_indices", "the wheels")?;
         let has_wheels = lists
             .iter()
             .any(|list| list.iter().any(|it| it == "wheel_joint_vel"));
+        let all = 0..joints.len();
         let dofs = if has_wheels {
-            driven(Drive::Position).map(|(n, _)| n).collect()
+            all.filter(|n| joints[*n].drive == Drive::Position)
+                .collect()
         } else {
-            all().map(|(n, _)| n).collect()
+            all.collect()
         };
         Ok(Self {
             keys,
             joints,
             clip_after: [-clip, clip],
             dofs,
-            wheels: driven(Drive::Speed).map(|(n, _)| n).collect(),
+            wheels,
         })
     }
 

@@ -2,7 +2,6 @@
 
 use std::fmt;
 
-use super::Mismatch;
 use crate::{Group, HistoryOrder, PolicyDescription, Source, TermPlan};
 
 /// A term of one age in the input.
@@ -26,8 +25,10 @@ pub struct Block {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Layout {
     blocks: Vec<Block>,
-    /// Groups of the description: their terms' lengths, and how many ages they have.
+    /// Groups of the description: their terms' lengths, and their ages.
     pub(super) groups: Vec<GroupLayout>,
+    /// Number of wheels.
+    pub(super) wheels: usize,
 }
 
 /// A group's share of the input.
@@ -79,6 +80,7 @@ impl Layout {
         Self {
             blocks,
             groups: groups.collect(),
+            wheels: policy.wheels().len(),
         }
     }
 
@@ -115,18 +117,6 @@ impl Layout {
             values.map(move |value| format!("{}[{value}]{age}", block.term))
         });
         names.collect()
-    }
-
-    /// Compares the length with that of the network's input.
-    ///
-    /// # Errors
-    /// They differ. The error says what is where, and which term is likely at fault.
-    pub fn check(&self, model_len: usize) -> Result<(), Mismatch> {
-        if self.len() == model_len {
-            Ok(())
-        } else {
-            Err(Mismatch::new(self.clone(), model_len))
-        }
     }
 }
 

@@ -21,8 +21,22 @@ pub struct Suspect {
     pub blocks: Vec<(String, usize)>,
 }
 
+impl Layout {
+    /// Compares the length with that of the network's input.
+    ///
+    /// # Errors
+    /// They differ. The error says what is where, and which term is likely at fault.
+    pub fn check(&self, model_len: usize) -> Result<(), Mismatch> {
+        if self.len() == model_len {
+            Ok(())
+        } else {
+            Err(Mismatch::new(self.clone(), model_len))
+        }
+    }
+}
+
 impl Mismatch {
-    pub(super) fn new(layout: Layout, model_len: usize) -> Self {
+    fn new(layout: Layout, model_len: usize) -> Self {
         let suspects = suspects(&layout, model_len);
         Self {
             layout,
@@ -86,11 +100,55 @@ fn suspects(layout: &Layout, wanted: usize) -> Vec<Suspect> {
         let Some(rest) = wanted.checked_sub(others) else {
             continue;
         };
+        found.extend(wheels_elsewhere(layout, index, rest));
         found.extend(without_a_term(layout, index, rest));
         found.extend(other_history(layout, index, rest));
         found.extend(other_term_length(layout, index, rest));
     }
     found
+}
+
+/// Wheels in the terms of joints, or not.
+fn wheels_elsewhere(layout: &Layout, index: usize, rest: usize) -> Vec<Suspect> {
+    let group = &layout.groups[index];
+    let (wheels, apart) = (layout.wheels, "wheel_joint_vel");
+    let has_apart = group.terms.iter().any(|(name, _)| name == apart);
+    let changes = if has_apart {
+        let both = "the network knows the wheels in dof_pos and dof_vel as well";
+        let joined = "the network knows the wheels in dof_pos and dof_vel, and no wheel_joint_vel";
+        vec![
+            (both, resized(group, |len| len + wheels), true),
+            (joined, resized(group, |len| len + wheels), false),
+        ]
+    } else {
+        let change = "the network knows the joints without the wheels in dof_pos and dof_vel: list wheel_joint_vel";
+        let mut changed = resized(group, |len| len.saturating_sub(wheels));
+        changed.terms.push((apart.to_owned(), wheels));
+        vec![(change, changed, true)]
+    };
+    let fitting = changes
+        .into_iter()
+        .filter_map(|(change, mut changed, keeps_apart)| {
+            changed
+                .terms
+                .retain(|(name, _)| keeps_apart || name != apart);
+            (wheels > 0 && changed.len() == rest).then(|| Suspect {
+                change: change.to_owned(),
+                blocks: blocks(layout, index, &changed),
+            })
+        });
+    fitting.collect()
+}
+
+/// The group with other lengths of the terms of joints.
+fn resized(group: &GroupLayout, resize: impl Fn(usize) -> usize) -> GroupLayout {
+    let mut changed = group.clone();
+    for (name, len) in &mut changed.terms {
+        if ["dof_pos", "dof_vel"].contains(&name.as_str()) {
+            *len = resize(*len);
+        }
+    }
+    changed
 }
 
 /// One term too many.

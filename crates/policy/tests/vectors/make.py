@@ -194,7 +194,7 @@ POLICIES = {
     ),
     "fivebar/flat-by-term": policy(
         6, [4, 5], FIVEBAR, observations_history=[2, 1, 0], observations_history_priority="term",
-        observations_nonstack=["commands", "gravity_vec"],
+        observations_nonstack=["commands", "gravity_vec"], wheel_indices=[5, 4],
     ),
     "two-wheels/plain": policy(8, [6, 7], PLAIN, num_observations=33),
     "two-wheels/clipped": policy(
