@@ -89,6 +89,8 @@ pub(super) struct AttitudeFilter {
     /// The tilt is unknown until a rest or some motion shows it.
     tilt_unknown: bool,
     footing: Footing,
+    /// The wheels of the legs stood when the last window ended. To stand again would take them longer than a window.
+    stood: bool,
 }
 
 impl AttitudeFilter {
@@ -103,6 +105,7 @@ impl AttitudeFilter {
             lost_rotation_rad: None,
             tilt_unknown: false,
             footing: Footing::Any,
+            stood: false,
         }
     }
 
@@ -196,6 +199,12 @@ impl AttitudeFilter {
 
     /// Ends the window: detects rest and collects the measurements. Returns false if the filter had diverged.
     fn close_window(&mut self) -> bool {
+        let stands_on_legs = self.footing == Footing::StandingLegs;
+        if stands_on_legs && !self.stood {
+            // What rolling has left of velocity is no error of the tilt. A lost rotation resets it, even one of zero.
+            self.lost_rotation_rad.get_or_insert_default();
+        }
+        self.stood = stands_on_legs;
         if let Some(lost_rotation_rad) = self.lost_rotation_rad.take() {
             self.filter.add_lost_rotation(lost_rotation_rad);
             self.strapdown.speed_mps = [0.0; 2];
@@ -229,7 +238,7 @@ impl AttitudeFilter {
         if let Some(error_rad) = field.initial_heading_rad {
             self.align_heading(error_rad);
         }
-        let stands = rest_rate.is_some() || self.footing == Footing::StandingLegs;
+        let stands = rest_rate.is_some() || stands_on_legs;
         let [east, north] = self.velocity_measurements(stands);
         let bias = rest_rate.map(|rate| self.bias_measurements(rate).map(Some));
         let [x, y, z] = bias.unwrap_or_default();

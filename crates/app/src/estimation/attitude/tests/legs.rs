@@ -59,3 +59,28 @@ fn standing_wheels_show_most_of_the_horizon_in_two_seconds() {
     assert!((0.012..0.021).contains(&standing), "{standing}");
     assert!(legs < 0.4 * standing, "{legs}");
 }
+
+/// Standing up and rolling leave an error of velocity. It is that of the legs and the wheels, not of the horizon.
+#[test]
+fn wheels_that_come_to_stand_show_no_other_horizon() {
+    let mut filter = rested();
+    filter.set_footing(Footing::Legs);
+    for _ in 0..400 {
+        let force_mps2 = [0.15, 0.0, GRAVITY_MPS2];
+        assert!(filter.feed_imu([0.0; 3], force_mps2, NEVER, DT_S as f32));
+    }
+    let pitch_rad = |filter: &AttitudeFilter| {
+        let [_, pitch_rad, _] = filter.orientation(0.0).roll_pitch_yaw();
+        pitch_rad
+    };
+    let rolling_rad = pitch_rad(&filter);
+    filter.set_footing(Footing::StandingLegs);
+    let most_rad = (0..120).fold(0.0_f32, |most_rad, _| {
+        feed(&mut filter, 0.0, 0.0);
+        most_rad.max(pitch_rad(&filter).abs())
+    });
+    assert!(
+        most_rad < rolling_rad.abs() + 0.001,
+        "{most_rad} {rolling_rad}"
+    );
+}
