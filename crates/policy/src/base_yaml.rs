@@ -19,8 +19,8 @@ const DAMPING_S: f64 = 0.025;
 /// Speed error in rad/s at which a wheel gives its torque limit.
 const SPEED_ERROR_RPS: f64 = 8.0;
 
-/// Returns the text of a robot's `base.yaml`, with comments. Names and order are those of the robot's MJCF and URDF, hips
-/// first; senses are those of the PC link.
+/// Returns the text of a robot's `base.yaml`, with comments. Names are those of the robot's MJCF and URDF. The policy has the
+/// hips first, then the wheels; senses are those of the PC link.
 ///
 /// # Errors
 /// The legs cannot have the length in the middle of the robot's heights.
@@ -47,12 +47,13 @@ pub fn base_yaml(robot: &Robot) -> Result<String, OutOfReach> {
   # Period of the control loop in s, and its periods from one run of the network to the next: 50 runs a second.
   dt: 0.005
   decimation: 4
-  # The policy's joints, wheels included. Every list below has a value for each, in this order.
+  # Names in the order of the motors on the PC link: the wheels, then the hips.
+  num_of_dofs: 6
+  joint_names: [\"left_wheel\", \"right_wheel\", \"left_front_hip\", \"left_rear_hip\", \"right_front_hip\", \"right_rear_hip\"]
+  # The motor of each of the policy's joints: left front, left rear, right front, right rear hip, left, right wheel. All lists
+  # below have a value for each joint, in this order.
   # Angles: 0 with the thigh level, pointing away from the other one. Front hips grow as the thigh goes up, rear hips as it
   # goes down: both turn about the body's right. Wheels grow as the robot rolls forward.
-  num_of_dofs: 6
-  joint_names: [\"left_front_hip\", \"left_rear_hip\", \"right_front_hip\", \"right_rear_hip\", \"left_wheel\", \"right_wheel\"]
-  # Their motors on the PC link: 0 and 1 are the wheels, 2 to 5 the hips.
   joint_mapping: [2, 3, 4, 5, 0, 1]
   # 1, or -1 where the policy counts the other way round than the lines above say.
   joint_directions: [1, 1, 1, 1, 1, 1]

@@ -33,12 +33,12 @@ impl Base {
         let file = policies.join(robot).join("base.yaml");
         let keys = Keys::default().read_below(&file, robot)?;
         keys.know_only(&KNOWN)?;
-        let names = joints::names(&keys)?;
-        let count = names.len();
+        let count = joints::count(&keys)?;
+        let mapping = joints::mapping(&keys, count)?;
         let drives = joints::drives(&keys, count)?;
+        let names = joints::names(&keys, &mapping, &drives)?;
         let fixed = joints::fixed_gains(&keys, &names, &drives)?;
         let torque_limits_nm = joints::torque_limits(&keys, count)?;
-        let mapping = joints::mapping(&keys, count)?;
         let joints = names.into_iter().enumerate().map(|(n, name)| BaseJoint {
             name,
             motor: mapping.motors()[n],

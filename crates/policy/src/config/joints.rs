@@ -5,17 +5,41 @@ use crate::{ActionPlan, Drive, Joint, JointMapping, NotAMapping};
 
 const UNLIMITED: [f32; 2] = [f32::MIN, f32::MAX];
 
-/// Reads the names of the joints. Their number is that of `num_of_dofs`.
-pub(super) fn names(keys: &Keys) -> Result<Vec<String>, ConfigError> {
-    let count: usize = keys.get("num_of_dofs", "the number of joints, wheels included")?;
+/// Reads the number of joints, wheels included.
+pub(super) fn count(keys: &Keys) -> Result<usize, ConfigError> {
+    let key = "num_of_dofs";
+    let count = keys.get(key, "the number of joints, wheels included")?;
     if count == 0 {
-        return Err(keys.complaint("num_of_dofs", "a policy without joints drives nothing"));
+        return Err(keys.complaint(key, "a policy without joints drives nothing"));
     }
-    keys.per_joint(
-        "joint_names",
-        "the names of all joints, in the policy's order",
-        count,
-    )
+    Ok(count)
+}
+
+/// Reads the names of the policy's joints. The file has them in the order of the motors.
+pub(super) fn names(
+    keys: &Keys,
+    mapping: &JointMapping,
+    drives: &[Drive],
+) -> Result<Vec<String>, ConfigError> {
+    let key = "joint_names";
+    let what = "the names of all joints, in the order of the motors";
+    let of_motors: Vec<String> = keys.per_joint(key, what, drives.len())?;
+    let motors = mapping.motors().iter();
+    let names: Vec<String> = motors.map(|motor| of_motors[*motor].clone()).collect();
+    let mut joints = names.iter().zip(drives).enumerate();
+    let misnamed = joints.find(|(_, (name, drive))| {
+        **drive == Drive::Position && name.to_lowercase().contains("wheel")
+    });
+    match misnamed {
+        None => Ok(names),
+        Some((index, (name, _))) => {
+            let message = format!(
+                "joint {index} of the policy is called {name}, and is no wheel by wheel_indices. joint_names are in the order \
+                 of the motors: joint i of the policy is joint_names[joint_mapping[i]]"
+            );
+            Err(keys.complaint(key, message))
+        }
+    }
 }
 
 /// Reads which joints are wheels.
@@ -140,10 +164,10 @@ fn gains(
 }
 
 /// Reads the joints with all that belongs to one of them.
-pub(super) fn joints(keys: &Keys) -> Result<Vec<Joint>, ConfigError> {
-    let names = names(keys)?;
-    let count = names.len();
+pub(super) fn joints(keys: &Keys, mapping: &JointMapping) -> Result<Vec<Joint>, ConfigError> {
+    let count = mapping.motors().len();
     let drives = drives(keys, count)?;
+    let names = names(keys, mapping, &drives)?;
     let clips = clips(keys, count)?;
     let what = "default angle in rad of each joint";
     let default_rad = numbers(keys, "default_dof_pos", what, f32::MIN, count)?;

@@ -23,14 +23,15 @@ pub(super) fn read(
         .read_below(&policies.join(robot).join("base.yaml"), robot)?
         .read_below(&folder(policies, robot, config).join("config.yaml"), &name)?;
     keys.know_only(&KNOWN)?;
-    let joints = joints::joints(&keys)?;
+    let mapping = joints::mapping(&keys, joints::count(&keys)?)?;
+    let joints = joints::joints(&keys, &mapping)?;
     let (control_period_s, decimation) = joints::periods(&keys)?;
     let policy = PolicyDescription {
         name,
         model_file: keys.get("model_name", "the network's file, beside config.yaml")?,
         control_period_s,
         decimation,
-        mapping: joints::mapping(&keys, joints.len())?,
+        mapping,
         observation: observation(&keys, &joints)?,
         command_ranges: command_ranges(&keys)?,
         joints,

@@ -17,14 +17,13 @@ BASE = {
     "dt": 0.005,
     "decimation": 4,
     "num_of_dofs": 6,
-    "joint_names": ["left_front_hip", "left_rear_hip", "right_front_hip", "right_rear_hip", "left_wheel", "right_wheel"],
+    "joint_names": ["left_wheel", "right_wheel", "left_front_hip", "left_rear_hip", "right_front_hip", "right_rear_hip"],
     "joint_mapping": [2, 3, 4, 5, 0, 1],
     "wheel_indices": [4, 5],
     "torque_limits": [5.0, 5.0, 5.0, 5.0, 2.4, 2.4],
     "fixed_kp": [40.0, 40.0, 40.0, 40.0, 0.0, 0.0],
     "fixed_kd": [1.0, 1.0, 1.0, 1.0, 0.3, 0.3],
 }
-NAME_OF_MOTOR = ["left_wheel", "right_wheel", *BASE["joint_names"][:4]]
 
 # Joints of the export: left front, right front, left wheel, left rear, right rear, right wheel.
 DEPLOY = {
@@ -136,7 +135,7 @@ class FromDeploy:
 class FromMetadata:
     """A policy as the metadata above say it."""
 
-    motors = np.array([NAME_OF_MOTOR.index(name) for name in TRACKED])
+    motors = np.array([BASE["joint_names"].index(name) for name in TRACKED])
     default = np.array([float(it) for it in METADATA["default_joint_pos"].split(",")])
     scale = np.array([float(it) for it in METADATA["action_scale"].split(",")])
     history = [int(it) for it in METADATA["observation_history_lengths"].split(",")]
@@ -241,7 +240,7 @@ def main(folder):
     write(policies / "fivebar/base.yaml", "fivebar:\n" + "".join(lines))
     write(policies / "fivebar/lab/deploy.yaml", deploy_yaml())
     three = {key: value[:3] if isinstance(value, list) else value for key, value in BASE.items()}
-    three |= {"num_of_dofs": 3, "joint_mapping": [0, 1, 2], "wheel_indices": []}
+    three |= {"num_of_dofs": 3, "joint_names": ["a", "b", "c"], "joint_mapping": [0, 1, 2], "wheel_indices": []}
     lines = [f"  {key}: {json.dumps(value)}\n" for key, value in three.items()]
     write(policies / "three/base.yaml", "three:\n" + "".join(lines))
     write(policies / "three/lab/params/deploy.yaml", whole_robot())

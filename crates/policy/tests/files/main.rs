@@ -144,6 +144,16 @@ fn what_is_wrong_is_named_with_its_key() {
             &["joint_mapping", "once"],
         ),
         (
+            "names of the policy",
+            "joint_names",
+            r#"  joint_names: ["a", "b", "c", "d", "left_wheel", "right_wheel"]"#,
+            &[
+                "joint_names",
+                "joint 2 of the policy is called left_wheel",
+                "joint_names[joint_mapping[i]]",
+            ],
+        ),
+        (
             "direction 2",
             "joint_directions",
             "  joint_directions: [1, 1, 1, 1, 1, 2]",

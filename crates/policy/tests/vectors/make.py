@@ -175,7 +175,7 @@ def policy(joints, wheels, observations, **more):
 PLAIN = ["ang_vel", "gravity_vec", "commands", "dof_pos", "dof_vel", "actions"]
 COMMANDS_FIRST = ["commands", "ang_vel", "gravity_vec", "dof_pos", "dof_vel", "actions"]
 FIVEBAR = ["dof_pos", "dof_vel", "wheel_joint_vel", "ang_vel", "gravity_vec", "actions"]
-FIVEBAR_NAMES = ["left_front_hip", "left_rear_hip", "right_front_hip", "right_rear_hip", "left_wheel", "right_wheel"]
+FIVEBAR_NAMES = ["left_wheel", "right_wheel", "left_front_hip", "left_rear_hip", "right_front_hip", "right_rear_hip"]
 SWAPPED_LEGS = [3, 4, 5, 0, 1, 2, 9, 10, 11, 6, 7, 8]
 INTERLEAVED = [0, 6, 12, 1, 7, 13, 2, 8, 14, 3, 9, 15, 22, 4, 10, 16, 23, 5, 11, 17, 24, 18, 25, 19, 26, 20, 27, 21, 28]
 
