@@ -40,6 +40,15 @@ const SCIENCE: Packages = Packages {
     imports_all: "import mujoco, numpy, scipy, yourdfpy",
 };
 
+const OPTIMAL: Packages = Packages {
+    folder: "python-optimal",
+    list: include_str!("python_optimal_packages.txt"),
+    // NumPy needs it.
+    is_new_enough: "import sys; sys.version_info >= (3, 11) or sys.exit('it is ' + sys.version)",
+    oldest: "3.11",
+    imports_all: "import casadi, numpy",
+};
+
 /// An interpreter that imports the packages of one purpose, in pinned versions.
 pub struct Python {
     interpreter: PathBuf,
@@ -67,7 +76,13 @@ impl Python {
         found(&MADE)
     }
 
-    /// Returns the command that runs `script`. What it prints is not held back in a buffer.
+    /// As [`with_packages`](Self::with_packages), but imports `casadi` and `numpy`, and needs Python 3.11.
+    pub fn with_optimal_control() -> Option<Self> {
+        static MADE: LazyLock<Result<PathBuf, Missing>> = LazyLock::new(|| make(&OPTIMAL));
+        found(&MADE)
+    }
+
+    /// Returns the command that runs `script`, a file or a folder with `__main__.py`. What it prints is not held back in a buffer.
     pub fn command(&self, script: impl AsRef<Path>) -> Command {
         let mut command = Command::new(&self.interpreter);
         // -I: nothing of the user's own packages and variables takes part.
@@ -177,6 +192,7 @@ mod tests {
         for (python, packages) in [
             (Python::with_packages(), &CLIENTS),
             (Python::with_science(), &SCIENCE),
+            (Python::with_optimal_control(), &OPTIMAL),
         ] {
             let Some(python) = python else { continue };
             let script = packages.folder().join("versions.py");
