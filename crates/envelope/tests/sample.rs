@@ -47,6 +47,22 @@ fn robots_that_differ_jump_and_land() {
     assert!(report.holds(), "\n{}", table(&report));
 }
 
+/// The estimate of one of them has drifted when it has come up.
+#[test]
+fn robots_that_differ_stand_up_with_folded_legs() {
+    let robots = Robots {
+        robot: WorldConfig::default().robot,
+        vary: true,
+    };
+    let tasks: Vec<&Task> = TASKS
+        .iter()
+        .filter(|task| task.name == "stand-up-folded")
+        .collect();
+    let surveys = survey(&tasks, &robots, 2, false, &|| ());
+    let report = Report::new("fivebar", 2, &tasks, &surveys);
+    assert!(report.holds(), "\n{}", table(&report));
+}
+
 /// Among them robots whose centre of mass is high, which tip over the edge onto which they sink too fast.
 #[test]
 fn robots_that_differ_sit_down_gently() {

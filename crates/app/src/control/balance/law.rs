@@ -9,7 +9,7 @@ use super::{
     one_wheel,
     ramp::Ramp,
     reference::{Reference, Wish},
-    slip::{self, Slip},
+    slip::Slip,
     support::{GRAVITY_MPS2, Stance, Support},
     torques,
     trim::{Motion, Trim},
@@ -159,7 +159,9 @@ impl Law {
         };
         let limits = &profile.limits;
         let mut wheels_nm = torques::within_wheels(wheels_nm, limits.wheel_nm);
-        self.slip.step(odometry, measured, dt_s);
+        let loaded = !self.airborne && self.contact.lifted() == [false; 2];
+        self.slip
+            .step(odometry, measured, self.wheels_nm, loaded, dt_s);
         if !self.airborne {
             wheels_nm = self.slip.within_grip(wheels_nm);
         }
@@ -190,7 +192,7 @@ impl Law {
     ) -> ([f32; 2], [LegForce; 2]) {
         let yaw_rps = measured.tilt.yaw_rps;
         let measured = &Measured {
-            speed_mps: slip::rolling_mps(measured),
+            speed_mps: self.slip.rolling_mps(measured),
             ..*measured
         };
         self.reference

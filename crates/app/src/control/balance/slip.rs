@@ -6,6 +6,11 @@ use crate::{domain::WheelOdomConfig, math::scalar};
 /// Largest difference in m/s between the wheels and the estimate with which the wheels tell the robot's speed. In motion the estimate
 /// follows them late.
 const ROLLING_MPS: f32 = 0.32;
+/// Two loaded wheels that get less torque than this, in N·m, for so long, in s, roll: even little friction has stopped a slip by
+/// then. An estimate that still tells another speed has drifted, and that is learned with this time constant in s.
+const ROLLING_NM: f32 = 0.6;
+const ROLLING_S: f32 = 0.15;
+const DRIFT_TIME_S: f32 = 0.05;
 /// A wheel that slips by more, in m/s, and for so long, in s, slips.
 const SLIPPING_MPS: f32 = 0.3;
 const SLIPPING_S: f32 = 0.02;
@@ -22,29 +27,38 @@ pub struct Slip {
     mps: [f32; 2],
     /// Time in s for which a wheel has slipped.
     lasts_s: f32,
+    /// Time in s for which the wheels have had little torque.
+    easy_s: f32,
+    /// Speed in m/s by which the estimate is behind wheels that roll.
+    drift_mps: f32,
     /// Largest slip of late in m/s.
     pub lately_mps: f32,
 }
 
-/// Speed of the axles in m/s: that by the wheels, within some distance of the estimate's, which knows of slip.
-pub fn rolling_mps(measured: &Measured) -> f32 {
-    let Measured {
-        speed_mps,
-        ground_mps,
-        ..
-    } = *measured;
-    ground_mps + scalar::clamp(speed_mps - ground_mps, -ROLLING_MPS, ROLLING_MPS)
-}
-
 impl Slip {
-    /// Goes on by `dt_s`.
-    pub fn step(&mut self, odometry: &WheelOdomConfig, measured: &Measured, dt_s: f32) {
+    /// Speed of the axles in m/s: that by the wheels, within some distance of the estimate's, which knows of slip.
+    pub fn rolling_mps(&self, measured: &Measured) -> f32 {
+        let ground_mps = measured.ground_mps + self.drift_mps;
+        ground_mps + scalar::clamp(measured.speed_mps - ground_mps, -ROLLING_MPS, ROLLING_MPS)
+    }
+
+    /// Goes on by `dt_s`. The wheels got `wheels_nm`, and carry a load if they are `loaded`.
+    pub fn step(
+        &mut self,
+        odometry: &WheelOdomConfig,
+        measured: &Measured,
+        wheels_nm: [f32; 2],
+        loaded: bool,
+        dt_s: f32,
+    ) {
+        self.learn_drift(measured, wheels_nm, loaded, dt_s);
+        let ground_mps = measured.ground_mps + self.drift_mps;
         let turn_mps = 0.5 * odometry.wheel_track_m * measured.tilt.yaw_rps;
         let [left_rps, right_rps] = measured.wheel_rps;
         let radius_m = odometry.wheel_radius_m;
         self.mps = [
-            radius_m * left_rps - (measured.ground_mps - turn_mps),
-            radius_m * right_rps - (measured.ground_mps + turn_mps),
+            radius_m * left_rps - (ground_mps - turn_mps),
+            radius_m * right_rps - (ground_mps + turn_mps),
         ];
         let [left_mps, right_mps] = self.mps;
         let most_mps = scalar::max(left_mps.abs(), right_mps.abs());
@@ -55,6 +69,21 @@ impl Slip {
         } else {
             0.0
         };
+    }
+
+    fn learn_drift(&mut self, measured: &Measured, wheels_nm: [f32; 2], loaded: bool, dt_s: f32) {
+        let easy = wheels_nm.iter().all(|nm| nm.abs() < ROLLING_NM);
+        self.easy_s = if loaded && easy {
+            self.easy_s + dt_s
+        } else {
+            0.0
+        };
+        let behind_mps = measured.speed_mps - measured.ground_mps;
+        if behind_mps.abs() < ROLLING_MPS {
+            self.drift_mps = 0.0;
+        } else if self.easy_s > ROLLING_S {
+            self.drift_mps += (behind_mps - self.drift_mps) * (dt_s / DRIFT_TIME_S);
+        }
     }
 
     /// A wheel slips.

@@ -22,7 +22,7 @@ fn measured(wheels_mps: [f32; 2], ground_mps: f32, yaw_rps: f32) -> Measured {
 fn slip_of(measured: &Measured, ticks: usize) -> Slip {
     let mut slip = Slip::default();
     for _ in 0..ticks {
-        slip.step(&FIVEBAR.wheel_odom, measured, TICK_S);
+        slip.step(&FIVEBAR.wheel_odom, measured, [2.0; 2], true, TICK_S);
     }
     slip
 }
@@ -34,7 +34,7 @@ fn wheels_that_roll_or_turn_the_robot_do_not_slip() {
     let slip = slip_of(&turning, 50);
     assert!(!slip.is_slipping());
     assert_eq!(slip.within_grip([3.0, -3.0]), [3.0, -3.0]);
-    assert_eq!(rolling_mps(&measured([1.1, 1.1], 1.0, 0.0)), 1.1);
+    assert_eq!(slip.rolling_mps(&measured([1.1, 1.1], 1.0, 0.0)), 1.1);
 }
 
 #[test]
@@ -58,7 +58,7 @@ fn torque_that_only_makes_a_wheel_spin_is_taken_away() {
 
 #[test]
 fn the_estimate_limits_what_spinning_wheels_tell_of_the_speed() {
-    let told = rolling_mps(&measured([2.9, 2.9], 1.0, 0.0));
+    let told = Slip::default().rolling_mps(&measured([2.9, 2.9], 1.0, 0.0));
     assert!((told - 1.0 - ROLLING_MPS).abs() < 1e-6);
 }
 
@@ -69,11 +69,51 @@ fn a_spin_is_remembered_for_two_seconds() {
     let rolling = measured([1.0, 1.0], 1.0, 0.0);
     let mut roll = |seconds: f32| {
         for _ in 0..(seconds / TICK_S) as usize {
-            slip.step(&FIVEBAR.wheel_odom, &rolling, TICK_S);
+            slip.step(&FIVEBAR.wheel_odom, &rolling, [2.0; 2], true, TICK_S);
         }
         slip.lately_mps
     };
     let (soon_mps, later_mps) = (roll(0.5), roll(1.5));
     assert!(soon_mps > 0.7, "{soon_mps}");
     assert!((0.3..0.5).contains(&later_mps), "{later_mps}");
+}
+
+/// What is told of the speed, and whether a wheel slips, after 0.4 s of wheels at 1.0 m/s while the estimate tells 0.0.
+fn beside_a_drift(wheels_nm: [f32; 2], loaded: bool) -> (f32, bool) {
+    let rolling = measured([1.0, 1.0], 0.0, 0.0);
+    let mut slip = Slip::default();
+    for _ in 0..400 {
+        slip.step(&FIVEBAR.wheel_odom, &rolling, wheels_nm, loaded, TICK_S);
+    }
+    (slip.rolling_mps(&rolling), slip.is_slipping())
+}
+
+#[test]
+fn loaded_wheels_with_little_torque_roll_whatever_the_estimate_tells() {
+    assert_eq!(beside_a_drift([0.5, -0.5], true), (1.0, false));
+}
+
+#[test]
+fn wheels_with_torque_or_without_load_may_slip() {
+    for (wheels_nm, loaded) in [([0.5, 0.7], true), ([-0.7, 0.5], true), ([0.5; 2], false)] {
+        assert_eq!(beside_a_drift(wheels_nm, loaded), (ROLLING_MPS, true));
+    }
+}
+
+#[test]
+fn a_drift_is_forgotten_when_the_estimate_follows_its_wheels_again() {
+    let drifted = measured([1.0, 1.0], 0.0, 0.0);
+    let mut slip = Slip::default();
+    for _ in 0..400 {
+        slip.step(&FIVEBAR.wheel_odom, &drifted, [0.0; 2], true, TICK_S);
+    }
+    slip.step(
+        &FIVEBAR.wheel_odom,
+        &measured([1.0, 1.0], 0.9, 0.0),
+        [2.0; 2],
+        true,
+        TICK_S,
+    );
+    let told = slip.rolling_mps(&measured([2.9, 2.9], 1.0, 0.0));
+    assert!((told - 1.0 - ROLLING_MPS).abs() < 1e-6, "{told}");
 }
