@@ -38,11 +38,17 @@ pub mod attitude;
 mod base_yaml;
 pub mod config;
 mod description;
+#[cfg(feature = "runner")]
+mod load;
 mod mapping;
+#[cfg(feature = "runner")]
+pub mod model;
 pub mod observation;
 
 pub use base_yaml::{OutOfReach, base_yaml};
 pub use description::{
     ActionPlan, Drive, Group, HistoryOrder, Joint, PolicyDescription, Source, TermPlan,
 };
+#[cfg(feature = "runner")]
+pub use load::{LoadError, load};
 pub use mapping::{JointMapping, NotAMapping};

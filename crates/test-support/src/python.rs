@@ -49,6 +49,15 @@ const OPTIMAL: Packages = Packages {
     imports_all: "import casadi, numpy",
 };
 
+const NETWORKS: Packages = Packages {
+    folder: "python-networks",
+    list: include_str!("python_network_packages.txt"),
+    // NumPy needs it.
+    is_new_enough: "import sys; sys.version_info >= (3, 11) or sys.exit('it is ' + sys.version)",
+    oldest: "3.11",
+    imports_all: "import numpy, onnx, onnxruntime",
+};
+
 /// An interpreter that imports the packages of one purpose, in pinned versions.
 pub struct Python {
     interpreter: PathBuf,
@@ -79,6 +88,12 @@ impl Python {
     /// As [`with_packages`](Self::with_packages), but imports `casadi` and `numpy`, and needs Python 3.11.
     pub fn with_optimal_control() -> Option<Self> {
         static MADE: LazyLock<Result<PathBuf, Missing>> = LazyLock::new(|| make(&OPTIMAL));
+        found(&MADE)
+    }
+
+    /// As [`with_packages`](Self::with_packages), but imports `numpy`, `onnx` and `onnxruntime`, and needs Python 3.11.
+    pub fn with_networks() -> Option<Self> {
+        static MADE: LazyLock<Result<PathBuf, Missing>> = LazyLock::new(|| make(&NETWORKS));
         found(&MADE)
     }
 
@@ -193,6 +208,7 @@ mod tests {
             (Python::with_packages(), &CLIENTS),
             (Python::with_science(), &SCIENCE),
             (Python::with_optimal_control(), &OPTIMAL),
+            (Python::with_networks(), &NETWORKS),
         ] {
             let Some(python) = python else { continue };
             let script = packages.folder().join("versions.py");

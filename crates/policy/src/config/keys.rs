@@ -43,6 +43,9 @@ pub(super) const KNOWN: [&str; 31] = [
     "commands_upper",
 ];
 
+/// Keys of rl_sar's policies that follow a motion.
+const OF_MOTIONS: [&str; 2] = ["motion_file", "waist_joint_indices"];
+
 /// A value and the place where it stands.
 #[derive(Clone, Debug)]
 struct Entry {
@@ -93,6 +96,10 @@ impl Keys {
         let mut entries = self.entries.keys();
         match entries.find(|key| !known.contains(&key.as_str())) {
             None => Ok(()),
+            Some(key) if OF_MOTIONS.contains(&key.as_str()) => {
+                let message = "the policy follows a recorded motion, and no motion is played here";
+                Err(self.complaint(key, message))
+            }
             Some(key) => {
                 let message = format!(
                     "this key is unknown. Known are {}. Is it misspelt? Else take it out",

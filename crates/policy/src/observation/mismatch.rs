@@ -175,7 +175,9 @@ fn without_a_term(layout: &Layout, index: usize, rest: usize) -> Vec<Suspect> {
 fn other_history(layout: &Layout, index: usize, rest: usize) -> Option<Suspect> {
     let group = &layout.groups[index];
     let frame_len = group.frame_len();
-    if frame_len == 0 || rest == 0 || !rest.is_multiple_of(frame_len) {
+    // A group of now alone is observations_nonstack, or has no history to begin with.
+    let has_history = group.ages.len() > 1 || index == 0;
+    if !has_history || frame_len == 0 || rest == 0 || !rest.is_multiple_of(frame_len) {
         return None;
     }
     let frames = rest / frame_len;

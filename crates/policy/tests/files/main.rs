@@ -144,6 +144,12 @@ fn what_is_wrong_is_named_with_its_key() {
             &["joint_mapping", "once"],
         ),
         (
+            "motion",
+            "motion_file",
+            "  motion_file: \"dance.csv\"",
+            &["motion_file", "recorded motion"],
+        ),
+        (
             "names of the policy",
             "joint_names",
             r#"  joint_names: ["a", "b", "c", "d", "left_wheel", "right_wheel"]"#,
