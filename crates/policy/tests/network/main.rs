@@ -60,7 +60,7 @@ fn actions_are_those_of_onnxruntime() {
     let Some(folder) = networks() else { return };
     let expected = fs::read_to_string(folder.join("expected.json")).expect("a file");
     let expected: BTreeMap<String, Vec<Sample>> = serde_json::from_str(&expected).expect("samples");
-    assert_eq!(expected.len(), 4);
+    assert_eq!(expected.len(), 5);
     for (name, samples) in expected {
         let mut model = Model::read(&folder.join(format!("{name}.onnx"))).expect("a network");
         for sample in samples {
@@ -166,6 +166,27 @@ fn policies_with(folder: &Path, network: &str) -> PathBuf {
     let onnx = folder.join(format!("{network}.onnx"));
     fs::copy(onnx, robot.join("flat/policy.onnx")).expect("a file");
     policies
+}
+
+#[test]
+fn joints_in_another_order_are_refused() {
+    let Some(folder) = networks() else { return };
+    let policies = policies_with(folder, "swapped-69");
+    let error = robot_policy::load(&policies, "fivebar", "flat").err();
+    let error = error.expect("it is refused").to_string();
+    for part in [
+        "left_front_hip, right_front_hip",
+        "left_front_hip, left_rear_hip",
+        "joint_mapping",
+    ] {
+        assert!(error.contains(part), "{error}");
+    }
+    let error = robot_policy::load(&policies, "fivebar", "hilly").err();
+    let error = error.expect("it is refused").to_string();
+    assert!(
+        error.contains("neither a config.yaml nor a deploy.yaml"),
+        "{error}"
+    );
 }
 
 fn show(policies: &Path) -> [String; 2] {

@@ -86,6 +86,9 @@ def networks():
     nodes.append(helper.make_node("Neg", ["obs"], ["joint_pos"]))
     outputs = [value("joint_pos", [1, 22]), value("actions", [1, 6])]
     metadata = {"joint_names": "a,b,c", "action_scale": "0.250,0.500,5.000"}
+    swapped = {"joint_names": "left_front_hip,right_front_hip,left_rear_hip,right_rear_hip,left_wheel,right_wheel"}
+    tanh = by_matmul(random, [69, 8, 6])
+    yield "swapped-69", network(*tanh, [value("obs", [1, 69])], [value("actions", [1, 6])], swapped)
     yield "two-outputs", network(nodes, weights, [value("obs", [1, 22])], outputs, metadata)
 
 
