@@ -11,7 +11,8 @@ use crate::observation::Mismatch;
 pub enum ModelError {
     /// The file is TorchScript.
     #[error(
-        "{}: TorchScript is not read here. This makes ONNX of it, where N is the length of the input:\n  {}",
+        "{}: TorchScript is not read here. This makes ONNX of it, where N is the length of the input; then name the new file in \
+         model_name:\n  {}",
         file.display(),
         conversion(file, onnx)
     )]

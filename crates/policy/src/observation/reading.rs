@@ -44,12 +44,16 @@ pub struct Commands {
 }
 
 impl Commands {
-    /// Returns forward, left, turn, each held within its range.
+    /// Returns forward, left, turn, each held within its range. What is no number stays so, for the observer to refuse it.
     pub(super) fn within(self, ranges: &[[f32; 2]; 3]) -> [f32; 3] {
         let wishes = [self.forward_mps, self.left_mps, self.yaw_rps];
         std::array::from_fn(|n| {
             let [low, high] = ranges[n];
-            wishes[n].clamp(low, high)
+            if wishes[n].is_finite() {
+                wishes[n].clamp(low, high)
+            } else {
+                wishes[n]
+            }
         })
     }
 }
