@@ -1,6 +1,6 @@
 //! How strong something may be until half of the robots fall.
 
-use crate::robots::Robots;
+use crate::Robots;
 
 /// Steps of halving: 1/64 of the span.
 const HALVINGS: u32 = 6;

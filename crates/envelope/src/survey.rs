@@ -7,8 +7,8 @@ use std::{
 };
 
 use crate::{
+    Robots,
     limit::Limit,
-    robots::Robots,
     tasks::{Bound, Task},
     trial::{Failure, Sample},
 };

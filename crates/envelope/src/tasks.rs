@@ -10,8 +10,8 @@ mod stand_up;
 mod terrain;
 
 use crate::{
+    Robots,
     limit::Bisection,
-    robots::Robots,
     trial::{Failure, Trial},
 };
 

@@ -4,7 +4,7 @@ use robot_app::safety::SafetyFlags;
 use robot_host_loop::Robot;
 use robot_plant::world::{PlantKind, Probe, Push, RemoteInput, Start, Terrain, World, WorldConfig};
 
-use crate::robots::Robots;
+use crate::Robots;
 
 /// The pilot arms at this time, when sensors are calibrated and motors set up.
 pub(crate) const ENABLE_AT_S: f64 = 3.0;

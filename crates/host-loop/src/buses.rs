@@ -12,6 +12,7 @@ const BIT: Ps = US;
 const BITS_AROUND_DATA: Ps = 47 + 8;
 
 /// A frame on its way.
+#[derive(Clone)]
 struct Transmission {
     frame: wire::CanFrame,
     /// `None` for the board.
@@ -19,6 +20,7 @@ struct Transmission {
     ends: Ps,
 }
 
+#[derive(Clone)]
 struct Bus {
     id: CanBusId,
     /// Frames in the board's mailboxes, with the time from which they may be sent.
@@ -29,6 +31,7 @@ struct Bus {
 }
 
 /// CAN1 and CAN2.
+#[derive(Clone)]
 pub(crate) struct Buses([Bus; 2]);
 
 impl Buses {

@@ -25,8 +25,10 @@
 mod buses;
 mod layout;
 mod robot;
+mod robots;
 mod sensors;
 
 pub use layout::layout_of;
 pub use robot::Robot;
+pub use robots::Robots;
 pub use sensors::Sensors;

@@ -2,12 +2,13 @@
 
 use robot_app::{
     control::UserController,
-    diagnostics::DiagnosticsSnapshot,
+    diagnostics::{DiagnosticsSnapshot, Telemetry},
     domain::{
         ChassisCommand, FlashRequest, ImuState, LogicBus, MagState, ParamStatus, PcCommand,
         RemoteUpdate, RobotConfig, SystemHealth,
     },
     input::{RemoteFormat, RemoteReceiver},
+    link::{self, Uplink},
     logic::{LogicInputs, LogicStage, UserLogic},
     motor::layout::MotorLayout,
     safety::{ArmingState, WatchdogPeriod},
@@ -32,7 +33,8 @@ const TICK_COMPUTES: Ps = 50 * US;
 /// A radio character with its start and stop bits at 100 kBd.
 const CHARACTER: Ps = 120 * US;
 
-/// A robot and the world around it.
+/// A robot and the world around it. A clone goes on from the same moment on its own.
+#[derive(Clone)]
 pub struct Robot {
     world: World,
     now: Ps,
@@ -49,6 +51,8 @@ pub struct Robot {
     logic: LogicBus,
     health: SystemHealth,
     diagnostics: DiagnosticsSnapshot,
+    /// Of the newest tick that had one.
+    telemetry: Telemetry,
     wheel_currents_ma: [f64; 2],
     wire_events: Vec<WireEvent>,
     /// Direct command of a user's logic, which bypasses the controller.
@@ -125,6 +129,7 @@ impl Robot {
             logic: LogicBus::default(),
             health: SystemHealth::default(),
             diagnostics: DiagnosticsSnapshot::default(),
+            telemetry: Telemetry::default(),
             wheel_currents_ma: [0.0; 2],
             wire_events: Vec::new(),
             direct: None,
@@ -160,6 +165,13 @@ impl Robot {
         }
     }
 
+    /// Runs for so many ticks.
+    pub fn run_ticks(&mut self, ticks: u64) {
+        for _ in 0..ticks {
+            self.tick();
+        }
+    }
+
     /// True while the motors may move.
     pub fn armed(&self) -> bool {
         self.diagnostics.arming.state == ArmingState::Armed
@@ -168,6 +180,18 @@ impl Robot {
     /// The report of the last tick.
     pub fn diagnostics(&self) -> &DiagnosticsSnapshot {
         &self.diagnostics
+    }
+
+    /// What a state frame of the PC link says now. It is at most one tick old. The microcontroller has 40 °C.
+    pub fn uplink(&self) -> Uplink {
+        let observation = link::Observation {
+            telemetry: &self.telemetry,
+            remote: &self.remote,
+            wheel_odom: &self.config.wheel_odom,
+            battery_v: self.diagnostics.battery_v,
+            mcu_c: 40.0,
+        };
+        observation.uplink()
     }
 
     /// The world, to look at.
@@ -302,6 +326,9 @@ impl Robot {
             now_us,
             &mut self.diagnostics,
         );
+        if let Some(telemetry) = outputs.telemetry {
+            self.telemetry = *telemetry;
+        }
         for (bus, frame) in outputs.frames {
             self.buses.send(*bus, frame, self.now + TICK_COMPUTES);
             for byte in frame.padded_payload() {

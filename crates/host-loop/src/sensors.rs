@@ -19,6 +19,7 @@ const SPI_MODE: u8 = 3;
 const SCL_HZ: u32 = 400_000;
 
 /// The pipelines behind IMU and magnetometer.
+#[derive(Clone)]
 pub struct Sensors {
     imu: ImuPipeline,
     mag: MagPipeline,

@@ -42,6 +42,7 @@ pub(crate) struct ImuFaults {
     pub gyro_spikes: bool,
 }
 
+#[derive(Clone)]
 pub(crate) struct Bmi088 {
     accel: AccelDie,
     gyro: GyroDie,

@@ -19,7 +19,7 @@ use robot_description::Robot;
 
 use crate::{
     attitude::Quaternion,
-    free::{FreeBody, FreeSetup, Push},
+    free::{FreeBody, FreeSetup, FreeState, Hold, Push},
     joints::JOINTS,
     m3508::Friction,
     motion::Motion,
@@ -60,6 +60,7 @@ pub(crate) struct BodyInputs {
     pub outside: Option<Push>,
 }
 
+#[derive(Clone)]
 pub(crate) enum Body {
     Upright(Box<Upright>),
     Free(Box<Loose>),
@@ -134,6 +135,13 @@ impl Body {
         match self {
             Self::Upright(upright) => upright.motion(),
             Self::Free(loose) => loose.motion(),
+        }
+    }
+
+    /// Puts the free robot into a state, held or not. No other robot minds.
+    pub(crate) fn place(&mut self, state: &FreeState, hold: Hold) {
+        if let Self::Free(loose) = self {
+            loose.place(state, hold);
         }
     }
 

@@ -22,7 +22,7 @@ pub enum AdapterMode {
 }
 
 /// The adapter with its two queues. Both are bounded: a PC that is too slow for the bus loses frames.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct CanAdapter {
     mode: AdapterMode,
     outbox: VecDeque<CanFrame>,

@@ -101,6 +101,7 @@ impl FieldMean {
     }
 }
 
+#[derive(Clone)]
 pub(crate) struct Ist8310 {
     random: Random,
     noise_ut: f64,

@@ -29,6 +29,7 @@ pub(crate) struct WireState {
     pub stop_frames: u64,
 }
 
+#[derive(Clone)]
 pub(crate) struct Joint {
     drive: Box<dyn Drive>,
     /// Joint angle per shaft angle.

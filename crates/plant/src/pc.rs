@@ -34,6 +34,7 @@ const HELD_LOW: Ps = 50 * MS;
 const STRAY: f64 = 0.3;
 
 /// The program at the far end of the cable, both lines, and what is heard at their ends.
+#[derive(Clone)]
 pub(crate) struct Pc {
     program: Program,
     to_board: Line,

@@ -35,6 +35,7 @@ enum Loss {
 }
 
 /// Sends one frame per period from power-on, with the sticks as they are at the first bit of the frame.
+#[derive(Clone)]
 pub(crate) struct Receiver {
     kind: RadioKind,
     pilot: Pilot,

@@ -28,6 +28,7 @@ pub fn run_length(header: &Path) -> Result<Ps, TrialError> {
 }
 
 /// A trial as the motion of the board's sensors. The delays of the recorder's sensors and of the board's add up.
+#[derive(Clone)]
 pub(crate) struct Playback {
     trial: Trial,
 }

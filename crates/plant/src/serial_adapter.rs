@@ -21,7 +21,7 @@ const OUTBOX: usize = 512;
 const INBOX: usize = 4_096;
 
 /// The adapter with its two queues. Both are bounded: a PC that is too slow for the line loses bytes.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct SerialAdapter {
     plugged: bool,
     outbox: VecDeque<UartChar>,

@@ -153,6 +153,7 @@ struct Indicators {
 /// let feedback = world.can_pending(CanBusId::Can1, 0, 100 * MS + 500 * US);
 /// assert_eq!(feedback.map(|frame| frame.id), Some(0x201));
 /// ```
+#[derive(Clone)]
 pub struct World {
     now: Ps,
     next_step: Ps,

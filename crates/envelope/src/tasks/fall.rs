@@ -3,7 +3,7 @@
 use robot_plant::world::Terrain;
 
 use super::{Bound, Finished, Task};
-use crate::{robots::Robots, trial::Trial};
+use crate::{Robots, trial::Trial};
 
 /// A push of this many metres a second along the wheels throws every robot.
 const THROWN_MPS: f64 = 8.0;

@@ -3,7 +3,7 @@
 use robot_plant::world::{RemoteInput, Terrain};
 
 use super::{Bound, Finished, Task};
-use crate::{robots::Robots, trial::Trial};
+use crate::{Robots, trial::Trial};
 
 pub(super) const JUMP: Task = Task {
     name: "jump",

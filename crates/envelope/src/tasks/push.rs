@@ -4,9 +4,9 @@ use robot_plant::world::Terrain;
 
 use super::{Bound, Finished, Task};
 use crate::{
+    Robots,
     course::Ripple,
     limit::Bisection,
-    robots::Robots,
     trial::{Failure, Trial},
 };
 

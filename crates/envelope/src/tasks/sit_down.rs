@@ -4,7 +4,7 @@ use robot_app::domain::BalanceState;
 use robot_plant::world::Terrain;
 
 use super::{Bound, Finished, Task};
-use crate::{robots::Robots, trial::Trial};
+use crate::{Robots, trial::Trial};
 
 /// Sitting down may take this long.
 const LIMIT_S: f64 = 3.0;

@@ -4,8 +4,8 @@ use robot_plant::world::Terrain;
 
 use super::{Bound, Finished, Task};
 use crate::{
+    Robots,
     course::{Ripple, way_m},
-    robots::Robots,
     trial::Trial,
 };
 

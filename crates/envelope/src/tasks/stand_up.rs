@@ -5,7 +5,7 @@ use robot_plant::world::{Start, Terrain};
 
 use super::{Bound, Finished, Task};
 use crate::{
-    robots::Robots,
+    Robots,
     trial::{STAND_AT_S, Trial},
 };
 

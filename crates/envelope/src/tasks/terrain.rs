@@ -4,7 +4,7 @@ use robot_plant::world::Terrain;
 
 use super::{Bound, Finished, Task};
 use crate::{
-    robots::Robots,
+    Robots,
     trial::{Failure, Trial},
 };
 

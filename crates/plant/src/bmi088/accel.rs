@@ -52,6 +52,7 @@ const OFFSET_G: f64 = 0.020;
 /// datasheet asks for.
 const SELF_TEST_G: [f64; 3] = [0.7, 0.7, 0.4];
 
+#[derive(Clone)]
 pub(super) struct AccelDie {
     random: Random,
     source: MotionSource,

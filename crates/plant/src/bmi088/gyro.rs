@@ -45,6 +45,7 @@ const NOISE_DPS_PER_SQRT_HZ: f64 = 0.014;
 /// Zero-rate offset, typically ±1 °/s; the model draws it uniformly.
 const OFFSET_DPS: f64 = 1.0;
 
+#[derive(Clone)]
 pub(super) struct GyroDie {
     random: Random,
     source: MotionSource,

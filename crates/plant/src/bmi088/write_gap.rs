@@ -11,7 +11,7 @@ const SUSPEND: Ps = 450 * US;
 
 /// Watches one chip select. A write that comes too early is accepted nevertheless: DJI's `BMI088driver.c` pauses only 150 µs
 /// in suspend mode on this board, and its sensor starts.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct WriteGap {
     /// The pause after the last write, which begins when the chip select rises.
     gap: Ps,

@@ -134,6 +134,11 @@ impl FreeBody {
         self.contacts = Contacts::default();
     }
 
+    /// Holds the body from now on, or lets go of it.
+    pub fn set_hold(&mut self, hold: Hold) {
+        self.hold = hold;
+    }
+
     /// Mass of everything.
     pub fn mass_kg(&self) -> f64 {
         self.dynamics().rigid[(0, 0)]

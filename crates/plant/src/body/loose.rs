@@ -7,7 +7,7 @@ use robot_description::Robot;
 use super::{BodyInputs, Floor, pose::Pose, shove::Shove, vibration::Vibration};
 use crate::{
     attitude::{Quaternion, roll_pitch_yaw_rad, to_earth},
-    free::{FreeBody, FreeInputs, FreeSetup},
+    free::{FreeBody, FreeInputs, FreeSetup, FreeState, Hold},
     motion::Motion,
 };
 
@@ -15,6 +15,7 @@ use crate::{
 const SLIPPERY: f64 = 0.06;
 
 /// A robot that nothing holds.
+#[derive(Clone)]
 pub(crate) struct Loose {
     body: FreeBody,
     imu_m: [f64; 3],
@@ -92,6 +93,13 @@ impl Loose {
             accel_mps2: std::array::from_fn(|axis| force[axis] + shaken[axis]),
             gyro_rps: state.rate_rps,
         };
+    }
+
+    /// Puts the robot into a state, held or not.
+    pub(super) fn place(&mut self, state: &FreeState, hold: Hold) {
+        self.body.set_hold(hold);
+        self.body.set_state(state);
+        self.look(0.0);
     }
 
     /// The mechanics.

@@ -5,12 +5,14 @@ use robot_description::Wheels;
 
 use crate::{attitude::Quaternion, joints::JOINTS, motion::Motion};
 
+#[derive(Clone)]
 enum Mechanics {
     Stand(Stand),
     Rolling(Rolling),
 }
 
 /// A robot whose balance is taken for granted.
+#[derive(Clone)]
 pub(crate) struct Upright {
     mechanics: Mechanics,
     legs: Legs,

@@ -59,6 +59,7 @@ enum Target {
     Speed { vel_rps: f64 },
 }
 
+#[derive(Clone)]
 pub(crate) struct Dm4310 {
     parts: DriveParts,
     /// The registers as stored, which a power cycle restores.
@@ -120,6 +121,10 @@ impl Dm4310 {
 }
 
 impl Drive for Dm4310 {
+    fn boxed(&self) -> Box<dyn Drive> {
+        Box::new(self.clone())
+    }
+
     fn parts(&self) -> &DriveParts {
         &self.parts
     }

@@ -43,6 +43,7 @@ pub(crate) enum Reception {
 }
 
 /// The parts that every drive has.
+#[derive(Clone)]
 pub(super) struct DriveParts {
     pub actuator: Actuator,
     pub speed_loop: SpeedLoop,
@@ -75,7 +76,10 @@ impl DriveParts {
 }
 
 /// A geared motor with its driver on the CAN bus.
-pub(super) trait Drive: Send {
+pub(super) trait Drive: Send + Sync {
+    /// The same drive once more.
+    fn boxed(&self) -> Box<dyn Drive>;
+
     fn parts(&self) -> &DriveParts;
 
     fn parts_mut(&mut self) -> &mut DriveParts;
@@ -112,5 +116,11 @@ pub(super) trait Drive: Send {
 
     fn replies_mut(&mut self) -> &mut ReplyBox {
         &mut self.parts_mut().replies
+    }
+}
+
+impl Clone for Box<dyn Drive> {
+    fn clone(&self) -> Self {
+        self.as_ref().boxed()
     }
 }

@@ -56,6 +56,7 @@ enum Target {
 
 /// A motor as shipped holds its last command indefinitely: its CAN time-out, parameter 0x7028, is off, and the MIT protocol
 /// cannot set it.
+#[derive(Clone)]
 pub(crate) struct Rs00 {
     parts: DriveParts,
     /// Time without frames after which it returns to reset mode; 0 is never.
@@ -100,6 +101,10 @@ impl Rs00 {
 }
 
 impl Drive for Rs00 {
+    fn boxed(&self) -> Box<dyn Drive> {
+        Box::new(self.clone())
+    }
+
     fn parts(&self) -> &DriveParts {
         &self.parts
     }

@@ -35,6 +35,7 @@ pub(crate) struct EscFaults {
     pub wrong_id: bool,
 }
 
+#[derive(Clone)]
 pub(crate) struct C620 {
     /// Number of the controller, 1 … 4, as set by its button.
     id: u8,

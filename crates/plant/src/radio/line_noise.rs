@@ -11,6 +11,7 @@ const DOUBLE_FLIP: f64 = 0.01;
 const SWALLOWED: f64 = 0.01;
 const STRAY_IN_GAP: f64 = 0.5;
 
+#[derive(Clone)]
 pub(super) struct LineNoise {
     random: Random,
 }

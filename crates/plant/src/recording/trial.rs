@@ -97,6 +97,7 @@ pub struct Row {
 }
 
 /// A trial in memory. Row 0 ends at time 0.
+#[derive(Clone)]
 pub struct Trial {
     rows: Vec<Row>,
     row_period: Ps,

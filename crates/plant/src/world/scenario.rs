@@ -5,7 +5,7 @@ use crate::{
     attitude::{self, Quaternion},
     bmi088::ImuFaults,
     faults::{self, Fault, FaultInfo, MOTORS},
-    free::Push,
+    free::{FreeState, Hold, Push},
     ist8310::MagFaults,
     joints::DriveFaults,
     m3508::EscFaults,
@@ -35,6 +35,17 @@ impl World {
                 .unwrap_or_else(|| std::array::from_fn(|axis| com_m[axis] + shift_m[axis])),
         };
         self.push = Some((force, self.now + push.lasts));
+    }
+
+    /// Puts the free robot into a state, and holds its body there or lets go of it. Sensors notice from the next step on. No
+    /// other robot minds.
+    pub fn place(&mut self, state: &FreeState, hold: Hold) {
+        self.body.place(state, hold);
+    }
+
+    /// State of the free robot; `None` of any other.
+    pub fn free_state(&self) -> Option<FreeState> {
+        Some(self.body.free()?.state())
     }
 
     /// Starts or ends a fault at the present time.

@@ -6,12 +6,13 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use robot_app::domain::RobotConfig;
 use robot_description::Robot;
-use robot_host_loop::layout_of;
 use robot_plant::{
     free,
     time::{Ps, US},
     world::Variation,
 };
+
+use crate::layout_of;
 
 /// Span of the factor of the whole mass.
 const MASS: (f64, f64) = (0.8, 1.4);
