@@ -1,0 +1,307 @@
+//! One robot and its episodes.
+
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+use robot_host_loop::Robot;
+use robot_plant::world::{Push, RemoteInput};
+use robot_policy::{
+    PolicyDescription,
+    action::Decoder,
+    observation::{Commands, Observer, Reading},
+};
+
+use crate::{
+    GymError, Options, StartKind, Truth,
+    reward::Terms,
+    specimen::Specimen,
+    truth::Probes,
+    wire::{self, Wire},
+};
+
+/// A body tilted by more has fallen, rad.
+const FALLEN_RAD: f64 = 0.8;
+/// A robot that began sitting may touch the ground with its body for so long, s.
+const GETS_UP_WITHIN_S: f64 = 1.5;
+/// The same for the robot's own controller.
+const STANDS_UP_WITHIN_S: f64 = 3.0;
+const SITS_IN: f64 = 0.5;
+/// In so many of the draws the command is to stand still.
+const STANDS_STILL_IN: f64 = 0.15;
+/// Greatest product of speed and turn rate that is commanded, m/s²: more slips where friction is low.
+const SIDEWAYS_MPS2: f64 = 2.5;
+/// Greatest speeds in m/s, and pitch rate in rad/s, of a robot that begins standing.
+const MOVING_MPS: f64 = 0.5;
+const PITCHING_RPS: f64 = 0.5;
+const TICKS_PER_S: f64 = 1e3;
+
+/// What a step led to.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Step {
+    /// The reward.
+    pub reward: f64,
+    /// What it is made of.
+    pub terms: Terms,
+    /// Whether the robot has fallen, or its firmware stopped it. The episode is over.
+    pub fallen: bool,
+}
+
+/// A robot that a policy drives, in episodes. Equal seeds and equal actions give equal episodes, bit for bit.
+pub struct Environment {
+    options: Options,
+    numbers: Pcg64Mcg,
+    specimen: Specimen,
+    episodes_of_robot: u32,
+    robot: Robot,
+    probes: Probes,
+    wire: Wire,
+    observer: Observer,
+    decoder: Decoder,
+    reading: Reading,
+    commands: Commands,
+    /// Commands are the caller's.
+    commanded: bool,
+    observation: Vec<f32>,
+    before: Vec<f32>,
+    period_ticks: u64,
+    steps: u64,
+    began_sitting: bool,
+    next_command_s: f64,
+    next_push_s: f64,
+}
+
+impl Environment {
+    /// Boots a robot, and begins an episode.
+    ///
+    /// # Errors
+    /// The policy is for another robot, its period is none of the environment's, an option is out of range, or the robot
+    /// does not arm.
+    pub fn new(policy: &PolicyDescription, options: Options, seed: u64) -> Result<Self, GymError> {
+        options.check()?;
+        wire::check(policy)?;
+        let period_ticks = (policy.period_s() * TICKS_PER_S).round() as u64;
+        if period_ticks == 0 || !period_ticks.is_multiple_of(10) {
+            let period_s = policy.period_s();
+            return Err(GymError::Period { period_s });
+        }
+        let mut numbers = Pcg64Mcg::seed_from_u64(seed);
+        let specimen = Specimen::boot(numbers.random(), options.vary)?;
+        let robot = specimen.sitting();
+        let observer = Observer::new(policy);
+        let mut environment = Self {
+            options,
+            numbers,
+            episodes_of_robot: 0,
+            probes: Probes::new(robot.world()),
+            wire: Wire::new(policy),
+            decoder: Decoder::new(policy),
+            reading: Reading::at_default_pose(policy),
+            commands: Commands::default(),
+            commanded: false,
+            observation: vec![0.0; observer.layout().len()],
+            before: vec![0.0; policy.joints.len()],
+            period_ticks,
+            steps: 0,
+            began_sitting: true,
+            next_command_s: 0.0,
+            next_push_s: 0.0,
+            observer,
+            specimen,
+            robot,
+        };
+        environment.begin()?;
+        Ok(environment)
+    }
+
+    /// Begins another episode, with another robot after so many as the options say.
+    ///
+    /// # Errors
+    /// The next robot does not arm.
+    pub fn reset(&mut self) -> Result<(), GymError> {
+        if self.episodes_of_robot >= self.options.episodes_per_robot {
+            self.specimen = Specimen::boot(self.numbers.random(), self.options.vary)?;
+            self.episodes_of_robot = 0;
+        }
+        self.begin()
+    }
+
+    /// Sets options from the next episode on.
+    ///
+    /// # Errors
+    /// One is out of range.
+    pub fn set_options(&mut self, options: Options) -> Result<(), GymError> {
+        options.check()?;
+        self.options = options;
+        Ok(())
+    }
+
+    /// Options of the next episode.
+    pub fn options(&self) -> Options {
+        self.options
+    }
+
+    fn begin(&mut self) -> Result<(), GymError> {
+        self.episodes_of_robot += 1;
+        let sits = match self.options.start {
+            _ if self.options.built_in => true,
+            StartKind::Sitting => true,
+            StartKind::Standing => false,
+            StartKind::Mixed => self.numbers.random_bool(SITS_IN),
+        };
+        self.began_sitting = sits;
+        self.robot = if sits {
+            self.specimen.sitting()
+        } else {
+            let velocity = [MOVING_MPS, MOVING_MPS / 2.0].map(|most| self.between(-most, most));
+            let pitch_rps = self.between(-PITCHING_RPS, PITCHING_RPS);
+            self.specimen.standing(velocity, pitch_rps)
+        };
+        self.steps = 0;
+        self.commanded = false;
+        self.draw_command();
+        let [early, late] = self.options.push_every_s;
+        self.next_push_s = self.between(early, late);
+        self.observer.reset();
+        self.decoder.reset();
+        if self.options.built_in {
+            self.robot.remote(RemoteInput {
+                stand: Some(true),
+                ..RemoteInput::default()
+            });
+        }
+        if !sits {
+            let hold = self.wire.actions_at(self.specimen.standing_rad());
+            self.decoder.decode(&hold)?;
+        }
+        self.observe()
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.numbers.random::<f64>()
+    }
+
+    fn draw_command(&mut self) {
+        let Options {
+            speed_mps,
+            turn_rps,
+            command_every_s: [early, late],
+            ..
+        } = self.options;
+        let forward_mps = self.between(-speed_mps, speed_mps);
+        let turn_rps = turn_rps.min(SIDEWAYS_MPS2 / forward_mps.abs().max(1e-3));
+        let yaw_rps = self.between(-turn_rps, turn_rps);
+        let moves = !self.numbers.random_bool(STANDS_STILL_IN);
+        let share = if moves { 1.0 } else { 0.0 };
+        self.commands = Commands {
+            forward_mps: (share * forward_mps) as f32,
+            left_mps: 0.0,
+            yaw_rps: (share * yaw_rps) as f32,
+        };
+        self.next_command_s = self.seconds() + self.between(early, late);
+    }
+
+    /// Takes a command until the end of the episode, in place of drawing one at times. It is seen from the next observation on.
+    pub fn command(&mut self, commands: Commands) {
+        self.commands = commands;
+        self.commanded = true;
+    }
+
+    /// The present command.
+    pub fn commands(&self) -> Commands {
+        self.commands
+    }
+
+    /// Pushes the robot in one instant, so that its speed forward and to the left changes by this.
+    pub fn push(&mut self, change_mps: [f64; 2]) {
+        let [ahead, left] = change_mps.map(|mps| mps * self.specimen.mass_kg);
+        let push = Push::instant([ahead, left, 0.0]);
+        self.robot.world_mut().push(push);
+    }
+
+    fn push_at_times(&mut self) {
+        if self.options.push_mps <= 0.0 || self.seconds() < self.next_push_s {
+            return;
+        }
+        let size_mps = self.between(0.0, self.options.push_mps);
+        let (sin, cos) = self.between(0.0, std::f64::consts::TAU).sin_cos();
+        self.push([size_mps * cos, size_mps * sin]);
+        let [early, late] = self.options.push_every_s;
+        self.next_push_s = self.seconds() + self.between(early, late);
+    }
+
+    /// Time in s since the episode began.
+    pub fn seconds(&self) -> f64 {
+        self.steps as f64 * self.period_ticks as f64 / TICKS_PER_S
+    }
+
+    /// Whether the episode has its full length.
+    pub fn is_over(&self) -> bool {
+        self.seconds() >= self.options.episode_s - 1e-9
+    }
+
+    /// The present observation, one for each step and one for the beginning.
+    pub fn observation(&self) -> &[f32] {
+        &self.observation
+    }
+
+    /// Number of actions.
+    pub fn actions_len(&self) -> usize {
+        self.before.len()
+    }
+
+    /// The robot as it is.
+    pub fn truth(&self) -> Truth {
+        self.probes.read(&self.robot)
+    }
+
+    /// Takes an action: what the network gives.
+    ///
+    /// # Errors
+    /// The action has the wrong length, or a value that is no number.
+    pub fn step(&mut self, actions: &[f32]) -> Result<Step, GymError> {
+        self.before.copy_from_slice(self.decoder.last_actions());
+        let targets = self.decoder.decode(actions)?;
+        self.robot.pc = Some(if self.options.built_in {
+            self.wire.drive(&self.commands)
+        } else {
+            self.wire.command(targets, &self.reading)
+        });
+        self.push_at_times();
+        self.robot.run_ticks(self.period_ticks);
+        self.steps += 1;
+        let truth = self.truth();
+        let fallen = self.has_fallen(&truth);
+        let wished = [self.commands.forward_mps, self.commands.yaw_rps].map(f64::from);
+        let terms = Terms::new(&truth, wished, self.decoder.last_actions(), &self.before);
+        if !self.commanded && self.seconds() >= self.next_command_s {
+            self.draw_command();
+        }
+        self.observe()?;
+        Ok(Step {
+            reward: terms.sum(fallen),
+            terms,
+            fallen,
+        })
+    }
+
+    fn has_fallen(&self, truth: &Truth) -> bool {
+        let within_s = if self.options.built_in {
+            STANDS_UP_WITHIN_S
+        } else {
+            GETS_UP_WITHIN_S
+        };
+        let gets_up = self.began_sitting && self.seconds() < within_s;
+        let lies = truth.tilt_rad() > FALLEN_RAD || truth.body_n > 0.0;
+        !truth.armed || (lies && !gets_up)
+    }
+
+    fn observe(&mut self) -> Result<(), GymError> {
+        let state = self.robot.uplink();
+        self.wire.read(&state, &mut self.reading)?;
+        let last_actions = self.decoder.last_actions();
+        let input = self
+            .observer
+            .observe(&self.reading, &self.commands, last_actions)?;
+        self.observation.copy_from_slice(input);
+        Ok(())
+    }
+}

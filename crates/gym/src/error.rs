@@ -1,0 +1,64 @@
+//! What can go wrong.
+
+use robot_policy::{action::ActionError, observation::ObserveError};
+
+/// Why an environment cannot be made or stepped.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum GymError {
+    /// The policy is for another robot.
+    #[error(
+        "a policy of {found} joints does not fit this robot, which has 4 hips and 2 wheels: set num_of_dofs to 6"
+    )]
+    OtherRobot {
+        /// Joints of the policy.
+        found: usize,
+    },
+    /// The policy runs at a rate that the environment does not have.
+    #[error(
+        "a policy that runs each {period_s} s does not fit a control loop of 1 ms: choose dt and decimation so that their \
+         product is a multiple of 0.01 s"
+    )]
+    Period {
+        /// Period of the policy in s.
+        period_s: f64,
+    },
+    /// A robot did not arm.
+    #[error("robot {seed} did not arm in mode PC: {why}")]
+    NotArmed {
+        /// Seed of the robot.
+        seed: u64,
+        /// What its firmware says.
+        why: String,
+    },
+    /// The observation cannot be made.
+    #[error(transparent)]
+    Observe(#[from] ObserveError),
+    /// The action cannot be obeyed.
+    #[error(transparent)]
+    Action(#[from] ActionError),
+    /// The attitude of a state frame is none.
+    #[error("the state frame has no attitude: {0}")]
+    Attitude(#[from] robot_policy::attitude::NotAnAttitude),
+    /// An array has the wrong length.
+    #[error("{what}: {found} values, and {wanted} are needed")]
+    Length {
+        /// The array.
+        what: &'static str,
+        /// Values needed.
+        wanted: usize,
+        /// Values given.
+        found: usize,
+    },
+    /// An option is out of its range.
+    #[error("option {name}: {value} is not within {least} and {most}")]
+    Option {
+        /// The option.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// Least value.
+        least: f64,
+        /// Greatest value.
+        most: f64,
+    },
+}
