@@ -1,8 +1,10 @@
 //! The commands of the program; `--help` lists them.
 
 mod bench;
+mod check;
 mod init;
 mod place;
+mod run;
 mod show;
 
 use std::process::ExitCode;
@@ -12,7 +14,9 @@ pub const EXAMPLES: &str = "\
 Example:
   policy init --robot fivebar
   policy show --robot fivebar --config flat
-  policy bench policy/fivebar/flat/policy.onnx";
+  policy bench policy/fivebar/flat/policy.onnx
+  policy check --robot fivebar --config flat --link /dev/ttyUSB0
+  policy run --robot fivebar --config flat --link /dev/ttyUSB0 --dry-run";
 
 #[derive(clap::Subcommand)]
 pub enum Command {
@@ -22,6 +26,10 @@ pub enum Command {
     Show(show::Show),
     /// Measure how long a network takes, and whether it gives the same each time
     Bench(bench::Bench),
+    /// Compare a policy's joints with the robot's: order, sense, default pose
+    Check(check::Check),
+    /// Let a policy drive the robot
+    Run(run::Run),
 }
 
 impl Command {
@@ -30,6 +38,8 @@ impl Command {
             Self::Init(init) => init.run(),
             Self::Show(show) => show.run(),
             Self::Bench(bench) => bench.run(),
+            Self::Check(check) => check.run(),
+            Self::Run(run) => run.run(),
         }
     }
 }

@@ -36,14 +36,34 @@
 pub mod action;
 pub mod attitude;
 mod base_yaml;
+#[cfg(feature = "link")]
+pub mod check;
+#[cfg(feature = "link")]
+pub mod command_source;
 pub mod config;
 mod description;
+#[cfg(feature = "link")]
+pub mod limits;
+#[cfg(feature = "link")]
+pub mod live;
 #[cfg(feature = "runner")]
 mod load;
+#[cfg(feature = "link")]
+pub mod log;
+#[cfg(feature = "link")]
+pub mod machine;
 mod mapping;
+#[cfg(feature = "link")]
+pub mod messages;
 #[cfg(feature = "runner")]
 pub mod model;
 pub mod observation;
+#[cfg(feature = "link")]
+pub mod pace;
+#[cfg(feature = "link")]
+pub mod robot;
+#[cfg(feature = "link")]
+pub mod runner;
 
 pub use base_yaml::{OutOfReach, base_yaml};
 pub use description::{

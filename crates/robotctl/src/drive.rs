@@ -4,6 +4,7 @@
 mod driver;
 mod joystick;
 mod keyboard;
+mod keys;
 mod obstacle;
 mod sticks;
 mod view;
@@ -13,6 +14,7 @@ pub use joystick::{
     AxisMap, Joystick, JoystickError, JoystickEvent, JoystickMap, JoystickMapError, JoystickState,
 };
 pub use keyboard::{Direction, Keyboard};
+pub use keys::Keys;
 pub use obstacle::Obstacle;
 pub use sticks::SticksDriver;
 pub use view::RobotView;

@@ -1,7 +1,6 @@
 //! `robotctl drive`: steers the robot over the PC link.
 
 mod controls;
-mod keys;
 mod pilot;
 mod screen;
 mod session;

@@ -6,10 +6,8 @@ use std::{
     time::Duration,
 };
 
-use anyhow::{Result, bail, ensure};
-use robotctl::drive::{Joystick, JoystickEvent, JoystickMap, Wish};
-
-use super::keys::Keys;
+use anyhow::{Context, Result, bail, ensure};
+use robotctl::drive::{Joystick, JoystickEvent, JoystickMap, Keys, Wish};
 
 pub struct Controls {
     /// `None` without a terminal.
@@ -39,7 +37,8 @@ impl Controls {
             joystick.is_some() || has_terminal,
             "there is no terminal to read keys from: run this in one, or name a --joystick"
         );
-        let keys = has_terminal.then(|| Keys::take(has_sticks)).transpose()?;
+        let keys = has_terminal.then(|| Keys::take(has_sticks)).transpose();
+        let keys = keys.context("the terminal gives no single keys")?;
         Ok(Self {
             keys,
             joystick,

@@ -1,8 +1,10 @@
 //! The keys of the terminal.
 
-use std::{io::stdout, time::Duration};
+use std::{
+    io::{self, stdout},
+    time::Duration,
+};
 
-use anyhow::{Context, Result};
 use crossterm::{
     event::{
         self, DisableFocusChange, EnableFocusChange, Event, KeyCode, KeyEvent, KeyEventKind,
@@ -11,7 +13,8 @@ use crossterm::{
     },
     execute, terminal,
 };
-use robotctl::drive::{Direction, Keyboard};
+
+use super::{Direction, Keyboard};
 
 /// The terminal without line editing. It is restored when this is dropped.
 pub struct Keys {
@@ -22,8 +25,8 @@ pub struct Keys {
 
 impl Keys {
     /// `has_sticks` says whether keys for height, roll and jump count too.
-    pub fn take(has_sticks: bool) -> Result<Self> {
-        terminal::enable_raw_mode().context("the terminal gives no single keys")?;
+    pub fn take(has_sticks: bool) -> io::Result<Self> {
+        terminal::enable_raw_mode()?;
         // Made at once, so that an error below restores the terminal.
         let mut keys = Self {
             keyboard: Keyboard::new(cfg!(windows)),
@@ -46,7 +49,7 @@ impl Keys {
     }
 
     /// Takes what was typed. Returns true if the user wants to end.
-    pub fn poll(&mut self, now: Duration) -> Result<bool> {
+    pub fn poll(&mut self, now: Duration) -> io::Result<bool> {
         while event::poll(Duration::ZERO)? {
             match event::read()? {
                 Event::Key(key) if self.key(key, now) => return Ok(true),
