@@ -1,4 +1,4 @@
-//! The PC's tool against the shipped image: settings over an slcan adapter or a gateway, and calibration from recording to effect.
+//! The PC's programs against the shipped image: settings over an slcan adapter or a gateway, and calibration from recording to effect.
 
 #[path = "../support/mod.rs"]
 mod support;
@@ -7,6 +7,7 @@ mod black_box;
 mod every_way;
 mod link;
 mod mounting;
+mod policy;
 mod saving;
 mod tool;
 mod trial;
