@@ -29,7 +29,7 @@ pub const MOTOR_NAMES: [&str; MOTORS] = [
 /// Fastest rotation in rad/s that the gyro can measure, 2000°/s, and some more.
 const GYRO_RPS: f32 = 40.0;
 /// A joint beyond ±π reads ±π on the link, and no leg reaches that far.
-const JOINT_RAD: f32 = 3.14;
+const JOINT_RAD: f32 = std::f32::consts::PI - 1e-3;
 
 /// Steps of the wheels' Kp, which has no effect on the robot. It changes with each frame, so that none is equal to the one
 /// before: the robot takes a PC that repeats itself for a crashed one.
@@ -214,7 +214,9 @@ impl LinkRobot {
 
 /// Refuses values beyond ±`most`, and NaN.
 fn within(values: &[f32], most: f32, what: impl Fn(usize) -> String) -> Result<(), Implausible> {
-    let wrong = values.iter().position(|value| !(value.abs() <= most));
+    let wrong = values
+        .iter()
+        .position(|value| !(0.0..=most).contains(&value.abs()));
     wrong.map_or(Ok(()), |at| {
         Err(Implausible::Value {
             what: what(at),

@@ -3,6 +3,9 @@ use robot_app::link::MotorState;
 use super::*;
 use crate::{JointMapping, runner::testing};
 
+/// What a message says, and the damage that it is about.
+type Damage = (&'static str, fn(&mut Uplink));
+
 fn state() -> Uplink {
     let motors = std::array::from_fn(|motor| MotorState {
         pos_rad: 0.1 * motor as f32,
@@ -113,7 +116,7 @@ fn a_value_that_cannot_be_is_named_and_changes_nothing() {
     let mut robot = LinkRobot::new(&testing::policy()).expect("its robot");
     robot.read(&state()).expect("a state");
     let before = robot.reading().clone();
-    let wrong: [(&str, fn(&mut Uplink)); 5] = [
+    let wrong: [Damage; 5] = [
         ("attitude", |state| state.q_xyzw = [0.0; 4]),
         ("gyro y is NaN", |state| state.gyro_rps[1] = f32::NAN),
         ("gyro z is 60", |state| state.gyro_rps[2] = 60.0),
