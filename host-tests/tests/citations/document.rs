@@ -67,7 +67,7 @@ fn code(text: &str) -> Vec<&str> {
 }
 
 /// `None` unless the word is a path, with a test after `::` if there is one, that is not there. A path begins with a
-/// folder of the root, or names a Rust file by the end of its path.
+/// folder of the root, or names a Rust file by the end of its path. A part in capitals, such as `ROBOT`, stands for any name.
 pub fn missing_place(tree: &Tree, word: &str) -> Option<String> {
     let (path, test) = match word.split_once("::") {
         Some((path, test)) => (path, Some(test)),
@@ -83,7 +83,10 @@ pub fn missing_place(tree: &Tree, word: &str) -> Option<String> {
         let has_test = |file: &String| test.is_none_or(|test| is_test(&tree.text(file), test));
         return if files.any(has_test) { None } else { missing() };
     }
-    if tree.begins_here(path) && !tree.has(path) {
+    let is_capitals =
+        |part: &str| !part.is_empty() && part.chars().all(|it| it.is_ascii_uppercase());
+    let stands_for_any = path.contains('/') && path.split('/').any(is_capitals);
+    if tree.begins_here(path) && !stands_for_any && !tree.has(path) {
         return missing();
     }
     None
@@ -112,6 +115,11 @@ fn what_is_not_there_is_noticed() {
         0
     );
     assert_eq!(in_document("`src/bored.rs` and `bored.rs`"), 2);
+    assert_eq!(in_document("`robots/ROBOT/base.yaml` and `docs/PAGE`"), 0);
+    assert_eq!(
+        in_document("`robots/Robot/base.yaml` and `docs/PAGES.md`"),
+        2
+    );
     assert_eq!(
         in_document("```sh\ncargo xtask sim scenarios/no-such.toml\n```"),
         1
