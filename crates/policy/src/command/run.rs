@@ -134,6 +134,9 @@ impl Run {
             .live
             .map(|address| Live::listen(address, &policy))
             .transpose()?;
+        if let Some(live) = &live {
+            println!("live: open ws://{} in Foxglove", live.address());
+        }
         let link = PcLink::open(&self.link)?;
         let source = self.source(&policy)?;
         let mut session = Session::new(self.link.clone(), link, runner, source, &policy)?;
