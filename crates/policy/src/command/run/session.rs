@@ -15,7 +15,7 @@ use robot_policy::{
     PolicyDescription,
     action::Target,
     command_source::{CommandSource, Said},
-    limits::Stop,
+    limits::{STALE_S, Stop},
     live::Live,
     log::Log,
     machine::Phase,
@@ -25,7 +25,7 @@ use robot_policy::{
     runner::{Now, Runner},
 };
 use robotctl::{
-    can_link::CanLink,
+    can_link::{CanLink, CanLinkError},
     drive::RobotView,
     pc_link::{self, PcLink},
     tuning::LiveQuestion,
@@ -150,9 +150,7 @@ impl Session {
             commands,
             stop: self.stop.take(),
         });
-        self.link
-            .command(&command)
-            .map_err(|error| self.link_failed(&error))?;
+        self.link.command(&command).map_err(link_failed)?;
         self.ask()?;
         self.tell();
         self.record(time_s, commands, late)
@@ -217,7 +215,7 @@ impl Session {
     }
 
     fn listen(&mut self, until: Instant) -> Result<()> {
-        while let Some(heard) = self.link.next(until)? {
+        while let Some(heard) = self.link.next(until).map_err(link_failed)? {
             match heard {
                 // A state that is sent again is not a new one.
                 Heard::Uplink(state) if state.time_s != self.robot.state.time_s => {
@@ -245,16 +243,9 @@ impl Session {
         if self.cycles.is_multiple_of(QUESTION_EVERY) {
             let number = (self.cycles / QUESTION_EVERY) as usize % self.questions.len();
             let frame = self.questions[number].frame();
-            CanLink::send(&mut self.link, &frame)?;
+            CanLink::send(&mut self.link, &frame).map_err(link_failed)?;
         }
         Ok(())
-    }
-
-    fn link_failed(&self, error: &robotctl::can_link::CanLinkError) -> Stop {
-        Stop::LinkFailed(format!(
-            "{error}; the robot has no torque {} s later",
-            robot_policy::limits::STALE_S
-        ))
     }
 
     /// Prints a line whenever something changes.
@@ -375,4 +366,13 @@ impl Session {
             });
         }
     }
+}
+
+/// Names the stop; nothing can be sent any more.
+fn link_failed(error: CanLinkError) -> anyhow::Error {
+    let stop = Stop::LinkFailed(format!(
+        "{error}; the robot has no torque {STALE_S} s after the last command"
+    ));
+    let name = stop.name();
+    anyhow::Error::from(stop).context(format!("ended by {name}"))
 }
