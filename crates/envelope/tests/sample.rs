@@ -4,7 +4,14 @@ use robot_envelope::{Report, Robots, TASKS, Task, survey, table};
 use robot_plant::world::WorldConfig;
 
 /// Tasks of a few seconds each.
-const SAMPLE: &[&str] = &["stand-up-sitting", "drive", "spin", "ramp", "lost"];
+const SAMPLE: &[&str] = &[
+    "stand-up-sitting",
+    "drive",
+    "spin",
+    "ramp",
+    "push-diagonal",
+    "lost",
+];
 
 #[test]
 fn robots_as_in_their_file_succeed() {

@@ -16,6 +16,7 @@ mod reference;
 mod sit_down;
 mod slip;
 mod stand_up;
+mod stop;
 mod support;
 mod tilt;
 mod tip;

@@ -6,7 +6,7 @@ use crate::math::scalar;
 const MOST_MPS: f32 = 2.0;
 /// All of it counts up to a braking lean of this less the span, in rad, and from this lean on only the least share. Legs that
 /// lean further do not hold the hips up.
-const BRAKING_RAD: f32 = 0.67;
+const BRAKING_RAD: f32 = 0.74;
 const SPAN_RAD: f32 = 0.15;
 const LEAST: f32 = 0.2;
 /// Time in s over which the present rate of lean counts.
@@ -40,7 +40,7 @@ mod tests {
             assert_eq!(counted(0.3), MOST_MPS);
             assert_eq!(counted(-0.4), MOST_MPS);
             assert!(counted(-0.6) < MOST_MPS);
-            assert_eq!(counted(-0.7), LEAST * MOST_MPS);
+            assert_eq!(counted(-0.75), LEAST * MOST_MPS);
         }
         assert_eq!(counted_mps(0.2, -0.5, 0.0, 0.0), 0.2);
     }
@@ -49,7 +49,7 @@ mod tests {
     fn a_robot_that_is_about_to_lean_back_brakes_no_harder() {
         for forward in [1.0, -1.0] {
             let counted = |lean_rps: f32| {
-                forward * counted_mps(forward * 3.0, forward * -0.45, forward * lean_rps, 0.0)
+                forward * counted_mps(forward * 3.0, forward * -0.5, forward * lean_rps, 0.0)
             };
             assert_eq!(counted(0.0), MOST_MPS);
             assert_eq!(counted(3.0), MOST_MPS);

@@ -8,8 +8,9 @@ use super::{
     measured::Measured,
     one_wheel,
     ramp::Ramp,
-    reference::{Reference, Wish},
+    reference::{Own, Reference, Wish},
     slip::Slip,
+    stop::Motion as Hips,
     support::{GRAVITY_MPS2, Stance, Support},
     torques,
     trim::{Motion, Trim},
@@ -58,6 +59,8 @@ pub struct Goal {
     pub push_n: Option<f32>,
     /// Learn trim and load.
     pub learn: bool,
+    /// Stop as planned after a push. A robot that stands up, lands, or strikes an edge as it drives has other things to do.
+    pub stop: bool,
     /// How it is known whether the wheels touch the ground.
     pub ground: Ground,
 }
@@ -72,6 +75,7 @@ impl Goal {
             pitch_rad: 0.0,
             push_n: None,
             learn: false,
+            stop: false,
             ground: Ground::Touched,
         }
     }
@@ -195,32 +199,46 @@ impl Law {
             speed_mps: self.slip.rolling_mps(measured),
             ..*measured
         };
-        self.reference
-            .step(goal.wish, measured.speed_mps, yaw_rps, dt_s);
         let per_mps2 = Ahead::new(profile, odometry, measured);
-        let ahead = per_mps2.times(self.reference.accel_mps2);
-        let observed_rad = self.trim.observe(
-            &motion(measured),
-            per_mps2.lean_rad,
-            measured.length_m(),
-            dt_s,
-        );
         let length_m = measured.length_m();
         let trim_rad = self.trim.offset_m / scalar::max(length_m, 0.05);
+        let own = Own {
+            speed_mps: measured.speed_mps,
+            yaw_rps,
+            hips: Hips {
+                speed_mps: measured.speed_mps + length_m * measured.mean_lean_rps(),
+                accel_mps2: (measured.mean_lean_rad() - trim_rad) / per_mps2.lean_rad,
+            },
+        };
+        if !goal.stop {
+            self.reference.forget_push();
+        }
+        self.reference.step(goal.wish, &own, dt_s);
+        let ahead = per_mps2.times(self.reference.accel_mps2);
+        let swing_rps = match &self.reference.stop {
+            Some(stop) => per_mps2.lean_rad * stop.jerk_mps3,
+            None => 0.0,
+        };
+        let observed_rad = self
+            .trim
+            .observe(&motion(measured), per_mps2.lean_rad, length_m, dt_s);
         // The hips go up and down straight.
         let trim_rps = -trim_rad * measured.length_mps() / scalar::max(length_m, 0.05);
         let lean = Ramp {
             value: trim_rad + ahead.lean_rad,
-            rate: trim_rps,
+            rate: trim_rps + swing_rps,
         };
-        let error = self.error(measured, &lean, goal.pitch_rad);
+        let axles_mps = self.reference.speed_mps - length_m * swing_rps;
+        let off_mps = measured.speed_mps - axles_mps;
+        let error = self.error(measured, off_mps, &lean, goal.pitch_rad);
         let feedback_nm = self.gains.torques_nm(&error);
         let [left_wheel, right_wheel, left_leg, right_leg] = feedback_nm;
         let [_, speed_error, ..] = error;
         let steady = self.reference.accel_mps2.abs() < LEARN_MPS2
             && measured.mean_lean_rps().abs() < LEARN_RPS
             && yaw_rps.abs() < LEARN_YAW_RPS;
-        let calm = goal.learn && steady && speed_error.abs() < LEARN_MPS;
+        let calm =
+            goal.learn && steady && speed_error.abs() < LEARN_MPS && !self.reference.is_pushed();
         if calm {
             self.trim.learn(observed_rad * length_m, feedback_nm, dt_s);
         }
@@ -235,7 +253,7 @@ impl Law {
             roll_rad: goal.roll_rad,
             sideways_mps2: measured.speed_mps * yaw_rps,
             share,
-            off_mps: measured.speed_mps - self.reference.speed_mps,
+            off_mps,
             lean_rad: lean.value,
             across_nm: left_leg + right_leg + 2.0 * (self.trim.leg_nm + ahead.leg_nm)
                 - self.wheels_nm.iter().sum::<f32>(),
@@ -323,7 +341,13 @@ impl Law {
         )
     }
 
-    fn error(&self, measured: &Measured, lean: &Ramp, pitch_rad: f32) -> [f32; STATES] {
+    fn error(
+        &self,
+        measured: &Measured,
+        off_mps: f32,
+        lean: &Ramp,
+        pitch_rad: f32,
+    ) -> [f32; STATES] {
         let reference = &self.reference;
         let [left_rad, right_rad] = measured.lean_rad;
         let [left_rps, right_rps] = measured.lean_rps;
@@ -334,7 +358,7 @@ impl Law {
         [
             reference.distance_m,
             counted_mps(
-                measured.speed_mps - reference.speed_mps,
+                off_mps,
                 measured.mean_lean_rad() - lean.value,
                 measured.mean_lean_rps(),
                 self.slip.lately_mps,

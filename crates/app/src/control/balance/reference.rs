@@ -1,5 +1,6 @@
 //! What the robot shall follow: speed and yaw rate that it can reach without falling, and the place where it rests.
 
+use super::stop::{Motion, Pushed, Stop};
 use crate::math::scalar;
 
 /// Acceleration limit in m/s²: the lean that it takes is far from falling, and little friction is enough for it.
@@ -36,6 +37,18 @@ pub struct Reference {
     pub distance_m: f32,
     /// Angle beyond the heading to hold, in rad.
     pub yaw_error_rad: f32,
+    pushed: Pushed,
+    /// The stop under way. Then the speed above is that of the hips.
+    pub stop: Option<Stop>,
+}
+
+/// The robot's own motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Own {
+    /// Speed of the axles in m/s.
+    pub speed_mps: f32,
+    pub yaw_rps: f32,
+    pub hips: Motion,
 }
 
 impl Reference {
@@ -48,9 +61,34 @@ impl Reference {
         }
     }
 
-    /// Moves on by `dt_s` beside a robot with this speed and yaw rate.
-    pub fn step(&mut self, wish: Wish, speed_mps: f32, yaw_rps: f32, dt_s: f32) {
-        let behind_mps = wish.speed_mps - self.speed_mps;
+    /// Moves on by `dt_s` beside a robot with this motion.
+    pub fn step(&mut self, wish: Wish, own: &Own, dt_s: f32) {
+        let error_mps = own.speed_mps - self.speed_mps;
+        if let Some(stop) = &mut self.stop {
+            let mut plan = Motion {
+                speed_mps: self.speed_mps,
+                accel_mps2: self.accel_mps2,
+            };
+            let goes_on = stop.step(&mut plan, wish.speed_mps, &own.hips, dt_s);
+            self.speed_mps = plan.speed_mps;
+            self.accel_mps2 = plan.accel_mps2;
+            if !goes_on {
+                self.stop = None;
+            }
+        } else if let Some(stop) = self.pushed.step(error_mps, wish.speed_mps, &own.hips) {
+            self.stop = Some(stop);
+            self.speed_mps = own.hips.speed_mps;
+            self.accel_mps2 = own.hips.accel_mps2;
+            self.distance_m = 0.0;
+        } else {
+            self.follow(wish.speed_mps, dt_s);
+            self.hold(own.speed_mps - self.speed_mps, dt_s);
+        }
+        self.turn(wish.yaw_rps, own.yaw_rps, dt_s);
+    }
+
+    fn follow(&mut self, wish_mps: f32, dt_s: f32) {
+        let behind_mps = wish_mps - self.speed_mps;
         let jerk_mps3 = FOLLOW_RPS * FOLLOW_RPS * behind_mps - 2.0 * FOLLOW_RPS * self.accel_mps2;
         self.accel_mps2 = scalar::clamp(
             self.accel_mps2 + jerk_mps3 * dt_s,
@@ -58,7 +96,9 @@ impl Reference {
             MAX_ACCEL_MPS2,
         );
         self.speed_mps += self.accel_mps2 * dt_s;
-        let error_mps = speed_mps - self.speed_mps;
+    }
+
+    fn hold(&mut self, error_mps: f32, dt_s: f32) {
         self.distance_m = scalar::clamp(
             self.distance_m + error_mps * dt_s,
             -MAX_DISTANCE_M,
@@ -67,7 +107,6 @@ impl Reference {
         if error_mps.abs() > PUSHED_MPS {
             self.distance_m -= self.distance_m * (dt_s / LET_GO_S);
         }
-        self.turn(wish.yaw_rps, yaw_rps, dt_s);
     }
 
     fn turn(&mut self, wish_rps: f32, yaw_rps: f32, dt_s: f32) {
@@ -86,6 +125,18 @@ impl Reference {
     pub fn let_go(&mut self) {
         self.distance_m = 0.0;
         self.accel_mps2 = 0.0;
+        self.forget_push();
+    }
+
+    /// The robot has been pushed and brakes.
+    pub fn is_pushed(&self) -> bool {
+        self.pushed.brakes || self.stop.is_some()
+    }
+
+    /// Plans no stop.
+    pub fn forget_push(&mut self) {
+        self.pushed = Pushed::default();
+        self.stop = None;
     }
 }
 

@@ -2,12 +2,23 @@ use super::*;
 
 const DT_S: f32 = 0.001;
 
+fn rolling(speed_mps: f32, yaw_rps: f32) -> Own {
+    Own {
+        speed_mps,
+        yaw_rps,
+        hips: Motion {
+            speed_mps,
+            accel_mps2: 0.0,
+        },
+    }
+}
+
 fn follow(reference: &mut Reference, wish: Wish, seconds: f32) -> Vec<Reference> {
     let ticks = (seconds / DT_S) as usize;
     let mut steps = Vec::new();
     for _ in 0..ticks {
-        let (speed_mps, yaw_rps) = (reference.speed_mps, reference.yaw_rps);
-        reference.step(wish, speed_mps, yaw_rps, DT_S);
+        let own = rolling(reference.speed_mps, reference.yaw_rps);
+        reference.step(wish, &own, DT_S);
         steps.push(*reference);
     }
     steps
@@ -52,13 +63,89 @@ fn a_pushed_robot_lets_its_place_go_and_a_drifting_one_does_not() {
     let mut pushed = Reference::default();
     let mut drifting = Reference::default();
     for _ in 0..1_000 {
-        pushed.step(Wish::default(), 0.3, 0.0, DT_S);
-        drifting.step(Wish::default(), 0.04, 0.0, DT_S);
+        pushed.step(Wish::default(), &rolling(0.3, 0.0), DT_S);
+        drifting.step(Wish::default(), &rolling(0.04, 0.0), DT_S);
     }
     assert!(pushed.distance_m < 0.031, "{pushed:?}");
     assert!((drifting.distance_m - 0.04).abs() < 1e-3, "{drifting:?}");
     for _ in 0..10_000 {
-        drifting.step(Wish::default(), 0.2, 0.0, DT_S);
+        drifting.step(Wish::default(), &rolling(0.2, 0.0), DT_S);
     }
     assert_eq!(drifting.distance_m, MAX_DISTANCE_M);
+}
+
+#[test]
+fn a_robot_that_brakes_after_a_push_stops_as_planned() {
+    for forward in [1.0, -1.0] {
+        let mut reference = Reference::default();
+        let mut hips = Motion {
+            speed_mps: forward * 1.5,
+            accel_mps2: forward * -4.0,
+        };
+        let mut planned_s = 0.0;
+        for _ in 0..1_000 {
+            let own = Own {
+                speed_mps: hips.speed_mps,
+                yaw_rps: 0.0,
+                hips,
+            };
+            reference.step(Wish::default(), &own, DT_S);
+            if reference.stop.is_some() {
+                planned_s += DT_S;
+                hips.accel_mps2 = reference.accel_mps2;
+            }
+            hips.speed_mps += hips.accel_mps2 * DT_S;
+        }
+        assert!((0.3..0.6).contains(&planned_s), "{planned_s}");
+        assert!(
+            reference.stop.is_none() && hips.speed_mps.abs() < 0.01,
+            "{hips:?}"
+        );
+        assert!(reference.accel_mps2.abs() < 0.1 && reference.distance_m.abs() < 0.01);
+    }
+}
+
+#[test]
+fn a_push_that_is_forgotten_ends_in_no_planned_stop() {
+    let moving = |speed_mps: f32| Own {
+        speed_mps,
+        yaw_rps: 0.0,
+        hips: Motion {
+            speed_mps,
+            accel_mps2: -4.0,
+        },
+    };
+    for forgets in [false, true] {
+        let mut reference = Reference::default();
+        reference.step(Wish::default(), &moving(1.5), DT_S);
+        assert!(reference.is_pushed());
+        if forgets {
+            reference.forget_push();
+            assert!(!reference.is_pushed());
+        }
+        reference.step(Wish::default(), &moving(0.3), DT_S);
+        assert_eq!(reference.stop.is_none(), forgets);
+    }
+}
+
+#[test]
+fn a_robot_that_was_not_pushed_plans_no_stop() {
+    let wish = Wish {
+        speed_mps: 0.0,
+        yaw_rps: 0.0,
+    };
+    let mut reference = Reference::at(2.5, 0.0);
+    for _ in 0..2_000 {
+        let hips = Motion {
+            speed_mps: reference.speed_mps + 0.2,
+            accel_mps2: reference.accel_mps2,
+        };
+        let own = Own {
+            speed_mps: hips.speed_mps,
+            yaw_rps: 0.0,
+            hips,
+        };
+        reference.step(wish, &own, DT_S);
+        assert!(reference.stop.is_none());
+    }
 }

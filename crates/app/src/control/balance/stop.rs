@@ -1,0 +1,92 @@
+//! The planned stop of a robot that has been pushed: its speed, its acceleration and with it the lean end at the same instant.
+
+use crate::math::scalar;
+
+/// A robot whose wheels are faster than wanted by so much, in m/s, has been pushed. Driving never gets there.
+const PUSHED_MPS: f32 = 0.4;
+/// Least deceleration in m/s² of a robot that brakes, and the one below which it no longer does.
+const BRAKES_MPS2: f32 = 0.6;
+const COASTS_MPS2: f32 = 0.3;
+/// Largest deceleration in m/s² that is counted on: with little grip a robot that leans further brakes no harder.
+const COUNTED_MPS2: f32 = 4.0;
+/// Time in s that a stop takes.
+const TAKES_S: f32 = 0.4;
+/// Less time left than this counts as this: what is wrong in the end is put right no faster.
+const LEAST_S: f32 = 0.12;
+/// Time in s after the end of a stop in which what is wrong is put right.
+const AFTER_S: f32 = 0.1;
+/// Largest distance in m/s between the plan and the robot.
+const NEAR_MPS: f32 = 0.3;
+
+/// How the robot's hips move.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Motion {
+    /// Speed in m/s.
+    pub speed_mps: f32,
+    /// Acceleration in m/s² that fits the legs' lean.
+    pub accel_mps2: f32,
+}
+
+/// A stop that is planned.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Stop {
+    /// Time in s until its end.
+    left_s: f32,
+    /// Rate of the acceleration in m/s³.
+    pub jerk_mps3: f32,
+}
+
+/// A robot that may have to stop.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pushed {
+    /// It has been pushed and brakes.
+    pub brakes: bool,
+}
+
+impl Pushed {
+    /// Begins a stop once a robot that was pushed and now brakes has just the time for it. Its wheels are too fast by `off_mps`.
+    pub fn step(&mut self, off_mps: f32, wish_mps: f32, hips: &Motion) -> Option<Stop> {
+        let fast_mps = hips.speed_mps - wish_mps;
+        let brakes_mps2 = if fast_mps < 0.0 {
+            hips.accel_mps2
+        } else {
+            -hips.accel_mps2
+        };
+        if off_mps.abs() > PUSHED_MPS && brakes_mps2 > BRAKES_MPS2 {
+            self.brakes = true;
+        }
+        if brakes_mps2 < COASTS_MPS2 {
+            self.brakes = false;
+        }
+        let begins =
+            self.brakes && fast_mps.abs() < 0.5 * TAKES_S * scalar::min(brakes_mps2, COUNTED_MPS2);
+        begins.then(|| {
+            self.brakes = false;
+            Stop {
+                left_s: TAKES_S,
+                jerk_mps3: 0.0,
+            }
+        })
+    }
+}
+
+impl Stop {
+    /// Moves the plan on by `dt_s` beside the robot's `hips`, along the gentlest way to the wished speed. Returns false when it is over.
+    pub fn step(&mut self, plan: &mut Motion, wish_mps: f32, hips: &Motion, dt_s: f32) -> bool {
+        let left_s = scalar::max(self.left_s, LEAST_S);
+        let behind_mps = wish_mps - plan.speed_mps;
+        // The least square of the fourth derivative on the way to a state in which nothing changes.
+        let snap_mps4 = ((60.0 * behind_mps / left_s - 36.0 * plan.accel_mps2) / left_s
+            - 9.0 * self.jerk_mps3)
+            / left_s;
+        self.jerk_mps3 += snap_mps4 * dt_s;
+        plan.accel_mps2 += self.jerk_mps3 * dt_s;
+        let ahead_mps = plan.speed_mps + plan.accel_mps2 * dt_s - hips.speed_mps;
+        plan.speed_mps = hips.speed_mps + scalar::clamp(ahead_mps, -NEAR_MPS, NEAR_MPS);
+        self.left_s -= dt_s;
+        self.left_s > -AFTER_S
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,88 @@
+use super::*;
+
+const DT_S: f32 = 0.001;
+
+const BRAKING: Motion = Motion {
+    speed_mps: 0.7,
+    accel_mps2: -4.0,
+};
+
+#[test]
+fn speed_acceleration_and_jerk_end_together() {
+    let mut stop = Pushed { brakes: true }
+        .step(0.5, 0.0, &BRAKING)
+        .expect("it brakes");
+    let mut plan = BRAKING;
+    let mut most_mps3 = 0.0_f32;
+    loop {
+        let hips = plan;
+        let goes_on = stop.step(&mut plan, 0.0, &hips, DT_S);
+        most_mps3 = most_mps3.max(stop.jerk_mps3.abs());
+        if stop.left_s < 0.0 {
+            assert!(plan.speed_mps.abs() < 0.02, "{plan:?}");
+        }
+        if !goes_on {
+            break;
+        }
+    }
+    assert!(plan.accel_mps2.abs() < 0.05 && stop.jerk_mps3.abs() < 1.0);
+    assert!(most_mps3 < 25.0, "{most_mps3}");
+}
+
+#[test]
+fn it_begins_when_time_is_just_enough() {
+    let begins = |speed_mps, accel_mps2| {
+        let hips = Motion {
+            speed_mps,
+            accel_mps2,
+        };
+        let mut pushed = Pushed::default();
+        pushed.step(speed_mps, 0.0, &hips).is_some()
+    };
+    for forward in [1.0, -1.0] {
+        assert!(begins(forward * 0.7, forward * -4.0));
+        assert!(!begins(forward * 1.0, forward * -4.0), "it brakes on");
+        assert!(
+            !begins(forward * 1.0, forward * -8.0),
+            "it may have no grip"
+        );
+        assert!(!begins(forward * 0.7, forward * 4.0), "it does not brake");
+        assert!(!begins(forward * 0.35, forward * -4.0), "it was not pushed");
+    }
+}
+
+#[test]
+fn a_robot_that_no_longer_brakes_was_not_pushed() {
+    let mut pushed = Pushed::default();
+    let fast = Motion {
+        speed_mps: 2.0,
+        accel_mps2: -4.0,
+    };
+    assert_eq!(pushed.step(2.0, 0.0, &fast), None);
+    assert!(pushed.brakes);
+    let coasting = Motion {
+        speed_mps: 0.2,
+        accel_mps2: -0.2,
+    };
+    assert_eq!(pushed.step(0.2, 0.0, &coasting), None);
+    assert_eq!(pushed.step(0.2, 0.0, &BRAKING), None);
+}
+
+#[test]
+fn the_plan_stays_near_the_robot() {
+    let mut stop = Stop {
+        left_s: TAKES_S,
+        jerk_mps3: 0.0,
+    };
+    let mut plan = BRAKING;
+    stop.step(
+        &mut plan,
+        0.0,
+        &Motion {
+            speed_mps: 2.0,
+            accel_mps2: 0.0,
+        },
+        DT_S,
+    );
+    assert_eq!(plan.speed_mps, 2.0 - NEAR_MPS);
+}
