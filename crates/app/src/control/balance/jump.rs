@@ -13,8 +13,7 @@ const PUSH_PART: f32 = 0.97;
 /// Pushing off ends so much before the legs' full length, in m.
 const PUSH_ENDS_BEFORE_M: f32 = 0.03;
 const PUSH_S: f32 = 0.3;
-/// Legs are this much longer than the shortest while they are drawn in, for this part of the time up to the top.
-const DRAWN_IN_M: f32 = 0.01;
+/// Legs are drawn in for this part of the time up to the top.
 const DRAWN_IN_PART: f32 = 1.3;
 /// Rate in m/s at which legs are stretched to land, and the time in s for most of it. Before, the robot is in the air
 /// whatever it feels.
@@ -22,9 +21,10 @@ pub const FLIGHT_MPS: f32 = 2.5;
 const STRETCH_S: f32 = 0.05;
 /// Time in s after which a robot that has pushed off has landed.
 const FLIGHT_S: f32 = 1.0;
-/// Legs are drawn in over an edge for this time in s, and then stretched to so much more than the shortest, in m, at this rate
-/// in m/s.
+/// Legs are drawn in over an edge for this time in s to so much more than the shortest, in m, and then stretched to so much
+/// more than it, in m, at this rate in m/s.
 const HOP_S: f32 = 0.07;
+const HOP_DRAWN_IN_M: f32 = 0.01;
 const HOP_LANDS_M: f32 = 0.05;
 const HOP_MPS: f32 = 1.0;
 
@@ -106,7 +106,7 @@ impl Jump {
                 let rise_s = *start_mps * mass.carried_kg / (mass.total_kg * GRAVITY_MPS2);
                 let drawn_in_s = DRAWN_IN_PART * rise_s;
                 if self.elapsed_s < drawn_in_s {
-                    length = Ramp::at(limits.fold_length_m + DRAWN_IN_M);
+                    length = Ramp::at(limits.fold_length_m);
                 } else {
                     length.step(limits.max_length_m, FLIGHT_MPS, dt_s);
                 }
@@ -119,7 +119,7 @@ impl Jump {
             }
             Part::Hop => {
                 if self.elapsed_s < HOP_S {
-                    length = Ramp::at(limits.fold_length_m + DRAWN_IN_M);
+                    length = Ramp::at(limits.fold_length_m + HOP_DRAWN_IN_M);
                     ground = Ground::Left;
                 } else {
                     ground = Ground::Felt;
@@ -186,6 +186,18 @@ mod tests {
                 .iter()
                 .all(|(length_m, ground)| *length_m < fold_m + 0.02 && *ground == Ground::Left)
         );
+    }
+
+    #[test]
+    fn in_flight_the_legs_are_as_short_as_they_can_be() {
+        let mut jump = Jump {
+            part: Part::Flight { start_mps: 2.0 },
+            elapsed_s: 0.0,
+        };
+        let length = Ramp::at(0.2);
+        let legs = jump.step(&FIVEBAR.balance, &Measured::at_rest(), true, &length, 0.001);
+        let length_m = legs.map(|legs| legs.length.value);
+        assert_eq!(length_m, Some(FIVEBAR.balance.limits.fold_length_m));
     }
 
     #[test]
