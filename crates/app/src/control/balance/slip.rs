@@ -42,6 +42,11 @@ impl Slip {
         ground_mps + scalar::clamp(measured.speed_mps - ground_mps, -ROLLING_MPS, ROLLING_MPS)
     }
 
+    /// Begins with an estimate that is behind wheels that roll by so much, in m/s.
+    pub fn begin_behind(&mut self, mps: f32) {
+        self.drift_mps = if mps.abs() < ROLLING_MPS { 0.0 } else { mps };
+    }
+
     /// Goes on by `dt_s`. The wheels got `wheels_nm`, and carry a load if they are `loaded`.
     pub fn step(
         &mut self,
