@@ -39,6 +39,8 @@ const LEVEL_NS_PER_M: f32 = 30.0;
 /// Stiffness and damping of a leg's lean in the air in N·m/rad and N·m·s/rad.
 const AIR_NM_PER_RAD: f32 = 12.0;
 const AIR_NMS_PER_RAD: f32 = 0.6;
+/// Factor of both where the robot has left the ground by itself. At an edge its wheels must go on with its body.
+const LEFT_FACTOR: f32 = 2.0;
 /// Damping of a wheel in the air in N·m·s/rad.
 const AIR_DAMPING: f32 = 0.05;
 /// Torque of each wheel in N·m for each N·m·s with which a robot that pushes off turns forward. It would go on turning in
@@ -312,8 +314,12 @@ impl Law {
         let lean_rad = self.trim.offset_m / scalar::max(profile.limits.max_length_m, 0.05);
         let push_n = self.contact.push_n();
         let trim_nm = self.trim.leg_nm * self.support.share(&profile.mass, push_n);
+        let factor = match goal.ground {
+            Ground::Left => LEFT_FACTOR,
+            Ground::Touched | Ground::Felt => 1.0,
+        };
         let lean_nm = |rad: f32, rps: f32| {
-            trim_nm + AIR_NM_PER_RAD * (lean_rad - rad) - AIR_NMS_PER_RAD * rps
+            trim_nm + factor * (AIR_NM_PER_RAD * (lean_rad - rad) - AIR_NMS_PER_RAD * rps)
         };
         let ([left_rad, right_rad], [left_rps, right_rps]) = (measured.lean_rad, measured.lean_rps);
         let [left_n, right_n] = Support::in_air(
@@ -436,3 +442,6 @@ impl Ahead {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
