@@ -75,7 +75,7 @@ impl Reference {
             if !goes_on {
                 self.stop = None;
             }
-        } else if let Some(stop) = self.pushed.step(error_mps, wish.speed_mps, &own.hips) {
+        } else if let Some(stop) = self.pushed.step(error_mps, wish.speed_mps, &own.hips, dt_s) {
             self.stop = Some(stop);
             self.speed_mps = own.hips.speed_mps;
             self.accel_mps2 = own.hips.accel_mps2;

@@ -7,6 +7,8 @@ const PUSHED_MPS: f32 = 0.4;
 /// Least deceleration in m/s² of a robot that brakes, and the one below which it no longer does.
 const BRAKES_MPS2: f32 = 0.6;
 const COASTS_MPS2: f32 = 0.3;
+/// A push is over after this time in s. What lasts longer is a lean that has not been learned yet.
+const LASTS_S: f32 = 1.2;
 /// Largest deceleration in m/s² that is counted on: with little grip a robot that leans further brakes no harder.
 const COUNTED_MPS2: f32 = 4.0;
 /// Time in s that a stop takes.
@@ -41,18 +43,30 @@ pub struct Stop {
 pub struct Pushed {
     /// It has been pushed and brakes.
     pub brakes: bool,
+    /// Time in s for which it has been too fast or has braked.
+    lasts_s: f32,
 }
 
 impl Pushed {
     /// Begins a stop once a robot that was pushed and now brakes has just the time for it. Its wheels are too fast by `off_mps`.
-    pub fn step(&mut self, off_mps: f32, wish_mps: f32, hips: &Motion) -> Option<Stop> {
+    pub fn step(&mut self, off_mps: f32, wish_mps: f32, hips: &Motion, dt_s: f32) -> Option<Stop> {
+        let too_fast = off_mps.abs() > PUSHED_MPS;
+        if !too_fast && !self.brakes {
+            self.lasts_s = 0.0;
+            return None;
+        }
+        self.lasts_s += dt_s;
+        if self.lasts_s > LASTS_S {
+            self.brakes = false;
+            return None;
+        }
         let fast_mps = hips.speed_mps - wish_mps;
         let brakes_mps2 = if fast_mps < 0.0 {
             hips.accel_mps2
         } else {
             -hips.accel_mps2
         };
-        if off_mps.abs() > PUSHED_MPS && brakes_mps2 > BRAKES_MPS2 {
+        if too_fast && brakes_mps2 > BRAKES_MPS2 {
             self.brakes = true;
         }
         if brakes_mps2 < COASTS_MPS2 {

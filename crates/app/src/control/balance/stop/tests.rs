@@ -9,9 +9,11 @@ const BRAKING: Motion = Motion {
 
 #[test]
 fn speed_acceleration_and_jerk_end_together() {
-    let mut stop = Pushed { brakes: true }
-        .step(0.5, 0.0, &BRAKING)
-        .expect("it brakes");
+    let mut braking = Pushed {
+        brakes: true,
+        lasts_s: 0.0,
+    };
+    let mut stop = braking.step(0.5, 0.0, &BRAKING, DT_S).expect("it brakes");
     let mut plan = BRAKING;
     let mut most_mps3 = 0.0_f32;
     loop {
@@ -37,7 +39,7 @@ fn it_begins_when_time_is_just_enough() {
             accel_mps2,
         };
         let mut pushed = Pushed::default();
-        pushed.step(speed_mps, 0.0, &hips).is_some()
+        pushed.step(speed_mps, 0.0, &hips, DT_S).is_some()
     };
     for forward in [1.0, -1.0] {
         assert!(begins(forward * 0.7, forward * -4.0));
@@ -58,14 +60,14 @@ fn a_robot_that_no_longer_brakes_was_not_pushed() {
         speed_mps: 2.0,
         accel_mps2: -4.0,
     };
-    assert_eq!(pushed.step(2.0, 0.0, &fast), None);
+    assert_eq!(pushed.step(2.0, 0.0, &fast, DT_S), None);
     assert!(pushed.brakes);
     let coasting = Motion {
         speed_mps: 0.2,
         accel_mps2: -0.2,
     };
-    assert_eq!(pushed.step(0.2, 0.0, &coasting), None);
-    assert_eq!(pushed.step(0.2, 0.0, &BRAKING), None);
+    assert_eq!(pushed.step(0.2, 0.0, &coasting, DT_S), None);
+    assert_eq!(pushed.step(0.2, 0.0, &BRAKING, DT_S), None);
 }
 
 #[test]
@@ -85,4 +87,27 @@ fn the_plan_stays_near_the_robot() {
         DT_S,
     );
     assert_eq!(plan.speed_mps, 2.0 - NEAR_MPS);
+}
+
+/// A centre of mass that nobody knows of makes a robot lean and roll on as if it had been pushed and braked.
+#[test]
+fn what_lasts_is_no_push() {
+    let rolling_on = Motion {
+        speed_mps: 3.0,
+        accel_mps2: -1.0,
+    };
+    for off_mps in [0.3, 0.5] {
+        let mut pushed = Pushed::default();
+        assert_eq!(pushed.step(0.5, 0.0, &rolling_on, DT_S), None);
+        assert!(pushed.brakes);
+        let mut lasts_s = 0.0;
+        for _ in 0..3_000 {
+            assert_eq!(pushed.step(off_mps, 0.0, &rolling_on, DT_S), None);
+            if pushed.brakes {
+                lasts_s += DT_S;
+            }
+        }
+        assert!((lasts_s - LASTS_S).abs() < 0.01, "{lasts_s}");
+        assert!(!pushed.brakes);
+    }
 }
