@@ -32,6 +32,8 @@ const SIDEWAYS_MPS2: f64 = 2.5;
 /// Greatest speeds in m/s, and pitch rate in rad/s, of a robot that begins standing.
 const MOVING_MPS: f64 = 0.5;
 const PITCHING_RPS: f64 = 0.5;
+/// Draws of a robot that arms.
+const MOST_DRAWS: usize = 20;
 const TICKS_PER_S: f64 = 1e3;
 
 /// What a step led to.
@@ -84,7 +86,7 @@ impl Environment {
             return Err(GymError::Period { period_s });
         }
         let mut numbers = Pcg64Mcg::seed_from_u64(seed);
-        let specimen = Specimen::boot(numbers.random(), options.vary)?;
+        let specimen = draw(&mut numbers, options.vary)?;
         let robot = specimen.sitting();
         let observer = Observer::new(policy);
         let mut environment = Self {
@@ -118,7 +120,7 @@ impl Environment {
     /// The next robot does not arm.
     pub fn reset(&mut self) -> Result<(), GymError> {
         if self.episodes_of_robot >= self.options.episodes_per_robot {
-            self.specimen = Specimen::boot(self.numbers.random(), self.options.vary)?;
+            self.specimen = draw(&mut self.numbers, self.options.vary)?;
             self.episodes_of_robot = 0;
         }
         self.begin()
@@ -304,4 +306,16 @@ impl Environment {
         self.observation.copy_from_slice(input);
         Ok(())
     }
+}
+
+/// Boots robots until one arms: one in fifty sits so steeply that its firmware takes it for fallen.
+fn draw(numbers: &mut Pcg64Mcg, vary: bool) -> Result<Specimen, GymError> {
+    let mut last = Specimen::boot(numbers.random(), vary);
+    for _ in 0..MOST_DRAWS {
+        if last.is_ok() {
+            break;
+        }
+        last = Specimen::boot(numbers.random(), vary);
+    }
+    last
 }
