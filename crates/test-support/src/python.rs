@@ -58,6 +58,15 @@ const NETWORKS: Packages = Packages {
     imports_all: "import numpy, onnx, onnxruntime",
 };
 
+const TRAINING: Packages = Packages {
+    folder: "python-training",
+    list: include_str!("../../../train/requirements.txt"),
+    // NumPy, JAX and SciPy need it.
+    is_new_enough: "import sys; sys.version_info >= (3, 11) or sys.exit('it is ' + sys.version)",
+    oldest: "3.11",
+    imports_all: "import gymnasium, jax, matplotlib, maturin, onnx, onnxruntime, optax",
+};
+
 /// An interpreter that imports the packages of one purpose, in pinned versions.
 pub struct Python {
     interpreter: PathBuf,
@@ -94,6 +103,13 @@ impl Python {
     /// As [`with_packages`](Self::with_packages), but imports `numpy`, `onnx` and `onnxruntime`, and needs Python 3.11.
     pub fn with_networks() -> Option<Self> {
         static MADE: LazyLock<Result<PathBuf, Missing>> = LazyLock::new(|| make(&NETWORKS));
+        found(&MADE)
+    }
+
+    /// As [`with_packages`](Self::with_packages), but with the packages that `train/requirements.txt` lists, and needs Python
+    /// 3.11.
+    pub fn with_training() -> Option<Self> {
+        static MADE: LazyLock<Result<PathBuf, Missing>> = LazyLock::new(|| make(&TRAINING));
         found(&MADE)
     }
 

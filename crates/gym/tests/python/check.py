@@ -1,0 +1,47 @@
+"""Installs jiling_gym into a folder of its own, and checks it: check.py REPOSITORY FOLDER"""
+
+import os
+import pathlib
+import subprocess
+import sys
+
+repository, folder = (pathlib.Path(argument).resolve() for argument in sys.argv[1:])
+packages = folder / "packages"
+# pip finds maturin's program here.
+os.environ["PATH"] = os.pathsep.join([str(pathlib.Path(sys.executable).parent), os.environ["PATH"]])
+pip = [sys.executable, "-m", "pip", "install", "--quiet", "--no-input", "--no-deps", "--no-build-isolation", "--upgrade"]
+subprocess.run([*pip, "--target", str(packages), str(repository / "crates/gym")], check=True)
+sys.path.insert(0, str(packages))
+
+import gymnasium
+import numpy
+from gymnasium.utils.env_checker import check_env
+
+import jiling_gym
+
+check_env(gymnasium.make("FivebarFlat-v0").unwrapped)
+
+envs = jiling_gym.FivebarVec(3, threads=2, episode_s=0.2, push_mps=0.0)
+seen, _ = envs.reset(seed=4)
+again, _ = envs.reset(seed=4)
+assert (seen == again).all() and seen.shape == (3, 69)
+for _ in range(10):
+    seen, rewards, fallen, over, info = envs.step(numpy.zeros((3, 6), numpy.float32))
+assert (fallen | over).all() and info["final_obs"].shape == (3, 69), info
+try:
+    jiling_gym.FivebarVec(1, colour="red")
+except KeyError as error:
+    assert "colour" in str(error)
+else:
+    raise SystemExit("an unknown option was taken")
+
+run = lambda script, *arguments: subprocess.run(
+    [sys.executable, str(repository / "train" / script), *map(str, arguments)], check=True,
+    env={**os.environ, "PYTHONPATH": str(packages), "JAX_PLATFORMS": "cpu"},
+)
+run("linear.py", "--out", folder / "linear.npz", "--generations", 1, "--envs", 4, "--seed", 3)
+run("ppo.py", "--smoke", "--linear", folder / "linear.npz", "--out", folder / "run")
+run("ppo.py", "--smoke", "--resume", "--out", folder / "run")
+run("export.py", folder / "run", "--out", folder / "policy.onnx")
+run("evaluate.py", folder / "policy.onnx", "--robots", 2, "--tasks", "push", "--only-policy")
+print("all of it runs")
