@@ -166,8 +166,8 @@ impl Law {
         let limits = &profile.limits;
         let mut wheels_nm = torques::within_wheels(wheels_nm, limits.wheel_nm);
         let loaded = !self.airborne && self.contact.lifted() == [false; 2];
-        self.slip
-            .step(odometry, measured, self.wheels_nm, loaded, dt_s);
+        // What is taken from a wheel that slips does not make it roll.
+        self.slip.step(odometry, measured, wheels_nm, loaded, dt_s);
         if !self.airborne {
             wheels_nm = self.slip.within_grip(wheels_nm);
         }
@@ -212,10 +212,7 @@ impl Law {
                 accel_mps2: (measured.mean_lean_rad() - trim_rad) / per_mps2.lean_rad,
             },
         };
-        if !goal.stop {
-            self.reference.forget_push();
-        }
-        self.reference.step(goal.wish, &own, dt_s);
+        self.reference.step(goal.wish, &own, goal.stop, dt_s);
         let ahead = per_mps2.times(self.reference.accel_mps2);
         let swing_rps = match &self.reference.stop {
             Some(stop) => per_mps2.lean_rad * stop.jerk_mps3,

@@ -61,8 +61,11 @@ impl Reference {
         }
     }
 
-    /// Moves on by `dt_s` beside a robot with this motion.
-    pub fn step(&mut self, wish: Wish, own: &Own, dt_s: f32) {
+    /// Moves on by `dt_s` beside a robot with this motion, which stops as planned after a push if it `may_stop`.
+    pub fn step(&mut self, wish: Wish, own: &Own, may_stop: bool, dt_s: f32) {
+        if !may_stop {
+            self.forget_push();
+        }
         let error_mps = own.speed_mps - self.speed_mps;
         if let Some(stop) = &mut self.stop {
             let mut plan = Motion {
@@ -75,7 +78,9 @@ impl Reference {
             if !goes_on {
                 self.stop = None;
             }
-        } else if let Some(stop) = self.pushed.step(error_mps, wish.speed_mps, &own.hips, dt_s) {
+        } else if may_stop
+            && let Some(stop) = self.pushed.step(error_mps, wish.speed_mps, &own.hips, dt_s)
+        {
             self.stop = Some(stop);
             self.speed_mps = own.hips.speed_mps;
             self.accel_mps2 = own.hips.accel_mps2;
@@ -134,7 +139,7 @@ impl Reference {
     }
 
     /// Plans no stop.
-    pub fn forget_push(&mut self) {
+    fn forget_push(&mut self) {
         self.pushed = Pushed::default();
         self.stop = None;
     }

@@ -17,6 +17,8 @@ const TAKES_S: f32 = 0.4;
 const LEAST_S: f32 = 0.12;
 /// Time in s after the end of a stop in which what is wrong is put right.
 const AFTER_S: f32 = 0.1;
+/// Largest acceleration in m/s² of a plan, for which legs lean as far as they hold the hips up: what disturbs a stop asks for more.
+const MOST_MPS2: f32 = 6.0;
 /// Largest distance in m/s between the plan and the robot.
 const NEAR_MPS: f32 = 0.3;
 
@@ -94,7 +96,8 @@ impl Stop {
             - 9.0 * self.jerk_mps3)
             / left_s;
         self.jerk_mps3 += snap_mps4 * dt_s;
-        plan.accel_mps2 += self.jerk_mps3 * dt_s;
+        let accel_mps2 = plan.accel_mps2 + self.jerk_mps3 * dt_s;
+        plan.accel_mps2 = scalar::clamp(accel_mps2, -MOST_MPS2, MOST_MPS2);
         let ahead_mps = plan.speed_mps + plan.accel_mps2 * dt_s - hips.speed_mps;
         plan.speed_mps = hips.speed_mps + scalar::clamp(ahead_mps, -NEAR_MPS, NEAR_MPS);
         self.left_s -= dt_s;

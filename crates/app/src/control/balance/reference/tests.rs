@@ -18,7 +18,7 @@ fn follow(reference: &mut Reference, wish: Wish, seconds: f32) -> Vec<Reference>
     let mut steps = Vec::new();
     for _ in 0..ticks {
         let own = rolling(reference.speed_mps, reference.yaw_rps);
-        reference.step(wish, &own, DT_S);
+        reference.step(wish, &own, true, DT_S);
         steps.push(*reference);
     }
     steps
@@ -63,13 +63,13 @@ fn a_pushed_robot_lets_its_place_go_and_a_drifting_one_does_not() {
     let mut pushed = Reference::default();
     let mut drifting = Reference::default();
     for _ in 0..1_000 {
-        pushed.step(Wish::default(), &rolling(0.3, 0.0), DT_S);
-        drifting.step(Wish::default(), &rolling(0.04, 0.0), DT_S);
+        pushed.step(Wish::default(), &rolling(0.3, 0.0), true, DT_S);
+        drifting.step(Wish::default(), &rolling(0.04, 0.0), true, DT_S);
     }
     assert!(pushed.distance_m < 0.031, "{pushed:?}");
     assert!((drifting.distance_m - 0.04).abs() < 1e-3, "{drifting:?}");
     for _ in 0..10_000 {
-        drifting.step(Wish::default(), &rolling(0.2, 0.0), DT_S);
+        drifting.step(Wish::default(), &rolling(0.2, 0.0), true, DT_S);
     }
     assert_eq!(drifting.distance_m, MAX_DISTANCE_M);
 }
@@ -89,7 +89,7 @@ fn a_robot_that_brakes_after_a_push_stops_as_planned() {
                 yaw_rps: 0.0,
                 hips,
             };
-            reference.step(Wish::default(), &own, DT_S);
+            reference.step(Wish::default(), &own, true, DT_S);
             if reference.stop.is_some() {
                 planned_s += DT_S;
                 hips.accel_mps2 = reference.accel_mps2;
@@ -106,8 +106,8 @@ fn a_robot_that_brakes_after_a_push_stops_as_planned() {
 }
 
 #[test]
-fn a_push_that_is_forgotten_ends_in_no_planned_stop() {
-    let moving = |speed_mps: f32| Own {
+fn a_robot_that_has_other_things_to_do_plans_no_stop() {
+    let braking = |speed_mps: f32| Own {
         speed_mps,
         yaw_rps: 0.0,
         hips: Motion {
@@ -115,16 +115,13 @@ fn a_push_that_is_forgotten_ends_in_no_planned_stop() {
             accel_mps2: -4.0,
         },
     };
-    for forgets in [false, true] {
+    for may_stop in [true, false] {
         let mut reference = Reference::default();
-        reference.step(Wish::default(), &moving(1.5), DT_S);
+        reference.step(Wish::default(), &braking(1.5), true, DT_S);
         assert!(reference.is_pushed());
-        if forgets {
-            reference.forget_push();
-            assert!(!reference.is_pushed());
-        }
-        reference.step(Wish::default(), &moving(0.3), DT_S);
-        assert_eq!(reference.stop.is_none(), forgets);
+        reference.step(Wish::default(), &braking(0.6), may_stop, DT_S);
+        assert_eq!(reference.stop.is_some(), may_stop);
+        assert_eq!(reference.is_pushed(), may_stop);
     }
 }
 
@@ -145,7 +142,7 @@ fn a_robot_that_was_not_pushed_plans_no_stop() {
             yaw_rps: 0.0,
             hips,
         };
-        reference.step(wish, &own, DT_S);
+        reference.step(wish, &own, true, DT_S);
         assert!(reference.stop.is_none());
     }
 }

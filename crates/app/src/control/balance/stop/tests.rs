@@ -111,3 +111,22 @@ fn what_lasts_is_no_push() {
         assert!(!pushed.brakes);
     }
 }
+
+/// A second push, or a wall.
+#[test]
+fn a_stop_that_is_disturbed_asks_for_no_more_lean_than_there_is() {
+    for forward in [1.0, -1.0] {
+        let mut stop = Stop {
+            left_s: 0.3,
+            jerk_mps3: 0.0,
+        };
+        let mut plan = BRAKING;
+        let pushed = Motion {
+            speed_mps: forward * 2.5,
+            accel_mps2: 0.0,
+        };
+        while stop.step(&mut plan, 0.0, &pushed, DT_S) {
+            assert!(plan.accel_mps2.abs() <= MOST_MPS2, "{plan:?}");
+        }
+    }
+}
