@@ -18,6 +18,8 @@ pub const OVERLOAD_S: f64 = 0.5;
 pub const STALE_S: f64 = 0.1;
 /// The link says 33 rad/s of any faster wheel.
 const WHEEL_RPS: f32 = 32.5;
+/// A range ends at rubber stops, which a joint may touch and press by so much in rad. One beyond has a wrong zero.
+const GIVES_RAD: f32 = 0.1;
 
 /// Why a run ends.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -237,11 +239,11 @@ impl Limits {
     /// Checks each joint's angle.
     ///
     /// # Errors
-    /// One is outside of its range.
+    /// One is beyond the stops of its range.
     pub fn check_positions(&self, reading: &Reading) -> Result<(), Stop> {
         for (joint, rad) in self.joints.iter().zip(&reading.joint_pos_rad) {
             if let Some([low, high]) = joint.range_rad
-                && !(low..=high).contains(rad)
+                && !(low - GIVES_RAD..=high + GIVES_RAD).contains(rad)
             {
                 let (joint, rad) = (joint.name.clone(), *rad);
                 return Err(Stop::Position {

@@ -94,7 +94,8 @@ impl Runner {
         // A passive robot has no torque: what is in the way may go away.
         let is_active = self.machine.phase() != Phase::Passive;
         let failed = heard.as_ref().err().filter(|_| is_active);
-        if let Some(stop) = now.stop.as_ref().or(failed) {
+        // What the robot suffers comes before what the user or the computer wants: it allows no getting down.
+        if let Some(stop) = failed.or(now.stop.as_ref()) {
             self.stop(stop.clone(), now.time_s);
         }
         let before = self.machine.phase();

@@ -152,10 +152,11 @@ impl Run {
 
     fn source(&self, policy: &PolicyDescription) -> anyhow::Result<CommandSource> {
         let [forward, _, yaw] = policy.command_ranges.map(|[_, high]| high);
-        let finite = |value: f32, other| if value.is_finite() { value } else { other };
+        // A policy that states no range has the largest number there is.
+        let stated = |value: f32, other| if value < f32::MAX { value } else { other };
         let speeds = Speeds {
-            forward_mps: self.speed.unwrap_or(finite(forward, FORWARD_MPS)),
-            yaw_rps: self.turn.unwrap_or(finite(yaw, YAW_RPS)),
+            forward_mps: self.speed.unwrap_or(stated(forward, FORWARD_MPS)),
+            yaw_rps: self.turn.unwrap_or(stated(yaw, YAW_RPS)),
         };
         Ok(match self.commands {
             Source::Radio => CommandSource::Radio(speeds),

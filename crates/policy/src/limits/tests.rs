@@ -38,6 +38,17 @@ fn a_stop_names_the_joint_the_value_and_a_cure() {
 }
 
 #[test]
+fn a_joint_may_press_its_stop() {
+    let policy = testing::policy();
+    let limits = Limits::new(&policy, &testing::robot());
+    let mut reading = Reading::at_default_pose(&policy);
+    for (rad, holds) in [(0.84, true), (0.86, false), (-1.44, true), (-1.46, false)] {
+        reading.joint_pos_rad[2] = rad;
+        assert_eq!(limits.check_positions(&reading).is_ok(), holds, "{rad}");
+    }
+}
+
+#[test]
 fn stops_have_names_of_their_own() {
     let joint = || "left_wheel".to_owned();
     let stops = [

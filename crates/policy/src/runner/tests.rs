@@ -144,7 +144,7 @@ fn disarming_stops() {
 #[test]
 fn a_position_out_of_range_stops() {
     goes_limp("joint-position", |bench| {
-        bench.state.motors[4].pos_rad = 0.8
+        bench.state.motors[4].pos_rad = 0.9
     });
 }
 
@@ -262,6 +262,18 @@ fn getting_down_ends_at_once_when_the_robot_does_not_obey() {
     bench.cycle();
     assert!(bench.is_limp() && bench.runner.machine().is_over());
     assert_eq!(bench.ended_by(), "asked", "the first reason is kept");
+}
+
+#[test]
+fn getting_down_ends_at_once_though_the_joystick_stays_away() {
+    let mut bench = driving();
+    let gone = || Some(Stop::NoCommands("the joystick is gone".to_owned()));
+    bench.stop = gone();
+    bench.cycle();
+    bench.stop = gone();
+    bench.obstacle = Some(Obstacle::Disarmed(Vec::new()));
+    bench.cycle();
+    assert!(bench.is_limp() && bench.runner.machine().is_over());
 }
 
 #[test]

@@ -194,7 +194,11 @@ impl Session {
         {
             Ok(Said::Commands(commands)) => return commands,
             Ok(Said::End) => self.stop = Some(Stop::Asked),
-            Err(error) => self.stop = Some(Stop::NoCommands(error.to_string())),
+            // The user may want to end getting down at once.
+            Err(error) => {
+                self.stop
+                    .get_or_insert_with(|| Stop::NoCommands(error.to_string()));
+            }
         }
         Commands::default()
     }
