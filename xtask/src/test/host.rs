@@ -33,9 +33,10 @@ pub fn docs(host: &str) -> Command {
     command
 }
 
-/// Tests the examples in doc comments.
+/// Tests the examples in doc comments, of which [`EMULATED`] have none. With the same packages as [`tests`], the features of all
+/// crates are the same too, and nothing is built twice.
 pub fn examples(host: &str) -> Command {
-    let mut command = over_workspace("test", host, &[]);
+    let mut command = over_workspace("test", host, &EMULATED);
     command.args(["--doc", "--no-fail-fast", "--", "--show-output"]);
     command
 }
