@@ -7,15 +7,12 @@ use robot_plant::world::{Push, RemoteInput};
 use robot_policy::{
     PolicyDescription,
     action::Decoder,
-    observation::{Commands, Observer, Reading},
+    observation::{Commands, Observer},
 };
 
 use crate::{
-    GymError, Options, StartKind, Truth,
-    reward::Terms,
-    specimen::Specimen,
-    truth::Probes,
-    wire::{self, Wire},
+    GymError, Options, StartKind, Truth, reward::Terms, specimen::Specimen, truth::Probes,
+    wire::Wire,
 };
 
 /// A body tilted by more has fallen, rad.
@@ -58,7 +55,6 @@ pub struct Environment {
     wire: Wire,
     observer: Observer,
     decoder: Decoder,
-    reading: Reading,
     commands: Commands,
     /// Commands are the caller's.
     commanded: bool,
@@ -79,7 +75,7 @@ impl Environment {
     /// does not arm.
     pub fn new(policy: &PolicyDescription, options: Options, seed: u64) -> Result<Self, GymError> {
         options.check()?;
-        wire::check(policy)?;
+        let wire = Wire::new(policy)?;
         let period_ticks = (policy.period_s() * TICKS_PER_S).round() as u64;
         if period_ticks == 0 || !period_ticks.is_multiple_of(10) {
             let period_s = policy.period_s();
@@ -94,9 +90,8 @@ impl Environment {
             numbers,
             episodes_of_robot: 0,
             probes: Probes::new(robot.world()),
-            wire: Wire::new(policy),
+            wire,
             decoder: Decoder::new(policy),
-            reading: Reading::at_default_pose(policy),
             commands: Commands::default(),
             commanded: false,
             observation: vec![0.0; observer.layout().len()],
@@ -265,7 +260,7 @@ impl Environment {
         self.robot.pc = Some(if self.options.built_in {
             self.wire.drive(&self.commands)
         } else {
-            self.wire.command(targets, &self.reading)
+            self.wire.command(targets)
         });
         self.push_at_times();
         self.robot.run_ticks(self.period_ticks);
@@ -298,11 +293,11 @@ impl Environment {
 
     fn observe(&mut self) -> Result<(), GymError> {
         let state = self.robot.uplink();
-        self.wire.read(&state, &mut self.reading)?;
+        self.wire.read(&state)?;
         let last_actions = self.decoder.last_actions();
         let input = self
             .observer
-            .observe(&self.reading, &self.commands, last_actions)?;
+            .observe(self.wire.reading(), &self.commands, last_actions)?;
         self.observation.copy_from_slice(input);
         Ok(())
     }

@@ -1,18 +1,17 @@
 //! What can go wrong.
 
-use robot_policy::{action::ActionError, observation::ObserveError};
+use robot_policy::{
+    action::ActionError,
+    observation::ObserveError,
+    robot::{Implausible, OtherRobot},
+};
 
 /// Why an environment cannot be made or stepped.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum GymError {
     /// The policy is for another robot.
-    #[error(
-        "a policy of {found} joints does not fit this robot, which has 4 hips and 2 wheels: set num_of_dofs to 6"
-    )]
-    OtherRobot {
-        /// Joints of the policy.
-        found: usize,
-    },
+    #[error(transparent)]
+    OtherRobot(#[from] OtherRobot),
     /// The policy runs at a rate that the environment does not have.
     #[error(
         "a policy that runs each {period_s} s does not fit a control loop of 1 ms: choose dt and decimation so that their \
@@ -36,9 +35,9 @@ pub enum GymError {
     /// The action cannot be obeyed.
     #[error(transparent)]
     Action(#[from] ActionError),
-    /// The attitude of a state frame is none.
-    #[error("the state frame has no attitude: {0}")]
-    Attitude(#[from] robot_policy::attitude::NotAnAttitude),
+    /// A state frame has a value that cannot be.
+    #[error("state frame: {0}")]
+    Implausible(#[from] Implausible),
     /// An array has the wrong length.
     #[error("{what}: {found} values, and {wanted} are needed")]
     Length {

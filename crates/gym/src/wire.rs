@@ -1,16 +1,16 @@
 //! The way between the policy and the motors: state frames and command frames, with the accuracy that they have.
 
 use robot_app::{
-    domain::{JointTarget, PcCommand, PcDrive, PcKind, WheelTarget},
+    domain::{PcCommand, PcDrive, PcKind},
     link::{Downlink, Uplink},
 };
 use robot_description::JointMotor;
 use robot_plant::robots;
 use robot_policy::{
-    ActionPlan, JointMapping, PolicyDescription,
+    PolicyDescription,
     action::Target,
-    attitude::{QuatWxyz, QuatXyzw},
     observation::{Commands, Reading},
+    robot::LinkRobot,
 };
 
 use crate::GymError;
@@ -18,44 +18,41 @@ use crate::GymError;
 const MOTORS: usize = 6;
 const WHEELS: usize = 2;
 
-/// Turns frames into readings, and targets into frames.
+/// Turns frames into readings, and targets into frames, by the code that drives a robot on the PC link.
 #[derive(Clone)]
 pub(crate) struct Wire {
-    mapping: JointMapping,
-    torque_limits_nm: Vec<f32>,
-    actions: Vec<ActionPlan>,
+    policy: PolicyDescription,
+    robot: LinkRobot,
+    limited: Vec<Target>,
     /// What a full stick of the robot's own controller means.
     max_speed_mps: f32,
     max_yaw_rps: f32,
-    /// Counts commands, so that no two frames are equal.
+    /// Counts drive commands, so that no two frames are equal.
     count: u8,
 }
 
 impl Wire {
-    pub fn new(policy: &PolicyDescription) -> Self {
+    pub fn new(policy: &PolicyDescription) -> Result<Self, GymError> {
         let sticks = &robots::with_joints(JointMotor::Dm4310).control.limits;
-        let limits = policy.joints.iter().map(|joint| joint.torque_limit_nm);
-        Self {
-            mapping: policy.mapping.clone(),
-            torque_limits_nm: limits.collect(),
-            actions: policy.joints.iter().map(|joint| joint.action).collect(),
+        Ok(Self {
+            policy: policy.clone(),
+            robot: LinkRobot::new(policy)?,
+            limited: Vec::with_capacity(policy.joints.len()),
             max_speed_mps: sticks.max_speed_mps as f32,
             max_yaw_rps: sticks.max_yaw_rps as f32,
             count: 0,
-        }
+        })
     }
 
     /// Reads a state as the other end of the cable does.
-    pub fn read(&self, state: &Uplink, reading: &mut Reading) -> Result<(), GymError> {
+    pub fn read(&mut self, state: &Uplink) -> Result<(), GymError> {
         let state = Uplink::decode(&state.encode()).expect("its own frame");
-        reading.attitude = QuatWxyz::from(QuatXyzw::new(state.q_xyzw)?);
-        reading.body_rates_rps = state.gyro_rps;
-        let angles = state.motors.map(|motor| motor.pos_rad);
-        let speeds = state.motors.map(|motor| motor.vel_rps);
-        let mapping = &self.mapping;
-        mapping.policy_from_motors(&angles, &mut reading.joint_pos_rad);
-        mapping.policy_from_motors(&speeds, &mut reading.joint_vel_rps);
-        Ok(())
+        Ok(self.robot.read(&state)?)
+    }
+
+    /// The last state read, at first that of a level robot at its default pose.
+    pub fn reading(&self) -> &Reading {
+        self.robot.reading()
     }
 
     /// The drive command of these wishes, for the robot's own controller.
@@ -75,41 +72,31 @@ impl Wire {
 
     /// The actions whose targets are these angles of the hips' motors, and wheels at rest.
     pub fn actions_at(&self, hips_rad: [f64; MOTORS - WHEELS]) -> Vec<f32> {
-        let motors = self.mapping.motors().iter().zip(self.mapping.directions());
-        let pairs = motors.zip(&self.actions);
-        let actions = pairs.map(|((motor, direction), plan)| {
-            let hip = motor.checked_sub(WHEELS);
-            hip.map_or(0.0, |hip| {
-                (direction * hips_rad[hip] as f32 - plan.offset) / plan.scale
-            })
-        });
-        actions.collect()
+        let mut motors_rad = [0.0; MOTORS];
+        for (motor_rad, hip_rad) in motors_rad[WHEELS..].iter_mut().zip(hips_rad) {
+            *motor_rad = hip_rad as f32;
+        }
+        let mut joints_rad = [0.0; MOTORS];
+        let mapping = &self.policy.mapping;
+        mapping.policy_from_motors(&motors_rad, &mut joints_rad);
+        let pairs = self.policy.joints.iter().zip(joints_rad);
+        pairs
+            .map(|(joint, rad)| (rad - joint.action.offset) / joint.action.scale)
+            .collect()
     }
 
     /// The command of these targets, as the robot reads it from its frame.
-    pub fn command(&mut self, targets: &[Target], reading: &Reading) -> PcCommand {
-        let mut frame = Downlink::default();
-        for (joint, target) in targets.iter().enumerate() {
-            let limit_nm = self.torque_limits_nm[joint];
-            let [pos_rad, vel_rps] = [reading.joint_pos_rad[joint], reading.joint_vel_rps[joint]];
-            let motor = self.mapping.motors()[joint];
-            let direction = self.mapping.directions()[joint];
-            match target.within_torque(limit_nm, pos_rad, vel_rps) {
-                Target::Speed { rps, kd } => {
-                    frame.wheels[motor] = WheelTarget {
-                        speed_rps: direction * rps,
-                        kp: f32::from(self.count),
-                        kd,
-                    };
-                }
-                Target::Position { rad, kp, kd } => {
-                    let pos_rad = direction * rad;
-                    frame.joints[motor - WHEELS] = JointTarget { pos_rad, kp, kd };
-                }
-            }
-        }
-        self.count = self.count.wrapping_add(1);
-        command_of(&frame)
+    pub fn command(&mut self, targets: &[Target]) -> PcCommand {
+        let reading = self.robot.reading();
+        let motions = reading.joint_pos_rad.iter().zip(&reading.joint_vel_rps);
+        let joints = self.policy.joints.iter().zip(motions);
+        self.limited.clear();
+        let limited = targets.iter().zip(joints).map(|(target, (joint, motion))| {
+            let (pos_rad, vel_rps) = motion;
+            target.within_torque(joint.torque_limit_nm, *pos_rad, *vel_rps)
+        });
+        self.limited.extend(limited);
+        command_of(&self.robot.command(&self.limited))
     }
 }
 
@@ -125,17 +112,5 @@ fn command_of(frame: &Downlink) -> PcCommand {
         wheels,
         joints,
         ..PcCommand::default()
-    }
-}
-
-/// Checks that the policy drives this robot's motors: wheels are motors 0 and 1.
-pub(crate) fn check(policy: &PolicyDescription) -> Result<(), GymError> {
-    let found = policy.joints.len();
-    let wheels = policy.wheels();
-    let motors = policy.mapping.motors();
-    if found == MOTORS && wheels.len() == WHEELS && wheels.iter().all(|it| motors[*it] < WHEELS) {
-        Ok(())
-    } else {
-        Err(GymError::OtherRobot { found })
     }
 }

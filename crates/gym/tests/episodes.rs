@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use robot_gym::{Environment, Fleet, GymError, Options, StartKind};
-use robot_policy::{PolicyDescription, config, observation::Commands};
+use robot_policy::{PolicyDescription, config, observation::Commands, robot::OtherRobot};
 
 const STILL: [f32; 6] = [0.0; 6];
 
@@ -172,7 +172,7 @@ fn a_policy_for_another_robot_is_refused() {
     let error = Environment::new(&other, Options::default(), 1)
         .err()
         .expect("refused");
-    assert_eq!(error, GymError::OtherRobot { found: 5 });
+    assert_eq!(error, GymError::OtherRobot(OtherRobot::Joints { found: 5 }));
     let mut fast = policy();
     fast.decimation = 1;
     let error = Environment::new(&fast, Options::default(), 1)

@@ -60,7 +60,6 @@ pub mod model;
 pub mod observation;
 #[cfg(feature = "link")]
 pub mod pace;
-#[cfg(feature = "link")]
 pub mod robot;
 #[cfg(feature = "link")]
 pub mod runner;
