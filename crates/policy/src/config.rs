@@ -7,6 +7,7 @@ mod isaac;
 mod joints;
 mod keys;
 mod metadata;
+mod numbers;
 mod rl_sar;
 mod terms;
 
@@ -38,7 +39,7 @@ pub fn folder(policies: &Path, robot: &str, config: &str) -> PathBuf {
 pub fn read(policies: &Path, robot: &str, config: &str) -> Result<PolicyDescription, ConfigError> {
     let folder = folder(policies, robot, config);
     let name = format!("{robot}/{config}");
-    match forms(&folder).as_slice() {
+    let policy = match forms(&folder).as_slice() {
         ["config.yaml"] => rl_sar::read(policies, robot, config),
         [form @ "deploy.yaml"] => deploy::read(policies, robot, &folder.join(form), [&name, MODEL_FILE]),
         [form] => deploy::read(policies, robot, &folder.join(form), [&name, EXPORTED]),
@@ -50,7 +51,8 @@ pub fn read(policies: &Path, robot: &str, config: &str) -> Result<PolicyDescript
             file: folder.display().to_string(),
             message: format!("which of {} describes the policy? Move the others away", several.join(", ")),
         }),
-    }
+    };
+    policy.and_then(numbers::check)
 }
 
 /// Returns whether a policy's folder has a file that [`read`] reads.
@@ -78,5 +80,5 @@ pub fn from_metadata(
 ) -> Result<PolicyDescription, ConfigError> {
     let file = folder(policies, robot, config).join(MODEL_FILE);
     let name = format!("{robot}/{config}");
-    metadata::read(policies, robot, &name, &file, metadata)
+    metadata::read(policies, robot, &name, &file, metadata).and_then(numbers::check)
 }

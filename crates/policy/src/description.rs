@@ -31,20 +31,10 @@ impl PolicyDescription {
         f64::from(self.control_period_s) * f64::from(self.decimation)
     }
 
-    /// Returns the indices of the wheels.
-    pub fn wheels(&self) -> Vec<usize> {
-        self.driven(Drive::Speed)
-    }
-
-    /// Returns the indices of all joints but the wheels.
-    pub fn joints_without_wheels(&self) -> Vec<usize> {
-        self.driven(Drive::Position)
-    }
-
-    fn driven(&self, drive: Drive) -> Vec<usize> {
-        let joints = self.joints.iter().enumerate();
-        let found = joints.filter(|(_, joint)| joint.drive == drive);
-        found.map(|(index, _)| index).collect()
+    /// Returns the number of wheels.
+    pub(crate) fn wheel_count(&self) -> usize {
+        let wheels = self.joints.iter();
+        wheels.filter(|joint| joint.drive == Drive::Speed).count()
     }
 
     /// Returns whether the input holds the body's velocity, which only a simulator knows.

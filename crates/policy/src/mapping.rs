@@ -75,17 +75,6 @@ impl JointMapping {
             *joint = direction * motors[*motor];
         }
     }
-
-    /// Brings values of the policy's joints into order and sense of the motors: `motors[motor[i]] = direction[i] · joints[i]`.
-    ///
-    /// # Panics
-    /// A slice has another length than the mapping.
-    pub fn motors_from_policy(&self, joints: &[f32], motors: &mut [f32]) {
-        assert_eq!([motors.len(), joints.len()], [self.motors.len(); 2]);
-        for ((joint, motor), direction) in joints.iter().zip(&self.motors).zip(&self.directions) {
-            motors[*motor] = direction * joint;
-        }
-    }
 }
 
 #[cfg(test)]
@@ -93,14 +82,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn there_and_back_is_where_it_was() {
+    fn values_of_motors_come_into_order_and_sense_of_the_policy() {
         let mapping = JointMapping::new(vec![2, 0, 1], &[1, -1, 1]).unwrap();
         let mut joints = [0.0; 3];
         mapping.policy_from_motors(&[10.0, 11.0, 12.0], &mut joints);
         assert_eq!(joints, [12.0, -10.0, 11.0]);
-        let mut motors = [0.0; 3];
-        mapping.motors_from_policy(&joints, &mut motors);
-        assert_eq!(motors, [10.0, 11.0, 12.0]);
     }
 
     #[test]

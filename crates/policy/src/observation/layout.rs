@@ -80,7 +80,7 @@ impl Layout {
         Self {
             blocks,
             groups: groups.collect(),
-            wheels: policy.wheels().len(),
+            wheels: policy.wheel_count(),
         }
     }
 

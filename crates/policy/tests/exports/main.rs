@@ -76,13 +76,15 @@ fn in_policy_order(policy: &PolicyDescription, motors: &[f32]) -> Vec<f32> {
 }
 
 fn motor_targets(policy: &PolicyDescription, targets: &[Target]) -> Vec<f32> {
-    let values = targets.iter().map(|target| match target {
-        Target::Position { rad, .. } => *rad,
-        Target::Speed { rps, .. } => *rps,
-    });
-    let values: Vec<f32> = values.collect();
-    let mut motors = vec![0.0; values.len()];
-    policy.mapping.motors_from_policy(&values, &mut motors);
+    let mapping = &policy.mapping;
+    let placed = mapping.motors().iter().zip(mapping.directions());
+    let mut motors = vec![0.0; targets.len()];
+    for (target, (motor, direction)) in targets.iter().zip(placed) {
+        motors[*motor] = match target {
+            Target::Position { rad, .. } => direction * rad,
+            Target::Speed { rps, .. } => direction * rps,
+        };
+    }
     motors
 }
 
@@ -183,6 +185,12 @@ fn what_metadata_lack_or_cannot_mean_is_named() {
             "1,2,3,4,5,x",
             "action_scale: \"x\" is no number",
         ),
+        (
+            "default_joint_pos",
+            "0,0,nan,0,0,0",
+            "left_front_hip: its default angle is NaN",
+        ),
+        ("joint_damping", "1,1,1,-1,1,1", "its damping is -1"),
         (
             "joint_stiffness",
             "1,1,1,1,1,1",
