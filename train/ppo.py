@@ -279,10 +279,11 @@ def main():
     parser.add_argument("--threads", type=int, default=0, help="threads of the robots, 0 for one a processor (0)")
     parser.add_argument("--seed", type=int, default=1, help="seed (1)")
     parser.add_argument("--resume", action="store_true", help="go on with the checkpoint in --out")
-    parser.add_argument("--smoke", action="store_true", help="two batches of four robots")
+    parser.add_argument("--smoke", action="store_true", help="two batches of four robots, and two more with --resume")
     arguments = parser.parse_args()
     if arguments.smoke:
-        arguments.envs, arguments.horizon, arguments.steps = 4, 16, 128
+        arguments.envs, arguments.horizon = 4, 16
+        arguments.steps = 256 if arguments.resume else 128
     arguments.out.mkdir(parents=True, exist_ok=True)
     training = Training(arguments)
     if arguments.resume:

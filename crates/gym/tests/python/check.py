@@ -41,7 +41,10 @@ run = lambda script, *arguments: subprocess.run(
 )
 run("linear.py", "--out", folder / "linear.npz", "--generations", 1, "--envs", 4, "--seed", 3)
 run("ppo.py", "--smoke", "--linear", folder / "linear.npz", "--out", folder / "run")
+rows = lambda: len((folder / "run/curves.csv").read_text().splitlines())
+first = rows()
 run("ppo.py", "--smoke", "--resume", "--out", folder / "run")
+assert rows() > first, "it does not go on"
 run("export.py", folder / "run", "--out", folder / "policy.onnx")
 run("evaluate.py", folder / "policy.onnx", "--robots", 2, "--tasks", "push", "--only-policy")
 print("all of it runs")

@@ -1,6 +1,7 @@
 //! The loop of a run, in real time: states in, commands out, one cycle after the other.
 
 use std::{
+    mem,
     process::ExitCode,
     sync::{
         Arc,
@@ -35,6 +36,8 @@ use super::priority;
 
 /// The first state must come within this time.
 const FIRST_STATE: Duration = Duration::from_secs(2);
+/// Time for a cycle that is late to read the states that have come.
+const CATCHES_UP: Duration = Duration::from_millis(1);
 /// Commands without torque at the end.
 const LAST_COMMANDS: u32 = 10;
 /// A live page is asked for in one of so many cycles.
@@ -52,6 +55,8 @@ pub struct Session {
     decimation: u64,
     pace: Pace,
     lateness: Lateness,
+    /// The latest cycle since the last run of the network.
+    late: Duration,
     started: Instant,
     interrupted: Arc<AtomicBool>,
     robot: RobotView,
@@ -93,6 +98,7 @@ impl Session {
             decimation: policy.decimation.into(),
             pace: Pace::new(Duration::from_secs_f32(policy.control_period_s), now),
             lateness: Lateness::new(policy.period_s()),
+            late: Duration::ZERO,
             started: now,
             interrupted,
             robot: RobotView::default(),
@@ -132,8 +138,12 @@ impl Session {
         let begun = Instant::now();
         let late = self.pace.begin(begun);
         let phase = self.runner.machine().phase();
-        if phase == Phase::Policy && self.runner.is_due() {
-            let kept = self.lateness.add(late);
+        // A cycle between two runs that is late delays the next one.
+        self.late = self.late.max(late);
+        if phase != Phase::Policy {
+            self.late = Duration::ZERO;
+        } else if self.runner.is_due() {
+            let kept = self.lateness.add(mem::take(&mut self.late));
             self.stop = self.stop.take().or(kept.err());
         }
         let time_s = begun.duration_since(self.started).as_secs_f64();
@@ -153,10 +163,11 @@ impl Session {
         self.link.command(&command).map_err(link_failed)?;
         self.ask()?;
         self.tell();
-        self.record(time_s, commands, late)
+        self.record(time_s, commands, late);
+        Ok(())
     }
 
-    fn record(&mut self, time_s: f64, commands: Commands, late: Duration) -> Result<()> {
+    fn record(&mut self, time_s: f64, commands: Commands, late: Duration) {
         let entry = Entry {
             time_s,
             runner: &self.runner,
@@ -167,10 +178,13 @@ impl Session {
         if let Some(live) = &self.live {
             live.add(&entry);
         }
-        if let Some(log) = &mut self.log {
-            log.add(&entry)?;
+        // A disk that is full fells no robot.
+        if let Some(log) = &mut self.log
+            && let Err(error) = log.add(&entry)
+        {
+            eprintln!("the log ends here: {error}");
+            self.log = None;
         }
-        Ok(())
     }
 
     /// Returns where to go, and notes what the user or the source ends.
@@ -219,6 +233,9 @@ impl Session {
     }
 
     fn listen(&mut self, until: Instant) -> Result<()> {
+        // A cycle that is late reads what has come meanwhile all the same.
+        let now = Instant::now();
+        let until = if until > now { until } else { now + CATCHES_UP };
         while let Some(heard) = self.link.next(until).map_err(link_failed)? {
             match heard {
                 // A state that is sent again is not a new one.
@@ -342,7 +359,8 @@ impl Session {
         if (self.cycles / self.decimation).is_multiple_of(PRINT_EVERY) {
             self.print(&state);
         }
-        self.record(time_s, commands, late).map(|()| true)
+        self.record(time_s, commands, late);
+        Ok(true)
     }
 
     fn print(&self, state: &Uplink) {
