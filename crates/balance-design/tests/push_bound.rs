@@ -1,10 +1,6 @@
 //! The optimal control of a pushed robot, `python/push_bound` (docs/decisions/push.md).
 
-use std::{
-    io::Write,
-    path::{Path, PathBuf},
-    process::Stdio,
-};
+use std::path::{Path, PathBuf};
 
 use robot_description::Robot;
 use robot_plant::free::{FreeBody, FreeInputs, FreeSetup};
@@ -22,18 +18,9 @@ fn in_tree(path: &str) -> PathBuf {
 fn ask(robot: &Path, args: &[&str], question: &Value) -> Option<Value> {
     let python = Python::with_optimal_control()?;
     let mut command = python.command(in_tree("python/push_bound"));
-    command.arg(robot).args(args).stdin(Stdio::piped());
-    command.stdout(Stdio::piped()).stderr(Stdio::piped());
-    let mut child = command.spawn().expect("it starts");
-    let mut stdin = child.stdin.take().expect("a pipe");
-    stdin
-        .write_all(question.to_string().as_bytes())
-        .expect("it reads");
-    drop(stdin);
-    let output = child.wait_with_output().expect("it ends");
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{stderr}");
-    Some(serde_json::from_slice(&output.stdout).expect("JSON"))
+    command.arg(robot).args(args);
+    let answer = Python::answer(command, &question.to_string());
+    Some(serde_json::from_slice(&answer).expect("JSON"))
 }
 
 fn numbers(value: &Value) -> Vec<f64> {

@@ -1,26 +1,11 @@
 //! The Python package, installed as anybody would install it, and the programs of `train`.
 
-use std::{
-    path::{Path, PathBuf},
-    process::{Command, Output},
-};
+use std::path::{Path, PathBuf};
 
 use robot_test_support::Python;
 
 fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
-
-fn succeed(command: &mut Command) -> String {
-    let output = command.output().expect("it starts");
-    let Output {
-        status,
-        stdout,
-        stderr,
-    } = &output;
-    let said = String::from_utf8_lossy(stderr);
-    assert!(status.success(), "{command:?}: {said}");
-    String::from_utf8_lossy(stdout).into_owned()
 }
 
 /// Gymnasium's own check passes, the vector of robots steps, and training runs, goes on and is exported.
@@ -31,6 +16,8 @@ fn the_package_installs_and_a_policy_is_trained() {
     };
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("gym");
     let script = repository().join("crates/gym/tests/python/check.py");
-    let said = succeed(python.command(script).arg(repository()).arg(&folder));
+    let mut command = python.command(script);
+    command.arg(repository()).arg(&folder);
+    let said = String::from_utf8(Python::answer(command, "")).expect("text");
     assert!(said.contains("all of it runs"), "{said}");
 }

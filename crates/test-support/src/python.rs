@@ -2,7 +2,7 @@
 
 use std::{
     fs::{self, File},
-    io::{self, ErrorKind},
+    io::{self, ErrorKind, Write},
     path::{Path, PathBuf},
     process::{Command, Output, Stdio},
     sync::LazyLock,
@@ -14,10 +14,8 @@ struct Packages {
     folder: &'static str,
     /// Packages with their versions, and all that they depend on, as `pip freeze` lists them.
     list: &'static str,
-    /// Python runs it if it is new enough for the list.
-    is_new_enough: &'static str,
-    /// Oldest version that is.
-    oldest: &'static str,
+    /// Oldest version of Python that is new enough for the list.
+    oldest: (u8, u8),
     /// Python runs it if the environment is whole.
     imports_all: &'static str,
 }
@@ -26,8 +24,7 @@ const CLIENTS: Packages = Packages {
     folder: "python",
     list: include_str!("python_packages.txt"),
     // `can-waveshare` needs it.
-    is_new_enough: "import sys; sys.version_info >= (3, 10) or sys.exit('it is ' + sys.version)",
-    oldest: "3.10",
+    oldest: (3, 10),
     imports_all: "import can, can_waveshare, serial",
 };
 
@@ -35,8 +32,7 @@ const SCIENCE: Packages = Packages {
     folder: "python-science",
     list: include_str!("python_science_packages.txt"),
     // NumPy and SciPy need it.
-    is_new_enough: "import sys; sys.version_info >= (3, 11) or sys.exit('it is ' + sys.version)",
-    oldest: "3.11",
+    oldest: (3, 11),
     imports_all: "import mujoco, numpy, scipy, yourdfpy",
 };
 
@@ -44,8 +40,7 @@ const OPTIMAL: Packages = Packages {
     folder: "python-optimal",
     list: include_str!("python_optimal_packages.txt"),
     // NumPy needs it.
-    is_new_enough: "import sys; sys.version_info >= (3, 11) or sys.exit('it is ' + sys.version)",
-    oldest: "3.11",
+    oldest: (3, 11),
     imports_all: "import casadi, numpy",
 };
 
@@ -53,8 +48,7 @@ const NETWORKS: Packages = Packages {
     folder: "python-networks",
     list: include_str!("python_network_packages.txt"),
     // NumPy needs it.
-    is_new_enough: "import sys; sys.version_info >= (3, 11) or sys.exit('it is ' + sys.version)",
-    oldest: "3.11",
+    oldest: (3, 11),
     imports_all: "import numpy, onnx, onnxruntime",
 };
 
@@ -62,8 +56,7 @@ const TRAINING: Packages = Packages {
     folder: "python-training",
     list: include_str!("../../../train/requirements.txt"),
     // NumPy, JAX and SciPy need it.
-    is_new_enough: "import sys; sys.version_info >= (3, 11) or sys.exit('it is ' + sys.version)",
-    oldest: "3.11",
+    oldest: (3, 11),
     imports_all: "import gymnasium, jax, matplotlib, maturin, onnx, onnxruntime, optax",
 };
 
@@ -121,6 +114,23 @@ impl Python {
         command.env("MUJOCO_GL", "disable");
         command
     }
+
+    /// Runs `command`, writes `question` to its input, and returns what it prints.
+    ///
+    /// # Panics
+    /// It fails. The message is what it wrote to its standard error.
+    pub fn answer(mut command: Command, question: &str) -> Vec<u8> {
+        command.stdin(Stdio::piped());
+        command.stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = command.spawn().expect("it starts");
+        let mut stdin = child.stdin.take().expect("a pipe");
+        stdin.write_all(question.as_bytes()).expect("it reads");
+        drop(stdin);
+        let output = child.wait_with_output().expect("it ends");
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{stderr}");
+        output.stdout
+    }
 }
 
 fn found(made: &Result<PathBuf, Missing>) -> Option<Python> {
@@ -169,8 +179,12 @@ fn make(packages: &Packages) -> Result<PathBuf, Missing> {
 
 fn create(packages: &Packages, environment: &Path, interpreter: &Path) -> Result<(), Missing> {
     let python = if cfg!(windows) { "python" } else { "python3" };
-    run(Command::new(python).args(["-c", packages.is_new_enough]))
-        .map_err(|Missing(why)| Missing(format!("it needs {} or newer: {why}", packages.oldest)))?;
+    let (major, minor) = packages.oldest;
+    let is_new_enough = format!(
+        "import sys; sys.version_info >= ({major}, {minor}) or sys.exit('it is ' + sys.version)"
+    );
+    run(Command::new(python).args(["-c", &is_new_enough]))
+        .map_err(|Missing(why)| Missing(format!("it needs {major}.{minor} or newer: {why}")))?;
     run(Command::new(python)
         .args(["-m", "venv", "--clear"])
         .arg(environment))?;
@@ -225,6 +239,7 @@ mod tests {
             (Python::with_science(), &SCIENCE),
             (Python::with_optimal_control(), &OPTIMAL),
             (Python::with_networks(), &NETWORKS),
+            (Python::with_training(), &TRAINING),
         ] {
             let Some(python) = python else { continue };
             let script = packages.folder().join("versions.py");

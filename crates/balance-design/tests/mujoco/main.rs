@@ -1,6 +1,6 @@
 //! The gains balance the robot in MuJoCo, which knows nothing of the model that they come from.
 
-use std::{fs, io::Write, path::Path, process::Stdio};
+use std::{fs, path::Path};
 
 use robot_balance_design::{LinearModel, Schedule, delay_ticks};
 use robot_description::{Hold, Robot};
@@ -39,17 +39,9 @@ impl Trial {
         let model = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
         fs::write(&model, robot.mjcf(Hold::Free)).expect("a folder for it");
         let mut command = python.command(tree.join("tests/mujoco/balance.py"));
-        command.arg(&model).stdin(Stdio::piped());
-        command.stdout(Stdio::piped()).stderr(Stdio::piped());
-        let mut child = command.spawn().expect("it starts");
-        let mut stdin = child.stdin.take().expect("a pipe");
-        let question = self.question(&robot).to_string();
-        stdin.write_all(question.as_bytes()).expect("it reads");
-        drop(stdin);
-        let output = child.wait_with_output().expect("it ends");
-        let stderr = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success(), "{stderr}");
-        let answer: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        command.arg(&model);
+        let answer = Python::answer(command, &self.question(&robot).to_string());
+        let answer: Value = serde_json::from_slice(&answer).expect("JSON");
         let moments = answer["moments"].as_array().expect("a list");
         Some(Outcome {
             moments: moments.iter().map(numbers).collect(),

@@ -2,9 +2,7 @@
 
 use std::{
     fs,
-    io::Write,
     path::{Path, PathBuf},
-    process::Stdio,
 };
 
 use robot_description::Robot;
@@ -48,17 +46,8 @@ impl Oracle {
         let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/mujoco/oracle.py");
         let mut command = self.python.command(script);
         command.args(&self.files);
-        command.stdin(Stdio::piped()).stdout(Stdio::piped());
-        let mut child = command.stderr(Stdio::piped()).spawn().expect("it starts");
-        let mut stdin = child.stdin.take().expect("a pipe");
-        stdin
-            .write_all(question.to_string().as_bytes())
-            .expect("it reads");
-        drop(stdin);
-        let output = child.wait_with_output().expect("it ends");
-        let stderr = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success(), "{stderr}");
-        serde_json::from_slice(&output.stdout).expect("JSON")
+        let answer = Python::answer(command, &question.to_string());
+        serde_json::from_slice(&answer).expect("JSON")
     }
 }
 

@@ -32,10 +32,7 @@ fn found(python: &Python, name: &str, robot: &Robot) -> Value {
     let mut command = python.command(script);
     command.args([free, clamped, urdf]);
     command.args(HIPS_RAD.map(|it| it.to_string()));
-    let output = command.output().expect("it starts");
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{stderr}");
-    serde_json::from_slice(&output.stdout).expect("JSON")
+    serde_json::from_slice(&Python::answer(command, "")).expect("JSON")
 }
 
 fn number(value: &Value) -> f64 {
