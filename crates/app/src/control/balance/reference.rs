@@ -13,8 +13,8 @@ const MAX_YAW_RPSS: f32 = 10.0;
 const MAX_SIDEWAYS_MPS2: f32 = 3.0;
 /// Largest distance in m from the place that the robot holds.
 const MAX_DISTANCE_M: f32 = 0.05;
-/// A speed error in m/s beyond which the robot lets go of its place: it has been pushed.
-const PUSHED_MPS: f32 = 0.25;
+/// A speed error in m/s beyond which the robot lets go of its place.
+const LETS_GO_MPS: f32 = 0.25;
 /// Time constant in s of letting go.
 const LET_GO_S: f32 = 0.1;
 /// Largest error of the heading in rad that is held.
@@ -109,7 +109,7 @@ impl Reference {
             -MAX_DISTANCE_M,
             MAX_DISTANCE_M,
         );
-        if error_mps.abs() > PUSHED_MPS {
+        if error_mps.abs() > LETS_GO_MPS {
             self.distance_m -= self.distance_m * (dt_s / LET_GO_S);
         }
     }

@@ -118,7 +118,8 @@ mod tests {
         let fold_m = profile.limits.fold_length_m;
         for sign in [1.0, -1.0] {
             let measured = Measured {
-                lean_rad: [sign * 0.1; 2],
+                // The trim decides, whatever the lean of the moment.
+                lean_rad: [-sign * 0.1; 2],
                 lean_rps: [sign * SINK_RPS; 2],
                 ..Measured::at_rest()
             };
@@ -133,6 +134,26 @@ mod tests {
             let [left_nm, right_nm] = step().expect("it sinks").wheels_nm;
             assert_eq!(left_nm, right_nm);
             assert!((sign * left_nm + 0.32).abs() < 0.001, "{left_nm}");
+        }
+    }
+
+    /// To roll away from the edge it first has to lean away from it, and the wheels run towards it for that.
+    #[test]
+    fn on_long_legs_it_begins_to_roll_away_from_the_edge() {
+        let profile = &FIVEBAR.balance;
+        let long_m = profile.limits.max_length_m;
+        for sign in [1.0, -1.0] {
+            let measured = Measured::at_rest();
+            let mut law = Law::new(profile, &measured);
+            law.trim.offset_m = sign * 1e-6;
+            let mut sit_down = SitDown::new(Ramp::at(long_m));
+            let mut step =
+                || sit_down.step(&mut law, profile, &FIVEBAR.wheel_odom, &measured, 0.001);
+            for _ in 0..50 {
+                assert!(step().is_some());
+            }
+            let wheels_nm = step().expect("its legs fold").wheels_nm;
+            assert!(wheels_nm.iter().all(|nm| sign * nm > 0.05), "{wheels_nm:?}");
         }
     }
 }
