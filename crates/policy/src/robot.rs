@@ -226,5 +226,5 @@ fn within(values: &[f32], most: f32, what: impl Fn(usize) -> String) -> Result<(
     })
 }
 
-#[cfg(all(test, feature = "link"))]
+#[cfg(test)]
 mod tests;

@@ -1,3 +1,5 @@
+#![cfg(feature = "link")]
+
 use robot_app::link::MotorState;
 
 use super::*;
