@@ -9,7 +9,10 @@ use std::{
 };
 
 use allocation_counter::measure;
-use robot_policy::model::{Bench, Model, ModelError};
+use robot_policy::{
+    model::{Bench, Model, ModelError},
+    observation::{Commands, Observer, Reading},
+};
 use robot_test_support::Python;
 use serde::Deserialize;
 use serde_json::Value;
@@ -252,4 +255,23 @@ fn every_run_allocates_the_same_and_keeps_nothing() {
             [first.count_total, first.bytes_total]
         );
     }
+}
+
+#[test]
+fn the_policy_of_the_tree_fits_its_network() {
+    let policies = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../policy");
+    let (policy, mut model) = robot_policy::load(&policies, "fivebar", "flat").expect("it fits");
+    let mut observer = Observer::new(&policy);
+    let reading = Reading::at_default_pose(&policy);
+    let commands = Commands::default();
+    let still = vec![0.0; policy.joints.len()];
+    let input = observer.observe(&reading, &commands, &still);
+    let mut actions = still.clone();
+    model
+        .run(input.expect("an input"), &mut actions)
+        .expect("it runs");
+    assert!(
+        actions.iter().all(|it| it.is_finite()) && actions != still,
+        "{actions:?}"
+    );
 }
