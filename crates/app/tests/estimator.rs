@@ -29,7 +29,10 @@ impl Bench {
     /// Level, at rest, without magnetometer and wheel feedback.
     fn new() -> Self {
         Self {
-            estimator: InsEstimator::new(WheelOdomConfig::default()),
+            estimator: InsEstimator::new(WheelOdomConfig {
+                wheel_radius_m: 0.06,
+                ..WheelOdomConfig::default()
+            }),
             now_us: 1_000_000,
             imu: ImuState {
                 accel_mps2: LEVEL,

@@ -153,8 +153,8 @@ fn opposite_currents_drive_forward_and_every_command_is_an_event() {
     let speed_mps = signal(&world, "truth.body.vx");
     assert!(speed_mps > 1.0, "{speed_mps}");
     assert!(signal(&world, "truth.body.y").abs() < 1e-6);
-    // Rotor rpm of the left motor: v / 0.06 · 60/2π · 19.2032, with a little slip.
-    let expected_rpm = speed_mps / 0.06 * 60.0 / std::f64::consts::TAU * 3_591.0 / 187.0;
+    // Rotor rpm of the left motor: v / 0.075 · 60/2π · 19.2032, with a little slip.
+    let expected_rpm = speed_mps / 0.075 * 60.0 / std::f64::consts::TAU * 3_591.0 / 187.0;
     assert!(
         (f64::from(rpm[0]) / expected_rpm - 1.0).abs() < 0.03,
         "{}",
@@ -260,7 +260,7 @@ fn a_proportional_loop_over_the_bus_settles_on_both_plants() {
             world.advance(now);
             for (id, rpm) in take_feedback(&mut world, now) {
                 let wheel_rps = f64::from(rpm) / (3_591.0 / 187.0) * std::f64::consts::TAU / 60.0;
-                rim_mps[(id - 0x201) as usize] = wheel_rps * 0.06;
+                rim_mps[(id - 0x201) as usize] = wheel_rps * 0.075;
             }
             // Left 0.5 m/s forward; the right motor forward is negative, 0.7 m/s.
             let raw = |wanted_mps: f64, is_mps: f64| {

@@ -182,10 +182,10 @@ mod tests {
         assert!((left + 2_520.0).abs() < 0.5 && (right + 2_520.0).abs() < 0.5);
     }
 
-    /// A wheel of 0.06 m radius at 0.6 m/s turns at 10 rad/s, which is 95.49 rpm, or 1833.8 rpm at the rotor.
+    /// A wheel of 0.075 m radius at 0.6 m/s turns at 8 rad/s, which is 76.39 rpm, or 1467.0 rpm at the rotor.
     #[test]
     fn at_the_target_speed_the_current_is_close_to_zero() {
-        let [left, right] = step(drive(0.4, 0.0), [1834, -1834], 0);
+        let [left, right] = step(drive(0.4, 0.0), [1467, -1467], 0);
         assert!(left.abs() < 20.0 && right.abs() < 20.0, "{left} {right}");
     }
 

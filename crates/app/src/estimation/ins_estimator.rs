@@ -68,7 +68,7 @@ pub enum HeadingSource {
 /// assert!((pitch.to_degrees() + 30.0).abs() < 0.1); // pitch is positive with the nose down
 /// ```
 ///
-/// Wheels give velocity and position. Here the left rotor turns at +1834 rpm and the right, mirrored one at −1834 rpm,
+/// Wheels give velocity and position. Here the left rotor turns at +1467 rpm and the right, mirrored one at −1467 rpm,
 /// which is 0.6 m/s with the default wheels:
 ///
 /// ```
@@ -80,7 +80,7 @@ pub enum HeadingSource {
 /// let mut estimate = StateEstimate::default();
 /// let mut imu = ImuState { accel_mps2: [0.0, 0.0, 9.80665], ..ImuState::default() };
 /// let mut motor = MotorFeedback::default();
-/// for (wheel, rpm) in motor.wheels.iter_mut().zip([1_834, -1_834]) {
+/// for (wheel, rpm) in motor.wheels.iter_mut().zip([1_467, -1_467]) {
 ///     wheel.rpm = rpm;
 ///     wheel.age_us = 1_000;
 /// }

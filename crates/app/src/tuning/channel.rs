@@ -55,7 +55,7 @@ pub struct TuningAccess<'a> {
 /// };
 /// let reply = channel.on_frame(TuningPort::Link, &request, TuningGate::Shut, access).unwrap();
 /// assert_eq!(reply.id(), REPLY_ID);
-/// assert_eq!(reply.payload()[..2], [opcode::READ_GEOMETRY, 60], "a radius of 60 mm");
+/// assert_eq!(reply.payload()[..2], [opcode::READ_GEOMETRY, 75], "a radius of 75 mm");
 /// ```
 #[derive(Clone, Debug)]
 pub struct TuningChannel {

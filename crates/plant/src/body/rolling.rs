@@ -173,8 +173,8 @@ mod tests {
     fn equal_torques_accelerate_straight_by_newtons_law() {
         let mut rolling = rolling();
         drive(&mut rolling, 1.0, |_| [0.6, 0.6]);
-        // (2·0.6/0.06 − 2·0.015·44.13) N on 9 kg and two reflected wheel inertias of 0.0105/0.06² = 2.917 kg.
-        let expected = (20.0 - 1.324) / (9.0 + 5.833);
+        // (2·0.6/0.075 − 2·0.015·44.13) N on 9 kg and two reflected wheel inertias of 0.0105/0.075² = 1.867 kg.
+        let expected = (16.0 - 1.324) / (9.0 + 3.733);
         assert!(
             (rolling.pose.vx_mps - expected).abs() < 0.02,
             "{}",

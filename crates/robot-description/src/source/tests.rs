@@ -19,8 +19,8 @@ fn line_of(start: &str) -> usize {
 fn both_robots_are_read() {
     let small = Robot::parse(FIVEBAR, "fivebar.toml").expect("sound");
     assert_eq!(small.name, "fivebar");
-    // 4.30 + 4·(0.10 + 0.12) + 2·(0.25 + 0.365)
-    assert!((small.total_mass_kg() - 6.41).abs() < 1e-9);
+    // 4.30 + 4·(0.10 + 0.12) + 2·(0.32 + 0.365)
+    assert!((small.total_mass_kg() - 6.55).abs() < 1e-9);
     let large = Robot::parse(RS00, "fivebar-rs00.toml").expect("sound");
     assert_eq!(large.name, "fivebar-rs00");
     assert_eq!(large.imu.mounting.name(), "x-forward-z-up");

@@ -28,7 +28,10 @@ impl Bench {
     /// Level, facing east, at rest, without wheel feedback.
     fn new() -> Self {
         Self {
-            motion: MotionEstimator::new(&WheelOdomConfig::default()),
+            motion: MotionEstimator::new(&WheelOdomConfig {
+                wheel_radius_m: 0.06,
+                ..WheelOdomConfig::default()
+            }),
             pose: BodyPose {
                 orientation: Quaternion::IDENTITY,
                 rate_rps: [0.0; 3],

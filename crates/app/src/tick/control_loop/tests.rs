@@ -93,8 +93,8 @@ impl Bench {
     }
 }
 
-/// Wheels of twice the radius, 120 mm; the rest as shipped (docs/tuning.md).
-const TWICE_AS_LARGE: [u8; 8] = [0x10, 120, 0, 0xA4, 0x01, 0x80, 0x07, 0x02];
+/// Wheels of twice the radius, 150 mm; the rest as shipped (docs/tuning.md).
+const TWICE_AS_LARGE: [u8; 8] = [0x10, 150, 0, 0xA4, 0x01, 0x80, 0x07, 0x02];
 
 #[test]
 fn new_settings_are_acknowledged_and_published() {
@@ -102,7 +102,7 @@ fn new_settings_are_acknowledged_and_published() {
     assert_eq!(bench.run(8).diagnostics.tuning.revision, 0);
     bench.hear(BusId::Can2, 0x7A0, TWICE_AS_LARGE);
     let outputs = bench.tick();
-    assert_eq!(outputs.config.wheel_odom.wheel_radius_m, 0.12);
+    assert_eq!(outputs.config.wheel_odom.wheel_radius_m, 0.15);
     assert_eq!(outputs.diagnostics.tuning.revision, 1);
     assert_eq!(outputs.diagnostics.tuning.accepted, 1);
     let mut bench = Bench::new();
@@ -125,7 +125,7 @@ fn the_estimator_uses_new_wheel_geometry() {
         east_mps.hypot(north_mps)
     };
     let (before, after) = (speed_mps(false), speed_mps(true));
-    assert!((0.3..0.35).contains(&before), "{before} m/s");
+    assert!((0.375..0.435).contains(&before), "{before} m/s");
     assert!((after / before - 2.0).abs() < 0.05, "{before}, {after} m/s");
 }
 
@@ -163,7 +163,7 @@ fn slow_diagnostics_are_updated_every_tenth_tick() {
     }
 }
 
-/// `11` asks for the wheel geometry as shipped: 60 mm, 420 mm, 19.20, right wheel reversed (docs/tuning.md).
+/// `11` asks for the wheel geometry as shipped: 75 mm, 420 mm, 19.20, right wheel reversed (docs/tuning.md).
 #[test]
 fn a_request_over_the_pc_link_is_answered_there() {
     let mut bench = Bench::new();
@@ -175,7 +175,7 @@ fn a_request_over_the_pc_link_is_answered_there() {
         bench.control.on_link_frame(&frame, bench.now_us);
     }
     bench.hear(BusId::Can1, 0x7A1, [0x11, 0, 0, 0, 0, 0, 0, 0]);
-    let expected = [0x11, 60, 0, 0xA4, 0x01, 0x80, 0x07, 0x02];
+    let expected = [0x11, 75, 0, 0xA4, 0x01, 0x80, 0x07, 0x02];
     let (mut on_link, mut on_bus) = (std::vec::Vec::new(), std::vec::Vec::new());
     for _ in 0..2 * REPLY_PERIOD_TICKS {
         let outputs = bench.tick();

@@ -15,8 +15,8 @@ mod reading;
 mod recording;
 mod wheel_geometry;
 
-/// docs/tuning.md#frames: radius 75 mm, track 450 mm, ratio 36.00, left wheel reversed.
-const GEOMETRY: [u8; 8] = [0x10, 75, 0, 0xC2, 0x01, 0x10, 0x0E, 0x01];
+/// docs/tuning.md#frames: radius 80 mm, track 450 mm, ratio 36.00, left wheel reversed.
+const GEOMETRY: [u8; 8] = [0x10, 80, 0, 0xC2, 0x01, 0x10, 0x0E, 0x01];
 
 struct Bench {
     channel: TuningChannel,

@@ -146,7 +146,7 @@ fn a_direction_is_forward_or_backward() {
 fn wire_numbers_do_not_change() {
     let default = RobotConfig::default();
     let read = |group, index| find(group, index).unwrap().read(&default);
-    assert_eq!(read(1, 0), 0.06);
+    assert_eq!(read(1, 0), 0.075);
     assert_eq!(read(1, 4), -1.0);
     assert_eq!(read(2, 3), 8_000.0);
     assert_eq!(read(3, 0), 20.0);

@@ -17,7 +17,7 @@ const REFUSED: &[Case] = &[
             ("body.box_m", "[0.30, 0.24, 0.22]"),
         ],
         says: &[
-            "control.limits.height_m: the body is -0.070 m above the ground at the lowest height; allowed: more than 0 m. Raise the lowest height.",
+            "control.limits.height_m: the body is -0.055 m above the ground at the lowest height; allowed: more than 0 m. Raise the lowest height.",
         ],
     },
     Case {
@@ -29,13 +29,13 @@ const REFUSED: &[Case] = &[
     Case {
         changes: &[("control.limits.max_speed_mps", "3.5")],
         says: &[
-            "control.limits.max_speed_mps: 3.5 m/s; allowed: more than 0, at most 2.73 m/s, 90 % of the unloaded wheel's 3.03. Ask for less, or take larger wheels: at its top speed a motor has no torque left to balance.",
+            "control.limits.max_speed_mps: 3.5 m/s; allowed: more than 0, at most 3.41 m/s, 90 % of the unloaded wheel's 3.79. Ask for less, or take larger wheels: at its top speed a motor has no torque left to balance.",
         ],
     },
     Case {
-        changes: &[("control.limits.max_yaw_rps", "14.0")],
+        changes: &[("control.limits.max_yaw_rps", "17.0")],
         says: &[
-            "control.limits.max_yaw_rps: 14 rad/s; allowed: more than 0, at most 13.0 rad/s, 90 % of what unloaded wheels turn it. Ask for less.",
+            "control.limits.max_yaw_rps: 17 rad/s; allowed: more than 0, at most 16.2 rad/s, 90 % of what unloaded wheels turn it. Ask for less.",
         ],
     },
     Case {
@@ -47,7 +47,7 @@ const REFUSED: &[Case] = &[
     Case {
         changes: &[("control.limits.jump_m", "0.5")],
         says: &[
-            "control.limits.jump_m: 0.5 m; allowed: 0 to 0.25 m, which the hips' torque, speed and stroke give (1.97 m/s at take-off). Ask for less, raise torque_limit_nm, or make the robot lighter.",
+            "control.limits.jump_m: 0.5 m; allowed: 0 to 0.24 m, which the hips' torque, speed and stroke give (1.97 m/s at take-off). Ask for less, raise torque_limit_nm, or make the robot lighter.",
         ],
     },
     Case {

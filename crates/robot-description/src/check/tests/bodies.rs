@@ -86,7 +86,7 @@ const REFUSED: &[Case] = &[
     Case {
         changes: &[("wheels.inertia_kgm2", "1.01e-2")],
         says: &[
-            "wheels.inertia_kgm2: 1.0e-2 kg m2; allowed: more than 0, at most 9.0e-4 kg m2, all of its mass at the tyre. Leave out the rotor, which rotor_inertia_kgm2 tells.",
+            "wheels.inertia_kgm2: 1.0e-2 kg m2; allowed: more than 0, at most 1.8e-3 kg m2, all of its mass at the tyre. Leave out the rotor, which rotor_inertia_kgm2 tells.",
         ],
     },
     Case {

@@ -26,7 +26,7 @@ fn a_wheel_rolls_off_a_step_and_lands() {
     for _ in 0..6_000 {
         cart.step(&giving, DT_S);
         lowest_m = lowest_m.min(axle_m(&cart));
-        if cart.wheel_contact_n() == [0.0; 2] && lowest_m > -0.09 {
+        if cart.wheel_contact_n() == [0.0; 2] && lowest_m > radius_m(&cart) - 0.15 {
             fall_s += DT_S;
         }
     }
@@ -50,7 +50,7 @@ fn a_wheel_climbs_a_low_step_with_torque() {
     let start_m = cart.state().position_m[2];
     for _ in 0..200 {
         run(&mut cart, 0.01, |cart| {
-            let behind_rps = 1.0 / 0.06 - cart.wheel_abs_rps()[0];
+            let behind_rps = 1.0 / radius_m(cart) - cart.wheel_abs_rps()[0];
             FreeInputs {
                 wheel_nm: [(0.5 * behind_rps).clamp(-3.0, 3.0); 2],
                 ..LOCKED
