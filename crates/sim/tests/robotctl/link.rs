@@ -117,7 +117,7 @@ struct Driven {
 
 /// Sends a command for every four states, which is some 10 ms of the robot's time.
 const STATES_A_COMMAND: u32 = 4;
-/// Speed that the wheels must reach; asked is 0.3 m/s of wheels of 0.06 m, so 5 rad/s.
+/// Speed that the wheels must reach; asked is 0.3 m/s of wheels of 0.075 m, so 4 rad/s.
 const TURNING_RPS: f32 = 2.0;
 /// Wheel speed of a robot that balances on the spot, some 1 rad/s right after a stop; one that drives on has 10 rad/s.
 const BALANCING_RPS: f32 = 2.0;
@@ -197,7 +197,7 @@ fn drive(port: &str, pad: &str, mut pilot: impl Pilot) -> anyhow::Result<Driven>
 
 fn driver() -> Driver {
     let wheels = Wheels {
-        radius_m: 0.06,
+        radius_m: 0.075,
         track_m: 0.4,
     };
     let limits = Limits {
