@@ -4,7 +4,9 @@ use std::f32::consts::{PI, TAU};
 
 use robot_description::Robot;
 
-use crate::{Drive, PolicyDescription, limits::Limits, observation::Reading, robot::MOTOR_NAMES};
+use crate::{
+    Drive, PolicyDescription, fit, limits::Limits, observation::Reading, robot::MOTOR_NAMES,
+};
 
 /// A joint that a hand has turned by so much in rad counts as turned.
 const TURNED_RAD: f32 = 0.2;
@@ -43,6 +45,7 @@ pub fn rows(policy: &PolicyDescription, robot: &Robot, reading: &Reading) -> Vec
         .iter()
         .zip(policy.mapping.directions());
     let joints = policy.joints.iter().zip(placed).enumerate();
+    let faults = fit::faults(policy, robot);
     let rows = joints.map(|(index, (joint, (motor, direction)))| {
         let default_rad = (joint.drive == Drive::Position).then_some(joint.default_rad);
         let mut row = Row {
@@ -56,6 +59,14 @@ pub fn rows(policy: &PolicyDescription, robot: &Robot, reading: &Reading) -> Vec
             errors: Vec::new(),
             hints: Vec::new(),
         };
+        for fault in faults.iter().filter(|it| it.joint == Some(index)) {
+            let list = if fault.is_error {
+                &mut row.errors
+            } else {
+                &mut row.hints
+            };
+            list.push(fault.text.clone());
+        }
         row.judge();
         row
     });
@@ -64,20 +75,16 @@ pub fn rows(policy: &PolicyDescription, robot: &Robot, reading: &Reading) -> Vec
 
 impl Row {
     fn judge(&mut self) {
-        if self.joint != self.motor_name {
-            self.errors.push(format!(
-                "motor {} is {}: correct joint_names or joint_mapping",
-                self.motor, self.motor_name
+        if !MOTOR_NAMES.contains(&self.joint.as_str()) {
+            self.hints.push(format!(
+                "its name is not the robot's: is it {}?",
+                self.motor_name
             ));
         }
         let (Some(default_rad), Some([low, high])) = (self.default_rad, self.range_rad) else {
             return;
         };
         let range = low..=high;
-        if !range.contains(&default_rad) {
-            self.errors
-                .push(format!("its default is outside of {low:+.2} to {high:+.2}"));
-        }
         if !range.contains(&self.measured_rad) {
             self.hints.push(format!(
                 "it is outside of {low:+.2} to {high:+.2}: is its zero right?"

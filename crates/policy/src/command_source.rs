@@ -1,6 +1,7 @@
 //! Where to go: the sticks of the radio, a joystick, the keyboard, or a file.
 
 mod file;
+mod wishes;
 
 use std::{io, path::Path, time::Duration};
 
@@ -8,6 +9,7 @@ use robot_app::link::Sticks;
 use robotctl::drive::{Joystick, JoystickError, JoystickMap, Keys, Wish};
 
 pub use file::{CommandFile, CommandFileError};
+pub use wishes::Wishes;
 
 use crate::observation::Commands;
 

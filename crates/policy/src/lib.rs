@@ -43,6 +43,8 @@ pub mod command_source;
 pub mod config;
 mod description;
 #[cfg(feature = "link")]
+pub mod fit;
+#[cfg(feature = "link")]
 pub mod limits;
 #[cfg(feature = "link")]
 pub mod live;
@@ -60,6 +62,8 @@ pub mod model;
 pub mod observation;
 #[cfg(feature = "link")]
 pub mod pace;
+#[cfg(feature = "link")]
+pub mod pages;
 pub mod robot;
 #[cfg(feature = "link")]
 pub mod runner;

@@ -16,6 +16,8 @@ pub const TILT_RAD: f32 = std::f32::consts::FRAC_PI_3;
 pub const OVERLOAD_S: f64 = 0.5;
 /// A state frame is stale after this time in s. They come each 2.4 ms.
 pub const STALE_S: f64 = 0.1;
+/// The robot says whether it is safe three times a second. Silence for this time in s is too long.
+pub const SILENT_S: f64 = 1.0;
 /// The link says 33 rad/s of any faster wheel.
 const WHEEL_RPS: f32 = 32.5;
 /// A range ends at rubber stops, which a joint may touch and press by so much in rad. One beyond has a wrong zero.
@@ -94,6 +96,12 @@ pub enum Stop {
         /// Time since the last one.
         age_s: f64,
     },
+    /// The robot does not answer questions.
+    #[error(
+        "the robot sends its state, but has not said for {SILENT_S} s whether it is safe: is the adapter's TX connected to the \
+         board's RX, and does `robotctl status` get an answer?"
+    )]
+    NoAnswer,
     /// A state frame has a value that cannot be.
     #[error("an implausible state: {0}. Look at it with `robotctl status`")]
     Implausible(#[from] Implausible),
@@ -146,6 +154,7 @@ impl Stop {
             Self::Torque { .. } => "joint-torque",
             Self::Attitude { .. } => "attitude",
             Self::Stale { .. } => "stale",
+            Self::NoAnswer => "no-answer",
             Self::Implausible(_) => "implausible",
             Self::Observation(_) => "observation",
             Self::Action(_) => "action",
@@ -171,6 +180,7 @@ impl Stop {
             | Self::Torque { .. }
             | Self::Attitude { .. }
             | Self::Stale { .. }
+            | Self::NoAnswer
             | Self::Implausible(_)
             | Self::Observation(_)
             | Self::LinkFailed(_) => Way::Limp,

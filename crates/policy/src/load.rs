@@ -49,7 +49,8 @@ pub fn load(
     let has_model = folder.join(MODEL_FILE).exists();
     let (description, model) = if config::is_described(&folder) || !has_model {
         let description = config::read(policies, robot, config)?;
-        let model = Model::read(&folder.join(&description.model_file))?;
+        let model = Model::read(&folder.join(&description.model_file));
+        let model = model.map_err(|error| error.with_inputs(Layout::new(&description).len()))?;
         (description, model)
     } else {
         let model = Model::read(&folder.join(MODEL_FILE))?;

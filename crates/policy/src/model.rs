@@ -170,6 +170,7 @@ fn refuse_torch_script(file: &Path) -> Result<(), ModelError> {
         Err(ModelError::TorchScript {
             file: file.to_owned(),
             onnx: file.with_extension("onnx"),
+            inputs: None,
         })
     } else {
         Ok(())

@@ -46,6 +46,36 @@ impl Pace {
     }
 }
 
+/// Gives out the times of the cycles by the clock of a robot that waits for this program, as the emulated board can.
+#[derive(Clone, Debug)]
+pub struct RobotPace {
+    period_s: f64,
+    /// `None` before the first state.
+    due_s: Option<f64>,
+}
+
+impl RobotPace {
+    /// Cycles are due at the multiples of the period.
+    pub fn new(period: Duration) -> Self {
+        Self {
+            period_s: period.as_secs_f64(),
+            due_s: None,
+        }
+    }
+
+    /// Takes the time of a state. Returns how late the cycle is that begins with it, or `None` before it is due.
+    pub fn begin(&mut self, time_s: f64) -> Option<Duration> {
+        let late_s = time_s - self.due_s.unwrap_or(time_s);
+        // A robot that was switched off and on counts from 0 again.
+        let counts_anew = late_s < -self.period_s;
+        if late_s < 0.0 && !counts_anew {
+            return None;
+        }
+        self.due_s = Some(((time_s / self.period_s).floor() + 1.0) * self.period_s);
+        Some(Duration::from_secs_f64(late_s.max(0.0)))
+    }
+}
+
 /// How late the network's runs were. Its memory does not grow.
 #[derive(Clone, Debug)]
 pub struct Lateness {
@@ -160,6 +190,31 @@ mod tests {
         assert_eq!(pace.due(), start + 10 * MS);
         assert_eq!(pace.begin(start + 30 * MS), 20 * MS);
         assert_eq!(pace.due(), start + 35 * MS);
+    }
+
+    #[test]
+    fn the_robots_clock_gives_a_cycle_to_the_first_state_after_each_period() {
+        let mut pace = RobotPace::new(5 * MS);
+        let states_s = (1..=8).map(|n| 1.0 + 0.0024 * f64::from(n));
+        let late_ms: Vec<_> = states_s
+            .map(|time_s| pace.begin(time_s).map(|late| 1e3 * late.as_secs_f64()))
+            .collect();
+        let wanted = [
+            Some(0.0),
+            None,
+            Some(2.2),
+            None,
+            Some(2.0),
+            None,
+            Some(1.8),
+            None,
+        ];
+        for (late_ms, wanted) in late_ms.iter().zip(wanted) {
+            let differ = late_ms.unwrap_or(-1.0) - wanted.unwrap_or(-1.0);
+            assert!(differ.abs() < 1e-6, "{late_ms:?} {wanted:?}");
+        }
+        assert!(pace.begin(0.3).is_some(), "the robot was switched on anew");
+        assert_eq!(pace.begin(0.3024), None);
     }
 
     #[test]

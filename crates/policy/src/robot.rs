@@ -63,6 +63,9 @@ pub enum OtherRobot {
         /// What the motor is.
         is: &'static str,
     },
+    /// The robot cannot do what the policy asks for.
+    #[error("the policy asks for what the robot cannot do:{}", lines(.0))]
+    Unfit(Vec<String>),
     /// The input holds the velocity of the body.
     #[error(
         "the policy observes lin_vel, and the robot does not measure it: train without this term"
@@ -210,6 +213,11 @@ impl LinkRobot {
             joints: Default::default(),
         }
     }
+}
+
+/// Each on a line of its own.
+fn lines(texts: &[String]) -> String {
+    texts.iter().map(|text| format!("\n  {text}")).collect()
 }
 
 /// Refuses values beyond ±`most`, and NaN.

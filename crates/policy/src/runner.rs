@@ -7,7 +7,8 @@ use robotctl::drive::Obstacle;
 use crate::{
     PolicyDescription,
     action::{Decoder, Target},
-    limits::{Limits, STALE_S, Stop},
+    fit,
+    limits::{Limits, SILENT_S, STALE_S, Stop},
     machine::{Machine, Phase, Timing},
     observation::{Commands, Layout, Observer, Reading},
     robot::{LinkRobot, OtherRobot},
@@ -25,6 +26,8 @@ pub struct Now<'a> {
     pub state: &'a Uplink,
     /// Time in s since it came.
     pub age_s: f64,
+    /// Time in s since the robot last said whether it is safe.
+    pub silence_s: f64,
     /// What keeps the robot from obeying.
     pub obstacle: Option<Obstacle>,
     /// Where to go.
@@ -50,6 +53,9 @@ pub struct Runner {
     /// As wanted, before torques are held within their limits.
     wanted: Vec<Target>,
     sent: Vec<Target>,
+    /// Runs of the network, and for each joint those in which its target was moved.
+    runs: u64,
+    held: Vec<u64>,
     has_run: bool,
     in_the_way: Option<Stop>,
 }
@@ -58,7 +64,7 @@ impl Runner {
     /// Prepares a run of a policy on a robot.
     ///
     /// # Errors
-    /// The policy is another robot's.
+    /// The policy is another robot's, or asks for what this one cannot do ([`fit`]).
     pub fn new(
         policy: &PolicyDescription,
         robot: &Robot,
@@ -67,11 +73,13 @@ impl Runner {
     ) -> Result<Self, OtherRobot> {
         let observer = Observer::new(policy);
         let joints = policy.joints.len();
+        let link = LinkRobot::new(policy)?;
+        check_fit(policy, robot)?;
         Ok(Self {
             period_s: f64::from(policy.control_period_s),
             decimation: policy.decimation,
             network,
-            robot: LinkRobot::new(policy)?,
+            robot: link,
             limits: Limits::new(policy, robot),
             machine: Machine::new(policy, timing),
             decoder: Decoder::new(policy),
@@ -80,6 +88,8 @@ impl Runner {
             output: vec![0.0; joints],
             wanted: Vec::with_capacity(joints),
             sent: Vec::with_capacity(joints),
+            runs: 0,
+            held: vec![0; joints],
             has_run: false,
             in_the_way: None,
             observer,
@@ -121,6 +131,9 @@ impl Runner {
         if now.age_s > STALE_S {
             return Err(Stop::Stale { age_s: now.age_s });
         }
+        if now.silence_s > SILENT_S {
+            return Err(Stop::NoAnswer);
+        }
         read?;
         let reading = self.robot.reading();
         self.limits.check_attitude(reading)?;
@@ -142,7 +155,18 @@ impl Runner {
             self.limits
                 .hold_torques(self.robot.reading(), &mut self.sent);
         }
+        if self.has_run {
+            self.count();
+        }
         self.robot.command(&self.sent)
+    }
+
+    fn count(&mut self) {
+        self.runs += 1;
+        let moved = self.wanted.iter().zip(&self.sent);
+        for (held, (wanted, sent)) in self.held.iter_mut().zip(moved) {
+            *held += u64::from(wanted != sent);
+        }
     }
 
     /// Runs the network on a state, whatever the robot is at. [`wanted`](Self::wanted) then has the targets.
@@ -252,9 +276,31 @@ impl Runner {
         &self.wanted
     }
 
+    /// Returns for each joint in which share of the runs its target was moved, as the torque would have been above its limit.
+    pub fn held_shares(&self) -> impl Iterator<Item = f64> {
+        let runs = self.runs.max(1) as f64;
+        self.held.iter().map(move |held| *held as f64 / runs)
+    }
+
     /// Returns what was sent in the last cycle, in the policy's order and sense; nothing while the robot is passive.
     pub fn sent(&self) -> &[Target] {
         &self.sent
+    }
+}
+
+fn check_fit(policy: &PolicyDescription, robot: &Robot) -> Result<(), OtherRobot> {
+    let faults = fit::faults(policy, robot).into_iter();
+    let errors = faults.filter(|fault| fault.is_error);
+    let errors: Vec<_> = errors
+        .map(|fault| match fault.joint {
+            Some(joint) => format!("{}: {}", policy.joints[joint].name, fault.text),
+            None => fault.text,
+        })
+        .collect();
+    if errors.is_empty() {
+        Ok(())
+    } else {
+        Err(OtherRobot::Unfit(errors))
     }
 }
 

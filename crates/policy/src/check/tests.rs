@@ -22,15 +22,16 @@ fn a_default_outside_of_the_range_is_an_error_and_a_far_joint_a_hint() {
     reading.joint_pos_rad[1] = 1.3;
     reading.joint_pos_rad[2] = 0.8;
     let rows = rows(&policy, &testing::robot(), &reading);
+    let has = |row: &Row, part| row.hints.iter().any(|hint| hint.contains(part));
     assert!(
         rows[0].errors[0].contains("its default is outside of -1.35 to +0.75"),
         "{rows:?}"
     );
     assert!(
-        rows[1].errors.is_empty() && rows[1].hints[0].contains("more than 1 rad"),
+        rows[1].errors.is_empty() && has(&rows[1], "more than 1 rad"),
         "{rows:?}"
     );
-    assert!(rows[2].hints[0].contains("is its zero right?"), "{rows:?}");
+    assert!(has(&rows[2], "is its zero right?"), "{rows:?}");
 }
 
 #[test]

@@ -15,6 +15,7 @@ use robot_description::{Robot, path_of};
 use robot_policy::{
     PolicyDescription,
     check::{self, HandTurns, Row},
+    fit,
     robot::LinkRobot,
 };
 use robotctl::pc_link::{self, PcLink};
@@ -66,14 +67,18 @@ impl Check {
         }
         let rows = check::rows(&policy, &description, robot.reading());
         print(&rows);
-        let errors: usize = rows.iter().map(|row| row.errors.len()).sum();
+        let faults = fit::faults(&policy, &description);
+        for fault in faults.iter().filter(|it| it.joint.is_none()) {
+            println!("✗ {}", fault.text);
+        }
+        let has_error = faults.iter().any(|fault| fault.is_error);
         if !self.table {
             watch(&policy, &mut link, &mut robot)?;
         }
-        Ok(if errors == 0 {
-            ExitCode::SUCCESS
-        } else {
+        Ok(if has_error {
             ExitCode::FAILURE
+        } else {
+            ExitCode::SUCCESS
         })
     }
 }

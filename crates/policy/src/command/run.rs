@@ -3,20 +3,21 @@
 mod priority;
 mod session;
 
-use std::{net::SocketAddr, path::PathBuf, process::ExitCode};
+use std::{net::SocketAddr, path::PathBuf, process::ExitCode, time::Duration};
 
 use anyhow::{Context, bail, ensure};
 use robot_description::{Robot, path_of};
 use robot_policy::{
     PolicyDescription,
     command_source::{CommandFile, CommandSource, Speeds},
+    fit,
     live::Live,
     log::Log,
     machine::Timing,
     runner::Runner,
 };
 use robotctl::{drive::JoystickMap, pc_link::PcLink};
-use session::Session;
+use session::{Beat, Session};
 
 use super::place::Place;
 
@@ -38,6 +39,10 @@ pub struct Run {
     /// Send nothing: print what the policy sees and would command, whatever the radio says
     #[arg(long)]
     dry_run: bool,
+    /// Answer each state of an emulated board that waits for that (`sim --link pty --lockstep`), and go by its clock: for a computer
+    /// that is too slow for real time
+    #[arg(long, conflicts_with = "dry_run")]
+    lockstep: bool,
     /// Where to go
     #[arg(long, value_enum, default_value_t = Source::Radio)]
     commands: Source,
@@ -125,6 +130,10 @@ impl Run {
             ran.map_err(|error| error.to_string())
         });
         let runner = Runner::new(&policy, &robot, network, timing)?;
+        for fault in fit::faults(&policy, &robot) {
+            let joint = fault.joint.map_or("", |it| &policy.joints[it].name);
+            println!("note: {joint}: {}", fault.text);
+        }
         let log = self
             .log
             .as_ref()
@@ -139,14 +148,15 @@ impl Run {
         }
         let link = PcLink::open(&self.link)?;
         let source = self.source(&policy)?;
+        let period = Duration::from_secs_f32(policy.control_period_s);
         let mut session = Session::new(self.link.clone(), link, runner, source, &policy)?;
         session.seconds = self.seconds;
         session.log = log;
         session.live = live;
         if self.dry_run {
-            session.rehearse()
+            session.rehearse(period)
         } else {
-            session.run()
+            session.run(Beat::new(period, self.lockstep))
         }
     }
 

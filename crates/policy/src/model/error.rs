@@ -11,16 +11,18 @@ use crate::observation::Mismatch;
 pub enum ModelError {
     /// The file is TorchScript.
     #[error(
-        "{}: TorchScript is not read here. This makes ONNX of it, where N is the length of the input; then name the new file in \
-         model_name:\n  {}",
+        "{}: TorchScript is not read here. This makes ONNX of it{}; then name the new file in model_name:\n  {}",
         file.display(),
-        conversion(file, onnx)
+        if inputs.is_none() { ", where N is the length of the input" } else { "" },
+        conversion(file, onnx, *inputs)
     )]
     TorchScript {
         /// The file.
         file: PathBuf,
         /// The file to be made.
         onnx: PathBuf,
+        /// Length of the input, where it is known.
+        inputs: Option<usize>,
     },
     /// The file is missing, is no ONNX, or holds what tract cannot run.
     #[error("{}: {message}", file.display())]
@@ -84,6 +86,19 @@ pub enum ModelError {
 }
 
 impl ModelError {
+    /// Adds the length that the input has by the configuration.
+    #[must_use]
+    pub(crate) fn with_inputs(self, len: usize) -> Self {
+        match self {
+            Self::TorchScript { file, onnx, .. } => Self::TorchScript {
+                file,
+                onnx,
+                inputs: Some(len),
+            },
+            other => other,
+        }
+    }
+
     pub(super) fn unusable(file: &Path, error: &TractError) -> Self {
         Self::Unusable {
             file: file.to_owned(),
@@ -93,10 +108,11 @@ impl ModelError {
 }
 
 /// The command that makes ONNX of TorchScript.
-fn conversion(file: &Path, onnx: &Path) -> String {
+fn conversion(file: &Path, onnx: &Path, inputs: Option<usize>) -> String {
+    let inputs = inputs.map_or("N".to_owned(), |it| it.to_string());
     let [file, onnx] = [file, onnx].map(|it| it.display());
     format!(
-        "python3 -c \"import torch; torch.onnx.export(torch.jit.load('{file}', map_location='cpu').eval(), torch.zeros(1, N), \
+        "python3 -c \"import torch; torch.onnx.export(torch.jit.load('{file}', map_location='cpu').eval(), torch.zeros(1, {inputs}), \
          '{onnx}', input_names=['obs'], output_names=['actions'], dynamo=False)\""
     )
 }

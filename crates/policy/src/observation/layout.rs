@@ -179,7 +179,7 @@ impl fmt::Display for Layout {
             let values = values.join(" ");
             writeln!(
                 f,
-                "{offset:>5} … {last:<5} {len:>3}  {term:<16} {age:<10}  {values}"
+                "{offset:>5} … {last:<5} {len:>3}  {term:<17} {age:<10}  {values}"
             )?;
         }
         write!(f, "{:>5} values", self.len())

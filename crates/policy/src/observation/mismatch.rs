@@ -229,8 +229,14 @@ fn missing_term(layout: &Layout, index: usize, frame_len: usize) -> Vec<Suspect>
     let missing = frame_len - group.frame_len();
     let mut changed = group.clone();
     changed.terms.push(("?".to_owned(), missing));
+    // The first group has the frames; what comes behind it is of now only.
+    let place = if index == 0 {
+        "each frame"
+    } else {
+        "observations_nonstack"
+    };
     let change = format!(
-        "a term of {} is missing in each frame, or terms are too short by as much",
+        "a term of {} is missing in {place}, or terms are too short by as much",
         values(missing)
     );
     vec![Suspect {

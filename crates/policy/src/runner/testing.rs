@@ -24,6 +24,7 @@ pub(crate) struct Bench {
     pub(crate) state: Uplink,
     pub(crate) time_s: f64,
     pub(crate) age_s: f64,
+    pub(crate) silence_s: f64,
     pub(crate) obstacle: Option<Obstacle>,
     pub(crate) stop: Option<Stop>,
     /// Joints follow their targets.
@@ -57,6 +58,7 @@ impl Bench {
             },
             time_s: 0.0,
             age_s: 0.001,
+            silence_s: 0.1,
             obstacle: None,
             stop: None,
             follows: true,
@@ -70,6 +72,7 @@ impl Bench {
             time_s: self.time_s,
             state: &self.state,
             age_s: self.age_s,
+            silence_s: self.silence_s,
             obstacle: self.obstacle.clone(),
             commands: Commands::default(),
             stop: self.stop.take(),

@@ -76,6 +76,8 @@ fn it_gets_up_to_the_default_pose_before_the_policy_drives() {
         [(5.0, 0.3), (-8.333_333, 0.3)],
         "-10 rad/s is held within 2.5 N·m / 0.3"
     );
+    let shares: Vec<_> = bench.runner.held_shares().collect();
+    assert_eq!(shares, [0.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
 }
 
 #[test]
@@ -163,6 +165,17 @@ fn a_body_that_leans_too_far_stops() {
     let half_rad = 61.0_f32.to_radians() / 2.0;
     let tilted = [half_rad.sin(), 0.0, 0.0, half_rad.cos()];
     goes_limp("attitude", |bench| bench.state.q_xyzw = tilted);
+}
+
+#[test]
+fn a_robot_that_does_not_say_that_it_is_safe_stops() {
+    goes_limp("no-answer", |bench| bench.silence_s = 1.01);
+    let mut bench = Bench::new([0.0; 6]);
+    bench.silence_s = f64::INFINITY;
+    for _ in 0..400 {
+        bench.cycle();
+    }
+    assert_eq!(bench.phase(), Phase::Passive, "nor does it get up");
 }
 
 #[test]

@@ -16,6 +16,7 @@ use robot_policy::{
     limits::Stop,
     machine::{Phase, Timing},
     observation::Commands,
+    pages::Pages,
     runner::{Network, Now, Runner},
 };
 use robot_sim::scenario::Scenario;
@@ -24,7 +25,7 @@ use robotctl::{
     drive::RobotView,
     pc_link::{PcLink, SharedLink},
     settings,
-    tuning::{LiveQuestion, TuningClient},
+    tuning::TuningClient,
 };
 
 use crate::{
@@ -36,7 +37,6 @@ use crate::{
 const PATIENCE: Duration = Duration::from_secs(20);
 /// A cycle for every two states is one in 4.8 ms of the robot's time.
 const STATES_A_CYCLE: u64 = 2;
-const STATES_A_QUESTION: u64 = 40;
 /// A minute of the robot's time: something is wrong.
 const MOST_STATES: u64 = 25_000;
 /// The longest that the robot allows: on a busy computer this program may rest while the board goes on.
@@ -63,7 +63,7 @@ fn runner() -> anyhow::Result<Runner> {
 struct Session {
     link: PcLink,
     robot: RobotView,
-    questions: [LiveQuestion; 3],
+    pages: Pages,
     states: u64,
 }
 
@@ -93,8 +93,8 @@ impl Session {
                     return Ok(());
                 }
                 Heard::Tunnel(frame) => {
-                    let answers = self.questions.iter().filter_map(|it| it.answer(&frame));
-                    answers.for_each(|answer| self.robot.take(&answer));
+                    let time_s = f64::from(self.robot.state.time_s);
+                    self.pages.take(&frame, time_s, &mut self.robot);
                 }
             }
         }
@@ -113,9 +113,8 @@ impl Session {
         let mut before = Phase::Passive;
         while self.states < last {
             self.next_state()?;
-            if self.states.is_multiple_of(STATES_A_QUESTION) {
-                let number = (self.states / STATES_A_QUESTION) as usize % self.questions.len();
-                CanLink::send(&mut self.link, &self.questions[number].frame())?;
+            if let Some(question) = self.pages.question(f64::from(self.robot.state.time_s)) {
+                CanLink::send(&mut self.link, &question)?;
             }
             if !self.states.is_multiple_of(STATES_A_CYCLE) {
                 continue;
@@ -129,6 +128,8 @@ impl Session {
                 time_s,
                 state: &state,
                 age_s: 0.0,
+                // On a busy computer the board may go on for long before it hears a question.
+                silence_s: 0.0,
                 obstacle: self.robot.obstacle(),
                 commands: Commands::default(),
                 stop: stop.map(|_| Stop::Asked),
@@ -186,7 +187,7 @@ fn a_policy_drives_the_image_until_the_user_or_the_pilot_ends_it() {
         let mut session = Session {
             link: be_patient(PcLink::open(port)?)?,
             robot: RobotView::default(),
-            questions: ["safety", "arming", "balance"].map(LiveQuestion::new),
+            pages: Pages::default(),
             states: 0,
         };
         Ok([session.run(Some(1.5))?, session.run(None)?])

@@ -1,4 +1,8 @@
-//! The loop of a run, in real time: states in, commands out, one cycle after the other.
+//! The loop of a run: states in, commands out, one cycle after the other.
+
+mod beat;
+mod lines;
+mod rehearsal;
 
 use std::{
     mem,
@@ -11,28 +15,29 @@ use std::{
 };
 
 use anyhow::{Context, Result, bail};
-use robot_app::link::{Heard, Uplink};
+use robot_app::link::{Downlink, Heard};
 use robot_policy::{
     PolicyDescription,
-    action::Target,
-    command_source::{CommandSource, Said},
+    command_source::{CommandSource, Said, Wishes},
     limits::{STALE_S, Stop},
     live::Live,
     log::Log,
     machine::Phase,
     messages::Entry,
     observation::Commands,
-    pace::{Lateness, Pace},
+    pace::Lateness,
+    pages::Pages,
     runner::{Now, Runner},
 };
 use robotctl::{
     can_link::{CanLink, CanLinkError},
     drive::RobotView,
     pc_link::{self, PcLink},
-    tuning::LiveQuestion,
 };
 
 use super::priority;
+pub use beat::Beat;
+use beat::Begun;
 
 /// The first state must come within this time.
 const FIRST_STATE: Duration = Duration::from_secs(2);
@@ -40,10 +45,6 @@ const FIRST_STATE: Duration = Duration::from_secs(2);
 const CATCHES_UP: Duration = Duration::from_millis(1);
 /// Commands without torque at the end.
 const LAST_COMMANDS: u32 = 10;
-/// A live page is asked for in one of so many cycles.
-const QUESTION_EVERY: u64 = 20;
-/// A rehearsal prints one of so many runs of the network.
-const PRINT_EVERY: u64 = 25;
 
 pub struct Session {
     port: String,
@@ -53,17 +54,20 @@ pub struct Session {
     names: Vec<String>,
     /// Cycles from one run of the network to the next.
     decimation: u64,
-    pace: Pace,
     lateness: Lateness,
     /// The latest cycle since the last run of the network.
     late: Duration,
     started: Instant,
+    /// When the last cycle began, by the clock that counts.
+    time_s: f64,
     interrupted: Arc<AtomicBool>,
+    wishes: Wishes,
     robot: RobotView,
+    pages: Pages,
     /// When the newest state came; `None` before the first.
     heard: Option<Instant>,
-    questions: [LiveQuestion; 3],
-    cycles: u64,
+    /// The last command.
+    command: Downlink,
     said: String,
     /// What ends the run and is not yet told to it.
     stop: Option<Stop>,
@@ -84,7 +88,6 @@ impl Session {
         let caught = interrupted.clone();
         ctrlc::set_handler(move || caught.store(true, Ordering::Relaxed))
             .context("cannot catch Ctrl-C")?;
-        let now = Instant::now();
         Ok(Self {
             port,
             link,
@@ -96,15 +99,16 @@ impl Session {
                 .map(|joint| joint.name.clone())
                 .collect(),
             decimation: policy.decimation.into(),
-            pace: Pace::new(Duration::from_secs_f32(policy.control_period_s), now),
             lateness: Lateness::new(policy.period_s()),
             late: Duration::ZERO,
-            started: now,
+            started: Instant::now(),
+            time_s: 0.0,
             interrupted,
+            wishes: Wishes::default(),
             robot: RobotView::default(),
+            pages: Pages::default(),
             heard: None,
-            questions: ["safety", "arming", "balance"].map(LiveQuestion::new),
-            cycles: 0,
+            command: Downlink::default(),
             said: String::new(),
             stop: None,
             seconds: None,
@@ -114,29 +118,33 @@ impl Session {
     }
 
     /// Runs until the robot has got down, and says why it did.
-    pub fn run(mut self) -> Result<ExitCode> {
-        self.say(&priority::raise());
+    pub fn run(mut self, mut beat: Beat) -> Result<ExitCode> {
+        self.say(&match beat {
+            Beat::Computer(_) => priority::raise(),
+            Beat::Robot(_) => "in lockstep: the robot's clock counts".to_owned(),
+        });
         self.wait_for_robot()?;
-        let driven = self.drive();
+        self.say("the robot is heard");
+        let driven = self.drive(&mut beat);
         self.finish()?;
         driven?;
         self.verdict()
     }
 
-    fn drive(&mut self) -> Result<()> {
+    fn drive(&mut self, beat: &mut Beat) -> Result<()> {
         while !self.runner.machine().is_over() {
-            self.cycle()?;
+            self.cycle(beat)?;
         }
         for _ in 0..LAST_COMMANDS {
-            self.cycle()?;
+            self.cycle(beat)?;
         }
         Ok(())
     }
 
-    fn cycle(&mut self) -> Result<()> {
-        self.listen(self.pace.due())?;
-        let begun = Instant::now();
-        let late = self.pace.begin(begun);
+    fn cycle(&mut self, beat: &mut Beat) -> Result<()> {
+        let begun = beat.begin(self)?;
+        let Begun { time_s, late, .. } = begun;
+        self.time_s = time_s;
         let phase = self.runner.machine().phase();
         // A cycle between two runs that is late delays the next one.
         self.late = self.late.max(late);
@@ -146,22 +154,20 @@ impl Session {
             let kept = self.lateness.add(mem::take(&mut self.late));
             self.stop = self.stop.take().or(kept.err());
         }
-        let time_s = begun.duration_since(self.started).as_secs_f64();
         let commands = self.commands(time_s, phase);
         let state = self.robot.state;
-        let age_s = self
-            .heard
-            .map_or(f64::INFINITY, |heard| (begun - heard).as_secs_f64());
-        let command = self.runner.cycle(&Now {
+        self.command = self.runner.cycle(&Now {
             time_s,
             state: &state,
-            age_s,
+            age_s: begun.age_s,
+            silence_s: self.pages.silence_s(time_s),
             obstacle: self.robot.obstacle(),
             commands,
             stop: self.stop.take(),
         });
-        self.link.command(&command).map_err(link_failed)?;
-        self.ask()?;
+        // A robot in lockstep goes on as soon as the command comes.
+        self.ask(time_s)?;
+        self.link.command(&self.command).map_err(link_failed)?;
         self.tell();
         self.record(time_s, commands, late);
         Ok(())
@@ -200,14 +206,14 @@ impl Session {
             self.stop = Some(Stop::TimeOver { seconds });
         }
         if self.interrupted.swap(false, Ordering::Relaxed) {
-            self.stop = Some(Stop::Asked);
+            self.end();
         }
         match self
             .source
             .read(self.started.elapsed(), policy_s, &self.robot.state.sticks)
         {
             Ok(Said::Commands(commands)) => return commands,
-            Ok(Said::End) => self.stop = Some(Stop::Asked),
+            Ok(Said::End) => self.end(),
             // The user may want to end getting down at once.
             Err(error) => {
                 self.stop
@@ -217,176 +223,64 @@ impl Session {
         Commands::default()
     }
 
-    fn wait_for_robot(&mut self) -> Result<()> {
-        let until = Instant::now() + FIRST_STATE;
-        while self.heard.is_none()
-            && Instant::now() < until
-            && !self.interrupted.load(Ordering::Relaxed)
-        {
-            self.listen(Instant::now() + Duration::from_millis(10))?;
+    /// The user wants to end. A key that is held says it again and again.
+    fn end(&mut self) {
+        if self.wishes.is_new(self.started.elapsed()) {
+            self.stop = Some(Stop::Asked);
         }
-        if self.heard.is_none() {
+    }
+
+    fn wait_for_robot(&mut self) -> Result<()> {
+        if !self.next_state(Instant::now() + FIRST_STATE)? {
             let why = pc_link::why_silent(&self.port, &self.link.traffic());
             bail!("no state of the robot comes: {why}");
         }
         Ok(())
     }
 
+    /// Takes what comes until then. A cycle that is late reads what has come meanwhile all the same.
     fn listen(&mut self, until: Instant) -> Result<()> {
-        // A cycle that is late reads what has come meanwhile all the same.
-        let now = Instant::now();
-        let until = if until > now { until } else { now + CATCHES_UP };
-        while let Some(heard) = self.link.next(until).map_err(link_failed)? {
-            match heard {
-                // A state that is sent again is not a new one.
-                Heard::Uplink(state) if state.time_s != self.robot.state.time_s => {
-                    self.robot.state = state;
-                    self.heard = Some(Instant::now());
-                }
-                Heard::Uplink(_) => {}
-                Heard::Tunnel(frame) => {
-                    let answers = self
-                        .questions
-                        .iter()
-                        .filter_map(|asked| asked.answer(&frame));
-                    for answer in answers {
-                        self.robot.take(&answer);
-                    }
-                }
-            }
-        }
+        let until = until.max(Instant::now() + CATCHES_UP);
+        while self.hear(until)? {}
         Ok(())
     }
 
-    /// Asks for a live page: flags of safety are on the tuning channel only.
-    fn ask(&mut self) -> Result<()> {
-        self.cycles += 1;
-        if self.cycles.is_multiple_of(QUESTION_EVERY) {
-            let number = (self.cycles / QUESTION_EVERY) as usize % self.questions.len();
-            let frame = self.questions[number].frame();
-            CanLink::send(&mut self.link, &frame).map_err(link_failed)?;
-        }
-        Ok(())
-    }
-
-    /// Prints a line whenever something changes.
-    fn tell(&mut self) {
-        let machine = self.runner.machine();
-        let headline = match (machine.phase(), machine.ended_by()) {
-            (Phase::Passive, Some(_)) => "passive: no torque".to_owned(),
-            (Phase::Passive, None) if self.robot.stands() => {
-                "waits: the robot stands by itself; put the stand switch down".to_owned()
+    /// Waits for a state that is new. Returns false if none comes until then.
+    fn next_state(&mut self, until: Instant) -> Result<bool> {
+        let before = self.heard;
+        while self.heard == before {
+            if !self.hear(until)? {
+                return Ok(false);
             }
-            (Phase::Passive, None) => match self.runner.in_the_way() {
-                Some(stop) => format!("waits: {stop}"),
-                None => "waits: ready in a moment".to_owned(),
-            },
-            (Phase::GetUp, _) => "gets up".to_owned(),
-            (Phase::Policy, _) => "the policy drives".to_owned(),
-            (Phase::GetDown, Some(stop)) => format!("gets down: {stop}"),
-            (Phase::GetDown, None) => "gets down".to_owned(),
-        };
-        if headline != self.said {
-            self.say(&headline);
-            self.said = headline;
         }
-    }
-
-    /// With the terminal's keys taken, a line needs its own return.
-    fn say(&self, line: &str) {
-        match self.source {
-            CommandSource::Keyboard(..) => print!("{line}\r\n"),
-            _ => println!("{line}"),
-        }
-    }
-
-    /// Completes the log, and says how regular the runs were.
-    fn finish(&mut self) -> Result<()> {
-        if let Some(log) = self.log.take() {
-            log.finish()?;
-        }
-        if let Some(jitter) = self.lateness.summary() {
-            self.say(&format!(
-                "{} runs of the network: late by min {:.0} µs, mean {:.0} µs, p99 {:.0} µs, max {:.0} µs; {} missed",
-                jitter.runs, jitter.min_us, jitter.mean_us, jitter.p99_us, jitter.max_us, jitter.misses
-            ));
-        }
-        Ok(())
-    }
-
-    fn verdict(&self) -> Result<ExitCode> {
-        let Some(stop) = self.runner.machine().ended_by() else {
-            bail!("the run has no end");
-        };
-        self.say(&format!("ended by {}: {stop}", stop.name()));
-        Ok(if stop.is_wanted() {
-            ExitCode::SUCCESS
-        } else {
-            ExitCode::FAILURE
-        })
-    }
-
-    /// Prints what the policy sees and would command, and sends nothing.
-    pub fn rehearse(mut self) -> Result<ExitCode> {
-        self.wait_for_robot()?;
-        let started = Instant::now();
-        let is_over = |seconds: f64| started.elapsed().as_secs_f64() >= seconds;
-        while !self.interrupted.load(Ordering::Relaxed) && !self.seconds.is_some_and(is_over) {
-            self.listen(self.pace.due())?;
-            let late = self.pace.begin(Instant::now());
-            if self.cycles.is_multiple_of(self.decimation) && !self.rehearse_run(started, late)? {
-                break;
-            }
-            self.cycles += 1;
-        }
-        self.finish()?;
-        Ok(ExitCode::SUCCESS)
-    }
-
-    /// Runs the network once. Returns false if the user ends it.
-    fn rehearse_run(&mut self, started: Instant, late: Duration) -> Result<bool> {
-        let time_s = started.elapsed().as_secs_f64();
-        let said = self
-            .source
-            .read(self.started.elapsed(), time_s, &self.robot.state.sticks)?;
-        let Said::Commands(commands) = said else {
-            return Ok(false);
-        };
-        let state = self.robot.state;
-        self.runner.rehearse(&state, &commands)?;
-        // Nobody waits for a command that is late.
-        let _ = self.lateness.add(late);
-        if (self.cycles / self.decimation).is_multiple_of(PRINT_EVERY) {
-            self.print(&state);
-        }
-        self.record(time_s, commands, late);
         Ok(true)
     }
 
-    fn print(&self, state: &Uplink) {
-        self.say(&format!("t = {:.2} s", state.time_s));
-        for block in self.runner.layout().blocks() {
-            let values = self.runner.input()[block.offset..].iter().take(block.len);
-            let values = block.values.iter().zip(values);
-            let values: Vec<_> = values
-                .map(|(name, value)| format!("{name} {value:+.3}"))
-                .collect();
-            self.say(&format!(
-                "  {:>4} {:<16} {:>2}  {}",
-                block.offset,
-                block.term,
-                block.age,
-                values.join("  ")
-            ));
+    /// Takes the next frame of the robot. Returns false if none comes until then.
+    fn hear(&mut self, until: Instant) -> Result<bool> {
+        let Some(heard) = self.link.next(until).map_err(link_failed)? else {
+            return Ok(false);
+        };
+        match heard {
+            // A state that is sent again is not a new one.
+            Heard::Uplink(state) if state.time_s != self.robot.state.time_s => {
+                self.robot.state = state;
+                self.heard = Some(Instant::now());
+            }
+            Heard::Uplink(_) => {}
+            Heard::Tunnel(frame) => {
+                self.pages.take(&frame, self.time_s, &mut self.robot);
+            }
         }
-        for (name, target) in self.names.iter().zip(self.runner.wanted()) {
-            self.say(&match target {
-                Target::Position { rad, kp, kd } => {
-                    format!("       {name:<16} {rad:+.3} rad, Kp {kp} Kd {kd}")
-                }
-                Target::Speed { rps, kd } => format!("       {name:<16} {rps:+.3} rad/s, Kd {kd}"),
-            });
+        Ok(true)
+    }
+
+    /// Asks for a live page: flags of safety are on the tuning channel only.
+    fn ask(&mut self, time_s: f64) -> Result<()> {
+        if let Some(question) = self.pages.question(time_s) {
+            CanLink::send(&mut self.link, &question).map_err(link_failed)?;
         }
+        Ok(())
     }
 }
 

@@ -1,0 +1,72 @@
+//! Whose clock gives the cycles.
+
+use std::time::{Duration, Instant};
+
+use anyhow::{Result, bail};
+use robot_policy::pace::{Pace, RobotPace};
+
+use super::{Session, link_failed};
+
+/// A robot in lockstep that takes longer for its next state is gone.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// Gives the cycles.
+pub enum Beat {
+    /// The computer's clock: real time.
+    Computer(Pace),
+    /// The clock of a robot that waits for an answer to each of its states.
+    Robot(RobotPace),
+}
+
+/// The start of a cycle.
+pub struct Begun {
+    /// Time in s by the clock that counts.
+    pub time_s: f64,
+    /// How late it is.
+    pub late: Duration,
+    /// Time in s since the newest state came.
+    pub age_s: f64,
+}
+
+impl Beat {
+    /// Takes the computer's clock, or the robot's.
+    pub fn new(period: Duration, is_in_lockstep: bool) -> Self {
+        if is_in_lockstep {
+            Self::Robot(RobotPace::new(period))
+        } else {
+            Self::Computer(Pace::new(period, Instant::now()))
+        }
+    }
+
+    /// Waits until a cycle is due.
+    pub fn begin(&mut self, session: &mut Session) -> Result<Begun> {
+        match self {
+            Self::Computer(pace) => {
+                session.listen(pace.due())?;
+                let now = Instant::now();
+                let since = |instant| now.duration_since(instant).as_secs_f64();
+                Ok(Begun {
+                    time_s: since(session.started),
+                    late: pace.begin(now),
+                    age_s: session.heard.map_or(f64::INFINITY, since),
+                })
+            }
+            Self::Robot(pace) => loop {
+                if !session.next_state(Instant::now() + PATIENCE)? {
+                    bail!("the robot in lockstep sends no more states: was its program stopped?");
+                }
+                let time_s = f64::from(session.robot.state.time_s);
+                if let Some(late) = pace.begin(time_s) {
+                    return Ok(Begun {
+                        time_s,
+                        late,
+                        age_s: 0.0,
+                    });
+                }
+                // The robot waits for an answer to each state.
+                let command = session.command;
+                session.link.command(&command).map_err(link_failed)?;
+            },
+        }
+    }
+}
