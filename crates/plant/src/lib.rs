@@ -30,4 +30,5 @@ mod random;
 mod supply;
 
 pub use body::free;
+pub use pc::link_frames;
 pub use robot_wire::time;

@@ -26,6 +26,14 @@ use program::Program;
 pub use program::{PcDrive, PcInput, PcJoints};
 use scanner::Scanner;
 
+/// Frames of the serial link, for whoever watches its bytes.
+pub mod link_frames {
+    pub use super::{
+        codec::{DOWN_LEN, UP_LEN},
+        scanner::Scanner,
+    };
+}
+
 /// A flood is made in pieces of this length.
 const FLOOD_PIECE: Ps = MS;
 /// A line that is held low rises for an instant after this time.

@@ -22,6 +22,8 @@ pub struct PcAccess {
     pub gateway: Option<GatewayAddress>,
     /// The PC link on a pseudo-terminal.
     pub link_on_pty: bool,
+    /// The board waits for the answer of the program at the PC link to each state.
+    pub lockstep: bool,
 }
 
 #[derive(Debug, thiserror::Error)]
@@ -55,7 +57,7 @@ impl PcAccess {
             ports.can.extend(both.map(|port| Box::new(port) as _));
         }
         if self.link_on_pty {
-            ports.link = Some(LinkPort::open().map_err(PcError::Terminal)?);
+            ports.link = Some(LinkPort::open(self.lockstep).map_err(PcError::Terminal)?);
         }
         Ok(ports)
     }
@@ -73,7 +75,7 @@ impl PcPorts {
         self.can.is_empty() && self.link.is_none()
     }
 
-    /// Serves all programs. It never waits for them.
+    /// Serves all programs. It waits for none, except for one in lockstep.
     pub fn serve(&mut self, world: &mut World, now: Ps) -> io::Result<()> {
         self.can.iter_mut().try_for_each(|port| port.serve(world))?;
         self.link
@@ -91,7 +93,7 @@ mod tests {
         let both = PcAccess {
             can_on_pty: vec![CanBusId::Can1],
             gateway: Some("tcp:0".parse().expect("an address")),
-            link_on_pty: false,
+            ..PcAccess::default()
         };
         assert!(matches!(both.open(), Err(PcError::TwoAdapters)));
     }

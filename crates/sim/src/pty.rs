@@ -4,6 +4,7 @@
 mod frame_text;
 mod lawicel;
 mod link_port;
+mod lockstep;
 mod slcan_port;
 mod terminal;
 

@@ -5,9 +5,9 @@ use std::f64::consts::PI;
 /// First byte of both frames.
 pub(super) const HEADER: u8 = 0xFE;
 /// Length of a frame to the PC.
-pub(super) const UP_LEN: usize = 94;
+pub const UP_LEN: usize = 94;
 /// Length of a frame from the PC.
-pub(super) const DOWN_LEN: usize = 38;
+pub const DOWN_LEN: usize = 38;
 /// First byte and length of a frame that takes the place of the sticks.
 pub(super) const DRIVE_HEADER: u8 = 0xFC;
 pub(super) const DRIVE_LEN: usize = 12;

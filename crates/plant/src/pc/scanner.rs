@@ -8,7 +8,7 @@ const TUNNEL_LEN: usize = 12;
 
 /// Finds frames of `LEN` bytes by header and checksum. After a wrong checksum it drops one byte and looks again.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Scanner<const LEN: usize> {
+pub struct Scanner<const LEN: usize> {
     waiting: Vec<u8>,
     /// Frames with a wrong checksum.
     pub(super) crc_errors: u64,
@@ -18,7 +18,7 @@ pub(super) struct Scanner<const LEN: usize> {
 
 impl<const LEN: usize> Scanner<LEN> {
     /// Takes one byte, and returns the frame that it completes.
-    pub(super) fn take(&mut self, byte: u8) -> Option<[u8; LEN]> {
+    pub fn take(&mut self, byte: u8) -> Option<[u8; LEN]> {
         self.waiting.push(byte);
         while let Some(header) = self.waiting.first() {
             let length = match *header {

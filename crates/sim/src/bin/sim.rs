@@ -65,6 +65,10 @@ struct Args {
     /// The PC link (4-pin UART2) on a pseudo-terminal, as a USB-to-serial adapter. Likewise.
     #[arg(long, value_enum, value_name = "pty")]
     link: Option<LinkConnection>,
+    /// The board waits for the program's answer to each state, and the program for the board: as fast as both can, and the
+    /// speed of neither matters. The program is `policy run --lockstep`.
+    #[arg(long, requires = "link")]
+    lockstep: bool,
     /// Both buses behind a Waveshare CAN-TO-ETH: CAN1 at PORT, CAN2 at the next one; 0: any free ports. As with --can1,
     /// it implies --realtime.
     #[arg(long, value_name = "tcp:PORT|udp:PORT", conflicts_with_all = ["can1", "can2"])]
@@ -143,7 +147,7 @@ fn main() -> anyhow::Result<ExitCode> {
     if args.list_signals {
         return list_signals(&job);
     }
-    let realtime = args.realtime || job.pc.is_offered();
+    let realtime = args.realtime || job.pc.is_offered() && !args.lockstep;
     if realtime && !args.realtime {
         println!("a PC takes part: real time, and not reproducible");
     }
@@ -182,6 +186,7 @@ impl Args {
             can_on_pty: outside.map(|(_, bus)| bus).collect(),
             gateway: self.gateway,
             link_on_pty: self.link.is_some(),
+            lockstep: self.lockstep,
         }
     }
 }

@@ -1,13 +1,24 @@
 //! The PC link on a pseudo-terminal, as a USB-to-serial adapter at the 4-pin UART2.
 
-use std::{io, path::Path};
+use std::{
+    io,
+    path::Path,
+    thread,
+    time::{Duration, Instant},
+};
 
 use robot_plant::{time::Ps, world::World};
 
-use super::terminal::Terminal;
+use super::{lockstep::Lockstep, terminal::Terminal};
 
 /// Limit of bytes that wait for a program that reads too slowly, 90 ms of a full line.
 const WAITING: usize = 4 * 1024;
+/// A program in lockstep that takes longer for its answer hangs, and the board goes on without it.
+const PATIENCE: Duration = Duration::from_secs(10);
+/// The least time that a served millisecond takes without a program in lockstep: nobody has missed the run before he comes.
+const IDLE: Duration = Duration::from_millis(1);
+/// Whether such a program is still there is looked at this often.
+const LOOK_AGAIN: Duration = Duration::from_millis(100);
 
 /// Bytes between the board and the PC since power-on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
@@ -25,15 +36,19 @@ pub struct LinkPort {
     arrived: Vec<u8>,
     waiting: Vec<u8>,
     stats: LinkStats,
+    lockstep: Option<Lockstep>,
 }
 
 impl LinkPort {
-    pub fn open() -> io::Result<Self> {
+    /// Creates the device. `lockstep` lets the board wait for the program's answer to each state, once the program has sent
+    /// a command: then neither the program's speed nor the emulator's makes a difference.
+    pub fn open(lockstep: bool) -> io::Result<Self> {
         Ok(Self {
             terminal: Terminal::open()?,
             arrived: Vec::new(),
             waiting: Vec::new(),
             stats: LinkStats::default(),
+            lockstep: lockstep.then(Lockstep::default),
         })
     }
 
@@ -46,9 +61,26 @@ impl LinkPort {
         self.stats
     }
 
-    /// Takes as many bytes of the PC as the adapter accepts, and passes on what the board sent. It never waits. What the
-    /// board sends while no program has the device open is lost, as with a real one.
+    /// Takes as many bytes of the PC as the adapter accepts, and passes on what the board sent. It never waits, except in
+    /// lockstep. What the board sends while no program has the device open is lost, as with a real one.
     pub fn serve(&mut self, world: &mut World, now: Ps) -> io::Result<()> {
+        self.exchange(world, now)?;
+        if self.lockstep.as_ref().is_some_and(|it| !it.is_in_step()) {
+            thread::sleep(IDLE);
+        }
+        let until = Instant::now() + PATIENCE;
+        while self.lockstep.as_ref().is_some_and(Lockstep::waits) {
+            if !self.terminal.is_open()? || Instant::now() > until {
+                self.lockstep.iter_mut().for_each(Lockstep::give_up);
+                break;
+            }
+            self.terminal.wait(LOOK_AGAIN)?;
+            self.exchange(world, now)?;
+        }
+        Ok(())
+    }
+
+    fn exchange(&mut self, world: &mut World, now: Ps) -> io::Result<()> {
         let adapter = world.serial_adapter();
         if !adapter.plugged() {
             adapter.set_plugged(true);
@@ -56,10 +88,18 @@ impl LinkPort {
         let room = adapter.room() as u64;
         self.terminal.read(&mut self.arrived, room)?;
         adapter.send(&self.arrived, now);
+        if let Some(lockstep) = &mut self.lockstep {
+            self.arrived
+                .iter()
+                .for_each(|byte| lockstep.program_sends(*byte));
+        }
         self.arrived.clear();
         self.stats.from_pc = adapter.sent();
         let read = self.terminal.is_open()?;
         while let Some((_, byte)) = adapter.take() {
+            if let Some(lockstep) = &mut self.lockstep {
+                lockstep.board_sends(byte);
+            }
             if read && self.waiting.len() < WAITING {
                 self.waiting.push(byte);
             } else if read {

@@ -9,6 +9,7 @@ use std::{
         unix::{ffi::OsStrExt, fs::OpenOptionsExt},
     },
     path::{Path, PathBuf},
+    time::Duration,
 };
 
 use rustix::{
@@ -58,6 +59,18 @@ impl Terminal {
         let mut state = [PollFd::new(&self.ours, PollFlags::empty())];
         poll(&mut state, Some(&Timespec::default()))?;
         Ok(!state[0].revents().contains(PollFlags::HUP))
+    }
+
+    /// Waits until bytes have arrived, at most so long.
+    pub fn wait(&self, at_most: Duration) -> io::Result<()> {
+        let at_most = Timespec::try_from(at_most).map_err(io::Error::other)?;
+        match poll(
+            &mut [PollFd::new(&self.ours, PollFlags::IN)],
+            Some(&at_most),
+        ) {
+            Err(Errno::INTR) | Ok(_) => Ok(()),
+            Err(error) => Err(error.into()),
+        }
     }
 
     /// Appends the bytes that have arrived, at most `most`.

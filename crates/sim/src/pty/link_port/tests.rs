@@ -4,8 +4,11 @@ use std::{
     fs::{File, OpenOptions},
     io::{Read, Write},
     os::unix::fs::OpenOptionsExt,
+    thread,
+    time::Duration,
 };
 
+use robot_app::link::{Downlink, Uplink};
 use robot_plant::{
     serial_adapter::LINK_FORMAT,
     time::{MS, Ps, US},
@@ -50,7 +53,7 @@ fn arrived(world: &mut World, now: Ps) -> Vec<(u8, Ps)> {
 
 #[test]
 fn bytes_of_a_program_reach_the_line_one_character_after_the_other() {
-    let (mut world, mut port) = (world(), LinkPort::open().expect("a pseudo-terminal"));
+    let (mut world, mut port) = (world(), LinkPort::open(false).expect("a pseudo-terminal"));
     assert_eq!(world.link_rx_pin(), None);
     let mut program = program(&port);
     // Nothing may be echoed or converted: newline, carriage return, end of file, interrupt, XOFF, 0xFF.
@@ -70,7 +73,7 @@ fn bytes_of_a_program_reach_the_line_one_character_after_the_other() {
 
 #[test]
 fn a_program_reads_what_the_board_sends_while_it_has_the_device_open() {
-    let (mut world, mut port) = (world(), LinkPort::open().expect("a pseudo-terminal"));
+    let (mut world, mut port) = (world(), LinkPort::open(false).expect("a pseudo-terminal"));
     port.serve(&mut world, MS).expect("the line works");
     board_sends(&mut world, 1, 2 * MS);
     port.serve(&mut world, 3 * MS).expect("nobody has it open");
@@ -95,7 +98,7 @@ fn a_program_reads_what_the_board_sends_while_it_has_the_device_open() {
 
 #[test]
 fn a_program_that_does_not_read_loses_bytes_and_they_are_counted() {
-    let (mut world, mut port) = (world(), LinkPort::open().expect("a pseudo-terminal"));
+    let (mut world, mut port) = (world(), LinkPort::open(false).expect("a pseudo-terminal"));
     port.serve(&mut world, MS).expect("the line works");
     let _silent = program(&port);
     let mut sent = 0;
@@ -113,4 +116,37 @@ fn a_program_that_does_not_read_loses_bytes_and_they_are_counted() {
         stats.to_pc + stats.dropped + port.waiting.len() as u64,
         sent
     );
+}
+
+/// The board sends a state by `now`, and the line is served.
+fn state(world: &mut World, port: &mut LinkPort, now: Ps) {
+    for byte in Uplink::default().encode() {
+        board_sends(world, byte, now);
+    }
+    port.serve(world, now).expect("the line works");
+}
+
+#[test]
+fn a_board_in_lockstep_waits_for_the_answer_to_each_state() {
+    let (mut world, mut port) = (world(), LinkPort::open(true).expect("a pseudo-terminal"));
+    let mut program = program(&port);
+    state(&mut world, &mut port, MS);
+    let command = Downlink::default().encode();
+    program.write_all(&command).expect("it is short");
+    port.serve(&mut world, 2 * MS).expect("the line works");
+    assert_eq!(arrived(&mut world, 3 * MS).len(), command.len());
+    let late = thread::spawn(move || {
+        thread::sleep(Duration::from_millis(50));
+        program.write_all(&command).expect("it is short");
+        program
+    });
+    state(&mut world, &mut port, 4 * MS);
+    assert_eq!(
+        arrived(&mut world, 5 * MS).len(),
+        command.len(),
+        "the answer to the state of 4 ms is there at 4 ms"
+    );
+    drop(late.join().expect("it writes"));
+    state(&mut world, &mut port, 6 * MS);
+    state(&mut world, &mut port, 8 * MS);
 }
