@@ -4,6 +4,7 @@ mod bench;
 mod check;
 mod init;
 mod place;
+mod priority;
 mod run;
 mod show;
 

@@ -5,6 +5,8 @@ use std::{path::PathBuf, process::ExitCode};
 use anyhow::ensure;
 use robot_policy::model::{self, BenchReport, Model};
 
+use super::priority;
+
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Bench {
@@ -22,7 +24,7 @@ pub struct Bench {
 }
 
 const EXAMPLES: &str = "\
-Every value of the input is 0.1. The exit code is 0 if the outputs are finite and agree to 1e-5.
+It runs as `policy run` does, in real time where that is allowed. Every value of the input is 0.1. The exit code is 0 if the outputs are finite and agree to 1e-5.
 
 Example:
   policy bench policy/fivebar/flat/policy.onnx --input 69 --iterations 1000";
@@ -39,10 +41,13 @@ impl Bench {
             );
         }
         let iterations = usize::try_from(self.iterations)?;
+        // As in a run.
+        let priority = priority::raise();
         let report = model::Bench { iterations }.run(&mut model)?;
         if self.json {
             println!("{}", serde_json::to_string(&report)?);
         } else {
+            println!("{priority}");
             print(&report);
         }
         Ok(if report.stable {

@@ -1,6 +1,5 @@
 //! `policy run`: a policy drives the robot.
 
-mod priority;
 mod session;
 
 use std::{net::SocketAddr, path::PathBuf, process::ExitCode, time::Duration};

@@ -35,7 +35,7 @@ use robotctl::{
     pc_link::{self, PcLink},
 };
 
-use super::priority;
+use super::super::priority;
 pub use beat::Beat;
 use beat::Begun;
 

@@ -4,7 +4,7 @@
 #[cfg(target_os = "linux")]
 const PRIORITY: u8 = 50;
 
-/// Asks for SCHED_FIFO for this thread, and says what came of it.
+/// Asks for SCHED_FIFO for this thread. Returns what came of it.
 #[cfg(target_os = "linux")]
 pub fn raise() -> String {
     use thread_priority::{
