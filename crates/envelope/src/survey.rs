@@ -2,6 +2,7 @@
 
 use std::{
     num::NonZero,
+    ops::Range,
     sync::atomic::{AtomicUsize, Ordering},
     thread,
 };
@@ -45,20 +46,20 @@ enum Done {
     Limit(f64),
 }
 
-/// Runs each task with the robots `0 … seeds`, and calls `progress` after each part of the work, of which there are
+/// Runs each task with these robots, and calls `progress` after each part of the work, of which there are
 /// [`parts`].
 pub fn survey(
     tasks: &[&Task],
     robots: &Robots,
-    seeds: u64,
+    seeds: Range<u64>,
     limits: bool,
     progress: &(impl Fn() + Sync),
 ) -> Vec<Survey> {
     let mut jobs = Vec::new();
     for task in tasks {
-        jobs.extend((0..seeds).map(|seed| Job::Run(task, seed)));
+        jobs.extend(seeds.clone().map(|seed| Job::Run(task, seed)));
         if limits && task.bisection.is_some() {
-            jobs.extend((0..seeds).map(|seed| Job::Limit(task, seed)));
+            jobs.extend(seeds.clone().map(|seed| Job::Limit(task, seed)));
         }
     }
     let mut done = on_all_cores(&jobs, |job| {
@@ -80,13 +81,13 @@ pub fn survey(
                 runs: Vec::new(),
                 limit: None,
             };
-            for _ in 0..seeds {
+            for _ in seeds.clone() {
                 if let Some(Done::Run(run)) = done.next() {
                     survey.runs.push(run);
                 }
             }
             if let Some(bisection) = task.bisection.filter(|_| limits) {
-                let found = (0..seeds).filter_map(|_| match done.next() {
+                let found = seeds.clone().filter_map(|_| match done.next() {
                     Some(Done::Limit(limit)) => Some(limit),
                     _ => None,
                 });

@@ -24,7 +24,7 @@ fn robots_as_in_their_file_succeed() {
         .filter(|task| SAMPLE.contains(&task.name))
         .collect();
     assert_eq!(tasks.len(), SAMPLE.len());
-    let surveys = survey(&tasks, &robots, 2, false, &|| ());
+    let surveys = survey(&tasks, &robots, 0..2, false, &|| ());
     let report = Report::new("fivebar", 2, &tasks, &surveys);
     assert!(report.holds(), "\n{}", table(&report));
 }
@@ -37,7 +37,7 @@ fn robots_that_differ_stand_still() {
         vary: true,
     };
     let tasks: Vec<&Task> = TASKS.iter().filter(|task| task.name == "stand").collect();
-    let surveys = survey(&tasks, &robots, 2, false, &|| ());
+    let surveys = survey(&tasks, &robots, 0..2, false, &|| ());
     let report = Report::new("fivebar", 2, &tasks, &surveys);
     assert!(report.holds(), "\n{}", table(&report));
 }
@@ -49,7 +49,7 @@ fn robots_that_differ_jump_and_land() {
         vary: true,
     };
     let tasks: Vec<&Task> = TASKS.iter().filter(|task| task.name == "jump").collect();
-    let surveys = survey(&tasks, &robots, 6, false, &|| ());
+    let surveys = survey(&tasks, &robots, 0..6, false, &|| ());
     let report = Report::new("fivebar", 6, &tasks, &surveys);
     assert!(report.holds(), "\n{}", table(&report));
 }
@@ -65,7 +65,7 @@ fn robots_that_differ_stand_up_from_sitting() {
         .iter()
         .filter(|task| task.name == "stand-up-sitting")
         .collect();
-    let surveys = survey(&tasks, &robots, 20, false, &|| ());
+    let surveys = survey(&tasks, &robots, 0..20, false, &|| ());
     let report = Report::new("fivebar", 20, &tasks, &surveys);
     assert!(report.holds(), "\n{}", table(&report));
 }
@@ -81,7 +81,7 @@ fn robots_that_differ_stand_up_with_folded_legs() {
         .iter()
         .filter(|task| task.name == "stand-up-folded")
         .collect();
-    let surveys = survey(&tasks, &robots, 27, false, &|| ());
+    let surveys = survey(&tasks, &robots, 0..27, false, &|| ());
     let report = Report::new("fivebar", 27, &tasks, &surveys);
     let stood = report.tasks["stand-up-folded"].ok;
     // Seed 25 falls.
@@ -99,7 +99,7 @@ fn robots_that_differ_sit_down_gently() {
         .iter()
         .filter(|task| task.name == "sit-down")
         .collect();
-    let surveys = survey(&tasks, &robots, 10, false, &|| ());
+    let surveys = survey(&tasks, &robots, 0..10, false, &|| ());
     let report = Report::new("fivebar", 10, &tasks, &surveys);
     assert!(report.holds(), "\n{}", table(&report));
 }

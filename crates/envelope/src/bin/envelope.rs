@@ -19,6 +19,9 @@ struct Args {
     /// Number of robots for each task.
     #[arg(long, value_name = "N", default_value_t = 20)]
     seeds: u64,
+    /// The first of them; they are counted from 0.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    first: u64,
     /// Only the task of this name, or all whose names begin with it.
     #[arg(
         long,
@@ -96,7 +99,8 @@ fn run(args: &Args) -> anyhow::Result<bool> {
     bar.set_style(ProgressStyle::with_template(
         "{elapsed_precise} {bar:40} {pos}/{len} runs, {eta} left",
     )?);
-    let surveys = survey(&tasks, &robots, args.seeds, true, &|| bar.inc(1));
+    let seeds = args.first..args.first.saturating_add(args.seeds);
+    let surveys = survey(&tasks, &robots, seeds, true, &|| bar.inc(1));
     bar.finish_and_clear();
     let report = Report::new(&name, args.seeds, &tasks, &surveys);
     print!("{}", table(&report));

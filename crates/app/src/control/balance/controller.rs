@@ -170,9 +170,8 @@ impl BalanceController {
                 }
             }
             Phase::Balance => {
-                let struck = self
-                    .edge
-                    .step(measured, input.wheel_odom_cfg.wheel_radius_m, dt_s);
+                let radius_m = input.wheel_odom_cfg.wheel_radius_m;
+                let struck = self.edge.step(measured, radius_m, self.grounded_s, dt_s);
                 if struck && !self.law.airborne() {
                     self.phase = Phase::Jump(Jump::OVER_EDGE);
                 } else if jump_edge && !self.law.airborne() && self.since_jump_s >= JUMP_REST_S {

@@ -11,8 +11,9 @@ const LEAST_MPS: f32 = 0.3;
 const LEANS_RPS: f32 = 2.0;
 const LOST_MPS: f32 = 0.1;
 const FOLDS_MPS: f32 = 0.4;
-/// Time in s for which no other one counts: a landing looks alike.
+/// Time in s for which no other one counts, and time on the ground after a flight in which none counts: a landing looks alike.
 const QUIET_S: f32 = 0.6;
+const LANDED_S: f32 = 0.15;
 
 /// The motion of one side before, to compare with.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -29,8 +30,8 @@ pub struct Edge {
 }
 
 impl Edge {
-    /// Whether a wheel has just struck an edge.
-    pub fn step(&mut self, measured: &Measured, radius_m: f32, dt_s: f32) -> bool {
+    /// Whether a wheel of a robot that has been on the ground for `grounded_s` has just struck an edge.
+    pub fn step(&mut self, measured: &Measured, radius_m: f32, grounded_s: f32, dt_s: f32) -> bool {
         let motions = measured.wheel_rps.iter().zip(measured.lean_rps);
         let mut struck = false;
         for ((side, (wheel_rps, lean_rps)), leg) in
@@ -39,7 +40,7 @@ impl Edge {
             struck |= side.step(wheel_rps * radius_m, lean_rps, leg.length_mps, dt_s);
         }
         self.quiet_s -= dt_s;
-        if !struck || self.quiet_s > 0.0 {
+        if !struck || self.quiet_s > 0.0 || grounded_s < LANDED_S {
             return false;
         }
         self.quiet_s = QUIET_S;
@@ -82,7 +83,7 @@ mod tests {
         let mut edge = Edge::default();
         let mut step = |[speed_mps, lean_rps]: [f32; 2]| {
             let measured = rolling(forward * speed_mps, forward * lean_rps);
-            edge.step(&measured, RADIUS_M, TICK_S)
+            edge.step(&measured, RADIUS_M, 1.0, TICK_S)
         };
         let struck = rolls_s.iter().map(|roll_s| {
             for _ in 0..(roll_s / TICK_S) as usize {
@@ -107,6 +108,17 @@ mod tests {
             for motion in [[0.8, 0.0], [0.8, -3.0], [1.0, 3.0], [1.2, 3.0]] {
                 assert_eq!(strikes(&[0.1], forward, motion), [false], "{motion:?}");
             }
+        }
+    }
+    #[test]
+    fn a_landing_is_no_edge() {
+        for (grounded_s, expected) in [(0.0, false), (0.1, false), (0.2, true)] {
+            let mut edge = Edge::default();
+            for _ in 0..100 {
+                edge.step(&rolling(1.0, 0.0), RADIUS_M, grounded_s, TICK_S);
+            }
+            let struck = edge.step(&rolling(0.8, 3.0), RADIUS_M, grounded_s, TICK_S);
+            assert_eq!(struck, expected, "{grounded_s}");
         }
     }
 }

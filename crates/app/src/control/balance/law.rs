@@ -166,8 +166,9 @@ impl Law {
         let limits = &profile.limits;
         let mut wheels_nm = torques::within_wheels(wheels_nm, limits.wheel_nm);
         let loaded = !self.airborne && self.contact.lifted() == [false; 2];
-        // What is taken from a wheel that slips does not make it roll.
-        self.slip.step(odometry, measured, wheels_nm, loaded, dt_s);
+        let wheel_kgm2 = profile.mass.wheel_kgm2;
+        self.slip
+            .step(odometry, wheel_kgm2, measured, self.wheels_nm, loaded, dt_s);
         if !self.airborne {
             wheels_nm = self.slip.within_grip(wheels_nm);
         }

@@ -107,8 +107,10 @@ impl Support {
         let both_n = self.both_n(mass, stance, measured, &upright);
         let height_m = length_m + mass.carried_up_m;
         let inertia = mass.roll_kgm2 + mass.carried_kg * height_m * height_m;
-        let weight_nm = mass.carried_kg * GRAVITY_MPS2 * height_m;
         let tilt = &measured.tilt;
+        // Where the robot turns, the centrifugal force tips it the way its weight does, and by more.
+        let pull_mps2 = GRAVITY_MPS2 + tilt.yaw_rps * tilt.yaw_rps * height_m;
+        let weight_nm = mass.carried_kg * pull_mps2 * height_m;
         let roll_error = tilt.roll_rad - stance.roll_rad;
         let roll_nm = (inertia * ROLL_RPS * ROLL_RPS + weight_nm) * roll_error
             + 2.0 * ROLL_DAMPING * ROLL_RPS * inertia * tilt.roll_rps
@@ -127,7 +129,7 @@ impl Support {
             let beyond_n = LEARN_ROLL_RPS * LEARN_ROLL_RPS * inertia * roll_error / track_m;
             self.roll_n = scalar::clamp(self.roll_n + beyond_n * part, -most_n, most_n);
         }
-        let right_n = roll_n + self.roll_n * stance.share;
+        let right_n = roll_n + self.roll_n * stance.share * (pull_mps2 / GRAVITY_MPS2);
         [0.5 * both_n - right_n, 0.5 * both_n + right_n]
     }
 
@@ -176,7 +178,8 @@ impl Support {
 
 /// Length in m by which the right leg is longer while both wheels are level.
 fn level_m(track_m: f32, measured: &Measured) -> f32 {
-    let right_m = track_m * measured.tilt.roll_rad;
+    // With its right side down the right hip is lower.
+    let right_m = -track_m * measured.tilt.roll_rad;
     scalar::clamp(right_m, -2.0 * MAX_LEVEL_M, 2.0 * MAX_LEVEL_M)
 }
 
@@ -186,3 +189,6 @@ fn in_air_n(mass: &MassModel, leg: &Leg, length_m: f32, length_mps: f32) -> f32 
     let damping = 2.0 * AIR_DAMPING * AIR_RPS * mass.axle_kg;
     stiffness * (length_m - leg.length_m) + damping * (length_mps - leg.length_mps)
 }
+
+#[cfg(test)]
+mod tests;

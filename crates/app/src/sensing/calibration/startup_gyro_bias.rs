@@ -6,6 +6,8 @@ use crate::{
 };
 
 const MIN_SAMPLES: u16 = 200;
+/// A robot that rocks in so many first samples is not still, and its second begins again at once.
+const CHECKED_SAMPLES: u16 = 50;
 /// Matching samples after which the robot counts as still, 50 ms.
 const SETTLING_SAMPLES: u16 = 10;
 const MIN_SPAN_US: u32 = 1_000_000;
@@ -97,7 +99,9 @@ impl StartupGyroBias {
             None => Window::starting_with(gyro_dps, accel_mps2, ts_us),
         };
         let window = window.with(gyro_dps, ts_us);
-        if window.samples < MIN_SAMPLES || age_us(window.start_us, ts_us) < MIN_SPAN_US {
+        if window.samples == CHECKED_SAMPLES && window.still_mean_dps().is_none() {
+            self.window = None;
+        } else if window.samples < MIN_SAMPLES || age_us(window.start_us, ts_us) < MIN_SPAN_US {
             self.window = Some(window);
         } else {
             let mean_dps = window.still_mean_dps();
@@ -198,6 +202,18 @@ mod tests {
         feed_still(&mut bias, 199, 1 + 151 * 5_000, [0.0; 3]);
         assert_eq!(bias.bias_dps(), None);
         feed_still(&mut bias, 3, 1 + 350 * 5_000, [0.0; 3]);
+        assert!(bias.bias_dps().is_some());
+    }
+
+    #[test]
+    fn a_robot_that_comes_to_rest_does_not_wait_for_the_end_of_its_second() {
+        let mut bias = StartupGyroBias::default();
+        for index in 0..40u32 {
+            let rocking_dps = 2.0 * (0.2 * index as f32).sin();
+            let ts_us = 1 + u64::from(index) * 5_000;
+            bias.feed([0.0, rocking_dps, 0.0], LEVEL, [0.0; 3], ts_us);
+        }
+        feed_still(&mut bias, 215, 1 + 40 * 5_000, [0.0; 3]);
         assert!(bias.bias_dps().is_some());
     }
 

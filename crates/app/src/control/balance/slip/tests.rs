@@ -19,10 +19,23 @@ fn measured(wheels_mps: [f32; 2], ground_mps: f32, yaw_rps: f32) -> Measured {
     }
 }
 
+/// Goes on by a tick.
+fn step(slip: &mut Slip, measured: &Measured, wheels_nm: [f32; 2], loaded: bool) {
+    let wheel_kgm2 = FIVEBAR.balance.mass.wheel_kgm2;
+    slip.step(
+        &FIVEBAR.wheel_odom,
+        wheel_kgm2,
+        measured,
+        wheels_nm,
+        loaded,
+        TICK_S,
+    );
+}
+
 fn slip_of(measured: &Measured, ticks: usize) -> Slip {
     let mut slip = Slip::default();
     for _ in 0..ticks {
-        slip.step(&FIVEBAR.wheel_odom, measured, [2.0; 2], true, TICK_S);
+        step(&mut slip, measured, [2.0; 2], true);
     }
     slip
 }
@@ -69,7 +82,7 @@ fn a_spin_is_remembered_for_two_seconds() {
     let rolling = measured([1.0, 1.0], 1.0, 0.0);
     let mut roll = |seconds: f32| {
         for _ in 0..(seconds / TICK_S) as usize {
-            slip.step(&FIVEBAR.wheel_odom, &rolling, [2.0; 2], true, TICK_S);
+            step(&mut slip, &rolling, [2.0; 2], true);
         }
         slip.lately_mps
     };
@@ -78,26 +91,42 @@ fn a_spin_is_remembered_for_two_seconds() {
     assert!((0.3..0.5).contains(&later_mps), "{later_mps}");
 }
 
-/// What is told of the speed, and whether a wheel slips, after 0.4 s of wheels at 1.0 m/s while the estimate tells 0.0.
-fn beside_a_drift(wheels_nm: [f32; 2], loaded: bool) -> (f32, bool) {
-    let rolling = measured([1.0, 1.0], 0.0, 0.0);
+/// What is told of the speed, and whether a wheel slips, after 0.4 s of wheels that turned at 3.0 m/s and gain
+/// `accel_mps2`, while the estimate tells 0.0.
+fn beside_a_drift(wheels_nm: [f32; 2], accel_mps2: f32, loaded: bool) -> (f32, bool) {
     let mut slip = Slip::default();
-    for _ in 0..400 {
-        slip.step(&FIVEBAR.wheel_odom, &rolling, wheels_nm, loaded, TICK_S);
+    let mut now = measured([3.0, 3.0], 0.0, 0.0);
+    for tick in 0..400 {
+        let mps = 3.0 + accel_mps2 * TICK_S * tick as f32;
+        now = measured([mps; 2], 0.0, 0.0);
+        step(&mut slip, &now, wheels_nm, loaded);
     }
-    (slip.rolling_mps(&rolling), slip.is_slipping())
+    (slip.rolling_mps(&now), slip.is_slipping())
 }
 
 #[test]
-fn loaded_wheels_with_little_torque_roll_whatever_the_estimate_tells() {
-    assert_eq!(beside_a_drift([0.5, -0.5], true), (1.0, false));
+fn loaded_wheels_that_little_holds_back_roll_whatever_the_estimate_tells() {
+    for wheels_nm in [[0.5, -0.5], [0.3, 0.1], [-2.0, -1.0]] {
+        assert_eq!(beside_a_drift(wheels_nm, 0.0, true), (3.0, false));
+    }
+    // Their torque only turns them.
+    let radius_m = FIVEBAR.wheel_odom.wheel_radius_m;
+    let accel_mps2 = 0.3 * radius_m / FIVEBAR.balance.mass.wheel_kgm2;
+    let (told_mps, slips) = beside_a_drift([0.3; 2], accel_mps2, true);
+    assert!(told_mps > 3.5 && !slips, "{told_mps}");
 }
 
 #[test]
-fn wheels_with_torque_or_without_load_may_slip() {
-    for (wheels_nm, loaded) in [([0.5, 0.7], true), ([-0.7, 0.5], true), ([0.5; 2], false)] {
-        assert_eq!(beside_a_drift(wheels_nm, loaded), (ROLLING_MPS, true));
+fn wheels_that_friction_brakes_or_without_load_may_slip() {
+    for (wheels_nm, loaded) in [([0.5, 0.7], true), ([0.5; 2], false), ([0.0; 2], false)] {
+        let told = beside_a_drift(wheels_nm, 0.0, loaded);
+        assert_eq!(told, (ROLLING_MPS, true));
     }
+    // On ice with a grip of 0.1 they have no torque, and lose speed.
+    let radius_m = FIVEBAR.wheel_odom.wheel_radius_m;
+    let brakes_mps2 = -0.27 * radius_m / FIVEBAR.balance.mass.wheel_kgm2;
+    let told = beside_a_drift([0.0; 2], brakes_mps2, true);
+    assert_eq!(told, (ROLLING_MPS, true));
 }
 
 #[test]
@@ -105,15 +134,9 @@ fn a_drift_is_forgotten_when_the_estimate_follows_its_wheels_again() {
     let drifted = measured([1.0, 1.0], 0.0, 0.0);
     let mut slip = Slip::default();
     for _ in 0..400 {
-        slip.step(&FIVEBAR.wheel_odom, &drifted, [0.0; 2], true, TICK_S);
+        step(&mut slip, &drifted, [0.0; 2], true);
     }
-    slip.step(
-        &FIVEBAR.wheel_odom,
-        &measured([1.0, 1.0], 0.9, 0.0),
-        [2.0; 2],
-        true,
-        TICK_S,
-    );
+    step(&mut slip, &measured([1.0, 1.0], 0.9, 0.0), [2.0; 2], true);
     let told = slip.rolling_mps(&measured([2.9, 2.9], 1.0, 0.0));
     assert!((told - 1.0 - ROLLING_MPS).abs() < 1e-6, "{told}");
 }
