@@ -240,7 +240,8 @@ impl Session {
 
     /// Takes what comes until then. A cycle that is late reads what has come meanwhile all the same.
     fn listen(&mut self, until: Instant) -> Result<()> {
-        let until = until.max(Instant::now() + CATCHES_UP);
+        let now = Instant::now();
+        let until = if until > now { until } else { now + CATCHES_UP };
         while self.hear(until)? {}
         Ok(())
     }
