@@ -7,6 +7,7 @@ use robot_plant::world::{Push, RemoteInput};
 use robot_policy::{
     PolicyDescription,
     action::Decoder,
+    limits::{Limits, Stop, TILT_RAD},
     observation::{Commands, Observer},
 };
 
@@ -15,8 +16,6 @@ use crate::{
     wire::Wire,
 };
 
-/// A body tilted by more has fallen, rad.
-const FALLEN_RAD: f64 = 0.8;
 /// A robot that began sitting may touch the ground with its body for so long, s.
 const GETS_UP_WITHIN_S: f64 = 1.5;
 /// The same for the robot's own controller.
@@ -40,7 +39,7 @@ pub struct Step {
     pub reward: f64,
     /// What it is made of.
     pub terms: Terms,
-    /// Whether the robot has fallen, or its firmware stopped it. The episode is over.
+    /// Whether the robot has fallen, or its firmware or the runner's limits stopped it. The episode is over.
     pub fallen: bool,
 }
 
@@ -55,12 +54,16 @@ pub struct Environment {
     wire: Wire,
     observer: Observer,
     decoder: Decoder,
+    limits: Limits,
+    stopped_by: Option<Stop>,
     commands: Commands,
     /// Commands are the caller's.
     commanded: bool,
     observation: Vec<f32>,
     before: Vec<f32>,
-    period_ticks: u64,
+    /// Of the runner: it looks at the robot so often, and at each `decimation`-th time asks the network.
+    cycle_ticks: u64,
+    decimation: u64,
     steps: u64,
     began_sitting: bool,
     next_command_s: f64,
@@ -76,13 +79,9 @@ impl Environment {
     pub fn new(policy: &PolicyDescription, options: Options, seed: u64) -> Result<Self, GymError> {
         options.check()?;
         let wire = Wire::new(policy)?;
-        let period_ticks = (policy.period_s() * TICKS_PER_S).round() as u64;
-        if period_ticks == 0 || !period_ticks.is_multiple_of(10) {
-            let period_s = policy.period_s();
-            return Err(GymError::Period { period_s });
-        }
+        let (cycle_ticks, decimation) = cycle(policy)?;
         let mut numbers = Pcg64Mcg::seed_from_u64(seed);
-        let specimen = draw(&mut numbers, options.vary)?;
+        let specimen = draw(policy, &mut numbers, options.vary)?;
         let robot = specimen.sitting();
         let observer = Observer::new(policy);
         let mut environment = Self {
@@ -92,11 +91,14 @@ impl Environment {
             probes: Probes::new(robot.world()),
             wire,
             decoder: Decoder::new(policy),
+            limits: Limits::new(policy, specimen.description()),
+            stopped_by: None,
             commands: Commands::default(),
             commanded: false,
             observation: vec![0.0; observer.layout().len()],
             before: vec![0.0; policy.joints.len()],
-            period_ticks,
+            cycle_ticks,
+            decimation,
             steps: 0,
             began_sitting: true,
             next_command_s: 0.0,
@@ -115,7 +117,7 @@ impl Environment {
     /// The next robot does not arm.
     pub fn reset(&mut self) -> Result<(), GymError> {
         if self.episodes_of_robot >= self.options.episodes_per_robot {
-            self.specimen = draw(&mut self.numbers, self.options.vary)?;
+            self.specimen = draw(self.wire.policy(), &mut self.numbers, self.options.vary)?;
             self.episodes_of_robot = 0;
         }
         self.begin()
@@ -159,6 +161,8 @@ impl Environment {
         self.next_push_s = self.between(early, late);
         self.observer.reset();
         self.decoder.reset();
+        self.limits.reset();
+        self.stopped_by = None;
         if self.options.built_in {
             self.robot.remote(RemoteInput {
                 stand: Some(true),
@@ -227,7 +231,7 @@ impl Environment {
 
     /// Time in s since the episode began.
     pub fn seconds(&self) -> f64 {
-        self.steps as f64 * self.period_ticks as f64 / TICKS_PER_S
+        self.steps as f64 * (self.cycle_ticks * self.decimation) as f64 / TICKS_PER_S
     }
 
     /// Whether the episode has its full length.
@@ -263,7 +267,7 @@ impl Environment {
             self.wire.command(targets)
         });
         self.push_at_times();
-        self.robot.run_ticks(self.period_ticks);
+        self.run_cycles()?;
         self.steps += 1;
         let truth = self.truth();
         let fallen = self.has_fallen(&truth);
@@ -280,6 +284,38 @@ impl Environment {
         })
     }
 
+    /// Runs until the network is asked again, and looks at the robot as often as the runner does.
+    fn run_cycles(&mut self) -> Result<(), GymError> {
+        let cycle_s = self.cycle_ticks as f64 / TICKS_PER_S;
+        for cycle in 0..self.decimation {
+            // The runner judges torques when it sends, and the rest when it has heard.
+            if cycle > 0 {
+                self.wire.read(&self.robot.uplink())?;
+            }
+            self.judge(|limits, wire| {
+                let reading = wire.reading();
+                limits.check_attitude(reading)?;
+                limits.check_speeds(reading)?;
+                limits.check_positions(reading)?;
+                limits.check_torques(cycle_s, reading, wire.wanted())
+            });
+            self.robot.run_ticks(self.cycle_ticks);
+        }
+        Ok(())
+    }
+
+    /// Keeps the first reason to stop. The robot's own controller has no runner.
+    fn judge(&mut self, check: impl FnOnce(&mut Limits, &Wire) -> Result<(), Stop>) {
+        if !self.options.built_in && self.stopped_by.is_none() {
+            self.stopped_by = check(&mut self.limits, &self.wire).err();
+        }
+    }
+
+    /// What ended the episode, if it was a limit of the runner.
+    pub fn stopped_by(&self) -> Option<&Stop> {
+        self.stopped_by.as_ref()
+    }
+
     fn has_fallen(&self, truth: &Truth) -> bool {
         let within_s = if self.options.built_in {
             STANDS_UP_WITHIN_S
@@ -287,8 +323,8 @@ impl Environment {
             GETS_UP_WITHIN_S
         };
         let gets_up = self.began_sitting && self.seconds() < within_s;
-        let lies = truth.tilt_rad() > FALLEN_RAD || truth.body_n > 0.0;
-        !truth.armed || (lies && !gets_up)
+        let lies = truth.tilt_rad() > f64::from(TILT_RAD) || truth.body_n > 0.0;
+        !truth.armed || self.stopped_by.is_some() || (lies && !gets_up)
     }
 
     fn observe(&mut self) -> Result<(), GymError> {
@@ -303,14 +339,30 @@ impl Environment {
     }
 }
 
+/// Ticks of a cycle of the runner, and its cycles in a step.
+fn cycle(policy: &PolicyDescription) -> Result<(u64, u64), GymError> {
+    let exact = f64::from(policy.control_period_s) * TICKS_PER_S;
+    let (ticks, decimation) = (exact.round() as u64, u64::from(policy.decimation));
+    let is_whole = ticks > 0 && (exact - exact.round()).abs() < 1e-3;
+    if is_whole && decimation > 0 && (ticks * decimation).is_multiple_of(10) {
+        return Ok((ticks, decimation));
+    }
+    let period_s = policy.period_s();
+    Err(GymError::Period { period_s })
+}
+
 /// Boots robots until one arms: one in fifty sits so steeply that its firmware takes it for fallen.
-fn draw(numbers: &mut Pcg64Mcg, vary: bool) -> Result<Specimen, GymError> {
-    let mut last = Specimen::boot(numbers.random(), vary);
+fn draw(
+    policy: &PolicyDescription,
+    numbers: &mut Pcg64Mcg,
+    vary: bool,
+) -> Result<Specimen, GymError> {
+    let mut last = Specimen::boot(policy, numbers.random(), vary);
     for _ in 0..MOST_DRAWS {
         if last.is_ok() {
             break;
         }
-        last = Specimen::boot(numbers.random(), vary);
+        last = Specimen::boot(policy, numbers.random(), vary);
     }
     last
 }

@@ -14,8 +14,8 @@ pub enum GymError {
     OtherRobot(#[from] OtherRobot),
     /// The policy runs at a rate that the environment does not have.
     #[error(
-        "a policy that runs each {period_s} s does not fit a control loop of 1 ms: choose dt and decimation so that their \
-         product is a multiple of 0.01 s"
+        "a policy that runs each {period_s} s does not fit a control loop of 1 ms: choose a dt of whole milliseconds, and \
+         decimation so that their product is a multiple of 0.01 s"
     )]
     Period {
         /// Period of the policy in s.

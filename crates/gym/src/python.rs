@@ -10,7 +10,7 @@ use pyo3::{
     prelude::*,
     types::PyDict,
 };
-use robot_policy::{PolicyDescription, config, observation::Commands};
+use robot_policy::{PolicyDescription, config, limits::Stop, observation::Commands};
 
 use crate::{Environment, GymError, Options, Rows, StartKind, Truth};
 
@@ -186,7 +186,7 @@ impl Fleet {
         Ok(())
     }
 
-    /// What only the simulator knows of one robot, by name.
+    /// What only the simulator knows of one robot, by name, and the limit of the runner that ended its episode, or None.
     fn truth<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyDict>> {
         let environments = self.fleet.environments();
         let environment = environments.get(index).ok_or_else(|| no_such(index))?;
@@ -214,6 +214,7 @@ impl Fleet {
         dict.set_item("body_n", body_n)?;
         dict.set_item("tilt_rad", truth.tilt_rad())?;
         dict.set_item("armed", armed)?;
+        dict.set_item("stop", environment.stopped_by().map(Stop::name))?;
         Ok(dict)
     }
 }

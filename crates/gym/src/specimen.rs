@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
+use robot_description::Robot as Description;
 use robot_host_loop::{Robot, Robots};
 use robot_plant::{
     attitude::Quaternion,
@@ -11,8 +12,16 @@ use robot_plant::{
     robots,
     world::{PlantKind, RemoteInput, WorldConfig},
 };
+use robot_policy::{
+    PolicyDescription,
+    action::Target,
+    machine::{Machine, Phase, Timing},
+};
 
-use crate::{GymError, wire};
+use crate::{
+    GymError,
+    wire::{self, Wire},
+};
 
 /// The pilot arms when sensors are calibrated and motors set up.
 const ENABLE_AT_S: f64 = 3.0;
@@ -36,12 +45,14 @@ pub(crate) struct Specimen {
     /// Held above its wheels.
     standing: Robot,
     held: FreeState,
+    description: Arc<Description>,
     pub mass_kg: f64,
 }
 
 impl Specimen {
-    /// Boots robot `seed` twice, sitting and standing.
-    pub fn boot(seed: u64, vary: bool) -> Result<Self, GymError> {
+    /// Boots robot `seed` twice, sitting and standing. The one that sits has gone to the default pose, as the runner makes it
+    /// do before the policy drives.
+    pub fn boot(policy: &PolicyDescription, seed: u64, vary: bool) -> Result<Self, GymError> {
         let robots = Robots {
             robot: robots::with_joints(robot_description::JointMotor::Dm4310),
             vary,
@@ -52,18 +63,27 @@ impl Specimen {
         let tilt_rad = TILT_RAD.map(&mut between);
         let mut sitting = power_on(&robots, seed, Start::Sitting);
         arm(&mut sitting, seed, latency_ms, None)?;
+        take_default_pose(&mut sitting, policy)?;
+        check_armed(&sitting, seed)?;
         let mut standing = power_on(&robots, seed, Start::Standing);
-        let held = tilted(&upright(&robots, seed), tilt_rad);
+        let radius_m = robots.robot.wheels.radius_m;
+        let held = tilted(&upright(&robots, seed), radius_m, tilt_rad);
         arm(&mut standing, seed, latency_ms, Some(&lifted(&held)))?;
         Ok(Self {
             sitting,
             standing,
             held,
             mass_kg: robots.mass_kg(seed),
+            description: robots.robot,
         })
     }
 
-    /// The robot that sits.
+    /// The robot's file.
+    pub fn description(&self) -> &Description {
+        &self.description
+    }
+
+    /// The robot that sits in the default pose.
     pub fn sitting(&self) -> Robot {
         self.sitting.clone()
     }
@@ -80,15 +100,13 @@ impl Specimen {
         let state = FreeState {
             velocity_mps: [forward_mps, left_mps, 0.0],
             rate_rps: [0.0, pitch_rps, 0.0],
-            wheel_rps: [forward_mps / WHEEL_RADIUS_M; 2],
+            wheel_rps: [forward_mps / self.description.wheels.radius_m; 2],
             ..self.held
         };
         robot.world_mut().place(&state, Hold::Free);
         robot
     }
 }
-
-const WHEEL_RADIUS_M: f64 = 0.06;
 
 fn power_on(robots: &Robots, seed: u64, start: Start) -> Robot {
     let world = WorldConfig {
@@ -142,6 +160,32 @@ fn arm(
     });
     let ready_ms = (READY_AT_S * 1e3) as u64 + COMMANDS_EVERY_MS - latency_ms;
     run_until(robot, ready_ms as f64 * 1e-3 - 1e-6);
+    check_armed(robot, seed)
+}
+
+/// Goes from the pose in which the robot sits to the default pose, as the runner does.
+fn take_default_pose(robot: &mut Robot, policy: &PolicyDescription) -> Result<(), GymError> {
+    let mut wire = Wire::new(policy)?;
+    let mut machine = Machine::new(policy, Timing::default());
+    let mut targets: Vec<Target> = Vec::with_capacity(policy.joints.len());
+    let cycle_s = f64::from(policy.control_period_s);
+    for cycle in 0_u32.. {
+        wire.read(&robot.uplink())?;
+        let now_s = f64::from(cycle) * cycle_s;
+        match machine.step(now_s, true, wire.reading()) {
+            Phase::Policy => break,
+            Phase::GetUp => {
+                machine.pose(now_s, &mut targets);
+                robot.pc = Some(wire.command(&targets));
+            }
+            Phase::Passive | Phase::GetDown => {}
+        }
+        robot.run_ticks((cycle_s * 1e3).round() as u64);
+    }
+    Ok(())
+}
+
+fn check_armed(robot: &Robot, seed: u64) -> Result<(), GymError> {
     if robot.armed() {
         return Ok(());
     }
@@ -160,9 +204,9 @@ fn lifted(held: &FreeState) -> FreeState {
 }
 
 /// The upright robot turned about its axles, so that the lower wheel still touches the ground.
-fn tilted(upright: &FreeState, [roll, pitch]: [f64; 2]) -> FreeState {
+fn tilted(upright: &FreeState, radius_m: f64, [roll, pitch]: [f64; 2]) -> FreeState {
     let [x_m, y_m, height_m] = upright.position_m;
-    let above_m = height_m - WHEEL_RADIUS_M;
+    let above_m = height_m - radius_m;
     // Roll and pitch are small: they are turned one after the other.
     let [sr, cr] = [(roll / 2.0).sin(), (roll / 2.0).cos()];
     let [sp, cp] = [(pitch / 2.0).sin(), (pitch / 2.0).cos()];
@@ -170,7 +214,7 @@ fn tilted(upright: &FreeState, [roll, pitch]: [f64; 2]) -> FreeState {
         position_m: [
             x_m + above_m * pitch.sin(),
             y_m - above_m * roll.sin(),
-            WHEEL_RADIUS_M + above_m * pitch.cos() * roll.cos() + HALF_TRACK_M * roll.sin().abs(),
+            radius_m + above_m * pitch.cos() * roll.cos() + HALF_TRACK_M * roll.sin().abs(),
         ],
         attitude: Quaternion::from([cp * cr, cp * sr, sp * cr, -sp * sr]),
         ..*upright

@@ -23,6 +23,7 @@ const WHEELS: usize = 2;
 pub(crate) struct Wire {
     policy: PolicyDescription,
     robot: LinkRobot,
+    wanted: Vec<Target>,
     limited: Vec<Target>,
     /// What a full stick of the robot's own controller means.
     max_speed_mps: f32,
@@ -37,11 +38,17 @@ impl Wire {
         Ok(Self {
             policy: policy.clone(),
             robot: LinkRobot::new(policy)?,
+            wanted: Vec::with_capacity(policy.joints.len()),
             limited: Vec::with_capacity(policy.joints.len()),
             max_speed_mps: sticks.max_speed_mps as f32,
             max_yaw_rps: sticks.max_yaw_rps as f32,
             count: 0,
         })
+    }
+
+    /// The policy for which it translates.
+    pub fn policy(&self) -> &PolicyDescription {
+        &self.policy
     }
 
     /// Reads a state as the other end of the cable does.
@@ -85,11 +92,18 @@ impl Wire {
             .collect()
     }
 
+    /// The last targets, before their torques were limited.
+    pub fn wanted(&self) -> &[Target] {
+        &self.wanted
+    }
+
     /// The command of these targets, as the robot reads it from its frame.
     pub fn command(&mut self, targets: &[Target]) -> PcCommand {
         let reading = self.robot.reading();
         let motions = reading.joint_pos_rad.iter().zip(&reading.joint_vel_rps);
         let joints = self.policy.joints.iter().zip(motions);
+        self.wanted.clear();
+        self.wanted.extend_from_slice(targets);
         self.limited.clear();
         let limited = targets.iter().zip(joints).map(|(target, (joint, motion))| {
             let (pos_rad, vel_rps) = motion;

@@ -54,6 +54,29 @@ fn a_robot_sits_on_its_nose_or_stands_on_its_wheels() {
     assert!((stands.leg_m[0] - 0.205).abs() < 1e-3, "{stands:?}");
 }
 
+#[test]
+fn a_robot_that_sits_is_in_the_default_pose() {
+    let environment = environment(calm(StartKind::Sitting), 3);
+    let hips = &environment.observation()[..4];
+    assert!(hips.iter().all(|rad| rad.abs() < 0.1), "{hips:?}");
+}
+
+/// As it would on the robot, where the network drives through the runner.
+#[test]
+fn a_limit_of_the_runner_ends_the_episode() {
+    let mut environment = environment(calm(StartKind::Sitting), 3);
+    let spin = [0.0, 0.0, 0.0, 0.0, 8.0, 8.0];
+    let steps = (0..50).map(|_| environment.step(&spin).expect("six numbers"));
+    assert!(
+        steps.into_iter().any(|step| step.fallen),
+        "the wheels spin on"
+    );
+    let stop = environment.stopped_by().expect("a limit");
+    assert_eq!(stop.name(), "joint-speed", "{stop}");
+    environment.reset().expect("it arms");
+    assert_eq!(environment.stopped_by(), None);
+}
+
 /// A robot on its wheels that does nothing falls within a second, and the firmware lets go or the body touches the ground.
 #[test]
 fn a_robot_that_does_not_balance_falls() {
