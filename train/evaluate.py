@@ -4,7 +4,8 @@
     python train/evaluate.py policy/fivebar/flat/policy.onnx --robots 20 --tasks push
 
 The whole app runs, as in training. Robots differ from their file (mass -20 ... +40 %, centre +-3 cm, friction 0.4 ... 1.2,
-torque +-10 %, delay up to 5 ms, board +-1 deg). Each begins sitting. A table in Markdown goes to standard output.
+torque +-10 %, delay up to 5 ms, board +-1 deg). Each begins sitting, and the stops of the runner count. A table in Markdown goes to
+standard output. What follows after standing up is of the robots that stood.
 """
 
 import argparse
@@ -53,8 +54,12 @@ class Robots:
         self.envs = jiling_gym.FivebarVec(
             count, threads, seed, start="sitting", push_mps=0.0, episode_s=1e6, episodes_per_robot=1000, **controller.options
         )
+        self.begin()
+
+    def begin(self):
+        """Begins again with the same robots."""
         self.seen, _ = self.envs.reset()
-        self.up = numpy.ones(count, bool)
+        self.up = numpy.ones(self.count, bool)
         self.command(0.0, 0.0)
 
     def command(self, forward_mps, yaw_rps):
@@ -74,17 +79,25 @@ class Robots:
 
 def push(robots, mps, directions):
     """Share of the robots that stand, and of these the share that survives a push."""
+    robots.begin()
     robots.run(STANDS_S)
     stood = robots.up.copy()
     for robot, angle in enumerate(directions):
         robots.envs.fleet.push(robot, mps * numpy.cos(angle), mps * numpy.sin(angle))
     robots.run(3.0)
-    return {"stands up": stood.mean(), "survives": (stood & robots.up).mean()}
+    return {"stands up": stood.mean(), "survives": share(robots.up, stood)}
+
+
+def share(some, of):
+    """Share of those that count."""
+    return (some & of).sum() / max(of.sum(), 1)
 
 
 def drive(robots, profile):
     """Root mean square of the error of speed and turn rate, of those that fall not, and their share."""
+    robots.begin()
     robots.run(STANDS_S)
+    stood = robots.up.copy()
     errors = []
     command = numpy.zeros(2)
 
@@ -98,7 +111,7 @@ def drive(robots, profile):
         robots.run(STEP_S, look)
     rms = numpy.sqrt((numpy.array(errors) ** 2).mean(0))[:, robots.up]
     return {
-        "stays up": robots.up.mean(),
+        "stays up": share(robots.up, stood),
         "speed rms, m/s": float(numpy.sqrt((rms[0] ** 2).mean())) if rms.size else float("nan"),
         "turn rms, rad/s": float(numpy.sqrt((rms[1] ** 2).mean())) if rms.size else float("nan"),
     }
@@ -114,6 +127,7 @@ def tasks(seed, count):
     along = numpy.where(numpy.arange(count) % 2, 0.0, numpy.pi)
     return {
         "push": ("push of 1.0 m/s along the wheels", lambda robots: push(robots, 1.0, along)),
+        "push-0.8": ("push of 0.8 m/s along the wheels", lambda robots: push(robots, 0.8, along)),
         "push-around": ("push of 1.0 m/s, any direction", lambda robots: push(robots, 1.0, around)),
         "drive": ("drives for 25 s", lambda robots: drive(robots, PROFILE)),
     }
@@ -125,21 +139,23 @@ def main():
     parser.add_argument("--robots", type=int, default=200, help="robots (200)")
     parser.add_argument("--seed", type=int, default=1000, help="seed, none of training (1000)")
     parser.add_argument("--threads", type=int, default=0, help="threads, 0 for one a processor (0)")
-    parser.add_argument("--tasks", default="push,push-around,drive", help="which (push,push-around,drive)")
-    parser.add_argument("--only-policy", action="store_true", help="without the robot's own controller")
+    parser.add_argument("--tasks", default="push,push-0.8,push-around,drive", help="which (push,push-0.8,push-around,drive)")
+    parser.add_argument("--only", choices=("policy", "built-in"), help="one of both")
     parser.add_argument("--json", type=pathlib.Path, help="file for the figures")
     arguments = parser.parse_args()
-    controllers = [Network(arguments.policy)] + ([] if arguments.only_policy else [BuiltIn()])
+    controllers = [] if arguments.only == "built-in" else [Network(arguments.policy)]
+    controllers += [] if arguments.only == "policy" else [BuiltIn()]
     known, figures = tasks(arguments.seed, arguments.robots), {}
+    fleets = [Robots(it, arguments.robots, arguments.threads, arguments.seed) for it in controllers]
     print("| task | figure | " + " | ".join(it.name for it in controllers) + " |")
     print("|---|---" + "|---" * len(controllers) + "|")
     for name in arguments.tasks.split(","):
         what, run = known[name]
-        results = [run(Robots(it, arguments.robots, arguments.threads, arguments.seed)) for it in controllers]
+        results = [run(robots) for robots in fleets]
         figures[name] = {it.name: result for it, result in zip(controllers, results)}
         for figure in results[0]:
-            shares = figure in ("stands up", "survives", "stays up")
-            cells = (f"{100 * it[figure]:.1f} %" if shares else f"{it[figure]:.3f}" for it in results)
+            is_share = figure in ("stands up", "survives", "stays up")
+            cells = (f"{100 * it[figure]:.1f} %" if is_share else f"{it[figure]:.3f}" for it in results)
             print(f"| {what} | {figure} | " + " | ".join(cells) + " |", flush=True)
     if arguments.json:
         arguments.json.write_text(json.dumps(figures, indent=1))

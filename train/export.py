@@ -1,17 +1,19 @@
-"""Makes the network that the robot runs of a checkpoint, and checks it against onnxruntime.
+"""Makes the network that the robot runs of a checkpoint or of factors, and checks it against onnxruntime.
 
-    python train/export.py target/train/flat --out policy/fivebar/flat/policy.onnx
-    python train/export.py --linear target/train/linear.npz --out linear.onnx
+    python train/export.py --factors target/train/whole.npz --out policy/fivebar/flat/policy.onnx
+    python train/export.py target/train/flat --begin target/train/whole.npz --out policy.onnx
 """
 
 import argparse
 import pathlib
-import subprocess
 
 import numpy
 import onnx
 import onnxruntime
 from onnx import TensorProto, helper, numpy_helper
+
+import balance
+import circuit
 
 # `policy/fivebar/flat/config.yaml` in words, for who finds the file alone.
 JOINTS = "left_front_hip,left_rear_hip,right_front_hip,right_rear_hip,left_wheel,right_wheel"
@@ -19,86 +21,107 @@ OBSERVATION = "dof_pos,dof_vel,wheel_joint_vel,ang_vel,gravity_vec,actions"
 SCALES = "dof_pos 1, dof_vel 0.05, ang_vel 0.25, commands 1 1 0.5, actions 0.25 rad and 10 rad/s"
 
 
-def policy(checkpoint):
-    """Reads a checkpoint's linear part and layers, with the normalisation folded in."""
+def hidden_layers(checkpoint, layers):
+    """Reads the MLP of a checkpoint that began with these layers, with the normalisation folded in, and its steps."""
     import jax
 
     import network
     import ppo
 
     file = numpy.load(checkpoint / "checkpoint.npz")
-    steps = int(file["steps"])
     # Leaves come in the order of names; sizes are those of any checkpoint.
-    fixed = {name: numpy.zeros(shape) for name, shape in (("weights", (6, 69)), ("biases", 6), ("mean", 69), ("deviation", 69))}
+    fixed = {"layers": [tuple(layer) for layer in layers], "mean": numpy.zeros(69), "deviation": numpy.zeros(69)}
     parameters = network.begin(jax.random.key(0), 69, 6, ppo.DEVIATIONS)
     leaves, shape = jax.tree.flatten((parameters, fixed))
     parameters, fixed = jax.tree.unflatten(shape, [file[f"arr_{index}"] for index in range(len(leaves))])
-    return network.folded(parameters, fixed), steps, str(file["arguments"])
+    return network.folded(parameters, fixed), int(file["steps"]), str(file["arguments"])
 
 
-def graph(linear, biases, layers):
-    """The network as a graph with one input and one output."""
-    nodes, constants = [], []
+class Graph:
+    """Nodes and constants of a graph."""
 
-    def constant(name, array):
-        constants.append(numpy_helper.from_array(numpy.ascontiguousarray(array, numpy.float32), name))
+    def __init__(self):
+        self.nodes, self.constants = [], []
+
+    def constant(self, name, array):
+        self.constants.append(numpy_helper.from_array(numpy.ascontiguousarray(array, numpy.float32), name))
         return name
 
-    names = [constant("linear.weights", linear.T), constant("linear.biases", biases)]
-    nodes.append(helper.make_node("Gemm", ["obs", *names], ["linear"]))
-    last = "obs"
-    for index, (weights, bias) in enumerate(layers):
-        out = f"layer{index}"
-        names = [constant(f"{out}.weights", weights), constant(f"{out}.biases", bias)]
-        nodes.append(helper.make_node("Gemm", [last, *names], [out]))
-        last = out
-        if index + 1 < len(layers):
-            nodes.append(helper.make_node("Elu", [out], [f"{out}.elu"]))
-            last = f"{out}.elu"
-    nodes.append(helper.make_node("Add", ["linear", last], ["actions"]) if layers else helper.make_node("Identity", ["linear"], ["actions"]))
-    inputs = [helper.make_tensor_value_info("obs", TensorProto.FLOAT, [1, linear.shape[1]])]
-    outputs = [helper.make_tensor_value_info("actions", TensorProto.FLOAT, [1, linear.shape[0]])]
-    return helper.make_graph(nodes, "policy", inputs, outputs, constants)
+    def node(self, kind, inputs, output, **attributes):
+        self.nodes.append(helper.make_node(kind, inputs, [output], **attributes))
+        return output
+
+    def gemm(self, name, value, weights, bias):
+        return self.node("Gemm", [value, self.constant(f"{name}.weights", weights), self.constant(f"{name}.biases", bias)], name)
+
+    def searched(self, layers):
+        """Layers with clips, each of which sees the input and all layers before it."""
+        seen = "obs"
+        for index, (weights, bias, low, high) in enumerate(layers):
+            name = f"searched{index}"
+            value = self.gemm(name, seen, weights.T, bias)
+            value = self.node("Max", [value, self.constant(f"{name}.low", low)], f"{name}.above")
+            value = self.node("Min", [value, self.constant(f"{name}.high", high)], f"{name}.within")
+            seen = self.node("Concat", [seen, value], f"{name}.all", axis=1) if index + 1 < len(layers) else seen
+        return value
+
+    def learned(self, layers):
+        """An MLP with ELU between its layers."""
+        value = "obs"
+        for index, (weights, bias) in enumerate(layers):
+            value = self.gemm(f"layer{index}", value, weights, bias)
+            value = self.node("Elu", [value], f"layer{index}.elu") if index + 1 < len(layers) else value
+        return value
 
 
-def expected(linear, biases, layers, x):
+def graph(searched, learned):
+    """The network as a graph with one input and one output."""
+    made = Graph()
+    parts = [part(layers) for part, layers in ((made.searched, searched), (made.learned, learned)) if layers]
+    made.node("Sum", parts, "actions")
+    inputs = [helper.make_tensor_value_info("obs", TensorProto.FLOAT, [1, 69])]
+    outputs = [helper.make_tensor_value_info("actions", TensorProto.FLOAT, [1, 6])]
+    return helper.make_graph(made.nodes, "policy", inputs, outputs, made.constants)
+
+
+def expected(searched, learned, x):
     """The same in NumPy."""
     y = x.astype(numpy.float64)
-    for index, (weights, bias) in enumerate(layers):
+    for index, (weights, bias) in enumerate(learned):
         y = y @ weights + bias
-        if index + 1 < len(layers):
+        if index + 1 < len(learned):
             y = numpy.where(y > 0, y, numpy.expm1(numpy.minimum(y, 0)))
-    return x @ linear.T + biases + (y if layers else 0)
+    return (circuit.run(searched, x.astype(numpy.float64)) if searched else 0.0) + (y if learned else 0.0)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("checkpoint", type=pathlib.Path, nargs="?", help="folder of ppo.py")
-    parser.add_argument("--linear", type=pathlib.Path, help="a file of linear.py instead")
+    parser.add_argument("--factors", "--begin", type=pathlib.Path, help="file of whole_search.py: the policy, or with what ppo.py began")
     parser.add_argument("--out", type=pathlib.Path, required=True, help="file of the network, .onnx")
     arguments = parser.parse_args()
-    if (arguments.checkpoint is None) == (arguments.linear is None):
-        parser.error("give a checkpoint or --linear")
-    if arguments.linear:
-        file = numpy.load(arguments.linear)
-        made, steps, said = (file["weights"], file["biases"], []), 0, "linear.py"
-    else:
-        made, steps, said = policy(arguments.checkpoint)
-    model = helper.make_model(graph(*made), opset_imports=[helper.make_opsetid("", 13)], ir_version=8)
-    commit = subprocess.run(["git", "rev-parse", "HEAD"], capture_output=True, text=True).stdout.strip()
+    if arguments.checkpoint is None and arguments.factors is None:
+        parser.error("give a checkpoint, --factors, or both")
+    searched, learned, steps, said = [], [], 0, "{}"
+    if arguments.factors:
+        searched, said = balance.network(balance.factors_of(arguments.factors)), str(numpy.load(arguments.factors)["arguments"])
+    if arguments.checkpoint:
+        learned, steps, said = hidden_layers(arguments.checkpoint, searched)
+    model = helper.make_model(graph(searched, learned), opset_imports=[helper.make_opsetid("", 13)], ir_version=8)
+    # No commit: the same factors make the same file.
     helper.set_model_props(model, {
         "joint_names": JOINTS, "observation_names": OBSERVATION, "observations_history": "0,1,2 (newest first), then commands",
-        "scales": SCALES, "steps": str(steps), "arguments": said, "commit": commit or "unknown",
+        "scales": SCALES, "steps": str(steps), "arguments": said,
     })
     onnx.checker.check_model(model, full_check=True)
     arguments.out.parent.mkdir(parents=True, exist_ok=True)
     onnx.save(model, arguments.out)
     session = onnxruntime.InferenceSession(arguments.out, providers=["CPUExecutionProvider"])
     worst = 0.0
-    for x in numpy.random.default_rng(1).standard_normal((100, 1, made[0].shape[1])).astype(numpy.float32):
-        worst = max(worst, float(numpy.abs(session.run(None, {"obs": x})[0] - expected(*made, x)).max()))
+    for x in numpy.random.default_rng(1).standard_normal((100, 1, 69)).astype(numpy.float32):
+        worst = max(worst, float(numpy.abs(session.run(None, {"obs": x})[0] - expected(searched, learned, x)).max()))
     size = arguments.out.stat().st_size
-    print(f"{arguments.out}: {size} bytes, {steps} steps of training, at most {worst:.1e} from NumPy in onnxruntime")
+    print(f"{arguments.out}: {size} bytes, {steps} steps of PPO, at most {worst:.1e} from NumPy in onnxruntime")
     if worst > 1e-3:
         raise SystemExit("that is too much")
 

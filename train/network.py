@@ -1,9 +1,9 @@
-"""The policy's network: a linear part beside two hidden layers.
+"""The policy's network: a policy that was searched, beside two hidden layers.
 
-    actions = W x + b + MLP((x - mean) / deviation)
+    actions = circuit(x) + MLP((x - mean) / deviation)
 
-x is the observation. The linear part is that of `linear.py` and stays as it is. The last layer of the MLP begins at zero, so
-that training begins with the linear policy.
+x is the observation. The circuit is that of `balance.py`, or none, and stays as it is. The last layer of the MLP begins at zero,
+so that training begins with the policy that was searched.
 """
 
 import jax
@@ -34,7 +34,12 @@ def mlp(parameters, x):
 
 def mean_actions(parameters, fixed, x):
     """Returns the actions without noise."""
-    return x @ fixed["weights"].T + fixed["biases"] + mlp(parameters["policy"], normal(fixed, x))
+    seen = x
+    for weights, bias, low, high in fixed["layers"]:
+        out = jnp.clip(seen @ weights.T + bias, low, high)
+        seen = jnp.concatenate([seen, out], axis=-1)
+    searched = out if fixed["layers"] else 0.0
+    return searched + mlp(parameters["policy"], normal(fixed, x))
 
 
 def value(parameters, fixed, x):
@@ -47,7 +52,7 @@ def normal(fixed, x):
 
 
 def begin(key, observed, actions, deviations):
-    """Returns parameters of a policy that is only its linear part."""
+    """Returns parameters of a policy that is only its circuit."""
     one, other = jax.random.split(key)
     return {
         "policy": layers(one, (observed, HIDDEN, HIDDEN, actions), 0.0),
@@ -57,9 +62,9 @@ def begin(key, observed, actions, deviations):
 
 
 def folded(parameters, fixed):
-    """Returns linear part and layers as NumPy arrays, with the normalisation in the first layer."""
+    """Returns the layers of the MLP as NumPy arrays, with the normalisation in the first one."""
     made = [(numpy.asarray(w, numpy.float64), numpy.asarray(b, numpy.float64)) for w, b in parameters["policy"]]
     weights, biases = made[0]
     mean, deviation = (numpy.asarray(fixed[name], numpy.float64) for name in ("mean", "deviation"))
     made[0] = (weights / deviation[:, None], biases - (mean / deviation) @ weights)
-    return numpy.asarray(fixed["weights"]), numpy.asarray(fixed["biases"]), made
+    return made

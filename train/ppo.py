@@ -1,11 +1,10 @@
 """Trains a policy for the robot by PPO, on the processor.
 
-    python train/linear.py --out target/train/linear.npz
-    python train/ppo.py --linear target/train/linear.npz --out target/train/flat --steps 3000000
-    python train/ppo.py --out target/train/flat --steps 5000000 --resume     # goes on where it was stopped
+    python train/ppo.py --begin target/train/whole.npz --out target/train/flat --steps 3000000
+    python train/ppo.py --begin target/train/whole.npz --out target/train/flat --steps 5000000 --resume     # goes on where it was stopped
     python train/ppo.py --out /tmp/smoke --smoke                             # seconds, to see that all of it runs
 
-It begins with the linear policy of `linear.py`, or with none. The folder `--out` gets checkpoint.npz, curves.csv and
+It begins with the policy that `whole_search.py` found, or with none. The folder `--out` gets checkpoint.npz, curves.csv and
 curves.png. `export.py` makes the network of it that the robot runs.
 """
 
@@ -20,6 +19,8 @@ import jax.numpy as jnp
 import numpy
 import optax
 
+import balance
+import circuit
 import jiling_gym
 import network
 
@@ -121,18 +122,15 @@ class Training:
         return own
 
     def first_policy(self, observed, actions):
-        """The linear part, and mean and deviation of what it sees."""
-        fixed = {"weights": jnp.zeros((actions, observed)), "biases": jnp.zeros(actions)}
-        if self.arguments.linear:
-            file = numpy.load(self.arguments.linear)
-            fixed = {name: jnp.asarray(file[name], jnp.float32) for name in ("weights", "biases")}
+        """The policy to begin with, and mean and deviation of what it sees."""
+        layers = balance.network(balance.factors_of(self.arguments.begin)) if self.arguments.begin else []
         looked, numbers = [], numpy.random.default_rng(self.arguments.seed)
-        weights, biases = (numpy.asarray(fixed[name]) for name in ("weights", "biases"))
         for _ in range(self.arguments.horizon * 2):
             looked.append(self.seen)
-            noise = 0.1 * numbers.standard_normal((len(self.seen), actions))
-            self.seen = self.envs.step(self.seen @ weights.T + biases + noise)[0]
+            begun = circuit.run(layers, self.seen) if layers else 0.0
+            self.seen = self.envs.step(begun + 0.1 * numbers.standard_normal((len(self.seen), actions)))[0]
         looked = numpy.concatenate(looked)
+        fixed = {"layers": [tuple(jnp.asarray(part, jnp.float32) for part in layer) for layer in layers]}
         return {**fixed, "mean": jnp.asarray(looked.mean(0)), "deviation": jnp.asarray(looked.std(0) + 0.02)}
 
     def collect(self):
@@ -272,7 +270,7 @@ def curves(rows, path):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=pathlib.Path, required=True, help="folder of checkpoint and curves")
-    parser.add_argument("--linear", type=pathlib.Path, help="the linear policy to begin with (none)")
+    parser.add_argument("--begin", type=pathlib.Path, help="file of whole_search.py to begin with (none)")
     parser.add_argument("--steps", type=int, default=3_000_000, help="environment steps in all (3000000)")
     parser.add_argument("--envs", type=int, default=64, help="robots (64)")
     parser.add_argument("--horizon", type=int, default=64, help="steps of each robot in a batch (64)")

@@ -17,19 +17,19 @@ import numpy
 HIPS = ["left_front_hip", "left_rear_hip", "right_front_hip", "right_rear_hip"]
 WHEELS = ["left_wheel", "right_wheel"]
 # policy/fivebar: default angles, gains, limits of the firmware in N m, scales.
-DEFAULT_RAD = numpy.array([0.5, -0.5, 0.5, -0.5])
-HIP_KP, HIP_KD, WHEEL_KD = 40.0, 1.0, 0.4
+DEFAULT_RAD = numpy.array([0.7, -0.7, 0.7, -0.7])
+HIP_KP, HIP_KD, WHEEL_KD = 40.0, 1.0, 0.1
 LIMITS_NM = numpy.array([5.0] * 4 + [2.4] * 2)
 # Wheels faster than this read so on the PC link.
 FASTEST_RPS = 33.0
-CLIP = numpy.array([5.0] * 4 + [8.0] * 2)
+CLIP = numpy.array([8.0] * 6)
 POLICY_S, MOTOR_S = 0.02, 0.001
 # From reading to motors.
 LATENCY_S = 0.005
 # Time in s, speed in m/s, turn rate in rad/s.
 COURSE = ((0, 0, 0), (3, 0, 0), (4, 1, 0), (7, 1, 0), (8, 0, 0), (9, -1, 0), (12, -1, 0), (13, 0, 0), (14, 0, 2), (17, 0, 2), (18, 0, 0), (25, 0, 0))
 # Time in s, change of speed forward and to the left in m/s.
-PUSHES = ((19.0, 0.5, 0.0), (22.0, 0.0, 0.5))
+PUSHES = ((19.0, 0.8, 0.0), (22.0, 0.0, 0.5))
 
 
 class Robot:

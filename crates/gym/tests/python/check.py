@@ -39,12 +39,19 @@ run = lambda script, *arguments: subprocess.run(
     [sys.executable, str(repository / "train" / script), *map(str, arguments)], check=True,
     env={**os.environ, "PYTHONPATH": str(packages), "JAX_PLATFORMS": "cpu"},
 )
-run("linear.py", "--out", folder / "linear.npz", "--generations", 1, "--envs", 4, "--seed", 3)
-run("ppo.py", "--smoke", "--linear", folder / "linear.npz", "--out", folder / "run")
+search = ("--generations", 1, "--sets", 4, "--seed", 3)
+for file in ("planar.npz", "again.npz"):
+    run("planar_search.py", "--out", folder / file, "--robots", 8, *search)
+factors = lambda file: {name: value for name, value in numpy.load(folder / file).items() if name != "arguments"}
+one, other = factors("planar.npz"), factors("again.npz")
+assert all((one[name] == other[name]).all() for name in one), "the same seed gives another policy"
+run("whole_search.py", folder / "planar.npz", "--out", folder / "whole.npz", "--robots", 2, "--seconds", 0.4, *search)
+run("export.py", "--factors", folder / "whole.npz", "--out", folder / "searched.onnx")
+run("ppo.py", "--smoke", "--begin", folder / "whole.npz", "--out", folder / "run")
 rows = lambda: len((folder / "run/curves.csv").read_text().splitlines())
 first = rows()
-run("ppo.py", "--smoke", "--resume", "--out", folder / "run")
+run("ppo.py", "--smoke", "--resume", "--begin", folder / "whole.npz", "--out", folder / "run")
 assert rows() > first, "it does not go on"
-run("export.py", folder / "run", "--out", folder / "policy.onnx")
-run("evaluate.py", folder / "policy.onnx", "--robots", 2, "--tasks", "push", "--only-policy")
+run("export.py", folder / "run", "--begin", folder / "whole.npz", "--out", folder / "policy.onnx")
+run("evaluate.py", folder / "policy.onnx", "--robots", 2, "--tasks", "push", "--only", "policy")
 print("all of it runs")
