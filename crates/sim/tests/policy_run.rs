@@ -34,9 +34,9 @@ const BEFORE: Ps = 9 * SECOND;
 /// It gets down in 2 s; then it rests.
 const AFTER: Ps = 4 * SECOND;
 
-/// Root mean square of the difference to the commands over all of them (policy/fivebar/flat/README.md).
-const SPEED_MPS: f64 = 0.45;
-const TURN_RPS: f64 = 0.25;
+/// Root mean square of the difference to the commands over all of them. The first is what is wanted of a policy.
+const SPEED_MPS: f64 = 0.15;
+const TURN_RPS: f64 = 0.15;
 /// A robot that stands, and one that lies.
 const STANDS_M: f64 = 0.2;
 const LEANS_RAD: f64 = 0.6;
