@@ -9,6 +9,7 @@ const SAMPLE: &[&str] = &[
     "drive",
     "spin",
     "ramp",
+    "push",
     "push-diagonal",
     "lost",
 ];

@@ -1,6 +1,7 @@
 //! Balancing on two wheels.
 
 mod braking;
+mod catch;
 mod contact;
 mod controller;
 mod edge;

@@ -20,8 +20,6 @@ use crate::{
     math::scalar,
 };
 
-/// A stick whose deflection is less is centred.
-const CENTRED: f32 = 0.05;
 /// Longest time step in s that counts, and the one of a tick whose time is not later than the last.
 const MAX_DT_S: f32 = 0.005;
 const TICK_S: f32 = 0.001;
@@ -233,7 +231,7 @@ impl BalanceController {
             pitch_rad: 0.0,
             push_n,
             learn: legs.is_none(),
-            stop: legs.is_none() && command.vx.abs() < CENTRED,
+            stop: legs.is_none(),
             ground,
         };
         self.law

@@ -2,6 +2,7 @@
 
 use super::{
     braking::counted_mps,
+    catch::{Catch, Fall},
     contact::Contact,
     friction,
     gains::{Gains, STATES},
@@ -28,6 +29,9 @@ const LEARN_MPS2: f32 = 0.3;
 const LEARN_RPS: f32 = 0.3;
 /// Largest turn in rad/s with which it learns: a centrifugal force would count as an error of the centre of mass.
 const LEARN_YAW_RPS: f32 = 1.0;
+/// A robot that catches itself after a push pushes its wheels so little that they seem to be in the air. Only what lasts longer
+/// than this, in s, is a flight.
+const SEEMS_LIFTED_S: f32 = 0.2;
 /// The legs reach as far as their angle will allow after this time in s.
 const REACH_AHEAD_S: f32 = 0.05;
 /// Stiffness and damping with which the legs keep together on the ground, in N·m/rad and N·m·s/rad.
@@ -110,8 +114,11 @@ pub struct Law {
     support: Support,
     pub contact: Contact,
     pub slip: Slip,
+    catch: Catch,
     wheels_nm: [f32; 2],
     airborne: bool,
+    /// Time in s for which no wheel has seemed to touch the ground.
+    lifted_s: f32,
 }
 
 impl Law {
@@ -124,8 +131,10 @@ impl Law {
             support: Support::default(),
             contact: Contact::standing(&profile.mass, measured),
             slip: Slip::default(),
+            catch: Catch::default(),
             wheels_nm: [0.0; 2],
             airborne: false,
+            lifted_s: 0.0,
         }
     }
 
@@ -155,7 +164,7 @@ impl Law {
             .step(&profile.mass, measured, self.wheels_nm, dt_s);
         self.airborne = match goal.ground {
             Ground::Touched => false,
-            Ground::Felt => self.contact.airborne(),
+            Ground::Felt => self.flies(dt_s),
             Ground::Left => true,
         };
         let (wheels_nm, legs) = if self.airborne {
@@ -187,6 +196,15 @@ impl Law {
                 torques::within_hips(right, right_force, right_nm, limits.hip_nm),
             ],
         }
+    }
+
+    fn flies(&mut self, dt_s: f32) -> bool {
+        if !self.contact.airborne() {
+            self.lifted_s = 0.0;
+            return false;
+        }
+        self.lifted_s += dt_s;
+        !self.reference.catches() || self.lifted_s > SEEMS_LIFTED_S
     }
 
     fn on_ground(
@@ -230,7 +248,17 @@ impl Law {
         };
         let axles_mps = self.reference.speed_mps - length_m * swing_rps;
         let off_mps = measured.speed_mps - axles_mps;
-        let error = self.error(measured, off_mps, &lean, goal.pitch_rad);
+        let mut error = self.error(measured, off_mps, &lean, goal.pitch_rad);
+        let mut length = goal.length;
+        if self.reference.catches() || self.catch.helps {
+            let fall = self.fall(&own, ahead.lean_rad, measured, trim_rad);
+            self.catch.step(fall, dt_s);
+            let [.., pitch_error, pitch_rate_error] = &mut error;
+            *pitch_error -= self.catch.pitch.value;
+            *pitch_rate_error -= self.catch.pitch.rate;
+            length.value += self.catch.height.value;
+            length.rate += self.catch.height.rate;
+        }
         let feedback_nm = self.gains.torques_nm(&error);
         let [left_wheel, right_wheel, left_leg, right_leg] = feedback_nm;
         let [_, speed_error, ..] = error;
@@ -249,7 +277,7 @@ impl Law {
         let angle_rps = measured.tilt.pitch_rps - measured.mean_lean_rps();
         let angle_rad = angle_rad + REACH_AHEAD_S * angle_rps;
         let stance = Stance {
-            length: goal.length,
+            length,
             roll_rad: goal.roll_rad,
             sideways_mps2: measured.speed_mps * yaw_rps,
             share,
@@ -298,6 +326,24 @@ impl Law {
         }
     }
 
+    /// How a robot falls whose axles would lean by `trim_rad` if it stood still, and by so much more as planned.
+    fn fall(&self, own: &Own, planned_rad: f32, measured: &Measured, trim_rad: f32) -> Fall {
+        let reference = &self.reference;
+        if reference.stop.is_some() {
+            return Fall::Stops {
+                lean_rad: planned_rad,
+            };
+        }
+        if !reference.catches() {
+            return Fall::Over;
+        }
+        Fall::Falls {
+            fast_mps: own.hips.speed_mps - reference.speed_mps,
+            lean_rad: measured.mean_lean_rad() - trim_rad,
+            lean_rps: measured.mean_lean_rps(),
+        }
+    }
+
     /// In the air the legs keep their length, and the robot its attitude.
     fn in_air(
         &mut self,
@@ -307,6 +353,7 @@ impl Law {
         goal: &Goal,
     ) -> ([f32; 2], [LegForce; 2]) {
         self.reference.let_go();
+        self.catch = Catch::default();
         self.trim.restart(motion(measured));
         let wanted_rps = self.reference.speed_mps / scalar::max(odometry.wheel_radius_m, 0.01);
         let lean_rad = self.trim.offset_m / scalar::max(profile.limits.max_length_m, 0.05);

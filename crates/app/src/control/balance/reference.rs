@@ -13,6 +13,8 @@ const MAX_YAW_RPSS: f32 = 10.0;
 const MAX_SIDEWAYS_MPS2: f32 = 3.0;
 /// Largest distance in m from the place that the robot holds.
 const MAX_DISTANCE_M: f32 = 0.05;
+/// A robot that is asked to drive faster than this, in m/s, plans no stop.
+const STANDS_MPS: f32 = 0.125;
 /// A speed error in m/s beyond which the robot lets go of its place.
 const LETS_GO_MPS: f32 = 0.25;
 /// Time constant in s of letting go.
@@ -61,10 +63,12 @@ impl Reference {
         }
     }
 
-    /// Moves on by `dt_s` beside a robot with this motion, which stops as planned after a push if it `may_stop`.
+    /// Moves on by `dt_s` beside a robot with this motion, which stops as planned after a push if it `may_stop`. A wish to drive
+    /// waits for the end of a stop that has begun: to break it off would change the lean at once.
     pub fn step(&mut self, wish: Wish, own: &Own, may_stop: bool, dt_s: f32) {
-        if !may_stop {
-            self.forget_push();
+        let drives = wish.speed_mps.abs() > STANDS_MPS;
+        if !may_stop || (drives && self.stop.is_none()) {
+            self.break_off(own);
         }
         let error_mps = own.speed_mps - self.speed_mps;
         if let Some(stop) = &mut self.stop {
@@ -72,13 +76,15 @@ impl Reference {
                 speed_mps: self.speed_mps,
                 accel_mps2: self.accel_mps2,
             };
-            let goes_on = stop.step(&mut plan, wish.speed_mps, &own.hips, dt_s);
+            let wish_mps = scalar::clamp(wish.speed_mps, -STANDS_MPS, STANDS_MPS);
+            let goes_on = stop.step(&mut plan, wish_mps, &own.hips, dt_s);
             self.speed_mps = plan.speed_mps;
             self.accel_mps2 = plan.accel_mps2;
             if !goes_on {
-                self.stop = None;
+                self.forget_push();
             }
         } else if may_stop
+            && !drives
             && let Some(stop) = self.pushed.step(error_mps, wish.speed_mps, &own.hips, dt_s)
         {
             self.stop = Some(stop);
@@ -136,6 +142,20 @@ impl Reference {
     /// The robot has been pushed and brakes.
     pub fn is_pushed(&self) -> bool {
         self.pushed.brakes || self.stop.is_some()
+    }
+
+    /// The robot has been pushed and catches itself.
+    pub fn catches(&self) -> bool {
+        self.stop.is_some() || self.pushed.lasts()
+    }
+
+    /// Plans no stop, and follows the axles again instead of the hips.
+    fn break_off(&mut self, own: &Own) {
+        if self.stop.is_some() {
+            self.speed_mps = own.speed_mps;
+            self.accel_mps2 = scalar::clamp(self.accel_mps2, -MAX_ACCEL_MPS2, MAX_ACCEL_MPS2);
+        }
+        self.forget_push();
     }
 
     /// Plans no stop.

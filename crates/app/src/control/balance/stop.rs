@@ -10,11 +10,13 @@ const COASTS_MPS2: f32 = 0.3;
 /// A push is over after this time in s. What lasts longer is a lean that has not been learned yet.
 const LASTS_S: f32 = 1.2;
 /// Largest deceleration in m/s² that is counted on: with little grip a robot that leans further brakes no harder.
-const COUNTED_MPS2: f32 = 4.0;
+const COUNTED_MPS2: f32 = 4.2;
 /// Time in s that a stop takes.
-const TAKES_S: f32 = 0.4;
+const TAKES_S: f32 = 0.42;
+/// The speed of a stop at its begin, as a share of that time and its deceleration.
+const PART: f32 = 0.51;
 /// Less time left than this counts as this: what is wrong in the end is put right no faster.
-const LEAST_S: f32 = 0.12;
+const LEAST_S: f32 = 0.13;
 /// Time in s after the end of a stop in which what is wrong is put right.
 const AFTER_S: f32 = 0.1;
 /// Largest acceleration in m/s² of a plan, for which legs lean as far as they hold the hips up: what disturbs a stop asks for more.
@@ -50,6 +52,11 @@ pub struct Pushed {
 }
 
 impl Pushed {
+    /// It has been pushed and is still too fast.
+    pub fn lasts(&self) -> bool {
+        self.lasts_s > 0.0 && self.lasts_s <= LASTS_S
+    }
+
     /// Begins a stop once a robot that was pushed and now brakes has just the time for it. Its wheels are too fast by `off_mps`.
     pub fn step(&mut self, off_mps: f32, wish_mps: f32, hips: &Motion, dt_s: f32) -> Option<Stop> {
         let too_fast = off_mps.abs() > PUSHED_MPS;
@@ -75,7 +82,7 @@ impl Pushed {
             self.brakes = false;
         }
         let begins =
-            self.brakes && fast_mps.abs() < 0.5 * TAKES_S * scalar::min(brakes_mps2, COUNTED_MPS2);
+            self.brakes && fast_mps.abs() < PART * TAKES_S * scalar::min(brakes_mps2, COUNTED_MPS2);
         begins.then(|| {
             self.brakes = false;
             Stop {

@@ -26,10 +26,21 @@ const LEAST_LENGTH_M: f32 = 0.05;
 const HELD_BEFORE_STOPS_M: f32 = 0.015;
 const STOP_N_PER_M: f32 = 4_000.0;
 const STOP_AHEAD_S: f32 = 0.05;
-/// Share of the weight for 1 m/s and 1 rad, while the robot cannot brake yet and while it brakes, and its limit.
-const EASE: f32 = 0.8;
-const BRAKE: f32 = 0.4;
-const MOST_EASING: f32 = 0.6;
+/// Axles that are less too fast than this, in m/s, are not those of a robot that falls or brakes.
+const FALLS_MPS: f32 = 0.4;
+/// Share of the weight for 1 m/s and 1 rad, while the robot cannot brake yet with slow and with fast wheels and while it brakes, and
+/// its limits.
+const EASE: f32 = 0.56;
+const FAST_EASE: f32 = 1.0;
+const BRAKE: f32 = 0.38;
+const MOST_EASING: f32 = 0.9;
+const MOST_BRAKING: f32 = 0.47;
+/// Share of the weight by which wheels get more grip that must get ahead of a body of this speed in m/s and so much more, while its
+/// lean grows at this rate in rad/s.
+const GRIP: f32 = 0.67;
+const GRIP_MPS: f32 = 0.5;
+const GRIP_SPAN_MPS: f32 = 0.5;
+const GRIP_RPS: f32 = 3.1;
 /// Speed in m/s of wheels that cannot turn much faster, and the span in which they get there.
 const FAST_MPS: f32 = 2.0;
 const FAST_SPAN_MPS: f32 = 0.6;
@@ -62,17 +73,25 @@ pub struct Stance {
 }
 
 impl Stance {
-    /// Share of its weight by which the body is pushed less or more, because it moves on too fast. Wheels that cannot turn faster
-    /// overtake a body that falls; legs that lean back brake it as hard as they push.
+    /// Share of its weight by which the body is pushed less or more, because it moves on too fast. Wheels that must overtake it
+    /// have grip by it while its lean grows, and lose speed by it once they are faster; legs that lean back brake it as hard as they push.
     fn easing(&self, measured: &Measured, upright: &Upright) -> f32 {
+        if self.off_mps.abs() < FALLS_MPS {
+            return 0.0;
+        }
         let body_mps = self.off_mps + measured.length_m() * upright.cos * measured.mean_lean_rps();
         let brakes = -body_mps * (measured.mean_lean_rad() - self.lean_rad);
         if brakes > 0.0 {
-            return scalar::clamp(BRAKE * brakes, 0.0, MOST_EASING);
+            return scalar::min(BRAKE * brakes, MOST_BRAKING);
         }
         let fast = (measured.speed_mps.abs() - FAST_MPS) / FAST_SPAN_MPS;
         let fast = scalar::clamp(fast, 0.0, 1.0);
-        scalar::clamp(EASE * brakes * fast, -MOST_EASING, 0.0)
+        let forward = if body_mps < 0.0 { -1.0 } else { 1.0 };
+        let leans = scalar::clamp(forward * measured.mean_lean_rps() / GRIP_RPS, -1.0, 1.0);
+        let struck = scalar::clamp((body_mps.abs() - GRIP_MPS) / GRIP_SPAN_MPS, 0.0, 1.0);
+        let grip = GRIP * struck * scalar::max(leans, 0.0);
+        let ease = (EASE * scalar::max(-leans, 0.0) + FAST_EASE * fast) * brakes;
+        scalar::clamp(grip + ease, -MOST_EASING, MOST_BRAKING)
     }
 }
 

@@ -146,3 +146,54 @@ fn a_robot_that_was_not_pushed_plans_no_stop() {
         assert!(reference.stop.is_none());
     }
 }
+
+/// A robot in the middle of a stop that is planned.
+fn stopping() -> (Reference, Own) {
+    let own = |speed_mps: f32| Own {
+        speed_mps: speed_mps - 0.4,
+        yaw_rps: 0.0,
+        hips: Motion {
+            speed_mps,
+            accel_mps2: -4.0,
+        },
+    };
+    let mut reference = Reference::default();
+    reference.step(Wish::default(), &own(1.5), true, DT_S);
+    for tick in 0..100_u8 {
+        let hips_mps = 0.6 - 0.004 * f32::from(tick);
+        reference.step(Wish::default(), &own(hips_mps), true, DT_S);
+    }
+    assert!(reference.stop.is_some() && reference.catches());
+    (reference, own(0.2))
+}
+
+#[test]
+fn a_wish_to_drive_waits_for_the_end_of_a_stop() {
+    let (mut reference, mut own) = stopping();
+    let wish = Wish {
+        speed_mps: 2.5,
+        yaw_rps: 0.0,
+    };
+    let mut waits_s = 0.0;
+    while reference.speed_mps < 2.0 {
+        let before = reference;
+        reference.step(wish, &own, true, DT_S);
+        let jerk_mps3 = (reference.accel_mps2 - before.accel_mps2) / DT_S;
+        assert!(jerk_mps3.abs() < 100.0, "{before:?} {reference:?}");
+        let more_mps = reference.speed_mps - before.speed_mps;
+        assert!(more_mps.abs() < 0.01, "{before:?} {reference:?}");
+        own.hips.speed_mps = reference.speed_mps;
+        own.speed_mps = reference.speed_mps;
+        waits_s += if reference.stop.is_some() { DT_S } else { 0.0 };
+    }
+    assert!((0.2..0.6).contains(&waits_s), "{waits_s}");
+}
+
+#[test]
+fn a_robot_that_must_break_a_stop_off_follows_its_axles_again() {
+    let (mut reference, own) = stopping();
+    reference.step(Wish::default(), &own, false, DT_S);
+    assert!(reference.stop.is_none() && !reference.catches());
+    assert!((reference.speed_mps - own.speed_mps).abs() < 0.01);
+    assert!(reference.accel_mps2.abs() <= MAX_ACCEL_MPS2);
+}
