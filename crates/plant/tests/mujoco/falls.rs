@@ -189,12 +189,13 @@ impl Fall {
     }
 }
 
-/// The small robot with wheels for which each of these falls has one end. Where it balances on an edge, a millimetre decides.
+/// The small robot with wheels and a frame for which each of these falls has one end. Where it balances on an edge, a millimetre decides.
 fn falling() -> Robot {
     let mut robot = robot("fivebar");
     robot.wheels.radius_m = 0.06;
     robot.wheels.mass_kg = 0.25;
     robot.wheels.inertia_kgm2 = 6.0e-4;
+    robot.body.box_m[0] = 0.30;
     robot
 }
 

@@ -32,7 +32,7 @@ const REFUSED: &[Case] = &[
     Case {
         changes: &[("body.inertia_kgm2", "[42.0, 31.0, 65.0]")],
         says: &[
-            "body.inertia_kgm2: 65 kg m2; allowed: at most 0.174 kg m2, all of its mass at its corners. Enter kg m2, not kg mm2 or g m2.",
+            "body.inertia_kgm2: 65 kg m2; allowed: at most 0.217 kg m2, all of its mass at its corners. Enter kg m2, not kg mm2 or g m2.",
         ],
     },
     Case {
