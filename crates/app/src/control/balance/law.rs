@@ -1,5 +1,9 @@
-//! The balance law: state feedback about a moving reference, support by the legs, and what is done in the air.
+//! The balance law: state feedback about a moving reference, and support by the legs.
 
+mod acceleration;
+mod flight;
+
+use self::acceleration::Ahead;
 use super::{
     braking::counted_mps,
     catch::{Catch, Fall},
@@ -40,13 +44,6 @@ const SPLIT_NMS_PER_RAD: f32 = 0.3;
 /// The same for their lengths while the body may lie on the ground, which says nothing of roll, in N/m and N·s/m.
 const LEVEL_N_PER_M: f32 = 600.0;
 const LEVEL_NS_PER_M: f32 = 30.0;
-/// Stiffness and damping of a leg's lean in the air in N·m/rad and N·m·s/rad.
-const AIR_NM_PER_RAD: f32 = 12.0;
-const AIR_NMS_PER_RAD: f32 = 0.6;
-/// Factor of both where the robot has left the ground by itself. At an edge its wheels must go on with its body.
-const LEFT_FACTOR: f32 = 2.0;
-/// Damping of a wheel in the air in N·m·s/rad.
-const AIR_DAMPING: f32 = 0.05;
 /// Torque of each wheel in N·m for each N·m·s with which a robot that pushes off turns forward. It would go on turning in
 /// the air.
 const TURN_NM_PER_NMS: f32 = 20.0;
@@ -344,54 +341,6 @@ impl Law {
         }
     }
 
-    /// In the air the legs keep their length, and the robot its attitude.
-    fn in_air(
-        &mut self,
-        profile: &BalanceProfile,
-        odometry: &WheelOdomConfig,
-        measured: &Measured,
-        goal: &Goal,
-    ) -> ([f32; 2], [LegForce; 2]) {
-        self.reference.let_go();
-        self.catch = Catch::default();
-        self.trim.restart(motion(measured));
-        let wanted_rps = self.reference.speed_mps / scalar::max(odometry.wheel_radius_m, 0.01);
-        let lean_rad = self.trim.offset_m / scalar::max(profile.limits.max_length_m, 0.05);
-        let push_n = self.contact.push_n();
-        let trim_nm = self.trim.leg_nm * self.support.share(&profile.mass, push_n);
-        let factor = match goal.ground {
-            Ground::Left => LEFT_FACTOR,
-            Ground::Touched | Ground::Felt => 1.0,
-        };
-        let lean_nm = |rad: f32, rps: f32| {
-            trim_nm + factor * (AIR_NM_PER_RAD * (lean_rad - rad) - AIR_NMS_PER_RAD * rps)
-        };
-        let ([left_rad, right_rad], [left_rps, right_rps]) = (measured.lean_rad, measured.lean_rps);
-        let [left_n, right_n] = Support::in_air(
-            &profile.mass,
-            odometry.wheel_track_m,
-            &goal.length,
-            measured,
-        );
-        // Wheels are too light to turn the robot by their inertia. They keep the speed of the ground.
-        let wheels_nm = measured
-            .wheel_rps
-            .map(|rps| AIR_DAMPING * (wanted_rps - rps));
-        (
-            wheels_nm,
-            [
-                LegForce {
-                    push_n: left_n,
-                    lean_nm: lean_nm(left_rad, left_rps),
-                },
-                LegForce {
-                    push_n: right_n,
-                    lean_nm: lean_nm(right_rad, right_rps),
-                },
-            ],
-        )
-    }
-
     fn error(
         &self,
         measured: &Measured,
@@ -451,40 +400,6 @@ fn motion(measured: &Measured) -> Motion {
         lean_rad: measured.mean_lean_rad(),
         lean_rps: measured.mean_lean_rps(),
         speed_mps: measured.speed_mps,
-    }
-}
-
-/// What an acceleration takes.
-#[derive(Clone, Copy, Debug)]
-struct Ahead {
-    lean_rad: f32,
-    wheel_nm: f32,
-    leg_nm: f32,
-}
-
-impl Ahead {
-    /// What 1 m/s² takes.
-    fn new(profile: &BalanceProfile, odometry: &WheelOdomConfig, measured: &Measured) -> Self {
-        let mass = &profile.mass;
-        let radius_m = scalar::max(odometry.wheel_radius_m, 0.01);
-        let length_m = measured.length_m();
-        let rolling_kg = 2.0 * mass.wheel_kgm2 / (radius_m * radius_m);
-        let body = mass.carried_kg * mass.carried_up_m;
-        // The rotors' part of the torque does not reach the legs.
-        let legs = mass.carried_kg * length_m + mass.total_kg * radius_m + body;
-        Self {
-            lean_rad: legs / (mass.carried_kg * GRAVITY_MPS2 * length_m),
-            wheel_nm: 0.5 * (mass.total_kg + rolling_kg) * radius_m,
-            leg_nm: -0.5 * body,
-        }
-    }
-
-    fn times(self, accel_mps2: f32) -> Self {
-        Self {
-            lean_rad: self.lean_rad * accel_mps2,
-            wheel_nm: self.wheel_nm * accel_mps2,
-            leg_nm: self.leg_nm * accel_mps2,
-        }
     }
 }
 
