@@ -34,7 +34,8 @@ const LEARN_RPS: f32 = 0.3;
 /// Largest turn in rad/s with which it learns: a centrifugal force would count as an error of the centre of mass.
 const LEARN_YAW_RPS: f32 = 1.0;
 /// A robot that catches itself after a push pushes its wheels so little that they seem to be in the air. Only what lasts longer
-/// than this, in s, is a flight.
+/// than this, in s, is a flight, and as much time on the ground makes up for it: one that is carried does not count as caught
+/// again and again.
 const SEEMS_LIFTED_S: f32 = 0.2;
 /// The legs reach as far as their angle will allow after this time in s.
 const REACH_AHEAD_S: f32 = 0.05;
@@ -171,7 +172,9 @@ impl Law {
         };
         let limits = &profile.limits;
         let mut wheels_nm = torques::within_wheels(wheels_nm, limits.wheel_nm);
-        let loaded = !self.airborne && self.contact.lifted() == [false; 2];
+        // A robot that falls freely has no load either, whether it catches itself or not.
+        let seems_lifted = goal.ground == Ground::Felt && self.contact.airborne();
+        let loaded = !self.airborne && !seems_lifted && self.contact.lifted() == [false; 2];
         let wheel_kgm2 = profile.mass.wheel_kgm2;
         self.slip
             .step(odometry, wheel_kgm2, measured, self.wheels_nm, loaded, dt_s);
@@ -196,12 +199,10 @@ impl Law {
     }
 
     fn flies(&mut self, dt_s: f32) -> bool {
-        if !self.contact.airborne() {
-            self.lifted_s = 0.0;
-            return false;
-        }
-        self.lifted_s += dt_s;
-        !self.reference.catches() || self.lifted_s > SEEMS_LIFTED_S
+        let seems_lifted = self.contact.airborne();
+        let lifted_s = self.lifted_s + if seems_lifted { dt_s } else { -dt_s };
+        self.lifted_s = scalar::clamp(lifted_s, 0.0, SEEMS_LIFTED_S);
+        seems_lifted && (!self.reference.catches() || self.lifted_s >= SEEMS_LIFTED_S)
     }
 
     fn on_ground(
@@ -255,6 +256,10 @@ impl Law {
             *pitch_rate_error -= self.catch.pitch.rate;
             length.value += self.catch.height.value;
             length.rate += self.catch.height.rate;
+            // The legs fold no further, and have to push while the robot brakes.
+            if length.value < profile.limits.fold_length_m {
+                length = Ramp::at(profile.limits.fold_length_m);
+            }
         }
         let feedback_nm = self.gains.torques_nm(&error);
         let [left_wheel, right_wheel, left_leg, right_leg] = feedback_nm;
@@ -262,8 +267,8 @@ impl Law {
         let steady = self.reference.accel_mps2.abs() < LEARN_MPS2
             && measured.mean_lean_rps().abs() < LEARN_RPS
             && yaw_rps.abs() < LEARN_YAW_RPS;
-        let calm =
-            goal.learn && steady && speed_error.abs() < LEARN_MPS && !self.reference.is_pushed();
+        let catches = self.reference.catches() || self.catch.helps;
+        let calm = goal.learn && steady && speed_error.abs() < LEARN_MPS && !catches;
         if calm {
             self.trim.learn(observed_rad * length_m, feedback_nm, dt_s);
         }

@@ -139,11 +139,6 @@ impl Reference {
         self.forget_push();
     }
 
-    /// The robot has been pushed and brakes.
-    pub fn is_pushed(&self) -> bool {
-        self.pushed.brakes || self.stop.is_some()
-    }
-
     /// The robot has been pushed and catches itself.
     pub fn catches(&self) -> bool {
         self.stop.is_some() || self.pushed.lasts()

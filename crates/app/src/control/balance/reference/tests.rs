@@ -118,10 +118,10 @@ fn a_robot_that_has_other_things_to_do_plans_no_stop() {
     for may_stop in [true, false] {
         let mut reference = Reference::default();
         reference.step(Wish::default(), &braking(1.5), true, DT_S);
-        assert!(reference.is_pushed());
+        assert!(reference.catches());
         reference.step(Wish::default(), &braking(0.6), may_stop, DT_S);
         assert_eq!(reference.stop.is_some(), may_stop);
-        assert_eq!(reference.is_pushed(), may_stop);
+        assert_eq!(reference.catches(), may_stop);
     }
 }
 
