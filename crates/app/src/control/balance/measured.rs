@@ -104,7 +104,7 @@ impl Measured {
         measured
     }
 
-    /// False for what no robot does, NaN among it: filters would never forget it. `ground_mps` is not looked at: whether it
+    /// False for what no robot does, NaN among it: filters would never forget it. `ground_mps` has to be a number; whether it
     /// can be used is the estimate's to say.
     fn is_plausible(&self) -> bool {
         let tilt = &self.tilt;
@@ -123,7 +123,7 @@ impl Measured {
             right_front,
             right_rear,
         ];
-        motion.iter().all(|value| value.abs() < MAX_PLAUSIBLE)
+        motion.iter().all(|value| value.abs() < MAX_PLAUSIBLE) && self.ground_mps.is_finite()
     }
 
     /// Mean length of the legs in m.

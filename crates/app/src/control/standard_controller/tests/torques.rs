@@ -112,6 +112,17 @@ fn legs_that_are_apart_are_brought_together() {
     }
 }
 
+/// The square of such an attitude is no number, and neither is the speed along its heading.
+#[test]
+fn an_attitude_too_large_to_square_takes_the_torque_away() {
+    let mut robot = Robot::standing();
+    let mut controller = robot.balancing();
+    robot.estimate.q_wxyz = [0.0, 0.0, 0.0, 1.8e20];
+    let command = robot.step(&mut controller).cmd;
+    assert!(command.wheels.iter().all(|wheel| wheel.current_ma == 0.0));
+    assert!(command.joints.iter().all(|joint| joint.tau_nm == 0.0));
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
