@@ -12,6 +12,8 @@ const BINS: usize = 10_000;
 const MISSES_IN_A_ROW: u32 = 3;
 /// Lateness in s that ends the run at once: the robot takes a PC that is silent for 0.1 s for lost.
 const HOLE_S: f64 = 0.08;
+/// Time in s from a state of the robot to the next.
+const STATE_PERIOD_S: f64 = 0.0024;
 
 /// Gives out the times of the cycles.
 #[derive(Clone, Debug)]
@@ -50,6 +52,8 @@ impl Pace {
 #[derive(Clone, Debug)]
 pub struct RobotPace {
     period_s: f64,
+    /// Time of the newest state; `None` before the first.
+    heard_s: Option<f64>,
     /// `None` before the first state.
     due_s: Option<f64>,
 }
@@ -59,11 +63,19 @@ impl RobotPace {
     pub fn new(period: Duration) -> Self {
         Self {
             period_s: period.as_secs_f64(),
+            heard_s: None,
             due_s: None,
         }
     }
 
-    /// Takes the time of a state. Returns how late the cycle is that begins with it, or `None` before it is due.
+    /// Takes the time of a state. Returns for how long in s the robot was silent before it: the age that the state before it had
+    /// when it should have come, as the computer's clock would have it.
+    pub fn hear(&mut self, time_s: f64) -> f64 {
+        let before_s = self.heard_s.replace(time_s).unwrap_or(time_s);
+        (time_s - before_s - STATE_PERIOD_S).max(0.0)
+    }
+
+    /// Returns how late the cycle is that begins with the state of this time, or `None` before it is due.
     pub fn begin(&mut self, time_s: f64) -> Option<Duration> {
         let late_s = time_s - self.due_s.unwrap_or(time_s);
         // A robot that was switched off and on counts from 0 again.
@@ -215,6 +227,16 @@ mod tests {
         }
         assert!(pace.begin(0.3).is_some(), "the robot was switched on anew");
         assert_eq!(pace.begin(0.3024), None);
+    }
+
+    #[test]
+    fn a_gap_in_the_robots_states_is_their_age() {
+        let mut pace = RobotPace::new(5 * MS);
+        let near = |age_s: f64, wanted_s: f64| (age_s - wanted_s).abs() < 1e-9;
+        assert!(near(pace.hear(7.0), 0.0), "nothing came before the first");
+        assert!(near(pace.hear(7.0024), 0.0));
+        assert!(near(pace.hear(7.2048), 0.2));
+        assert!(near(pace.hear(0.5), 0.0), "it was switched on anew");
     }
 
     #[test]

@@ -1,9 +1,12 @@
+use std::time::Duration;
+
 use robotctl::link_recorder::Mode;
 
 use super::{
     testing::{Bench, REST_RAD},
     *,
 };
+use crate::pace::{Lateness, RobotPace};
 
 /// A run with a network that gives zeros, at the moment when it drives.
 fn driving() -> Bench {
@@ -181,6 +184,21 @@ fn a_robot_that_does_not_say_that_it_is_safe_stops() {
 #[test]
 fn a_stale_state_stops() {
     goes_limp("stale", |bench| bench.age_s = 0.101);
+}
+
+#[test]
+fn a_robot_in_lockstep_that_was_silent_stops() {
+    let mut pace = RobotPace::new(Duration::from_millis(5));
+    pace.hear(4.0);
+    pace.begin(4.0);
+    let age_s = pace.hear(4.2);
+    let late = pace.begin(4.2).expect("its cycle is due");
+    goes_limp("stale", |bench| {
+        bench.age_s = age_s;
+        // The network is late by as much, and that would let the robot get down.
+        bench.stop = Lateness::new(0.02).add(late).err();
+        assert!(bench.stop.is_some());
+    });
 }
 
 #[test]

@@ -1,6 +1,9 @@
 //! Whose clock gives the cycles.
 
-use std::time::{Duration, Instant};
+use std::{
+    sync::atomic::Ordering,
+    time::{Duration, Instant},
+};
 
 use anyhow::{Result, bail};
 use robot_policy::pace::{Pace, RobotPace};
@@ -9,6 +12,8 @@ use super::{Session, link_failed};
 
 /// A robot in lockstep that takes longer for its next state is gone.
 const PATIENCE: Duration = Duration::from_secs(30);
+/// Who waits for a state asks this often whether the user wants to end.
+const SLICE: Duration = Duration::from_millis(100);
 
 /// Gives the cycles.
 pub enum Beat {
@@ -24,7 +29,7 @@ pub struct Begun {
     pub time_s: f64,
     /// How late it is.
     pub late: Duration,
-    /// Time in s since the newest state came.
+    /// Time in s since the newest state came; in lockstep, for how long it did not come.
     pub age_s: f64,
 }
 
@@ -52,15 +57,14 @@ impl Beat {
                 })
             }
             Self::Robot(pace) => loop {
-                if !session.next_state(Instant::now() + PATIENCE)? {
-                    bail!("the robot in lockstep sends no more states: was its program stopped?");
-                }
+                wait_for_state(session)?;
                 let time_s = f64::from(session.robot.state.time_s);
+                let age_s = pace.hear(time_s);
                 if let Some(late) = pace.begin(time_s) {
                     return Ok(Begun {
                         time_s,
                         late,
-                        age_s: 0.0,
+                        age_s,
                     });
                 }
                 // The robot waits for an answer to each state.
@@ -69,4 +73,18 @@ impl Beat {
             },
         }
     }
+}
+
+/// Waits for the next state of a robot in lockstep.
+fn wait_for_state(session: &mut Session) -> Result<()> {
+    let gone = Instant::now() + PATIENCE;
+    while !session.next_state(Instant::now() + SLICE)? {
+        if session.interrupted.load(Ordering::Relaxed) {
+            bail!("ended as asked, while the robot in lockstep sent no state");
+        }
+        if Instant::now() > gone {
+            bail!("the robot in lockstep sends no more states: was its program stopped?");
+        }
+    }
+    Ok(())
 }
