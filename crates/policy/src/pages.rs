@@ -28,8 +28,13 @@ impl Default for Pages {
 }
 
 impl Pages {
-    /// Returns the next question, if it is due.
+    /// Returns the next question, if it is due. A clock that goes back is that of a robot that was switched on anew: what it said
+    /// before no longer holds.
     pub fn question(&mut self, time_s: f64) -> Option<CanFrame> {
+        if time_s + ASK_EVERY_S < self.due_s {
+            self.due_s = time_s;
+            self.answered_s = None;
+        }
         if time_s < self.due_s {
             return None;
         }
@@ -70,5 +75,17 @@ mod tests {
         assert_eq!(times, [0, 20, 40, 61, 81]);
         assert_eq!(asked[0].1, asked[3].1);
         assert!(asked[0].1 != asked[1].1 && asked[1].1 != asked[2].1);
+    }
+
+    #[test]
+    fn a_robot_that_was_switched_on_anew_is_asked_at_once() {
+        let mut pages = Pages::default();
+        assert!(pages.question(60.0).is_some());
+        pages.answered_s = Some(60.05);
+        assert!(pages.question(60.06).is_none());
+        assert!(pages.silence_s(60.06) < 0.02);
+        assert!(pages.question(0.3).is_some());
+        assert_eq!(pages.silence_s(0.3), f64::INFINITY);
+        assert!(pages.question(0.35).is_none() && pages.question(0.41).is_some());
     }
 }
