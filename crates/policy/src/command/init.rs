@@ -21,7 +21,7 @@ const EXAMPLES: &str = "\
 It writes policy/ROBOT/base.yaml, unless there is one.
 
 Example:
-  policy init --robot fivebar
+  policy init --robot fivebar-rs00
   policy init --robot robots/ours.toml --policies ../policies";
 
 impl Init {
