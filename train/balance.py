@@ -4,15 +4,17 @@ import numpy
 
 import planar_search
 from circuit import Circuit
+from planar import RADIUS_M, WHEEL_NM
 
 # Places in the observation of `policy/fivebar/flat`: one frame has 22 values, and commands follow three frames.
 FRAME, HIPS, HIP_SPEEDS, WHEELS, RATES, GRAVITY, LAST = 22, 0, 4, 8, 10, 13, 16
 FORWARD, TURN, WIDTH = 66, 68, 69
 # What the observation is multiplied with, and what an action means (config.yaml).
 RATE, SPEED, TURNS = 0.25, 0.05, 0.5
-HIP_ACTION_RAD, WHEEL_ACTION_RPS, WHEEL_KD = 0.25, 10.0, 0.1
-RADIUS_M, HALF_TRACK_M = 0.075, 0.21
-WHEEL_NM, FAST_RPS, SPINS_RPS, MOST_RPS = 2.4, 26.0, 29.0, 80.0
+HIP_ACTION_RAD, WHEEL_ACTION_RPS = 0.25, 10.0
+WHEEL_KD = planar_search.GAINS[2]
+HALF_TRACK_M = 0.21
+FAST_RPS, SPINS_RPS, MOST_RPS = 26.0, 29.0, 80.0
 # The default pose (base.yaml): legs folded. Angles here count from that of `planar.py`, those of an observation and of an action from
 # the default pose.
 DEFAULT_SWING_RAD, DEFAULT_FOLD_RAD = 0.0, 0.2

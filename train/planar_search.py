@@ -21,7 +21,6 @@ from evolution import Evolution
 # N·m/rad, N·m·s/rad of a hip, N·m·s/rad of a wheel: rl_kp and rl_kd of `policy/fivebar/flat/config.yaml`.
 GAINS = (40.0, 1.0, 0.1)
 STOP_RPS, TILT_RAD = 31.5, 1.0
-WHEEL_NM = 2.4
 # name: guess, spread
 FACTORS = {
     # Torque of the wheels in N·m, by pitch, its rate and how it changes, error of speed, swing, its rate and its target.
@@ -67,7 +66,7 @@ def act(f, now, before, last, speed_rps, stand_rad):
     torque = f["pitch_nm"] * pitch + f["rate_nm"] * (rate + f["lead"] * (rate - before[1])) + f["speed_nm"] * error
     torque = torque + f["swing_nm"] * lean + f["swing_rate_nm"] * lean_rate + f["held_nm"] * last[0]
     torque = torque + f["falls_nm"] * beyond(falls, f["falls_at"]) - f["fast_nm"] * beyond(turns, 26.0)
-    return swing, fold, jnp.clip(torque, -WHEEL_NM, WHEEL_NM)
+    return swing, fold, jnp.clip(torque, -planar.WHEEL_NM, planar.WHEEL_NM)
 
 
 def trials(f, robot, trial, stand_rad):

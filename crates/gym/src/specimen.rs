@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use robot_description::Robot as Description;
+use robot_description::{Robot as Description, Wheels};
 use robot_host_loop::{Robot, Robots};
 use robot_plant::{
     attitude::Quaternion,
@@ -32,7 +32,6 @@ const MODE_PC: u8 = 1;
 /// Greatest roll and pitch of a robot that begins standing, rad.
 const TILT_RAD: [f64; 2] = [0.05, 0.2];
 const LIFTED_M: f64 = 0.05;
-const HALF_TRACK_M: f64 = 0.21;
 /// Times in ms from the reading to the arrival of the command made of it: frames on the cable, and the network.
 const LATENCY_MS: [u64; 2] = [3, 8];
 /// The robot takes commands at multiples of this time.
@@ -66,8 +65,7 @@ impl Specimen {
         take_default_pose(&mut sitting, policy)?;
         check_armed(&sitting, seed)?;
         let mut standing = power_on(&robots, seed, Start::Standing);
-        let radius_m = robots.robot.wheels.radius_m;
-        let held = tilted(&upright(&robots, seed), radius_m, tilt_rad);
+        let held = tilted(&upright(&robots, seed), &robots.robot.wheels, tilt_rad);
         arm(&mut standing, seed, latency_ms, Some(&lifted(&held)))?;
         Ok(Self {
             sitting,
@@ -204,8 +202,9 @@ fn lifted(held: &FreeState) -> FreeState {
 }
 
 /// The upright robot turned about its axles, so that the lower wheel still touches the ground.
-fn tilted(upright: &FreeState, radius_m: f64, [roll, pitch]: [f64; 2]) -> FreeState {
+fn tilted(upright: &FreeState, wheels: &Wheels, [roll, pitch]: [f64; 2]) -> FreeState {
     let [x_m, y_m, height_m] = upright.position_m;
+    let radius_m = wheels.radius_m;
     let above_m = height_m - radius_m;
     // Roll and pitch are small: they are turned one after the other.
     let [sr, cr] = [(roll / 2.0).sin(), (roll / 2.0).cos()];
@@ -214,7 +213,7 @@ fn tilted(upright: &FreeState, radius_m: f64, [roll, pitch]: [f64; 2]) -> FreeSt
         position_m: [
             x_m + above_m * pitch.sin(),
             y_m - above_m * roll.sin(),
-            radius_m + above_m * pitch.cos() * roll.cos() + HALF_TRACK_M * roll.sin().abs(),
+            radius_m + above_m * pitch.cos() * roll.cos() + wheels.track_m / 2.0 * roll.sin().abs(),
         ],
         attitude: Quaternion::from([cp * cr, cp * sr, sp * cr, -sp * sr]),
         ..*upright
