@@ -160,11 +160,13 @@ impl Law {
         self.gains.renew(&profile.gains, lengths_m);
         self.contact
             .step(&profile.mass, measured, self.wheels_nm, dt_s);
-        self.airborne = match goal.ground {
-            Ground::Touched => false,
-            Ground::Felt => self.flies(dt_s),
-            Ground::Left => true,
-        };
+        let seems_lifted = goal.ground == Ground::Felt && self.contact.airborne();
+        if seems_lifted || self.lifted_s > 0.0 {
+            let lifted_s = self.lifted_s + if seems_lifted { dt_s } else { -dt_s };
+            self.lifted_s = scalar::clamp(lifted_s, 0.0, SEEMS_LIFTED_S);
+        }
+        let flies = seems_lifted && (!self.reference.catches() || self.lifted_s >= SEEMS_LIFTED_S);
+        self.airborne = flies || goal.ground == Ground::Left;
         let (wheels_nm, legs) = if self.airborne {
             self.in_air(profile, odometry, measured, goal)
         } else {
@@ -173,8 +175,8 @@ impl Law {
         let limits = &profile.limits;
         let mut wheels_nm = torques::within_wheels(wheels_nm, limits.wheel_nm);
         // A robot that falls freely has no load either, whether it catches itself or not.
-        let seems_lifted = goal.ground == Ground::Felt && self.contact.airborne();
-        let loaded = !self.airborne && !seems_lifted && self.contact.lifted() == [false; 2];
+        let in_air = self.airborne || seems_lifted;
+        let loaded = !in_air && self.contact.lifted() == [false; 2];
         let wheel_kgm2 = profile.mass.wheel_kgm2;
         self.slip
             .step(odometry, wheel_kgm2, measured, self.wheels_nm, loaded, dt_s);
@@ -196,13 +198,6 @@ impl Law {
                 torques::within_hips(right, right_force, right_nm, limits.hip_nm),
             ],
         }
-    }
-
-    fn flies(&mut self, dt_s: f32) -> bool {
-        let seems_lifted = self.contact.airborne();
-        let lifted_s = self.lifted_s + if seems_lifted { dt_s } else { -dt_s };
-        self.lifted_s = scalar::clamp(lifted_s, 0.0, SEEMS_LIFTED_S);
-        seems_lifted && (!self.reference.catches() || self.lifted_s >= SEEMS_LIFTED_S)
     }
 
     fn on_ground(
