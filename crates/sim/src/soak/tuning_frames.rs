@@ -32,7 +32,7 @@ pub const RANGES: [(Setting, f64, f64); 6] = [
 
 /// The initial values of these groups: those of the emulated robot, but no default where the soak changes a setting.
 pub const INITIAL_VALUES: [(u8, &[f32]); 4] = [
-    (1, &[0.06, 0.43, 3591.0 / 187.0, 1.0, -1.0]),
+    (1, &[0.075, 0.43, 3591.0 / 187.0, 1.0, -1.0]),
     (2, &[1.5, 3.75, 60_000.0, 8_000.0, 1_000.0, 50_000.0]),
     (6, &[0.5, -0.5, 0.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0]),
     (7, &[40.0, 0.25, 0.015, 1.0]),

@@ -16,7 +16,8 @@ const AHEAD_S: f32 = 0.05;
 const CATCH_PITCH: f32 = 1.06;
 const BRAKE_PITCH: f32 = 0.145;
 const STOP_PITCH: f32 = 0.12;
-/// Largest pitch in rad, far from where a robot counts as fallen, and the rate in 1/s with which it is reached.
+/// Largest pitch in rad, and the rate in 1/s with which it is reached. From 0.7 rad of tilt on safety takes the robot for fallen
+/// (`safety.max-balance-tilt-rad`).
 const MOST_PITCH_RAD: f32 = 0.5;
 const PITCH_PER_S: f32 = 7.5;
 /// How much lower the hips are in m for a lean of 1 rad of a robot that brakes, and in a planned stop.

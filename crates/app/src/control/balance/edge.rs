@@ -110,6 +110,7 @@ mod tests {
             }
         }
     }
+
     #[test]
     fn a_landing_is_no_edge() {
         for (grounded_s, expected) in [(0.0, false), (0.1, false), (0.2, true)] {

@@ -3,7 +3,7 @@
 use crate::math::scalar;
 
 /// A robot whose wheels are faster than wanted by so much, in m/s, has been pushed. Driving never gets there.
-const PUSHED_MPS: f32 = 0.4;
+pub const PUSHED_MPS: f32 = 0.4;
 /// Least deceleration in m/s² of a robot that brakes, and the one below which it no longer does.
 const BRAKES_MPS2: f32 = 0.6;
 const COASTS_MPS2: f32 = 0.3;

@@ -1,6 +1,6 @@
 //! The legs carry the body: height, roll, and the load of a turn.
 
-use super::{measured::Measured, ramp::Ramp, upright::Upright};
+use super::{measured::Measured, ramp::Ramp, stop::PUSHED_MPS, upright::Upright};
 use crate::{domain::MassModel, kinematics::Leg, math::scalar};
 
 pub const GRAVITY_MPS2: f32 = 9.806_65;
@@ -26,22 +26,22 @@ const LEAST_LENGTH_M: f32 = 0.05;
 const HELD_BEFORE_STOPS_M: f32 = 0.015;
 const STOP_N_PER_M: f32 = 4_000.0;
 const STOP_AHEAD_S: f32 = 0.05;
-/// Axles that are less too fast than this, in m/s, are not those of a robot that falls or brakes.
-const FALLS_MPS: f32 = 0.4;
-/// Share of the weight for 1 m/s and 1 rad, while the robot cannot brake yet with slow and with fast wheels and while it brakes, and
-/// its limits.
+/// Shares of the weight for a body that is too fast by 1 m/s and leans by 1 rad. Its legs push less by the first while the lean
+/// shrinks, and by the second once the wheels are fast; they push more by the third while it leans back and brakes. All shares and
+/// speeds here were found with those of `catch.rs`, for `robots/fivebar.toml`.
 const EASE: f32 = 0.56;
 const FAST_EASE: f32 = 1.0;
 const BRAKE: f32 = 0.38;
+/// Largest share by which they push less, and more.
 const MOST_EASING: f32 = 0.9;
 const MOST_BRAKING: f32 = 0.47;
-/// Share of the weight by which wheels get more grip that must get ahead of a body of this speed in m/s and so much more, while its
-/// lean grows at this rate in rad/s.
+/// Share by which they push more, for grip, while the lean still grows at this rate in rad/s or more. All of it counts for a body
+/// that is too fast by the sum of both speeds in m/s, nothing below the first.
 const GRIP: f32 = 0.67;
 const GRIP_MPS: f32 = 0.5;
 const GRIP_SPAN_MPS: f32 = 0.5;
 const GRIP_RPS: f32 = 3.1;
-/// Speed in m/s of wheels that cannot turn much faster, and the span in which they get there.
+/// Wheels are fast from this speed in m/s on, all of them after this span.
 const FAST_MPS: f32 = 2.0;
 const FAST_SPAN_MPS: f32 = 0.6;
 /// Largest share of its load that a body may have too little or too much.
@@ -73,10 +73,11 @@ pub struct Stance {
 }
 
 impl Stance {
-    /// Share of its weight by which the body is pushed less or more, because it moves on too fast. Wheels that must overtake it
-    /// have grip by it while its lean grows, and lose speed by it once they are faster; legs that lean back brake it as hard as they push.
+    /// Share of its weight by which the body of a pushed robot is pushed less or more. While its lean grows the wheels need grip
+    /// to get ahead of it. Once they are faster, what the legs push would only speed it up. When it leans back it brakes as hard as
+    /// they push.
     fn easing(&self, measured: &Measured, upright: &Upright) -> f32 {
-        if self.off_mps.abs() < FALLS_MPS {
+        if self.off_mps.abs() < PUSHED_MPS {
             return 0.0;
         }
         let body_mps = self.off_mps + measured.length_m() * upright.cos * measured.mean_lean_rps();

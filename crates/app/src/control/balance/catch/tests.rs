@@ -37,6 +37,19 @@ fn a_body_pitches_towards_where_it_falls_and_back_while_it_brakes() {
 }
 
 #[test]
+fn a_lean_that_grows_counts_before_it_is_there() {
+    for forward in [1.0, -1.0] {
+        let fall = Fall::Falls {
+            fast_mps: forward * 1.8,
+            lean_rad: 0.0,
+            lean_rps: forward * 4.0,
+        };
+        let falling = after(fall, 0.1);
+        assert!(forward * falling.pitch.value > 0.05, "{falling:?}");
+    }
+}
+
+#[test]
 fn a_body_pitches_no_further_than_it_may() {
     let falling = after(falls(2.0, 0.9), 2.0);
     assert!((falling.pitch.value - MOST_PITCH_RAD).abs() < 1e-3);

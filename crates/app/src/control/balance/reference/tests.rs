@@ -147,6 +147,28 @@ fn a_robot_that_was_not_pushed_plans_no_stop() {
     }
 }
 
+/// Driving pulls the wheels away from the wish as well.
+#[test]
+fn a_robot_that_is_asked_to_drive_is_not_caught() {
+    let pushed = Own {
+        speed_mps: 2.5,
+        yaw_rps: 0.0,
+        hips: Motion {
+            speed_mps: 2.5,
+            accel_mps2: -4.0,
+        },
+    };
+    for (speed_mps, expected) in [(0.0, true), (0.1, true), (1.0, false), (-1.0, false)] {
+        let wish = Wish {
+            speed_mps,
+            yaw_rps: 0.0,
+        };
+        let mut reference = Reference::default();
+        reference.step(wish, &pushed, true, DT_S);
+        assert_eq!(reference.catches(), expected, "{speed_mps}");
+    }
+}
+
 /// A robot in the middle of a stop that is planned.
 fn stopping() -> (Reference, Own) {
     let own = |speed_mps: f32| Own {

@@ -92,16 +92,20 @@ fn a_spin_is_remembered_for_two_seconds() {
 }
 
 /// What is told of the speed, and whether a wheel slips, after 0.4 s of wheels that turned at 3.0 m/s and gain
-/// `accel_mps2`, while the estimate tells 0.0.
+/// `accel_mps2`, while the estimate tells 0.0. Backward it is the same.
 fn beside_a_drift(wheels_nm: [f32; 2], accel_mps2: f32, loaded: bool) -> (f32, bool) {
-    let mut slip = Slip::default();
-    let mut now = measured([3.0, 3.0], 0.0, 0.0);
-    for tick in 0..400 {
-        let mps = 3.0 + accel_mps2 * TICK_S * tick as f32;
-        now = measured([mps; 2], 0.0, 0.0);
-        step(&mut slip, &now, wheels_nm, loaded);
-    }
-    (slip.rolling_mps(&now), slip.is_slipping())
+    let [forward, backward] = [1.0, -1.0].map(|sign| {
+        let mut slip = Slip::default();
+        let mut now = measured([0.0; 2], 0.0, 0.0);
+        for tick in 0..400 {
+            let mps = sign * (3.0 + accel_mps2 * TICK_S * tick as f32);
+            now = measured([mps; 2], 0.0, 0.0);
+            step(&mut slip, &now, wheels_nm.map(|nm| sign * nm), loaded);
+        }
+        (sign * slip.rolling_mps(&now), slip.is_slipping())
+    });
+    assert_eq!(forward, backward);
+    forward
 }
 
 #[test]

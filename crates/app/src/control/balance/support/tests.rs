@@ -35,20 +35,57 @@ fn both_wheels_of_a_robot_that_rolls_in_the_air_come_down_at_once() {
     }
 }
 
-/// How much harder the right leg pushes than the left one, in N, on a robot that turns, once it has learned for a while what
-/// holds it level.
-fn harder_n(yaw_rps: f32, roll_rad: f32, learned_for: u32) -> f32 {
-    let profile = &FIVEBAR.balance;
-    let stance = Stance {
+/// Axles that are too fast by so much.
+fn stance(off_mps: f32) -> Stance {
+    Stance {
         length: Ramp::at(0.2),
         roll_rad: 0.0,
         sideways_mps2: 0.0,
         share: 1.0,
-        off_mps: 0.0,
+        off_mps,
         lean_rad: 0.0,
         across_nm: 0.0,
         longest_m: 0.3,
-    };
+    }
+}
+
+/// Share by which the legs push more of a robot whose axles move too fast, all by so much; pushed backward it is the same.
+fn more(off_mps: f32, speed_mps: f32, [lean_rad, lean_rps]: [f32; 2]) -> f32 {
+    let [forward, backward] = [1.0, -1.0].map(|sign| {
+        let measured = Measured {
+            speed_mps: sign * speed_mps,
+            lean_rad: [sign * lean_rad; 2],
+            lean_rps: [sign * lean_rps; 2],
+            ..Measured::at_rest()
+        };
+        let upright = Upright::new(0.2, 0.3, &measured);
+        stance(sign * off_mps).easing(&measured, &upright)
+    });
+    assert!((forward - backward).abs() < 1e-6);
+    forward
+}
+
+#[test]
+fn legs_of_a_pushed_robot_push_for_grip_then_less_and_more_again_to_brake() {
+    let lean_grows = more(1.5, 1.5, [0.1, 3.0]);
+    assert!((0.4..=MOST_BRAKING).contains(&lean_grows), "{lean_grows}");
+    let wheels_are_fast = more(1.5, 3.0, [0.2, 0.0]);
+    assert!(
+        (-0.35..-0.25).contains(&wheels_are_fast),
+        "{wheels_are_fast}"
+    );
+    let lean_shrinks = more(1.5, 1.5, [0.3, -3.0]);
+    assert!((-0.3..-0.1).contains(&lean_shrinks), "{lean_shrinks}");
+    let brakes = more(1.5, 1.5, [-0.5, 0.0]);
+    assert!((0.25..0.35).contains(&brakes), "{brakes}");
+    assert_eq!(more(0.3, 0.3, [0.2, 3.0]), 0.0);
+}
+
+/// How much harder the right leg pushes than the left one, in N, on a robot that turns, once it has learned for a while what
+/// holds it level.
+fn harder_n(yaw_rps: f32, roll_rad: f32, learned_for: u32) -> f32 {
+    let profile = &FIVEBAR.balance;
+    let stance = stance(0.0);
     let mut support = Support::default();
     let mut step = |measured: &Measured, learning: bool| {
         let [left_n, right_n] =
