@@ -104,7 +104,7 @@ impl WheelSelection {
         }
         self.rolling_s = 0.0;
         self.unaided_s += dt_s;
-        if innovation == [None; 2] {
+        if matches!(innovation, [None, None]) {
             WheelAiding::Silent
         } else {
             WheelAiding::Slipping
@@ -171,7 +171,7 @@ impl WheelSelection {
 
     /// The wheels' evidence of a standstill.
     pub fn standstill_evidence(&self, speeds: PerWheel) -> WheelEvidence {
-        if speeds == [None; 2] {
+        if matches!(speeds, [None, None]) {
             return WheelEvidence::Silent;
         }
         let mut evidence = WheelEvidence::Standing;
