@@ -45,7 +45,7 @@ enum Command {
     Bench(ForwardedArgs),
     /// Flash an image with probe-rs, run it and show its log. `cargo run --release` calls this.
     Run(ForwardedArgs),
-    /// Run all checks of CI: format, clippy, host tests, loom, image checks, emulator tests.
+    /// Run all checks of CI: format, clippy, image checks, tests of the host and the emulated board, loom.
     Test,
 }
 

@@ -7,8 +7,6 @@ use crate::{emulator, host_program::HOST_PROFILE, tool, workspace};
 const FIRMWARE: &str = "robot-firmware";
 /// Packages that need the emulator's CPU core.
 const ON_THE_CORE: [&str; 3] = ["robot-emulator", "robot-sim", "robot-bench"];
-/// Packages whose tests need images: the emulated board, and the bench that counts in it.
-const EMULATED: [&str; 2] = ["robot-sim", "robot-bench"];
 
 /// Images that the tests of the emulated board boot.
 pub struct Images<'a> {
@@ -20,42 +18,31 @@ pub struct Images<'a> {
 }
 
 pub fn clippy(host: &str) -> Command {
-    let mut command = over_workspace("clippy", host, &[]);
+    let mut command = over_workspace("clippy", host);
     command.args(["--all-targets", "--", "-D", "warnings"]);
     command
 }
 
 /// Builds the documentation of public and private items. A broken link is an error.
 pub fn docs(host: &str) -> Command {
-    let mut command = over_workspace("doc", host, &[]);
+    let mut command = over_workspace("doc", host);
     command.args(["--no-deps", "--document-private-items"]);
     command.env("RUSTDOCFLAGS", tool::RUSTDOC_FLAGS);
     command
 }
 
-/// Tests the examples in doc comments, of which [`EMULATED`] have none. With the same packages as [`tests`], the features of all
-/// crates are the same too, and nothing is built twice.
+/// Tests the examples in doc comments. With the same packages as [`tests`], the features of all crates are the same too, and
+/// nothing is built twice.
 pub fn examples(host: &str) -> Command {
-    let mut command = over_workspace("test", host, &EMULATED);
+    let mut command = over_workspace("test", host);
     command.args(["--doc", "--no-fail-fast", "--", "--show-output"]);
     command
 }
 
-/// Runs all tests that need no image.
-pub fn tests(host: &str) -> Command {
-    let mut command = over_workspace("test", host, &EMULATED);
-    command.args(["--tests", "--no-fail-fast", "--", "--show-output"]);
-    command
-}
-
-/// Runs the tests that need images.
-pub fn emulator_tests(host: &str, images: &Images<'_>) -> Command {
-    let mut command = tool::cargo();
-    command.arg("test");
-    for package in EMULATED {
-        command.args(["--package", package]);
-    }
-    command.args(["--profile", HOST_PROFILE, "--target", host]);
+/// Runs all other tests, also those that boot images. They are one command, as packages that are tested apart have other
+/// features of the same crates: most of these, and the emulator's CPU core, were built twice.
+pub fn tests(host: &str, images: &Images<'_>) -> Command {
+    let mut command = over_workspace("test", host);
     command.args(["--tests", "--no-fail-fast", "--", "--show-output"]);
     command.env("ROBOT_ELF", images.default);
     command.env("ROBOT_ELF_DBUS_RS00", images.other);
@@ -77,17 +64,14 @@ pub fn loom(host: &str) -> Command {
     command
 }
 
-/// Returns `cargo WHAT` over all packages of this machine except those `left_out`.
-fn over_workspace(what: &str, host: &str, left_out: &[&str]) -> Command {
+/// Returns `cargo WHAT` over all packages of this machine.
+fn over_workspace(what: &str, host: &str) -> Command {
     let mut command = tool::cargo();
     command.args([what, "--workspace", "--exclude", FIRMWARE]);
-    let missing: &[&str] = if emulator::IS_BUILT_HERE {
-        &[]
-    } else {
-        &ON_THE_CORE
-    };
-    for package in missing.iter().chain(left_out) {
-        command.args(["--exclude", package]);
+    if !emulator::IS_BUILT_HERE {
+        for package in ON_THE_CORE {
+            command.args(["--exclude", package]);
+        }
     }
     command.args(["--profile", HOST_PROFILE, "--target", host]);
     command
