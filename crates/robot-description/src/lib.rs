@@ -32,7 +32,7 @@ pub use mjcf::Hold;
 pub use motor::JointMotor;
 pub use mounting::Mounting;
 pub use parts::LINK_RADIUS_M;
-pub use place::path_of;
+pub use place::{path_from, path_of};
 pub use reach::Reach;
 pub use robot::{
     Body, Bus, Carrier, Control, HipRange, Imu, JointRanges, Joints, Legs, Limits, Link, Robot,

@@ -2,12 +2,17 @@
 
 use std::path::{Path, PathBuf};
 
-/// Returns the path of a robot's file, from the repository's root. `name` is the name of a file in `robots/` without its
-/// ending, or a path.
+/// Returns the path of a robot's file, for a program that is run in the repository's root. `name` is the name of a file in
+/// `robots/` without its ending, or a path.
 pub fn path_of(name: &str) -> PathBuf {
+    path_from(Path::new(""), name)
+}
+
+/// Returns the same for a program that is run anywhere: a name is one of the repository with this `root`.
+pub fn path_from(root: &Path, name: &str) -> PathBuf {
     let path = Path::new(name);
     if path.components().count() == 1 && path.extension().is_none() {
-        Path::new("robots").join(format!("{name}.toml"))
+        root.join("robots").join(format!("{name}.toml"))
     } else {
         path.to_owned()
     }
@@ -27,5 +32,8 @@ mod tests {
         ] {
             assert_eq!(path_of(name), Path::new(path));
         }
+        let root = Path::new("/firmware");
+        assert_eq!(path_from(root, "fivebar"), root.join("robots/fivebar.toml"));
+        assert_eq!(path_from(root, "../mine.toml"), Path::new("../mine.toml"));
     }
 }

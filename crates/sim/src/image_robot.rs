@@ -16,6 +16,7 @@ const SYMBOL: &str = "g_robotapp_robot";
 const FINGERPRINT_BYTES: usize = 8;
 const NAME_BYTES: usize = 24;
 
+const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 /// Where the robots with a name are.
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots");
 
@@ -122,12 +123,7 @@ fn checked(robot: Arc<Robot>, image: &Identity) -> Result<Arc<Robot>, ImageRobot
 
 /// The robot of a name in `robots/`, or of a path.
 fn read(wanted: &str) -> Result<Robot, RobotError> {
-    let is_path = wanted.contains(['/', '\\', '.']);
-    if is_path {
-        Robot::read(Path::new(wanted))
-    } else {
-        Robot::read(&Path::new(FOLDER).join(format!("{wanted}.toml")))
-    }
+    Robot::read(&robot_description::path_from(Path::new(ROOT), wanted))
 }
 
 /// The robot in `robots/` that has this fingerprint, whatever its file is called.

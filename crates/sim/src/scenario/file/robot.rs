@@ -13,8 +13,7 @@ use serde::Deserialize;
 
 use super::Problem;
 
-/// Where the robots with a name are.
-const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots");
+const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 
 #[derive(Clone, Copy, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -48,12 +47,7 @@ pub(super) fn read_robot(
 }
 
 fn open(robot: &str) -> Result<Arc<Robot>, Problem> {
-    let is_name = !robot.contains(['/', '\\', '.']);
-    let read = if is_name {
-        Robot::read(&Path::new(FOLDER).join(format!("{robot}.toml")))
-    } else {
-        Robot::read(Path::new(robot))
-    };
+    let read = Robot::read(&robot_description::path_from(Path::new(ROOT), robot));
     let read = read.map_err(|error| Problem::Robot(error.to_string()))?;
     Ok(Arc::new(read))
 }
