@@ -1,8 +1,7 @@
 //! Serial bus servos as a program on the bus meets them: six of the STS3215 kind make an SO-101 arm.
 //!
 //! Written from the manufacturer's memory table for magnetic encoder STS servos, the manufacturer's SDK and LeRobot's driver, and
-//! from no code of this project: a driver and its model must not share a misunderstanding. What no source proves is listed in
-//! `docs/emulated-servos.md`.
+//! from no code of this project: a driver and its model must not share a misunderstanding.
 //!
 //! | folder | what |
 //! |---|---|
