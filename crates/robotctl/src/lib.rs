@@ -39,7 +39,6 @@ pub mod radio;
 pub mod recorder;
 pub mod recording;
 pub mod report;
-mod serial_port;
 pub mod settings;
 mod statistics;
 pub mod status;

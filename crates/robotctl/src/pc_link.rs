@@ -17,10 +17,7 @@ use robot_app::{
 };
 use serialport::{ClearBuffer, SerialPort};
 
-use crate::{
-    can_link::{CanLink, CanLinkError},
-    serial_port,
-};
+use crate::can_link::{CanLink, CanLinkError};
 use plausible::is_plausible;
 use receiver::Receiver;
 
@@ -52,7 +49,7 @@ pub struct Traffic {
 
 impl PcLink {
     pub fn open(name: &str) -> Result<Self, CanLinkError> {
-        let port = serial_port::open(name, BAUD).map_err(|why| CanLinkError::Open {
+        let port = robot_serial_port::open(name, BAUD).map_err(|why| CanLinkError::Open {
             device: name.to_owned(),
             why,
         })?;

@@ -16,7 +16,6 @@ use super::{
     CanLink, CanLinkError,
     lawicel::{self, LineParser, Received},
 };
-use crate::serial_port;
 
 /// Speed of the serial port. USB adapters and pseudo-terminals ignore it.
 const LINE_BPS: u32 = 115_200;
@@ -52,7 +51,7 @@ pub(super) struct Slcan {
 impl Slcan {
     /// Opens the adapter's channel at 1 Mbit/s. It closes the channel first, as it may be open.
     pub fn open(name: &str) -> Result<Self, CanLinkError> {
-        let port = serial_port::open(name, LINE_BPS).map_err(|why| CanLinkError::Open {
+        let port = robot_serial_port::open(name, LINE_BPS).map_err(|why| CanLinkError::Open {
             device: name.to_owned(),
             why,
         })?;

@@ -1,11 +1,12 @@
 //! Opens serial ports, and says what to do about one that cannot be opened.
+#![forbid(unsafe_code)]
 
 use std::io::ErrorKind;
 
 use serialport::{SerialPort, SerialPortInfo, SerialPortType};
 
 /// Opens a port with eight data bits, no parity and one stop bit. The error says why it failed and what to do.
-pub(crate) fn open(name: &str, line_bps: u32) -> Result<Box<dyn SerialPort>, String> {
+pub fn open(name: &str, line_bps: u32) -> Result<Box<dyn SerialPort>, String> {
     serialport::new(name, line_bps).open().map_err(|error| {
         let said = error.to_string();
         let advice = advice(error.kind(), name, &ports());
