@@ -1,0 +1,5 @@
+mod damage;
+mod golden;
+mod late;
+mod script;
+mod writes;
