@@ -176,6 +176,13 @@ impl Bus {
         self.host.free_ns
     }
 
+    /// When all that is now known to be sent by anyone will have passed, ns.
+    pub fn quiet_ns(&self) -> u64 {
+        let queued = self.to_send.iter().map(|queued| queued.0.sent.end_ns());
+        let heard = self.next_end_ns();
+        queued.chain(heard).max().unwrap_or(self.now_ns)
+    }
+
     /// Returns the next byte that has reached the host, with the time when it did, ns.
     pub fn take_heard(&mut self) -> Option<(u64, u8)> {
         let (at_ns, _) = self.host.heard.front()?;

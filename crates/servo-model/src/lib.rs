@@ -10,6 +10,7 @@
 //! | `fault` | what can go wrong, by name |
 //! | `bus` | host and servos on one wire, bit by bit, with faults |
 //! | `wire` | the host's end in simulated time, for tests |
+//! | `pty` | the host's end in real time, as a serial port |
 //!
 //! A test puts [`VirtualWire`] where its serial port would be:
 //!
@@ -33,10 +34,14 @@
 mod bus;
 mod fault;
 mod frame;
+#[cfg(unix)]
+mod pty;
 mod servo;
 mod wire;
 
 pub use bus::{Body, Bus, FaultId, Injected};
 pub use fault::{Fault, NAMES as FAULT_NAMES, UnknownFault};
+#[cfg(unix)]
+pub use pty::{Port, PortError};
 pub use servo::{Load, Servo, Version, View, status};
 pub use wire::VirtualWire;

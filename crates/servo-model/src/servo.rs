@@ -17,7 +17,7 @@ use memory::{
     PRESENT_TEMPERATURE, PRESENT_VOLTAGE, PWM, STATUS, TORQUE_ENABLE, TORQUE_LIMIT, sign_magnitude,
     signed,
 };
-use motor::{CYCLE_S, Motor};
+use motor::{CYCLE_S, Motor, NO_LOAD_STEPS_S};
 use profile::Profile;
 use protection::{CURRENT_UNIT_A, Measured, Protection};
 
@@ -28,8 +28,8 @@ const P_SCALE: f64 = 17.8 / (STEPS_PER_RAD * 16.0 * 3.35);
 /// Output for one step/s of speed error and one unit of gain. Assumed: it damps well with the gains as shipped.
 const D_SCALE: f64 = 0.8 / (STEPS_PER_RAD * 32.0 * 3.35);
 const STEPS_PER_RAD: f64 = STEPS / std::f64::consts::TAU;
-/// Faster than any that the servo reaches, steps/s: speed 0 in a goal means as fast as it can.
-const FULL_SPEED: f64 = 3072.0;
+/// Rated speed, 45 turns a minute. Speed 0 in a goal means this one.
+const FULL_SPEED: f64 = 45.0 * STEPS / 60.0;
 /// Steps/s² of one unit of the acceleration register.
 const ACCELERATION_UNIT: f64 = 100.0;
 /// Slower than this, steps/s, the servo says that it does not move.
@@ -346,7 +346,7 @@ impl Servo {
                 self.profile.at_speed(speed, acceleration);
                 // In this mode the position is only that which keeps the speed.
                 let lag = self.profile.speed_steps_s - self.motor.speed_steps_s;
-                self.profile.speed_steps_s / FULL_SPEED + lag * 32.0 * D_SCALE * 4.0
+                self.profile.speed_steps_s / NO_LOAD_STEPS_S + lag * 32.0 * D_SCALE * 4.0
             }
             Mode::Pwm => f64::from(signed(self.memory.get(PWM), 10)) / 1000.0,
         };
@@ -369,7 +369,7 @@ impl Servo {
         let p = f64::from(self.memory.get(P_GAIN)) * P_SCALE;
         let d = f64::from(self.memory.get(D_GAIN)) * D_SCALE;
         // What the motor generates is known from the profile's speed.
-        error * p + lag * d + self.profile.speed_steps_s / FULL_SPEED
+        error * p + lag * d + self.profile.speed_steps_s / NO_LOAD_STEPS_S
     }
 
     /// As [`position`](Self::position), with the part of a step that no register shows.

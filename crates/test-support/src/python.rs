@@ -52,6 +52,15 @@ const NETWORKS: Packages = Packages {
     imports_all: "import numpy, onnx, onnxruntime",
 };
 
+const SERVOS: Packages = Packages {
+    folder: "python-servos",
+    list: include_str!("python_servo_packages.txt"),
+    // LeRobot needs it.
+    oldest: (3, 10),
+    // LeRobot's driver itself imports PyTorch, which a test replaces.
+    imports_all: "import deepdiff, lerobot, scservo_sdk, serial, tqdm",
+};
+
 const TRAINING: Packages = Packages {
     folder: "python-training",
     list: include_str!("../../../train/requirements.txt"),
@@ -96,6 +105,13 @@ impl Python {
     /// As [`with_packages`](Self::with_packages), but imports `numpy`, `onnx` and `onnxruntime`, and needs Python 3.11.
     pub fn with_networks() -> Option<Self> {
         static MADE: LazyLock<Result<PathBuf, Missing>> = LazyLock::new(|| make(&NETWORKS));
+        found(&MADE)
+    }
+
+    /// As [`with_packages`](Self::with_packages), but imports `scservo_sdk`, the SDK of Feetech servos, and has LeRobot without
+    /// what only its training needs.
+    pub fn with_servo_clients() -> Option<Self> {
+        static MADE: LazyLock<Result<PathBuf, Missing>> = LazyLock::new(|| make(&SERVOS));
         found(&MADE)
     }
 
@@ -239,6 +255,7 @@ mod tests {
             (Python::with_science(), &SCIENCE),
             (Python::with_optimal_control(), &OPTIMAL),
             (Python::with_networks(), &NETWORKS),
+            (Python::with_servo_clients(), &SERVOS),
             (Python::with_training(), &TRAINING),
         ] {
             let Some(python) = python else { continue };

@@ -45,7 +45,7 @@ impl Bus {
     }
 
     /// When the next byte that someone receives ends.
-    fn next_end_ns(&self) -> Option<u64> {
+    pub(super) fn next_end_ns(&self) -> Option<u64> {
         let servos = self.units.iter().filter_map(|unit| unit.ear.ends_ns());
         servos.chain(self.host.ear.ends_ns()).min()
     }

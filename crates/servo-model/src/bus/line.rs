@@ -25,9 +25,9 @@ pub struct Sent {
 /// Bits of a byte with start and stop.
 const BITS: u64 = 10;
 
-/// Time from the start of a byte to the start of its bit `bit`, ns.
+/// Length of so many bits, ns, rounded up so that a bit is there at its start.
 fn bits_ns(bits: u64, baud: u32) -> u64 {
-    bits * 1_000_000_000 / u64::from(baud.max(1))
+    (bits * 1_000_000_000).div_ceil(u64::from(baud.max(1)))
 }
 
 /// Length of a byte, ns.

@@ -10,8 +10,11 @@ pub const CYCLE_S: f64 = 1e-3;
 /// Friction that does not depend on speed, and inertia of rotor and gears seen at the output. From the SO-101's MJCF.
 const DRY_FRICTION_NM: f64 = 0.052;
 const ROTOR_KGM2: f64 = 0.028;
-/// Speed without load: 45 turns a minute.
-const NO_LOAD_RAD_S: f64 = 45.0 * TAU / 60.0;
+/// Speed at full output without load. The servo itself goes no faster than 45 turns a minute, its rated speed; assumed is that it
+/// then still has something left to control with.
+const NO_LOAD_RAD_S: f64 = 50.0 * TAU / 60.0;
+/// The same, steps/s.
+pub const NO_LOAD_STEPS_S: f64 = 50.0 * STEPS / 60.0;
 /// Current at full voltage and standstill.
 const STALL_A: f64 = 2.7;
 /// Heat: the case warms 17 °C for each A² in the long run, with a time constant of five minutes. Set so that 1.5 kg on 10 cm warm
