@@ -9,6 +9,7 @@
 //! | `servo` | registers, motion, protection, answers of one servo |
 //! | `fault` | what can go wrong, by name |
 //! | `bus` | host and servos on one wire, bit by bit, with faults |
+//! | `so101` | the arm that six servos make, and its weight |
 //! | `wire` | the host's end in simulated time, for tests |
 //! | `pty` | the host's end in real time, as a serial port |
 //!
@@ -37,6 +38,7 @@ mod frame;
 #[cfg(unix)]
 mod pty;
 mod servo;
+mod so101;
 mod wire;
 
 pub use bus::{Body, Bus, FaultId, Injected};
@@ -44,4 +46,5 @@ pub use fault::{Fault, NAMES as FAULT_NAMES, UnknownFault};
 #[cfg(unix)]
 pub use pty::{Port, PortError};
 pub use servo::{Load, Servo, Version, View, status};
+pub use so101::{JOINTS as SO101_JOINTS, So101, so101_servos};
 pub use wire::VirtualWire;

@@ -405,6 +405,3 @@ impl Servo {
 
 /// Seconds of a cycle are nanoseconds of a cycle.
 const _: () = assert!((CYCLE_S * 1e9) as u64 == CYCLE_NS);
-
-#[cfg(test)]
-mod tests;
