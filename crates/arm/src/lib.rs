@@ -3,10 +3,14 @@
 //! | place | does |
 //! |---|---|
 //! | [`bus`] | talks to STS3215 servos: frames, registers, time-outs, tries |
+//! | [`calibration`] | files that say which servo is which joint, its home and its limits |
+//! | [`controller`] | an arm: joints by name, home, limits, torque, recovery |
 //! | [`kinematics`] | where the tool is for given joint angles, and how it moves with them |
 //! | [`ik`] | joint angles that bring the tool to a pose |
 #![forbid(unsafe_code)]
 
 pub mod bus;
+pub mod calibration;
+pub mod controller;
 pub mod ik;
 pub mod kinematics;

@@ -242,6 +242,17 @@ impl ServoBus {
         }
     }
 
+    /// Ends frames that servos wait for. A servo that heard a damaged length takes all that follows for a part of that frame: up to
+    /// 255 bytes, and so many tries. Zeros complete it, and never with a right checksum: a request whose length is `k` too large
+    /// needs `k · (filler + 1)` to be a multiple of 256.
+    pub(super) fn free_receivers(&mut self) -> Result<(), WireError> {
+        let zeros = [0; 255];
+        self.wire.send(&zeros)?;
+        let sent = self.wire.now() + self.timing.of_bytes(zeros.len());
+        self.listen_until(sent)?;
+        self.settle()
+    }
+
     /// Waits until the line is silent, so that the rest of a late answer does not damage the next.
     fn settle(&mut self) -> Result<(), WireError> {
         let end = self.wire.now() + LONGEST_SETTLE;

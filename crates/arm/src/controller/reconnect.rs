@@ -1,0 +1,49 @@
+//! Comes back after the plug was pulled.
+
+use std::{
+    sync::atomic::Ordering,
+    thread,
+    time::{Duration, Instant},
+};
+
+use super::{ControllerError, Ending, ServoController};
+use crate::bus::register::TORQUE_ENABLE;
+
+/// Time between two looks for the port.
+const LOOK_EVERY: Duration = Duration::from_millis(200);
+
+impl ServoController {
+    /// Waits for a lost port, opens it, and checks the servos again. They have held their last goals meanwhile, unless they had no
+    /// power: such a servo has no torque, and gets it back with [`enable_torque`](Self::enable_torque), which moves nothing. With
+    /// [`Ending::Release`] torque goes off at once.
+    pub fn reconnect(&mut self, at_most: Duration) -> Result<(), ControllerError> {
+        let until = Instant::now() + at_most;
+        while let Err(last) = self.bus.reopen() {
+            if self.stop.load(Ordering::Relaxed) {
+                return Err(ControllerError::Stopped);
+            }
+            if Instant::now() >= until {
+                return Err(ControllerError::NotBack {
+                    port: self.bus.port().to_owned(),
+                    seconds: at_most.as_secs(),
+                    last: Box::new(last),
+                });
+            }
+            thread::sleep(LOOK_EVERY);
+        }
+        self.check_servos()?;
+        let had_torque = self.has_torque;
+        let ids = self.ids();
+        let readings = self.bus.sync_read(&ids, TORQUE_ENABLE.into())?;
+        let has = |reading: &Result<crate::bus::BlockReading, _>| {
+            reading
+                .as_ref()
+                .is_ok_and(|r| r.value(TORQUE_ENABLE) == Some(1))
+        };
+        self.has_torque = readings.iter().all(has);
+        if had_torque && self.ending == Ending::Release {
+            self.release()?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,7 @@
+//! The bus and the arm against emulated servos, in simulated time.
+
+mod calibrating;
+mod complaints;
+mod controller;
+mod loops;
+mod wire;
