@@ -28,7 +28,7 @@ mod solver;
 mod target;
 mod toolbox;
 
-pub use bench::{BenchFigures, bench};
+pub use bench::{BenchFigures, measure};
 pub use error::IkError;
 pub use mask::Mask;
 pub use solution::{Outcome, Remaining, Solution};

@@ -7,10 +7,15 @@
 //! | [`controller`] | an arm: joints by name, home, limits, torque, recovery |
 //! | [`kinematics`] | where the tool is for given joint angles, and how it moves with them |
 //! | [`ik`] | joint angles that bring the tool to a pose |
-#![forbid(unsafe_code)]
+//!
+//! With the feature `python`, which maturin turns on, all of it is the Python package `jiling_arm`.
+// PyO3 writes unsafe code for the Python module, and none is written by hand.
+#![cfg_attr(not(feature = "python"), forbid(unsafe_code))]
 
 pub mod bus;
 pub mod calibration;
 pub mod controller;
 pub mod ik;
 pub mod kinematics;
+#[cfg(feature = "python")]
+mod python;

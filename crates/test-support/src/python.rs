@@ -61,6 +61,14 @@ const SERVOS: Packages = Packages {
     imports_all: "import deepdiff, lerobot, scservo_sdk, serial, tqdm",
 };
 
+const BUILD: Packages = Packages {
+    folder: "python-build",
+    list: include_str!("python_build_packages.txt"),
+    // NumPy needs it.
+    oldest: (3, 11),
+    imports_all: "import maturin, numpy",
+};
+
 const TRAINING: Packages = Packages {
     folder: "python-training",
     list: include_str!("../../../train/requirements.txt"),
@@ -112,6 +120,13 @@ impl Python {
     /// what only its training needs.
     pub fn with_servo_clients() -> Option<Self> {
         static MADE: LazyLock<Result<PathBuf, Missing>> = LazyLock::new(|| make(&SERVOS));
+        found(&MADE)
+    }
+
+    /// As [`with_packages`](Self::with_packages), but imports `maturin` and `numpy`, and needs Python 3.11: it builds packages
+    /// of this repository.
+    pub fn with_build() -> Option<Self> {
+        static MADE: LazyLock<Result<PathBuf, Missing>> = LazyLock::new(|| make(&BUILD));
         found(&MADE)
     }
 
@@ -256,6 +271,7 @@ mod tests {
             (Python::with_optimal_control(), &OPTIMAL),
             (Python::with_networks(), &NETWORKS),
             (Python::with_servo_clients(), &SERVOS),
+            (Python::with_build(), &BUILD),
             (Python::with_training(), &TRAINING),
         ] {
             let Some(python) = python else { continue };

@@ -12,7 +12,7 @@ use crate::kinematics::Robot;
 /// computer did something else as well.
 const REPEATS: usize = 3;
 
-/// What [`bench`] measured.
+/// What [`measure`] found.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct BenchFigures {
     /// Poses that were asked for, each of them reachable within the limits.
@@ -31,7 +31,12 @@ pub struct BenchFigures {
 ///
 /// # Errors
 /// The arm has a joint without limits.
-pub fn bench(robot: &Robot, mask: Mask, poses: usize, seed: u64) -> Result<BenchFigures, IkError> {
+pub fn measure(
+    robot: &Robot,
+    mask: Mask,
+    poses: usize,
+    seed: u64,
+) -> Result<BenchFigures, IkError> {
     let mut random = Pcg64Mcg::seed_from_u64(seed);
     let mut draw = || -> Vec<f64> {
         let joints = robot.joints().iter();

@@ -13,6 +13,9 @@ pub enum IkError {
         "mask {0:?}: its weights [x, y, z, rx, ry, rz] are finite, none is negative, and at least one is above 0"
     )]
     Mask([f64; 6]),
+    /// The mask has not six weights.
+    #[error("the mask has {0} weights, and 6 are needed: [x, y, z, rx, ry, rz]")]
+    MaskLength(usize),
     /// A 4 × 4 matrix is no pose.
     #[error("the target is no pose: {0}")]
     NoPose(&'static str),

@@ -38,3 +38,14 @@ impl Mask {
         self.0.iter().filter(|it| **it > 0.0).count()
     }
 }
+
+impl TryFrom<&[f64]> for Mask {
+    type Error = IkError;
+
+    fn try_from(weights: &[f64]) -> Result<Self, IkError> {
+        match weights.try_into() {
+            Ok(weights) => Self::new(weights),
+            Err(_) => Err(IkError::MaskLength(weights.len())),
+        }
+    }
+}

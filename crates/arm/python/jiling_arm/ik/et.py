@@ -1,0 +1,5 @@
+"""Elementary transforms, of which a chain is made."""
+
+from .._core import ET
+
+__all__ = ["ET"]
