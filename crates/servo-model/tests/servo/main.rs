@@ -1,5 +1,6 @@
 //! What a servo does, from the manufacturer's memory table and from what users measured.
 
+mod arm;
 mod bus;
 mod host;
 mod motion;

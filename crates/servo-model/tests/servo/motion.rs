@@ -44,6 +44,17 @@ fn a_motion_is_a_trapezoid_of_speed() {
     assert_eq!(host.read_u8(1, MOVING), 0);
 }
 
+// 1,000 steps/s² for half a second: 500 steps/s, 125 steps.
+#[test]
+fn the_acceleration_has_the_unit_of_the_memory_table() {
+    let mut host = moving();
+    go(&mut host, 10, 4000, 0);
+    host.wait_s(0.5);
+    let view = host.view();
+    assert!((view.speed_steps_s - 500.0).abs() < 15.0, "{view:?}");
+    assert!((view.position_steps - 2048 - 125).abs() < 10, "{view:?}");
+}
+
 // Rated speed: 45 turns a minute. Users measured 46.
 #[test]
 fn without_a_speed_it_goes_as_fast_as_it_can() {
