@@ -18,7 +18,7 @@ use crate::{
     frame::Scanner,
     servo::{Load, Servo, View},
 };
-use line::{Ear, Line, Party, Sent, byte_ns};
+use line::{Ear, Line, Party, Sent};
 use running::{Fate, Running};
 use unit::Unit;
 
@@ -115,7 +115,7 @@ impl Bus {
             now_ns: 0,
             units: units.collect(),
             body: None,
-            next_loads_ns: u64::MAX,
+            next_loads_ns: 0,
             line: Line::default(),
             to_send: BinaryHeap::new(),
             queued: 0,
@@ -137,7 +137,6 @@ impl Bus {
     /// The same with something that the servos turn.
     pub fn with_body(mut self, body: impl Body + 'static) -> Self {
         self.body = Some(Box::new(body));
-        self.next_loads_ns = 0;
         self
     }
 
@@ -160,13 +159,9 @@ impl Bus {
     pub fn send(&mut self, bytes: &[u8]) {
         let mut start_ns = self.now_ns.max(self.host.free_ns);
         for byte in bytes {
-            self.queue(Sent {
-                by: Party::Host,
-                start_ns,
-                baud: self.host.baud,
-                byte: *byte,
-            });
-            start_ns += byte_ns(self.host.baud);
+            let sent = Sent::new(Party::Host, start_ns, self.host.baud, *byte);
+            start_ns = sent.end_ns;
+            self.queue(sent);
         }
         self.host.free_ns = start_ns;
     }
@@ -178,7 +173,7 @@ impl Bus {
 
     /// When all that is now known to be sent by anyone will have passed, ns.
     pub fn quiet_ns(&self) -> u64 {
-        let queued = self.to_send.iter().map(|queued| queued.0.sent.end_ns());
+        let queued = self.to_send.iter().map(|queued| queued.0.sent.end_ns);
         let heard = self.next_end_ns();
         queued.chain(heard).max().unwrap_or(self.now_ns)
     }

@@ -14,12 +14,25 @@ const LOADS_NS: u64 = 10_000_000;
 /// Bytes of a request in which `corrupt-packet` changes one: the shortest requests have six.
 const SHORTEST_REQUEST: usize = 6;
 
+/// What happens next. Of events at one time the first of these comes first: an answer sees all of its question.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Event {
+    /// A fault starts or ends.
+    Fault,
+    /// The loads are looked at again.
+    Loads,
+    /// A byte ends at someone who receives it.
+    End,
+    /// A byte starts on the wire.
+    Start,
+}
+
 impl Bus {
     /// Lets time pass up to `to_ns`.
     pub fn advance(&mut self, to_ns: u64) {
-        while let Some(at_ns) = self.next_event_ns().filter(|at_ns| *at_ns <= to_ns) {
+        while let Some((at_ns, event)) = self.next_event().filter(|(at_ns, _)| *at_ns <= to_ns) {
             self.now_ns = self.now_ns.max(at_ns);
-            self.happen(at_ns);
+            self.happen(at_ns, event);
         }
         self.now_ns = self.now_ns.max(to_ns);
     }
@@ -27,21 +40,26 @@ impl Bus {
     /// When something changes next by itself, ns: a byte starts or ends on the wire or reaches the host, a fault starts or ends.
     pub fn next_change_ns(&self) -> Option<u64> {
         let arrival = self.host.heard.front().map(|(at_ns, _)| *at_ns);
-        let event = self.next_event_ns();
+        let event = self.next_event().map(|(at_ns, _)| at_ns);
         match (arrival, event) {
             (Some(arrival), Some(event)) => Some(arrival.min(event)),
             (arrival, event) => arrival.or(event),
         }
     }
 
-    fn next_event_ns(&self) -> Option<u64> {
-        let start = self.to_send.peek().map(|queued| queued.0.start_ns);
-        let loads = Some(self.next_loads_ns).filter(|at_ns| *at_ns < u64::MAX);
-        let fault = self.next_fault_ns().filter(|at_ns| *at_ns < u64::MAX);
-        [start, self.next_end_ns(), loads, fault]
+    /// The next event with its time, ns.
+    fn next_event(&self) -> Option<(u64, Event)> {
+        let starts_ns = self.to_send.peek().map(|queued| queued.0.start_ns);
+        let events = [
+            (self.next_fault_ns(), Event::Fault),
+            (self.body.as_ref().map(|_| self.next_loads_ns), Event::Loads),
+            (self.next_end_ns(), Event::End),
+            (starts_ns, Event::Start),
+        ];
+        let known = events
             .into_iter()
-            .flatten()
-            .min()
+            .filter_map(|(at_ns, event)| Some((at_ns?, event)));
+        known.filter(|(at_ns, _)| *at_ns < u64::MAX).min()
     }
 
     /// When the next byte that someone receives ends.
@@ -50,20 +68,19 @@ impl Bus {
         servos.chain(self.host.ear.ends_ns()).min()
     }
 
-    /// Bytes that end come before bytes that start then, so that an answer sees all of its question.
-    fn happen(&mut self, at_ns: u64) {
-        if self
-            .next_fault_ns()
-            .is_some_and(|fault_ns| fault_ns <= at_ns)
-        {
-            self.change_faults(at_ns);
-        } else if self.next_loads_ns <= at_ns {
-            self.next_loads_ns = at_ns + LOADS_NS;
-            self.load_servos(at_ns);
-        } else if self.next_end_ns().is_some_and(|end_ns| end_ns <= at_ns) {
-            self.receive(at_ns);
-        } else if let Some(queued) = self.to_send.pop() {
-            self.transmit(queued.0);
+    fn happen(&mut self, at_ns: u64, event: Event) {
+        match event {
+            Event::Fault => self.change_faults(at_ns),
+            Event::Loads => {
+                self.next_loads_ns = at_ns + LOADS_NS;
+                self.load_servos(at_ns);
+            }
+            Event::End => self.receive(at_ns),
+            Event::Start => {
+                if let Some(queued) = self.to_send.pop() {
+                    self.transmit(queued.0);
+                }
+            }
         }
     }
 
@@ -105,11 +122,16 @@ impl Bus {
             self.injected.corrupted_bytes += 1;
             self.change(&mut sent);
         }
-        if self.is_quiet() {
-            self.line.forget(sent.start_ns);
-        }
+        self.forget(sent.start_ns);
         self.line.put(sent);
         self.listen();
+    }
+
+    /// Lets go of bytes that have ended, which are needed only by those in the middle of a byte.
+    fn forget(&mut self, now_ns: u64) {
+        if self.next_end_ns().is_none() {
+            self.line.forget(now_ns);
+        }
     }
 
     /// Lets faults of packets act on a byte of the host. False if it vanishes.
@@ -135,11 +157,6 @@ impl Bus {
 
     pub(super) fn below(&mut self, limit: usize) -> usize {
         self.random.random_range(0..limit.max(1))
-    }
-
-    /// Whether nobody is in the middle of a byte.
-    fn is_quiet(&self) -> bool {
-        self.next_end_ns().is_none()
     }
 
     fn listen(&mut self) {
@@ -174,6 +191,7 @@ impl Bus {
                 self.answer(place, baud, now_ns, reply);
             }
         }
+        self.forget(now_ns);
         self.listen();
     }
 
@@ -209,17 +227,12 @@ impl Bus {
             return;
         }
         for byte in bytes {
-            let mut sent = Sent {
-                by: Party::Servo(place),
-                start_ns,
-                baud,
-                byte,
-            };
+            let mut sent = Sent::new(Party::Servo(place), start_ns, baud, byte);
             if fate.next() == Some(true) {
                 self.change(&mut sent);
             }
+            start_ns = sent.end_ns;
             self.queue(sent);
-            start_ns += byte_ns(baud);
         }
     }
 }

@@ -18,6 +18,7 @@ pub enum Party {
 pub struct Sent {
     pub by: Party,
     pub start_ns: u64,
+    pub end_ns: u64,
     pub baud: u32,
     pub byte: u8,
 }
@@ -36,13 +37,19 @@ pub fn byte_ns(baud: u32) -> u64 {
 }
 
 impl Sent {
-    pub fn end_ns(&self) -> u64 {
-        self.start_ns + byte_ns(self.baud)
+    pub fn new(by: Party, start_ns: u64, baud: u32, byte: u8) -> Self {
+        Self {
+            by,
+            start_ns,
+            end_ns: start_ns + byte_ns(baud),
+            baud,
+            byte,
+        }
     }
 
     /// Whether it holds the wire low at a time.
     fn is_low(&self, at_ns: u64) -> bool {
-        if !(self.start_ns..self.end_ns()).contains(&at_ns) {
+        if !(self.start_ns..self.end_ns).contains(&at_ns) {
             return false;
         }
         let bit = (at_ns - self.start_ns) * u64::from(self.baud) / 1_000_000_000;
@@ -55,6 +62,12 @@ impl Sent {
 
     /// The first time from `from_ns` on at which it holds the wire low.
     fn first_low(&self, from_ns: u64) -> Option<u64> {
+        if self.end_ns <= from_ns {
+            return None;
+        }
+        if from_ns <= self.start_ns {
+            return Some(self.start_ns);
+        }
         (0..BITS - 1)
             .map(|bit| {
                 let start = self.start_ns + bits_ns(bit, self.baud);
@@ -76,12 +89,12 @@ impl Line {
         self.sent.push_back(sent);
     }
 
-    /// Forgets bytes that ended before a time.
-    pub fn forget(&mut self, before_ns: u64) {
+    /// Forgets bytes that have ended at a time.
+    pub fn forget(&mut self, now_ns: u64) {
         while self
             .sent
             .front()
-            .is_some_and(|first| first.end_ns() < before_ns)
+            .is_some_and(|first| first.end_ns <= now_ns)
         {
             self.sent.pop_front();
         }
@@ -94,7 +107,7 @@ impl Line {
     fn is_busy_with(&self, party: Party, at_ns: u64) -> bool {
         self.sent
             .iter()
-            .any(|sent| sent.by == party && (sent.start_ns..sent.end_ns()).contains(&at_ns))
+            .any(|sent| sent.by == party && (sent.start_ns..sent.end_ns).contains(&at_ns))
     }
 
     /// The byte that has the wire for itself from `start_ns` on.
@@ -102,7 +115,7 @@ impl Line {
         let mut there = self
             .sent
             .iter()
-            .filter(|sent| sent.start_ns < end_ns && start_ns < sent.end_ns());
+            .filter(|sent| sent.start_ns < end_ns && start_ns < sent.end_ns);
         there.next().filter(|_| there.next().is_none())
     }
 }
@@ -129,6 +142,12 @@ impl Ear {
         }
     }
 
+    /// Listens from a time on, and forgets what it was receiving.
+    pub fn restart(&mut self, from_ns: u64) {
+        self.free_ns = from_ns;
+        self.receiving = None;
+    }
+
     /// Looks for the start of a byte if it receives none, after the wire has changed.
     pub fn listen(&mut self, line: &Line, baud: u32) {
         if self.receiving.is_some() {
@@ -148,7 +167,11 @@ impl Ear {
             }
             // Its own bytes: it listens again when they are over.
             let own = line.sent.iter().filter(|sent| sent.by == self.party);
-            from_ns = own.map(Sent::end_ns).max().unwrap_or(at_ns).max(at_ns + 1);
+            from_ns = own
+                .map(|sent| sent.end_ns)
+                .max()
+                .unwrap_or(at_ns)
+                .max(at_ns + 1);
         }
     }
 
@@ -209,12 +232,7 @@ mod tests {
     }
 
     fn sent(servo: usize, start_ns: u64, baud: u32, byte: u8) -> Sent {
-        Sent {
-            by: Party::Servo(servo),
-            start_ns,
-            baud,
-            byte,
-        }
+        Sent::new(Party::Servo(servo), start_ns, baud, byte)
     }
 
     #[test]

@@ -126,7 +126,7 @@ impl Bus {
                     _ => {}
                 }
             }
-            unit.set_power(has_power);
+            unit.set_power(has_power, now_ns);
             unit.servo.set_supply_v(if has_power { volts } else { 0.0 });
             unit.servo.set_ambient_c(ambient_c);
             unit.servo.set_load(load);

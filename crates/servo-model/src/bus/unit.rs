@@ -37,10 +37,11 @@ impl Unit {
     }
 
     /// Takes the power away or gives it back.
-    pub fn set_power(&mut self, has_power: bool) {
+    pub fn set_power(&mut self, has_power: bool, now_ns: u64) {
         if has_power && !self.has_power {
             self.servo.power_on();
             self.scanner.restart();
+            self.ear.restart(now_ns);
         }
         self.has_power = has_power;
     }
