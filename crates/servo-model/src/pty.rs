@@ -12,7 +12,7 @@ use std::{
     path::{Path, PathBuf},
     sync::{
         Arc, Mutex, MutexGuard, PoisonError,
-        atomic::{AtomicBool, Ordering},
+        atomic::{AtomicBool, AtomicU64, Ordering},
     },
     thread::{self, JoinHandle},
     time::{Duration, Instant},
@@ -57,6 +57,7 @@ pub struct Port {
     link: Option<PathBuf>,
     bus: Arc<Mutex<Bus>>,
     stop: Arc<AtomicBool>,
+    stall_ns: Arc<AtomicU64>,
     served: Option<JoinHandle<()>>,
 }
 
@@ -70,10 +71,12 @@ impl Port {
         let device = terminal.path().to_owned();
         let bus = Arc::new(Mutex::new(bus));
         let stop = Arc::new(AtomicBool::new(false));
+        let stall_ns = Arc::new(AtomicU64::new(0));
         let mut server = Server {
             terminal,
             bus: Arc::clone(&bus),
             stop: Arc::clone(&stop),
+            stall_ns: Arc::clone(&stall_ns),
             arrived: Vec::new(),
             waiting: Vec::new(),
         };
@@ -83,6 +86,7 @@ impl Port {
             link: None,
             bus,
             stop,
+            stall_ns,
             served: Some(served),
         })
     }
@@ -113,6 +117,11 @@ impl Port {
         self.link.as_deref().unwrap_or(&self.device)
     }
 
+    /// The longest time for which the computer had something else to do than the port. Answers were late by that much.
+    pub fn longest_stall(&self) -> Duration {
+        Duration::from_nanos(self.stall_ns.load(Ordering::Relaxed))
+    }
+
     /// The bus, to start faults and look at servos. The port stands still as long as it is held.
     pub fn bus(&self) -> MutexGuard<'_, Bus> {
         self.bus.lock().unwrap_or_else(PoisonError::into_inner)
@@ -137,6 +146,7 @@ struct Server {
     terminal: Terminal,
     bus: Arc<Mutex<Bus>>,
     stop: Arc<AtomicBool>,
+    stall_ns: Arc<AtomicU64>,
     arrived: Vec<u8>,
     waiting: Vec<u8>,
 }
@@ -146,8 +156,12 @@ impl Server {
         wake_in_time();
         let start = Instant::now();
         let start_ns = self.lock().now_ns();
+        let clock_ns = || start_ns + start.elapsed().as_nanos() as u64;
+        let mut wanted_ns = start_ns;
         while !self.stop.load(Ordering::Relaxed) {
-            let now_ns = start_ns + start.elapsed().as_nanos() as u64;
+            let now_ns = clock_ns();
+            let late_ns = now_ns.saturating_sub(wanted_ns);
+            self.stall_ns.fetch_max(late_ns, Ordering::Relaxed);
             let next_ns = match self.serve(now_ns) {
                 Ok(next_ns) => next_ns,
                 Err(error) => {
@@ -155,15 +169,15 @@ impl Server {
                     return;
                 }
             };
-            let now_ns = start_ns + start.elapsed().as_nanos() as u64;
-            match next_ns {
-                Some(at_ns) => {
-                    let due = Duration::from_nanos(at_ns.saturating_sub(now_ns));
-                    // Faults and views change what is due, so it never sleeps for long.
-                    self.terminal.wait(due.min(IDLE));
-                }
-                None => thread::sleep(IDLE),
+            // Faults and views change what is due, so it never sleeps for long.
+            let due_ns = next_ns.unwrap_or(u64::MAX);
+            let sleep = Duration::from_nanos(due_ns.saturating_sub(clock_ns())).min(IDLE);
+            if next_ns.is_some() {
+                self.terminal.wait(sleep);
+            } else {
+                thread::sleep(sleep);
             }
+            wanted_ns = due_ns.clamp(now_ns, now_ns + IDLE.as_nanos() as u64);
         }
     }
 
