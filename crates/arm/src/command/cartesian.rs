@@ -1,0 +1,204 @@
+//! Moves the tool with the keys.
+
+use std::{
+    collections::BTreeMap,
+    time::{Duration, Instant},
+};
+
+use anyhow::{Context, Result};
+use nalgebra::IsometryMatrix3;
+use robot_arm::{
+    controller::ServoController,
+    ik::{Mask, Solver},
+    kinematics::{Robot, create_so101_5dof},
+};
+
+use super::{connection::MovingArm, screen::Screen, stop::Stop};
+use crate::panel::{cartesian::CartesianPanel, key::Action};
+
+#[derive(clap::Args)]
+#[command(
+    after_help = "Keys: W/S forward and back, A/D left and right, R/F up and down, I/K pitch, J/L roll, O/P gripper; [ ] change \
+the step; 0 goes home; Space stops, twice it takes the torque away; X takes the torque away, Enter switches it on again; Esc \
+ends. The arm is an SO-101; its calibration has the homes of the model's zero pose.
+
+Example:
+  armctl cartesian --port /dev/ttyACM0 --arm left_arm.json"
+)]
+pub struct Cartesian {
+    #[command(flatten)]
+    arm: MovingArm,
+    /// Let the orientation come out as it likes
+    #[arg(long)]
+    place_only: bool,
+}
+
+const PERIOD: Duration = Duration::from_millis(20);
+/// No joint moves further in a period: 1.5 rad/s.
+const LARGEST_CHANGE_RAD: f64 = 0.03;
+const HOME_STEPS: u32 = 75;
+const HOME_INTERVAL: Duration = Duration::from_millis(20);
+const GRIPPER: &str = "gripper";
+
+struct Session {
+    arm: ServoController,
+    robot: Robot,
+    names: Vec<String>,
+    mask: Mask,
+    /// Joint angles that were sent last.
+    q: Vec<f64>,
+    gripper: Option<i32>,
+}
+
+impl Cartesian {
+    pub fn run(self) -> Result<()> {
+        let stop = Stop::catch()?;
+        let mut arm = self.arm.open()?;
+        arm.set_stop_flag(stop.flag());
+        let mask = if self.place_only {
+            Mask::POSITION
+        } else {
+            Mask::WITHOUT_YAW
+        };
+        let mut session = Session::new(arm, mask)?;
+        let mut panel = CartesianPanel::new(session.tool()?);
+        let mut screen = Screen::open()?;
+        session.arm.enable_torque()?;
+        let started = Instant::now();
+        while !stop.is_caught() {
+            for key in screen.keys()? {
+                let action = panel.press(key, started.elapsed());
+                if action == Action::End {
+                    return Ok(());
+                }
+                if let Err(error) = session.act(&mut panel, action) {
+                    panel.note = error.to_string();
+                }
+            }
+            if panel.is_engaged()
+                && let Err(error) = session.follow(&mut panel)
+            {
+                panel.note = error.to_string();
+            }
+            screen.draw(" armctl cartesian ", &session.lines(&panel)?)?;
+            std::thread::sleep(PERIOD);
+        }
+        Ok(())
+    }
+}
+
+impl Session {
+    fn new(arm: ServoController, mask: Mask) -> Result<Self> {
+        let robot = create_so101_5dof();
+        let names: Vec<String> = robot.joint_names().map(str::to_owned).collect();
+        let mut session = Self {
+            arm,
+            names,
+            robot,
+            mask,
+            q: Vec::new(),
+            gripper: None,
+        };
+        session.look()?;
+        Ok(session)
+    }
+
+    /// Takes the angles from the servos.
+    fn look(&mut self) -> Result<()> {
+        let positions = self.arm.read_servo_positions()?;
+        let home = self.arm.home_pose();
+        self.q = self
+            .robot
+            .read_joint_angles(&self.names, &home, &positions)
+            .context("the arm is no SO-101")?;
+        self.gripper = positions.get(GRIPPER).copied();
+        Ok(())
+    }
+
+    fn tool(&self) -> Result<IsometryMatrix3<f64>> {
+        Ok(self.robot.fkine(&self.q)?)
+    }
+
+    fn act(&mut self, panel: &mut CartesianPanel, action: Action) -> Result<()> {
+        match action {
+            Action::Hold => {
+                self.arm.hold()?;
+                "stopped".clone_into(&mut panel.note);
+            }
+            Action::Release => {
+                self.arm.release()?;
+                "no torque: Enter switches it on".clone_into(&mut panel.note);
+                return Ok(());
+            }
+            Action::Engage => self.arm.enable_torque()?,
+            Action::Home => self.arm.soft_move_to_home(HOME_STEPS, HOME_INTERVAL)?,
+            Action::Send => {
+                let steps = panel.take_gripper();
+                self.gripper = self.gripper.map(|now| now + steps);
+                return Ok(());
+            }
+            Action::Nothing | Action::End => return Ok(()),
+        }
+        self.look()?;
+        panel.set_target(self.tool()?);
+        Ok(())
+    }
+
+    /// Takes a step towards the target.
+    fn follow(&mut self, panel: &mut CartesianPanel) -> Result<()> {
+        let solver = Solver::default();
+        let solution = solver.follow(
+            &self.robot,
+            panel.target(),
+            &self.q,
+            self.mask,
+            LARGEST_CHANGE_RAD,
+        )?;
+        if !solution.success() {
+            panel.note = solution.reason();
+        }
+        self.q = solution.q;
+        let home = self.arm.home_pose();
+        let mut targets: BTreeMap<String, i32> =
+            self.robot.q_to_servo_targets(&self.q, &self.names, &home)?;
+        if let Some(steps) = self.gripper {
+            let steps = self.arm.limit_position(GRIPPER, steps)?;
+            self.gripper = Some(steps);
+            targets.insert(GRIPPER.to_owned(), steps);
+        }
+        self.arm.fast_move_to_pose(&targets, 0)?;
+        if let Some(warning) = self.arm.take_warnings().into_iter().next() {
+            panel.note = warning.to_string();
+        }
+        Ok(())
+    }
+
+    fn lines(&self, panel: &CartesianPanel) -> Result<Vec<String>> {
+        let place = |name: &str, pose: &IsometryMatrix3<f64>| {
+            let at = pose.translation.vector;
+            let (roll, pitch, yaw) = pose.rotation.euler_angles();
+            format!(
+                "{name:<8} x {:+.3}  y {:+.3}  z {:+.3} m   roll {:+.2}  pitch {:+.2}  yaw {:+.2} rad",
+                at.x, at.y, at.z, roll, pitch, yaw
+            )
+        };
+        let angles: Vec<String> = self.q.iter().map(|angle| format!("{angle:+.2}")).collect();
+        let (m, rad) = panel.step();
+        let torque = if panel.is_engaged() { "on" } else { "OFF" };
+        Ok(vec![
+            place("target", panel.target()),
+            place("tool", &self.tool()?),
+            format!("joints   {} rad", angles.join("  ")),
+            String::new(),
+            "W / S x   A / D y   R / F z   I / K pitch   J / L roll   O / P gripper".to_owned(),
+            format!(
+                "step {:.0} mm, {rad} rad ([ ] change it)   torque {torque}",
+                m * 1000.0
+            ),
+            "Space stops (twice: torque off)   X torque off   Enter torque on   0 home   Esc ends"
+                .to_owned(),
+            String::new(),
+            panel.note.clone(),
+        ])
+    }
+}
