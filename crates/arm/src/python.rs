@@ -1,6 +1,7 @@
 //! The door to Python. `python/jiling_arm` gives these classes the places where users look for them.
 
 mod chain;
+mod controller;
 mod numbers;
 mod robot;
 
@@ -12,6 +13,7 @@ mod _core {
     #[pymodule_export]
     use super::{
         chain::{PyDhLink, PyEt},
+        controller::{PyServoController, ServoError},
         robot::{PyRobot, create_so101_5dof},
     };
 }

@@ -112,3 +112,51 @@ class Robot:
 
 def create_so101_5dof() -> Robot:
     """The SO-101 without its gripper: five joints."""
+
+class ServoError(RuntimeError):
+    """A servo did not answer as it should. The others can still be asked."""
+
+class ServoController:
+    """An arm on a bus. Positions are steps, 4096 a turn, by the joint's name.
+
+    A port that fails raises ConnectionError, a servo that does not answer ServoError, and a wrong argument or calibration
+    ValueError. What was done otherwise than asked is a warning (UserWarning). Ctrl-C stops a motion where it is."""
+
+    def __new__(
+        cls,
+        port: str,
+        baudrate: int = 1000000,
+        config_path: str | PathLike[str] = "servo_config.json",
+        ending: str = "hold",
+    ) -> ServoController: ...
+    @property
+    def joint_names(self) -> list[str]: ...
+    @property
+    def home_pose(self) -> dict[str, int]: ...
+    @property
+    def has_torque(self) -> bool: ...
+    def move_all_home(self) -> None:
+        """As fast as the servos can, which can strike."""
+    def soft_move_to_home(self, step_count: int = 20, interval: float = 0.05) -> None:
+        """Over so many goals, interval seconds apart."""
+    def soft_move_to_pose(self, targets: dict[str, int], step_count: int = 20, interval: float = 0.05) -> None: ...
+    def fast_move_to_pose(self, targets: dict[str, int], speed: int = 0) -> None:
+        """All joints begin at the same moment. speed is in steps/s, and 0 is as fast as the servo can."""
+    def read_servo_positions(self) -> dict[str, int]: ...
+    def read_states(self) -> dict[str, dict[str, float]]:
+        """position_steps, speed_steps_s, load_permille, voltage_v, temperature_c and current_ma of each joint."""
+    def limit_position(self, name: str, steps: int) -> int:
+        """The target within the joint's limits, with a warning if it was not."""
+    def enable_torque(self) -> None:
+        """Without a jump: each joint's goal becomes the place where it is."""
+    def hold(self) -> None:
+        """The arm stops and stays."""
+    def release(self) -> None:
+        """Torque off: the arm falls."""
+    def recover(self, name: str) -> str:
+        """Brings a joint back that protects itself, and says what became of it. For a moment it has no torque."""
+    def reconnect(self, timeout: float = 10.0) -> None:
+        """Waits for a port that was pulled out, and opens it again."""
+    def close(self) -> None: ...
+    def __enter__(self) -> ServoController: ...
+    def __exit__(self, *_why: object) -> None: ...
