@@ -75,6 +75,7 @@ def errors():
     return answers
 
 
-arms = [of("so101", so101()), of("elementary", elementary())]
-arms += [of("puma560", Puma560()), of("stanford", Stanford()), of("panda", Panda())]
-print(json.dumps({"roboticstoolbox": roboticstoolbox.__version__, "arms": arms, "errors": errors()}))
+if __name__ == "__main__":
+    arms = [of("so101", so101()), of("elementary", elementary())]
+    arms += [of("puma560", Puma560()), of("stanford", Stanford()), of("panda", Panda())]
+    print(json.dumps({"roboticstoolbox": roboticstoolbox.__version__, "arms": arms, "errors": errors()}))
