@@ -23,7 +23,7 @@ const FINISH: Patience = Patience {
     window: 10,
     fraction: 1.0 - 1e-6,
 };
-/// One call in real time: some 20 µs.
+/// One call in real time, which has to end soon.
 const FOLLOW: Patience = Patience {
     iterations: 20,
     window: 5,
