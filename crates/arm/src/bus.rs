@@ -144,7 +144,8 @@ impl ServoBus {
         self.wire.set_baud(bps)?;
         self.timing.bps = bps;
         self.silent.clear();
-        Ok(())
+        // A servo of this speed heard noise before, and may wait for the rest of a frame.
+        Ok(self.free_receivers()?)
     }
 
     /// Opens the port again after it was lost, such as by a pulled plug.

@@ -40,7 +40,9 @@ impl ServoBus {
             }
             if number > 0 {
                 self.statistics.retried += 1;
-                self.free_receivers()?;
+                if number > 1 {
+                    self.free_receivers()?;
+                }
                 let until = self.wire.now() + self.retries.pause(number);
                 self.listen_until(until)?;
             }

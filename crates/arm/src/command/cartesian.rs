@@ -36,8 +36,8 @@ pub struct Cartesian {
 const PERIOD: Duration = Duration::from_millis(20);
 /// No joint moves further in a period: 1.5 rad/s.
 const LARGEST_CHANGE_RAD: f64 = 0.03;
-const HOME_STEPS: u32 = 75;
-const HOME_INTERVAL: Duration = Duration::from_millis(20);
+/// The gripper's steps in a period on the way home.
+const GRIPPER_STEP: i32 = 20;
 const GRIPPER: &str = "gripper";
 
 struct Session {
@@ -75,9 +75,12 @@ impl Cartesian {
                     panel.note = error.to_string();
                 }
             }
-            if panel.is_engaged()
-                && let Err(error) = session.follow(&mut panel)
-            {
+            let moved = match (panel.is_engaged(), panel.is_homing()) {
+                (false, _) => Ok(()),
+                (true, true) => session.go_home(&mut panel),
+                (true, false) => session.follow(&mut panel),
+            };
+            if let Err(error) = moved {
                 panel.note = error.to_string();
             }
             screen.draw(" armctl cartesian ", &session.lines(&panel)?)?;
@@ -131,13 +134,12 @@ impl Session {
                 return Ok(());
             }
             Action::Engage => self.arm.enable_torque()?,
-            Action::Home => self.arm.soft_move_to_home(HOME_STEPS, HOME_INTERVAL)?,
             Action::Send => {
                 let steps = panel.take_gripper();
                 self.gripper = self.gripper.map(|now| now + steps);
                 return Ok(());
             }
-            Action::Nothing | Action::End => return Ok(()),
+            Action::Nothing | Action::End | Action::Home => return Ok(()),
         }
         self.look()?;
         panel.set_target(self.tool()?);
@@ -158,6 +160,30 @@ impl Session {
             panel.note = solution.reason();
         }
         self.q = solution.q;
+        self.send(panel)
+    }
+
+    /// Takes a step towards the joints' homes.
+    fn go_home(&mut self, panel: &mut CartesianPanel) -> Result<()> {
+        let mut is_there = true;
+        for angle in &mut self.q {
+            is_there &= angle.abs() <= LARGEST_CHANGE_RAD;
+            *angle -= angle.clamp(-LARGEST_CHANGE_RAD, LARGEST_CHANGE_RAD);
+        }
+        let home = self.arm.home_pose().get(GRIPPER).copied();
+        if let (Some(steps), Some(home)) = (&mut self.gripper, home) {
+            *steps += (home - *steps).clamp(-GRIPPER_STEP, GRIPPER_STEP);
+            is_there &= *steps == home;
+        }
+        panel.set_target(self.tool()?);
+        if is_there {
+            panel.end_homing();
+        }
+        self.send(panel)
+    }
+
+    /// Sends joint angles and gripper.
+    fn send(&mut self, panel: &mut CartesianPanel) -> Result<()> {
         let home = self.arm.home_pose();
         let mut targets: BTreeMap<String, i32> =
             self.robot.q_to_servo_targets(&self.q, &self.names, &home)?;

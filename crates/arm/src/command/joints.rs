@@ -28,9 +28,6 @@ pub struct Joints {
 }
 
 const PERIOD: Duration = Duration::from_millis(40);
-/// A soft way home.
-const HOME_STEPS: u32 = 75;
-const HOME_INTERVAL: Duration = Duration::from_millis(20);
 
 impl Joints {
     pub fn run(self) -> Result<()> {
@@ -54,6 +51,10 @@ impl Joints {
                 if let Err(error) = act(&mut arm, &mut panel, action) {
                     panel.note = error.to_string();
                 }
+            }
+            let action = panel.advance();
+            if let Err(error) = act(&mut arm, &mut panel, action) {
+                panel.note = error.to_string();
             }
             errors = look(&mut arm, &mut panel, errors);
             screen.draw(" armctl joints ", &lines(&panel, &errors))?;
@@ -83,11 +84,7 @@ fn act(
             arm.enable_torque()?;
             panel.goals_from_positions();
         }
-        Action::Home => {
-            let home = arm.home_pose();
-            arm.soft_move_to_pose(&home, HOME_STEPS, HOME_INTERVAL)?;
-            panel.goals_from(&home);
-        }
+        Action::Home => panel.go(arm.home_pose()),
         Action::Nothing | Action::End => {}
     }
     Ok(())

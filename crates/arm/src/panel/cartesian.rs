@@ -19,6 +19,8 @@ pub struct CartesianPanel {
     size: usize,
     stop: StopKey,
     is_engaged: bool,
+    /// On the way home, which any key ends.
+    is_homing: bool,
     pub note: String,
 }
 
@@ -31,6 +33,7 @@ impl CartesianPanel {
             size: 1,
             stop: StopKey::default(),
             is_engaged: true,
+            is_homing: false,
             note: String::new(),
         }
     }
@@ -48,6 +51,15 @@ impl CartesianPanel {
         self.is_engaged
     }
 
+    pub fn is_homing(&self) -> bool {
+        self.is_homing
+    }
+
+    /// The arm is at home.
+    pub fn end_homing(&mut self) {
+        self.is_homing = false;
+    }
+
     /// Step of a key press, m and rad.
     pub fn step(&self) -> (f64, f64) {
         SIZES.get(self.size).copied().unwrap_or((0.001, 0.01))
@@ -60,6 +72,7 @@ impl CartesianPanel {
 
     pub fn press(&mut self, key: char, now: Duration) -> Action {
         self.note.clear();
+        self.is_homing = false;
         match key {
             ' ' => {
                 let action = self.stop.press(now);
@@ -76,7 +89,7 @@ impl CartesianPanel {
                 self.is_engaged = false;
                 return Action::Release;
             }
-            '0' if self.is_engaged => return Action::Home,
+            '0' if self.is_engaged => self.is_homing = true,
             '\x1b' => return Action::End,
             _ if !self.is_engaged => self.note = "no torque: Enter switches it on".to_owned(),
             _ => return self.moved(key),
@@ -139,6 +152,17 @@ mod tests {
         let mut panel = CartesianPanel::new(IsometryMatrix3::identity());
         panel.press('x', Duration::ZERO);
         panel.press('w', Duration::ZERO);
+        panel.press('0', Duration::ZERO);
         assert_eq!(panel.target(), &IsometryMatrix3::identity());
+        assert!(!panel.is_homing());
+    }
+
+    #[test]
+    fn any_key_ends_the_way_home() {
+        let mut panel = CartesianPanel::new(IsometryMatrix3::identity());
+        panel.press('0', Duration::ZERO);
+        assert!(panel.is_homing());
+        assert_eq!(panel.press(' ', Duration::ZERO), Action::Hold);
+        assert!(!panel.is_homing());
     }
 }

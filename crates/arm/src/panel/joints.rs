@@ -15,6 +15,8 @@ const PAIRS: [(char, char); 8] = [
     ('u', 'j'),
     ('i', 'k'),
 ];
+/// Steps of a goal in a period on the way home.
+const HOME_STEP: i32 = 40;
 /// Step sizes, in steps of the servo; 11 are a degree.
 const SIZES: [i32; 6] = [1, 5, 10, 20, 50, 100];
 
@@ -34,6 +36,8 @@ pub struct JointPanel {
     size: usize,
     stop: StopKey,
     is_engaged: bool,
+    /// Where the joints are on their way to, which any key ends.
+    way: Option<BTreeMap<String, i32>>,
     pub note: String,
 }
 
@@ -53,6 +57,7 @@ impl JointPanel {
             size: 2,
             stop: StopKey::default(),
             is_engaged: true,
+            way: None,
             note: String::new(),
         }
     }
@@ -92,15 +97,33 @@ impl JointPanel {
         }
     }
 
-    pub fn goals_from(&mut self, pose: &BTreeMap<String, i32>) {
+    /// Begins a soft way to a pose.
+    pub fn go(&mut self, pose: BTreeMap<String, i32>) {
+        self.way = Some(pose);
+    }
+
+    /// Takes the next step of a way. To be called once in a period.
+    pub fn advance(&mut self) -> Action {
+        let Some(way) = &self.way else {
+            return Action::Nothing;
+        };
+        let mut is_there = true;
         for row in &mut self.rows {
-            row.goal = pose.get(&row.name).copied().unwrap_or(row.goal);
+            let goal = way.get(&row.name).copied().unwrap_or(row.goal);
+            let goal = goal.clamp(row.least, row.most);
+            row.goal += (goal - row.goal).clamp(-HOME_STEP, HOME_STEP);
+            is_there &= row.goal == goal;
         }
+        if is_there {
+            self.way = None;
+        }
+        Action::Send
     }
 
     /// Takes a key.
     pub fn press(&mut self, key: char, now: Duration) -> Action {
         self.note.clear();
+        self.way = None;
         match key {
             ' ' => return self.stopped(now),
             '\n' if !self.is_engaged => {
@@ -198,5 +221,25 @@ mod tests {
         assert_eq!(panel.press('\n', Duration::ZERO), Action::Engage);
         assert_eq!(panel.press('q', Duration::ZERO), Action::Send);
         assert_eq!(panel.goals()["pan"], 1510);
+    }
+
+    #[test]
+    fn the_way_home_is_soft_and_any_key_ends_it() {
+        let mut panel = panel();
+        assert_eq!(panel.advance(), Action::Nothing);
+        assert_eq!(panel.press('0', Duration::ZERO), Action::Home);
+        panel.go(BTreeMap::from([
+            ("pan".to_owned(), 2148),
+            ("lift".to_owned(), 2048),
+        ]));
+        assert_eq!(panel.advance(), Action::Send);
+        assert_eq!((panel.goals()["pan"], panel.goals()["lift"]), (2088, 2055));
+        assert_eq!(panel.press(' ', Duration::ZERO), Action::Hold);
+        assert_eq!(panel.advance(), Action::Nothing);
+        panel.go(BTreeMap::from([("pan".to_owned(), 9000)]));
+        let steps = (0..100)
+            .take_while(|_| panel.advance() == Action::Send)
+            .count();
+        assert_eq!((panel.goals()["pan"], steps), (3000, 23));
     }
 }

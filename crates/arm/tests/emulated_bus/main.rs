@@ -3,5 +3,6 @@
 mod calibrating;
 mod complaints;
 mod controller;
+mod firmware;
 mod loops;
 mod wire;

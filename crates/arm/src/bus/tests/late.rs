@@ -21,14 +21,14 @@ fn position(request: &[u8], position: u16) -> Vec<u8> {
     answer(1, 0, &data)
 }
 
-/// The first answer comes 28 ms after its request: too late, after the second try has begun, and before the second answer. Both have the servo's id and a right checksum.
+/// The first answer comes 24 ms after its request: too late, after the second try has begun, and before the second answer. Both have the servo's id and a right checksum.
 #[test]
 fn a_late_answer_is_not_taken_for_the_next() {
     let mut number = 0;
     let (mut bus, _) = ScriptWire::bus(move |request| {
         number += 1;
         match number {
-            1 => vec![(ms(28), position(request, 111))],
+            1 => vec![(ms(24), position(request, 111))],
             _ => vec![(ms(3), position(request, 222))],
         }
     });
@@ -60,7 +60,7 @@ fn a_late_acknowledgement_confirms_no_other_write() {
     let (mut bus, sent) = ScriptWire::bus(move |request| {
         number += 1;
         match (number, request[4]) {
-            (1, 3) => vec![(ms(28), answer(1, 0, &[]))],
+            (1, 3) => vec![(ms(24), answer(1, 0, &[]))],
             // A servo answers in order: this comes after the late one.
             (_, 2) => vec![(ms(6), answer(1, 0, &vec![1; asked_bytes(request)]))],
             // The second write does not reach the servo; the third does.
