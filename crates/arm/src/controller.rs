@@ -54,6 +54,8 @@ struct Joint {
     plausible: Plausible,
     /// True while its goals are limited, which is warned of once.
     is_limited: bool,
+    /// It did not answer the last reading.
+    is_missing: bool,
 }
 
 /// An arm on a bus.
@@ -92,6 +94,7 @@ impl ServoController {
                 home: calibration.home(joint),
                 plausible: Plausible::default(),
                 is_limited: false,
+                is_missing: false,
             }
         };
         Self {

@@ -49,6 +49,10 @@ pub enum Warning {
     },
     #[error("{joint}: {alarms}")]
     Alarm { joint: String, alarms: String },
+    #[error(
+        "{joint} answers again, but has no torque, as its power was off: hold it, and switch torque on again (a new command does)"
+    )]
+    NoTorque { joint: String },
     #[error("{0}")]
     Mismatch(Mismatch),
 }

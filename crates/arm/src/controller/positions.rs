@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use super::{ControllerError, ServoController, Warning, plausible::are_one};
 use crate::bus::{
-    Alarms, Block, BlockReading, Cause, ServoError,
+    Alarms, Block, BlockReading, BusError, Cause, ServoError,
     register::{
         PRESENT_CURRENT, PRESENT_LOAD, PRESENT_POSITION, PRESENT_SPEED, PRESENT_TEMPERATURE,
-        PRESENT_VOLTAGE,
+        PRESENT_VOLTAGE, TORQUE_ENABLE,
     },
 };
 
@@ -54,7 +54,10 @@ impl ServoController {
                     Ok((name, steps)) => drop(positions.steps.insert(name, steps)),
                     Err(error) => positions.errors.push(error),
                 },
-                Err(error) => positions.errors.push(error),
+                Err(error) => {
+                    self.note_missing(place);
+                    positions.errors.push(error);
+                }
             }
         }
         Ok(positions)
@@ -79,6 +82,7 @@ impl ServoController {
             let reading = match reading {
                 Ok(reading) => reading,
                 Err(error) => {
+                    self.note_missing(place);
                     states.errors.push(error);
                     continue;
                 }
@@ -118,14 +122,38 @@ impl ServoController {
                         cause: Cause::Damaged,
                     }));
                 }
-                Err(crate::bus::BusError::Servo(error)) => return Ok(Err(error)),
+                Err(BusError::Servo(error)) => return Ok(Err(error)),
                 Err(error) => return Err(error.into()),
             }
         }
         joint.plausible.take(now, steps);
         let name = joint.name.clone();
+        if std::mem::take(&mut joint.is_missing) && self.has_torque {
+            self.look_for_torque(id, &name)?;
+        }
         self.note_alarms(&name, reading.alarms);
         Ok(Ok((name, steps)))
+    }
+
+    fn note_missing(&mut self, place: usize) {
+        if let Some(joint) = self.joints.get_mut(place) {
+            joint.is_missing = true;
+        }
+    }
+
+    /// A servo that was without power has no torque. It gets none by itself, as somebody may have a hand at its plug.
+    fn look_for_torque(&mut self, id: u8, joint: &str) -> Result<(), ControllerError> {
+        let is_off = match self.bus.read(id, TORQUE_ENABLE) {
+            Ok(torque) => torque.value == 0,
+            // It will be missing in the next reading.
+            Err(BusError::Servo(_)) => false,
+            Err(error) => return Err(error.into()),
+        };
+        if is_off {
+            let joint = joint.to_owned();
+            self.warnings.push(Warning::NoTorque { joint });
+        }
+        Ok(())
     }
 
     /// Makes a warning of alarms, unless the same one waits already.

@@ -46,6 +46,7 @@ fn one_bad_packet_is_asked_for_again() {
 fn a_joint_without_cable_leaves_the_others_and_comes_back() {
     let emulated = Emulated::arm(42);
     let mut arm = emulated.controller();
+    arm.enable_torque().unwrap();
     let gone = emulated.wire().bus().start(Fault::Gone { servo: 5 });
     for _ in 0..50 {
         let positions = arm.read_positions().unwrap();
@@ -55,6 +56,12 @@ fn a_joint_without_cable_leaves_the_others_and_comes_back() {
     emulated.wire().bus().end(gone);
     arm.bus().wait(Duration::from_secs(1)).unwrap();
     assert_eq!(arm.read_positions().unwrap().steps.len(), 6);
+    let joint = "gripper".to_owned();
+    assert_eq!(arm.take_warnings(), [Warning::NoTorque { joint }]);
+    assert!(
+        !emulated.view()[5].has_torque,
+        "nobody gave it torque unasked"
+    );
 }
 
 /// lerobot #1110, #3394: a motor is not found, because of its baud rate or id.
