@@ -18,6 +18,7 @@ mod release;
 mod scan;
 mod screen;
 mod set_id;
+mod sim;
 mod stop;
 mod teleoperate;
 
@@ -27,6 +28,7 @@ pub const EXAMPLES: &str = "Examples:
   armctl set-id --port /dev/ttyACM0 --from 1 --to 3
   armctl calibrate --port /dev/ttyACM0 --out left_arm.json
   armctl joints --port /dev/ttyACM0 --arm left_arm.json
+  armctl sim --at /tmp/arm                        emulated servos, to try all of this without hardware
 See docs/arm.md for the first hour.";
 
 #[derive(clap::Subcommand)]
@@ -61,6 +63,8 @@ pub enum Command {
     Play(play::Play),
     /// Let one arm follow another
     Teleoperate(teleoperate::Teleoperate),
+    /// Start an arm of emulated servos behind a serial port of its own
+    Sim(sim::Sim),
     /// Measure the bus, and the speed of inverse kinematics
     Bench(bench::Bench),
 }
@@ -83,6 +87,7 @@ impl Command {
             Self::Record(command) => command.run(),
             Self::Play(command) => command.run(),
             Self::Teleoperate(command) => command.run(),
+            Self::Sim(command) => command.run(),
             Self::Bench(command) => command.run(),
         }
     }

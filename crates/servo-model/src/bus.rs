@@ -193,7 +193,9 @@ impl Bus {
 
     /// Starts a fault now.
     pub fn start(&mut self, fault: Fault) -> FaultId {
-        self.schedule(fault, self.now_ns, u64::MAX)
+        let id = self.schedule(fault, self.now_ns, u64::MAX);
+        self.change_faults(self.now_ns);
+        id
     }
 
     /// Starts a fault at a time and ends it at another, ns. A fault of a servo that is not there does nothing.
@@ -210,6 +212,7 @@ impl Bus {
         for fault in self.faults.iter_mut().filter(|fault| fault.id == id) {
             fault.to_ns = self.now_ns;
         }
+        self.change_faults(self.now_ns);
     }
 
     /// Faults that are in force.

@@ -64,14 +64,22 @@ pub fn so101_servos(version: Version) -> Vec<Servo> {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct So101;
 
+impl So101 {
+    /// Where the arm is for the angles of its shafts, steps: the angle of the pan, rad, and in the plane of the arm the lift axis,
+    /// the elbow, the wrist and the gripper's end, forward and up from the lift axis, m.
+    pub fn pose(self, shaft_steps: [f64; 6]) -> (f64, [(f64, f64); 4]) {
+        let [pan, lift, elbow, wrist, ..] = shaft_steps.map(angle_rad);
+        (pan, points([lift, elbow, wrist]))
+    }
+}
+
 impl Body for So101 {
     fn loads(&self, shaft_steps: &[f64]) -> Vec<Load> {
-        let mut angles = [0.0; 6];
-        for (angle, shaft) in angles.iter_mut().zip(shaft_steps) {
-            *angle = angle_rad(*shaft);
+        let mut steps = [ZERO_STEPS; 6];
+        for (known, shaft) in steps.iter_mut().zip(shaft_steps) {
+            *known = *shaft;
         }
-        let [_, lift, elbow, wrist, ..] = angles;
-        let points = points([lift, elbow, wrist]);
+        let (_, points) = self.pose(steps);
         let mut loads = vec![Load::default(); shaft_steps.len()];
         for (joint, load) in loads.iter_mut().enumerate() {
             *load = match joint {
