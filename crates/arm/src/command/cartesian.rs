@@ -9,7 +9,7 @@ use anyhow::{Context, Result};
 use nalgebra::IsometryMatrix3;
 use robot_arm::{
     controller::ServoController,
-    ik::{Mask, Solver},
+    ik::{Mask, Outcome, Solver},
     kinematics::{Robot, create_so101_5dof},
 };
 
@@ -159,7 +159,12 @@ impl Session {
         if !solution.success() {
             panel.note = solution.reason();
         }
+        let is_at_its_end = !solution.success() && solution.outcome != Outcome::OnTheWay;
         self.q = solution.q;
+        if is_at_its_end {
+            // Else the way back would begin with as many key presses as went beyond the reach.
+            panel.set_target(self.tool()?);
+        }
         self.send(panel)
     }
 
