@@ -106,10 +106,6 @@ impl ServoBus {
         self.wire.name()
     }
 
-    pub fn retries(&self) -> Retries {
-        self.retries
-    }
-
     pub fn set_retries(&mut self, retries: Retries) {
         self.retries = retries;
     }
