@@ -4,7 +4,7 @@ use anyhow::Result;
 use robot_arm::{
     bus::{
         Block, ServoBus,
-        register::{GOAL_POSITION, PRESENT_POSITION, Register},
+        register::{GOAL_POSITION, PRESENT_POSITION, RETURN_DELAY, Register},
     },
     ik::{self, Mask},
     kinematics::create_so101_5dof,
@@ -15,8 +15,8 @@ use super::{connection::Port, output::say};
 
 #[derive(clap::Args)]
 #[command(
-    after_help = "The bus is measured if there is a --port. Each loop reads the positions of all servos and writes them back as \
-goals, so that nothing moves; the torque stays as it is.
+    after_help = "The bus is measured if there is a --port. Each loop reads the positions of all servos and writes \
+the goals that they have, so that nothing moves; the torque stays as it is.
 
 Examples:
   armctl bench --json
@@ -91,28 +91,21 @@ impl Bench {
     }
 
     fn bus(&self, bus: &mut ServoBus) -> Result<BusFigures> {
+        let mut goals = Vec::new();
         for id in &self.ids {
             // The servo's own delay is part of its time-out.
-            bus.read(*id, robot_arm::bus::register::RETURN_DELAY)?;
+            bus.read(*id, RETURN_DELAY)?;
+            goals.push((*id, [(GOAL_POSITION, bus.read(*id, GOAL_POSITION)?.value)]));
         }
+        let goals: Vec<(u8, &[(Register, i32)])> =
+            goals.iter().map(|(id, goal)| (*id, &goal[..])).collect();
         let before = bus.now();
         let (mut loops, mut incomplete) = (0, 0);
         let mut elapsed_s = 0.0;
         while elapsed_s < self.seconds {
             let readings = bus.sync_read(&self.ids, Block::from(PRESENT_POSITION))?;
-            let goal = |(id, reading): (&u8, &Result<robot_arm::bus::BlockReading, _>)| {
-                let steps = reading.as_ref().ok()?.value(PRESENT_POSITION)?;
-                Some((*id, [(GOAL_POSITION, steps)]))
-            };
-            let goals: Vec<_> = self.ids.iter().zip(&readings).filter_map(goal).collect();
-            incomplete += u64::from(goals.len() < self.ids.len());
-            let values: Vec<(u8, &[(Register, i32)])> = goals
-                .iter()
-                .map(|(id, values)| (*id, &values[..]))
-                .collect();
-            if !values.is_empty() {
-                bus.sync_write(&values)?;
-            }
+            incomplete += u64::from(readings.iter().any(Result::is_err));
+            bus.sync_write(&goals)?;
             loops += 1;
             elapsed_s = (bus.now() - before).as_secs_f64();
         }
