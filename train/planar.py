@@ -22,7 +22,7 @@ ROTORS_KGM2, WHEELS_KGM2, LEGS_KGM2, HIPS_KGM2 = 0.019, 0.0024, 0.006, 0.0072
 SPIN_KGM2 = ROTORS_KGM2 + WHEELS_KGM2
 # Of the legs.
 HALF_GAP_M, THIGH_M, SHANK_M = 0.05, 0.12, 0.22
-WHEEL_NM, HIP_NM = 2.4, 5.0
+WHEEL_NM, HIP_NM = 4.5, 5.0
 WHEEL_RPS = 33.0
 # Speed of slip at which a tyre holds as much as it can.
 SLIP_MPS = 0.08

@@ -19,7 +19,7 @@ import planar
 from evolution import Evolution
 
 # N·m/rad, N·m·s/rad of a hip, N·m·s/rad of a wheel: rl_kp and rl_kd of `policy/fivebar/flat/config.yaml`.
-GAINS = (40.0, 1.0, 0.1)
+GAINS = (40.0, 1.0, 0.3)
 STOP_RPS, TILT_RAD = 31.5, 1.0
 # name: guess, spread
 FACTORS = {

@@ -18,8 +18,8 @@ HIPS = ["left_front_hip", "left_rear_hip", "right_front_hip", "right_rear_hip"]
 WHEELS = ["left_wheel", "right_wheel"]
 # policy/fivebar: default angles, gains, limits of the firmware in N m, scales.
 DEFAULT_RAD = numpy.array([0.7, -0.7, 0.7, -0.7])
-HIP_KP, HIP_KD, WHEEL_KD = 40.0, 1.0, 0.1
-LIMITS_NM = numpy.array([5.0] * 4 + [2.4] * 2)
+HIP_KP, HIP_KD, WHEEL_KD = 40.0, 1.0, 0.3
+LIMITS_NM = numpy.array([5.0] * 4 + [4.5] * 2)
 # Wheels faster than this read so on the PC link.
 FASTEST_RPS = 33.0
 CLIP = numpy.array([8.0] * 6)

@@ -13,7 +13,7 @@ use robot_plant::{
     world::{PlantKind, RemoteInput, WorldConfig},
 };
 use robot_policy::{
-    PolicyDescription,
+    Drive, PolicyDescription,
     action::Target,
     machine::{Machine, Phase, Timing},
 };
@@ -60,11 +60,12 @@ impl Specimen {
         let latency_ms = numbers.random_range(LATENCY_MS[0]..=LATENCY_MS[1]);
         let mut between = |most: f64| numbers.random_range(-most..most);
         let tilt_rad = TILT_RAD.map(&mut between);
-        let mut sitting = power_on(&robots, seed, Start::Sitting);
+        let power_on = |start| power_on(&robots, policy, seed, start);
+        let mut sitting = power_on(Start::Sitting);
         arm(&mut sitting, seed, latency_ms, None)?;
         take_default_pose(&mut sitting, policy)?;
         check_armed(&sitting, seed)?;
-        let mut standing = power_on(&robots, seed, Start::Standing);
+        let mut standing = power_on(Start::Standing);
         let held = tilted(&upright(&robots, seed), &robots.robot.wheels, tilt_rad);
         arm(&mut standing, seed, latency_ms, Some(&lifted(&held)))?;
         Ok(Self {
@@ -106,7 +107,8 @@ impl Specimen {
     }
 }
 
-fn power_on(robots: &Robots, seed: u64, start: Start) -> Robot {
+/// Boots a robot whose wheels may have the current that the policy wants, as far as the robot's file allows it.
+fn power_on(robots: &Robots, policy: &PolicyDescription, seed: u64, start: Start) -> Robot {
     let world = WorldConfig {
         plant: PlantKind::Free,
         robot: Arc::clone(&robots.robot),
@@ -115,7 +117,16 @@ fn power_on(robots: &Robots, seed: u64, start: Start) -> Robot {
         variation: robots.variation(seed),
         ..WorldConfig::default()
     };
-    Robot::in_world(world, robots.settings()).expect("no recording is loaded")
+    let mut settings = robots.settings();
+    let wheels = &robots.robot.wheels;
+    let wanted_nm = policy.joints.iter().filter(|it| it.drive == Drive::Speed);
+    let wanted_nm = wanted_nm.fold(0.0, |most, it| it.torque_limit_nm.max(most));
+    let wanted_a = f64::from(wanted_nm) / wheels.torque_nm_per_a;
+    let limit_a = wanted_a
+        .max(wheels.current_limit_a)
+        .min(wheels.max_current_a);
+    settings.wheel_ctrl.current_limit_ma = (limit_a * 1e3) as f32;
+    Robot::in_world(world, settings).expect("no recording is loaded")
 }
 
 /// The robot on its wheels, legs at the middle of their range.

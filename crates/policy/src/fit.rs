@@ -86,14 +86,32 @@ fn gains(joint: &Joint, robot: &Robot) -> Option<String> {
 }
 
 fn torque(joint: &Joint, robot: &Robot) -> Option<String> {
-    let most_nm = match joint.drive {
-        Drive::Position => robot.joints.torque_limit_nm,
-        Drive::Speed => robot.wheels.current_limit_a * robot.wheels.torque_nm_per_a,
-    } as f32;
     let limit_nm = joint.torque_limit_nm;
-    (limit_nm > 1.001 * most_nm).then(|| {
+    let is_beyond = |most_nm: f64| limit_nm > 1.001 * most_nm as f32;
+    let beyond = |most_nm: f64| {
         format!("torque_limits has {limit_nm} N·m, and the robot as delivered gives {most_nm:.1}")
-    })
+    };
+    let wheels = &robot.wheels;
+    let [delivered_nm, most_nm] = match joint.drive {
+        Drive::Position => [robot.joints.torque_limit_nm; 2],
+        Drive::Speed => {
+            [wheels.current_limit_a, wheels.max_current_a].map(|it| it * wheels.torque_nm_per_a)
+        }
+    };
+    if is_beyond(most_nm) {
+        Some(format!(
+            "{}, never more than {most_nm:.1}",
+            beyond(delivered_nm)
+        ))
+    } else if is_beyond(delivered_nm) {
+        let wanted_ma = 1e3 * f64::from(limit_nm) / wheels.torque_nm_per_a;
+        let cure = format!(
+            "robotctl tune --can can0 set wheel-controller.current-limit-ma {wanted_ma:.0}"
+        );
+        Some(format!("{}: `{cure}`", beyond(delivered_nm)))
+    } else {
+        None
+    }
 }
 
 #[cfg(test)]
@@ -146,14 +164,25 @@ mod tests {
 
     #[test]
     fn a_torque_that_the_robot_does_not_give_is_worth_a_look() {
-        let mut policy = testing::policy();
-        policy.joints[4].torque_limit_nm = 10.0;
-        let faults = faults(&policy, &testing::robot());
-        let text = "torque_limits has 10 N·m, and the robot as delivered gives 2.4";
-        let of_wheel = faults.iter().find(|it| it.joint == Some(4));
-        assert_eq!(
-            of_wheel.map(|it| (it.text.as_str(), it.is_error)),
-            Some((text, false))
-        );
+        let delivered = "and the robot as delivered gives";
+        for (joint, limit_nm, text) in [
+            (0, 10.0, "5.0, never more than 5.0"),
+            (4, 10.0, "2.4, never more than 4.5"),
+            (
+                4,
+                4.5,
+                "2.4: `robotctl tune --can can0 set wheel-controller.current-limit-ma 15000`",
+            ),
+        ] {
+            let mut policy = testing::policy();
+            policy.joints[joint].torque_limit_nm = limit_nm;
+            let faults = faults(&policy, &testing::robot());
+            let of_joint = faults.iter().find(|it| it.joint == Some(joint));
+            let text = format!("torque_limits has {limit_nm} N·m, {delivered} {text}");
+            assert_eq!(
+                of_joint.map(|it| (it.text.as_str(), it.is_error)),
+                Some((text.as_str(), false))
+            );
+        }
     }
 }
