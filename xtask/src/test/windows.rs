@@ -8,8 +8,10 @@ use crate::{host_program::HOST_PROFILE, tool, toolchain};
 /// This target needs no Microsoft compiler: its core library is enough to check code.
 const TARGET: &str = "x86_64-pc-windows-gnu";
 /// Packages that work on Windows (docs/platforms.md).
-const PACKAGES: [&str; 8] = [
+const PACKAGES: [&str; 10] = [
     "robotctl",
+    "robot-arm",
+    "robot-serial-port",
     "robot-replay",
     "robot-chart",
     "robot-app",
