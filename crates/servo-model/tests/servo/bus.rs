@@ -102,7 +102,7 @@ fn a_ping_of_all_is_answered_by_all() {
 #[test]
 fn a_broadcast_write_is_done_by_all_and_answered_by_none() {
     let mut host = three();
-    assert_eq!(host.raw(&frame(0xFE, 3, &[40, 1])), []);
+    assert_eq!(host.raw(&frame(0xFE, 3, &[40, 1])), [0_u8; 0]);
     assert!(host.wire.bus().view().iter().all(|view| view.has_torque));
 }
 
@@ -142,7 +142,7 @@ fn a_delayed_answer_comes_after_the_hosts_patience() {
         by_ns: 20_000_000,
     };
     let late = host.wire.bus().start(late);
-    assert_eq!(host.raw(&frame(1, 1, &[])), []);
+    assert_eq!(host.raw(&frame(1, 1, &[])), [0_u8; 0]);
     host.wire.bus().end(late);
     host.wait_s(0.1);
     // It is still there when the next is asked.
@@ -154,7 +154,7 @@ fn a_delayed_answer_comes_after_the_hosts_patience() {
 fn a_lost_byte_costs_the_next_request_as_well() {
     let mut host = three();
     let cut = &frame(1, 2, &[56, 2])[..7];
-    assert_eq!(host.raw(cut), []);
+    assert_eq!(host.raw(cut), [0_u8; 0]);
     assert_eq!(host.ask(1, 1, &[]), None);
     assert_eq!(host.ask(1, 1, &[]), Some((0, vec![])));
 }

@@ -85,9 +85,9 @@ fn a_new_baud_rate_is_in_force_after_the_answer_that_still_has_the_old_one() {
 fn at_response_level_zero_only_ping_and_read_are_answered() {
     let mut host = Host::with_one();
     host.write(1, RESPONSE_LEVEL, &[0]);
-    assert_eq!(host.raw(&frame(1, 3, &[TORQUE, 1])), []);
-    assert_eq!(host.raw(&frame(1, 4, &[TORQUE, 0])), []);
-    assert_eq!(host.raw(&frame(1, 5, &[])), []);
+    assert_eq!(host.raw(&frame(1, 3, &[TORQUE, 1])), [0_u8; 0]);
+    assert_eq!(host.raw(&frame(1, 4, &[TORQUE, 0])), [0_u8; 0]);
+    assert_eq!(host.raw(&frame(1, 5, &[])), [0_u8; 0]);
     assert_eq!(host.ask(1, 1, &[]), Some((0, vec![])));
     assert_eq!(host.read_u8(1, TORQUE), 0);
 }
@@ -101,7 +101,11 @@ fn a_registered_write_waits_for_action() {
         assert_eq!(host.read_u16(id, GOAL), 2048);
         assert_eq!(host.read_u8(id, 64), 1);
     }
-    assert_eq!(host.raw(&frame(0xFE, 5, &[])), [], "nobody answers to all");
+    assert_eq!(
+        host.raw(&frame(0xFE, 5, &[])),
+        [0_u8; 0],
+        "nobody answers to all"
+    );
     for id in 1..=2 {
         assert_eq!(host.read_u16(id, GOAL), 1024);
         assert_eq!(host.read_u8(id, 64), 0);
