@@ -4,8 +4,6 @@
 //! other at the baud rate that the program has set, and no byte of a servo can be read before its last bit has passed. The host's
 //! scheduler can only make them later.
 
-mod terminal;
-
 use std::{
     fs, io,
     os::unix::fs::symlink,
@@ -18,11 +16,13 @@ use std::{
     time::{Duration, Instant},
 };
 
+use robot_pseudo_terminal::Terminal;
 use thiserror::Error;
 
 use crate::bus::Bus;
-use terminal::Terminal;
 
+/// Baud rate until a program sets another.
+const DEFAULT_BAUD: u32 = 1_000_000;
 /// Bytes taken from the program in one look.
 const READ: u64 = 4096;
 /// Bytes that wait for the program; more are lost, as in an adapter.
@@ -68,6 +68,9 @@ impl Port {
     /// The system has no pseudo-terminal.
     pub fn open(bus: Bus) -> Result<Self, PortError> {
         let terminal = Terminal::open().map_err(PortError::Terminal)?;
+        terminal
+            .set_baud(DEFAULT_BAUD)
+            .map_err(PortError::Terminal)?;
         let device = terminal.path().to_owned();
         let bus = Arc::new(Mutex::new(bus));
         let stop = Arc::new(AtomicBool::new(false));
@@ -173,7 +176,8 @@ impl Server {
             let due_ns = next_ns.unwrap_or(u64::MAX);
             let sleep = Duration::from_nanos(due_ns.saturating_sub(clock_ns())).min(IDLE);
             if next_ns.is_some() {
-                self.terminal.wait(sleep);
+                // What went wrong here goes wrong again when it reads, and is said there.
+                let _ = self.terminal.wait(sleep);
             } else {
                 thread::sleep(sleep);
             }

@@ -6,7 +6,6 @@ mod lawicel;
 mod link_port;
 mod lockstep;
 mod slcan_port;
-mod terminal;
 
 pub use link_port::{LinkPort, LinkStats};
 pub use slcan_port::SlcanPort;

@@ -8,8 +8,9 @@ use std::{
 };
 
 use robot_plant::{time::Ps, world::World};
+use robot_pseudo_terminal::Terminal;
 
-use super::{lockstep::Lockstep, terminal::Terminal};
+use super::lockstep::Lockstep;
 
 /// Limit of bytes that wait for a program that reads too slowly, 90 ms of a full line.
 const WAITING: usize = 4 * 1024;

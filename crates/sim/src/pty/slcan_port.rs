@@ -7,11 +7,11 @@ use robot_plant::{
     time::{MS, Ps},
     world::{CanBusId, World},
 };
+use robot_pseudo_terminal::Terminal;
 
 use super::{
     frame_text,
     lawicel::{self, Lawicel, Request, flags},
-    terminal::Terminal,
 };
 use crate::can_port::{CanDevice, CanPort, PortStats};
 

@@ -1,4 +1,8 @@
-//! The emulator's end of a pseudo-terminal. A tool on the PC uses the other end as a serial device.
+//! Our end of a pseudo-terminal. A tool on the PC uses the other end as a serial device.
+//!
+//! Windows has none: there this crate is empty.
+
+#![cfg(unix)]
 
 use std::{
     ffi::OsStr,
@@ -47,6 +51,18 @@ impl Terminal {
             ours: File::from(ours),
             path,
         })
+    }
+
+    /// Sets the baud rate that tools find, b/s.
+    pub fn set_baud(&self, baud: u32) -> io::Result<()> {
+        let mut settings = tcgetattr(&self.ours)?;
+        settings.set_speed(baud)?;
+        Ok(tcsetattr(&self.ours, OptionalActions::Now, &settings)?)
+    }
+
+    /// The baud rate that a tool has set, b/s.
+    pub fn baud(&self) -> io::Result<u32> {
+        Ok(tcgetattr(&self.ours)?.output_speed())
     }
 
     /// Path of the device that a tool opens.
