@@ -1,6 +1,6 @@
 //! One descent: from a start to where the error is least nearby.
 
-use nalgebra::{Cholesky, SVector};
+use nalgebra::{Cholesky, SMatrix, SVector};
 
 use super::problem::{Point, Problem};
 
@@ -59,27 +59,60 @@ pub(super) fn descend<const N: usize>(
 }
 
 /// Where the next step leads, if the damped curvature can be inverted.
+///
+/// It goes straight to what the curvature says is best until a joint is at its limit. That joint stays there, and the others go on
+/// to what is best beside it. A step that is only cut off at the limits leads astray, as each joint of it relies on the others.
 #[inline]
 fn step<const N: usize>(
     problem: &Problem<'_, N>,
     here: &Point<N>,
     damping: f64,
 ) -> Option<SVector<f64, N>> {
-    let mut down = here.down();
+    let down = here.down();
     let mut curvature = here.curvature();
-    let held = problem.held(here, &down);
     let damping = damping * here.cost + LEAST_DAMPING;
-    for (joint, held) in held.into_iter().enumerate() {
+    for joint in 0..N {
         curvature[(joint, joint)] += damping;
-        if held {
-            curvature.row_mut(joint).fill(0.0);
-            curvature.column_mut(joint).fill(0.0);
-            curvature[(joint, joint)] = 1.0;
-            down[joint] = 0.0;
-        }
     }
-    let mut step = down;
-    Cholesky::new(curvature)?.solve_mut(&mut step);
     let longest = SVector::repeat(LONGEST_STEP);
-    Some(problem.within(here.q + step.sup(&-longest).inf(&longest)))
+    let [least, most] = [-longest, longest].map(|step| problem.within(here.q + step) - here.q);
+    let mut step = SVector::zeros();
+    let mut stopped = problem.held(here, &down).map(|held| held.then_some(0.0));
+    loop {
+        let rest = beside(&curvature, &down, &stopped)? - step;
+        let mut part = 1.0;
+        let mut first = None;
+        for joint in 0..N {
+            let room = if rest[joint] < 0.0 { least } else { most }[joint] - step[joint];
+            if stopped[joint].is_none() && rest[joint] * part / room > 1.0 {
+                part = room / rest[joint];
+                first = Some(joint);
+            }
+        }
+        step += rest * part;
+        let Some(first) = first else {
+            return Some(problem.within(here.q + step));
+        };
+        stopped[first] = Some(step[first]);
+    }
+}
+
+/// The best step in which some joints move as far as is said.
+#[inline]
+fn beside<const N: usize>(
+    curvature: &SMatrix<f64, N, N>,
+    down: &SVector<f64, N>,
+    stopped: &[Option<f64>; N],
+) -> Option<SVector<f64, N>> {
+    let (mut curvature, mut step) = (*curvature, *down);
+    for (joint, change) in stopped.iter().enumerate() {
+        let Some(change) = *change else { continue };
+        step -= curvature.column(joint) * change;
+        curvature.row_mut(joint).fill(0.0);
+        curvature.column_mut(joint).fill(0.0);
+        curvature[(joint, joint)] = 1.0;
+        step[joint] = change;
+    }
+    Cholesky::new(curvature)?.solve_mut(&mut step);
+    Some(step)
 }

@@ -4,7 +4,7 @@ use nalgebra::Translation3;
 use proptest::prelude::*;
 use robot_arm::{
     ik::{IkError, Mask, Outcome, Solver},
-    kinematics::create_so101_5dof,
+    kinematics::{Robot, create_so101_5dof},
 };
 use robot_test_support::Random;
 
@@ -63,6 +63,46 @@ fn a_far_target_is_reached_in_steps() {
         arrived >= 80,
         "{arrived} of 100: some have a limit in the way"
     );
+}
+
+/// What is said to be out of reach must be: small moves within the limits all arrive, whichever joints they need.
+#[test]
+fn every_small_move_arrives() {
+    let robot = create_so101_5dof();
+    let mut random = Random::new(16);
+    for mask in [Mask::POSE, Mask::WITHOUT_YAW, Mask::POSITION] {
+        for largest_change in [0.003, 0.03, 0.1] {
+            let arrived = (0..1000)
+                .filter(|_| small_move_arrives(&robot, mask, largest_change, &mut random))
+                .count();
+            assert!(
+                arrived >= 997,
+                "{arrived} of 1000 with {mask:?}, {largest_change} rad a call"
+            );
+        }
+    }
+}
+
+/// Asks for a pose of joint values that are up to three calls away.
+fn small_move_arrives(robot: &Robot, mask: Mask, largest_change: f64, random: &mut Random) -> bool {
+    let mut q = any_values(robot, random);
+    let joints = robot.joints().iter().zip(&q);
+    let goal: Vec<f64> = joints
+        .map(|(joint, q)| {
+            let goal = q + 3.0 * largest_change * random.between(-1.0, 1.0);
+            goal.clamp(joint.lower(), joint.upper())
+        })
+        .collect();
+    let target = robot.fkine(&goal).expect("a pose");
+    for _ in 0..20 {
+        let solution = Solver::default().follow(robot, &target, &q, mask, largest_change);
+        let solution = solution.expect("a sound question");
+        q = solution.q;
+        if solution.outcome != Outcome::OnTheWay {
+            return solution.outcome == Outcome::Converged;
+        }
+    }
+    false
 }
 
 #[test]
