@@ -1,16 +1,12 @@
 //! How many poses are solved, and how quickly.
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use super::{IkError, Mask, Solver};
 use crate::kinematics::Robot;
-
-/// Times that each pose is solved. The solver does the same each time, and the shortest one is its own: in the others the
-/// computer did something else as well.
-const REPEATS: usize = 3;
 
 /// What [`measure`] found.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -51,16 +47,10 @@ pub fn measure(
     for _ in 0..poses {
         let target = robot.fkine(&draw())?;
         let q0 = draw();
-        let mut shortest = Duration::MAX;
-        let mut success = false;
-        for _ in 0..REPEATS {
-            let begin = Instant::now();
-            let solution = solver.solve(robot, &target, &q0, mask)?;
-            shortest = shortest.min(begin.elapsed());
-            success = solution.success();
-        }
-        solved += usize::from(success);
-        times.push(shortest.as_secs_f64() * 1e6);
+        let begin = Instant::now();
+        let solution = solver.solve(robot, &target, &q0, mask)?;
+        times.push(begin.elapsed().as_secs_f64() * 1e6);
+        solved += usize::from(solution.success());
     }
     times.sort_unstable_by(f64::total_cmp);
     let at = |index: usize| times.get(index).copied().unwrap_or(0.0);
