@@ -10,7 +10,7 @@ use ratatui::{
     DefaultTerminal,
     crossterm::event::{self, Event, KeyCode, KeyEventKind, KeyModifiers},
     text::Line,
-    widgets::{Block, Paragraph},
+    widgets::{Block, Paragraph, Wrap},
 };
 
 /// A screen. The terminal is restored when it is dropped, and in a panic.
@@ -53,7 +53,10 @@ impl Screen {
     pub fn draw(&mut self, title: &str, lines: &[String]) -> Result<()> {
         self.terminal.draw(|frame| {
             let lines: Vec<Line> = lines.iter().map(|line| Line::from(line.as_str())).collect();
-            let page = Paragraph::new(lines).block(Block::bordered().title(title));
+            let page = Paragraph::new(lines)
+                .block(Block::bordered().title(title))
+                // Messages are whole sentences, and the cure is at their end.
+                .wrap(Wrap { trim: false });
             frame.render_widget(page, frame.area());
         })?;
         Ok(())

@@ -2,6 +2,7 @@
 #![cfg(unix)]
 
 mod moving;
+mod screens;
 mod setup;
 
 use std::{
