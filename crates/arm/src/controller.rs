@@ -45,6 +45,7 @@ use crate::{
     calibration::{Calibration, JointCalibration},
 };
 use plausible::Plausible;
+use torque::Torque;
 
 /// One joint of the arm.
 struct Joint {
@@ -56,6 +57,7 @@ struct Joint {
     is_limited: bool,
     /// It did not answer the last reading.
     is_missing: bool,
+    torque: Torque,
 }
 
 /// An arm on a bus.
@@ -64,7 +66,6 @@ pub struct ServoController {
     calibration: Calibration,
     joints: Vec<Joint>,
     ending: Ending,
-    has_torque: bool,
     stop: Arc<AtomicBool>,
     warnings: Vec<Warning>,
 }
@@ -95,6 +96,7 @@ impl ServoController {
                 plausible: Plausible::default(),
                 is_limited: false,
                 is_missing: false,
+                torque: Torque::default(),
             }
         };
         Self {
@@ -102,7 +104,6 @@ impl ServoController {
             bus,
             calibration,
             ending: Ending::default(),
-            has_torque: false,
             stop: Arc::default(),
             warnings: Vec::new(),
         }

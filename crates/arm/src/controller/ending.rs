@@ -29,7 +29,7 @@ impl FromStr for Ending {
 
 impl Drop for ServoController {
     fn drop(&mut self) {
-        if !self.has_torque {
+        if !self.has_torque() {
             return;
         }
         // Nobody is left to tell of an error, and without a port nothing can be done.

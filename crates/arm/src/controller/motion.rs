@@ -22,7 +22,7 @@ impl ServoController {
             let steps = self.limit_position(name, *steps)?;
             goals.push((self.joint(name)?.calibration.id, steps));
         }
-        self.enable_torque()?;
+        self.begin_motion()?;
         self.send_goals(&goals, speed)
     }
 

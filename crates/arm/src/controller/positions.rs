@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{ControllerError, ServoController, Warning, plausible::are_one};
+use super::{ControllerError, ServoController, Warning, plausible::are_one, torque::Torque};
 use crate::bus::{
     Alarms, Block, BlockReading, BusError, Cause, ServoError,
     register::{
@@ -128,8 +128,8 @@ impl ServoController {
         }
         joint.plausible.take(now, steps);
         let name = joint.name.clone();
-        if std::mem::take(&mut joint.is_missing) && self.has_torque {
-            self.look_for_torque(id, &name)?;
+        if std::mem::take(&mut joint.is_missing) && joint.torque == Torque::On {
+            self.look_for_torque(place)?;
         }
         self.note_alarms(&name, reading.alarms);
         Ok(Ok((name, steps)))
@@ -142,16 +142,20 @@ impl ServoController {
     }
 
     /// A servo that was without power has no torque. It gets none by itself, as somebody may have a hand at its plug.
-    fn look_for_torque(&mut self, id: u8, joint: &str) -> Result<(), ControllerError> {
-        let is_off = match self.bus.read(id, TORQUE_ENABLE) {
-            Ok(torque) => torque.value == 0,
-            // It will be missing in the next reading.
-            Err(BusError::Servo(_)) => false,
-            Err(error) => return Err(error.into()),
+    pub(super) fn look_for_torque(&mut self, place: usize) -> Result<(), ControllerError> {
+        let Some(joint) = self.joints.get_mut(place) else {
+            return Ok(());
         };
-        if is_off {
-            let joint = joint.to_owned();
-            self.warnings.push(Warning::NoTorque { joint });
+        match self.bus.read(joint.calibration.id, TORQUE_ENABLE) {
+            Ok(torque) if torque.value == 0 => {
+                joint.torque = Torque::Lost;
+                let joint = joint.name.clone();
+                self.warnings.push(Warning::NoTorque { joint });
+            }
+            Ok(_) => {}
+            // It will be missing in the next reading.
+            Err(BusError::Servo(_)) => joint.is_missing = true,
+            Err(error) => return Err(error.into()),
         }
         Ok(())
     }

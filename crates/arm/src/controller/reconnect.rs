@@ -6,8 +6,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use super::{ControllerError, Ending, ServoController};
-use crate::bus::register::TORQUE_ENABLE;
+use super::{ControllerError, Ending, ServoController, torque::Torque};
 
 /// Time between two looks for the port.
 const LOOK_EVERY: Duration = Duration::from_millis(200);
@@ -32,17 +31,17 @@ impl ServoController {
             thread::sleep(LOOK_EVERY);
         }
         self.check_servos()?;
-        let had_torque = self.has_torque;
-        let ids = self.ids();
-        let readings = self.bus.sync_read(&ids, TORQUE_ENABLE.into())?;
-        let has = |reading: &Result<crate::bus::BlockReading, _>| {
-            reading
-                .as_ref()
-                .is_ok_and(|r| r.value(TORQUE_ENABLE) == Some(1))
-        };
-        self.has_torque = readings.iter().all(has);
-        if had_torque && self.ending == Ending::Release {
-            self.release()?;
+        if self.has_torque() && self.ending == Ending::Release {
+            return self.release();
+        }
+        for place in 0..self.joints.len() {
+            if self
+                .joints
+                .get(place)
+                .is_some_and(|joint| joint.torque == Torque::On)
+            {
+                self.look_for_torque(place)?;
+            }
         }
         Ok(())
     }

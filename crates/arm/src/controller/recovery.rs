@@ -2,7 +2,7 @@
 
 use std::{fmt, time::Duration};
 
-use super::{ControllerError, ServoController};
+use super::{ControllerError, ServoController, torque::Torque};
 use crate::bus::{
     Alarms, Block,
     register::{
@@ -88,7 +88,9 @@ impl ServoController {
         let steps = self.bus.read(id, PRESENT_POSITION)?.value;
         self.bus.write(id, GOAL_POSITION, steps)?;
         self.bus.write(id, TORQUE_ENABLE, 1)?;
-        self.has_torque = true;
+        if let Some(joint) = self.joints.iter_mut().find(|joint| joint.name == name) {
+            joint.torque = Torque::On;
+        }
         self.bus.wait(SETTLE)?;
         let alarms = self.alarms(id)?;
         if alarms.is_none() {

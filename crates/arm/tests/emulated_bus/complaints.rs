@@ -58,9 +58,27 @@ fn a_joint_without_cable_leaves_the_others_and_comes_back() {
     assert_eq!(arm.read_positions().unwrap().steps.len(), 6);
     let joint = "gripper".to_owned();
     assert_eq!(arm.take_warnings(), [Warning::NoTorque { joint }]);
+    let goal = [
+        ("shoulder_pan".to_owned(), 2000),
+        ("gripper".to_owned(), 2000),
+    ]
+    .into();
+    arm.fast_move_to_pose(&goal, 0).unwrap();
     assert!(
         !emulated.view()[5].has_torque,
         "nobody gave it torque unasked"
+    );
+    arm.enable_torque().unwrap();
+    arm.bus().wait(Duration::from_secs(1)).unwrap();
+    let views = emulated.view();
+    assert!(views.iter().all(|servo| servo.has_torque), "{views:?}");
+    assert!(
+        (views[5].position_steps - 2220).abs() < 4,
+        "no jump: {views:?}"
+    );
+    assert!(
+        (views[0].position_steps - 2000).abs() < 8,
+        "the others move on: {views:?}"
     );
 }
 
@@ -136,6 +154,32 @@ fn an_overload_is_ended_without_a_power_cycle() {
         }
     );
     assert_eq!(arm.recover("gripper").unwrap(), Recovery::Fine);
+}
+
+/// Of an arm without torque, `recover` gives it to one joint: the others get it with the next motion.
+#[test]
+fn a_motion_after_a_recovery_has_the_torque_of_all_joints() {
+    let emulated = Emulated::arm(52);
+    let mut arm = emulated.controller();
+    arm.enable_torque().unwrap();
+    let blocked = emulated.wire().bus().start(Fault::Blocked { servo: 5 });
+    let goal = [("gripper".to_owned(), 3500)].into();
+    arm.fast_move_to_pose(&goal, 0).unwrap();
+    arm.bus().wait(Duration::from_secs(5)).unwrap();
+    drop(arm);
+    emulated.wire().bus().end(blocked);
+    let mut arm = emulated.controller();
+    for id in 1..=5 {
+        arm.bus().write(id, TORQUE_ENABLE, 0).unwrap();
+    }
+    let recovered = arm.recover("gripper").unwrap();
+    assert!(
+        matches!(recovered, Recovery::Recovered { .. }),
+        "{recovered:?}"
+    );
+    arm.fast_move_to_pose(&[("shoulder_pan".to_owned(), 2000)].into(), 0)
+        .unwrap();
+    assert!(emulated.view().iter().all(|servo| servo.has_torque));
 }
 
 #[test]
