@@ -7,6 +7,7 @@ mod connection;
 mod convert;
 mod home;
 mod joints;
+mod look;
 mod monitor;
 mod output;
 mod ping;

@@ -13,7 +13,7 @@ use robot_arm::{
     kinematics::{Robot, create_so101_5dof},
 };
 
-use super::{connection::MovingArm, screen::Screen, stop::Stop};
+use super::{connection::MovingArm, look::look, screen::Screen, stop::Stop};
 use crate::panel::{cartesian::CartesianPanel, key::Action};
 
 #[derive(clap::Args)]
@@ -48,6 +48,8 @@ struct Session {
     /// Joint angles that were sent last.
     q: Vec<f64>,
     gripper: Option<i32>,
+    /// Joint angles that the servos have, if all answer.
+    measured_q: Option<Vec<f64>>,
 }
 
 impl Cartesian {
@@ -75,15 +77,13 @@ impl Cartesian {
                     panel.note = error.to_string();
                 }
             }
-            let moved = match (panel.is_engaged(), panel.is_homing()) {
-                (false, _) => Ok(()),
-                (true, true) => session.go_home(&mut panel),
-                (true, false) => session.follow(&mut panel),
-            };
-            if let Err(error) = moved {
+            if panel.is_engaged()
+                && let Err(error) = session.advance(&mut panel)
+            {
                 panel.note = error.to_string();
             }
-            screen.draw(" armctl cartesian ", &session.lines(&panel)?)?;
+            let errors = session.watch(&mut panel);
+            screen.draw(" armctl cartesian ", &session.lines(&panel, &errors)?)?;
             std::thread::sleep(PERIOD);
         }
         Ok(())
@@ -101,13 +101,14 @@ impl Session {
             mask,
             q: Vec::new(),
             gripper: None,
+            measured_q: None,
         };
-        session.look()?;
+        session.take_angles()?;
         Ok(session)
     }
 
     /// Takes the angles from the servos.
-    fn look(&mut self) -> Result<()> {
+    fn take_angles(&mut self) -> Result<()> {
         let positions = self.arm.read_servo_positions()?;
         let home = self.arm.home_pose();
         self.q = self
@@ -116,6 +117,20 @@ impl Session {
             .context("the arm is no SO-101")?;
         self.gripper = positions.get(GRIPPER).copied();
         Ok(())
+    }
+
+    /// Reads the positions. Returns why there is none of a joint.
+    fn watch(&mut self, panel: &mut CartesianPanel) -> Vec<String> {
+        let seen = look(&mut self.arm);
+        if !seen.warnings.is_empty() {
+            panel.note = seen.warnings.join("; ");
+        }
+        let home = self.arm.home_pose();
+        let angles = self
+            .robot
+            .read_joint_angles(&self.names, &home, &seen.steps);
+        self.measured_q = angles.ok();
+        seen.errors
     }
 
     fn tool(&self) -> Result<IsometryMatrix3<f64>> {
@@ -134,16 +149,29 @@ impl Session {
                 return Ok(());
             }
             Action::Engage => self.arm.enable_torque()?,
-            Action::Send => {
-                let steps = panel.take_gripper();
-                self.gripper = self.gripper.map(|now| now + steps);
-                return Ok(());
-            }
-            Action::Nothing | Action::End | Action::Home => return Ok(()),
+            Action::Send | Action::Nothing | Action::End | Action::Home => return Ok(()),
         }
-        self.look()?;
+        self.take_angles()?;
         panel.set_target(self.tool()?);
         Ok(())
+    }
+
+    /// Takes a step. What could not be sent is forgotten: the arm does not make up for it when its port is back.
+    fn advance(&mut self, panel: &mut CartesianPanel) -> Result<()> {
+        let before = (self.q.clone(), self.gripper);
+        let steps = panel.take_gripper();
+        self.gripper = self.gripper.map(|now| now + steps);
+        let taken = if panel.is_homing() {
+            self.go_home(panel)
+        } else {
+            self.follow(panel)
+        };
+        if taken.is_err() {
+            (self.q, self.gripper) = before;
+            panel.end_homing();
+            panel.set_target(self.tool()?);
+        }
+        taken
     }
 
     /// Takes a step towards the target.
@@ -165,7 +193,7 @@ impl Session {
             // Else the way back would begin with as many key presses as went beyond the reach.
             panel.set_target(self.tool()?);
         }
-        self.send(panel)
+        self.send()
     }
 
     /// Takes a step towards the joints' homes.
@@ -184,11 +212,11 @@ impl Session {
         if is_there {
             panel.end_homing();
         }
-        self.send(panel)
+        self.send()
     }
 
     /// Sends joint angles and gripper.
-    fn send(&mut self, panel: &mut CartesianPanel) -> Result<()> {
+    fn send(&mut self) -> Result<()> {
         let home = self.arm.home_pose();
         let mut targets: BTreeMap<String, i32> =
             self.robot.q_to_servo_targets(&self.q, &self.names, &home)?;
@@ -197,14 +225,10 @@ impl Session {
             self.gripper = Some(steps);
             targets.insert(GRIPPER.to_owned(), steps);
         }
-        self.arm.fast_move_to_pose(&targets, 0)?;
-        if let Some(warning) = self.arm.take_warnings().into_iter().next() {
-            panel.note = warning.to_string();
-        }
-        Ok(())
+        Ok(self.arm.fast_move_to_pose(&targets, 0)?)
     }
 
-    fn lines(&self, panel: &CartesianPanel) -> Result<Vec<String>> {
+    fn lines(&self, panel: &CartesianPanel, errors: &[String]) -> Result<Vec<String>> {
         let place = |name: &str, pose: &IsometryMatrix3<f64>| {
             let at = pose.translation.vector;
             let (roll, pitch, yaw) = pose.rotation.euler_angles();
@@ -216,9 +240,13 @@ impl Session {
         let angles: Vec<String> = self.q.iter().map(|angle| format!("{angle:+.2}")).collect();
         let (m, rad) = panel.step();
         let torque = if panel.is_engaged() { "on" } else { "OFF" };
-        Ok(vec![
+        let tool = match &self.measured_q {
+            Some(q) => place("tool", &self.robot.fkine(q)?),
+            None => "tool     not known".to_owned(),
+        };
+        let mut lines = vec![
             place("target", panel.target()),
-            place("tool", &self.tool()?),
+            tool,
             format!("joints   {} rad", angles.join("  ")),
             String::new(),
             "W / S x   A / D y   R / F z   I / K pitch   J / L roll   O / P gripper".to_owned(),
@@ -230,6 +258,8 @@ impl Session {
                 .to_owned(),
             String::new(),
             panel.note.clone(),
-        ])
+        ];
+        lines.extend(errors.iter().cloned());
+        Ok(lines)
     }
 }

@@ -6,12 +6,9 @@ use std::{
 };
 
 use anyhow::Result;
-use robot_arm::{
-    bus::BusError,
-    controller::{ControllerError, Positions, ServoController},
-};
+use robot_arm::controller::{ControllerError, ServoController};
 
-use super::{connection::MovingArm, screen::Screen, stop::Stop};
+use super::{connection::MovingArm, look::look, screen::Screen, stop::Stop};
 use crate::panel::{joints::JointPanel, key::Action};
 
 #[derive(clap::Args)]
@@ -41,22 +38,19 @@ impl Joints {
         let mut screen = Screen::open()?;
         arm.enable_torque()?;
         let started = Instant::now();
-        let mut errors = Vec::new();
         while !stop.is_caught() {
             for key in screen.keys()? {
+                let before = panel.goals();
                 let action = panel.press(key, started.elapsed());
                 if action == Action::End {
                     return Ok(());
                 }
-                if let Err(error) = act(&mut arm, &mut panel, action) {
-                    panel.note = error.to_string();
-                }
+                act(&mut arm, &mut panel, action, &before);
             }
+            let before = panel.goals();
             let action = panel.advance();
-            if let Err(error) = act(&mut arm, &mut panel, action) {
-                panel.note = error.to_string();
-            }
-            errors = look(&mut arm, &mut panel, errors);
+            act(&mut arm, &mut panel, action, &before);
+            let errors = watch(&mut arm, &mut panel);
             screen.draw(" armctl joints ", &lines(&panel, &errors))?;
             std::thread::sleep(PERIOD);
         }
@@ -64,7 +58,20 @@ impl Joints {
     }
 }
 
+/// Does what a key asks for. Goals that could not be sent are forgotten: the arm does not make up for them when its port is back.
 fn act(
+    arm: &mut ServoController,
+    panel: &mut JointPanel,
+    action: Action,
+    before: &BTreeMap<String, i32>,
+) {
+    if let Err(error) = try_to(arm, panel, action) {
+        panel.take_back(before);
+        panel.note = error.to_string();
+    }
+}
+
+fn try_to(
     arm: &mut ServoController,
     panel: &mut JointPanel,
     action: Action,
@@ -90,32 +97,17 @@ fn act(
     Ok(())
 }
 
-/// Reads the positions. A port that was lost is opened again once it is back.
-fn look(arm: &mut ServoController, panel: &mut JointPanel, before: Vec<String>) -> Vec<String> {
-    match arm.read_positions() {
-        Ok(Positions { steps, errors }) => {
-            panel.take_positions(&steps);
-            if !panel.is_engaged() {
-                panel.goals_from_positions();
-            }
-            let warnings = arm
-                .take_warnings()
-                .into_iter()
-                .map(|warning| warning.to_string());
-            let said: Vec<String> = errors
-                .iter()
-                .map(ToString::to_string)
-                .chain(warnings)
-                .collect();
-            if said.is_empty() { before } else { said }
-        }
-        Err(ControllerError::Bus(BusError::Wire(error))) => {
-            panel.take_positions(&BTreeMap::new());
-            let _ = arm.reconnect(Duration::ZERO);
-            vec![error.to_string()]
-        }
-        Err(error) => vec![error.to_string()],
+/// Reads the positions. Returns why there is none of a joint.
+fn watch(arm: &mut ServoController, panel: &mut JointPanel) -> Vec<String> {
+    let seen = look(arm);
+    panel.take_positions(&seen.steps);
+    if !panel.is_engaged() {
+        panel.goals_from_positions();
     }
+    if !seen.warnings.is_empty() {
+        panel.note = seen.warnings.join("; ");
+    }
+    seen.errors
 }
 
 fn lines(panel: &JointPanel, errors: &[String]) -> Vec<String> {

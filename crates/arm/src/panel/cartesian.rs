@@ -79,7 +79,8 @@ impl CartesianPanel {
                 self.is_engaged &= action != Action::Release;
                 return action;
             }
-            '\n' if !self.is_engaged => {
+            // Also while torque is on: a joint may have lost its own.
+            '\n' => {
                 self.is_engaged = true;
                 return Action::Engage;
             }

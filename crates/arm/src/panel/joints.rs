@@ -97,6 +97,14 @@ impl JointPanel {
         }
     }
 
+    /// Goes back to goals that the arm has, and ends a way.
+    pub fn take_back(&mut self, goals: &BTreeMap<String, i32>) {
+        self.way = None;
+        for row in &mut self.rows {
+            row.goal = goals.get(&row.name).copied().unwrap_or(row.goal);
+        }
+    }
+
     /// Begins a soft way to a pose.
     pub fn go(&mut self, pose: BTreeMap<String, i32>) {
         self.way = Some(pose);
@@ -126,7 +134,8 @@ impl JointPanel {
         self.way = None;
         match key {
             ' ' => return self.stopped(now),
-            '\n' if !self.is_engaged => {
+            // Also while torque is on: a joint may have lost its own.
+            '\n' => {
                 self.is_engaged = true;
                 return Action::Engage;
             }
@@ -221,6 +230,17 @@ mod tests {
         assert_eq!(panel.press('\n', Duration::ZERO), Action::Engage);
         assert_eq!(panel.press('q', Duration::ZERO), Action::Send);
         assert_eq!(panel.goals()["pan"], 1510);
+    }
+
+    #[test]
+    fn goals_that_were_not_sent_are_taken_back() {
+        let mut panel = panel();
+        let before = panel.goals();
+        panel.press('q', Duration::ZERO);
+        panel.go(BTreeMap::from([("lift".to_owned(), 2000)]));
+        panel.take_back(&before);
+        assert_eq!(panel.goals(), before);
+        assert_eq!(panel.advance(), Action::Nothing);
     }
 
     #[test]

@@ -14,13 +14,17 @@ use robot_servo_model::{Bus, Port, Servo, Version};
 
 /// Six servos with ids 1 to 6 at angles of their own.
 pub fn six() -> Port {
+    port(six_servos())
+}
+
+pub fn six_servos() -> Vec<Servo> {
     let servo = |id: u8| {
         let angle = 1900.0 + 40.0 * f64::from(id);
         Servo::new(Version::Volts12, angle)
             .with_id(id)
             .with_return_delay(0)
     };
-    port((1..=6).map(servo).collect())
+    (1..=6).map(servo).collect()
 }
 
 pub fn port(servos: Vec<Servo>) -> Port {

@@ -3,7 +3,9 @@
 use std::{
     fs::OpenOptions,
     num::NonZero,
+    path::{Path, PathBuf},
     process::{Child, Stdio},
+    sync::MutexGuard,
     thread,
     time::{Duration, Instant},
 };
@@ -11,10 +13,10 @@ use std::{
 use nalgebra::Vector3;
 use robot_arm::{calibration::Calibration, kinematics::create_so101_5dof};
 use robot_pseudo_terminal::Terminal;
-use robot_servo_model::{Fault, Port, View};
+use robot_servo_model::{Bus, Fault, Port, View};
 use rustix::termios::{Winsize, tcsetwinsize};
 
-use crate::{command, file, six};
+use crate::{command, file, six_servos};
 
 /// Far longer than anything here takes on a busy computer.
 const AT_MOST: Duration = Duration::from_secs(20);
@@ -29,7 +31,8 @@ const SIZE: Winsize = Winsize {
 
 /// A command with a terminal, and the arm that it moves.
 struct Screen {
-    arm: Port,
+    arm: Option<Port>,
+    link: PathBuf,
     terminal: Terminal,
     child: Child,
     shown: vt100::Parser,
@@ -38,7 +41,11 @@ struct Screen {
 impl Screen {
     /// Starts the command, and waits until it takes keys.
     fn start(name: &str) -> Self {
-        let arm = six();
+        let link = file(&format!(
+            "{name}-{}",
+            thread::current().name().unwrap().replace(':', "_")
+        ));
+        let arm = plugged_in(&link);
         let path = file(&format!("{name}.json"));
         Calibration::so101().save(&path).unwrap();
         let terminal = Terminal::open().unwrap();
@@ -48,13 +55,14 @@ impl Screen {
             .open(terminal.path())
             .unwrap();
         tcsetwinsize(&theirs, SIZE).unwrap();
-        let child = command(arm.path(), &[name, "--arm", path.to_str().unwrap()])
+        let child = command(&link, &[name, "--arm", path.to_str().unwrap()])
             .stdin(Stdio::from(theirs.try_clone().unwrap()))
             .stdout(Stdio::from(theirs))
             .spawn()
             .unwrap();
         let mut screen = Self {
-            arm,
+            arm: Some(arm),
+            link,
             terminal,
             child,
             shown: vt100::Parser::new(ROWS, COLUMNS, 0),
@@ -70,7 +78,22 @@ impl Screen {
     }
 
     fn views(&self) -> Vec<View> {
-        self.arm.bus().view()
+        self.bus().view()
+    }
+
+    fn bus(&self) -> MutexGuard<'_, Bus> {
+        self.arm.as_ref().expect("it is plugged in").bus()
+    }
+
+    /// Pulls the plug of servos and adapter, and waits until that is said.
+    fn pull(&mut self) {
+        self.arm = None;
+        self.until("a message", |screen| screen.shows("no longer works"));
+    }
+
+    /// Puts the plug back. Servos that had no power have no torque, and they are where they were.
+    fn plug_in(&mut self) {
+        self.arm = Some(plugged_in(&self.link));
     }
 
     fn position(&self, place: usize) -> i32 {
@@ -93,8 +116,7 @@ impl Screen {
         while !is_so(self) {
             assert!(
                 begin.elapsed() < AT_MOST,
-                "no {what}: {:?}\n{}",
-                self.views(),
+                "no {what}:\n{}",
                 self.shown.screen().contents()
             );
             thread::sleep(Duration::from_millis(10));
@@ -120,6 +142,11 @@ impl Screen {
     }
 }
 
+/// Six servos behind an adapter.
+fn plugged_in(link: &Path) -> Port {
+    Port::open_at(Bus::new(six_servos(), 1), link).expect("a pseudo-terminal")
+}
+
 impl Drop for Screen {
     fn drop(&mut self) {
         let _ = self.child.kill();
@@ -140,7 +167,7 @@ fn joints_follow_their_keys_and_the_stop_keys() {
         screen.views().iter().all(|servo| !servo.has_torque)
     });
     // A hand moves the arm meanwhile: it must not jump back when the torque comes.
-    screen.arm.bus().servo_mut(1).unwrap().turn_to(2200.0);
+    screen.bus().servo_mut(1).unwrap().turn_to(2200.0);
     screen.types("qq");
     screen.until("an answer", |screen| {
         screen.shows("Enter switches it on") && screen.shows("2200")
@@ -162,7 +189,7 @@ fn joints_follow_their_keys_and_the_stop_keys() {
 #[test]
 fn joints_without_an_answer_are_named_and_the_others_go_on() {
     let mut screen = Screen::start("joints");
-    let gone = screen.arm.bus().start(Fault::Gone { servo: 2 });
+    let gone = screen.bus().start(Fault::Gone { servo: 2 });
     screen.until("a message", |screen| {
         screen.shows("servo 3 (elbow_flex), read present_position: no answer")
     });
@@ -171,8 +198,31 @@ fn joints_without_an_answer_are_named_and_the_others_go_on() {
     screen.until("motion", |screen| {
         (screen.position(0) - before + 10).abs() < 4
     });
-    screen.arm.bus().end(gone);
+    screen.bus().end(gone);
     screen.ends();
+}
+
+/// What was typed meanwhile does not move the arm when its port is back.
+#[test]
+fn an_arm_that_is_plugged_in_again_does_not_jump() {
+    for (name, keys) in [("joints", "qqqqq"), ("cartesian", "sssss")] {
+        let mut screen = Screen::start(name);
+        let before = screen.views();
+        screen.pull();
+        screen.types(keys);
+        screen.plug_in();
+        screen.until("a warning", |screen| screen.shows("has no torque"));
+        screen.types("\r");
+        screen.until("torque", |screen| {
+            screen.views().iter().all(|servo| servo.has_torque)
+        });
+        for (before, after) in before.iter().zip(screen.ends()) {
+            assert!(
+                (after.goal_steps - before.position_steps).abs() < 4,
+                "{name}: {after:?}"
+            );
+        }
+    }
 }
 
 #[test]
@@ -191,7 +241,7 @@ fn the_tool_follows_its_keys() {
     screen.until("release", |screen| {
         screen.views().iter().all(|servo| !servo.has_torque)
     });
-    screen.arm.bus().servo_mut(0).unwrap().turn_to(2100.0);
+    screen.bus().servo_mut(0).unwrap().turn_to(2100.0);
     screen.types("\r");
     screen.until("torque", |screen| {
         screen.views().iter().all(|servo| servo.has_torque)
