@@ -45,6 +45,8 @@ pub struct Teleoperate {
 /// The follower's way to the leader's pose.
 const APPROACH_STEPS: u32 = 100;
 const APPROACH_INTERVAL: Duration = Duration::from_millis(20);
+/// Speed of a joint whose leader did not answer for a while: 45 degrees a second.
+const CATCH_UP_STEPS_S: i32 = 500;
 
 impl Teleoperate {
     pub fn run(self) -> Result<()> {
@@ -56,7 +58,7 @@ impl Teleoperate {
         let calibration = Calibration::load(&self.leader_arm)?;
         let mut follower = self.follower.open()?;
         follower.set_stop_flag(stop.flag());
-        let mapping = Follower::new(&calibration, follower.calibration());
+        let mut mapping = Follower::new(&calibration, follower.calibration());
         ensure!(
             mapping.missing().is_empty(),
             "the follower has no joint called {}: give both calibrations the same names",
@@ -66,7 +68,8 @@ impl Teleoperate {
         let mut leader = ServoController::new(bus, calibration).context("the leader")?;
         warn(&mut leader)?;
         leader.release()?;
-        let targets = mapping.targets(&leader.read_servo_positions()?);
+        let catch_up = (CATCH_UP_STEPS_S / self.rate as i32).max(1);
+        let targets = mapping.targets(&leader.read_servo_positions()?, catch_up);
         follower.soft_move_to_pose(&targets, APPROACH_STEPS, APPROACH_INTERVAL)?;
         say!("the follower follows; Ctrl-C ends")?;
         let mut recorder = Recorder::new(&mut follower);
@@ -78,7 +81,7 @@ impl Teleoperate {
             if self.seconds.is_some_and(|end| elapsed.as_secs_f64() >= end) {
                 break;
             }
-            let targets = mapping.targets(&leader.read_positions()?.steps);
+            let targets = mapping.targets(&leader.read_positions()?.steps, catch_up);
             follower.fast_move_to_pose(&targets, 0)?;
             let positions = follower.read_positions()?;
             if self.record.is_some() {

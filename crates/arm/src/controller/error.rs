@@ -50,7 +50,8 @@ pub enum Warning {
     #[error("{joint}: {alarms}")]
     Alarm { joint: String, alarms: String },
     #[error(
-        "{joint} answers again, but has no torque, as its power was off: hold it, and switch torque on again: Enter on a screen of armctl, enable_torque in a program"
+        "{joint} answers again, but has no torque, as its power was off: hold it, and switch torque on again (Enter on a screen of \
+         armctl, enable_torque in a program)"
     )]
     NoTorque { joint: String },
     #[error("{0}")]

@@ -2,12 +2,12 @@
 
 use std::{collections::BTreeMap, sync::atomic::Ordering, time::Duration};
 
-use super::{ControllerError, ServoController};
+use super::{ControllerError, ServoController, torque::Torque};
 use crate::bus::register::{GOAL_POSITION, GOAL_SPEED, GOAL_TIME, Register};
 
 impl ServoController {
     /// Sends joints to targets in steps, all at the same moment (one sync write). Targets are
-    /// [limited](Self::limit_position). `speed` is in steps/s, and 0 is as fast as the servo can.
+    /// [limited](Self::limit_position). Joints that have lost their torque are left out. `speed` is in steps/s, and 0 is as fast as the servo can.
     pub fn fast_move_to_pose(
         &mut self,
         targets: &BTreeMap<String, i32>,
@@ -20,7 +20,11 @@ impl ServoController {
         let mut goals = Vec::new();
         for (name, steps) in targets {
             let steps = self.limit_position(name, *steps)?;
-            goals.push((self.joint(name)?.calibration.id, steps));
+            let joint = self.joint(name)?;
+            // No goal waits in a servo for its torque.
+            if joint.torque != Torque::Lost {
+                goals.push((joint.calibration.id, steps));
+            }
         }
         self.begin_motion()?;
         self.send_goals(&goals, speed)

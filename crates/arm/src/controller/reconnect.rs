@@ -30,6 +30,10 @@ impl ServoController {
             }
             thread::sleep(LOOK_EVERY);
         }
+        for joint in &mut self.joints {
+            // Whatever fails here, the next reading looks for the joint's torque.
+            joint.is_missing = true;
+        }
         self.check_servos()?;
         if self.has_torque() && self.ending == Ending::Release {
             return self.release();

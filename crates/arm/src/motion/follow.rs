@@ -8,15 +8,32 @@ use crate::calibration::{Calibration, JointCalibration};
 /// range goes to a third of the follower's.
 #[derive(Clone, Debug)]
 pub struct Follower {
-    pairs: Vec<(String, JointCalibration, JointCalibration)>,
+    pairs: Vec<Pair>,
     missing: Vec<String>,
+}
+
+/// A joint of both arms.
+#[derive(Clone, Debug)]
+struct Pair {
+    name: String,
+    from: JointCalibration,
+    to: JointCalibration,
+    /// The last target.
+    target: Option<i32>,
+    /// The leader's joint did not answer, and the follower's is not yet where that one is now.
+    is_behind: bool,
 }
 
 impl Follower {
     pub fn new(leader: &Calibration, follower: &Calibration) -> Self {
-        let pair = |(name, of_leader): &(String, JointCalibration)| {
-            let of_follower = follower.joint(name)?;
-            Some((name.clone(), *of_leader, *of_follower))
+        let pair = |(name, from): &(String, JointCalibration)| {
+            Some(Pair {
+                name: name.clone(),
+                from: *from,
+                to: *follower.joint(name)?,
+                target: None,
+                is_behind: false,
+            })
         };
         let alone = leader
             .joints()
@@ -33,23 +50,47 @@ impl Follower {
         &self.missing
     }
 
-    /// Returns the targets for positions of the leader. A joint without a position has no target.
-    pub fn targets(&self, leader: &BTreeMap<String, i32>) -> BTreeMap<String, i32> {
-        let target = |(name, from, to): &(String, JointCalibration, JointCalibration)| {
-            let steps = leader.get(name)?;
-            let part =
-                f64::from(steps - from.range_min) / f64::from(from.range_max - from.range_min);
-            // A leader with the other direction of turn counts the other way.
-            let part = if from.drive_mode == to.drive_mode {
-                part
-            } else {
-                1.0 - part
-            };
-            let travel = f64::from(to.range_max - to.range_min);
-            let steps = f64::from(to.range_min) + part.clamp(0.0, 1.0) * travel;
-            Some((name.clone(), steps.round() as i32))
+    /// Returns the targets for positions of the leader. A joint without a position has no target, and goes by `catch_up` steps a
+    /// call once it has one again: its leader may be far away by then.
+    pub fn targets(
+        &mut self,
+        leader: &BTreeMap<String, i32>,
+        catch_up: i32,
+    ) -> BTreeMap<String, i32> {
+        let pairs = self.pairs.iter_mut();
+        let target = |pair: &mut Pair| Some((pair.name.clone(), pair.next(leader, catch_up)?));
+        pairs.filter_map(target).collect()
+    }
+}
+
+impl Pair {
+    fn next(&mut self, leader: &BTreeMap<String, i32>, catch_up: i32) -> Option<i32> {
+        let Some(steps) = leader.get(&self.name) else {
+            self.is_behind = true;
+            return None;
         };
-        self.pairs.iter().filter_map(target).collect()
+        let wanted = self.same_place(*steps);
+        let target = match self.target {
+            Some(last) if self.is_behind => last + (wanted - last).clamp(-catch_up, catch_up),
+            _ => wanted,
+        };
+        self.is_behind &= target != wanted;
+        self.target = Some(target);
+        Some(target)
+    }
+
+    fn same_place(&self, steps: i32) -> i32 {
+        let (from, to) = (&self.from, &self.to);
+        let part = f64::from(steps - from.range_min) / f64::from(from.range_max - from.range_min);
+        // A leader with the other direction of turn counts the other way.
+        let part = if from.drive_mode == to.drive_mode {
+            part
+        } else {
+            1.0 - part
+        };
+        let travel = f64::from(to.range_max - to.range_min);
+        let steps = f64::from(to.range_min) + part.clamp(0.0, 1.0) * travel;
+        steps.round() as i32
     }
 }
 
@@ -71,17 +112,30 @@ mod tests {
 
     #[test]
     fn a_part_of_one_range_is_the_same_part_of_the_other() {
-        let follower = Follower::new(&arm(1000, 3000, 0), &arm(500, 1500, 0));
-        let target = |steps| follower.targets(&BTreeMap::from([("pan".to_owned(), steps)]))["pan"];
+        let mut follower = Follower::new(&arm(1000, 3000, 0), &arm(500, 1500, 0));
         assert_eq!(
-            [1000, 1500, 3000, 3100, 0].map(target),
+            [1000, 1500, 3000, 3100, 0].map(|steps| follower.targets(&pan(steps), 1)["pan"]),
             [500, 750, 1500, 1500, 500]
         );
-        let mirrored = Follower::new(&arm(1000, 3000, 1), &arm(500, 1500, 0));
+        let mut mirrored = Follower::new(&arm(1000, 3000, 1), &arm(500, 1500, 0));
+        assert_eq!(mirrored.targets(&pan(1500), 1)["pan"], 1250);
+        assert!(follower.targets(&BTreeMap::new(), 1).is_empty());
+    }
+
+    #[test]
+    fn a_joint_whose_leader_was_missing_catches_up_slowly() {
+        let same = arm(0, 4000, 0);
+        let mut follower = Follower::new(&same, &same);
+        assert_eq!(follower.targets(&pan(1000), 50)["pan"], 1000);
+        assert!(follower.targets(&BTreeMap::new(), 50).is_empty());
+        let leader = [1120, 1140, 1140, 1400];
         assert_eq!(
-            mirrored.targets(&BTreeMap::from([("pan".to_owned(), 1500)]))["pan"],
-            1250
+            leader.map(|steps| follower.targets(&pan(steps), 50)["pan"]),
+            [1050, 1100, 1140, 1400]
         );
-        assert!(follower.targets(&BTreeMap::new()).is_empty());
+    }
+
+    fn pan(steps: i32) -> BTreeMap<String, i32> {
+        BTreeMap::from([("pan".to_owned(), steps)])
     }
 }
