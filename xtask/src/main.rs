@@ -46,7 +46,11 @@ enum Command {
     /// Flash an image with probe-rs, run it and show its log. `cargo run --release` calls this.
     Run(ForwardedArgs),
     /// Run all checks of CI: format, clippy, image checks, tests of the host and the emulated board, loom.
-    Test,
+    Test {
+        /// Run the longest tests whole, not a sample of them
+        #[arg(long)]
+        whole: bool,
+    },
 }
 
 fn main() -> ExitCode {
@@ -59,7 +63,7 @@ fn main() -> ExitCode {
         Command::Data(args) => host_program::run("robot-replay", "data", &args),
         Command::Bench(args) => bench::run(&args),
         Command::Run(args) => board::run(&args),
-        Command::Test => test::run(),
+        Command::Test { whole } => test::run(whole),
     };
     outcome.unwrap_or_else(|error| {
         eprintln!("error: {error:#}");

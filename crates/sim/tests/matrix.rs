@@ -4,8 +4,9 @@
 //! `matrix/expected.rs` holds what must happen. `docs/safety.md` shows it, with the times measured when it was written
 //! (`ROBOT_WRITE_MATRIX=1` writes it again). `ROBOT_MATRIX=motor-3` runs only the faults whose names contain that.
 //!
-//! A robot that balances takes long to stand up, so it meets a sample of the faults, unless `ROBOT_MATRIX` names some:
-//! `ROBOT_MATRIX=all` stands for all, and `ROBOT_MATRIX=balancing` leaves out the other robots.
+//! Unless `ROBOT_MATRIX` names some, every fault meets a robot that drives, and by turns one that idles or is disarmed. A robot
+//! that balances takes long to stand up, so it meets fewer of them. `ROBOT_MATRIX=all` stands for all, as `cargo xtask test --whole`
+//! does, and `ROBOT_MATRIX=balancing` leaves out the other robots.
 
 mod support;
 
@@ -42,6 +43,7 @@ use std::{
 
 use observed::{Observed, Phase};
 use robot_sim::faults;
+use robot_test_support::is_whole;
 use row::Row;
 
 /// Values of `ROBOT_MATRIX`: every fault, and every fault for a robot that balances only.
@@ -55,7 +57,7 @@ type Cells = BTreeMap<(usize, Phase), Observed>;
 fn run_all(choice: &Choice) -> Cells {
     let rows = &choice.rows;
     let all = (0..rows.len()).flat_map(|row| Phase::ALL.map(|phase| (row, phase)));
-    let all = all.filter(|(row, phase)| choice.has(&rows[*row], *phase));
+    let all = all.filter(|(row, phase)| choice.has(*row, *phase));
     let all: Vec<_> = all.collect();
     let queue = Mutex::new(all.into_iter());
     let next = || queue.lock().unwrap_or_else(PoisonError::into_inner).next();
@@ -79,7 +81,7 @@ fn run_all(choice: &Choice) -> Cells {
 /// The cells that a run tests.
 struct Choice {
     rows: Vec<Row>,
-    /// Whether every row meets a robot that balances, not only a sample of them.
+    /// Whether every row meets every phase, not only a sample of them.
     whole: bool,
     /// Whether no other robot is tested.
     only_balancing: bool,
@@ -97,16 +99,20 @@ impl Choice {
             rows: rows
                 .filter(|row| row.fault.contains(part.unwrap_or_default()))
                 .collect(),
-            whole: wish.is_some() || writes(),
+            whole: wish.is_some() || writes() || is_whole(),
             only_balancing: wish.as_deref() == Some(BALANCING),
         }
     }
 
-    fn has(&self, row: &Row, phase: Phase) -> bool {
-        if phase == Phase::Balancing {
-            self.whole || expected::BALANCING_SAMPLE.contains(&row.fault)
-        } else {
-            !self.only_balancing
+    /// The sample: each row meets a robot that drives, and by turns one that idles or is disarmed.
+    fn has(&self, place: usize, phase: Phase) -> bool {
+        let balances = |row: &Row| expected::BALANCING_SAMPLE.contains(&row.fault);
+        match phase {
+            Phase::Balancing => self.whole || self.rows.get(place).is_some_and(balances),
+            _ if self.only_balancing => false,
+            Phase::Driving => true,
+            Phase::Idle => self.whole || place.is_multiple_of(2),
+            Phase::Disarmed => self.whole || !place.is_multiple_of(2),
         }
     }
 }

@@ -1,5 +1,5 @@
 //! What tests of several crates share: random numbers, rotations, the wires to the simulated world, frames of a
-//! gateway, and Python.
+//! gateway, Python, and how much of a long test runs.
 //!
 //! Only ever a dev-dependency. Nothing here uses the math of `robot-app`, so tests may check it against this.
 
@@ -10,6 +10,7 @@ mod python;
 mod random;
 mod rotation;
 mod vector;
+mod whole;
 #[cfg(feature = "world")]
 mod world;
 
@@ -18,5 +19,6 @@ pub use python::Python;
 pub use random::Random;
 pub use rotation::Rotation;
 pub use vector::{Vector, add, cross, dot, norm, scale};
+pub use whole::is_whole;
 #[cfg(feature = "world")]
 pub use world::CanWires;

@@ -41,12 +41,16 @@ pub fn examples(host: &str) -> Command {
 
 /// Runs all other tests, also those that boot images. They are one command, as packages that are tested apart have other
 /// features of the same crates: most of these, and the emulator's CPU core, were built twice.
-pub fn tests(host: &str, images: &Images<'_>) -> Command {
+pub fn tests(host: &str, images: &Images<'_>, whole: bool) -> Command {
     let mut command = over_workspace("test", host);
     command.args(["--tests", "--no-fail-fast", "--", "--show-output"]);
     command.env("ROBOT_ELF", images.default);
     command.env("ROBOT_ELF_DBUS_RS00", images.other);
     command.env("ROBOT_FILTERS", images.filters);
+    if whole {
+        // `robot_test_support::is_whole` reads it.
+        command.env("ROBOT_WHOLE", "1");
+    }
     command
 }
 

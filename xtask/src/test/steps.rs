@@ -22,7 +22,7 @@ pub struct Step {
 }
 
 /// Returns all steps. It installs the packages they need first, so that no step fails because one is missing.
-pub fn all() -> anyhow::Result<Vec<Step>> {
+pub fn all(whole: bool) -> anyhow::Result<Vec<Step>> {
     if emulator::IS_BUILT_HERE {
         prerequisites::ensure(&EMULATOR)?;
     }
@@ -37,6 +37,7 @@ pub fn all() -> anyhow::Result<Vec<Step>> {
             other: &elf_other,
             filters: &filters,
         },
+        whole,
     );
     Ok(vec![
         of_command("format", format()),
