@@ -46,11 +46,7 @@ enum Command {
     /// Flash an image with probe-rs, run it and show its log. `cargo run --release` calls this.
     Run(ForwardedArgs),
     /// Run all checks of CI: format, clippy, image checks, tests of the host and the emulated board, loom.
-    Test {
-        /// Run the longest tests whole, not a sample of them
-        #[arg(long)]
-        whole: bool,
-    },
+    Test(test::Test),
 }
 
 fn main() -> ExitCode {
@@ -63,7 +59,7 @@ fn main() -> ExitCode {
         Command::Data(args) => host_program::run("robot-replay", "data", &args),
         Command::Bench(args) => bench::run(&args),
         Command::Run(args) => board::run(&args),
-        Command::Test { whole } => test::run(whole),
+        Command::Test(test) => test.run(),
     };
     outcome.unwrap_or_else(|error| {
         eprintln!("error: {error:#}");

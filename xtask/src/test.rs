@@ -10,28 +10,37 @@ use std::{process::ExitCode, time::Instant};
 use steps::Step;
 use totals::Totals;
 
-/// Runs every step, then shows a table and one line of totals. The longest tests run `whole` or as a sample.
-pub fn run(whole: bool) -> anyhow::Result<ExitCode> {
-    let started = Instant::now();
-    let mut rows = Vec::new();
-    for step in steps::all(whole)? {
-        println!("\n=== {}", step.name);
-        rows.push(run_step(step));
+#[derive(clap::Args)]
+pub struct Test {
+    /// Run the longest tests whole, not a sample of them
+    #[arg(long)]
+    whole: bool,
+}
+
+impl Test {
+    /// Runs every step, then shows a table and one line of totals.
+    pub fn run(self) -> anyhow::Result<ExitCode> {
+        let started = Instant::now();
+        let mut rows = Vec::new();
+        for step in steps::all(self.whole)? {
+            println!("\n=== {}", step.name);
+            rows.push(run_step(step));
+        }
+        println!("\n=== summary");
+        let mut sum = Totals::default();
+        for row in &rows {
+            println!("{row}");
+            sum += row.totals;
+        }
+        println!("took {} s", started.elapsed().as_secs());
+        println!("{sum}");
+        let failed = sum.failed > 0 || sum.passed == 0;
+        Ok(if failed {
+            ExitCode::FAILURE
+        } else {
+            ExitCode::SUCCESS
+        })
     }
-    println!("\n=== summary");
-    let mut sum = Totals::default();
-    for row in &rows {
-        println!("{row}");
-        sum += row.totals;
-    }
-    println!("took {} s", started.elapsed().as_secs());
-    println!("{sum}");
-    let failed = sum.failed > 0 || sum.passed == 0;
-    Ok(if failed {
-        ExitCode::FAILURE
-    } else {
-        ExitCode::SUCCESS
-    })
 }
 
 struct Row {
