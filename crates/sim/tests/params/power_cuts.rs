@@ -21,7 +21,7 @@ const CHANGES: [(Setting, f32); 3] = [((2, 0), 1.125), ((4, 0), 90_000.0), ((7, 
 const NEXT: (Setting, f32) = ((5, 3), 1.03);
 const FOREIGN: [((u8, u8), u8); 2] = [((16, 2), 1), ((77, 3), 9)];
 const OFF_TIME: Ps = 5 * MS;
-const RUNS: usize = 160;
+const RUNS: usize = 400;
 const TIMEOUT: Ps = 4 * SECOND;
 
 /// The work that the cut interrupts.
