@@ -44,7 +44,10 @@ pub(super) fn install(engine: &mut Unicorn<'static, State>) -> Result<(), uc_err
 /// Maps every page to its own address. The engine uses a slow path for each store to a page that may hold code, and the
 /// Cortex-M's own map allows code in RAM. RAM is therefore marked as not executable here. A fetch from it still reaches
 /// the memory map, which refuses it.
-fn page_rights(_: &mut Unicorn<'_, State>, page: u64, access: MemType) -> Option<TlbEntry> {
+fn page_rights(engine: &mut Unicorn<'_, State>, page: u64, access: MemType) -> Option<TlbEntry> {
+    if access != MemType::FETCH {
+        it_state::clear(engine);
+    }
     let is_ram = [SRAM, CCM].iter().any(|ram| ram.contains(page as u32, 1));
     let perms = if is_ram && access != MemType::FETCH {
         Prot::READ | Prot::WRITE

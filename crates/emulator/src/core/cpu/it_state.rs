@@ -1,7 +1,7 @@
-//! The engine's IT state in an access to the chip.
+//! The engine's IT state in an access to the chip, and in one to a page that the engine does not have at hand.
 //!
-//! For an access from within an IT block the engine sets its IT state to that of the instruction, and does not restore it
-//! afterwards. Code that is looked up in this state is translated as if it were conditional. The wrong translation is then
+//! For such an access from within an IT block the engine sets its IT state to that of the instruction, and does not restore
+//! it afterwards. Code that is looked up in this state is translated as if it were conditional. The wrong translation is then
 //! found by its address alone, from any block that jumps there.
 
 use unicorn_engine::{RegisterARM, Unicorn};

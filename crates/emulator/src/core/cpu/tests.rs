@@ -155,6 +155,26 @@ fn code_behind_a_conditional_load_from_a_register_is_never_skipped() {
     assert_eq!(traced(&cpu), [7, 7, 7]);
 }
 
+/// The first access to a page of RAM fills the engine's table of pages. The access is done in the first round only.
+#[test]
+fn code_behind_the_first_access_to_a_page_is_never_skipped() {
+    const LDREQ: u16 = 0x6808; // r0, [r1]
+    const STREQ: u16 = 0x6008; // r0, [r1]
+    for access in [LDREQ, STREQ] {
+        let before = [
+            0x2300, 0x2000, 0x3301, // movs r3, #0; movs r0, #0; again: adds r3, #1
+            0xF244, 0x0100, 0x2B01, 0xF2C2,
+            0x0100, // movw r1, #0x4000; cmp r3, #1; movt r1, #0x2000
+            0xBF04, access, 0xEA7F, 0x0200, // itt eq; …; mvnseq r2, r0
+            0xD004, // beq end
+        ];
+        let after = [0x2B03, 0xD1EF, STAY]; // cmp r3, #3; bne again; end: b .
+        let mut cpu = board(&program(&[&before, &trace(7), &after]), &[]);
+        run_until(&mut cpu, 100 * US).expect("no fault");
+        assert_eq!(traced(&cpu), [7, 7, 7], "0x{access:X}");
+    }
+}
+
 #[test]
 fn a_waiting_handler_follows_without_unstacking() {
     // r2 is in the frame, so only a return to thread mode would restore it between the handlers.
