@@ -6,6 +6,7 @@ use robot_plant::{
     flash_chip::Phase,
     time::{MS, Ps, SECOND},
 };
+use robot_test_support::is_whole;
 
 use crate::{
     cells::run_all,
@@ -21,7 +22,7 @@ const CHANGES: [(Setting, f32); 3] = [((2, 0), 1.125), ((4, 0), 90_000.0), ((7, 
 const NEXT: (Setting, f32) = ((5, 3), 1.03);
 const FOREIGN: [((u8, u8), u8); 2] = [((16, 2), 1), ((77, 3), 9)];
 const OFF_TIME: Ps = 5 * MS;
-const RUNS: usize = 400;
+const RUNS: usize = 160;
 const TIMEOUT: Ps = 4 * SECOND;
 
 /// The work that the cut interrupts.
@@ -256,11 +257,9 @@ impl Known {
     }
 }
 
-/// A selection spread evenly over all cuts: `RUNS` of them, or as many as `ROBOT_POWER_CUTS` says.
+/// A selection spread evenly over all cuts, or all in a whole test run.
 fn chosen(cells: &[Cell]) -> Vec<Cell> {
-    let said = std::env::var("ROBOT_POWER_CUTS").ok();
-    let wanted = said.and_then(|said| said.parse().ok()).unwrap_or(RUNS);
-    let wanted = wanted.min(cells.len());
+    let wanted = if is_whole() { cells.len() } else { RUNS };
     let places = (0..wanted).map(|n| n * cells.len() / wanted);
     places.map(|place| cells[place]).collect()
 }
