@@ -1,4 +1,4 @@
-//! Dry friction of the wheels' gears. It would hold a robot that leans a little, and let it go with a jerk.
+//! Dry friction of the wheels' gears and of the hips. It would hold a robot that leans a little, and let it go with a jerk.
 
 use crate::math::scalar;
 
@@ -20,6 +20,15 @@ pub fn overcome(wheels_nm: [f32; 2], gear_rps: [f32; 2], limit_nm: f32) -> [f32;
     [overcome(left_nm, left_rps), overcome(right_nm, right_rps)]
 }
 
+/// Dry friction in N·m of a leg's two hip joints that is made up for, of some 0.3. All of it would let the body sway for ever.
+const HIPS_DRY_NM: f32 = 0.2;
+
+/// Torque in N·m of the body on a leg that leaves `lean_nm` behind the friction of its hips. They need not turn for it: it is
+/// added the way they shall turn.
+pub fn loosened(lean_nm: f32) -> f32 {
+    lean_nm + scalar::clamp(lean_nm, -HIPS_DRY_NM, HIPS_DRY_NM)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -34,6 +43,11 @@ mod tests {
     fn it_begins_without_a_step() {
         let [slow_nm, slower_nm] = overcome([0.0; 2], [0.05, 0.005], 4.5);
         assert!((slow_nm - 0.06).abs() < 1e-6 && (slower_nm - 0.006).abs() < 1e-6);
+    }
+
+    #[test]
+    fn hips_get_their_friction_the_way_they_shall_turn() {
+        assert_eq!([0.0, 0.1, -3.0].map(loosened), [0.0, 0.2, -3.2]);
     }
 
     #[test]

@@ -37,6 +37,10 @@ const LEARN_YAW_RPS: f32 = 1.0;
 /// than this, in s, is a flight, and as much time on the ground makes up for it: one that is carried does not count as caught
 /// again and again.
 const SEEMS_LIFTED_S: f32 = 0.2;
+/// Once a pushed robot has come to rest, within this speed in m/s, its hips are loosened until this time in s after the push: their
+/// friction would hold the body as askew as it is by then. For longer they would not rest, and the body would sway.
+const LOOSE_MPS: f32 = 0.02;
+const LOOSE_S: f32 = 1.5;
 /// The legs reach as far as their angle will allow after this time in s.
 const REACH_AHEAD_S: f32 = 0.05;
 /// Stiffness and damping with which the legs keep together on the ground, in N·m/rad and N·m·s/rad.
@@ -117,6 +121,8 @@ pub struct Law {
     airborne: bool,
     /// Time in s for which no wheel has seemed to touch the ground.
     lifted_s: f32,
+    /// Time in s for which the hips may still be loosened.
+    loose_s: f32,
 }
 
 impl Law {
@@ -133,6 +139,7 @@ impl Law {
             wheels_nm: [0.0; 2],
             airborne: false,
             lifted_s: 0.0,
+            loose_s: 0.0,
         }
     }
 
@@ -244,6 +251,7 @@ impl Law {
         let mut error = self.error(measured, off_mps, &lean, goal.pitch_rad);
         let mut length = goal.length;
         if self.reference.catches() || self.catch.helps {
+            self.loose_s = LOOSE_S;
             let fall = self.fall(&own, ahead.lean_rad, measured, trim_rad);
             self.catch.step(fall, dt_s);
             let [.., pitch_error, pitch_rate_error] = &mut error;
@@ -303,6 +311,14 @@ impl Law {
             push_n: scalar::max(push_n + more_n, LEAST_PUSH_N),
             lean_nm: nm + leg_nm,
         };
+        let mut legs_nm = [left_leg, right_leg];
+        if self.loose_s > 0.0 {
+            self.loose_s -= dt_s;
+            if self.reference.speed_mps.abs() < LOOSE_MPS {
+                legs_nm = legs_nm.map(friction::loosened);
+            }
+        }
+        let [left_nm, right_nm] = legs_nm;
         let split_nm = split_nm(measured);
         let level_n = match goal.ground {
             Ground::Touched => level_n(measured),
@@ -311,8 +327,8 @@ impl Law {
         let both = (
             [left_wheel + wheel_nm, right_wheel + wheel_nm],
             [
-                leg(left_n - level_n, left_leg - split_nm),
-                leg(right_n + level_n, right_leg + split_nm),
+                leg(left_n - level_n, left_nm - split_nm),
+                leg(right_n + level_n, right_nm + split_nm),
             ],
         );
         match self.contact.lifted() {

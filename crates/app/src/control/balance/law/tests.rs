@@ -95,3 +95,33 @@ fn a_robot_that_is_carried_is_not_caught_again_and_again() {
     let seconds = flies_after_s(&mut law, 0.8);
     assert!(seconds < 0.05, "{seconds}");
 }
+
+/// Torques on both legs in N·m of a body that is 0.01 rad askew.
+fn askew_nm(loose_s: f32, speed_mps: f32) -> ([f32; 2], f32) {
+    let mut measured = rolling(speed_mps, true);
+    measured.tilt.pitch_rad = 0.01;
+    let mut law = Law::new(&FIVEBAR.balance, &measured);
+    law.loose_s = loose_s;
+    let goal = Goal::upright(Ramp::at(0.2));
+    let (profile, odometry) = (&FIVEBAR.balance, &FIVEBAR.wheel_odom);
+    let (_, legs) = law.on_ground(profile, odometry, &measured, &goal, TICK_S);
+    (legs.map(|leg| leg.lean_nm), law.loose_s)
+}
+
+#[test]
+fn hips_are_loosened_for_a_while_after_a_push_once_the_robot_rests() {
+    let ([held_nm, _], _) = askew_nm(0.0, 0.0);
+    let (loose, left_s) = askew_nm(LOOSE_S, 0.0);
+    for nm in loose {
+        assert!(
+            (nm.abs() - held_nm.abs() - 0.2).abs() < 0.1,
+            "{nm} {held_nm}"
+        );
+    }
+    assert!(left_s < LOOSE_S);
+    assert_eq!(
+        askew_nm(LOOSE_S, 0.5).0,
+        askew_nm(0.0, 0.5).0,
+        "it still moves"
+    );
+}
