@@ -21,7 +21,7 @@ fn the_package_installs_and_does_what_the_document_says() {
         return;
     };
     let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let mut command = python.command(script("package.py"));
+    let mut command = python.building_command(script("package.py"));
     command.arg(repository).arg(folder());
     let said = String::from_utf8(Python::answer(command, "")).expect("text");
     assert!(said.contains("all of it runs"), "{said}");

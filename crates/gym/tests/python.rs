@@ -21,7 +21,7 @@ fn the_package_installs_and_a_policy_is_trained() {
     };
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("gym");
     let script = repository().join("crates/gym/tests/python/check.py");
-    let mut command = python.command(script);
+    let mut command = python.building_command(script);
     command.arg(repository()).arg(&folder);
     let said = String::from_utf8(Python::answer(command, "")).expect("text");
     assert!(said.contains("all of it runs"), "{said}");

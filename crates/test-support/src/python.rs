@@ -1,6 +1,7 @@
 //! Python with the packages that a test needs, in environments of their own below `target`.
 
 use std::{
+    env,
     fs::{self, File},
     io::{self, ErrorKind, Write},
     path::{Path, PathBuf},
@@ -143,6 +144,26 @@ impl Python {
         // -I: nothing of the user's own packages and variables takes part.
         command.args(["-I", "-u"]).arg(script.as_ref());
         command.env("MUJOCO_GL", "disable");
+        command
+    }
+
+    /// As [`command`](Self::command), for a script that installs packages of this repository: pip finds maturin's program, and
+    /// builds where the tests were built, where most crates are there already.
+    ///
+    /// # Panics
+    /// There is no rustc.
+    pub fn building_command(&self, script: impl AsRef<Path>) -> Command {
+        let mut command = self.command(script);
+        let programs = self.interpreter.parent().map(Path::to_owned);
+        let path = env::var_os("PATH").unwrap_or_default();
+        let path = env::join_paths(programs.into_iter().chain(env::split_paths(&path)));
+        command.env("PATH", path.expect("no quotes in PATH"));
+        let asked = Command::new("rustc")
+            .args(["--print", "host-tuple"])
+            .output()
+            .expect("a rustc");
+        let host = String::from_utf8(asked.stdout).expect("text");
+        command.env("CARGO_BUILD_TARGET", host.trim());
         command
     }
 

@@ -2,15 +2,12 @@
 
 import ast
 import inspect
-import os
 import pathlib
 import subprocess
 import sys
 
 repository, folder = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
 packages = folder / "packages"
-# pip finds maturin's program here.
-os.environ["PATH"] = os.pathsep.join([str(pathlib.Path(sys.executable).parent), os.environ["PATH"]])
 pip = [sys.executable, "-m", "pip", "install", "--quiet", "--no-input", "--no-deps", "--no-build-isolation", "--upgrade"]
 subprocess.run([*pip, "--target", str(packages), str(repository / "crates/arm")], check=True)
 sys.path.insert(0, str(packages))
