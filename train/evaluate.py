@@ -2,8 +2,9 @@
 
     python train/evaluate.py policy/fivebar/flat/policy.onnx --robots 200
     python train/evaluate.py policy/fivebar/flat/policy.onnx --robots 20 --tasks push
+    python train/evaluate.py policy/fivebar/flat/policy.onnx --robots 20 --tasks push --elf ROBOT_FIRMWARE
 
-The whole app runs, as in training. Robots differ from their file (mass -20 ... +40 %, centre +-3 cm, friction 0.4 ... 1.2,
+The whole app runs, as in training, or with --elf the firmware's image in the emulated board. Robots differ from their file (mass -20 ... +40 %, centre +-3 cm, friction 0.4 ... 1.2,
 torque +-10 %, delay up to 5 ms, board +-1 deg). Each begins sitting, and the stops of the runner count. A table in Markdown goes to
 standard output. What follows after standing up is of the robots that stood.
 """
@@ -49,11 +50,10 @@ class BuiltIn:
 class Robots:
     """Robots that one controller drives, all at once."""
 
-    def __init__(self, controller, count, threads, seed):
+    def __init__(self, controller, count, threads, seed, elf):
         self.controller, self.count = controller, count
-        self.envs = jiling_gym.FivebarVec(
-            count, threads, seed, start="sitting", push_mps=0.0, episode_s=1e6, episodes_per_robot=1000, **controller.options
-        )
+        options = {"start": "sitting", "push_mps": 0.0, "episode_s": 1e6, "episodes_per_robot": 1000}
+        self.envs = jiling_gym.FivebarVec(count, threads, seed, elf=elf, **options, **controller.options)
         self.begin()
 
     def begin(self):
@@ -140,13 +140,14 @@ def main():
     parser.add_argument("--seed", type=int, default=7_000_000, help="seed; searches with seeds below 7000 see none of its robots (7000000)")
     parser.add_argument("--threads", type=int, default=0, help="threads, 0 for one a processor (0)")
     parser.add_argument("--tasks", default="push,push-0.8,push-around,drive", help="which (push,push-0.8,push-around,drive)")
+    parser.add_argument("--elf", help="firmware image, for a jiling_gym that was built with the emulated board")
     parser.add_argument("--only", choices=("policy", "built-in"), help="one of both")
     parser.add_argument("--json", type=pathlib.Path, help="file for the figures")
     arguments = parser.parse_args()
     controllers = [] if arguments.only == "built-in" else [Network(arguments.policy)]
     controllers += [] if arguments.only == "policy" else [BuiltIn()]
     known, figures = tasks(arguments.seed, arguments.robots), {}
-    fleets = [Robots(it, arguments.robots, arguments.threads, arguments.seed) for it in controllers]
+    fleets = [Robots(it, arguments.robots, arguments.threads, arguments.seed, arguments.elf) for it in controllers]
     print("| task | figure | " + " | ".join(it.name for it in controllers) + " |")
     print("|---|---" + "|---" * len(controllers) + "|")
     for name in arguments.tasks.split(","):

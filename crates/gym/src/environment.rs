@@ -1,8 +1,9 @@
 //! One robot and its episodes.
 
+use std::path::{Path, PathBuf};
+
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use robot_host_loop::Robot;
 use robot_plant::world::{Push, RemoteInput};
 use robot_policy::{
     PolicyDescription,
@@ -12,7 +13,11 @@ use robot_policy::{
 };
 
 use crate::{
-    GymError, Options, StartKind, Truth, reward::Terms, specimen::Specimen, truth::Probes,
+    GymError, Options, Truth,
+    draw::{between, draw, start},
+    reward::Terms,
+    simulated_robot::SimulatedRobot,
+    specimen::{Beginning, Specimen},
     wire::Wire,
 };
 
@@ -20,16 +25,10 @@ use crate::{
 const GETS_UP_WITHIN_S: f64 = 1.5;
 /// The same for the robot's own controller.
 const STANDS_UP_WITHIN_S: f64 = 3.0;
-const SITS_IN: f64 = 0.5;
 /// In so many of the draws the command is to stand still.
 const STANDS_STILL_IN: f64 = 0.15;
 /// Greatest product of speed and turn rate that is commanded, m/s²: more slips where friction is low.
 const SIDEWAYS_MPS2: f64 = 2.5;
-/// Greatest speeds in m/s, and pitch rate in rad/s, of a robot that begins standing.
-const MOVING_MPS: f64 = 0.5;
-const PITCHING_RPS: f64 = 0.5;
-/// Draws of a robot that arms.
-const MOST_DRAWS: usize = 20;
 const TICKS_PER_S: f64 = 1e3;
 
 /// What a step led to.
@@ -49,8 +48,9 @@ pub struct Environment {
     numbers: Pcg64Mcg,
     specimen: Specimen,
     episodes_of_robot: u32,
-    robot: Robot,
-    probes: Probes,
+    robot: Box<dyn SimulatedRobot>,
+    /// The shipped image that runs in place of the app.
+    elf: Option<PathBuf>,
     wire: Wire,
     observer: Observer,
     decoder: Decoder,
@@ -77,18 +77,40 @@ impl Environment {
     /// The policy is for another robot, its period is none of the environment's, an option is out of range, or the robot
     /// does not arm.
     pub fn new(policy: &PolicyDescription, options: Options, seed: u64) -> Result<Self, GymError> {
+        Self::of(policy, options, seed, None)
+    }
+
+    /// The same with the firmware's image `elf` in the emulated board in place of the app: the robot is booted for each
+    /// episode, which takes seconds, and all episodes begin sitting.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new); this was built without the feature `board`, or the image cannot be read or is another robot's.
+    pub fn on_board(
+        policy: &PolicyDescription,
+        options: Options,
+        seed: u64,
+        elf: &Path,
+    ) -> Result<Self, GymError> {
+        Self::of(policy, options, seed, Some(elf))
+    }
+
+    pub(crate) fn of(
+        policy: &PolicyDescription,
+        options: Options,
+        seed: u64,
+        elf: Option<&Path>,
+    ) -> Result<Self, GymError> {
         options.check()?;
         let wire = Wire::new(policy)?;
         let (cycle_ticks, decimation) = cycle(policy)?;
         let mut numbers = Pcg64Mcg::seed_from_u64(seed);
-        let specimen = draw(policy, &mut numbers, options.vary)?;
-        let robot = specimen.sitting();
+        let mut specimen = draw(policy, &mut numbers, options.vary, elf)?;
+        let Beginning { robot, hips_rad } = start(&mut specimen, &mut numbers, &options)?;
         let observer = Observer::new(policy);
         let mut environment = Self {
             options,
             numbers,
             episodes_of_robot: 0,
-            probes: Probes::new(robot.world()),
             wire,
             decoder: Decoder::new(policy),
             limits: Limits::new(policy, specimen.description()),
@@ -106,8 +128,9 @@ impl Environment {
             observer,
             specimen,
             robot,
+            elf: elf.map(Path::to_owned),
         };
-        environment.begin()?;
+        environment.begin(hips_rad)?;
         Ok(environment)
     }
 
@@ -117,10 +140,14 @@ impl Environment {
     /// The next robot does not arm.
     pub fn reset(&mut self) -> Result<(), GymError> {
         if self.episodes_of_robot >= self.options.episodes_per_robot {
-            self.specimen = draw(self.wire.policy(), &mut self.numbers, self.options.vary)?;
+            let (policy, elf) = (self.wire.policy(), self.elf.as_deref());
+            self.specimen = draw(policy, &mut self.numbers, self.options.vary, elf)?;
             self.episodes_of_robot = 0;
         }
-        self.begin()
+        let Beginning { robot, hips_rad } =
+            start(&mut self.specimen, &mut self.numbers, &self.options)?;
+        self.robot = robot;
+        self.begin(hips_rad)
     }
 
     /// Sets options from the next episode on.
@@ -138,22 +165,10 @@ impl Environment {
         self.options
     }
 
-    fn begin(&mut self) -> Result<(), GymError> {
+    /// Begins an episode of a robot that has just been booted or placed. One that stands holds its hips at `hips_rad`.
+    fn begin(&mut self, hips_rad: Option<[f64; 4]>) -> Result<(), GymError> {
         self.episodes_of_robot += 1;
-        let sits = match self.options.start {
-            _ if self.options.built_in => true,
-            StartKind::Sitting => true,
-            StartKind::Standing => false,
-            StartKind::Mixed => self.numbers.random_bool(SITS_IN),
-        };
-        self.began_sitting = sits;
-        self.robot = if sits {
-            self.specimen.sitting()
-        } else {
-            let velocity = [MOVING_MPS, MOVING_MPS / 2.0].map(|most| self.between(-most, most));
-            let pitch_rps = self.between(-PITCHING_RPS, PITCHING_RPS);
-            self.specimen.standing(velocity, pitch_rps)
-        };
+        self.began_sitting = hips_rad.is_none();
         self.steps = 0;
         self.commanded = false;
         self.draw_command();
@@ -169,15 +184,15 @@ impl Environment {
                 ..RemoteInput::default()
             });
         }
-        if !sits {
-            let hold = self.wire.actions_at(self.specimen.standing_rad());
+        if let Some(hips_rad) = hips_rad {
+            let hold = self.wire.actions_at(hips_rad);
             self.decoder.decode(&hold)?;
         }
         self.observe()
     }
 
     fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.numbers.random::<f64>()
+        between(&mut self.numbers, low, high)
     }
 
     fn draw_command(&mut self) {
@@ -214,8 +229,7 @@ impl Environment {
     /// Pushes the robot in one instant, so that its speed forward and to the left changes by this.
     pub fn push(&mut self, change_mps: [f64; 2]) {
         let [ahead, left] = change_mps.map(|mps| mps * self.specimen.mass_kg);
-        let push = Push::instant([ahead, left, 0.0]);
-        self.robot.world_mut().push(push);
+        self.robot.push(Push::instant([ahead, left, 0.0]));
     }
 
     fn push_at_times(&mut self) {
@@ -251,7 +265,7 @@ impl Environment {
 
     /// The robot as it is.
     pub fn truth(&self) -> Truth {
-        self.probes.read(&self.robot)
+        self.robot.truth()
     }
 
     /// Takes an action: what the network gives.
@@ -261,11 +275,7 @@ impl Environment {
     pub fn step(&mut self, actions: &[f32]) -> Result<Step, GymError> {
         self.before.copy_from_slice(self.decoder.last_actions());
         let targets = self.decoder.decode(actions)?;
-        self.robot.pc = Some(if self.options.built_in {
-            self.wire.drive(&self.commands)
-        } else {
-            self.wire.command(targets)
-        });
+        self.wire.aim(targets);
         self.push_at_times();
         self.run_cycles()?;
         self.steps += 1;
@@ -299,7 +309,13 @@ impl Environment {
                 limits.check_positions(reading)?;
                 limits.check_torques(cycle_s, reading, wire.wanted())
             });
-            self.robot.run_ticks(self.cycle_ticks);
+            let frame = if self.options.built_in {
+                self.wire.drive(&self.commands)
+            } else {
+                self.wire.command()
+            };
+            self.robot.send(&frame);
+            self.robot.run_ticks(self.cycle_ticks)?;
         }
         Ok(())
     }
@@ -349,20 +365,4 @@ fn cycle(policy: &PolicyDescription) -> Result<(u64, u64), GymError> {
     }
     let period_s = policy.period_s();
     Err(GymError::Period { period_s })
-}
-
-/// Boots robots until one arms: one in fifty sits so steeply that its firmware takes it for fallen.
-fn draw(
-    policy: &PolicyDescription,
-    numbers: &mut Pcg64Mcg,
-    vary: bool,
-) -> Result<Specimen, GymError> {
-    let mut last = Specimen::boot(policy, numbers.random(), vary);
-    for _ in 0..MOST_DRAWS {
-        if last.is_ok() {
-            break;
-        }
-        last = Specimen::boot(policy, numbers.random(), vary);
-    }
-    last
 }

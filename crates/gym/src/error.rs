@@ -29,6 +29,15 @@ pub enum GymError {
         /// What its firmware says.
         why: String,
     },
+    /// The emulated board cannot be made or goes on no longer.
+    #[error("emulated board: {0}")]
+    Board(String),
+    /// An image was given, and this was built without the emulated board.
+    #[error(
+        "elf: this was built without the emulated board; \
+         MATURIN_PEP517_ARGS='--features python,board' pip install --no-build-isolation ./crates/gym"
+    )]
+    NoBoard,
     /// The observation cannot be made.
     #[error(transparent)]
     Observe(#[from] ObserveError),

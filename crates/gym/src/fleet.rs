@@ -1,5 +1,7 @@
 //! Many environments, stepped in threads.
 
+use std::path::Path;
+
 use rayon::{ThreadPool, ThreadPoolBuilder, prelude::*};
 use robot_policy::PolicyDescription;
 
@@ -44,9 +46,38 @@ impl Fleet {
         count: usize,
         threads: usize,
     ) -> Result<Self, GymError> {
+        Self::of(policy, options, seed, count, threads, None)
+    }
+
+    /// The same on emulated boards with the firmware's image `elf`, as in [`Environment::on_board`].
+    ///
+    /// # Errors
+    /// As [`Environment::on_board`].
+    ///
+    /// # Panics
+    /// As [`new`](Self::new).
+    pub fn on_boards(
+        policy: &PolicyDescription,
+        options: Options,
+        seed: u64,
+        count: usize,
+        threads: usize,
+        elf: &Path,
+    ) -> Result<Self, GymError> {
+        Self::of(policy, options, seed, count, threads, Some(elf))
+    }
+
+    pub(crate) fn of(
+        policy: &PolicyDescription,
+        options: Options,
+        seed: u64,
+        count: usize,
+        threads: usize,
+        elf: Option<&Path>,
+    ) -> Result<Self, GymError> {
         let builder = ThreadPoolBuilder::new().num_threads(threads);
         let pool = builder.build().expect("threads");
-        let environments = pool.install(|| boot(policy, options, seed, count))?;
+        let environments = pool.install(|| boot(policy, options, seed, count, elf))?;
         let first = environments.first();
         Ok(Self {
             resets: true,
@@ -144,10 +175,11 @@ fn boot(
     options: Options,
     seed: u64,
     count: usize,
+    elf: Option<&Path>,
 ) -> Result<Vec<Environment>, GymError> {
     (0..count)
         .into_par_iter()
-        .map(|index| Environment::new(policy, options, seed_of(seed, index as u64)))
+        .map(|index| Environment::of(policy, options, seed_of(seed, index as u64), elf))
         .collect()
 }
 

@@ -5,6 +5,8 @@
 //! way back: both are coded as the link's frames are, and observation and targets are computed by the code that drives the
 //! robot itself (`robot-policy`). What only a simulator knows makes the [`reward`] and ends an episode, and is not observed.
 //!
+//! With the feature `board` the shipped image can run in the emulated board in place of the app ([`Environment::on_board`]).
+//!
 //! A [`Fleet`] steps many environments in threads. With the feature `python`, which maturin turns on, all of it is the
 //! Python package `jiling_gym`.
 //!
@@ -24,13 +26,18 @@
 
 #![deny(missing_docs)]
 
+#[cfg(feature = "board")]
+mod board;
+mod draw;
 mod environment;
 mod error;
 mod fleet;
 mod options;
+mod power_on;
 #[cfg(feature = "python")]
 mod python;
 pub mod reward;
+mod simulated_robot;
 mod specimen;
 mod truth;
 mod wire;

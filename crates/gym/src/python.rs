@@ -26,6 +26,7 @@ mod _core {
 struct Fleet {
     policy: PolicyDescription,
     threads: usize,
+    elf: Option<PathBuf>,
     fleet: crate::Fleet,
 }
 
@@ -40,9 +41,10 @@ type Arrays<'py> = (
 
 #[pymethods]
 impl Fleet {
-    /// Boots `count` robots for the policy `robot/config` below the folder `policies`, by default that of the source tree.
+    /// Boots `count` robots for the policy `robot/config` below the folder `policies`, by default that of the source tree. With
+    /// `elf`, this firmware image runs in the emulated board in place of the app.
     #[new]
-    #[pyo3(signature = (count, threads, seed, resets, policies=None, robot="fivebar", config="flat", options=None))]
+    #[pyo3(signature = (count, threads, seed, resets, policies=None, robot="fivebar", config="flat", options=None, elf=None))]
     #[expect(clippy::too_many_arguments, reason = "Python names them")]
     fn new(
         py: Python<'_>,
@@ -54,6 +56,7 @@ impl Fleet {
         robot: &str,
         config: &str,
         options: Option<&Bound<'_, PyDict>>,
+        elf: Option<PathBuf>,
     ) -> PyResult<Self> {
         if count == 0 {
             return Err(PyValueError::new_err("0 environments step nowhere"));
@@ -61,12 +64,13 @@ impl Fleet {
         let policies = policies.unwrap_or_else(shipped_policies);
         let policy = config::read(&policies, robot, config).map_err(refused)?;
         let options = with(Options::default(), options)?;
-        let boot = || crate::Fleet::new(&policy, options, seed, count, threads);
+        let boot = || crate::Fleet::of(&policy, options, seed, count, threads, elf.as_deref());
         let mut fleet = py.detach(boot).map_err(complaint)?;
         fleet.resets = resets;
         Ok(Self {
             policy,
             threads,
+            elf,
             fleet,
         })
     }
@@ -84,19 +88,18 @@ impl Fleet {
         let Self {
             policy,
             threads,
+            elf,
             fleet,
         } = self;
         let reset = || {
             if let Some(seed) = seed {
                 let (count, resets) = (fleet.environments().len(), fleet.resets);
-                *fleet = crate::Fleet::new(policy, options, seed, count, *threads)?;
+                *fleet = crate::Fleet::of(policy, options, seed, count, *threads, elf.as_deref())?;
                 fleet.resets = resets;
                 return Ok(());
             }
-            let environments = fleet.environments_mut().iter_mut();
-            environments
-                .map(|it| it.set_options(options))
-                .collect::<Result<(), _>>()?;
+            let mut environments = fleet.environments_mut().iter_mut();
+            environments.try_for_each(|it| it.set_options(options))?;
             fleet.reset()
         };
         py.detach(reset).map_err(complaint)?;

@@ -1,5 +1,7 @@
 //! Robots that have booted, armed, and wait for their first command.
 
+#[cfg(feature = "board")]
+use std::path::Path;
 use std::sync::Arc;
 
 use rand::{RngExt, SeedableRng};
@@ -9,17 +11,20 @@ use robot_host_loop::{Robot, Robots};
 use robot_plant::{
     attitude::Quaternion,
     free::{FreeBody, FreeSetup, FreeState, Hold, Start},
-    robots,
-    world::{PlantKind, RemoteInput, WorldConfig},
+    world::RemoteInput,
 };
 use robot_policy::{
-    Drive, PolicyDescription,
+    PolicyDescription,
     action::Target,
     machine::{Machine, Phase, Timing},
 };
 
+#[cfg(feature = "board")]
+use crate::board::Board;
 use crate::{
     GymError,
+    power_on::{self, PowerOn},
+    simulated_robot::{AppRobot, SimulatedRobot},
     wire::{self, Wire},
 };
 
@@ -38,40 +43,91 @@ const LATENCY_MS: [u64; 2] = [3, 8];
 const COMMANDS_EVERY_MS: u64 = 10;
 
 /// A robot of one seed, as it is when an episode begins.
-#[derive(Clone)]
 pub(crate) struct Specimen {
-    sitting: Robot,
-    /// Held above its wheels.
-    standing: Robot,
-    held: FreeState,
+    starts: Starts,
     description: Arc<Description>,
     pub mass_kg: f64,
+}
+
+/// The robot of an episode.
+pub(crate) struct Beginning {
+    pub robot: Box<dyn SimulatedRobot>,
+    /// Angles of the hips of a robot that stands, in the link's order and sense.
+    pub hips_rad: Option<[f64; 4]>,
+}
+
+/// Where episodes begin.
+enum Starts {
+    App {
+        sitting: Box<AppRobot>,
+        /// Held above its wheels.
+        standing: Box<AppRobot>,
+        held: FreeState,
+    },
+    #[cfg(feature = "board")]
+    Board {
+        /// Until an episode takes it: then the next one boots again.
+        booted: Option<Board>,
+        boot: Box<dyn Fn() -> Result<Board, GymError> + Send + Sync>,
+    },
 }
 
 impl Specimen {
     /// Boots robot `seed` twice, sitting and standing. The one that sits has gone to the default pose, as the runner makes it
     /// do before the policy drives.
     pub fn boot(policy: &PolicyDescription, seed: u64, vary: bool) -> Result<Self, GymError> {
-        let robots = Robots {
-            robot: robots::with_joints(robot_description::JointMotor::Dm4310),
-            vary,
+        let robots = power_on::robots(vary);
+        let (latency_ms, tilt_rad) = beginning(seed);
+        let boot = |start| {
+            let PowerOn { world, settings } = PowerOn::of(&robots, policy, seed, start);
+            let robot = Robot::in_world(world, settings).expect("no recording is loaded");
+            AppRobot::new(robot)
         };
-        let mut numbers = Pcg64Mcg::seed_from_u64(seed ^ 0x5eed_0b07);
-        let latency_ms = numbers.random_range(LATENCY_MS[0]..=LATENCY_MS[1]);
-        let mut between = |most: f64| numbers.random_range(-most..most);
-        let tilt_rad = TILT_RAD.map(&mut between);
-        let power_on = |start| power_on(&robots, policy, seed, start);
-        let mut sitting = power_on(Start::Sitting);
-        arm(&mut sitting, seed, latency_ms, None)?;
+        let mut sitting = boot(Start::Sitting);
+        arm(&mut sitting, seed, latency_ms, |_| ())?;
         take_default_pose(&mut sitting, policy)?;
-        check_armed(&sitting, seed)?;
-        let mut standing = power_on(Start::Standing);
+        sitting.check_armed(seed)?;
+        let mut standing = boot(Start::Standing);
         let held = tilted(&upright(&robots, seed), &robots.robot.wheels, tilt_rad);
-        arm(&mut standing, seed, latency_ms, Some(&lifted(&held)))?;
+        let hold = lifted(&held);
+        arm(&mut standing, seed, latency_ms, |robot| {
+            robot.place(&hold, Hold::Clamped);
+        })?;
         Ok(Self {
-            sitting,
-            standing,
-            held,
+            starts: Starts::App {
+                sitting: Box::new(sitting),
+                standing: Box::new(standing),
+                held,
+            },
+            mass_kg: robots.mass_kg(seed),
+            description: robots.robot,
+        })
+    }
+
+    /// The same on the emulated board, where all episodes begin sitting.
+    #[cfg(feature = "board")]
+    pub fn boot_board(
+        policy: &PolicyDescription,
+        seed: u64,
+        vary: bool,
+        elf: &Path,
+    ) -> Result<Self, GymError> {
+        let robots = power_on::robots(vary);
+        let (latency_ms, _) = beginning(seed);
+        let setup = PowerOn::of(&robots, policy, seed, Start::Sitting);
+        let (policy, elf) = (policy.clone(), elf.to_owned());
+        let boot = move || {
+            let mut board = Board::power_on(&elf, setup.clone())?;
+            arm(&mut board, seed, latency_ms, |_| ())?;
+            take_default_pose(&mut board, &policy)?;
+            board.check_armed(seed)?;
+            Ok(board)
+        };
+        Ok(Self {
+            starts: Starts::Board {
+                booted: Some(boot()?),
+                boot: Box::new(boot),
+            },
             mass_kg: robots.mass_kg(seed),
             description: robots.robot,
         })
@@ -83,50 +139,64 @@ impl Specimen {
     }
 
     /// The robot that sits in the default pose.
-    pub fn sitting(&self) -> Robot {
-        self.sitting.clone()
-    }
-
-    /// Angles of the hips of the robot that stands, in the link's order and sense.
-    pub fn standing_rad(&self) -> [f64; 4] {
-        self.held.joint_rad
-    }
-
-    /// The robot, let go upright with these velocities forward and up to the left in m/s, and this pitch rate in rad/s.
-    pub fn standing(&self, velocity_mps: [f64; 2], pitch_rps: f64) -> Robot {
-        let mut robot = self.standing.clone();
-        let [forward_mps, left_mps] = velocity_mps;
-        let state = FreeState {
-            velocity_mps: [forward_mps, left_mps, 0.0],
-            rate_rps: [0.0, pitch_rps, 0.0],
-            wheel_rps: [forward_mps / self.description.wheels.radius_m; 2],
-            ..self.held
+    ///
+    /// # Errors
+    /// The emulated board does not boot again.
+    pub fn sitting(&mut self) -> Result<Beginning, GymError> {
+        let robot: Box<dyn SimulatedRobot> = match &mut self.starts {
+            Starts::App { sitting, .. } => sitting.clone(),
+            #[cfg(feature = "board")]
+            Starts::Board { booted, boot } => Box::new(booted.take().map_or_else(boot, Ok)?),
         };
-        robot.world_mut().place(&state, Hold::Free);
-        robot
+        Ok(Beginning {
+            robot,
+            hips_rad: None,
+        })
+    }
+
+    /// Whether it can only begin sitting.
+    pub fn only_sits(&self) -> bool {
+        !matches!(self.starts, Starts::App { .. })
+    }
+
+    /// The robot, let go upright with these velocities forward and to the left in m/s, and this pitch rate in rad/s. One that can
+    /// only begin sitting sits.
+    ///
+    /// # Errors
+    /// As [`sitting`](Self::sitting).
+    pub fn standing(
+        &mut self,
+        velocity_mps: [f64; 2],
+        pitch_rps: f64,
+    ) -> Result<Beginning, GymError> {
+        match &self.starts {
+            Starts::App { standing, held, .. } => {
+                let mut robot = standing.clone();
+                let [forward_mps, left_mps] = velocity_mps;
+                let state = FreeState {
+                    velocity_mps: [forward_mps, left_mps, 0.0],
+                    rate_rps: [0.0, pitch_rps, 0.0],
+                    wheel_rps: [forward_mps / self.description.wheels.radius_m; 2],
+                    ..*held
+                };
+                robot.place(&state, Hold::Free);
+                Ok(Beginning {
+                    robot,
+                    hips_rad: Some(held.joint_rad),
+                })
+            }
+            #[cfg(feature = "board")]
+            Starts::Board { .. } => self.sitting(),
+        }
     }
 }
 
-/// Boots a robot whose wheels may have the current that the policy wants, as far as the robot's file allows it.
-fn power_on(robots: &Robots, policy: &PolicyDescription, seed: u64, start: Start) -> Robot {
-    let world = WorldConfig {
-        plant: PlantKind::Free,
-        robot: Arc::clone(&robots.robot),
-        seed,
-        start,
-        variation: robots.variation(seed),
-        ..WorldConfig::default()
-    };
-    let mut settings = robots.settings();
-    let wheels = &robots.robot.wheels;
-    let wanted_nm = policy.joints.iter().filter(|it| it.drive == Drive::Speed);
-    let wanted_nm = wanted_nm.fold(0.0, |most, it| it.torque_limit_nm.max(most));
-    let wanted_a = f64::from(wanted_nm) / wheels.torque_nm_per_a;
-    let limit_a = wanted_a
-        .max(wheels.current_limit_a)
-        .min(wheels.max_current_a);
-    settings.wheel_ctrl.current_limit_ma = (limit_a * 1e3) as f32;
-    Robot::in_world(world, settings).expect("no recording is loaded")
+/// Time in ms from a reading to the command made of it, and the tilt in rad of a robot that begins standing.
+fn beginning(seed: u64) -> (u64, [f64; 2]) {
+    let mut numbers = Pcg64Mcg::seed_from_u64(seed ^ 0x5eed_0b07);
+    let latency_ms = numbers.random_range(LATENCY_MS[0]..=LATENCY_MS[1]);
+    let mut between = |most: f64| numbers.random_range(-most..most);
+    (latency_ms, TILT_RAD.map(&mut between))
 }
 
 /// The robot on its wheels, legs at the middle of their range.
@@ -139,41 +209,51 @@ fn upright(robots: &Robots, seed: u64) -> FreeState {
     FreeBody::new(&robots.robot, &setup).state()
 }
 
-/// Runs the robot until it is armed in mode PC. With a state, its body is held there.
-fn arm(
-    robot: &mut Robot,
+/// Runs the robot until it is armed in mode PC, with `hold` before each tick.
+fn arm<R: SimulatedRobot>(
+    robot: &mut R,
     seed: u64,
     latency_ms: u64,
-    held: Option<&FreeState>,
+    mut hold: impl FnMut(&mut R),
 ) -> Result<(), GymError> {
-    robot.pc = Some(wire::at_rest());
     robot.remote(RemoteInput {
         mode: Some(MODE_PC),
         ..RemoteInput::default()
     });
-    let run_until = |robot: &mut Robot, seconds: f64| {
-        let Some(state) = held else {
-            robot.run_until(seconds, |_| ());
-            return;
-        };
-        while robot.seconds() < seconds {
-            robot.world_mut().place(state, Hold::Clamped);
-            let next = robot.seconds() + 1e-4;
-            robot.run_until(next, |_| ());
-        }
-    };
-    run_until(robot, ENABLE_AT_S);
+    run_at_rest(robot, ENABLE_AT_S, &mut hold)?;
     robot.remote(RemoteInput {
         enable: Some(true),
         ..RemoteInput::default()
     });
     let ready_ms = (READY_AT_S * 1e3) as u64 + COMMANDS_EVERY_MS - latency_ms;
-    run_until(robot, ready_ms as f64 * 1e-3 - 1e-6);
-    check_armed(robot, seed)
+    run_at_rest(robot, ready_ms as f64 * 1e-3 - 1e-6, hold)?;
+    robot.check_armed(seed)
+}
+
+/// Runs until this time after power-on, with a PC that asks for no motion.
+fn run_at_rest<R: SimulatedRobot>(
+    robot: &mut R,
+    until_s: f64,
+    mut hold: impl FnMut(&mut R),
+) -> Result<(), GymError> {
+    for tick in 0_u64.. {
+        if robot.seconds() >= until_s {
+            break;
+        }
+        if tick.is_multiple_of(COMMANDS_EVERY_MS) {
+            robot.send(&wire::at_rest());
+        }
+        hold(robot);
+        robot.run_ticks(1)?;
+    }
+    Ok(())
 }
 
 /// Goes from the pose in which the robot sits to the default pose, as the runner does.
-fn take_default_pose(robot: &mut Robot, policy: &PolicyDescription) -> Result<(), GymError> {
+fn take_default_pose(
+    robot: &mut impl SimulatedRobot,
+    policy: &PolicyDescription,
+) -> Result<(), GymError> {
     let mut wire = Wire::new(policy)?;
     let mut machine = Machine::new(policy, Timing::default());
     let mut targets: Vec<Target> = Vec::with_capacity(policy.joints.len());
@@ -185,22 +265,14 @@ fn take_default_pose(robot: &mut Robot, policy: &PolicyDescription) -> Result<()
             Phase::Policy => break,
             Phase::GetUp => {
                 machine.pose(now_s, &mut targets);
-                robot.pc = Some(wire.command(&targets));
+                wire.aim(&targets);
+                robot.send(&wire.command());
             }
-            Phase::Passive | Phase::GetDown => {}
+            Phase::Passive | Phase::GetDown => robot.send(&wire::at_rest()),
         }
-        robot.run_ticks((cycle_s * 1e3).round() as u64);
+        robot.run_ticks((cycle_s * 1e3).round() as u64)?;
     }
     Ok(())
-}
-
-fn check_armed(robot: &Robot, seed: u64) -> Result<(), GymError> {
-    if robot.armed() {
-        return Ok(());
-    }
-    let report = robot.diagnostics();
-    let why = format!("{:?}, {:?}", report.arming, report.safety.flags);
-    Err(GymError::NotArmed { seed, why })
 }
 
 /// The same with its wheels above the ground, where nothing moves limp legs within a tick.

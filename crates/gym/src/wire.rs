@@ -1,8 +1,8 @@
 //! The way between the policy and the motors: state frames and command frames, with the accuracy that they have.
 
 use robot_app::{
-    domain::{PcCommand, PcDrive, PcKind},
-    link::{Downlink, Uplink},
+    domain::PcDrive,
+    link::{Downlink, DriveFrame, Uplink},
 };
 use robot_description::JointMotor;
 use robot_plant::robots;
@@ -13,7 +13,7 @@ use robot_policy::{
     robot::LinkRobot,
 };
 
-use crate::GymError;
+use crate::{GymError, simulated_robot::Frame};
 
 const MOTORS: usize = 6;
 const WHEELS: usize = 2;
@@ -63,18 +63,14 @@ impl Wire {
     }
 
     /// The drive command of these wishes, for the robot's own controller.
-    pub fn drive(&mut self, commands: &Commands) -> PcCommand {
+    pub fn drive(&mut self, commands: &Commands) -> Frame {
         self.count = self.count.wrapping_add(1);
-        PcCommand {
-            kind: PcKind::Drive,
-            drive: PcDrive {
-                vx: commands.forward_mps / self.max_speed_mps,
-                wz: commands.yaw_rps / self.max_yaw_rps,
-                count: self.count,
-                ..PcDrive::default()
-            },
-            ..PcCommand::default()
-        }
+        Frame::Drive(DriveFrame(PcDrive {
+            vx: commands.forward_mps / self.max_speed_mps,
+            wz: commands.yaw_rps / self.max_yaw_rps,
+            count: self.count,
+            ..PcDrive::default()
+        }))
     }
 
     /// The actions whose targets are these angles of the hips' motors, and wheels at rest.
@@ -97,8 +93,8 @@ impl Wire {
         &self.wanted
     }
 
-    /// The command of these targets, as the robot reads it from its frame.
-    pub fn command(&mut self, targets: &[Target]) -> PcCommand {
+    /// Limits the torques of these targets, and makes them what [`command`](Self::command) sends.
+    pub fn aim(&mut self, targets: &[Target]) {
         let reading = self.robot.reading();
         let motions = reading.joint_pos_rad.iter().zip(&reading.joint_vel_rps);
         let joints = self.policy.joints.iter().zip(motions);
@@ -110,21 +106,15 @@ impl Wire {
             target.within_torque(joint.torque_limit_nm, *pos_rad, *vel_rps)
         });
         self.limited.extend(limited);
-        command_of(&self.robot.command(&self.limited))
+    }
+
+    /// The command of the last targets. No two frames are equal.
+    pub fn command(&mut self) -> Frame {
+        Frame::Motors(self.robot.command(&self.limited))
     }
 }
 
 /// A command that asks for no motion.
-pub(crate) fn at_rest() -> PcCommand {
-    command_of(&Downlink::default())
-}
-
-fn command_of(frame: &Downlink) -> PcCommand {
-    let Downlink { wheels, joints } = Downlink::decode(&frame.encode()).expect("its own frame");
-    PcCommand {
-        kind: PcKind::Motors,
-        wheels,
-        joints,
-        ..PcCommand::default()
-    }
+pub(crate) fn at_rest() -> Frame {
+    Frame::Motors(Downlink::default())
 }

@@ -24,17 +24,18 @@ class Fivebar(gymnasium.Env):
 
     Options, here or in `reset(options={...})`: `start` ("mixed", "sitting", "standing"), `vary`, `push_mps`, `push_every_s`,
     `speed_mps`, `turn_rps`, `command_every_s`, `episodes_per_robot`. `info` is what only the simulator knows, by name, with
-    the command. An episode ends when the robot falls or its firmware stops it.
+    the command. An episode ends when the robot falls or its firmware stops it. With `elf`, the path of a firmware image, the image
+    runs in the emulated board in place of the app: it boots for each episode, and every episode begins sitting.
     """
 
     metadata = {"render_modes": []}
 
-    def __init__(self, policies=None, robot="fivebar", config="flat", render_mode=None, **options):
+    def __init__(self, policies=None, robot="fivebar", config="flat", elf=None, render_mode=None, **options):
         if render_mode is not None:
             raise ValueError(f"render_mode {render_mode!r}: there are no pictures, only render_mode None")
         self.render_mode = None
         self._fleet = Fleet(
-            1, 1, 0, False, policies=policies, robot=robot, config=config, options={"episode_s": NEVER_S, **options}
+            1, 1, 0, False, policies=policies, robot=robot, config=config, elf=elf, options={"episode_s": NEVER_S, **options}
         )
         self.observation_space, self.action_space = spaces(self._fleet)
 

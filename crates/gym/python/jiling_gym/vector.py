@@ -12,14 +12,16 @@ from .environment import MOST_SEED, spaces
 class FivebarVec(VectorEnv):
     """Robots that are stepped together by threads in Rust. `threads=0` takes one a processor.
 
-    Options as in `Fivebar`, and `episode_s`, after which an episode is truncated. One that ends begins the next in the same
+    Options and `elf` as in `Fivebar`, and `episode_s`, after which an episode is truncated. One that ends begins the next in the same
     step, and `info["final_obs"]` has the last observation of those in `info["_final_obs"]`.
     """
 
     metadata = {"render_modes": [], "autoreset_mode": AutoresetMode.SAME_STEP}
 
-    def __init__(self, num_envs, threads=0, seed=0, policies=None, robot="fivebar", config="flat", **options):
-        self.fleet = Fleet(num_envs, threads, seed, True, policies=policies, robot=robot, config=config, options=options)
+    def __init__(self, num_envs, threads=0, seed=0, policies=None, robot="fivebar", config="flat", elf=None, **options):
+        self.fleet = Fleet(
+            num_envs, threads, seed, True, policies=policies, robot=robot, config=config, elf=elf, options=options
+        )
         self.num_envs = num_envs
         self.single_observation_space, self.single_action_space = spaces(self.fleet)
         self.observation_space = batch_space(self.single_observation_space, num_envs)

@@ -7,8 +7,6 @@ import sys
 
 repository, folder = (pathlib.Path(argument).resolve() for argument in sys.argv[1:])
 packages = folder / "packages"
-# pip finds maturin's program here.
-os.environ["PATH"] = os.pathsep.join([str(pathlib.Path(sys.executable).parent), os.environ["PATH"]])
 pip = [sys.executable, "-m", "pip", "install", "--quiet", "--no-input", "--no-deps", "--no-build-isolation", "--upgrade"]
 subprocess.run([*pip, "--target", str(packages), str(repository / "crates/gym")], check=True)
 sys.path.insert(0, str(packages))
@@ -34,6 +32,12 @@ except KeyError as error:
     assert "colour" in str(error)
 else:
     raise SystemExit("an unknown option was taken")
+try:
+    jiling_gym.FivebarVec(1, elf="robot-firmware")
+except ValueError as error:
+    assert "--features python,board" in str(error)
+else:
+    raise SystemExit("there is a board that was not built")
 
 run = lambda script, *arguments: subprocess.run(
     [sys.executable, str(repository / "train" / script), *map(str, arguments)], check=True,
