@@ -21,7 +21,7 @@ pub struct Fault {
     pub is_error: bool,
 }
 
-/// Compares a policy with the description of its robot.
+/// Compares a policy with the description of its robot, whose `wheels.current_limit_a` is what the wheels may have now.
 pub fn faults(policy: &PolicyDescription, robot: &Robot) -> Vec<Fault> {
     let mut faults = Vec::new();
     if !PERIODS_S.contains(&policy.control_period_s) {
@@ -89,7 +89,7 @@ fn torque(joint: &Joint, robot: &Robot) -> Option<String> {
     let limit_nm = joint.torque_limit_nm;
     let is_beyond = |most_nm: f64| limit_nm > 1.001 * most_nm as f32;
     let beyond = |most_nm: f64| {
-        format!("torque_limits has {limit_nm} N·m, and the robot as delivered gives {most_nm:.1}")
+        format!("torque_limits has {limit_nm} N·m, and the robot gives {most_nm:.1}")
     };
     let wheels = &robot.wheels;
     let [delivered_nm, most_nm] = match joint.drive {
@@ -164,7 +164,7 @@ mod tests {
 
     #[test]
     fn a_torque_that_the_robot_does_not_give_is_worth_a_look() {
-        let delivered = "and the robot as delivered gives";
+        let delivered = "and the robot gives";
         for (joint, limit_nm, text) in [
             (0, 10.0, "5.0, never more than 5.0"),
             (4, 10.0, "2.4, never more than 4.5"),

@@ -297,6 +297,10 @@ fn the_policy_of_the_tree_gets_the_robot_up_and_drives_it() {
         "{said:?}"
     );
     assert!(said.iter().any(|it| it.contains("; 0 missed")), "{said:?}");
+    assert!(
+        !said.iter().any(|it| it.starts_with("note:")),
+        "the current is set as the policy needs it: {said:?}"
+    );
 
     let standing = run.driven(seconds).filter(|(at_s, _)| *at_s > SETTLED_S);
     for (at_s, sample) in standing {

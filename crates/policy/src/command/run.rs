@@ -2,7 +2,14 @@
 
 mod session;
 
-use std::{net::SocketAddr, path::PathBuf, process::ExitCode, time::Duration};
+use std::{
+    cell::RefCell,
+    net::SocketAddr,
+    path::PathBuf,
+    process::ExitCode,
+    rc::Rc,
+    time::{Duration, Instant},
+};
 
 use anyhow::{Context, bail, ensure};
 use robot_description::{Robot, path_of};
@@ -15,8 +22,13 @@ use robot_policy::{
     machine::Timing,
     runner::Runner,
 };
-use robotctl::{drive::JoystickMap, pc_link::PcLink};
-use session::{Beat, Session};
+use robotctl::{
+    drive::JoystickMap,
+    pc_link::{PcLink, SharedLink},
+    settings,
+    tuning::{Timeouts, TuningClient},
+};
+use session::{Beat, FIRST_STATE, Session};
 
 use super::place::Place;
 
@@ -108,6 +120,22 @@ Examples:
   policy run --robot fivebar --config flat --link /dev/ttyUSB0 --commands joystick --joystick /dev/input/js0
   policy run --robot fivebar --config flat --link /dev/ttyUSB0 --commands file --file drive.txt --seconds 60";
 
+/// Puts the current that the robot's wheels may have into its description. A robot that does not answer leaves it as it is: the
+/// run will say what is wrong.
+fn read_current_limit(mut link: PcLink, robot: &mut Robot) -> anyhow::Result<PcLink> {
+    // One that has just been switched on has to boot.
+    link.next(Instant::now() + FIRST_STATE)?;
+    let setting = settings::find("wheel-controller.current-limit-ma")?;
+    let shared = SharedLink(Rc::new(RefCell::new(link)));
+    let mut client = TuningClient::new(Box::new(shared.clone()), Timeouts::default());
+    if let Ok(limit_ma) = client.read(setting) {
+        robot.wheels.current_limit_a = f64::from(limit_ma) / 1e3;
+    }
+    drop(client);
+    let link = Rc::into_inner(shared.0).context("the link has another user")?;
+    Ok(link.into_inner())
+}
+
 impl Run {
     pub fn run(self) -> anyhow::Result<ExitCode> {
         for (name, seconds) in [("get-up", self.get_up), ("hold", self.hold)] {
@@ -118,7 +146,7 @@ impl Run {
         }
         let (policy, mut model) = self.place.load()?;
         let description = self.description.as_ref().unwrap_or(&self.place.robot);
-        let robot = Robot::read(&path_of(description))?;
+        let mut robot = Robot::read(&path_of(description))?;
         let timing = Timing {
             get_up_s: self.get_up,
             hold_s: self.hold,
@@ -129,10 +157,6 @@ impl Run {
             ran.map_err(|error| error.to_string())
         });
         let runner = Runner::new(&policy, &robot, network, timing)?;
-        for fault in fit::faults(&policy, &robot) {
-            let joint = fault.joint.map_or("", |it| &policy.joints[it].name);
-            println!("note: {joint}: {}", fault.text);
-        }
         let log = self
             .log
             .as_ref()
@@ -145,17 +169,26 @@ impl Run {
         if let Some(live) = &live {
             println!("live: open ws://{} in Foxglove", live.address());
         }
-        let link = PcLink::open(&self.link)?;
-        let source = self.source(&policy)?;
         let period = Duration::from_secs_f32(policy.control_period_s);
+        let beat = (!self.dry_run).then(|| Beat::new(period, self.lockstep));
+        let mut link = PcLink::open(&self.link)?;
+        // A dry run sends no question either.
+        if let Some(beat) = &beat {
+            println!("{}", beat.prepare());
+            link = read_current_limit(link, &mut robot)?;
+        }
+        for fault in fit::faults(&policy, &robot) {
+            let joint = fault.joint.map_or("", |it| &policy.joints[it].name);
+            println!("note: {joint}: {}", fault.text);
+        }
+        let source = self.source(&policy)?;
         let mut session = Session::new(self.link.clone(), link, runner, source, &policy)?;
         session.seconds = self.seconds;
         session.log = log;
         session.live = live;
-        if self.dry_run {
-            session.rehearse(period)
-        } else {
-            session.run(Beat::new(period, self.lockstep))
+        match beat {
+            Some(beat) => session.run(beat),
+            None => session.rehearse(period),
         }
     }
 

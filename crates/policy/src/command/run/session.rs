@@ -35,12 +35,11 @@ use robotctl::{
     pc_link::{self, PcLink},
 };
 
-use super::super::priority;
 pub use beat::Beat;
 use beat::Begun;
 
 /// The first state must come within this time.
-const FIRST_STATE: Duration = Duration::from_secs(2);
+pub const FIRST_STATE: Duration = Duration::from_secs(2);
 /// Time for a cycle that is late to read the states that have come.
 const CATCHES_UP: Duration = Duration::from_millis(1);
 /// Commands without torque at the end.
@@ -119,10 +118,6 @@ impl Session {
 
     /// Runs until the robot has got down, and says why it did.
     pub fn run(mut self, mut beat: Beat) -> Result<ExitCode> {
-        self.say(&match beat {
-            Beat::Computer(_) => priority::raise(),
-            Beat::Robot(_) => "in lockstep: the robot's clock counts".to_owned(),
-        });
         self.wait_for_robot()?;
         self.say("the robot is heard");
         let driven = self.drive(&mut beat);

@@ -8,7 +8,7 @@ use std::{
 use anyhow::{Result, bail};
 use robot_policy::pace::{Pace, RobotPace};
 
-use super::{Session, link_failed};
+use super::{super::super::priority, Session, link_failed};
 
 /// A robot in lockstep that takes longer for its next state is gone.
 const PATIENCE: Duration = Duration::from_secs(30);
@@ -40,6 +40,14 @@ impl Beat {
             Self::Robot(RobotPace::new(period))
         } else {
             Self::Computer(Pace::new(period, Instant::now()))
+        }
+    }
+
+    /// Prepares the computer, and says whose clock counts.
+    pub fn prepare(&self) -> String {
+        match self {
+            Self::Computer(_) => priority::raise(),
+            Self::Robot(_) => "in lockstep: the robot's clock counts".to_owned(),
         }
     }
 
