@@ -268,7 +268,7 @@ fn take_default_pose(
                 wire.aim(&targets);
                 robot.send(&wire.command());
             }
-            Phase::Passive | Phase::GetDown => robot.send(&wire::at_rest()),
+            Phase::Passive | Phase::ToDefault | Phase::GetDown => robot.send(&wire::at_rest()),
         }
         robot.run_ticks((cycle_s * 1e3).round() as u64)?;
     }

@@ -187,6 +187,11 @@ impl Stop {
         }
     }
 
+    /// Returns whether the network gives no targets.
+    pub fn is_of_network(&self) -> bool {
+        matches!(self, Self::Action(_) | Self::Network(_))
+    }
+
     /// Returns whether the user wanted it.
     pub fn is_wanted(&self) -> bool {
         matches!(self, Self::Asked | Self::TimeOver { .. })

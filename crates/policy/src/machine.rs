@@ -1,4 +1,4 @@
-//! The states of a run: passive, getting up, the policy, getting down, passive.
+//! The states of a run: passive, getting up, the policy, to the default pose, getting down, passive.
 
 use crate::{
     Drive, PolicyDescription,
@@ -16,6 +16,8 @@ pub struct Timing {
     pub get_up_s: f64,
     /// Time in s in the default pose before the policy takes over.
     pub hold_s: f64,
+    /// Time in s in which the joints' targets go from the network's to the default pose before the robot gets down.
+    pub to_default_s: f64,
     /// Time in s from the measured pose to that from which the robot got up.
     pub get_down_s: f64,
 }
@@ -26,6 +28,7 @@ impl Default for Timing {
             settle_s: 0.5,
             get_up_s: 1.0,
             hold_s: 1.0,
+            to_default_s: 2.0,
             get_down_s: 2.0,
         }
     }
@@ -40,6 +43,9 @@ pub enum Phase {
     GetUp,
     /// The network drives.
     Policy,
+    /// The network drives without a command. Joints go from its targets to the default pose, wheels go on as it says: so a robot
+    /// that cannot stand by itself balances until it is low.
+    ToDefault,
     /// Joints go back to where they were before getting up; wheels hold speed 0.
     GetDown,
 }
@@ -51,8 +57,14 @@ impl Phase {
             Self::Passive => "passive",
             Self::GetUp => "get-up",
             Self::Policy => "policy",
+            Self::ToDefault => "to-default",
             Self::GetDown => "get-down",
         }
+    }
+
+    /// Returns whether the network drives.
+    pub fn is_driven(&self) -> bool {
+        matches!(self, Self::Policy | Self::ToDefault)
     }
 }
 
@@ -134,6 +146,11 @@ impl Machine {
                     self.enter(Phase::Policy, now_s, reading);
                 }
             }
+            Phase::ToDefault => {
+                if elapsed_s >= self.timing.to_default_s {
+                    self.enter(Phase::GetDown, now_s, reading);
+                }
+            }
             Phase::GetDown => {
                 if elapsed_s >= self.timing.get_down_s {
                     self.enter(Phase::Passive, now_s, reading);
@@ -157,17 +174,16 @@ impl Machine {
         }
     }
 
-    /// Ends the run. A robot that gets down goes on doing so, unless this stop or a second wish of the user lets it go limp.
+    /// Ends the run. A robot that gets down goes on doing so, unless this stop or a second wish of the user lets it go limp. It
+    /// does without its network if that is what fails.
     pub fn stop(&mut self, stop: Stop, now_s: f64, reading: &Reading) -> Phase {
         let is_second_wish = self.ended_by.is_some() && stop.is_wanted();
-        let can_get_down = match self.phase {
-            Phase::Passive => false,
-            Phase::GetUp | Phase::Policy => true,
-            Phase::GetDown => !is_second_wish,
-        };
-        let next = match stop.way() {
-            Way::Down if can_get_down => Phase::GetDown,
-            Way::Down | Way::Limp => Phase::Passive,
+        let next = match (stop.way(), self.phase) {
+            (Way::Limp, _) | (_, Phase::Passive) => Phase::Passive,
+            (_, Phase::ToDefault | Phase::GetDown) if is_second_wish => Phase::Passive,
+            (_, Phase::GetUp | Phase::GetDown) => Phase::GetDown,
+            (_, Phase::Policy | Phase::ToDefault) if stop.is_of_network() => Phase::GetDown,
+            (_, Phase::Policy | Phase::ToDefault) => Phase::ToDefault,
         };
         if next != self.phase {
             self.enter(next, now_s, reading);
@@ -184,6 +200,24 @@ impl Machine {
         }
     }
 
+    /// Moves the network's targets of joints by `share · (default − target)`, with a share that grows from 0 to 1 in the time of the
+    /// state, on the way to the default pose. Otherwise they stay.
+    pub fn lead_to_default(&self, now_s: f64, targets: &mut [Target]) {
+        if self.phase != Phase::ToDefault {
+            return;
+        }
+        let share = self.share(now_s, self.timing.to_default_s);
+        for (pose, target) in self.joints.iter().zip(targets) {
+            if let Target::Position { rad, .. } = target {
+                *rad += share * (pose.default_rad - *rad);
+            }
+        }
+    }
+
+    fn share(&self, now_s: f64, of_s: f64) -> f32 {
+        (self.elapsed_s(now_s) / of_s.max(1e-3)).clamp(0.0, 1.0) as f32
+    }
+
     /// Writes the targets of getting up or down: of a joint `from + share · (to − from)` with a share that grows from 0 to 1
     /// in the time of the state, of a wheel the speed 0.
     pub fn pose(&self, now_s: f64, targets: &mut Vec<Target>) {
@@ -191,7 +225,7 @@ impl Machine {
             Phase::GetDown => (false, self.timing.get_down_s),
             _ => (true, self.timing.get_up_s),
         };
-        let share = (self.elapsed_s(now_s) / time_s.max(1e-3)).clamp(0.0, 1.0) as f32;
+        let share = self.share(now_s, time_s);
         targets.clear();
         targets.extend(self.joints.iter().map(|pose| match pose.drive {
             Drive::Speed => Target::Speed {

@@ -138,7 +138,7 @@ impl Runner {
         let reading = self.robot.reading();
         self.limits.check_attitude(reading)?;
         self.limits.check_speeds(reading)?;
-        if self.machine.phase() == Phase::Policy {
+        if self.machine.phase().is_driven() {
             self.limits.check_positions(reading)?;
         }
         Ok(())
@@ -150,7 +150,7 @@ impl Runner {
             return self.robot.limp();
         }
         // As in training, a command stays as it is until the network runs again.
-        if self.machine.phase() != Phase::Policy || self.has_run {
+        if !self.machine.phase().is_driven() || self.has_run {
             self.sent.clone_from(&self.wanted);
             self.limits
                 .hold_torques(self.robot.reading(), &mut self.sent);
@@ -203,17 +203,23 @@ impl Runner {
                 return Ok(());
             }
             Phase::GetUp => self.machine.pose(now.time_s, &mut self.wanted),
-            Phase::Policy => {
-                if self.until_run == 0 {
-                    self.until_run = self.decimation;
-                    self.run_network(&now.commands)?;
-                }
-                self.until_run -= 1;
-            }
+            Phase::Policy => self.drive(now.time_s, &now.commands)?,
+            Phase::ToDefault => self.drive(now.time_s, &Commands::default())?,
         }
         let reading = self.robot.reading();
         self.limits
             .check_torques(self.period_s, reading, &self.wanted)
+    }
+
+    /// Runs the network in one of `decimation` cycles.
+    fn drive(&mut self, time_s: f64, commands: &Commands) -> Result<(), Stop> {
+        if self.until_run == 0 {
+            self.until_run = self.decimation;
+            self.run_network(commands)?;
+            self.machine.lead_to_default(time_s, &mut self.wanted);
+        }
+        self.until_run -= 1;
+        Ok(())
     }
 
     fn run_network(&mut self, commands: &Commands) -> Result<(), Stop> {

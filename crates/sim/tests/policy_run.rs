@@ -31,8 +31,15 @@ const COMMANDS: [[f64; 2]; 4] = [[0.0, 0.0], [0.5, 0.0], [0.0, 1.0], [-0.3, 0.0]
 const SETTLED_S: f64 = 1.5;
 /// The robot waits for its pilot, and gets up before the policy drives.
 const BEFORE: Ps = 9 * SECOND;
-/// It gets down in 2 s; then it rests.
-const AFTER: Ps = 4 * SECOND;
+/// It folds its legs in 2 s, gets down in 2 s, and rests.
+const AFTER: Ps = 6 * SECOND;
+/// Time in s in which it folds its legs and balances.
+const FOLDS_S: f64 = 1.9;
+/// Greatest height and lean of a robot that balances with folded legs.
+const FOLDED_M: f64 = 0.18;
+const FOLDED_RAD: f64 = 0.3;
+/// It tips over no faster than this, onto its nose or tail. With its legs stretched it falls on its back.
+const TIPS_RPS: f64 = 8.0;
 
 /// Root mean square of the difference to the commands over all of them. The first is what is wanted of a policy.
 const SPEED_MPS: f64 = 0.15;
@@ -321,6 +328,24 @@ fn the_policy_of_the_tree_gets_the_robot_up_and_drives_it() {
     println!("off by {speed_mps:.3} m/s and {turn_rps:.3} rad/s rms in {seconds} s");
     assert!(speed_mps < SPEED_MPS, "{speed_mps}");
     assert!(turn_rps < TURN_RPS, "{turn_rps}");
+
+    let folding = run.driven(seconds + FOLDS_S);
+    let folding: Vec<_> = folding.filter(|(at_s, _)| *at_s > seconds).collect();
+    assert!(folding.iter().all(|(_, it)| it.lean_rad < FOLDED_RAD));
+    let (_, folded) = folding.last().expect("samples");
+    assert!(folded.height_m < FOLDED_M, "{folded:?}");
+    let leans: Vec<_> = run
+        .driven(f64::INFINITY)
+        .filter(|(at_s, _)| *at_s > seconds)
+        .map(|(_, it)| it)
+        .collect();
+    let rates = leans.windows(2).map(|pair| {
+        (pair[1].lean_rad - pair[0].lean_rad) / time::to_seconds(pair[1].at - pair[0].at)
+    });
+    let fastest_rps = rates.fold(0.0, f64::max);
+    let most_rad = leans.iter().map(|it| it.lean_rad).fold(0.0, f64::max);
+    println!("tips over with {fastest_rps:.1} rad/s, to {most_rad:.2} rad");
+    assert!(fastest_rps < TIPS_RPS, "{fastest_rps}");
 
     let last = run.samples.last().expect("samples");
     assert!(

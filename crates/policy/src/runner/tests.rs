@@ -27,9 +27,9 @@ fn goes_limp(name: &str, happens: impl FnOnce(&mut Bench)) {
     assert!(bench.runner.machine().is_over());
 }
 
-/// Something happens while the policy drives; the robot gets down.
-fn gets_down(mut bench: Bench, name: &str) {
-    assert_eq!((bench.ended_by(), bench.phase()), (name, Phase::GetDown));
+/// Something happened while the policy drove; the robot gets down, and begins with `phase`.
+fn gets_down(mut bench: Bench, name: &str, phase: Phase) {
+    assert_eq!((bench.ended_by(), bench.phase()), (name, phase));
     assert!(!bench.is_limp());
     bench.until(Phase::Passive);
     let joints = bench.state.motors[2..].iter();
@@ -246,7 +246,7 @@ fn a_blocked_joint_stops_after_half_a_second() {
 fn an_action_that_is_no_number_gets_down() {
     let mut bench = Bench::new([0.0, 0.0, f32::NAN, 0.0, 0.0, 0.0]);
     bench.until(Phase::GetDown);
-    gets_down(bench, "action");
+    gets_down(bench, "action", Phase::GetDown);
 }
 
 #[test]
@@ -254,7 +254,7 @@ fn the_user_gets_it_down_and_a_second_wish_lets_it_go() {
     let mut bench = driving();
     bench.stop = Some(Stop::Asked);
     bench.cycle();
-    gets_down(bench, "asked");
+    gets_down(bench, "asked", Phase::ToDefault);
 
     let mut bench = driving();
     bench.stop = Some(Stop::Asked);
@@ -277,11 +277,53 @@ fn what_the_computer_lacks_gets_it_down() {
         Stop::Network("it gives no output".to_owned()),
     ] {
         let name = stop.name();
+        let phase = if stop.is_of_network() {
+            Phase::GetDown
+        } else {
+            Phase::ToDefault
+        };
         let mut bench = driving();
         bench.stop = Some(stop);
         bench.cycle();
-        gets_down(bench, name);
+        gets_down(bench, name, phase);
     }
+}
+
+/// The network asks for angles beside the default, and for 3 rad/s of each wheel.
+#[test]
+fn it_goes_to_the_default_pose_while_the_network_drives_the_wheels() {
+    let mut bench = Bench::new([0.5, 0.5, 0.5, 0.5, 0.6, 0.6]);
+    bench.until(Phase::Policy);
+    let driven = bench.last.joints.map(|it| it.pos_rad);
+    let default = [-0.3, -0.2, -0.1, 0.0];
+    bench.stop = Some(Stop::Asked);
+    bench.cycle();
+    let began_s = bench.time_s;
+    while bench.phase() == Phase::ToDefault {
+        let share = ((bench.time_s - began_s) / 2.0) as f32;
+        for ((joint, from), to) in bench.last.joints.iter().zip(driven).zip(default) {
+            // A command stays for 20 ms.
+            let wanted = from + share * (to - from);
+            assert!((joint.pos_rad - wanted).abs() < 0.005, "{share}: {joint:?}");
+            assert_eq!(joint.kp, 20.0);
+        }
+        assert!(bench.last.wheels.iter().all(|it| it.speed_rps == 3.0));
+        bench.cycle();
+    }
+    assert_eq!(bench.phase(), Phase::GetDown);
+    assert!((bench.time_s - began_s - 2.0).abs() < 0.011, "{began_s}");
+    assert!(bench.last.wheels.iter().all(|it| it.speed_rps == 0.0));
+}
+
+/// With targets that are no numbers it does without the network; a second wish lets it go.
+#[test]
+fn a_network_that_fails_on_the_way_to_the_default_pose_is_left_out() {
+    let mut bench = driving();
+    bench.stop = Some(Stop::Asked);
+    bench.cycle();
+    bench.stop = Some(Stop::Network("it gives no output".to_owned()));
+    bench.cycle();
+    gets_down(bench, "asked", Phase::GetDown);
 }
 
 #[test]

@@ -25,8 +25,8 @@ impl Session {
             },
             (Phase::GetUp, _) => "gets up".to_owned(),
             (Phase::Policy, _) => "the policy drives".to_owned(),
-            (Phase::GetDown, Some(stop)) => format!("gets down: {stop}"),
-            (Phase::GetDown, None) => "gets down".to_owned(),
+            (Phase::ToDefault | Phase::GetDown, Some(stop)) => format!("gets down: {stop}"),
+            (Phase::ToDefault | Phase::GetDown, None) => "gets down".to_owned(),
         };
         // The figures in what is in the way may change with each cycle.
         let waits_for = match machine.ended_by() {
