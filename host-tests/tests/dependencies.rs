@@ -90,6 +90,7 @@ fn firmware_and_tools_for_users_do_not_link_the_gpl() {
         (FIRMWARE, BOARD),
         ("robotctl", host.as_str()),
         ("robot-replay", host.as_str()),
+        ("robot-gym", host.as_str()),
     ] {
         let linked = linked(package, target);
         assert!(linked.contains("robot-app"), "{package}: {linked:?}");
