@@ -23,6 +23,8 @@ LIMITS_NM = numpy.array([5.0] * 4 + [4.5] * 2)
 # Wheels faster than this read so on the PC link.
 FASTEST_RPS = 33.0
 CLIP = numpy.array([8.0] * 6)
+# Of speed and turn rate (commands_scale).
+COMMAND_SCALE = (0.96, 0.5)
 POLICY_S, MOTOR_S = 0.02, 0.001
 # From reading to motors.
 LATENCY_S = 0.005
@@ -87,7 +89,7 @@ def run(robot, network):
         command = [numpy.interp(now, times, values) for values in (speeds, turns)]
         if step:
             frames = [robot.frame(last), *frames[:2]]
-        x = numpy.concatenate([*frames, [command[0], 0.0, 0.5 * command[1]]]).astype(numpy.float32)
+        x = numpy.concatenate([*frames, [COMMAND_SCALE[0] * command[0], 0.0, COMMAND_SCALE[1] * command[1]]]).astype(numpy.float32)
         last = network(x).clip(-CLIP, CLIP)
         for tick in range(round(POLICY_S / MOTOR_S)):
             if tick * MOTOR_S >= LATENCY_S:
