@@ -125,8 +125,8 @@ fn a_command_is_seen_and_stays() {
         yaw_rps: -1.0,
     });
     environment.step(&STILL).expect("six numbers");
-    // Scales of config.yaml: 1 and 0.5.
-    assert_eq!(environment.observation()[66..], [0.5, 0.0, -0.5]);
+    // Scales of config.yaml: 0.96 and 0.5.
+    assert_eq!(environment.observation()[66..], [0.48, 0.0, -0.5]);
 }
 
 /// The robot's own controller stands it up and keeps it up.
