@@ -19,7 +19,7 @@ use robot_app::{
 use robot_host_loop::layout_of;
 use robot_plant::{
     time::{MS, Ps, to_seconds},
-    world::{Push, RemoteInput, World, WorldConfig},
+    world::{Push, RemoteInput, World},
 };
 use robot_sim::{
     image_robot,
@@ -149,8 +149,8 @@ fn serve(
     requests: &Receiver<Request>,
     answers: &Sender<Result<State, GymError>>,
 ) {
-    let mut bench = match PoweredBoard::new(&elf, setup) {
-        Ok(bench) => bench,
+    let mut board = match PoweredBoard::new(&elf, setup) {
+        Ok(board) => board,
         Err(error) => {
             // Nobody waits for the answer of a board that was dropped; so below.
             let _ = answers.send(Err(error));
@@ -159,11 +159,11 @@ fn serve(
     };
     for request in requests {
         match request {
-            Request::Send(frame) => bench.send(&frame),
-            Request::Remote(input) => bench.machine.with_world(|world| world.set_remote(input)),
-            Request::Push(push) => bench.machine.with_world(|world| world.push(push)),
+            Request::Send(frame) => board.send(&frame),
+            Request::Remote(input) => board.machine.with_world(|world| world.set_remote(input)),
+            Request::Push(push) => board.machine.with_world(|world| world.push(push)),
             Request::Run { ticks } => {
-                let ran = bench.run(ticks).map(|()| bench.state.clone());
+                let ran = board.run(ticks).map(|()| board.state.clone());
                 let goes_on = ran.is_ok();
                 if answers.send(ran).is_err() || !goes_on {
                     return;
@@ -176,7 +176,7 @@ fn serve(
 impl PoweredBoard {
     fn new(elf: &Path, setup: PowerOn) -> Result<Self, GymError> {
         let flash = parameter_sectors::holding(&records(&setup));
-        let world = world(setup.world)?;
+        let world = World::new(setup.world).map_err(failed)?;
         let probes = Probes::new(&world);
         let mut machine = Machine::new(elf, world).map_err(failed)?;
         machine.set_parameter_flash(&flash);
@@ -232,10 +232,6 @@ impl PoweredBoard {
         state.seconds = to_seconds(self.now);
         Ok(())
     }
-}
-
-fn world(config: WorldConfig) -> Result<World, GymError> {
-    World::new(config).map_err(failed)
 }
 
 /// The settings that are not the defaults, as they stand in flash.

@@ -26,7 +26,7 @@ pub(crate) fn start(
     options: &Options,
 ) -> Result<Beginning, GymError> {
     let sits = match options.start {
-        _ if options.built_in || specimen.only_sits() => true,
+        _ if options.built_in => true,
         StartKind::Sitting => true,
         StartKind::Standing => false,
         StartKind::Mixed => numbers.random_bool(SITS_IN),
@@ -65,7 +65,7 @@ pub(crate) fn draw(
     };
     let mut last = boot();
     for _ in 0..MOST_DRAWS {
-        if !matches!(last, Err(GymError::NotArmed { .. })) {
+        if matches!(last, Ok(_) | Err(GymError::Board(_) | GymError::NoBoard)) {
             break;
         }
         last = boot();

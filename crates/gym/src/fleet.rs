@@ -49,24 +49,7 @@ impl Fleet {
         Self::of(policy, options, seed, count, threads, None)
     }
 
-    /// The same on emulated boards with the firmware's image `elf`, as in [`Environment::on_board`].
-    ///
-    /// # Errors
-    /// As [`Environment::on_board`].
-    ///
-    /// # Panics
-    /// As [`new`](Self::new).
-    pub fn on_boards(
-        policy: &PolicyDescription,
-        options: Options,
-        seed: u64,
-        count: usize,
-        threads: usize,
-        elf: &Path,
-    ) -> Result<Self, GymError> {
-        Self::of(policy, options, seed, count, threads, Some(elf))
-    }
-
+    /// The same, with an image on emulated boards as in [`Environment::on_board`].
     pub(crate) fn of(
         policy: &PolicyDescription,
         options: Options,

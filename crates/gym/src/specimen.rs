@@ -154,13 +154,8 @@ impl Specimen {
         })
     }
 
-    /// Whether it can only begin sitting.
-    pub fn only_sits(&self) -> bool {
-        !matches!(self.starts, Starts::App { .. })
-    }
-
-    /// The robot, let go upright with these velocities forward and to the left in m/s, and this pitch rate in rad/s. One that can
-    /// only begin sitting sits.
+    /// The robot, let go upright with these velocities forward and to the left in m/s, and this pitch rate in rad/s. On
+    /// the emulated board it sits.
     ///
     /// # Errors
     /// As [`sitting`](Self::sitting).

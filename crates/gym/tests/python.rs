@@ -1,17 +1,10 @@
 //! The Python package, installed as anybody would install it, and the programs of `train`.
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
+use std::{fs, path::Path};
 
 use robot_description::{Hold, JointMotor};
 use robot_plant::robots;
-use robot_test_support::Python;
-
-fn repository() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
+use robot_test_support::{Python, repository};
 
 /// Gymnasium's own check passes, the vector of robots steps, and training runs, goes on and is exported.
 #[test]

@@ -8,7 +8,7 @@ use robot_sim::scenario::Scenario;
 #[test]
 fn full_traffic_and_a_flooded_bus_leave_time_to_spare() {
     for name in ["full-traffic", "can1-flooded"] {
-        let path = support::repository().join(format!("scenarios/{name}.toml"));
+        let path = robot_test_support::repository().join(format!("scenarios/{name}.toml"));
         let scenario = Scenario::read(&path).expect("the scenario is there");
         let outcome = support::job(scenario)
             .run(&mut [])

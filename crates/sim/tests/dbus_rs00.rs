@@ -15,5 +15,8 @@ fn every_scenario_with_dbus_and_rs00_holds() {
         );
         return;
     };
-    scenario_files::must_hold(&support::repository().join("scenarios/dbus-rs00"), &elf);
+    scenario_files::must_hold(
+        &robot_test_support::repository().join("scenarios/dbus-rs00"),
+        &elf,
+    );
 }

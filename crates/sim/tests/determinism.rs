@@ -19,7 +19,7 @@ impl Observer for Nobody {
 }
 
 fn scenario(seed: u64) -> Scenario {
-    let path = support::repository().join("scenarios/drive-rolling.toml");
+    let path = robot_test_support::repository().join("scenarios/drive-rolling.toml");
     let mut scenario = Scenario::read(&path).expect("the scenario is there");
     scenario.length = 4_000_000_000_000;
     scenario.seed = seed;

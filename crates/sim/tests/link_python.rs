@@ -59,7 +59,7 @@ struct Program {
 
 impl Program {
     fn start(python: &Python, device: &Path, timetable: &[&str]) -> Self {
-        let here = support::repository();
+        let here = robot_test_support::repository();
         let mut child = python
             .command(here.join("crates/sim/tests/link_python/timetable.py"))
             .arg(here.join("examples"))

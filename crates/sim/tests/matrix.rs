@@ -123,7 +123,7 @@ fn writes() -> bool {
 
 #[test]
 fn every_fault_in_every_phase_ends_as_it_must() {
-    support::image();
+    robot_test_support::image();
     let choice = Choice::wished();
     let cells = run_all(&choice);
     let rows = &choice.rows;

@@ -16,7 +16,7 @@ use robot_sim::machine::faults;
 
 /// Runs all on all cores. Returns the reactions in the order of `runs`.
 fn run_all(runs: &[(&'static str, Debugger)]) -> Vec<Reaction> {
-    support::image();
+    robot_test_support::image();
     let queue = Mutex::new(runs.iter().enumerate());
     let reactions = Mutex::new(Vec::new());
     thread::scope(|scope| {

@@ -71,7 +71,7 @@ fn seconds() -> f64 {
 
 /// The policies of the tree in a folder of its own, with one text in base.yaml replaced.
 fn policies(name: &str, change: [&str; 2]) -> PathBuf {
-    let from = support::repository().join("policy/fivebar");
+    let from = robot_test_support::repository().join("policy/fivebar");
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     fs::create_dir_all(folder.join("fivebar/flat")).expect("a folder");
     let base = fs::read_to_string(from.join("base.yaml")).expect("it is in the tree");
@@ -91,7 +91,7 @@ fn without_figures(line: &str) -> String {
 
 /// What docs/bring-your-own-policy.md shows from the line on that starts so.
 fn shown(start: &str) -> Vec<String> {
-    let page = support::repository().join("docs/bring-your-own-policy.md");
+    let page = robot_test_support::repository().join("docs/bring-your-own-policy.md");
     let page = fs::read_to_string(page).expect("a page");
     let from = page.lines().skip_while(|it| !it.starts_with(start));
     let lines = from.take_while(|it| *it != "```").map(without_figures);
@@ -227,7 +227,7 @@ fn run(program: &Path, policies: &Path, seconds: f64) -> Run {
     fs::write(&file, lines.collect::<String>()).expect("a file");
     let mut command = Command::new(program);
     command
-        .current_dir(support::repository())
+        .current_dir(robot_test_support::repository())
         .args([
             "run",
             "--robot",
@@ -242,7 +242,7 @@ fn run(program: &Path, policies: &Path, seconds: f64) -> Run {
         .arg(&file)
         .arg("--seconds")
         .arg(seconds.to_string());
-    let pilot = support::repository().join("scenarios/policy-pilot.toml");
+    let pilot = robot_test_support::repository().join("scenarios/policy-pilot.toml");
     let mut job = support::job(Scenario::read(&pilot).expect("a scenario"));
     job.scenario.length = BEFORE + time::from_seconds(seconds) + AFTER;
     job.pc.link_on_pty = true;
@@ -297,7 +297,11 @@ fn the_policy_of_the_tree_gets_the_robot_up_and_drives_it() {
         return;
     };
     let seconds = seconds();
-    let run = run(&program, &support::repository().join("policy"), seconds);
+    let run = run(
+        &program,
+        &robot_test_support::repository().join("policy"),
+        seconds,
+    );
     let said = &run.program.as_ref().expect("it ran").said;
     assert!(
         said.iter().any(|it| it.starts_with("ended by time-over")),

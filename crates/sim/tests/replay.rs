@@ -21,7 +21,7 @@ const THREADS: usize = 2;
 /// The trials, where this computer has them.
 fn recordings() -> Option<Vec<PathBuf>> {
     let data = std::env::var_os("ROBOT_DATA").map_or_else(
-        || support::repository().join("../shared/data/broad"),
+        || robot_test_support::repository().join("../shared/data/broad"),
         PathBuf::from,
     );
     let files = fs::read_dir(data.join("hz200")).ok()?;

@@ -7,5 +7,8 @@ mod scenario_files;
 
 #[test]
 fn every_scenario_holds() {
-    scenario_files::must_hold(&support::repository().join("scenarios"), &support::image());
+    scenario_files::must_hold(
+        &robot_test_support::repository().join("scenarios"),
+        &robot_test_support::image(),
+    );
 }

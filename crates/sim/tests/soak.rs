@@ -8,7 +8,7 @@ use robot_sim::{image_robot, soak::Soak};
 
 #[test]
 fn every_invariant_holds_for_two_minutes() {
-    let elf = support::image();
+    let elf = robot_test_support::image();
     let robot = image_robot::of_image(&elf, None);
     let soak = Soak {
         elf,

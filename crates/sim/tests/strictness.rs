@@ -49,7 +49,7 @@ fn reported_in(scenario: &str, patches: &[RegisterPatch]) -> Reported {
 /// The expectations of the default drive's first seconds that fail with these register bits overridden, where the board
 /// itself reports nothing.
 fn drive_fails(patch: RegisterPatch) -> Vec<String> {
-    let path = support::repository().join("scenarios/drive.toml");
+    let path = robot_test_support::repository().join("scenarios/drive.toml");
     let mut drive = Scenario::read(&path).expect("the default drive");
     drive.length = 2 * SECOND;
     drive.expectations.retain(|e| e.window.start < 2 * SECOND);

@@ -1,11 +1,12 @@
 //! What tests of several crates share: random numbers, rotations, the wires to the simulated world, frames of a
-//! gateway, Python, and how much of a long test runs.
+//! gateway, Python, the firmware's image, and how much of a long test runs.
 //!
 //! Only ever a dev-dependency. Nothing here uses the math of `robot-app`, so tests may check it against this.
 
 #![warn(missing_docs)]
 
 mod can_to_eth;
+mod image;
 mod python;
 mod random;
 mod rotation;
@@ -15,6 +16,7 @@ mod whole;
 mod world;
 
 pub use can_to_eth::CanToEth;
+pub use image::{image, repository};
 pub use python::Python;
 pub use random::Random;
 pub use rotation::Rotation;

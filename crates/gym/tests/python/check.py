@@ -26,18 +26,16 @@ assert (seen == again).all() and seen.shape == (3, 69)
 for _ in range(10):
     seen, rewards, fallen, over, info = envs.step(numpy.zeros((3, 6), numpy.float32))
 assert (fallen | over).all() and info["final_obs"].shape == (3, 69), info
-try:
-    jiling_gym.FivebarVec(1, colour="red")
-except KeyError as error:
-    assert "colour" in str(error)
-else:
-    raise SystemExit("an unknown option was taken")
-try:
-    jiling_gym.FivebarVec(1, elf="robot-firmware")
-except ValueError as error:
-    assert "--features python,board" in str(error)
-else:
-    raise SystemExit("there is a board that was not built")
+for kind, says, option in (
+    (KeyError, "colour", {"colour": "red"}),
+    (ValueError, "--features python,board", {"elf": "robot-firmware"}),
+):
+    try:
+        jiling_gym.FivebarVec(1, **option)
+    except kind as error:
+        assert says in str(error), error
+    else:
+        raise SystemExit(f"{option} was taken")
 
 run = lambda script, *arguments: subprocess.run(
     [sys.executable, str(repository / "train" / script), *map(str, arguments)], check=True,

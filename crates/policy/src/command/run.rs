@@ -124,7 +124,9 @@ Examples:
 /// run will say what is wrong.
 fn read_current_limit(mut link: PcLink, robot: &mut Robot) -> anyhow::Result<PcLink> {
     // One that has just been switched on has to boot.
-    link.next(Instant::now() + FIRST_STATE)?;
+    if link.next(Instant::now() + FIRST_STATE)?.is_none() {
+        return Ok(link);
+    }
     let setting = settings::find("wheel-controller.current-limit-ma")?;
     let shared = SharedLink(Rc::new(RefCell::new(link)));
     let mut client = TuningClient::new(Box::new(shared.clone()), Timeouts::default());

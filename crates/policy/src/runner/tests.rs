@@ -315,7 +315,6 @@ fn it_goes_to_the_default_pose_while_the_network_drives_the_wheels() {
     assert!(bench.last.wheels.iter().all(|it| it.speed_rps == 0.0));
 }
 
-/// With targets that are no numbers it does without the network; a second wish lets it go.
 #[test]
 fn a_network_that_fails_on_the_way_to_the_default_pose_is_left_out() {
     let mut bench = driving();

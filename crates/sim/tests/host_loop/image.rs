@@ -13,7 +13,6 @@ use robot_sim::machine::Machine;
 use crate::{
     course::{self, Moment},
     numbers::Numbers,
-    support,
 };
 
 /// The static that holds everything of the control tick.
@@ -131,7 +130,7 @@ impl Image {
         let world = course::world().expect("no recording to load");
         let of_tick = |record| Numbers::of(TICK, record);
         Self {
-            machine: Machine::new(&support::image(), world).expect("the image starts"),
+            machine: Machine::new(&robot_test_support::image(), world).expect("the image starts"),
             next_event: 0,
             events: course::events(),
             queues: [

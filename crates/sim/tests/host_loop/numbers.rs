@@ -4,8 +4,6 @@ use std::collections::HashMap;
 
 use robot_sim::machine::{Machine, StaticRecord};
 
-use crate::support;
-
 /// A record of the image.
 pub struct Numbers {
     record: StaticRecord,
@@ -16,7 +14,8 @@ pub struct Numbers {
 impl Numbers {
     /// A record of a type in the static whose name ends so.
     pub fn of(statik: &str, record: &str) -> Self {
-        let record = StaticRecord::find(&support::image(), statik, record).expect("a record");
+        let record =
+            StaticRecord::find(&robot_test_support::image(), statik, record).expect("a record");
         let places = record.names().map(str::to_owned).zip(0..).collect();
         Self {
             record,

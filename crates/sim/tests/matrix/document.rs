@@ -11,14 +11,13 @@ use crate::{
     judge,
     observed::{Observed, Phase, Wire},
     row::{After, Armed, Arms, Disarmed, Flags, Group, Moves, Row},
-    support,
 };
 
 const BEGIN: &str = "<!-- matrix: written by ROBOT_WRITE_MATRIX=1 cargo test --test matrix -->";
 const END: &str = "<!-- matrix ends -->";
 
 fn path() -> PathBuf {
-    support::repository().join("docs/safety.md")
+    robot_test_support::repository().join("docs/safety.md")
 }
 
 /// Text before the matrix, the matrix, text after it.

@@ -45,7 +45,7 @@ const PC_TIMEOUT_US: f32 = 500_000.0;
 const ACTIONS: [f32; 6] = [0.0, 0.0, 0.0, 0.0, 1.0, -0.5];
 
 fn folder() -> PathBuf {
-    support::repository()
+    robot_test_support::repository()
 }
 
 fn runner() -> anyhow::Result<Runner> {
