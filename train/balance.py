@@ -1,10 +1,12 @@
 """The policy of `planar_search.py` for the whole robot: both sides, roll and turns, from the observation to the actions."""
 
+import json
+
 import numpy
 
 import planar_search
-from circuit import Circuit
-from planar import RADIUS_M, WHEEL_NM
+from circuit import FREE, Circuit
+from planar import HIP_NM, RADIUS_M, WHEEL_NM
 
 # Places in the observation of `policy/fivebar/flat`: one frame has 22 values, and commands follow three frames.
 FRAME, HIPS, HIP_SPEEDS, WHEELS, RATES, GRAVITY, LAST = 22, 0, 4, 8, 10, 13, 16
@@ -12,9 +14,15 @@ FORWARD, TURN, WIDTH = 66, 68, 69
 # What the observation is multiplied with, and what an action means (config.yaml).
 RATE, SPEED, TURNS = 0.25, 0.05, 0.5
 HIP_ACTION_RAD, WHEEL_ACTION_RPS = 0.25, 10.0
-WHEEL_KD = planar_search.GAINS[2]
+HIP_KP, HIP_KD, WHEEL_KD = planar_search.GAINS
 HALF_TRACK_M = 0.21
 FAST_RPS, SPINS_RPS, MOST_RPS = 26.0, 29.0, 80.0
+# The runner stops a robot of which one wheel runs at 32.5 rad/s: one that is faster than WHEEL_RPS gets less torque.
+WHEEL_RPS, WHEEL_OVER_NM = 26.0, 0.7
+# It also stops one of which a hip is asked for more than its torque for half a second. A leg that carries a heavy robot alone would be
+# asked to unfold with more: its motor gives no more, so nothing is lost by asking for less. To fold legs that are folded already means
+# that the robot lies and does not get up, as with a wheel that counts the other way round: that shall end it.
+HIP_UNFOLDS_NM = 0.98 * HIP_NM
 # The default pose (base.yaml): legs folded. Angles here count from that of `planar.py`, those of an observation and of an action from
 # the default pose.
 DEFAULT_SWING_RAD, DEFAULT_FOLD_RAD = 0.0, 0.2
@@ -106,11 +114,17 @@ def network(f):
     circuit.add("spins_ahead", {"turns": 1.0, "lies_ahead": f["lies_rps"]}, bias=-SPINS_RPS, low=0.0)
     circuit.add("spins_behind", {"turns": -1.0, "lies_behind": f["lies_rps"]}, bias=-SPINS_RPS, low=0.0)
     for wheel, sign in (("left", 1.0), ("right", -1.0)):
-        torque = {"torque": 1.0, "spins_ahead": -f["spins_nm"], "spins_behind": f["spins_nm"], "turn": sign}
+        circuit.add(f"{wheel}_ahead", {f"{wheel}_rps": 1.0}, bias=-WHEEL_RPS, low=0.0)
+        circuit.add(f"{wheel}_behind", {f"{wheel}_rps": -1.0}, bias=-WHEEL_RPS, low=0.0)
+        torque = {"torque": 1.0, f"{wheel}_ahead": -WHEEL_OVER_NM, f"{wheel}_behind": WHEEL_OVER_NM, "spins_ahead": -f["spins_nm"], "spins_behind": f["spins_nm"], "turn": sign}
         circuit.add(f"{wheel}_nm", torque, low=-WHEEL_NM, high=WHEEL_NM)
     for hip, (front, rolls) in enumerate(zip(FRONT, ROLLS)):
-        target = {"new_swing": 1.0, "new_fold": front, "new_tilt": rolls}
-        circuit.add(f"hip{hip}", {name: factor / HIP_ACTION_RAD for name, factor in target.items()})
+        circuit.name(f"idle{hip}", {HIPS + hip: 1.0, HIP_SPEEDS + hip: HIP_KD / HIP_KP / SPEED})
+        pull = {"new_swing": 1.0, "new_fold": front, "new_tilt": rolls, f"idle{hip}": -1.0}
+        most = HIP_UNFOLDS_NM / HIP_KP
+        low, high = (-most, FREE) if front > 0 else (-FREE, most)
+        circuit.add(f"pull{hip}", pull, low=low, high=high)
+        circuit.add(f"hip{hip}", {f"idle{hip}": 1 / HIP_ACTION_RAD, f"pull{hip}": 1 / HIP_ACTION_RAD})
     for wheel in ("left", "right"):
         limit = MOST_RPS / WHEEL_ACTION_RPS
         circuit.add(f"{wheel}_wheel", {f"{wheel}_rps": 1 / WHEEL_ACTION_RPS, f"{wheel}_nm": 1 / WHEEL_KD / WHEEL_ACTION_RPS}, low=-limit, high=limit)
@@ -118,7 +132,19 @@ def network(f):
 
 
 def factors_of(path):
-    """Reads the factors of a file of `planar_search.py` or `whole_search.py`."""
+    """Reads the factors of a network of `export.py`, or of a file of `planar_search.py` or `whole_search.py`."""
+    return {**GUESS, **read(path)[0]}
+
+
+def read(path):
+    """Returns the factors of such a file, and the arguments of the search that found them."""
+    if path.suffix == ".onnx":
+        import onnx
+
+        said = {entry.key: entry.value for entry in onnx.load(path).metadata_props}
+        if "factors" not in said:
+            raise SystemExit(f"{path}: it was not made of factors alone (export.py --factors)")
+        return json.loads(said["factors"]), said["arguments"]
     file = numpy.load(path)
     values = {name: file[name] for name in file.files if file[name].ndim == 0 and file[name].dtype.kind == "f"}
-    return {**GUESS, **{name: float(value) for name, value in values.items()}}
+    return {name: float(value) for name, value in values.items()}, str(file["arguments"])

@@ -5,6 +5,7 @@
 """
 
 import argparse
+import json
 import pathlib
 
 import numpy
@@ -97,21 +98,23 @@ def expected(searched, learned, x):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("checkpoint", type=pathlib.Path, nargs="?", help="folder of ppo.py")
-    parser.add_argument("--factors", "--begin", type=pathlib.Path, help="file of whole_search.py: the policy, or with what ppo.py began")
+    parser.add_argument("--factors", "--begin", type=pathlib.Path, help="file of whole_search.py, or a network that was made of one: the policy, or with what ppo.py began")
     parser.add_argument("--out", type=pathlib.Path, required=True, help="file of the network, .onnx")
     arguments = parser.parse_args()
     if arguments.checkpoint is None and arguments.factors is None:
         parser.error("give a checkpoint, --factors, or both")
-    searched, learned, steps, said = [], [], 0, "{}"
+    searched, learned, steps, factors, said = [], [], 0, {}, "{}"
     if arguments.factors:
-        searched, said = balance.network(balance.factors_of(arguments.factors)), str(numpy.load(arguments.factors)["arguments"])
+        factors, said = balance.read(arguments.factors)
+        searched = balance.network(factors)
     if arguments.checkpoint:
         learned, steps, said = hidden_layers(arguments.checkpoint, searched)
     model = helper.make_model(graph(searched, learned), opset_imports=[helper.make_opsetid("", 13)], ir_version=8)
-    # No commit: the same factors make the same file.
+    # No commit: the same factors make the same file. What was learned beside them is not in the factors.
+    known = {} if learned else {"factors": json.dumps(factors)}
     helper.set_model_props(model, {
         "joint_names": JOINTS, "observation_names": OBSERVATION, "observations_history": "0,1,2 (newest first), then commands",
-        "scales": SCALES, "steps": str(steps), "arguments": said,
+        "scales": SCALES, "steps": str(steps), "arguments": said, **known,
     })
     onnx.checker.check_model(model, full_check=True)
     arguments.out.parent.mkdir(parents=True, exist_ok=True)

@@ -31,7 +31,7 @@ LATENCY_S = 0.005
 # Time in s, speed in m/s, turn rate in rad/s.
 COURSE = ((0, 0, 0), (3, 0, 0), (4, 1, 0), (7, 1, 0), (8, 0, 0), (9, -1, 0), (12, -1, 0), (13, 0, 0), (14, 0, 2), (17, 0, 2), (18, 0, 0), (25, 0, 0))
 # Time in s, change of speed forward and to the left in m/s.
-PUSHES = ((19.0, 0.8, 0.0), (22.0, 0.0, 0.5))
+PUSHES = ((19.0, 1.0, 0.0), (22.0, 0.0, 1.0))
 
 
 class Robot:

@@ -49,6 +49,8 @@ one, other = factors("planar.npz"), factors("again.npz")
 assert all((one[name] == other[name]).all() for name in one), "the same seed gives another policy"
 run("whole_search.py", folder / "planar.npz", "--out", folder / "whole.npz", "--robots", 2, "--seconds", 0.4, *search)
 run("export.py", "--factors", folder / "whole.npz", "--out", folder / "searched.onnx")
+run("export.py", "--factors", folder / "searched.onnx", "--out", folder / "again.onnx")
+assert (folder / "again.onnx").read_bytes() == (folder / "searched.onnx").read_bytes(), "a network gives its factors back"
 run("ppo.py", "--smoke", "--begin", folder / "whole.npz", "--out", folder / "run")
 rows = lambda: len((folder / "run/curves.csv").read_text().splitlines())
 first = rows()
